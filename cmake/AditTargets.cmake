@@ -1,0 +1,64 @@
+# One way to declare each kind of target. Includes are written from the root of the source tree:
+#   #include "core/exec/executor.hpp"
+
+# adit_library(NAME SOURCES a.cpp ... [PUBLIC dep ...] [PRIVATE dep ...])
+# A static library target adit_NAME (alias adit::NAME), installed and exported.
+function(adit_library name)
+  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(adit_${name} STATIC ${arg_SOURCES})
+  add_library(adit::${name} ALIAS adit_${name})
+  set_target_properties(adit_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(adit_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/adit>)
+  target_link_libraries(adit_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
+  target_compile_features(adit_${name} PUBLIC cxx_std_20)
+  install(TARGETS adit_${name} EXPORT adit-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endfunction()
+
+# adit_program(NAME SOURCES ... LINK dep ...): an executable that is installed under its name.
+function(adit_program name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LINK})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endfunction()
+
+# adit_test(NAME SOURCES ... LINK dep ... [LABELS label ...] [TIMEOUT seconds] [SERIAL])
+# A GoogleTest program test_NAME; each of its cases is one ctest.
+# Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow.
+# SERIAL: its cases never run beside other tests (live timing).
+function(adit_test name)
+  if(NOT ADIT_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(arg "SERIAL" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  if(NOT arg_LABELS)
+    set(arg_LABELS unit)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 60)
+  endif()
+  add_executable(test_${name} ${arg_SOURCES})
+  target_link_libraries(test_${name} PRIVATE ${arg_LINK} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(test_${name} PRIVATE
+    ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ADIT_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  set(serial "")
+  if(arg_SERIAL)
+    set(serial RUN_SERIAL TRUE)
+  endif()
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST
+    PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} ${serial})
+endfunction()
+
+# adit_bench(NAME SOURCES ... LINK dep ...): a Google Benchmark program bench_NAME.
+function(adit_bench name)
+  if(NOT ADIT_BENCH)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  find_package(benchmark REQUIRED)
+  add_executable(bench_${name} ${arg_SOURCES})
+  target_link_libraries(bench_${name} PRIVATE ${arg_LINK} benchmark::benchmark)
+  target_compile_definitions(bench_${name} PRIVATE
+    ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ADIT_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+endfunction()

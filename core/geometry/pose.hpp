@@ -1,0 +1,75 @@
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+namespace adit {
+
+/// An angle brought into (-pi, pi], radians.
+inline double wrap_angle(double angle) {
+  angle = std::remainder(angle, 2.0 * M_PI);
+  return angle <= -M_PI ? angle + 2.0 * M_PI : angle;
+}
+
+/// A planar pose: metres, radians (REP-103). The transform from its own frame to the frame it is given in.
+struct Pose2 {
+  double x{};
+  double y{};
+  double yaw{};
+
+  /// This pose followed by `b`, which is given in this pose's frame.
+  Pose2 operator*(const Pose2& b) const {
+    const double c = std::cos(yaw), s = std::sin(yaw);
+    return {x + c * b.x - s * b.y, y + s * b.x + c * b.y, wrap_angle(yaw + b.yaw)};
+  }
+  /// A point of this pose's frame, in the frame the pose is given in.
+  Eigen::Vector2d operator*(const Eigen::Vector2d& p) const {
+    const double c = std::cos(yaw), s = std::sin(yaw);
+    return {x + c * p.x() - s * p.y(), y + s * p.x() + c * p.y()};
+  }
+  Pose2 inverse() const {
+    const double c = std::cos(yaw), s = std::sin(yaw);
+    return {-c * x - s * y, s * x - c * y, wrap_angle(-yaw)};
+  }
+  Eigen::Vector2d position() const { return {x, y}; }
+  bool operator==(const Pose2&) const = default;
+};
+
+/// A pose in space: metres, unit quaternion.
+struct Pose3 {
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};
+  Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
+
+  Pose3 operator*(const Pose3& b) const {
+    return {position + orientation * b.position, orientation * b.orientation};
+  }
+  Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return position + orientation * p; }
+  Pose3 inverse() const {
+    const Eigen::Quaterniond q = orientation.conjugate();
+    return {q * -position, q};
+  }
+  double yaw() const {
+    const auto& q = orientation;
+    return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
+  }
+  Pose2 planar() const { return {position.x(), position.y(), yaw()}; }
+  /// A level pose of that planar pose at height z.
+  static Pose3 level(const Pose2& p, double z) {
+    return {{p.x, p.y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(p.yaw, Eigen::Vector3d::UnitZ()))};
+  }
+};
+
+/// A velocity in the body frame: m/s forward, m/s to the left, rad/s counter-clockwise.
+struct Twist2 {
+  double vx{};
+  double vy{};
+  double wz{};
+  bool operator==(const Twist2&) const = default;
+  bool zero() const { return vx == 0.0 && vy == 0.0 && wz == 0.0; }
+};
+
+/// Points in metres, in the frame the holder states.
+using PointCloud = std::vector<Eigen::Vector3f>;
+
+}  // namespace adit

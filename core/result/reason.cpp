@@ -1,0 +1,89 @@
+#include "core/result/reason.hpp"
+
+#include <array>
+
+namespace adit {
+namespace {
+
+struct Row {
+  Reason reason;
+  std::string_view name;
+  std::string_view text;
+};
+
+constexpr std::array rows{
+    Row{Reason::none, "none", "accepted"},
+    Row{Reason::not_holder, "not_holder", "another station holds the robot; take it first"},
+    Row{Reason::locked, "locked", "the robot is locked by its holder; ask for a grant or a release"},
+    Row{Reason::stale_epoch, "stale_epoch", "the robot changed hands since; take it again"},
+    Row{Reason::stale_sequence, "stale_sequence", "a newer command was already handled"},
+    Row{Reason::unknown_station, "unknown_station", "the sender has not announced itself as a basestation"},
+    Row{Reason::name_in_use, "name_in_use", "another station with this name is on the air; choose another --name"},
+    Row{Reason::identity_mismatch, "identity_mismatch", "the sender is not the station it claims to be"},
+    Row{Reason::nobody_holds, "nobody_holds", "nobody holds the robot; take it first"},
+    Row{Reason::unknown_operator, "unknown_operator", "no operator of that name has been heard"},
+    Row{Reason::stop_of_another, "stop_of_another", "another station set this stop; use reset --override"},
+    Row{Reason::wrong_robot, "wrong_robot", "the command is addressed to another robot"},
+    Row{Reason::stopped, "stopped", "a software stop is set; reset it first"},
+    Row{Reason::joystick_stale, "joystick_stale", "no fresh joystick sample"},
+    Row{Reason::stick_not_centred, "stick_not_centred", "centre the stick first"},
+    Row{Reason::driver_silent, "driver_silent", "the robot's driver is silent"},
+    Row{Reason::no_localisation, "no_localisation", "localisation is not initialised"},
+    Row{Reason::terrain_stale, "terrain_stale", "no fresh lidar data"},
+    Row{Reason::goal_missing, "goal_missing", "there is no goal; give one with goto"},
+    Row{Reason::goal_unreachable, "goal_unreachable", "the goal cannot be reached"},
+    Row{Reason::mode_unknown, "mode_unknown", "no mode of that name"},
+    Row{Reason::mode_not_installed, "mode_not_installed", "this robot has no module for that mode"},
+    Row{Reason::sample_stale, "sample_stale", "the sample echoes too old a stamp"},
+    Row{Reason::wrong_mode, "wrong_mode", "the current mode does not take this input"},
+    Row{Reason::blocked, "blocked", "every path is blocked"},
+    Row{Reason::bad_argument, "bad_argument", "an argument is wrong"},
+    Row{Reason::unknown_robot, "unknown_robot", "no robot of that name has been heard"},
+    Row{Reason::unknown_command, "unknown_command", "no such command"},
+    Row{Reason::out_of_range, "out_of_range", "a value is out of range"},
+    Row{Reason::malformed, "malformed", "the message could not be decoded"},
+    Row{Reason::wrong_protocol, "wrong_protocol", "the other side speaks another protocol version"},
+    Row{Reason::no_answer, "no_answer", "no answer came"},
+    Row{Reason::no_station, "no_station", "no station is running; start one with basestation up"},
+    Row{Reason::in_use, "in_use", "already in use"},
+    Row{Reason::wire_failed, "wire_failed", "the network layer failed"},
+    Row{Reason::queue_full, "queue_full", "a queue is full"},
+    Row{Reason::cancelled, "cancelled", "cancelled"},
+    Row{Reason::cannot_read, "cannot_read", "the file cannot be read"},
+    Row{Reason::cannot_write, "cannot_write", "the file cannot be written"},
+    Row{Reason::syntax, "syntax", "syntax error"},
+    Row{Reason::unknown_key, "unknown_key", "unknown key"},
+    Row{Reason::wrong_type, "wrong_type", "wrong type"},
+    Row{Reason::missing_key, "missing_key", "a key is missing"},
+    Row{Reason::not_supported, "not_supported", "not supported"},
+    Row{Reason::internal, "internal", "an internal error was caught"},
+};
+
+const Row* find(Reason reason) {
+  for (const Row& row : rows)
+    if (row.reason == reason) return &row;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string_view name(Reason reason) {
+  const Row* row = find(reason);
+  return row ? row->name : "unknown";
+}
+
+std::string_view describe(Reason reason) {
+  const Row* row = find(reason);
+  return row ? row->text : "a reason this version does not know";
+}
+
+bool reason_from_name(std::string_view text, Reason& out) {
+  for (const Row& row : rows) {
+    if (row.name != text) continue;
+    out = row.reason;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace adit
