@@ -1,0 +1,19 @@
+#pragma once
+#include "core/wire/wire.hpp"
+
+namespace adit::wire {
+
+/// One Fast DDS participant. With no interface named, nothing leaves the machine.
+struct FastDdsParams {
+  std::uint32_t domain{77};              ///< DDS domain, [0, 232]
+  std::string name{"adit"};              ///< participant name, for people
+  std::vector<std::string> interfaces{}; ///< addresses to use; empty: 127.0.0.1 alone
+  std::vector<std::string> peers{};      ///< ADDRESS or ADDRESS:PORT of others, for networks without multicast
+  bool multicast{true};                  ///< ask for others by multicast
+  bool shared_memory{false};             ///< robot domain: large sensor samples between processes of one machine
+};
+
+/// Opens the participant. Errors: wire_failed (with what to do), bad_argument.
+Result<std::unique_ptr<Wire>> open_fastdds(const FastDdsParams& params);
+
+}  // namespace adit::wire

@@ -1,0 +1,68 @@
+#pragma once
+#include "core/wire/wire.hpp"
+
+// Generated from idl/; complete only where the generated header is included.
+namespace adit::radio {
+class Capabilities;
+class Presence;
+class Command;
+class Joystick;
+class Acknowledgement;
+class AuthorityStatus;
+class RobotState;
+class BehaviourState;
+class Notification;
+class Health;
+class LinkReport;
+}  // namespace adit::radio
+namespace geometry_msgs::msg {
+class Twist;
+}
+namespace nav_msgs::msg {
+class Odometry;
+}
+namespace sensor_msgs::msg {
+class PointCloud2;
+class BatteryState;
+}  // namespace sensor_msgs::msg
+
+namespace adit::wire::topics {
+
+inline constexpr bool keyed = true;
+inline constexpr bool unkeyed = false;
+
+/// Every topic of the radio domain. Nobody else writes a topic name or a QoS.
+inline constexpr Topic<radio::Capabilities> capabilities{
+    {"adit/capabilities", "adit::radio::Capabilities", QosClass::status, 1, keyed, 4096}};
+inline constexpr Topic<radio::Presence> presence{
+    {"adit/presence", "adit::radio::Presence", QosClass::state, 1, keyed, 256}};
+inline constexpr Topic<radio::Command> command{
+    {"adit/command", "adit::radio::Command", QosClass::urgent, 16, unkeyed, 512}};
+inline constexpr Topic<radio::Joystick> joystick{
+    {"adit/joystick", "adit::radio::Joystick", QosClass::stream, 1, unkeyed, 256}};
+inline constexpr Topic<radio::Acknowledgement> acknowledgement{
+    {"adit/acknowledgement", "adit::radio::Acknowledgement", QosClass::urgent, 16, unkeyed, 512}};
+inline constexpr Topic<radio::AuthorityStatus> authority{
+    {"adit/authority", "adit::radio::AuthorityStatus", QosClass::status, 1, keyed, 2048}};
+inline constexpr Topic<radio::RobotState> robot_state{
+    {"adit/robot_state", "adit::radio::RobotState", QosClass::state, 1, keyed, 256}};
+inline constexpr Topic<radio::BehaviourState> behaviour{
+    {"adit/behaviour", "adit::radio::BehaviourState", QosClass::status, 1, keyed, 2048}};
+inline constexpr Topic<radio::Notification> notification{
+    {"adit/notification", "adit::radio::Notification", QosClass::status, 8, keyed, 1024}};
+inline constexpr Topic<radio::Health> health{
+    {"adit/health", "adit::radio::Health", QosClass::status, 1, keyed, 4096}};
+inline constexpr Topic<radio::LinkReport> link_report{
+    {"adit/link", "adit::radio::LinkReport", QosClass::state, 1, keyed, 4096}};
+
+/// The robot domain: ROS 2 names and types towards drivers.
+inline constexpr Topic<geometry_msgs::msg::Twist> cmd_vel{
+    {"rt/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::urgent, 1, unkeyed, 64}};
+inline constexpr Topic<nav_msgs::msg::Odometry> odom{
+    {"rt/odom", "nav_msgs::msg::dds_::Odometry_", QosClass::state, 1, unkeyed, 2048}};
+inline constexpr Topic<sensor_msgs::msg::PointCloud2> points{
+    {"rt/points", "sensor_msgs::msg::dds_::PointCloud2_", QosClass::sensor, 1, unkeyed, 4 << 20}};
+inline constexpr Topic<sensor_msgs::msg::BatteryState> battery{
+    {"rt/battery_state", "sensor_msgs::msg::dds_::BatteryState_", QosClass::state, 1, unkeyed, 2048}};
+
+}  // namespace adit::wire::topics

@@ -1,0 +1,79 @@
+#pragma once
+#include <fastcdr/Cdr.h>
+#include <fastcdr/FastBuffer.h>
+#include <fastcdr/exceptions/Exception.h>
+
+#include <exception>
+
+#include "core/wire/wire.hpp"
+
+/// Typed writers and readers over the byte-level wire, for IDL-generated types. Include it in .cpp files,
+/// beside the generated type.
+namespace adit::wire {
+
+/// Serialises into `out` (encapsulation header first, little endian).
+template <class T>
+void encode(const T& sample, std::vector<std::uint8_t>& out) {
+  out.resize(4 + T::getCdrSerializedSize(sample));
+  eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(out.data()), out.size());
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR);
+  cdr.serialize_encapsulation();
+  sample.serialize(cdr);
+  out.resize(cdr.getSerializedDataLength());
+}
+
+/// False when the bytes are no sample of T (wrong encapsulation, truncated, a bool of 2, lengths beyond the
+/// data). Never throws, never allocates more than the bytes can hold.
+template <class T>
+bool decode(std::span<const std::uint8_t> bytes, T& sample) {
+  try {
+    // FastBuffer wants a mutable pointer but a deserialising Cdr only reads.
+    auto* data = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
+    eprosima::fastcdr::FastBuffer buffer(data, bytes.size());
+    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR);
+    cdr.read_encapsulation();
+    sample.deserialize(cdr);
+    return true;
+  } catch (const std::exception&) {
+    return false;  // counted as malformed by the caller
+  }
+}
+
+template <class T>
+class Writer {
+ public:
+  Writer() = default;
+  static Result<Writer> make(Wire& wire, const Topic<T>& topic, const std::string& partition = {}) {
+    auto raw = wire.make_writer(topic, partition);
+    if (!raw) return raw.error();
+    Writer writer;
+    writer.raw_ = std::move(*raw);
+    return writer;
+  }
+  Result<void> write(const T& sample) {
+    encode(sample, buffer_);
+    return raw_->write(buffer_);
+  }
+  std::size_t matched() const { return raw_ ? raw_->matched() : 0; }
+  explicit operator bool() const { return raw_ != nullptr; }
+
+ private:
+  std::unique_ptr<RawWriter> raw_{};
+  std::vector<std::uint8_t> buffer_{};  // reused: no allocation per sample once warm
+};
+
+/// A reader of T: `handler(const T&, const SampleInfo&)` runs on `strand`.
+template <class T, class Handler>
+Result<std::unique_ptr<RawReader>> make_reader(Wire& wire, const Topic<T>& topic, Executor& strand, Handler handler,
+                                               const std::string& partition = {}) {
+  return wire.make_reader(topic, partition, strand,
+                          [handler = std::move(handler), sample = std::make_shared<T>()](
+                              std::span<const std::uint8_t> bytes, const SampleInfo& info) mutable {
+                            *sample = T{};
+                            if (!decode(bytes, *sample)) return false;
+                            handler(static_cast<const T&>(*sample), info);
+                            return true;
+                          });
+}
+
+}  // namespace adit::wire
