@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/pose.hpp"
+#include "sim/world/world.hpp"
+
+namespace adit::sim {
+
+/// A spinning lidar.
+struct LidarParams {
+  int rings{16};                 ///< beams one above the other, [1, 128]
+  int columns{900};              ///< directions a turn, [4, 4096]
+  double lowest{-15.0};          ///< elevation of the lowest ring, degrees, [-89, 89]; a single ring is level
+  double highest{15.0};          ///< of the highest, degrees, [lowest, 89]
+  double rate{10.0};             ///< turns a second, Hz, (0, 100]
+  double min_range{0.3};         ///< nearer hits are lost, m, [0, max_range)
+  double max_range{30.0};        ///< farther hits are lost, m, (0, 1000]
+  double range_noise{0.02};      ///< standard deviation of a range, m, [0, 1]
+
+  /// One level ring of 360: for many seeds.
+  static LidarParams planar();
+};
+
+/// Another robot as a lidar sees it: a box that stands on the ground.
+struct BodyBox {
+  Pose2 pose{};     ///< of its centre, world
+  double ground{};  ///< z of its underside, m
+  double length{}, width{}, height{};
+};
+
+/// The directions of a lidar's beams, computed once and shared by all scans.
+class LidarPattern {
+ public:
+  explicit LidarPattern(const LidarParams& params);
+  const LidarParams& params() const { return params_; }
+  std::size_t size() const { return azimuth_.size() * elevation_.size(); }
+
+  /// One turn, taken at one instant, of a sensor at `height` above the ground point `base` (world).
+  /// Points are in base_link: origin on the ground under the robot's centre, x forward, z up, as level as
+  /// `base` is; at most size() of them, column by column, in each from the lowest ring up; beams that hit
+  /// nothing are left out. Depends on the arguments alone, so scans may run in parallel.
+  PointCloud scan(const World& world, std::span<const BodyBox> others, const Pose3& base, double height,
+                  std::uint64_t seed) const;
+
+ private:
+  LidarParams params_;
+  std::vector<Eigen::Vector2d> azimuth_;    ///< cos, sin
+  std::vector<Eigen::Vector2d> elevation_;  ///< cos, sin
+};
+
+}  // namespace adit::sim

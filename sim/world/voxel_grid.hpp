@@ -1,0 +1,80 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace adit::sim {
+
+/// Solid or open cells: square columns of equal size, cut into layers of any thickness. An OctoMap has
+/// layers as thick as its cells; a floor plan needs a single one.
+///
+/// Every open cell keeps how far the nearest solid cell of its layer is (Chebyshev, in cells), so that a
+/// ray crosses open space in a few strides: within that square nothing can be hit.
+class VoxelGrid {
+ public:
+  /// Nothing is hit within the range asked for.
+  static constexpr double no_hit = std::numeric_limits<double>::infinity();
+  /// More cells than this are refused by the loaders.
+  static constexpr std::int64_t max_cells = 64'000'000;
+
+  VoxelGrid() = default;
+  /// All cells solid. `origin`: corner of the grid with the smallest x and y, m; `resolution`: edge of a
+  /// column, m, > 0; `levels`: heights of the layers' borders, m, ascending, layers + 1 of them.
+  /// `open_sides`: whether what lies beside the grid is open (else solid); below and above is solid.
+  VoxelGrid(const Eigen::Vector2d& origin, double resolution, int nx, int ny, std::vector<double> levels,
+            bool open_sides);
+
+  int nx() const { return nx_; }
+  int ny() const { return ny_; }
+  int layers() const { return static_cast<int>(levels_.size()) - 1; }
+  double resolution() const { return resolution_; }
+  const Eigen::Vector2d& origin() const { return origin_; }
+  const std::vector<double>& levels() const { return levels_; }
+  bool open_sides() const { return open_sides_; }
+
+  bool inside(int i, int j) const { return i >= 0 && i < nx_ && j >= 0 && j < ny_; }
+  bool solid(int i, int j, int k) const { return cells_[index(i, j, k)] == 0; }
+  /// To be followed by build() after the last change.
+  void set(int i, int j, int k, bool solid) { cells_[index(i, j, k)] = solid ? 0 : 1; }
+  /// Computes the strides.
+  void build();
+
+  /// Column that holds x or y (m); may lie outside the grid.
+  int column_x(double x) const { return static_cast<int>(std::floor((x - origin_.x()) / resolution_)); }
+  int column_y(double y) const { return static_cast<int>(std::floor((y - origin_.y()) / resolution_)); }
+  Eigen::Vector2d centre(int i, int j) const {
+    return origin_ + resolution_ * Eigen::Vector2d(i + 0.5, j + 0.5);
+  }
+
+  /// Where rays start; located once for all rays of a scan.
+  struct Start {
+    Eigen::Vector3d position;  ///< m
+    double gx, gy;             ///< position in columns
+    int i, j, k;               ///< its cell; k = -1: below or above the grid
+  };
+  Start locate(const Eigen::Vector3d& position) const;
+
+  /// Distance along `direction` (unit vector) to the first solid cell, m, 0 when the start is solid; no_hit
+  /// beyond `max_range`. Voxel traversal after Amanatides and Woo (1987), with strides over empty squares.
+  double cast(const Start& start, const Eigen::Vector3d& direction, double max_range) const;
+
+ private:
+  std::size_t index(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * ny_ + j) * nx_ + i;
+  }
+  /// Moves a start that lies beside the grid to the point where the ray enters; false when it never does.
+  bool enter(Start& start, const Eigen::Vector3d& direction, double& t) const;
+  /// Floor or ceiling of an open world, beside the grid.
+  double cast_beside(const Start& start, const Eigen::Vector3d& direction, double max_range) const;
+
+  Eigen::Vector2d origin_{Eigen::Vector2d::Zero()};
+  double resolution_{1.0};
+  int nx_{0};
+  int ny_{0};
+  bool open_sides_{false};
+  std::vector<double> levels_{0.0, 1.0};
+  std::vector<std::uint8_t> cells_{};  ///< 0 solid, else cells to the nearest solid one or to the border
+};
+
+}  // namespace adit::sim

@@ -1,0 +1,42 @@
+#pragma once
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace adit::sim {
+
+/// A folder that vanishes after the test.
+class Scratch {
+ public:
+  Scratch() {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("adit_") + info->test_suite_name() + "_" + info->name());
+    std::filesystem::create_directories(folder_);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  std::filesystem::path write(const std::string& name, std::string_view content) const {
+    std::ofstream(path(name), std::ios::binary) << content;
+    return path(name);
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// The map of a real building, where ./run setup or the package put it; empty when it is not installed.
+inline std::filesystem::path building_map() {
+  for (const char* folder : {ADIT_SOURCE_DIR "/config/maps", ADIT_SOURCE_DIR "/config",
+                             "/usr/share/doc/liboctomap-dev/examples/data"})
+    if (const auto file = std::filesystem::path(folder) / "geb079.bt"; std::filesystem::exists(file)) return file;
+  return {};
+}
+
+}  // namespace adit::sim
