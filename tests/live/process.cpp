@@ -1,0 +1,193 @@
+#include "tests/live/process.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/timerfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+extern char** environ;
+
+namespace adit::live {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+/// Blocks for that long on a timer of the kernel.
+void wait_on_timer(Seconds period) {
+  const int fd = timerfd_create(CLOCK_MONOTONIC, TFD_CLOEXEC);
+  itimerspec spec{};
+  spec.it_value.tv_nsec = static_cast<long>(period.count() * 1e9);
+  timerfd_settime(fd, 0, &spec, nullptr);
+  pollfd p{fd, POLLIN, 0};
+  poll(&p, 1, 1000);
+  close(fd);
+}
+
+std::string program(const std::string& name) {
+  return name.find('/') == std::string::npos ? std::string(ADIT_BIN_DIR) + "/" + name : name;
+}
+
+/// False at end of file.
+bool drain(int fd, std::string& into) {
+  char buffer[4096];
+  for (;;) {
+    const ssize_t n = read(fd, buffer, sizeof buffer);
+    if (n > 0) {
+      into.append(buffer, static_cast<std::size_t>(n));
+    } else {
+      return n < 0 && (errno == EAGAIN || errno == EINTR);
+    }
+  }
+}
+
+}  // namespace
+
+Process::Process(std::vector<std::string> arguments, std::map<std::string, std::string> environment) {
+  int out[2], err[2];
+  if (pipe2(out, O_CLOEXEC) != 0 || pipe2(err, O_CLOEXEC) != 0) throw std::runtime_error("pipe2 failed");
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, out[1], 1);
+  posix_spawn_file_actions_adddup2(&actions, err[1], 2);
+
+  std::vector<std::string> variables;
+  for (char** e = environ; *e != nullptr; ++e) {
+    const std::string entry = *e;
+    if (!environment.contains(entry.substr(0, entry.find('=')))) variables.push_back(entry);
+  }
+  for (const auto& [key, value] : environment) variables.push_back(key + "=" + value);
+  arguments[0] = program(arguments[0]);
+  std::vector<char*> argv, envp;
+  for (auto& a : arguments) argv.push_back(a.data());
+  for (auto& v : variables) envp.push_back(v.data());
+  argv.push_back(nullptr);
+  envp.push_back(nullptr);
+
+  const int failed = posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), envp.data());
+  posix_spawn_file_actions_destroy(&actions);
+  close(out[1]);
+  close(err[1]);
+  out_fd_ = out[0];
+  err_fd_ = err[0];
+  if (failed != 0) throw std::runtime_error("cannot start " + arguments[0] + ": " + std::strerror(failed));
+  fcntl(out_fd_, F_SETFL, O_NONBLOCK);
+  fcntl(err_fd_, F_SETFL, O_NONBLOCK);
+}
+
+Process::Process(Process&& other) noexcept
+    : pid_(other.pid_),
+      out_fd_(other.out_fd_),
+      err_fd_(other.err_fd_),
+      reaped_(other.reaped_),
+      status_(other.status_),
+      out_(std::move(other.out_)),
+      err_(std::move(other.err_)) {
+  other.pid_ = -1;
+  other.out_fd_ = other.err_fd_ = -1;
+}
+
+Process::~Process() {
+  if (pid_ > 0 && !reaped_) {
+    kill(pid_, SIGKILL);
+    reap(true);
+  }
+  if (out_fd_ >= 0) close(out_fd_);
+  if (err_fd_ >= 0) close(err_fd_);
+}
+
+void Process::reap(bool block) {
+  if (!reaped_ && waitpid(pid_, &status_, block ? 0 : WNOHANG) == pid_) reaped_ = true;
+}
+
+bool Process::running() {
+  reap(false);
+  return !reaped_;
+}
+
+void Process::signal(int number) {
+  if (running()) kill(pid_, number);
+}
+
+bool Process::pump(Seconds limit) {
+  pollfd fds[2] = {{out_fd_, POLLIN, 0}, {err_fd_, POLLIN, 0}};
+  poll(fds, 2, static_cast<int>(limit.count() * 1e3));
+  const bool out_open = drain(out_fd_, out_);
+  const bool err_open = drain(err_fd_, err_);
+  return out_open || err_open;
+}
+
+bool Process::wait_for_output(const std::string& text, Seconds limit) {
+  const auto end = SteadyClock::now() + limit;
+  for (;;) {
+    if (out_.find(text) != std::string::npos || err_.find(text) != std::string::npos) return true;
+    if (SteadyClock::now() > end) return false;
+    if (!pump(Seconds(0.05)) && !running()) {
+      return out_.find(text) != std::string::npos || err_.find(text) != std::string::npos;
+    }
+  }
+}
+
+Finished Process::wait(Seconds limit) {
+  const auto end = SteadyClock::now() + limit;
+  while (running() && SteadyClock::now() < end) {
+    // Once both pipes are closed poll returns at once: wait on a timer instead.
+    if (!pump(Seconds(0.02))) wait_on_timer(Seconds(0.01));
+  }
+  if (running()) {
+    kill(pid_, SIGKILL);
+    reap(true);
+  }
+  pump(Seconds(0));
+  Finished finished{0, out_, err_};
+  finished.exit_code = WIFEXITED(status_) ? WEXITSTATUS(status_) : -WTERMSIG(status_);
+  return finished;
+}
+
+Finished run(std::vector<std::string> arguments, std::map<std::string, std::string> environment,
+             Seconds limit) {
+  return Process(std::move(arguments), std::move(environment)).wait(limit);
+}
+
+bool eventually(const std::function<bool()>& condition, Seconds limit) {
+  const auto end = SteadyClock::now() + limit;
+  while (!condition()) {
+    if (SteadyClock::now() > end) return false;
+    wait_on_timer(Seconds(0.01));
+  }
+  return true;
+}
+
+Folder::Folder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "adit-test-XXXXXX").string();
+  if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("mkdtemp failed");
+  path_ = pattern;
+}
+
+Folder::~Folder() {
+  std::error_code ignored;  // a leftover file in the temporary folder fails no test
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string Folder::write(const std::string& name, const std::string& text) const {
+  const std::string file = path_ + "/" + name;
+  std::ofstream(file) << text;
+  return file;
+}
+
+std::map<std::string, std::string> Folder::environment() const {
+  return {{"XDG_RUNTIME_DIR", path_}, {"XDG_STATE_HOME", path_}, {"HOME", path_}};
+}
+
+unsigned domain(unsigned index) { return 100 + static_cast<unsigned>(getpid()) % 12 * 10 + index % 10; }
+
+}  // namespace adit::live

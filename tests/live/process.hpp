@@ -1,0 +1,79 @@
+#pragma once
+#include <sys/types.h>
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace adit::live {
+
+using Seconds = std::chrono::duration<double>;
+
+/// What a finished program left.
+struct Finished {
+  int exit_code{-1};  ///< negative: killed by that signal
+  std::string out{};
+  std::string err{};
+};
+
+/// A program of this build running beside the test; killed and reaped when dropped.
+class Process {
+ public:
+  /// `arguments[0]` is a path, or the name of a program in the build's bin folder.
+  Process(std::vector<std::string> arguments, std::map<std::string, std::string> environment = {});
+  ~Process();
+  Process(Process&&) noexcept;
+  Process& operator=(Process&&) = delete;
+
+  pid_t pid() const { return pid_; }
+  bool running();
+  void signal(int number);
+  /// Waits for the end; kills it after `limit` (exit_code is then -SIGKILL).
+  Finished wait(Seconds limit);
+  /// Reads its output until `text` has been seen on stdout or stderr; false after `limit` or at its end.
+  bool wait_for_output(const std::string& text, Seconds limit);
+  const std::string& out() const { return out_; }
+  const std::string& err() const { return err_; }
+
+ private:
+  bool pump(Seconds limit);
+  void reap(bool block);
+
+  pid_t pid_{-1};
+  int out_fd_{-1}, err_fd_{-1};
+  bool reaped_{false};
+  int status_{0};
+  std::string out_{}, err_{};
+};
+
+/// Runs a program to its end.
+Finished run(std::vector<std::string> arguments, std::map<std::string, std::string> environment = {},
+             Seconds limit = Seconds(20));
+
+/// Asks again until `condition` holds; waits on a timer between two asks. False after `limit`.
+bool eventually(const std::function<bool()>& condition, Seconds limit = Seconds(10));
+
+/// A folder that goes with the test, for sockets, identities and files.
+class Folder {
+ public:
+  Folder();
+  ~Folder();
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const std::string& path() const { return path_; }
+  /// Writes a file below it and returns its path.
+  std::string write(const std::string& name, const std::string& text) const;
+  /// The environment that keeps every program of a test inside this folder.
+  std::map<std::string, std::string> environment() const;
+
+ private:
+  std::string path_;
+};
+
+/// A radio domain that no other test of this machine uses at the same time; `index` tells several apart, [0,
+/// 9].
+unsigned domain(unsigned index = 0);
+
+}  // namespace adit::live
