@@ -188,6 +188,9 @@ std::map<std::string, std::string> Folder::environment() const {
   return {{"XDG_RUNTIME_DIR", path_}, {"XDG_STATE_HOME", path_}, {"HOME", path_}};
 }
 
-unsigned domain(unsigned index) { return 100 + static_cast<unsigned>(getpid()) % 12 * 10 + index % 10; }
+unsigned domain(unsigned index) {
+  // Below 100, so that DDS ports stay under the range from which the kernel draws ephemeral ones.
+  return 10 + static_cast<unsigned>(getpid()) % 9 * 10 + index % 10;
+}
 
 }  // namespace adit::live
