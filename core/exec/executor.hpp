@@ -57,7 +57,8 @@ class Executor {
   virtual Timer every(Duration period, Task task) = 0;
   /// Runs `work` on a pool, beside everything else, then `done` on this strand. `work` must own or share
   /// all that it touches. In rehearsal `done` comes exactly `modelled` later in virtual time, however
-  /// long the work takes; live, when the work is done.
+  /// long the work takes; live, when the work is done. Work that throws is reported as a failure of the
+  /// strand, and `done` does not run.
   virtual void compute(Duration modelled, Task work, Task done) = 0;
 };
 

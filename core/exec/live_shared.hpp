@@ -1,0 +1,72 @@
+#pragma once
+// What the strands and the compute pool of one LiveRuntime share. Private to core/exec.
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "core/exec/live_runtime.hpp"
+
+namespace adit {
+
+/// A futex word with an absolute deadline on the steady clock: cheaper to wake than a condition variable.
+class WakeWord {
+ public:
+  /// Owner's thread. Returns when woken since the last prepare(), or at the deadline (ns of steady_clock).
+  void wait(std::int64_t deadline_ns);
+  /// Owner's thread, before it looks for work a last time.
+  void prepare() { word_.store(1, std::memory_order_seq_cst); }
+  void clear() { word_.store(0, std::memory_order_relaxed); }
+  /// Any thread; a system call only when the owner sleeps.
+  void wake();
+
+ private:
+  std::atomic<std::uint32_t> word_{0};  // 1: sleeping or about to
+};
+
+/// Threads of low priority for `compute`.
+class ComputePool {
+ public:
+  ComputePool(int threads, std::size_t capacity, int nice);
+  ~ComputePool();
+  ComputePool(const ComputePool&) = delete;
+  ComputePool& operator=(const ComputePool&) = delete;
+  /// False when the queue is full or the pool is stopping.
+  bool add(Task task);
+  /// Drops what waits and joins the threads.
+  void stop();
+
+ private:
+  void loop(int nice);
+  std::mutex mutex_{};
+  std::condition_variable added_{};
+  std::deque<Task> queue_{};
+  std::size_t capacity_;
+  bool stopping_{false};
+  std::vector<std::thread> threads_{};
+};
+
+struct LiveRuntime::Shared {
+  explicit Shared(LiveParams p)
+      : params(std::move(p)), pool(params.compute_threads, params.compute_queue, params.compute_nice) {}
+  void fail(const std::string& strand, const std::string& what) {
+    failures.fetch_add(1, std::memory_order_relaxed);
+    if (params.on_failure) params.on_failure(strand, what);
+  }
+  void drop(const std::string& strand, const std::string& what) {
+    // The first, then each thousandth: a full queue must not flood the log as well.
+    if (dropped.fetch_add(1, std::memory_order_relaxed) % 1000 == 0 && params.on_failure)
+      params.on_failure(strand, what);
+  }
+  LiveParams params;
+  std::atomic<std::uint64_t> failures{0};
+  std::atomic<std::uint64_t> dropped{0};
+  ComputePool pool;
+};
+
+std::shared_ptr<Executor> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared,
+                                           const std::string& name);
+
+}  // namespace adit

@@ -1,0 +1,318 @@
+#include "core/exec/virtual_runtime.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "core/exec/job_pool.hpp"
+#include "core/time/random.hpp"
+
+namespace adit {
+namespace {
+
+using Alive = std::shared_ptr<std::atomic<bool>>;
+
+class VirtualStrand;
+
+/// What is to be done, in a slot that is used again.
+struct Event {
+  VirtualStrand* strand{nullptr};
+  Task task{};
+  Alive alive{};               ///< null: cannot be cancelled
+  std::int64_t period{0};      ///< 0: once
+  std::shared_ptr<Job> job{};  ///< finished before the task runs
+  std::uint32_t next_free{0};
+};
+
+/// When it is to be done. `order` is the machine's place at that instant, then the posting order.
+struct Due {
+  std::int64_t when;
+  std::uint64_t order;
+  std::uint32_t slot;
+};
+struct Later {
+  bool operator()(const Due& a, const Due& b) const {
+    return a.when != b.when ? a.when > b.when : a.order > b.order;
+  }
+};
+
+constexpr std::uint32_t no_slot = ~0U;
+constexpr int order_bits = 48;  // of the posting order: 2^48 events are more than a rehearsal runs
+
+}  // namespace
+
+struct VirtualScheduler::Core {
+  explicit Core(VirtualParams p) : params(std::move(p)), pool(std::clamp(params.workers, 1, 64) - 1) {}
+
+  void check_thread() const {
+    if (std::this_thread::get_id() != thread)
+      throw std::logic_error("a strand of a rehearsal was used from another thread");
+  }
+
+  std::uint32_t take_slot() {
+    if (free_slot == no_slot) {
+      events.emplace_back();
+      return static_cast<std::uint32_t>(events.size() - 1);
+    }
+    const std::uint32_t slot = free_slot;
+    free_slot = events[slot].next_free;
+    return slot;
+  }
+
+  void release(std::uint32_t slot) {
+    Event& event = events[slot];
+    event.strand = nullptr;
+    event.alive.reset();
+    event.job.reset();
+    event.next_free = free_slot;
+    free_slot = slot;
+  }
+
+  void push(std::int64_t when, std::uint64_t machine, std::uint32_t slot) {
+    // The place of a machine at an instant depends on nothing but seed, machine and instant.
+    const std::uint64_t place = Random(params.seed ^ (machine * 0xd1342543de82ef95ULL) ^
+                                       (static_cast<std::uint64_t>(when) * 0x9e3779b97f4a7c15ULL))
+                                    .next() >>
+                                order_bits;
+    heap.push_back({when, (place << order_bits) | sequence++, slot});
+    std::push_heap(heap.begin(), heap.end(), Later{});
+    if (heap.size() >= sweep_at) sweep();
+  }
+
+  void add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task, Alive alive,
+           std::int64_t period, std::shared_ptr<Job> job);
+
+  /// Takes out every event that `gone` names; their captures die after the structure is whole again.
+  template <class Gone>
+  void remove_if(Gone gone) {
+    std::vector<Event> dead;
+    std::erase_if(heap, [&](const Due& due) {
+      Event& event = events[due.slot];
+      if (!gone(event)) return false;
+      if (event.job) pool.forget(event.job);
+      dead.push_back(std::move(event));
+      event.task = nullptr;
+      release(due.slot);
+      return true;
+    });
+    std::make_heap(heap.begin(), heap.end(), Later{});
+  }
+
+  /// Cancelled timers stay in the heap until due; this keeps their number below that of the live ones.
+  void sweep() {
+    sweep_at = ~std::size_t{0};
+    remove_if([](const Event& e) { return e.alive && !e.alive->load(std::memory_order_relaxed); });
+    sweep_at = std::max<std::size_t>(4096, 2 * heap.size());
+  }
+
+  void fail(const std::string& strand, const std::string& what) {
+    ++failures;
+    if (params.on_failure) params.on_failure(strand, what);
+  }
+
+  bool step(std::int64_t limit);
+  void run(std::uint32_t slot);
+
+  VirtualParams params;
+  JobPool pool;
+  std::thread::id thread{std::this_thread::get_id()};
+  std::vector<Event> events{};
+  std::vector<Due> heap{};
+  std::uint32_t free_slot{no_slot};
+  std::size_t sweep_at{4096};
+  std::uint64_t sequence{0};
+  std::uint64_t jobs{0};
+  std::uint64_t machines{0};
+  std::int64_t now{0};
+  std::uint64_t at_this_instant{0};
+  std::uint64_t tasks{0};
+  std::uint64_t failures{0};
+  VirtualStrand* running{nullptr};
+  bool in_task{false};
+  bool closed{false};
+};
+
+namespace {
+
+using Core = VirtualScheduler::Core;
+
+class VirtualStrand final : public Executor {
+ public:
+  VirtualStrand(std::shared_ptr<Core> core, std::uint64_t machine, Duration offset, std::string name)
+      : core_(std::move(core)), machine_(machine), offset_(offset), name_(std::move(name)) {}
+
+  ~VirtualStrand() override {
+    if (core_->running == this) core_->running = nullptr;
+    core_->remove_if([this](const Event& event) { return event.strand == this; });
+  }
+
+  const std::string& name() const override { return name_; }
+  std::uint64_t machine() const { return machine_; }
+  Time now() const override { return Time(offset_ + Duration(core_->now)); }
+
+  void post(Task task) override {
+    core_->check_thread();
+    core_->add(this, machine_, core_->now, std::move(task), nullptr, 0, nullptr);
+  }
+
+  Timer after(Duration delay, Task task) override {
+    core_->check_thread();
+    auto alive = std::make_shared<std::atomic<bool>>(true);
+    core_->add(this, machine_, core_->now + std::max<std::int64_t>(0, delay.count()), std::move(task), alive,
+               0, nullptr);
+    return Timer(std::move(alive));
+  }
+
+  Timer every(Duration period, Task task) override {
+    core_->check_thread();
+    auto alive = std::make_shared<std::atomic<bool>>(true);
+    const std::int64_t p = std::max<std::int64_t>(1, period.count());
+    core_->add(this, machine_, core_->now + p, std::move(task), alive, p, nullptr);
+    return Timer(std::move(alive));
+  }
+
+  void compute(Duration modelled, Task work, Task done) override {
+    core_->check_thread();
+    const std::int64_t due = core_->now + std::max<std::int64_t>(0, modelled.count());
+    auto job = std::make_shared<Job>(std::move(work), due, core_->jobs++);
+    core_->add(this, machine_, due, std::move(done), nullptr, 0, job);
+    core_->pool.add(std::move(job));
+  }
+
+ private:
+  std::shared_ptr<Core> core_;
+  std::uint64_t machine_;
+  Duration offset_;
+  std::string name_;
+};
+
+class VirtualMachine final : public Runtime {
+ public:
+  VirtualMachine(std::shared_ptr<Core> core, std::uint64_t machine, Duration offset, std::string name)
+      : core_(std::move(core)), machine_(machine), offset_(offset), name_(std::move(name)) {}
+
+  std::shared_ptr<Executor> strand(const std::string& name) override {
+    return std::make_shared<VirtualStrand>(core_, machine_, offset_, name_ + "/" + name);
+  }
+
+ private:
+  std::shared_ptr<Core> core_;
+  std::uint64_t machine_;
+  Duration offset_;
+  std::string name_;
+};
+
+}  // namespace
+
+void VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task,
+                                 Alive alive, std::int64_t period, std::shared_ptr<Job> job) {
+  if (closed) return;  // the scheduler is gone; nothing will run any more
+  const std::uint32_t slot = take_slot();
+  Event& event = events[slot];
+  event.strand = strand;
+  event.task = std::move(task);
+  event.alive = std::move(alive);
+  event.period = period;
+  event.job = std::move(job);
+  push(when, machine, slot);
+}
+
+bool VirtualScheduler::Core::step(std::int64_t limit) {
+  if (in_task) throw std::logic_error("a task of a rehearsal cannot run the scheduler");
+  while (!heap.empty() && heap.front().when <= limit) {
+    const Due due = heap.front();
+    std::pop_heap(heap.begin(), heap.end(), Later{});
+    heap.pop_back();
+    Event& event = events[due.slot];
+    if (event.alive && !event.alive->load(std::memory_order_relaxed)) {
+      const Task dead = std::move(event.task);
+      event.task = nullptr;
+      release(due.slot);
+      continue;
+    }
+    if (due.when > now) at_this_instant = 0;
+    now = due.when;
+    run(due.slot);
+    return true;
+  }
+  return false;
+}
+
+void VirtualScheduler::Core::run(std::uint32_t slot) {
+  // The slot is moved out first: a task may add events (which moves the slots) or drop its strand.
+  const Event& event = events[slot];
+  const std::string& strand_name = event.strand->name();
+  if (++at_this_instant > params.max_per_instant)
+    throw std::runtime_error("strand " + strand_name + ": tasks post each other without time going on");
+  ++tasks;
+  VirtualStrand* const strand = event.strand;
+  const std::int64_t period = event.period;
+  Task task = std::move(events[slot].task);
+  Alive alive = std::move(events[slot].alive);
+  const std::shared_ptr<Job> job = std::move(events[slot].job);
+  events[slot].task = nullptr;
+  release(slot);
+
+  if (job) {
+    pool.finish(job);
+    if (job->failed) return fail(strand_name, "compute: " + job->failure);
+  }
+  if (alive && period == 0) alive->store(false, std::memory_order_relaxed);
+  running = strand;
+  in_task = true;
+  try {
+    task();
+  } catch (...) {
+    fail(running ? strand_name : "(dropped)", current_exception_text());
+  }
+  in_task = false;
+  const bool dropped = running == nullptr;
+  running = nullptr;
+  if (period > 0 && !dropped && alive->load(std::memory_order_relaxed))
+    add(strand, strand->machine(), now + period, std::move(task), std::move(alive), period, nullptr);
+}
+
+VirtualScheduler::VirtualScheduler(VirtualParams params)
+    : core_(std::make_shared<Core>(std::move(params))),
+      world_(machine("world", 0ns)),
+      world_strand_(world_->strand("events")) {}
+
+VirtualScheduler::VirtualScheduler(std::uint64_t seed) : VirtualScheduler(VirtualParams{.seed = seed}) {}
+
+VirtualScheduler::~VirtualScheduler() {
+  core_->closed = true;
+  core_->remove_if([](const Event&) { return true; });
+}
+
+std::unique_ptr<Runtime> VirtualScheduler::machine(std::string name, Duration clock_offset) {
+  return std::make_unique<VirtualMachine>(core_, core_->machines++, clock_offset, std::move(name));
+}
+
+void VirtualScheduler::at(Duration when, Task task) {
+  auto* strand = static_cast<VirtualStrand*>(world_strand_.get());
+  core_->check_thread();
+  core_->add(strand, strand->machine(), std::max(when.count(), core_->now), std::move(task), nullptr, 0,
+             nullptr);
+}
+
+void VirtualScheduler::run_until(Duration when) {
+  core_->thread = std::this_thread::get_id();
+  while (core_->step(when.count())) {
+  }
+  if (core_->now < when.count()) core_->at_this_instant = 0;
+  core_->now = std::max(core_->now, when.count());
+}
+
+bool VirtualScheduler::step() {
+  core_->thread = std::this_thread::get_id();
+  return core_->step(std::numeric_limits<std::int64_t>::max());
+}
+
+Duration VirtualScheduler::elapsed() const { return Duration(core_->now); }
+std::uint64_t VirtualScheduler::tasks_run() const { return core_->tasks; }
+std::uint64_t VirtualScheduler::failures() const { return core_->failures; }
+
+}  // namespace adit

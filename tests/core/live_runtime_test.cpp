@@ -1,0 +1,205 @@
+#include "core/exec/live_runtime.hpp"
+
+#include <gmock/gmock.h>
+
+#include <future>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace adit {
+namespace {
+
+using testing::ElementsAre;
+
+struct Failures {
+  std::mutex mutex{};
+  std::vector<std::string> lines{};
+  LiveParams params() {
+    LiveParams p;
+    p.on_failure = [this](const std::string& strand, const std::string& what) {
+      const std::lock_guard lock(mutex);
+      lines.push_back(strand + ": " + what);
+    };
+    return p;
+  }
+};
+
+/// Waits until the strand has run all that was posted before.
+void drain(Executor& strand) {
+  std::promise<void> done;
+  strand.post([&] { done.set_value(); });
+  done.get_future().wait();
+}
+
+TEST(LiveRuntime, runs_posts_in_order_on_a_thread_of_its_own) {
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("main");
+  std::vector<int> ran;
+  std::thread::id thread;
+  for (int i = 0; i < 100; ++i)
+    strand->post([&, i] {
+      ran.push_back(i);
+      thread = std::this_thread::get_id();
+    });
+  drain(*strand);
+  ASSERT_EQ(ran.size(), 100u);
+  EXPECT_TRUE(std::is_sorted(ran.begin(), ran.end()));
+  EXPECT_NE(thread, std::this_thread::get_id());
+}
+
+TEST(LiveRuntime, timers_come_when_due_and_not_before) {
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("main");
+  const Time start = strand->now();
+  std::promise<Time> fired;
+  const Timer timer = strand->after(20ms, [&] { fired.set_value(strand->now()); });
+  EXPECT_GE(fired.get_future().get() - start, 20ms);
+}
+
+TEST(LiveRuntime, a_late_period_makes_no_burst) {
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("main");
+  std::vector<Time> beats;
+  std::promise<void> done;
+  Timer timer;
+  strand->post([&] {
+    timer = strand->every(2ms, [&] {
+      beats.push_back(strand->now());
+      if (beats.size() == 1) {  // holds the loop for eight periods
+        while (strand->now() - beats[0] < 17ms) {
+        }
+      }
+      if (beats.size() == 5) {
+        timer.cancel();
+        done.set_value();
+      }
+    });
+  });
+  done.get_future().wait();
+  drain(*strand);
+  EXPECT_EQ(beats.size(), 5u);
+  // With a burst the beats after the held one would follow each other at once.
+  EXPECT_GE(beats[4] - beats[1], 4ms);
+}
+
+TEST(LiveRuntime, cancelled_timers_never_run) {
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("main");
+  bool ran = false;
+  std::promise<void> later;
+  Timer timer, check;
+  strand->post([&] {
+    timer = strand->after(1ms, [&] { ran = true; });
+    timer.cancel();
+    check = strand->after(5ms, [&] { later.set_value(); });
+  });
+  later.get_future().wait();
+  drain(*strand);
+  EXPECT_FALSE(ran);
+}
+
+TEST(LiveRuntime, drops_counts_and_reports_what_does_not_fit) {
+  Failures failures;
+  LiveParams params = failures.params();
+  params.queue = 10;
+  LiveRuntime runtime(params);
+  const auto strand = runtime.strand("busy");
+  std::promise<void> entered, go;
+  int ran = 0;
+  strand->post([&] {
+    entered.set_value();
+    go.get_future().wait();
+  });
+  entered.get_future().wait();
+  for (int i = 0; i < 13; ++i) strand->post([&] { ++ran; });
+  go.set_value();
+  while (runtime.dropped() != 3) std::this_thread::yield();
+  // The queue is empty again at the latest when the strand has taken the ten.
+  std::promise<void> done;
+  std::function<void()> ask = [&] { done.set_value(); };
+  const Timer timer = strand->after(1ms, ask);
+  done.get_future().wait();
+  drain(*strand);
+  EXPECT_EQ(ran, 10);
+  EXPECT_THAT(failures.lines, ElementsAre("busy: queue full, post dropped"));
+}
+
+TEST(LiveRuntime, reports_exceptions_of_tasks_timers_and_work_and_goes_on) {
+  Failures failures;
+  LiveRuntime runtime(failures.params());
+  const auto strand = runtime.strand("s");
+  strand->post([] { throw std::runtime_error("task"); });
+  drain(*strand);
+  std::promise<void> second;
+  int beats = 0;
+  Timer timer = strand->every(1ms, [&] {
+    if (++beats == 2) second.set_value();
+    if (beats < 2) throw std::runtime_error("timer");
+  });
+  second.get_future().wait();
+  strand->compute(
+      0ns, [] { throw std::runtime_error("work"); }, [] { FAIL(); });
+  while (runtime.failures() < 3) std::this_thread::yield();
+  drain(*strand);
+  EXPECT_THAT(failures.lines, ElementsAre("s: task", "s: timer", "s: compute: work"));
+}
+
+TEST(LiveRuntime, compute_runs_elsewhere_and_comes_back) {
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("s");
+  std::thread::id worker, back, own;
+  std::promise<void> done;
+  strand->post([&] {
+    own = std::this_thread::get_id();
+    strand->compute(
+        1s, [&] { worker = std::this_thread::get_id(); },
+        [&] {
+          back = std::this_thread::get_id();
+          done.set_value();
+        });
+  });
+  done.get_future().wait();
+  EXPECT_EQ(back, own);
+  EXPECT_NE(worker, own);
+}
+
+TEST(LiveRuntime, dropping_a_strand_joins_and_drops_what_waits) {
+  LiveRuntime runtime;
+  auto strand = runtime.strand("s");
+  const auto captured = std::make_shared<int>(0);
+  std::promise<void> entered, go;
+  bool finished = false;
+  strand->post([&] {
+    entered.set_value();
+    go.get_future().wait();
+    finished = true;
+  });
+  entered.get_future().wait();
+  strand->post([captured] {});
+  const Timer timer = strand->after(1h, [captured] {});
+  std::thread dropper([&] { strand.reset(); });
+  go.set_value();
+  dropper.join();
+  EXPECT_TRUE(finished);
+  EXPECT_EQ(captured.use_count(), 1);
+}
+
+TEST(LiveRuntime, a_strand_outlives_its_runtime) {
+  Failures failures;
+  auto runtime = std::make_unique<LiveRuntime>(failures.params());
+  const auto strand = runtime->strand("s");
+  runtime.reset();
+  int ran = 0;
+  strand->post([&] { ++ran; });
+  drain(*strand);
+  strand->compute(
+      0ns, [&] { ++ran; }, [&] { ++ran; });
+  drain(*strand);
+  EXPECT_EQ(ran, 1);
+  EXPECT_THAT(failures.lines, ElementsAre("s: compute queue full, work dropped"));
+}
+
+}  // namespace
+}  // namespace adit

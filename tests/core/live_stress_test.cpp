@@ -1,0 +1,90 @@
+// Meant for the thread sanitizer: many threads, strands that come and go, timers, work.
+#include <gmock/gmock.h>
+
+#include <future>
+#include <thread>
+#include <vector>
+
+#include "core/exec/live_runtime.hpp"
+#include "core/time/random.hpp"
+
+namespace adit {
+namespace {
+
+TEST(LiveStress, every_post_of_every_thread_runs_once_and_in_its_order) {
+  LiveParams params;
+  params.queue = 1'000'000;
+  LiveRuntime runtime(params);
+  const auto strand = runtime.strand("sink");
+  constexpr int threads = 4, posts = 5000;
+  std::vector<int> last(threads, -1);
+  int wrong = 0, ran = 0;
+  std::vector<std::thread> posters;
+  for (int t = 0; t < threads; ++t)
+    posters.emplace_back([&, t] {
+      for (int i = 0; i < posts; ++i)
+        strand->post([&, t, i] {
+          if (last[static_cast<std::size_t>(t)] != i - 1) ++wrong;
+          last[static_cast<std::size_t>(t)] = i;
+          ++ran;
+        });
+    });
+  for (auto& poster : posters) poster.join();
+  std::promise<void> done;
+  strand->post([&] { done.set_value(); });
+  done.get_future().wait();
+  EXPECT_EQ(ran, threads * posts);
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(LiveStress, strands_come_and_go_under_fire) {
+  std::atomic<int> failures{0};
+  LiveParams params;
+  params.compute_threads = 2;
+  params.on_failure = [&](const std::string&, const std::string&) { ++failures; };
+  LiveRuntime runtime(params);
+  std::atomic<int> ran{0};
+  Random random(11);
+  for (int round = 0; round < 60; ++round) {
+    auto a = runtime.strand("a");
+    auto b = runtime.strand("b");
+    std::vector<Timer> timers;
+    timers.push_back(a->every(from_seconds(random.uniform(1e-5, 1e-3)), [&] { ++ran; }));
+    timers.push_back(b->after(from_seconds(random.uniform(0, 1e-3)), [&] { ++ran; }));
+    std::promise<void> came_back;
+    a->post([&, raw_a = a.get(), raw_b = b.get()] {
+      raw_b->post([&, raw_a] {
+        raw_a->compute(
+            1ms, [&] { ++ran; }, [&] { came_back.set_value(); });
+      });
+    });
+    came_back.get_future().wait();
+    for (int i = 0; i < 20; ++i)
+      (i % 2 ? a : b)
+          ->compute(
+              1ms, [&] { ++ran; }, [&] { ++ran; });
+    if (random.chance(0.5)) a.reset();
+    timers.clear();
+  }
+  EXPECT_GT(ran, 60);
+}
+
+TEST(LiveStress, two_strands_play_ball) {
+  LiveRuntime runtime;
+  const auto a = runtime.strand("a");
+  const auto b = runtime.strand("b");
+  std::promise<void> done;
+  int left = 20'000;
+  std::function<void()> ping, pong;
+  ping = [&] { b->post(pong); };
+  pong = [&] {
+    if (--left == 0) return done.set_value();
+    a->post(ping);
+  };
+  a->post(ping);
+  done.get_future().wait();
+  EXPECT_EQ(left, 0);
+}
+
+}  // namespace
+}  // namespace adit
