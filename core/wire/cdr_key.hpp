@@ -1,0 +1,25 @@
+#pragma once
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace adit::wire {
+
+/// The first member of a serialised sample (encapsulation header first, plain CDR), when that is a string:
+/// the key of every keyed topic. Nothing when the bytes are too short or say something else.
+inline std::optional<std::string_view> first_string(std::span<const std::uint8_t> cdr) {
+  if (cdr.size() < 8 || cdr[0] != 0 || cdr[1] > 1) return std::nullopt;
+  std::uint32_t length{};
+  if (cdr[1] == 1) {
+    length = cdr[4] | cdr[5] << 8 | cdr[6] << 16 | static_cast<std::uint32_t>(cdr[7]) << 24;
+  } else {
+    length = cdr[7] | cdr[6] << 8 | cdr[5] << 16 | static_cast<std::uint32_t>(cdr[4]) << 24;
+  }
+  if (length > cdr.size() - 8) return std::nullopt;
+  const char* text = reinterpret_cast<const char*>(cdr.data()) + 8;
+  if (length > 0 && text[length - 1] == '\0') --length;  // the terminator travels, too
+  return std::string_view(text, length);
+}
+
+}  // namespace adit::wire

@@ -1,0 +1,55 @@
+#pragma once
+#include <string_view>
+
+#include "core/wire/wire.hpp"
+
+/// What the QoS classes and discovery get: one table for both adapters, so that a rehearsal does not flatter.
+namespace adit::wire {
+
+struct Qos {
+  bool reliable{};         ///< repaired after loss
+  bool transient_local{};  ///< the history is sent to late joiners
+  Duration heartbeat{};    ///< between heartbeats while something is not acknowledged
+  int priority{};          ///< on a link that is full: 0 goes first
+  bool newest_wins{};      ///< what waits to be sent is replaced by the next sample of the same key
+};
+
+inline Qos qos_of(QosClass qos) {
+  switch (qos) {
+    case QosClass::urgent: return {true, false, 250ms, 0, false};
+    case QosClass::stream: return {false, false, 0ms, 2, true};
+    case QosClass::state: return {false, false, 0ms, 3, true};
+    case QosClass::status: return {true, true, 500ms, 4, false};
+    case QosClass::sensor: return {false, false, 0ms, 3, true};
+    case QosClass::bulk: return {true, false, 1000ms, 5, false};
+    case QosClass::video: return {false, false, 0ms, 6, true};
+  }
+  return {};
+}
+
+/// Topics of ROS 2 peers. Default subscriptions there are reliable and match a reliable writer only; sensor
+/// publishers are often best effort and match a best-effort reader only. So our writers are reliable and our
+/// readers best effort: they match everybody.
+inline bool is_ros2(const TopicInfo& topic) { return std::string_view(topic.name).starts_with("rt/"); }
+
+inline Qos writer_qos(const TopicInfo& topic) {
+  Qos qos = qos_of(topic.qos);
+  if (is_ros2(topic)) qos.reliable = true, qos.heartbeat = 250ms;
+  return qos;
+}
+inline Qos reader_qos(const TopicInfo& topic) {
+  Qos qos = qos_of(topic.qos);
+  if (is_ros2(topic)) qos.reliable = false;
+  return qos;
+}
+
+/// Discovery, equal everywhere: with leases of different lengths endpoints are not matched again after a
+/// gap between the two. Any message renews a lease, so announcements can be rare on a thin link.
+struct Discovery {
+  static constexpr Duration lease = 30s;                 ///< a silent participant is dropped after it
+  static constexpr Duration announcement = 10s;          ///< period of participant announcements
+  static constexpr Duration initial_period = 250ms;      ///< period of the first ones
+  static constexpr int initial_announcements = 8;        ///< their number
+};
+
+}  // namespace adit::wire
