@@ -35,7 +35,8 @@ class Acknowledge : public Rule {
       broken("did not answer command " + std::to_string(p.command.seq) + " of " + p.command.station);
     }
     for (auto& [id, stream] : streams_) {
-      if (!stream.refused_since || robot.now() - *stream.refused_since <= stream_answer_period + answer_time) continue;
+      if (!stream.refused_since || robot.now() - *stream.refused_since <= stream_answer_period + answer_time)
+        continue;
       broken("refused a joystick in silence");
       stream.refused_since.reset();
     }

@@ -36,9 +36,9 @@ struct Checker::Watch {
 };
 
 const char* Checker::title(int number) {
-  static constexpr std::array titles{"one holder",    "a lock is a lock", "nothing is refused in silence",
-                                     "a stop needs no authority", "one source", "stale is zero",
-                                     "nothing moves by surprise"};
+  static constexpr std::array titles{
+      "one holder", "a lock is a lock", "nothing is refused in silence", "a stop needs no authority",
+      "one source", "stale is zero",    "nothing moves by surprise"};
   return titles.at(static_cast<std::size_t>(number - 1));
 }
 
@@ -82,11 +82,13 @@ void Checker::dispatch(Watch& watch) {
     };
   };
   for (const Event& event : watch.waiting) {
-    for (int i = 0; i < rules; ++i) watch.rules[static_cast<std::size_t>(i)]->see(watch.model, event, report_of(i + 1));
+    for (int i = 0; i < rules; ++i)
+      watch.rules[static_cast<std::size_t>(i)]->see(watch.model, event, report_of(i + 1));
     watch.model.take_in(event);
   }
   watch.waiting.clear();
-  for (int i = 0; i < rules; ++i) watch.rules[static_cast<std::size_t>(i)]->settle(watch.model, report_of(i + 1));
+  for (int i = 0; i < rules; ++i)
+    watch.rules[static_cast<std::size_t>(i)]->settle(watch.model, report_of(i + 1));
 }
 
 }  // namespace adit::sim

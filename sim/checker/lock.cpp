@@ -12,7 +12,8 @@ class Lock : public Rule {
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
     if (const auto* status = std::get_if<AuthoritySent>(&event)) see_status(robot, *status, broken);
-    if (const auto* note = std::get_if<NotificationSent>(&event)) std::erase(owed_codes_, Owed{note->code, note->to, {}});
+    if (const auto* note = std::get_if<NotificationSent>(&event))
+      std::erase(owed_codes_, Owed{note->code, note->to, {}});
     if (std::get_if<AgentStarted>(&event) || std::get_if<AgentDied>(&event)) owed_codes_.clear();
   }
 
@@ -51,7 +52,9 @@ class Lock : public Rule {
 
   void see_status(const RobotModel& robot, const AuthoritySent& status, const Report& broken) {
     const Authority& known = robot.authority();
-    if (known.start == 0 || known.holder != status.authority.holder || known.locked == status.authority.locked) return;
+    if (known.start == 0 || known.holder != status.authority.holder ||
+        known.locked == status.authority.locked)
+      return;
     if (!known.locked) return broken("published a lock that nobody set");
     const RobotModel::Heard* holder = robot.heard(known.holder);
     const double silent = holder ? seconds(robot.now() - holder->last) : 0.0;

@@ -19,7 +19,8 @@ class NoSurprise : public Rule {
 
   void settle(const RobotModel& robot, const Report& broken) override {
     // The holder changed: a manual mode that was on falls to hold.
-    const bool overdue = manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > reaction;
+    const bool overdue =
+        manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > reaction;
     if (overdue) broken("stayed in " + robot.mode() + " when its holder changed");
     if (overdue || !robot.in_manual_mode()) manual_must_end_.reset();
   }
@@ -45,9 +46,10 @@ class NoSurprise : public Rule {
       revoke("a request to hold");
     }
     if (manual_request) see_manual_entry(robot, command, broken);
-    const bool holder_changes =
-        (command.verb == Verb::take && (command.station != before.holder || command.id != before.holder_id)) ||
-        command.verb == Verb::release || (command.verb == Verb::grant && command.text != before.holder);
+    const bool holder_changes = (command.verb == Verb::take &&
+                                 (command.station != before.holder || command.id != before.holder_id)) ||
+                                command.verb == Verb::release ||
+                                (command.verb == Verb::grant && command.text != before.holder);
     if (holder_changes && robot.in_manual_mode()) {
       manual_must_end_ = robot.now();
       revoke("a change of holder");

@@ -17,9 +17,9 @@ namespace adit::sim {
 using StationId = std::array<std::uint8_t, 16>;
 
 struct Authority {
-  std::uint64_t start{};     ///< of the epoch: this start of the agent
-  std::uint32_t counter{};   ///< of the epoch
-  std::string holder{};      ///< empty: nobody
+  std::uint64_t start{};    ///< of the epoch: this start of the agent
+  std::uint32_t counter{};  ///< of the epoch
+  std::string holder{};     ///< empty: nobody
   StationId holder_id{};
   bool locked{};
   bool operator==(const Authority&) const = default;
@@ -103,12 +103,12 @@ struct VelocitySent {
 
 // What the world did ----------------------------------------------------------------------------------
 struct Truth {
-  Pose2 pose{};      ///< world frame
-  Twist2 velocity{}; ///< body frame
+  Pose2 pose{};       ///< world frame
+  Twist2 velocity{};  ///< body frame
 };
 
-using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent, AuthoritySent,
-                           BehaviourSent, StateSent, NotificationSent, VelocitySent, Truth>;
+using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
+                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Truth>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

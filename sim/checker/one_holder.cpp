@@ -21,11 +21,14 @@ class OneHolder : public Rule {
   void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
     if (ack.seq == 0) return;
     const RobotModel::Pending* pending = robot.answered_by(ack);
-    if (!pending) return broken("answered command " + std::to_string(ack.seq) + " of " + ack.station + " that it never received");
+    if (!pending)
+      return broken("answered command " + std::to_string(ack.seq) + " of " + ack.station +
+                    " that it never received");
     const CommandHeard& command = pending->command;
     if (const AckSent* first = robot.first_answer(RobotModel::key(command))) {
       if (first->accepted != ack.accepted || first->reason != ack.reason)
-        broken("a repeat of command " + std::to_string(ack.seq) + " of " + ack.station + " got another answer");
+        broken("a repeat of command " + std::to_string(ack.seq) + " of " + ack.station +
+               " got another answer");
       return;
     }
     if (!ack.accepted) return;
@@ -58,8 +61,7 @@ class OneHolder : public Rule {
       holder = command.text;
     }
     if (first_of_start) return;
-    if (ack.holder != holder)
-      broken("says that '" + ack.holder + "' holds it where '" + holder + "' should");
+    if (ack.holder != holder) broken("says that '" + ack.holder + "' holds it where '" + holder + "' should");
     if (ack.start != before.start)
       broken("changed the start of its epoch while running");
     else if (changes && ack.counter == before.counter)
@@ -76,7 +78,8 @@ class OneHolder : public Rule {
     if (now.holder != known.holder || now.holder_id != known.holder_id)
       broken("published holder '" + now.holder + "' where its answers gave '" + known.holder + "'");
     else if (now.start != known.start || now.counter != known.counter)
-      broken("published " + describe_epoch(now.counter) + " where its answers gave " + describe_epoch(known.counter));
+      broken("published " + describe_epoch(now.counter) + " where its answers gave " +
+             describe_epoch(known.counter));
   }
 
   // Motion in a manual mode that no sample of the holder explains, but one of somebody else does.

@@ -21,16 +21,26 @@ bool is(const wire::TopicInfo& topic, const wire::TopicInfo& other) {
 
 Verb verb_of(radio::CommandKind kind) {
   switch (kind) {
-    case radio::CMD_TAKE: return Verb::take;
-    case radio::CMD_RELEASE: return Verb::release;
-    case radio::CMD_LOCK: return Verb::lock;
-    case radio::CMD_UNLOCK: return Verb::unlock;
-    case radio::CMD_GRANT: return Verb::grant;
-    case radio::CMD_STOP: return Verb::stop;
-    case radio::CMD_RESET: return Verb::reset;
-    case radio::CMD_MODE: return Verb::mode;
-    case radio::CMD_GOTO: return Verb::go_to;
-    default: return Verb::query;
+    case radio::CMD_TAKE:
+      return Verb::take;
+    case radio::CMD_RELEASE:
+      return Verb::release;
+    case radio::CMD_LOCK:
+      return Verb::lock;
+    case radio::CMD_UNLOCK:
+      return Verb::unlock;
+    case radio::CMD_GRANT:
+      return Verb::grant;
+    case radio::CMD_STOP:
+      return Verb::stop;
+    case radio::CMD_RESET:
+      return Verb::reset;
+    case radio::CMD_MODE:
+      return Verb::mode;
+    case radio::CMD_GOTO:
+      return Verb::go_to;
+    default:
+      return Verb::query;
   }
 }
 
@@ -46,15 +56,21 @@ using Decoded = std::optional<DecodedSample>;
 Decoded command(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from) {
   const auto c = read<radio::Command>(cdr);
   if (!c) return std::nullopt;
-  return DecodedSample{c->robot(), CommandHeard{from, c->station(), c->station_id(), c->epoch().start(),
-                                                c->epoch().counter(), c->seq(), verb_of(c->kind()), c->text(), c->flag()}};
+  return DecodedSample{
+      c->robot(), CommandHeard{from, c->station(), c->station_id(), c->epoch().start(), c->epoch().counter(),
+                               c->seq(), verb_of(c->kind()), c->text(), c->flag()}};
 }
 
 Decoded joystick(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from) {
   const auto j = read<radio::Joystick>(cdr);
   if (!j) return std::nullopt;
-  return DecodedSample{j->robot(), JoystickHeard{from, j->station_id(), j->epoch().start(), j->epoch().counter(),
-                                                 j->seq(), j->echo(), {j->vx(), j->vy(), j->wz()}}};
+  return DecodedSample{j->robot(), JoystickHeard{from,
+                                                 j->station_id(),
+                                                 j->epoch().start(),
+                                                 j->epoch().counter(),
+                                                 j->seq(),
+                                                 j->echo(),
+                                                 {j->vx(), j->vy(), j->wz()}}};
 }
 
 Decoded station(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from, bool presence) {
@@ -79,7 +95,8 @@ Decoded acknowledgement(std::span<const std::uint8_t> cdr) {
 Decoded authority(std::span<const std::uint8_t> cdr) {
   const auto a = read<radio::AuthorityStatus>(cdr);
   if (!a) return std::nullopt;
-  AuthoritySent sent{{a->epoch().start(), a->epoch().counter(), a->holder(), a->holder_id(), a->locked()}, {}};
+  AuthoritySent sent{{a->epoch().start(), a->epoch().counter(), a->holder(), a->holder_id(), a->locked()},
+                     {}};
   for (const auto& stop : a->stops()) sent.stops.push_back({stop.station(), stop.station_id()});
   return DecodedSample{a->robot(), sent};
 }

@@ -83,7 +83,8 @@ void RobotModel::take_in_event(const AckSent& e) {
   const Pending* found = answered_by(e);
   if (!found) return;
   const Pending pending = *found;
-  pending_.erase(std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return &p == found; }));
+  pending_.erase(
+      std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return &p == found; }));
   std::optional<AckSent>& first = commands_[key(pending.command)];
   if (first) return;
   first = e;
@@ -95,7 +96,8 @@ void RobotModel::apply(const CommandHeard& command, const AckSent& ack) {
   const StationId id_before = authority_.holder_id;
   switch (command.verb) {
     case Verb::take:
-      if (command.station != authority_.holder || command.id != authority_.holder_id) authority_.locked = false;
+      if (command.station != authority_.holder || command.id != authority_.holder_id)
+        authority_.locked = false;
       authority_.holder = command.station;
       authority_.holder_id = command.id;
       break;
@@ -111,8 +113,12 @@ void RobotModel::apply(const CommandHeard& command, const AckSent& ack) {
       authority_.locked = false;
       break;
     }
-    case Verb::lock: authority_.locked = true; break;
-    case Verb::unlock: authority_.locked = false; break;
+    case Verb::lock:
+      authority_.locked = true;
+      break;
+    case Verb::unlock:
+      authority_.locked = false;
+      break;
     case Verb::stop: {
       const Latch latch{command.station, command.id};
       if (std::find(latches_.begin(), latches_.end(), latch) == latches_.end()) latches_.push_back(latch);
@@ -125,7 +131,8 @@ void RobotModel::apply(const CommandHeard& command, const AckSent& ack) {
         std::erase(latches_, Latch{command.station, command.id});
       stops_changed_ = now_;
       break;
-    default: break;
+    default:
+      break;
   }
   if (authority_.holder != holder_before || authority_.holder_id != id_before) holder_changed_ = now_;
   authority_.start = ack.start;

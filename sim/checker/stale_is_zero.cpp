@@ -5,11 +5,11 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration longest_gap{120ms};      // between two cmd_vel of a living agent; 50 ms is its period
-constexpr Duration start_up{500ms};         // until the first cmd_vel of a new agent
-constexpr Duration parent_reaction{60ms};   // from an agent's death to its parent's zero
-constexpr Duration stick_release{1s};       // silence after which a manual mode falls to hold
-constexpr Duration centred_rest{2500ms};    // a robot brakes in less from its highest speed
+constexpr Duration longest_gap{120ms};     // between two cmd_vel of a living agent; 50 ms is its period
+constexpr Duration start_up{500ms};        // until the first cmd_vel of a new agent
+constexpr Duration parent_reaction{60ms};  // from an agent's death to its parent's zero
+constexpr Duration stick_release{1s};      // silence after which a manual mode falls to hold
+constexpr Duration centred_rest{2500ms};   // a robot brakes in less from its highest speed
 
 /// Rule 6: when the joystick falls silent the driver is sent zero, actively, and a manual mode then falls
 /// to hold; the driver is never left without a word; a dead agent's parent sends zero.
@@ -38,15 +38,18 @@ class StaleIsZero : public Rule {
  private:
   void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
     if (!robot.alive()) {
-      if (velocity.zero()) zero_after_death_ = true;
-      else broken("a velocity was sent for a dead agent");
+      if (velocity.zero())
+        zero_after_death_ = true;
+      else
+        broken("a velocity was sent for a dead agent");
       return;
     }
     if (velocity.zero() || !robot.in_manual_mode() || robot.mode_changed() == robot.now()) return;
     const auto& stick = robot.stick();
     if (!stick || robot.now() - stick->at > joystick_silence + reaction) {
       broken("sent a velocity in " + robot.mode() + " with a joystick silent for more than 300 ms");
-    } else if (const auto& pushed = robot.pushed_stick(); !pushed || robot.now() - pushed->at > centred_rest) {
+    } else if (const auto& pushed = robot.pushed_stick();
+               !pushed || robot.now() - pushed->at > centred_rest) {
       broken("sent a velocity in " + robot.mode() + " with a centred stick");
     }
   }

@@ -52,7 +52,8 @@ class Stop : public Rule {
       broken("refused a stop of " + command.station);
     if (command.verb == Verb::reset && ack.accepted && !command.flag) {
       const auto& latches = robot.latches();
-      const bool own = std::find(latches.begin(), latches.end(), Latch{command.station, command.id}) != latches.end();
+      const bool own =
+          std::find(latches.begin(), latches.end(), Latch{command.station, command.id}) != latches.end();
       if (!latches.empty() && !own) broken("a reset without override was accepted for a stop of another");
     }
   }
