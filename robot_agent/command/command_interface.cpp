@@ -1,0 +1,283 @@
+#include "robot_agent/command/command_interface.hpp"
+
+#include <algorithm>
+
+namespace adit::agent {
+namespace {
+
+bool steers(CommandKind kind) {
+  return kind == CommandKind::stop || kind == CommandKind::reset || kind == CommandKind::mode ||
+         kind == CommandKind::go_to;
+}
+/// Take, stop and query need neither holder nor epoch.
+bool open_to_all(CommandKind kind) {
+  return kind == CommandKind::take || kind == CommandKind::stop || kind == CommandKind::query;
+}
+
+std::string hex(const wire::ParticipantId& id) {
+  std::string text;
+  for (const std::uint8_t byte : id)
+    for (const int nibble : {byte >> 4, byte & 15}) text += "0123456789abcdef"[nibble];
+  return text;
+}
+
+}  // namespace
+
+CommandInterface::CommandInterface(CommandParams params, Requests& requests, Outputs outputs)
+    : params_(std::move(params)),
+      requests_(requests),
+      outputs_(std::move(outputs)),
+      authority_(params_.epoch_start, params_.lock_lease) {}
+
+void CommandInterface::hear(const Sender& from, std::uint16_t protocol, Time now) {
+  if (!valid_name(from.name)) return;
+  if (identify(from, StationTable::Sign::presence, now).reason == Reason::none)
+    stations_.announce(from.name, protocol);
+}
+
+std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
+  if (const Answer* first = memory_.find(c.from.participant, c.seq);
+      first && !params_.defects.has(Defect::repeat_done_twice)) {
+    identify(c.from, StationTable::Sign::command, now);  // a repeat is a sign of life, too
+    return *first;
+  }
+  const Outcome outcome = judge(c, now);
+  const Answer result = answer(c, outcome);
+  if (c.seq != 0) memory_.remember(c.from.participant, result, steers(c.kind), now);
+  if (params_.defects.has(Defect::silent_refusal) && !result.accepted()) return std::nullopt;
+  return result;
+}
+
+CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
+  if (c.robot != params_.robot) return {Reason::wrong_robot};
+  if (!valid_name(c.from.name)) return {Reason::bad_argument, "a station's name is 1 to 32 of [A-Za-z0-9_-]"};
+  if (const Outcome identity = identify(c.from, StationTable::Sign::command, now);
+      identity.reason != Reason::none) {
+    if (identity.reason == Reason::identity_mismatch) report_intruder(c.from, now);
+    return identity;
+  }
+  if (c.seq == 0) return {Reason::bad_argument, "command numbers start at 1"};
+  if (memory_.too_old(c.from.participant, c.seq, steers(c.kind) && c.kind != CommandKind::stop) &&
+      !params_.defects.has(Defect::repeat_done_twice))
+    return {Reason::stale_sequence};
+  const Station* station = stations_.find(c.from.name);
+  if (c.kind != CommandKind::stop && station && station->protocol != 0 &&
+      station->protocol != params_.protocol)
+    return {Reason::wrong_protocol};
+  if (!open_to_all(c.kind)) {
+    const Outcome holds = check_holder(c);
+    if (holds.reason != Reason::none) return holds;
+  }
+  return perform(c, now);
+}
+
+CommandInterface::Outcome CommandInterface::identify(const Sender& from, StationTable::Sign sign, Time now) {
+  const bool holds = authority_.held_by(from.name, from.id);
+  const auto verdict = stations_.hear(from, sign, holds, now);
+  if (verdict.contested) report_intruder(from, now);
+  if (verdict.reason == Reason::none) {
+    if (holds) authority_.hear(now);
+    return {};
+  }
+  // Whoever uses the holder's name without being him is more than a clash of names.
+  if (verdict.reason == Reason::name_in_use && from.name == authority_.holder_name())
+    return {Reason::identity_mismatch};
+  return {verdict.reason};
+}
+
+CommandInterface::Outcome CommandInterface::check_holder(const Command& c) const {
+  if (params_.defects.has(Defect::obey_stranger)) return {};
+  if (!authority_.holder()) return {Reason::nobody_holds};
+  if (!authority_.held_by(c.from.name, c.from.id))
+    return {Reason::not_holder, "held by " + authority_.holder_name() + "; take it first"};
+  if (c.epoch != authority_.epoch() && !params_.defects.has(Defect::accept_without_epoch))
+    return {Reason::stale_epoch};
+  return {};
+}
+
+CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) {
+  switch (c.kind) {
+    case CommandKind::take:
+      return take(c, now);
+    case CommandKind::release:
+      return release(c, now);
+    case CommandKind::grant:
+      return grant(c, now);
+    case CommandKind::stop:
+      return stop(c, now);
+    case CommandKind::reset:
+      return reset(c, now);
+    case CommandKind::mode:
+    case CommandKind::go_to:
+      return request(c, now);
+    case CommandKind::lock:
+      authority_.lock();
+      outputs_.changed();
+      return {};
+    case CommandKind::unlock:
+      authority_.unlock();
+      outputs_.changed();
+      return {};
+    case CommandKind::query:
+      return {};
+  }
+  return {Reason::unknown_command};
+}
+
+CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
+  if (authority_.held_by(c.from.name, c.from.id)) return {};
+  const std::string former = authority_.holder_name();
+  if (authority_.locked() && !params_.defects.has(Defect::ignore_lock)) {
+    tell(former, Severity::info, "asked", Reason::locked, c.from.name + " asked for " + params_.robot);
+    return {Reason::locked, "locked by " + former + ", who was told that you asked"};
+  }
+  authority_.give({c.from.name, c.from.id}, now);
+  requests_.holder_changed(now);
+  if (!former.empty())
+    tell(former, Severity::warning, "taken", Reason::none, c.from.name + " took " + params_.robot);
+  outputs_.changed();
+  return {};
+}
+
+CommandInterface::Outcome CommandInterface::release(const Command& c, Time now) {
+  authority_.clear(now);
+  requests_.holder_changed(now);
+  tell({}, Severity::info, "released", Reason::none, c.from.name + " released " + params_.robot);
+  outputs_.changed();
+  return {};
+}
+
+CommandInterface::Outcome CommandInterface::grant(const Command& c, Time now) {
+  if (c.text == c.from.name) return {Reason::bad_argument, "you hold the robot already"};
+  const Station* heir = stations_.find(c.text);
+  if (!heir || !stations_.heard(c.text, now)) return {Reason::unknown_operator};
+  const std::string text = c.from.name + " granted " + params_.robot + " to " + c.text;
+  authority_.give({heir->name, heir->id}, now);
+  requests_.holder_changed(now);
+  tell(c.text, Severity::info, "granted", Reason::none, text);
+  tell(c.from.name, Severity::info, "granted", Reason::none, text);
+  outputs_.changed();
+  return {};
+}
+
+CommandInterface::Outcome CommandInterface::stop(const Command& c, Time now) {
+  const Party stopper{c.from.name, c.from.id};
+  if (params_.defects.has(Defect::stop_needs_holder) && !authority_.held_by(stopper.name, stopper.id))
+    return {Reason::not_holder};
+  const bool fresh = !stops_.has(stopper);
+  stops_.set(stopper);
+  requests_.stop_changed(true, now);
+  if (fresh && authority_.holder() && *authority_.holder() != stopper)
+    tell(authority_.holder_name(), Severity::warning, "stopped", Reason::stopped,
+         c.from.name + " stopped " + params_.robot);
+  if (fresh) outputs_.changed();
+  return {};
+}
+
+CommandInterface::Outcome CommandInterface::reset(const Command& c, Time now) {
+  const Party own{c.from.name, c.from.id};
+  if (!stops_.any()) return {};
+  if (!c.flag && !stops_.has(own))
+    return {Reason::stop_of_another, "stopped by " + stops_.all().front().name + "; use reset --override"};
+  std::string text{};
+  if (c.flag) {
+    for (const Party& stopper : stops_.all()) {
+      if (stopper == own) continue;
+      const std::string told = c.from.name + " reset the stop of " + stopper.name + " on " + params_.robot;
+      tell(stopper.name, Severity::warning, "reset", Reason::none, told);
+      tell(c.from.name, Severity::info, "reset", Reason::none, told);
+    }
+    stops_.clear_all();
+  } else {
+    stops_.clear(own);
+    if (stops_.any()) text = "still stopped by " + stops_.all().front().name;
+  }
+  requests_.stop_changed(stops_.any(), now);
+  if (params_.defects.has(Defect::move_on_reset)) requests_.resume_goal(now);
+  outputs_.changed();
+  return {Reason::none, text};
+}
+
+CommandInterface::Outcome CommandInterface::request(const Command& c, Time now) {
+  const Result<void> result = c.kind == CommandKind::mode ? requests_.request_mode(c.text, now)
+                                                          : requests_.request_goal(c.position, now);
+  if (result) return {};
+  tell(c.from.name, Severity::warning, "mode_refused", result.reason(), result.error().text);
+  return {result.reason(), result.error().text};
+}
+
+std::optional<Answer> CommandInterface::handle(const StickSample& s, Time now) {
+  const Outcome outcome = judge(s, now);
+  if (outcome.reason == Reason::none || params_.defects.has(Defect::silent_refusal)) return std::nullopt;
+  if (!stream_refusals_.pass(s.participant, now)) return std::nullopt;
+  const Station* station = stations_.by_participant(s.participant);
+  Command as_command{};
+  as_command.from = {station ? station->name : std::string{}, s.station_id, s.participant};
+  return answer(as_command, outcome);
+}
+
+CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now) {
+  if (s.robot != params_.robot) return {Reason::wrong_robot};
+  const auto& holder = authority_.holder();
+  if (!holder) return {Reason::nobody_holds};
+  const Station* bound = stations_.find(holder->name);
+  const bool right_one = bound && bound->id == holder->id && bound->participant == s.participant;
+  if (!right_one && !params_.defects.has(Defect::obey_stranger)) {
+    if (s.station_id != holder->id)
+      return {Reason::not_holder, "held by " + holder->name + "; take it first"};
+    report_intruder({holder->name, s.station_id, s.participant}, now);
+    return {Reason::identity_mismatch};
+  }
+  if (s.station_id != holder->id && !params_.defects.has(Defect::obey_stranger))
+    return {Reason::identity_mismatch};
+  if (s.epoch != authority_.epoch() && !params_.defects.has(Defect::accept_without_epoch) &&
+      !params_.defects.has(Defect::obey_stranger))
+    return {Reason::stale_epoch};
+  if (const Reason reason = gate_.judge(s, now); reason != Reason::none) return {reason};
+  if (params_.defects.has(Defect::joystick_clears_stop) && stops_.any()) {
+    stops_.clear_all();
+    requests_.stop_changed(false, now);
+    requests_.resume_goal(now);
+    outputs_.changed();
+  }
+  const Result<void> taken = requests_.stick(s.twist, now);
+  return taken ? Outcome{} : Outcome{taken.reason(), taken.error().text};
+}
+
+void CommandInterface::tick(Time now) {
+  if (!authority_.lapse(now)) return;
+  tell({}, Severity::warning, "lock_lapsed", Reason::none,
+       "the lock of " + authority_.holder_name() + " on " + params_.robot +
+           " lapsed: not heard for its lease");
+  outputs_.changed();
+}
+
+bool CommandInterface::unlock_at_console() {
+  if (!authority_.locked()) return false;
+  authority_.unlock();
+  tell({}, Severity::warning, "lock_lapsed", Reason::none,
+       "the lock of " + authority_.holder_name() + " on " + params_.robot +
+           " was ended at the robot's console");
+  outputs_.changed();
+  return true;
+}
+
+Answer CommandInterface::answer(const Command& c, const Outcome& outcome) const {
+  std::string text = outcome.text;
+  if (text.empty() && outcome.reason != Reason::none) text = describe(outcome.reason);
+  return {c.from.name,       c.from.id, c.seq, outcome.reason, std::move(text), authority_.holder_name(),
+          authority_.epoch()};
+}
+
+void CommandInterface::report_intruder(const Sender& from, Time now) {
+  if (!authority_.holder() || !intruders_.pass(from.participant, now)) return;
+  tell(authority_.holder_name(), Severity::error, "intruder", Reason::identity_mismatch,
+       "participant " + hex(from.participant) + " claims to be " + from.name + " on " + params_.robot);
+}
+
+void CommandInterface::tell(const std::string& to, Severity severity, const char* code, Reason reason,
+                            std::string text) const {
+  outputs_.notify({to, severity, code, reason, std::move(text)});
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,87 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "robot_agent/command/answer_memory.hpp"
+#include "robot_agent/command/authority.hpp"
+#include "robot_agent/command/rate_limit.hpp"
+#include "robot_agent/command/requests.hpp"
+#include "robot_agent/command/station_table.hpp"
+#include "robot_agent/command/stick_gate.hpp"
+#include "robot_agent/command/stop_latches.hpp"
+#include "robot_agent/defects.hpp"
+
+namespace adit::agent {
+
+struct CommandParams {
+  std::string robot{};           ///< our name
+  std::uint64_t epoch_start{1};  ///< random id of this start
+  Duration lock_lease{300s};     ///< a lock lapses when its holder was silent so long; 0: never
+  std::uint16_t protocol{1};     ///< the version we speak
+  Defects defects{};
+};
+
+/// Everything that arrives by radio enters the robot here (rules 1 to 4, and 7 where it concerns the
+/// joystick). A pure state machine: it is told the time, and tells whoever made it what to send.
+class CommandInterface {
+ public:
+  struct Outputs {
+    std::function<void(const Notice&)> notify{};
+    std::function<void()> changed{};  ///< authority or stops are not what they were
+  };
+
+  CommandInterface(CommandParams params, Requests& requests, Outputs outputs);
+
+  /// A station's sign of life; `protocol` is what it announced.
+  void hear(const Sender& from, std::uint16_t protocol, Time now);
+  /// Does what is asked, or not, and answers. No answer (a defect) is the only exception.
+  std::optional<Answer> handle(const Command& command, Time now);
+  /// The answer to a refused sample; nothing when it was taken, or when that sender was told within a second.
+  std::optional<Answer> handle(const StickSample& sample, Time now);
+  /// Notices what time alone changes: the lock's lease. Once a second is often enough.
+  void tick(Time now);
+  /// A robot state with that stamp went out.
+  void sent_stamp(std::uint64_t stamp) { gate_.sent(stamp); }
+  /// The robot's own console: it can always end a lock. False when there was none.
+  bool unlock_at_console();
+
+  const Authority& authority() const { return authority_; }
+  const StopLatches& stops() const { return stops_; }
+  const StationTable& stations() const { return stations_; }
+
+ private:
+  struct Outcome {
+    Reason reason{Reason::none};
+    std::string text{};
+  };
+
+  Outcome judge(const Command& c, Time now);
+  Outcome identify(const Sender& from, StationTable::Sign sign, Time now);
+  Outcome check_holder(const Command& c) const;
+  Outcome perform(const Command& c, Time now);
+  Outcome take(const Command& c, Time now);
+  Outcome release(const Command& c, Time now);
+  Outcome grant(const Command& c, Time now);
+  Outcome stop(const Command& c, Time now);
+  Outcome reset(const Command& c, Time now);
+  Outcome request(const Command& c, Time now);
+  Outcome judge(const StickSample& s, Time now);
+  Answer answer(const Command& c, const Outcome& outcome) const;
+  void report_intruder(const Sender& from, Time now);
+  void tell(const std::string& to, Severity severity, const char* code, Reason reason,
+            std::string text) const;
+
+  CommandParams params_;
+  Requests& requests_;
+  Outputs outputs_;
+  StationTable stations_{};
+  Authority authority_;
+  StopLatches stops_{};
+  AnswerMemory memory_{};
+  StickGate gate_{};
+  RateLimit<wire::ParticipantId> stream_refusals_{1s};
+  RateLimit<wire::ParticipantId> intruders_{1s};
+};
+
+}  // namespace adit::agent

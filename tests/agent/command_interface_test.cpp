@@ -1,0 +1,192 @@
+#include <gmock/gmock.h>
+
+#include "tests/agent/command_bench.hpp"
+
+namespace adit::agent {
+namespace {
+
+TEST(CommandInterface, RepeatGetsTheFirstAnswerAndHasNoSecondEffect) {
+  CommandBench bench;
+  const Command take = bench.command("op1", "take");
+  const Answer first = bench.send(take);
+  bench.say("op2", "take");
+  const Answer again = bench.send(take);
+  EXPECT_EQ(again.holder, "op1");
+  EXPECT_EQ(again.epoch, first.epoch);
+  EXPECT_EQ(bench.interface().authority().holder_name(), "op2");
+}
+
+TEST(CommandInterface, EveryChangeOfHolderRaisesTheEpoch) {
+  CommandBench bench;
+  const auto counter = [&] { return bench.interface().authority().epoch().counter; };
+  const auto start = counter();
+  bench.say("op1", "take");
+  EXPECT_EQ(counter(), start + 1);
+  bench.say("op1", "take");
+  bench.say("op1", "lock");
+  EXPECT_EQ(counter(), start + 1);
+  bench.say("op1", "grant op2");
+  EXPECT_EQ(counter(), start + 2);
+  bench.say("op2", "release");
+  EXPECT_EQ(counter(), start + 3);
+}
+
+TEST(CommandInterface, OldEpochIsRefused) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  Command old = bench.command("op1", "mode hold");
+  bench.say("op2", "take");
+  bench.say("op1", "take");
+  EXPECT_EQ(bench.send(old).reason, Reason::stale_epoch);
+  Command other_start = bench.command("op1", "mode hold");
+  other_start.epoch.start += 1;
+  EXPECT_EQ(bench.send(other_start).reason, Reason::stale_epoch);
+  EXPECT_THAT(bench.requests.calls, testing::Not(testing::Contains("mode hold")));
+}
+
+TEST(CommandInterface, OlderThanRememberedIsStale) {
+  CommandBench bench;
+  const Command first = bench.command("op1", "take");
+  bench.send(first);
+  for (int i = 0; i < 63; ++i) bench.say("op1", "lock");
+  EXPECT_TRUE(bench.send(first).accepted());
+  bench.say("op1", "lock");
+  EXPECT_EQ(bench.send(first).reason, Reason::stale_sequence);
+}
+
+TEST(CommandInterface, WhatAStopOvertookDoesNotMoveTheRobot) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  const Command late_reset = bench.command("op1", "reset");
+  const Command late_lock = bench.command("op1", "lock");
+  bench.say("op1", "stop");
+  EXPECT_EQ(bench.send(late_reset).reason, Reason::stale_sequence);
+  EXPECT_TRUE(bench.interface().stops().any());
+  EXPECT_TRUE(bench.send(late_lock).accepted());
+}
+
+TEST(CommandInterface, LateStopStillStops) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  const Command late_stop = bench.command("op1", "stop");
+  bench.say("op1", "mode hold");
+  EXPECT_TRUE(bench.send(late_stop).accepted());
+  EXPECT_TRUE(bench.interface().stops().any());
+}
+
+TEST(CommandInterface, RefusesBadNamesNumbersAndAddresses) {
+  CommandBench bench;
+  Command c = bench.command("op1", "take");
+  c.robot = "r2";
+  EXPECT_EQ(bench.send(c).reason, Reason::wrong_robot);
+  for (const char* bad : {"", "op 1", "a;b", "123456789012345678901234567890123", "\xc3\xa4"}) {
+    Command named = bench.command("op3", "take");
+    named.from.name = bad;
+    EXPECT_EQ(bench.send(named).reason, Reason::bad_argument) << bad;
+  }
+  Command zero = bench.command("op2", "take");
+  zero.seq = 0;
+  EXPECT_EQ(bench.send(zero).reason, Reason::bad_argument);
+}
+
+TEST(CommandInterface, OtherProtocolIsRefusedButMayStop) {
+  CommandBench bench;
+  bench.interface().hear(bench.station("op1").sender, 2, bench.now);
+  EXPECT_EQ(bench.say("op1", "take").reason, Reason::wrong_protocol);
+  EXPECT_TRUE(bench.say("op1", "stop").accepted());
+}
+
+TEST(CommandInterface, HandoverTellsTheRobot) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.requests.calls.clear();
+  bench.say("op2", "take");
+  EXPECT_THAT(bench.requests.calls, testing::ElementsAre("holder"));
+}
+
+TEST(CommandInterface, LapsedLockIsToldToAll) {
+  CommandParams params{};
+  params.lock_lease = 5s;
+  CommandBench bench(params);
+  bench.say("op1", "take");
+  bench.say("op1", "lock");
+  bench.kill("op1");
+  bench.wait(4s);
+  EXPECT_TRUE(bench.interface().authority().locked());
+  EXPECT_NEAR(bench.interface().authority().lease_left(bench.now), 1.0, 0.6);
+  bench.wait(2s);
+  EXPECT_FALSE(bench.interface().authority().locked());
+  EXPECT_EQ(bench.interface().authority().holder_name(), "op1");
+  ASSERT_FALSE(bench.notices.empty());
+  EXPECT_EQ(bench.notices.back().code, "lock_lapsed");
+  EXPECT_EQ(bench.notices.back().operator_name, "");
+}
+
+TEST(CommandInterface, LeaseZeroNeverLapses) {
+  CommandParams params{};
+  params.lock_lease = 0s;
+  CommandBench bench(params);
+  bench.say("op1", "take");
+  bench.say("op1", "lock");
+  bench.kill("op1");
+  bench.wait(1000s);
+  EXPECT_TRUE(bench.interface().authority().locked());
+  EXPECT_LT(bench.interface().authority().lease_left(bench.now), 0.0);
+}
+
+TEST(CommandInterface, ConsoleEndsALock) {
+  CommandBench bench;
+  EXPECT_FALSE(bench.interface().unlock_at_console());
+  bench.say("op1", "take");
+  bench.say("op1", "lock");
+  EXPECT_TRUE(bench.interface().unlock_at_console());
+  EXPECT_TRUE(bench.say("op2", "take").accepted());
+}
+
+TEST(CommandInterface, SeventeenthStopperSharesALatch) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  for (int i = 0; i < 17; ++i) EXPECT_TRUE(bench.say("stopper" + std::to_string(i), "stop").accepted());
+  EXPECT_EQ(bench.interface().stops().all().size(), 16u);
+  EXPECT_EQ(bench.interface().stops().all().back().name, "others");
+  EXPECT_EQ(bench.say("op1", "reset").reason, Reason::stop_of_another);
+  EXPECT_TRUE(bench.say("op1", "reset --override").accepted());
+  EXPECT_FALSE(bench.interface().stops().any());
+}
+
+TEST(CommandInterface, TwoThatClaimOneIdentityAreFoundOut) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.wait(1s);
+  // A forger announces himself as a restarted op1, who is alive and goes on announcing himself.
+  const Sender forger = bench.station("forger:op1").sender;
+  bench.interface().hear(forger, 1, bench.now);
+  bench.notices.clear();
+  bench.wait(2s);
+  ASSERT_FALSE(bench.notices.empty());
+  EXPECT_EQ(bench.notices.front().code, "intruder");
+  bench.interface().hear(forger, 1, bench.now);
+  EXPECT_EQ(bench.say("forger:op1", "release").reason, Reason::identity_mismatch);
+  EXPECT_TRUE(bench.say("op1", "lock").accepted());
+}
+
+TEST(CommandInterface, HolderGetsHisNameBack) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.kill("op1");
+  bench.wait(4s);
+  EXPECT_EQ(bench.say("impostor:op1", "mode hold").reason, Reason::not_holder);
+  bench.start("op1");
+  EXPECT_TRUE(bench.say("op1", "mode hold").accepted());
+  EXPECT_EQ(bench.say("impostor:op1", "mode hold").reason, Reason::identity_mismatch);
+}
+
+TEST(CommandInterface, TableOfStationsIsBounded) {
+  CommandBench bench;
+  for (int i = 0; i < 61; ++i) EXPECT_TRUE(bench.say("s" + std::to_string(i), "stop").accepted());
+  EXPECT_EQ(bench.say("one_more", "stop").reason, Reason::unknown_station);
+  EXPECT_EQ(bench.interface().stations().size(), StationTable::kCapacity);
+}
+
+}  // namespace
+}  // namespace adit::agent

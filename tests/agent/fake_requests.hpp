@@ -1,0 +1,38 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "robot_agent/command/requests.hpp"
+
+namespace adit::agent {
+
+/// A robot that does what it is told, and remembers it.
+struct FakeRequests : Requests {
+  Result<void> request_mode(const std::string& mode, Time) override {
+    calls.push_back("mode " + mode);
+    return {};
+  }
+  Result<void> request_goal(const Eigen::Vector3d&, Time) override {
+    if (stopped) return {Reason::stopped, "stopped"};
+    calls.push_back("goal");
+    return {};
+  }
+  void stop_changed(bool on, Time) override {
+    stopped = on;
+    calls.push_back(on ? "stopped" : "reset");
+  }
+  void holder_changed(Time) override { calls.push_back("holder"); }
+  Result<void> stick(const Twist2& twist, Time) override {
+    if (!takes_stick && !twist.zero()) return {Reason::wrong_mode, {}};
+    sticks.push_back(twist);
+    return {};
+  }
+  void resume_goal(Time) override { calls.push_back("resume"); }
+
+  bool stopped{};
+  bool takes_stick{true};
+  std::vector<std::string> calls{};
+  std::vector<Twist2> sticks{};
+};
+
+}  // namespace adit::agent
