@@ -1,0 +1,94 @@
+#include "nav/correspondence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+/// How deep a point is inside the body, in the body's frame, m; negative outside.
+float depth(const SweptBody& body, float x, float y) {
+  return std::min(static_cast<float>(body.half_length) - std::fabs(x),
+                  static_cast<float>(body.half_width) - std::fabs(y));
+}
+
+/// Marks the cells that the body covers while it stands at `pose`.
+class Painter {
+ public:
+  Painter(std::vector<PathMask>& masks, int rings, const SweptBody& body)
+      : masks_(masks), rings_(rings), body_(body), radius_(std::hypot(body.half_length, body.half_width)) {
+    for (int a = 0; a < CorrespondenceGrid::kAngles; ++a) {
+      const double angle = (a + 0.5) * 2.0 * M_PI / CorrespondenceGrid::kAngles;
+      cos_[a] = static_cast<float>(std::cos(angle));
+      sin_[a] = static_cast<float>(std::sin(angle));
+    }
+    constexpr float kSlack = 0.002f;  // m: straight on along a wall is not "deeper"
+    start_.resize(masks.size());
+    for (int ring = 0; ring < rings_; ++ring)
+      for (int a = 0; a < CorrespondenceGrid::kAngles; ++a)
+        start_[ring * CorrespondenceGrid::kAngles + a] =
+            kSlack + std::max(0.0f, depth(body, range(ring) * cos_[a], range(ring) * sin_[a]));
+  }
+
+  void paint(const Pose2& pose, int bit) {
+    constexpr double kRing = CorrespondenceGrid::kRing;
+    const double distance = std::hypot(pose.x, pose.y);
+    const int first = std::max(0, static_cast<int>((distance - radius_) / kRing));
+    const int last = std::min(rings_ - 1, static_cast<int>((distance + radius_) / kRing));
+    int half = CorrespondenceGrid::kAngles / 2;
+    if (distance > radius_) half = static_cast<int>(std::asin(radius_ / distance) * 180.0 / M_PI) + 2;
+    const int middle = static_cast<int>(std::floor(std::atan2(pose.y, pose.x) * 180.0 / M_PI));
+    const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
+    const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
+    for (int i = middle - half; i < middle + half; ++i) {
+      const int a = (i + 2 * CorrespondenceGrid::kAngles) % CorrespondenceGrid::kAngles;
+      // Along a ray the body's coordinates are linear in the range.
+      const float ux = c * cos_[a] + s * sin_[a], uy = c * sin_[a] - s * cos_[a];
+      const float bx = c * x0 + s * y0, by = c * y0 - s * x0;
+      for (int ring = first; ring <= last; ++ring) {
+        const int index = ring * CorrespondenceGrid::kAngles + a;
+        const float r = range(ring);
+        if (depth(body_, r * ux - bx, r * uy - by) > start_[index]) masks_[index].set(bit);
+      }
+    }
+  }
+
+ private:
+  static float range(int ring) {
+    return (static_cast<float>(ring) + 0.5f) * static_cast<float>(CorrespondenceGrid::kRing);
+  }
+
+  std::vector<PathMask>& masks_;
+  int rings_;
+  SweptBody body_;
+  double radius_;
+  std::array<float, CorrespondenceGrid::kAngles> cos_{}, sin_{};
+  std::vector<float> start_{};  ///< how deep each cell may come: as deep as it is at the start
+};
+
+}  // namespace
+
+CorrespondenceGrid::CorrespondenceGrid(const PathTree& tree, const SweptBody& body) {
+  const double reach = tree.length() + std::hypot(body.half_length, body.half_width);
+  rings_ = static_cast<int>(std::ceil(reach / kRing));
+  masks_.resize(static_cast<std::size_t>(rings_) * kAngles);
+  Painter painter(masks_, rings_, body);
+  // A body at every second pose: 10 cm apart, against a body several times as long.
+  constexpr std::size_t kStride = 2;
+  for (int stage = 0; stage < PathTree::kStages; ++stage) {
+    const std::size_t begin = stage == 0 ? 0 : tree.last_pose(stage - 1);
+    const std::size_t end = tree.last_pose(stage);
+    for (int node = 0; node < PathTree::kNodes[stage]; ++node) {
+      const auto path = tree.path(PathTree::path_through(stage, node));
+      const int bit = PathTree::kFirstBit[stage] + node;
+      for (std::size_t i = begin; i < end; i += kStride) painter.paint(path[i], bit);
+      painter.paint(path[end], bit);
+    }
+  }
+  half_angle_.assign(rings_, -1);
+  for (int ring = 0; ring < rings_; ++ring)
+    for (int a = 0; a < kAngles; ++a)
+      if (at(ring, a).any()) half_angle_[ring] = std::max(half_angle_[ring], a < 180 ? a : kAngles - 1 - a);
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,318 @@
+#include "nav/local_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr int kAngles = CorrespondenceGrid::kAngles;
+constexpr double kHeadingStep = 10.0;    ///< degrees
+constexpr double kNoTurn = 12.0;         ///< degrees: the follower steers that much out while driving
+constexpr double kEitherSide = 140.0;    ///< degrees: beyond, the side of a turn is kept once chosen
+constexpr double kTurnSlack = 0.06;      ///< m kept free before the body beyond what a turn needs
+constexpr double kTurnMargin = 0.02;     ///< m around the footprint while it turns
+constexpr double kStraightStick = 15.0;  ///< degrees: a stick within this of ahead or back holds the course
+constexpr double kSteadyStick = 4.0;     ///< degrees: a stick that moves more sets a new course
+constexpr float kSecondChoice = 0.3f;    ///< weight of driving the other way round than was asked for
+constexpr float kNearest = 1.2f;         ///< m: obstacles up to here are given to the follower first
+
+/// Degrees in [0, 360), whole, of an angle in radians.
+int whole_degrees(float radians) {
+  int d = static_cast<int>(std::floor(radians * static_cast<float>(1.0 / kDegree)));
+  d %= kAngles;
+  return d < 0 ? d + kAngles : d;
+}
+
+/// Falco's weight of a heading: what asks for little turning is preferred, steeply.
+float heading_weight(double degrees) {
+  const double w = std::max(1.0, 10.0 - std::fabs(degrees) / kHeadingStep);
+  return static_cast<float>(w * w * w * w);
+}
+
+}  // namespace
+
+LocalPlanner::LocalPlanner(const Platform& platform, const LocalPlannerParams& params)
+    : platform_(platform), params_(params) {
+  const double half_length = platform.length / 2, half_width = platform.width / 2;
+  const double turn_needs = std::hypot(half_length, half_width) - half_length + kTurnSlack;
+  const SweptBody wide{half_length + std::max(params.front_margin, turn_needs),
+                       half_width + params.side_margin};
+  const SweptBody tight{half_length + turn_needs, half_width + params.tight_margin};
+  PathTreeParams small = params.tree;
+  small.segment *= params.short_scale;
+  small.blend *= params.short_scale;
+  small.spacing *= params.short_scale;
+  for (double& c : small.curvature) c /= params.short_scale;
+
+  const PathTree long_tree(params.tree), short_tree(small);
+  options_.push_back({long_tree, CorrespondenceGrid(long_tree, wide), false, 3});
+  options_.push_back({short_tree, CorrespondenceGrid(short_tree, wide), false, 1});
+  options_.push_back({short_tree, CorrespondenceGrid(short_tree, tight), true, 1});
+  rotation_ = RotationTable({half_length + kTurnMargin, half_width + kTurnMargin});
+
+  int rings = rotation_.rings();
+  for (const Option& o : options_) rings = std::max(rings, o.grid.rings());
+  seen_.resize((static_cast<std::size_t>(rings) * kAngles + 63) / 64);
+  occupied_.reserve(static_cast<std::size_t>(rings) * kAngles);
+}
+
+void LocalPlanner::drop_correspondences() {
+  for (Option& o : options_) o.grid = {};
+}
+
+Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const Eigen::Vector2f> obstacles,
+                        double stamp_s) {
+  Plan plan;
+  plan.stamp_s = stamp_s;
+  const Goal goal = goal_of(target, pose);
+  project(pose, goal, obstacles, plan);
+
+  const bool nowhere =
+      target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
+  if (nowhere) {
+    plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
+    return plan;
+  }
+  if (goal.distance <= params_.tolerance) {
+    plan.arrived = true;
+    return plan;
+  }
+  judge_headings(goal);
+  Choice choice;
+  if (!choose(goal, choice)) {
+    plan.blocked = true;
+    plan.reason = Reason::blocked;
+    last_turn_ = 0;
+    return plan;
+  }
+  write_path(choice, goal, pose, plan);
+  plan.max_speed = speed_limit(target, choice.option->tight, plan.clearance);
+  last_turn_ = plan.turn;
+  return plan;
+}
+
+LocalPlanner::Goal LocalPlanner::goal_of(const Target& target, const Pose2& pose) {
+  Goal goal{std::numeric_limits<double>::infinity(), wrap_angle(target.direction), params_.stick_spread, 0,
+            false};
+  if (target.kind == Target::Kind::goal) {
+    const Eigen::Vector2d to = pose.inverse() * target.goal;
+    goal.distance = to.norm();
+    goal.bearing = goal.distance > 1e-6 ? std::atan2(to.y(), to.x()) : 0.0;
+    goal.spread = params_.goal_spread;
+  }
+  goal.headings = static_cast<int>(goal.spread / kHeadingStep);
+  const bool straight = target.kind == Target::Kind::direction && target.speed > 0.0 &&
+                        std::fabs(std::sin(goal.bearing)) < std::sin(kStraightStick * kDegree);
+  if (!straight) {
+    on_course_ = false;
+  } else {
+    goal.backwards = std::cos(goal.bearing) < 0;
+    if (!on_course_ || std::fabs(wrap_angle(course_stick_ - goal.bearing)) > kSteadyStick * kDegree) {
+      course_stick_ = goal.bearing;
+      course_ = wrap_angle(pose.yaw + goal.bearing);
+      on_course_ = true;
+    }
+    goal.bearing = wrap_angle(course_ - pose.yaw);
+  }
+  return goal;
+}
+
+void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const Eigen::Vector2f> obstacles,
+                           Plan& plan) {
+  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
+  const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
+  const auto bearing = static_cast<float>(goal.bearing);
+  const auto hl = static_cast<float>(platform_.length / 2), hw = static_cast<float>(platform_.width / 2);
+  const int rings = options_.front().grid.rings();
+  // What the follower's braking check can need: the way to a stop from full speed, and a reaction.
+  const auto watch = static_cast<float>(
+      std::hypot(hl, hw) + platform_.max_speed * platform_.max_speed / (2 * platform_.max_acceleration) +
+      0.4 * platform_.max_speed + 0.2);
+  float clearance = 2.0f;
+  room_ = {};
+  std::fill(seen_.begin(), seen_.end(), 0);
+
+  const auto give = [&plan](const Eigen::Vector2f& p) {
+    if (plan.obstacle_count < Plan::kMaxObstacles) plan.obstacles[plan.obstacle_count++] = p;
+  };
+  for (const Eigen::Vector2f& p : obstacles) {
+    const float dx = p.x() - x0, dy = p.y() - y0;
+    const float x = c * dx + s * dy, y = c * dy - s * dx;
+    const float range = std::sqrt(x * x + y * y);
+    const int ring = CorrespondenceGrid::ring_of(range);
+    if (range <= kNearest) give(p);
+    if (ring >= rings && ring >= rotation_.rings()) continue;
+    const float angle = std::atan2(y, x);
+    if (ring < rotation_.rings()) rotation_.limit(ring, whole_degrees(angle), room_);
+    const float ox = std::max(0.0f, std::fabs(x) - hl), oy = std::max(0.0f, std::fabs(y) - hw);
+    clearance = std::min(clearance, std::sqrt(ox * ox + oy * oy));
+    if (ring >= rings) continue;
+    const auto bit = static_cast<std::size_t>(ring * kAngles + whole_degrees(angle - bearing));
+    seen_[bit >> 6] |= std::uint64_t{1} << (bit & 63);
+  }
+  for (const Eigen::Vector2f& p : obstacles) {
+    const float dx = p.x() - x0, dy = p.y() - y0;
+    const float range2 = dx * dx + dy * dy;
+    if (range2 > kNearest * kNearest && range2 <= watch * watch) give(p);
+  }
+  plan.clearance = clearance;
+
+  occupied_.clear();
+  for (std::size_t word = 0; word < seen_.size(); ++word)
+    for (std::uint64_t bits = seen_[word]; bits != 0; bits &= bits - 1) {
+      const auto cell = word * 64 + static_cast<std::size_t>(__builtin_ctzll(bits));
+      occupied_.push_back(
+          {static_cast<std::uint16_t>(cell / kAngles), static_cast<std::uint16_t>(cell % kAngles)});
+    }
+}
+
+void LocalPlanner::judge_headings(const Goal& goal) {
+  // The side to which a turn by `degrees` is free: 1, -1, or 0 when it needs none; 2 when there is no room.
+  const auto side = [this](double degrees) {
+    const double by = std::fabs(degrees);
+    if (by <= kNoTurn) return 0;
+    const int shorter = degrees > 0 ? 1 : -1;
+    const auto room = [this](int s) { return s > 0 ? room_.left : room_.right; };
+    const bool can = room(shorter) >= by, can_long = room(-shorter) >= 360 - by;
+    if (can_long && last_turn_ == -shorter && by > kEitherSide) return -shorter;
+    if (can) return shorter;
+    return can_long ? -shorter : 2;
+  };
+  for (int k = -goal.headings; k <= goal.headings; ++k) {
+    Approach& way = approach_[k + goal.headings];
+    const double ahead = wrap_angle(goal.bearing + k * kHeadingStep * kDegree) / kDegree;
+    const double behind = wrap_angle((ahead - 180.0) * kDegree) / kDegree;
+    const int forward = side(ahead), reverse = side(behind);
+    way = {};
+    const bool backwards = reverse != 2 && (goal.backwards || forward == 2);
+    if (!backwards && forward == 2) continue;
+    way.possible = true;
+    way.reverse = backwards;
+    way.turn = backwards ? reverse : forward;
+    way.weight = heading_weight(backwards ? behind : ahead);
+    if (backwards != goal.backwards) way.weight *= kSecondChoice;
+  }
+}
+
+void LocalPlanner::block_paths(const Option& option, const Goal& goal) {
+  const int count = 2 * goal.headings + 1;
+  std::array<int, kHeadings> alive{};
+  int living = 0;
+  for (int h = 0; h < count; ++h) {
+    blocked_[h] = {};
+    if (approach_[h].possible) alive[living++] = h;
+  }
+  int ring = -1;
+  for (const Occupied& cell : occupied_) {
+    if (cell.ring >= option.grid.rings() || living == 0) break;
+    if (cell.ring != ring) {
+      // Nearest rings first: headings that are blocked at their very start drop out early.
+      ring = cell.ring;
+      for (int i = 0; i < living;) {
+        if (blocked_[alive[i]].dead())
+          alive[i] = alive[--living];
+        else
+          ++i;
+      }
+    }
+    const int half = option.grid.half_angle(ring);
+    for (int i = 0; i < living; ++i) {
+      const int h = alive[i];
+      int angle = cell.angle - (h - goal.headings) * static_cast<int>(kHeadingStep);
+      if (angle < 0) angle += kAngles;
+      if (angle >= kAngles) angle -= kAngles;
+      if ((angle < kAngles / 2 ? angle : kAngles - 1 - angle) > half) continue;
+      blocked_[h] |= option.grid.at(ring, angle);
+    }
+  }
+}
+
+bool LocalPlanner::vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best) {
+  for (int d = 0; d <= 360; ++d) {
+    const int off = d > 180 ? 360 - d : d;
+    agreement_[d] = off >= spread ? 0.0f : static_cast<float>(1.0 - std::sqrt(std::sqrt(off / spread)));
+  }
+  constexpr auto& kBit = PathTree::kFirstBit;
+  float best_score = 0.0f;
+  for (int h = 0; h <= 2 * goal.headings; ++h) {
+    const Approach& way = approach_[h];
+    const PathMask& mask = blocked_[h];
+    if (!way.possible || mask.dead()) continue;
+    std::uint64_t groups = 0;
+    for (int s = 0; s <= std::min(stage, 3); ++s) groups |= mask.words[0] >> kBit[s];
+    const float turned = static_cast<float>((h - goal.headings) * kHeadingStep);
+    const int per_group = PathTree::kNodes[stage] / PathTree::kGroups;
+    for (int g = 0; g < PathTree::kGroups; ++g) {
+      if ((groups >> g) & 1u) continue;
+      float sum = 0.0f, top = 0.0f;
+      int top_node = -1;
+      for (int n = g * per_group; n < (g + 1) * per_group; ++n) {
+        if (stage >= 4) {
+          const int middle = stage == 6 ? n / PathTree::kFan : n;
+          if (mask.test(kBit[4] + middle) || (stage >= 5 && mask.test(kBit[5] + middle))) continue;
+          if (stage == 6 && mask.test(kBit[6] + n)) continue;
+        }
+        const float score =
+            agreement_[static_cast<int>(std::fabs(turned + option.tree.end_bearing(stage, n)) + 0.5f)];
+        sum += score;
+        if (score > top) {
+          top = score;
+          top_node = n;
+        }
+      }
+      sum *= way.weight;
+      if (sum > best_score) {
+        best_score = sum;
+        best = {&option, stage, h, top_node, g};
+      }
+    }
+  }
+  return best_score > 0.0f;
+}
+
+bool LocalPlanner::choose(const Goal& goal, Choice& best) {
+  const double detour = std::min(goal.spread, params_.detour_spread);
+  for (const Option& option : options_) {
+    block_paths(option, goal);
+    const int need = option.tree.stage_for(goal.distance);
+    if (vote(option, goal, need, goal.spread, best)) return true;
+    for (int stage = need - 1; stage >= option.least_stage; --stage)
+      if (vote(option, goal, stage, detour, best)) return true;
+  }
+  return false;
+}
+
+void LocalPlanner::write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const {
+  const PathTree& tree = choice.option->tree;
+  const Approach& way = approach_[choice.heading];
+  const double turned = wrap_angle(goal.bearing + (choice.heading - goal.headings) * kHeadingStep * kDegree);
+  plan.reverse = way.reverse;
+  plan.turn = way.turn;
+  plan.heading = static_cast<int>(std::lround(turned / kDegree));
+  plan.group = choice.group;
+  plan.option = static_cast<int>(choice.option - options_.data());
+
+  const Pose2 start = pose * Pose2{0, 0, turned};
+  const auto path = tree.path(PathTree::path_through(choice.stage, choice.node));
+  const std::size_t last = std::min(tree.last_pose(choice.stage), Plan::kMaxPath - 1);
+  for (std::size_t i = 0; i <= last; ++i) {
+    if (i > 0 && std::hypot(path[i].x, path[i].y) > goal.distance + tree.params().spacing / 2) break;
+    Pose2 p = start * path[i];
+    if (way.reverse) p.yaw = wrap_angle(p.yaw + M_PI);
+    plan.poses[plan.pose_count++] = p;
+  }
+  plan.length = static_cast<double>(plan.pose_count - 1) * tree.params().spacing;
+  plan.ends_at_goal = goal.distance <= plan.length + tree.params().spacing;
+}
+
+double LocalPlanner::speed_limit(const Target& target, bool tight, double clearance) const {
+  double limit = platform_.max_speed;
+  if (target.speed > 0.0) limit = std::min(limit, target.speed);
+  if (tight) limit = std::min(limit, params_.tight_speed);
+  return std::min(limit, params_.caution + params_.caution_gain * clearance);
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,119 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "nav/correspondence.hpp"
+#include "nav/path_tree.hpp"
+#include "nav/plan.hpp"
+#include "nav/rotation.hpp"
+
+namespace adit::nav {
+
+struct LocalPlannerParams {
+  PathTreeParams tree{};
+  double side_margin{0.09};   ///< kept free beside the footprint, m, [0, 1]
+  double front_margin{0.20};  ///< kept free before and behind it, m, [0, 1]; never less than a turn needs
+  double tight_margin{0.05};  ///< on the sides, where nothing else is left, m, [0.02, 0.5]
+  double short_scale{0.5};    ///< of the second, shorter and more curved library, [0.2, 1]
+  double tight_speed{0.4};    ///< where only the tight margin is left, m/s, (0, 2]
+  double tolerance{0.25};     ///< arrived within this distance of the goal, m, [0.02, 2]
+  double goal_spread{95.0};   ///< paths may lead away from the goal's bearing by this, degrees, [10, 120]
+  double stick_spread{45.0};  ///< the same for a direction, degrees, [10, 120]
+  double detour_spread{
+      60.0};            ///< the same for paths that are free for a part of the way only, degrees, [10, 120]
+  double caution{0.3};  ///< speed with an obstacle at the footprint, m/s, (0, 2]
+  double caution_gain{2.4};  ///< more speed for each metre of clearance, 1/s, [0, 10]
+};
+
+/// The local planner: looks for the heading, group and path of the trajectory library along which the robot
+/// can go on towards its target. After Falco (see PathTree and CorrespondenceGrid): 36 headings, a vote of
+/// the free paths for their group, weighted by how well they lead to the target and how little the robot has
+/// to turn. Different from it:
+/// - headings are counted from the target's bearing, so that the straight way to it is one of them;
+/// - one pass over the obstacles yields the free length of all paths; Falco repeats it for each range;
+/// - a path is swept by the footprint, and a heading counts only when the turn towards it on the spot is free
+///   (or, failing that, when the robot can get into it backwards);
+/// - a stick held straight ahead (or back) holds the course that the robot had: it goes round an obstacle and
+///   on, and stops at a wall; turning with each detour it would follow the wall;
+/// - shorter paths and tighter margins are further libraries of the true footprint: scaling the obstacle
+///   points, as Falco does, would scale the robot as well.
+class LocalPlanner {
+ public:
+  static constexpr int kHeadings = 36;
+
+  /// Builds the libraries (about 60 ms).
+  explicit LocalPlanner(const Platform& platform, const LocalPlannerParams& params = {});
+
+  /// One cycle. `pose`: the body in the odometry frame at `stamp_s`. `obstacles`: odometry frame, m. Never
+  /// leads through an obstacle; when nothing is free the plan says `blocked` and is empty. Allocates nothing.
+  Plan plan(const Target& target, const Pose2& pose, std::span<const Eigen::Vector2f> obstacles,
+            double stamp_s);
+
+  const LocalPlannerParams& params() const { return params_; }
+  /// Blocks nothing any more: a planner without its correspondence grids, for tests of the tests.
+  void drop_correspondences();
+
+ private:
+  /// One library: a scale and a margin.
+  struct Option {
+    PathTree tree;
+    CorrespondenceGrid grid;
+    bool tight;
+    int least_stage;  ///< a shorter way than this is left to the next library
+  };
+  struct Goal {
+    double distance;  ///< m, or infinite
+    double bearing;   ///< in the body frame, rad
+    double spread;    ///< degrees
+    int headings;     ///< to each side of the bearing
+    bool backwards;   ///< driving backwards is what was asked for
+  };
+  /// A heading's way of being taken.
+  struct Approach {
+    bool possible{false};
+    bool reverse{false};
+    int turn{0};
+    float weight{0};
+  };
+  struct Choice {
+    const Option* option{nullptr};
+    int stage{};
+    int heading{};  ///< index, 0 is along the bearing
+    int node{};
+    int group{};
+  };
+  struct Occupied {
+    std::uint16_t ring, angle;  ///< angle from the goal's bearing, degrees
+  };
+
+  Goal goal_of(const Target& target, const Pose2& pose);
+  void project(const Pose2& pose, const Goal& goal, std::span<const Eigen::Vector2f> obstacles, Plan& plan);
+  void judge_headings(const Goal& goal);
+  void block_paths(const Option& option, const Goal& goal);
+  bool vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best);
+  bool choose(const Goal& goal, Choice& best);
+  void write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const;
+  double speed_limit(const Target& target, bool tight, double clearance) const;
+
+  Platform platform_;
+  LocalPlannerParams params_;
+  std::vector<Option> options_{};
+  RotationTable rotation_{};
+  int last_turn_{0};
+  double course_{0};        ///< of a stick held ahead or back, odometry frame, rad
+  double course_stick_{0};  ///< the stick's direction that set it
+  bool on_course_{false};
+
+  // Of one cycle.
+  std::vector<std::uint64_t> seen_{};  ///< one bit per polar cell
+  std::vector<Occupied> occupied_{};   ///< by ring, nearest first
+  TurnRoom room_{};
+  std::array<Approach, kHeadings> approach_{};
+  std::array<PathMask, kHeadings> blocked_{};
+  std::array<float, 361> agreement_{};  ///< of a bearing that is off by so many degrees, 0..1
+};
+
+}  // namespace adit::nav

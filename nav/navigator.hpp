@@ -1,0 +1,35 @@
+#pragma once
+#include "nav/local_planner.hpp"
+#include "nav/obstacle_map.hpp"
+
+namespace adit::nav {
+
+/// The heavy half of navigation, a scan in and a plan out: obstacle map and local planner. Has no thread and
+/// no clock; calls must not overlap. The light half, PathFollower, shares nothing with it but the plan.
+class Navigator {
+ public:
+  explicit Navigator(const Platform& platform, const ObstacleMapParams& map = {},
+                     const LocalPlannerParams& planner = {});
+
+  /// See ObstacleMap::add_scan.
+  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  /// See LocalPlanner::plan; over what the scans showed. Before the first scan nothing is known to be free:
+  /// the plan is blocked with Reason::terrain_stale.
+  Plan plan(const Target& target, const Pose2& pose, double stamp_s);
+
+  /// Whether a scan has come, and the stamp of the newest one (s).
+  bool has_scan() const { return has_scan_; }
+  double scan_stamp() const { return scan_stamp_; }
+  const ObstacleMap& obstacles() const { return map_; }
+  LocalPlanner& planner() { return planner_; }
+  /// Forgets what was seen, as after a jump of the odometry.
+  void clear();
+
+ private:
+  ObstacleMap map_;
+  LocalPlanner planner_;
+  bool has_scan_{false};
+  double scan_stamp_{0};
+};
+
+}  // namespace adit::nav

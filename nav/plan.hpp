@@ -1,0 +1,56 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/geometry/pose.hpp"
+#include "core/result/reason.hpp"
+
+namespace adit::nav {
+
+/// Where the local planner shall go.
+struct Target {
+  enum class Kind : std::uint8_t {
+    none,       ///< nowhere: the plan is to stand
+    goal,       ///< to a point
+    direction,  ///< along a direction, as far as it goes (smart joystick)
+  };
+  Kind kind{Kind::none};
+  Eigen::Vector2d goal{0, 0};  ///< odometry frame, m
+  double direction{0};         ///< in the body frame, rad, counter-clockwise from ahead
+  double speed{0};             ///< not faster than this, m/s; 0 of a goal: the platform's speed
+
+  static Target to(const Eigen::Vector2d& goal, double speed = 0.0) { return {Kind::goal, goal, 0.0, speed}; }
+  static Target along(double direction, double speed) { return {Kind::direction, {0, 0}, direction, speed}; }
+};
+
+/// What the local planner found. Of bounded size, without pointers: copied at no more than a memcpy.
+struct Plan {
+  static constexpr std::size_t kMaxPath = 72;
+  static constexpr std::size_t kMaxObstacles = 1024;
+
+  double stamp_s{0};            ///< of the pose that it was made for
+  bool blocked{false};          ///< every way is blocked: `path` is empty
+  Reason reason{Reason::none};  ///< Reason::blocked, Reason::goal_missing (no target) or none
+  bool arrived{false};          ///< within the tolerance of the goal: `path` is empty
+  bool ends_at_goal{false};
+  bool reverse{false};  ///< the path is driven backwards; its poses are those of the body
+  int turn{0};          ///< the side to turn to, should the path start behind: 1 left, -1 right, 0 either
+  double max_speed{0};  ///< m/s
+  double length{0};     ///< of the path, m
+  double clearance{0};  ///< from the footprint to the nearest obstacle, m, at most 2
+  int heading{0};       ///< which of the 36 headings, degrees from the body's x
+  int group{-1};        ///< which group of the library
+  int option{-1};       ///< which of the planner's libraries: 0 long and wide ... last short and tight
+
+  std::array<Pose2, kMaxPath> poses{};  ///< odometry frame, from the robot on
+  std::uint32_t pose_count{0};
+  std::array<Eigen::Vector2f, kMaxObstacles>
+      obstacles{};  ///< cells near the robot, nearest ones first to be kept
+  std::uint32_t obstacle_count{0};
+
+  std::span<const Pose2> path() const { return {poses.data(), pose_count}; }
+  std::span<const Eigen::Vector2f> near() const { return {obstacles.data(), obstacle_count}; }
+};
+
+}  // namespace adit::nav

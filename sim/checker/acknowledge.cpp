@@ -1,0 +1,75 @@
+#include <map>
+
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr Duration answer_time{150ms};
+constexpr Duration stream_answer_period{1s};
+
+/// Rule 3: every command is answered, refusals with a numbered reason and a text; refused streams at most
+/// once a second.
+class Acknowledge : public Rule {
+ public:
+  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+    if (std::get_if<AgentStarted>(&event)) {
+      streams_.clear();
+      told_.clear();
+    }
+    if (const auto* sample = std::get_if<JoystickHeard>(&event)) see_sample(robot, *sample);
+    const auto* ack = std::get_if<AckSent>(&event);
+    if (!ack) return;
+    if (ack->accepted && ack->reason != Reason::none) broken("accepted with a reason to refuse");
+    if (!ack->accepted && (ack->reason == Reason::none || name(ack->reason) == "unknown"))
+      broken("refused without a numbered reason");
+    if (!ack->accepted && ack->text.empty()) broken("refused without a text");
+    if (ack->seq == 0) see_stream_answer(robot, *ack, broken);
+  }
+
+  void settle(const RobotModel& robot, const Report& broken) override {
+    if (!robot.alive()) return;
+    for (const RobotModel::Pending& p : robot.pending()) {
+      if (robot.now() - p.at <= answer_time || p.at <= told_[p.command.from]) continue;
+      told_[p.command.from] = p.at;
+      broken("did not answer command " + std::to_string(p.command.seq) + " of " + p.command.station);
+    }
+    for (auto& [id, stream] : streams_) {
+      if (!stream.refused_since || robot.now() - *stream.refused_since <= stream_answer_period + answer_time)
+        continue;
+      broken("refused a joystick in silence");
+      stream.refused_since.reset();
+    }
+  }
+
+ private:
+  struct Stream {
+    std::optional<Duration> refused_since{};  ///< the first refused sample since the last answer
+    std::optional<Duration> answered{};
+  };
+
+  void see_sample(const RobotModel& robot, const JoystickHeard& sample) {
+    Stream& stream = streams_[sample.id];
+    // Only what is certain to be refused: the sender does not hold the robot.
+    if (!robot.alive() || robot.refusal(sample) != "it was not sent by the holder") return;
+    if (sample.id == robot.authority().holder_id) return;
+    if (!stream.refused_since) stream.refused_since = robot.now();
+  }
+
+  void see_stream_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+    Stream& stream = streams_[ack.id];
+    if (stream.answered && robot.now() - *stream.answered < stream_answer_period - 10ms)
+      broken("answered a stream of " + ack.station + " more than once a second");
+    stream.answered = robot.now();
+    stream.refused_since.reset();
+  }
+
+  std::map<StationId, Stream> streams_{};
+  std::map<wire::ParticipantId, Duration> told_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_acknowledge_rule() { return std::make_unique<Acknowledge>(); }
+
+}  // namespace adit::sim

@@ -1,0 +1,94 @@
+#include "sim/checker/checker.hpp"
+
+#include <algorithm>
+
+namespace adit::sim {
+namespace {
+
+constexpr std::uint64_t kept_per_rule = 100;
+
+// Within one instant the order on the wire says nothing about the order of thought.
+int rank(const Event& event) {
+  if (std::holds_alternative<Truth>(event)) return 3;
+  if (std::holds_alternative<VelocitySent>(event)) return 2;
+  if (std::holds_alternative<AuthoritySent>(event) || std::holds_alternative<BehaviourSent>(event) ||
+      std::holds_alternative<NotificationSent>(event))
+    return 1;
+  return 0;
+}
+
+}  // namespace
+
+struct Checker::Watch {
+  explicit Watch(RobotFacts facts) : model(std::move(facts)) {
+    rules[0] = make_one_holder_rule();
+    rules[1] = make_lock_rule();
+    rules[2] = make_acknowledge_rule();
+    rules[3] = make_stop_rule();
+    rules[4] = make_one_source_rule();
+    rules[5] = make_stale_is_zero_rule();
+    rules[6] = make_no_surprise_rule();
+  }
+  RobotModel model;
+  std::array<std::unique_ptr<Rule>, Checker::rules> rules{};
+  Duration instant{};
+  std::vector<Event> waiting{};
+};
+
+const char* Checker::title(int number) {
+  static constexpr std::array titles{
+      "one holder", "a lock is a lock", "nothing is refused in silence", "a stop needs no authority",
+      "one source", "stale is zero",    "nothing moves by surprise"};
+  return titles.at(static_cast<std::size_t>(number - 1));
+}
+
+Checker::Checker(std::vector<RobotFacts> robots) {
+  for (RobotFacts& facts : robots) {
+    const std::string robot = facts.name;
+    watches_.emplace(robot, std::make_unique<Watch>(std::move(facts)));
+  }
+}
+
+Checker::~Checker() = default;
+
+void Checker::observe(const std::string& robot, Duration at, Event event) {
+  const auto it = watches_.find(robot);
+  if (it == watches_.end()) return;
+  Watch& watch = *it->second;
+  if (at > watch.instant) {
+    dispatch(watch);
+    watch.instant = at;
+  }
+  watch.waiting.push_back(std::move(event));
+}
+
+void Checker::advance(Duration now) {
+  for (auto& [name, watch] : watches_) {
+    if (watch->instant >= now) continue;
+    dispatch(*watch);
+    watch->instant = now;
+    dispatch(*watch);
+  }
+}
+
+void Checker::dispatch(Watch& watch) {
+  std::stable_sort(watch.waiting.begin(), watch.waiting.end(),
+                   [](const Event& a, const Event& b) { return rank(a) < rank(b); });
+  watch.model.set_now(watch.instant);
+  const auto report_of = [&](int rule) {
+    return [this, rule, &watch](std::string text) {
+      if (++counts_[static_cast<std::size_t>(rule)] > kept_per_rule) return;
+      violations_.push_back({rule, watch.instant, watch.model.facts().name, std::move(text)});
+    };
+  };
+  for (const Event& event : watch.waiting) {
+    for (int i = 0; i < rules; ++i)
+      watch.rules[static_cast<std::size_t>(i)]->see(watch.model, event, report_of(i + 1));
+    watch.model.take_in(event);
+  }
+  watch.waiting.clear();
+  for (int i = 0; i < rules; ++i)
+    watch.rules[static_cast<std::size_t>(i)]->settle(watch.model, report_of(i + 1));
+}
+
+}  // namespace adit::sim

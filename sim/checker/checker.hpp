@@ -1,0 +1,47 @@
+#pragma once
+#include <array>
+#include <map>
+#include <memory>
+
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+
+struct Violation {
+  int rule{};
+  Duration at{};  ///< since the start of the run
+  std::string robot{};
+  std::string text{};
+};
+
+/// Watches the rules of docs/architecture.md from outside: it is told what reached each robot, what each
+/// robot sent, and what the world did, and never looks into an agent.
+class Checker {
+ public:
+  static constexpr int rules = 7;
+  /// What rule `number` (1 to 7) is called.
+  static const char* title(int number);
+
+  explicit Checker(std::vector<RobotFacts> robots);
+  ~Checker();
+
+  /// One thing seen. Times never go back. What is seen in one instant is judged together, when time goes
+  /// on: what was received and answered first, then what was published, then the velocities.
+  void observe(const std::string& robot, Duration at, Event event);
+  /// Time went on to `now` (call it at least every 20 ms, and at the end).
+  void advance(Duration now);
+
+  /// At most 100 of each rule are kept; all are counted.
+  const std::vector<Violation>& violations() const { return violations_; }
+  std::uint64_t count(int rule) const { return counts_.at(static_cast<std::size_t>(rule)); }
+
+ private:
+  struct Watch;
+  void dispatch(Watch& watch);
+
+  std::map<std::string, std::unique_ptr<Watch>> watches_{};
+  std::vector<Violation> violations_{};
+  std::array<std::uint64_t, rules + 1> counts_{};
+};
+
+}  // namespace adit::sim

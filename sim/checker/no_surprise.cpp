@@ -1,0 +1,89 @@
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+namespace {
+
+/// Rule 7: nothing moves by surprise. Motion needs a request that was accepted since the last start, stop,
+/// fall to hold, or change of holder in a manual mode; a manual mode is entered with a fresh, centred stick.
+class NoSurprise : public Rule {
+ public:
+  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+    if (std::get_if<AgentStarted>(&event)) revoke("a start of its agent");
+    if (const auto* command = std::get_if<CommandHeard>(&event); command && command->verb == Verb::stop)
+      revoke("a stop");
+    if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
+    if (const auto* behaviour = std::get_if<BehaviourSent>(&event))
+      if (behaviour->mode == "hold" && granted_at_ != robot.now()) revoke("a fall to hold");
+    if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
+  }
+
+  void settle(const RobotModel& robot, const Report& broken) override {
+    // The holder changed: a manual mode that was on falls to hold.
+    const bool overdue =
+        manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > reaction;
+    if (overdue) broken("stayed in " + robot.mode() + " when its holder changed");
+    if (overdue || !robot.in_manual_mode()) manual_must_end_.reset();
+  }
+
+ private:
+  void revoke(const char* why) {
+    allowed_ = false;
+    why_not_ = why;
+  }
+
+  void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+    const RobotModel::Pending* pending = robot.answered_by(ack);
+    if (!pending || !ack.accepted || robot.first_answer(RobotModel::key(pending->command))) return;
+    const CommandHeard& command = pending->command;
+    const Authority& before = robot.authority();
+    const bool manual_request =
+        command.verb == Verb::mode && (command.text == "manual" || command.text == "smart_joystick");
+    if (command.verb == Verb::go_to || (command.verb == Verb::mode && command.text != "hold")) {
+      allowed_ = true;
+      granted_at_ = robot.now();
+      manual_must_end_.reset();
+    } else if (command.verb == Verb::mode) {
+      revoke("a request to hold");
+    }
+    if (manual_request) see_manual_entry(robot, command, broken);
+    const bool holder_changes = (command.verb == Verb::take &&
+                                 (command.station != before.holder || command.id != before.holder_id)) ||
+                                command.verb == Verb::release ||
+                                (command.verb == Verb::grant && command.text != before.holder);
+    if (holder_changes && robot.in_manual_mode()) {
+      manual_must_end_ = robot.now();
+      revoke("a change of holder");
+    }
+  }
+
+  void see_manual_entry(const RobotModel& robot, const CommandHeard& command, const Report& broken) {
+    if (robot.mode() == command.text) return;
+    const auto& stick = robot.stick();
+    if (!stick || robot.now() - stick->at > joystick_silence + 20ms)
+      broken("entered " + command.text + " without a fresh joystick");
+    else if (!stick->stick.zero())
+      broken("entered " + command.text + " with a stick that was not centred");
+  }
+
+  void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
+    if (velocity.zero() || !robot.alive()) {
+      told_ = false;
+      return;
+    }
+    // A velocity sent in the very instant in which motion was forbidden may have come before.
+    if (allowed_ || told_ || robot.mode_changed() == robot.now()) return;
+    told_ = true;
+    broken("moved without a new request after " + why_not_);
+  }
+
+  bool allowed_{}, told_{};
+  std::string why_not_{"a start of its agent"};
+  Duration granted_at_{-1};
+  std::optional<Duration> manual_must_end_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_no_surprise_rule() { return std::make_unique<NoSurprise>(); }
+
+}  // namespace adit::sim

@@ -1,0 +1,121 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/geometry/pose.hpp"
+#include "core/result/reason.hpp"
+#include "core/time/time.hpp"
+#include "core/wire/wire.hpp"
+
+/// What an outsider can know of one robot: the samples that reached it, the samples it sent, and what the
+/// simulated world did. Plain copies of the radio types, so that the rules need no generated code.
+namespace adit::sim {
+
+using StationId = std::array<std::uint8_t, 16>;
+
+struct Authority {
+  std::uint64_t start{};    ///< of the epoch: this start of the agent
+  std::uint32_t counter{};  ///< of the epoch
+  std::string holder{};     ///< empty: nobody
+  StationId holder_id{};
+  bool locked{};
+  bool operator==(const Authority&) const = default;
+};
+
+/// Who stopped the robot: name and id.
+struct Latch {
+  std::string station{};
+  StationId id{};
+  bool operator==(const Latch&) const = default;
+};
+
+enum class Verb { take, release, lock, unlock, grant, stop, reset, mode, go_to, query };
+
+/// The agent's process began to run as that participant of the radio domain.
+struct AgentStarted {
+  wire::ParticipantId participant{};
+};
+struct AgentDied {};
+
+// Received by the robot -------------------------------------------------------------------------------
+/// Presence or Capabilities of a station.
+struct PresenceHeard {
+  wire::ParticipantId from{};
+  std::string station{};
+  StationId id{};
+};
+struct CommandHeard {
+  wire::ParticipantId from{};
+  std::string station{};
+  StationId id{};
+  std::uint64_t start{};    ///< of the epoch it was given under
+  std::uint32_t counter{};  ///< of that epoch
+  std::uint64_t seq{};
+  Verb verb{Verb::query};
+  std::string text{};
+  bool flag{};
+};
+struct JoystickHeard {
+  wire::ParticipantId from{};
+  StationId id{};
+  std::uint64_t start{};
+  std::uint32_t counter{};
+  std::uint64_t seq{};
+  std::uint64_t echo{};  ///< ns, the robot's clock
+  Twist2 stick{};
+};
+
+// Sent by the robot -----------------------------------------------------------------------------------
+struct AckSent {
+  std::string station{};
+  StationId id{};
+  std::uint64_t seq{};  ///< 0: of a refused stream
+  bool accepted{};
+  Reason reason{Reason::none};
+  std::string text{};
+  std::string holder{};
+  std::uint64_t start{};
+  std::uint32_t counter{};
+};
+struct AuthoritySent {
+  Authority authority{};
+  std::vector<Latch> stops{};
+};
+struct BehaviourSent {
+  std::string mode{};
+  bool stopped{};
+};
+struct StateSent {
+  std::uint64_t stamp{};  ///< ns, the robot's clock
+};
+struct NotificationSent {
+  std::string code{};
+  std::string to{};  ///< operator; empty: everybody
+  std::uint64_t seq{};
+};
+/// cmd_vel, from the agent or from its parent process.
+struct VelocitySent {
+  Twist2 velocity{};
+};
+
+// What the world did ----------------------------------------------------------------------------------
+struct Truth {
+  Pose2 pose{};       ///< world frame
+  Twist2 velocity{};  ///< body frame
+};
+
+using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
+                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Truth>;
+
+/// What the outsider knows of a robot's body beforehand.
+struct RobotFacts {
+  std::string name{};
+  double max_acceleration{1.0};       ///< m/s2
+  double max_turn_acceleration{3.0};  ///< rad/s2
+  double lock_lease{300.0};           ///< s; 0: a lock never lapses
+};
+
+}  // namespace adit::sim

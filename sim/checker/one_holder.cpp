@@ -1,0 +1,100 @@
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+namespace {
+
+std::string describe_epoch(std::uint32_t counter) { return "epoch " + std::to_string(counter); }
+
+bool needs_holder(Verb verb) { return verb != Verb::take && verb != Verb::stop && verb != Verb::query; }
+
+/// Rule 1: a command counts only with the holder's identity, the current epoch and a new sequence number;
+/// every change of holder raises the epoch; a repeat gets its first answer again.
+class OneHolder : public Rule {
+ public:
+  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+    if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
+    if (const auto* status = std::get_if<AuthoritySent>(&event)) see_status(robot, status->authority, broken);
+    if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
+  }
+
+ private:
+  void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+    if (ack.seq == 0) return;
+    const RobotModel::Pending* pending = robot.answered_by(ack);
+    if (!pending)
+      return broken("answered command " + std::to_string(ack.seq) + " of " + ack.station +
+                    " that it never received");
+    const CommandHeard& command = pending->command;
+    if (const AckSent* first = robot.first_answer(RobotModel::key(command))) {
+      if (first->accepted != ack.accepted || first->reason != ack.reason)
+        broken("a repeat of command " + std::to_string(ack.seq) + " of " + ack.station +
+               " got another answer");
+      return;
+    }
+    if (!ack.accepted) return;
+    if (needs_holder(command.verb)) {
+      if (!robot.is_holder(command))
+        broken("obeyed a command of " + command.station + ", who does not hold it");
+      else if (!robot.current_epoch(command.start, command.counter))
+        broken("obeyed a command of " + describe_epoch(command.counter) + " in " +
+               describe_epoch(robot.authority().counter));
+    }
+    const RobotModel::Heard* known = robot.heard(command.station);
+    if (command.verb == Verb::take && known && known->id != command.id && robot.now() - known->last < hearing)
+      broken("was taken under the name " + command.station + " by another station than the one heard");
+    see_transition(robot, command, ack, broken);
+  }
+
+  void see_transition(const RobotModel& robot, const CommandHeard& command, const AckSent& ack,
+                      const Report& broken) {
+    const Authority& before = robot.authority();
+    const bool first_of_start = before.start == 0;
+    bool changes = command.verb == Verb::release;
+    std::string holder = before.holder;
+    if (command.verb == Verb::take) {
+      changes = command.station != before.holder || command.id != before.holder_id;
+      holder = command.station;
+    }
+    if (command.verb == Verb::release) holder.clear();
+    if (command.verb == Verb::grant) {
+      changes = command.text != before.holder;
+      holder = command.text;
+    }
+    if (first_of_start) return;
+    if (ack.holder != holder) broken("says that '" + ack.holder + "' holds it where '" + holder + "' should");
+    if (ack.start != before.start)
+      broken("changed the start of its epoch while running");
+    else if (changes && ack.counter == before.counter)
+      broken("changed its holder without raising the epoch");
+    else if (ack.counter < before.counter)
+      broken("its epoch went back");
+    else if (!changes && command.verb != Verb::grant && ack.counter != before.counter)
+      broken("raised the epoch without a change of holder");
+  }
+
+  void see_status(const RobotModel& robot, const Authority& now, const Report& broken) {
+    const Authority& known = robot.authority();
+    if (known.start == 0) return;  // the first word of this start
+    if (now.holder != known.holder || now.holder_id != known.holder_id)
+      broken("published holder '" + now.holder + "' where its answers gave '" + known.holder + "'");
+    else if (now.start != known.start || now.counter != known.counter)
+      broken("published " + describe_epoch(now.counter) + " where its answers gave " +
+             describe_epoch(known.counter));
+  }
+
+  // Motion in a manual mode that no sample of the holder explains, but one of somebody else does.
+  void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
+    const auto& forbidden = robot.forbidden_stick();
+    if (velocity.zero() || !forbidden || robot.now() - forbidden->second > joystick_silence) return;
+    const auto& pushed = robot.pushed_stick();
+    if (pushed && robot.now() - pushed->at < 2s) return;
+    if (!robot.in_mode("manual") && !robot.in_mode("smart_joystick")) return;
+    broken("moved by a joystick sample it must not obey: " + forbidden->first);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_one_holder_rule() { return std::make_unique<OneHolder>(); }
+
+}  // namespace adit::sim

@@ -1,0 +1,141 @@
+#include "sim/checker/radio_decoder.hpp"
+
+#include <string_view>
+
+#include "adit/authority.h"
+#include "adit/command.h"
+#include "adit/discovery.h"
+#include "adit/robot.h"
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "geometry_msgs/msg/Twist.h"
+
+namespace adit::sim {
+namespace {
+
+namespace topics = wire::topics;
+
+bool is(const wire::TopicInfo& topic, const wire::TopicInfo& other) {
+  return topic.name == other.name || std::string_view(topic.name) == other.name;
+}
+
+Verb verb_of(radio::CommandKind kind) {
+  switch (kind) {
+    case radio::CMD_TAKE:
+      return Verb::take;
+    case radio::CMD_RELEASE:
+      return Verb::release;
+    case radio::CMD_LOCK:
+      return Verb::lock;
+    case radio::CMD_UNLOCK:
+      return Verb::unlock;
+    case radio::CMD_GRANT:
+      return Verb::grant;
+    case radio::CMD_STOP:
+      return Verb::stop;
+    case radio::CMD_RESET:
+      return Verb::reset;
+    case radio::CMD_MODE:
+      return Verb::mode;
+    case radio::CMD_GOTO:
+      return Verb::go_to;
+    default:
+      return Verb::query;
+  }
+}
+
+template <class T>
+std::optional<T> read(std::span<const std::uint8_t> cdr) {
+  T sample;
+  if (!wire::decode(cdr, sample)) return std::nullopt;
+  return sample;
+}
+
+using Decoded = std::optional<DecodedSample>;
+
+Decoded command(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from) {
+  const auto c = read<radio::Command>(cdr);
+  if (!c) return std::nullopt;
+  return DecodedSample{
+      c->robot(), CommandHeard{from, c->station(), c->station_id(), c->epoch().start(), c->epoch().counter(),
+                               c->seq(), verb_of(c->kind()), c->text(), c->flag()}};
+}
+
+Decoded joystick(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from) {
+  const auto j = read<radio::Joystick>(cdr);
+  if (!j) return std::nullopt;
+  return DecodedSample{j->robot(), JoystickHeard{from,
+                                                 j->station_id(),
+                                                 j->epoch().start(),
+                                                 j->epoch().counter(),
+                                                 j->seq(),
+                                                 j->echo(),
+                                                 {j->vx(), j->vy(), j->wz()}}};
+}
+
+Decoded station(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from, bool presence) {
+  if (presence) {
+    const auto p = read<radio::Presence>(cdr);
+    if (!p) return std::nullopt;
+    return DecodedSample{{}, PresenceHeard{from, p->name(), p->id()}};
+  }
+  const auto c = read<radio::Capabilities>(cdr);
+  if (!c || c->kind() != radio::AGENT_STATION) return std::nullopt;
+  return DecodedSample{{}, PresenceHeard{from, c->name(), c->id()}};
+}
+
+Decoded acknowledgement(std::span<const std::uint8_t> cdr) {
+  const auto a = read<radio::Acknowledgement>(cdr);
+  if (!a) return std::nullopt;
+  return DecodedSample{a->robot(), AckSent{a->station(), a->station_id(), a->seq(), a->accepted(),
+                                           static_cast<Reason>(a->reason()), a->text(), a->holder(),
+                                           a->epoch().start(), a->epoch().counter()}};
+}
+
+Decoded authority(std::span<const std::uint8_t> cdr) {
+  const auto a = read<radio::AuthorityStatus>(cdr);
+  if (!a) return std::nullopt;
+  AuthoritySent sent{{a->epoch().start(), a->epoch().counter(), a->holder(), a->holder_id(), a->locked()},
+                     {}};
+  for (const auto& stop : a->stops()) sent.stops.push_back({stop.station(), stop.station_id()});
+  return DecodedSample{a->robot(), sent};
+}
+
+}  // namespace
+
+Decoded decode_received(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr,
+                        const wire::ParticipantId& from) {
+  if (is(topic, topics::command)) return command(cdr, from);
+  if (is(topic, topics::joystick)) return joystick(cdr, from);
+  if (is(topic, topics::presence)) return station(cdr, from, true);
+  if (is(topic, topics::capabilities)) return station(cdr, from, false);
+  return std::nullopt;
+}
+
+Decoded decode_sent(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr) {
+  if (is(topic, topics::cmd_vel)) {
+    const auto t = read<geometry_msgs::msg::Twist>(cdr);
+    if (!t) return std::nullopt;
+    return DecodedSample{{}, VelocitySent{{t->linear().x(), t->linear().y(), t->angular().z()}}};
+  }
+  if (is(topic, topics::robot_state)) {
+    const auto s = read<radio::RobotState>(cdr);
+    if (!s) return std::nullopt;
+    return DecodedSample{s->robot(), StateSent{s->stamp()}};
+  }
+  if (is(topic, topics::acknowledgement)) return acknowledgement(cdr);
+  if (is(topic, topics::authority)) return authority(cdr);
+  if (is(topic, topics::behaviour)) {
+    const auto b = read<radio::BehaviourState>(cdr);
+    if (!b) return std::nullopt;
+    return DecodedSample{b->robot(), BehaviourSent{b->mode(), b->stopped()}};
+  }
+  if (is(topic, topics::notification)) {
+    const auto n = read<radio::Notification>(cdr);
+    if (!n) return std::nullopt;
+    return DecodedSample{n->robot(), NotificationSent{n->code(), n->operator_name(), n->seq()}};
+  }
+  return std::nullopt;
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,23 @@
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+
+#include "sim/checker/observation.hpp"
+
+namespace adit::sim {
+
+/// A sample of the radio or robot domain, decoded, and the robot that it names (empty: none does).
+struct DecodedSample {
+  std::string robot{};
+  Event event{};
+};
+
+/// Decodes what a robot receives: Presence, Capabilities of a station, Command, Joystick. Nothing for other
+/// topics and for bytes that are no sample.
+std::optional<DecodedSample> decode_received(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr,
+                                             const wire::ParticipantId& from);
+/// Decodes what a robot sends: acknowledgements, its states, notifications, cmd_vel.
+std::optional<DecodedSample> decode_sent(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr);
+
+}  // namespace adit::sim

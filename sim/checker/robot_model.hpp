@@ -1,0 +1,123 @@
+#pragma once
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "sim/checker/observation.hpp"
+
+namespace adit::sim {
+
+/// The time a robot is given to act on what it received: one period of its 20 Hz driver output and a bit.
+inline constexpr Duration reaction{80ms};
+inline constexpr Duration joystick_silence{300ms};
+inline constexpr Duration oldest_echo{600ms};
+inline constexpr Duration hearing{3s};
+
+/// What the outsider concludes from all it has seen of one robot: the authority that follows from the
+/// answers the robot gave, who is heard, the mode it last published, the last samples.
+class RobotModel {
+ public:
+  explicit RobotModel(RobotFacts facts) : facts_(std::move(facts)) {}
+
+  struct Heard {
+    StationId id{};
+    wire::ParticipantId participant{};
+    Duration last{};
+  };
+  /// A command that was received and is not answered yet.
+  struct Pending {
+    CommandHeard command{};
+    Duration at{};
+    bool repeat{};  ///< the same command had been received before
+  };
+  /// A joystick sample that came from the holder under the authority in force.
+  struct Stick {
+    Twist2 stick{};
+    Duration at{};
+  };
+  using CommandKey = std::tuple<wire::ParticipantId, StationId, std::uint64_t>;
+
+  void take_in(const Event& event);
+  void set_now(Duration now) { now_ = now; }
+
+  const RobotFacts& facts() const { return facts_; }
+  Duration now() const { return now_; }
+  bool alive() const { return alive_; }
+  Duration started() const { return started_; }
+  Duration died() const { return died_; }
+
+  const Authority& authority() const { return authority_; }
+  const std::vector<Latch>& latches() const { return latches_; }
+  /// When the last stop was received, or the last latch cleared.
+  Duration stops_changed() const { return stops_changed_; }
+  Duration holder_changed() const { return holder_changed_; }
+  bool knows(const wire::ParticipantId& participant) const { return participants_.contains(participant); }
+  const Heard* heard(const std::string& station) const;
+  /// Whether name and id are the holder's, and come from a participant that showed itself as such.
+  bool is_holder(const CommandHeard& command) const;
+  bool current_epoch(std::uint64_t start, std::uint32_t counter) const {
+    return start == authority_.start && counter == authority_.counter;
+  }
+  /// The oldest unanswered command that this answers; null when there is none.
+  const Pending* answered_by(const AckSent& ack) const;
+  const std::deque<Pending>& pending() const { return pending_; }
+  const AckSent* first_answer(const CommandKey& key) const;
+  static CommandKey key(const CommandHeard& c) { return {c.from, c.id, c.seq}; }
+
+  /// As published; empty before the first BehaviourState.
+  const std::string& mode() const { return mode_; }
+  const std::string& mode_before() const { return mode_before_; }
+  Duration mode_changed() const { return mode_changed_; }
+  /// The published mode, or the one that it replaced in this very instant, is that.
+  bool in_mode(const std::string& mode) const {
+    return mode_ == mode || (mode_changed_ == now_ && mode_before_ == mode);
+  }
+  bool in_manual_mode() const { return mode_ == "manual" || mode_ == "smart_joystick"; }
+
+  const std::optional<VelocitySent>& velocity() const { return velocity_; }
+  Duration velocity_at() const { return velocity_at_; }
+  const std::optional<Stick>& stick() const { return stick_; }
+  /// The last sample that was not centred.
+  const std::optional<Stick>& pushed_stick() const { return pushed_stick_; }
+  /// The last sample, with motion in it, that the robot had no right to obey, and why.
+  const std::optional<std::pair<std::string, Duration>>& forbidden_stick() const { return forbidden_stick_; }
+  const Truth& truth() const { return truth_; }
+
+  /// Empty when the sample may move the robot, else why it may not.
+  std::string refusal(const JoystickHeard& sample) const;
+
+ private:
+  void take_in_event(const AgentStarted& e);
+  void take_in_event(const AgentDied& e);
+  void take_in_event(const PresenceHeard& e);
+  void take_in_event(const CommandHeard& e);
+  void take_in_event(const JoystickHeard& e);
+  void take_in_event(const AckSent& e);
+  void take_in_event(const AuthoritySent& e);
+  void take_in_event(const BehaviourSent& e);
+  void take_in_event(const StateSent& e);
+  void take_in_event(const NotificationSent&) {}
+  void take_in_event(const VelocitySent& e);
+  void take_in_event(const Truth& e) { truth_ = e; }
+  void hear(const std::string& station, const StationId& id, const wire::ParticipantId& from);
+  void apply(const CommandHeard& command, const AckSent& ack);
+
+  RobotFacts facts_;
+  Duration now_{}, started_{}, died_{}, stops_changed_{}, holder_changed_{}, mode_changed_{}, velocity_at_{};
+  bool alive_{};
+  Authority authority_{};
+  std::vector<Latch> latches_{};
+  std::map<std::string, Heard> stations_{};
+  std::map<wire::ParticipantId, std::set<std::pair<std::string, StationId>>> participants_{};
+  std::deque<Pending> pending_{};
+  std::map<CommandKey, std::optional<AckSent>> commands_{};
+  std::deque<std::pair<std::uint64_t, Duration>> stamps_{};
+  std::string mode_{}, mode_before_{};
+  std::optional<VelocitySent> velocity_{};
+  std::optional<Stick> stick_{}, pushed_stick_{};
+  std::optional<std::pair<std::string, Duration>> forbidden_stick_{};
+  Truth truth_{};
+};
+
+}  // namespace adit::sim

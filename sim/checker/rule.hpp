@@ -1,0 +1,31 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "sim/checker/robot_model.hpp"
+
+namespace adit::sim {
+
+/// Says that the rule was broken, in one sentence.
+using Report = std::function<void(std::string text)>;
+
+/// One rule of docs/architecture.md watched on one robot.
+class Rule {
+ public:
+  virtual ~Rule() = default;
+  /// Called for every event before `robot` takes it in. `robot.now()` is the event's time.
+  virtual void see(const RobotModel& robot, const Event& event, const Report& broken) = 0;
+  /// Called when time went on: everything that happened until `robot.now()` was seen and taken in.
+  virtual void settle(const RobotModel& robot, const Report& broken) { (void)robot, (void)broken; }
+};
+
+std::unique_ptr<Rule> make_one_holder_rule();     ///< rule 1
+std::unique_ptr<Rule> make_lock_rule();           ///< rule 2
+std::unique_ptr<Rule> make_acknowledge_rule();    ///< rule 3
+std::unique_ptr<Rule> make_stop_rule();           ///< rule 4
+std::unique_ptr<Rule> make_one_source_rule();     ///< rule 5
+std::unique_ptr<Rule> make_stale_is_zero_rule();  ///< rule 6
+std::unique_ptr<Rule> make_no_surprise_rule();    ///< rule 7
+
+}  // namespace adit::sim

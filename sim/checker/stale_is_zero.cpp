@@ -1,0 +1,73 @@
+#include <cmath>
+
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr Duration longest_gap{120ms};     // between two cmd_vel of a living agent; 50 ms is its period
+constexpr Duration start_up{500ms};        // until the first cmd_vel of a new agent
+constexpr Duration parent_reaction{60ms};  // from an agent's death to its parent's zero
+constexpr Duration stick_release{1s};      // silence after which a manual mode falls to hold
+constexpr Duration centred_rest{2500ms};   // a robot brakes in less from its highest speed
+
+/// Rule 6: when the joystick falls silent the driver is sent zero, actively, and a manual mode then falls
+/// to hold; the driver is never left without a word; a dead agent's parent sends zero.
+class StaleIsZero : public Rule {
+ public:
+  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+    if (std::get_if<AgentStarted>(&event)) told_gap_ = told_mode_ = false;
+    if (std::get_if<AgentDied>(&event)) zero_after_death_ = told_death_ = false;
+    if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
+  }
+
+  void settle(const RobotModel& robot, const Report& broken) override {
+    if (robot.alive()) {
+      const Duration last = std::max(robot.velocity_at(), robot.started() + start_up);
+      const bool gap = robot.now() - last > longest_gap;
+      if (gap && !told_gap_) broken("left its driver without a command for 120 ms");
+      told_gap_ = gap;
+      watch_mode(robot, broken);
+    } else if (robot.died() != Duration{} && !zero_after_death_ && !told_death_ &&
+               robot.now() - robot.died() > parent_reaction) {
+      told_death_ = true;
+      broken("no zero was sent when the agent died");
+    }
+  }
+
+ private:
+  void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
+    if (!robot.alive()) {
+      if (velocity.zero())
+        zero_after_death_ = true;
+      else
+        broken("a velocity was sent for a dead agent");
+      return;
+    }
+    if (velocity.zero() || !robot.in_manual_mode() || robot.mode_changed() == robot.now()) return;
+    const auto& stick = robot.stick();
+    if (!stick || robot.now() - stick->at > joystick_silence + reaction) {
+      broken("sent a velocity in " + robot.mode() + " with a joystick silent for more than 300 ms");
+    } else if (const auto& pushed = robot.pushed_stick();
+               !pushed || robot.now() - pushed->at > centred_rest) {
+      broken("sent a velocity in " + robot.mode() + " with a centred stick");
+    }
+  }
+
+  void watch_mode(const RobotModel& robot, const Report& broken) {
+    const bool manual = robot.in_manual_mode();
+    const Duration since = std::max(robot.stick() ? robot.stick()->at : Duration{}, robot.mode_changed());
+    const bool overdue = manual && robot.now() - since > stick_release + 2 * reaction;
+    if (overdue && !told_mode_) broken("stays in " + robot.mode() + " without a joystick");
+    told_mode_ = overdue;
+  }
+
+  bool told_gap_{}, told_mode_{}, told_death_{};
+  bool zero_after_death_{true};
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_stale_is_zero_rule() { return std::make_unique<StaleIsZero>(); }
+
+}  // namespace adit::sim

@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr double resting_speed = 0.02;  // m/s
+constexpr double resting_turn = 0.02;   // rad/s
+
+/// Rule 4: a stop needs no authority and is a latch: while one is set the driver gets zero, and the robot
+/// comes to rest in the time its brakes need.
+class Stop : public Rule {
+ public:
+  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+    if (std::get_if<AgentStarted>(&event)) stopped_since_.reset();
+    if (const auto* command = std::get_if<CommandHeard>(&event); command && command->verb == Verb::stop) {
+      if (robot.alive() && !stopped_since_) begin(robot);
+    }
+    if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
+    if (const auto* status = std::get_if<AuthoritySent>(&event)) see_status(robot, *status, broken);
+    if (const auto* sent = std::get_if<VelocitySent>(&event); sent && !sent->velocity.zero()) {
+      if (stopped_since_ && robot.now() > *stopped_since_) broken("sent a velocity while stopped");
+    }
+    if (const auto* truth = std::get_if<Truth>(&event)) see_truth(robot, *truth, broken);
+  }
+
+  void settle(const RobotModel& robot, const Report&) override {
+    // A stop that was refused (see_answer has told), or the last latch cleared.
+    if (stopped_since_ && robot.latches().empty() && robot.pending().empty() && robot.now() > *stopped_since_)
+      stopped_since_.reset();
+  }
+
+ private:
+  void begin(const RobotModel& robot) {
+    stopped_since_ = robot.now();
+    const Twist2& v = robot.truth().velocity;
+    const double brake = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
+    const double unwind = std::abs(v.wz) / robot.facts().max_turn_acceleration;
+    at_rest_by_ = robot.now() + from_seconds(std::max(brake, unwind) * 1.1 + 0.25);
+    told_moving_ = false;
+  }
+
+  void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+    const RobotModel::Pending* pending = robot.answered_by(ack);
+    if (!pending || pending->repeat) return;
+    const CommandHeard& command = pending->command;
+    const RobotModel::Heard* known = robot.heard(command.station);
+    const bool name_taken = known && known->id != command.id;
+    if (command.verb == Verb::stop && !ack.accepted && !name_taken)
+      broken("refused a stop of " + command.station);
+    if (command.verb == Verb::reset && ack.accepted && !command.flag) {
+      const auto& latches = robot.latches();
+      const bool own =
+          std::find(latches.begin(), latches.end(), Latch{command.station, command.id}) != latches.end();
+      if (!latches.empty() && !own) broken("a reset without override was accepted for a stop of another");
+    }
+  }
+
+  void see_status(const RobotModel& robot, const AuthoritySent& status, const Report& broken) {
+    if (robot.latches().empty() == status.stops.empty()) return;
+    broken(status.stops.empty() ? "published no stop while one was set" : "published a stop that nobody set");
+  }
+
+  void see_truth(const RobotModel& robot, const Truth& truth, const Report& broken) {
+    if (!stopped_since_ || told_moving_ || robot.now() < at_rest_by_) return;
+    const Twist2& v = truth.velocity;
+    if (std::hypot(v.vx, v.vy) < resting_speed && std::abs(v.wz) < resting_turn) return;
+    told_moving_ = true;
+    broken("still moves after its stop");
+  }
+
+  std::optional<Duration> stopped_since_{};
+  Duration at_rest_by_{};
+  bool told_moving_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_stop_rule() { return std::make_unique<Stop>(); }
+
+}  // namespace adit::sim

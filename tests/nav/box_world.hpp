@@ -1,0 +1,120 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "core/geometry/pose.hpp"
+
+namespace adit::nav::test {
+
+/// A wall, a crate, a beam: its extent in the world, m.
+struct Box {
+  double x0, x1, y0, y1, z0{0.0}, z1{2.5};
+};
+
+/// An analytic world for closed-loop tests: boxes on a flat floor under a ceiling, a spinning lidar by
+/// slab tests, and the true collision of a footprint.
+struct BoxWorld {
+  std::vector<Box> boxes{};
+  double ceiling{2.5};
+
+  /// Distance along `direction` (unit length) to what is hit first, m; 100 when nothing is.
+  double cast(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const {
+    double nearest = 100.0;
+    if (direction.z() < 0) nearest = std::min(nearest, -from.z() / direction.z());
+    if (direction.z() > 0) nearest = std::min(nearest, (ceiling - from.z()) / direction.z());
+    const Eigen::Vector3d inverse = direction.cwiseInverse();
+    for (const Box& b : boxes) {
+      const Eigen::Vector3d low(b.x0, b.y0, b.z0), high(b.x1, b.y1, b.z1);
+      const Eigen::Vector3d t0 = (low - from).cwiseProduct(inverse), t1 = (high - from).cwiseProduct(inverse);
+      const double enter = t0.cwiseMin(t1).maxCoeff(), leave = t0.cwiseMax(t1).minCoeff();
+      if (enter > 0 && enter <= leave) nearest = std::min(nearest, enter);
+    }
+    return nearest;
+  }
+
+  /// A scan of `rings` x `columns` from a lidar at `height` above `body`: points in the sensor's frame.
+  /// Rings spread over +-15 degrees; one ring alone is level. `noise`: of the range, m (standard deviation).
+  std::vector<Eigen::Vector3f> scan(const Pose2& body, double height, int rings, int columns, double noise,
+                                    std::mt19937& random) const {
+    std::normal_distribution<double> error(0.0, 1.0);
+    std::vector<Eigen::Vector3f> points;
+    points.reserve(static_cast<std::size_t>(rings * columns));
+    const Eigen::Vector3d from(body.x, body.y, height);
+    for (int column = 0; column < columns; ++column)
+      for (int ring = 0; ring < rings; ++ring) {
+        const double bearing = 2 * M_PI * column / columns;
+        const double elevation = rings == 1 ? 0.0 : (-15.0 + 30.0 * ring / (rings - 1)) * M_PI / 180.0;
+        const Eigen::Vector3d local(std::cos(elevation) * std::cos(bearing),
+                                    std::cos(elevation) * std::sin(bearing), std::sin(elevation));
+        const Eigen::Vector3d direction = Eigen::AngleAxisd(body.yaw, Eigen::Vector3d::UnitZ()) * local;
+        const double range = cast(from, direction);
+        if (range >= 100.0) continue;
+        points.push_back((local * (range + noise * error(random))).cast<float>());
+      }
+    return points;
+  }
+
+  /// From the footprint of a platform at `pose` to the nearest box that it cannot step on or pass under, m;
+  /// zero or less when they touch. Boxes are sampled every 2 cm along their outline.
+  double clearance(const Platform& platform, const Pose2& pose) const {
+    double least = 10.0;
+    const Pose2 inverse = pose.inverse();
+    const auto look = [&](double x, double y) {
+      const Eigen::Vector2d p = inverse * Eigen::Vector2d(x, y);
+      const double ox = std::fabs(p.x()) - platform.length / 2, oy = std::fabs(p.y()) - platform.width / 2;
+      const double outside = std::hypot(std::max(0.0, ox), std::max(0.0, oy));
+      least = std::min(least, outside > 0 ? outside : std::max(ox, oy));
+    };
+    for (const Box& b : boxes) {
+      if (b.z1 <= platform.step || b.z0 >= platform.height) continue;
+      for (double x = b.x0; x < b.x1 + 0.02; x += 0.02) {
+        look(std::min(x, b.x1), b.y0);
+        look(std::min(x, b.x1), b.y1);
+      }
+      for (double y = b.y0; y < b.y1 + 0.02; y += 0.02) {
+        look(b.x0, std::min(y, b.y1));
+        look(b.x1, std::min(y, b.y1));
+      }
+    }
+    return least;
+  }
+};
+
+inline Platform wheeled() {
+  return {.name = "wheeled",
+          .length = 0.60,
+          .width = 0.50,
+          .max_speed = 2.0,
+          .max_turn = 1.5,
+          .max_acceleration = 1.5,
+          .step = 0.08,
+          .lidar_height = 0.50};
+}
+inline Platform tracked() {
+  return {.name = "tracked",
+          .length = 0.80,
+          .width = 0.60,
+          .max_speed = 1.0,
+          .max_turn = 1.0,
+          .max_acceleration = 1.0,
+          .step = 0.15,
+          .lidar_height = 0.55};
+}
+inline Platform legged() {
+  return {.name = "legged",
+          .drive = Drive::holonomic,
+          .length = 0.90,
+          .width = 0.45,
+          .max_speed = 1.2,
+          .max_turn = 1.2,
+          .max_acceleration = 1.5,
+          .step = 0.22,
+          .lidar_height = 0.65,
+          .stairs = true};
+}
+
+}  // namespace adit::nav::test

@@ -1,0 +1,67 @@
+#pragma once
+#include <vector>
+
+#include "nav/navigator.hpp"
+#include "nav/path_follower.hpp"
+#include "tests/nav/box_world.hpp"
+
+namespace adit::nav::test {
+
+/// A robot in a box world: scan and plan at 10 Hz, follower at 50 Hz, as the agent calls them.
+struct ClosedLoop {
+  BoxWorld world{};
+  Platform platform{wheeled()};
+  Pose2 truth{};
+  Pose2 bias{};        ///< the odometry is the truth followed by nothing but this offset (world frame)
+  double noise{0.01};  ///< of ranges, m
+  int rings{16}, columns{360};
+  std::mt19937 random{7};
+  Navigator navigator{platform};
+  PathFollower follower{platform};
+
+  Plan last{};
+  double time{0};
+  double least_clearance{10};
+  double driven{0}, fastest{0}, steepest{0};  ///< m, m/s, m/s2
+  int blocked_cycles{0}, held_steps{0};
+
+  ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start)
+      : world(std::move(w)), platform(p), truth(start), navigator(p), follower(p) {}
+
+  Pose2 odometry() const { return {truth.x + bias.x, truth.y + bias.y, truth.yaw}; }
+
+  /// One planner cycle and the five follower steps until the next.
+  void cycle(const Target& target) {
+    const Pose2 odom = odometry();
+    navigator.add_scan(world.scan(truth, platform.lidar_height, rings, columns, noise, random),
+                       Pose3::level(odom, 0.0), time);
+    last = navigator.plan(target, odom, time);
+    blocked_cycles += last.blocked;
+    follower.set_plan(last);
+    for (int i = 0; i < 5; ++i) {
+      constexpr double kDt = 0.02;
+      const Twist2 before = follower.command();
+      const Twist2 v = follower.follow(odometry(), kDt);
+      held_steps += follower.held();
+      steepest = std::max(steepest, std::hypot(v.vx - before.vx, v.vy - before.vy) / kDt);
+      fastest = std::max(fastest, std::hypot(v.vx, v.vy));
+      driven += std::hypot(v.vx, v.vy) * kDt;
+      truth = truth * Pose2{v.vx * kDt, v.vy * kDt, v.wz * kDt};
+      time += kDt;
+      least_clearance = std::min(least_clearance, world.clearance(platform, truth));
+    }
+  }
+
+  /// Until the plan says `arrived` and the robot stands, or for so many seconds; true when it arrived.
+  bool drive(const Target& target, double seconds) {
+    const double end = time + seconds;
+    while (time < end) {
+      cycle(target);
+      if (last.arrived && follower.command().zero()) return true;
+    }
+    return false;
+  }
+  double distance_to(double x, double y) const { return std::hypot(truth.x - x, truth.y - y); }
+};
+
+}  // namespace adit::nav::test
