@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "sim/world/lidar.hpp"
-#include "sim/world/random.hpp"
+#include "sim/world/noise.hpp"
 
 namespace {
 
@@ -39,9 +39,12 @@ void cast(benchmark::State& state) {
     d = {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
   }
   const VoxelGrid::Start start = world->grid().locate({10.0, -0.2, 0.5});
-  std::size_t n = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(world->grid().cast(start, directions[n++ % 4096], 30.0));
-  state.SetItemsProcessed(state.iterations());
+  std::array<double, 4096> ranges;
+  for (auto _ : state) {
+    world->grid().cast(start, directions, 30.0, ranges);
+    benchmark::DoNotOptimize(ranges);
+  }
+  state.SetItemsProcessed(state.iterations() * 4096);
 }
 BENCHMARK(cast);
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/world/random.hpp"
+#include "sim/world/noise.hpp"
 
 namespace adit::sim {
 namespace {
@@ -76,17 +76,21 @@ PointCloud LidarPattern::scan(const World& world, std::span<const BodyBox> other
   Random random(seed);
   PointCloud points;
   points.reserve(size());
+  std::vector<Eigen::Vector3d> directions(elevation_.size());
+  std::vector<double> ranges(elevation_.size());
   for (const Eigen::Vector2d& azimuth : azimuth_) {
     const Eigen::Vector3d ahead = rotation.col(0) * azimuth.x() + rotation.col(1) * azimuth.y();
-    for (const Eigen::Vector2d& elevation : elevation_) {
-      const Eigen::Vector3d direction = ahead * elevation.x() + rotation.col(2) * elevation.y();
-      double range = world.grid().cast(start, direction, params_.max_range);
-      for (const Target& target : targets)
-        if (!level || ahead.head<2>().dot(target.towards) >= target.cos_spread)
-          range = std::min(range, cast_box(target, direction));
+    for (std::size_t n = 0; n < elevation_.size(); ++n)
+      directions[n] = ahead * elevation_[n].x() + rotation.col(2) * elevation_[n].y();
+    world.grid().cast(start, directions, params_.max_range, ranges);
+    for (const Target& target : targets)
+      if (!level || ahead.head<2>().dot(target.towards) >= target.cos_spread)
+        for (std::size_t n = 0; n < elevation_.size(); ++n)
+          ranges[n] = std::min(ranges[n], cast_box(target, directions[n]));
+    for (std::size_t n = 0; n < elevation_.size(); ++n) {
+      const Eigen::Vector2d& elevation = elevation_[n];
       // Drawn for every beam, so that a robot in the way of some leaves the noise of the others alone.
-      const double noise = params_.range_noise * random.gaussian();
-      range += noise;
+      const double range = ranges[n] + params_.range_noise * gaussian(random);
       if (!(range >= params_.min_range && range <= params_.max_range)) continue;
       const double flat = range * elevation.x();
       points.emplace_back(static_cast<float>(flat * azimuth.x()), static_cast<float>(flat * azimuth.y()),

@@ -4,37 +4,51 @@
 #include <cmath>
 
 namespace adit::sim {
+namespace {
+
+/// `value` brought between two others. Not std::clamp: by reference it is compiled to branches.
+int keep(int value, int low, int high) {
+  value = value < low ? low : value;
+  return value > high ? high : value;
+}
+
+}  // namespace
 
 VoxelGrid::VoxelGrid(const Eigen::Vector2d& origin, double resolution, int nx, int ny,
                      std::vector<double> levels, bool open_sides)
     : origin_(origin),
       resolution_(resolution),
+      per_metre_(1.0 / resolution),
       nx_(nx),
       ny_(ny),
       open_sides_(open_sides),
       levels_(std::move(levels)),
-      cells_(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1), 0) {}
+      strides_{} {
+  strides_[towards_both].resize(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1), 0);
+}
 
 void VoxelGrid::build() {
-  // Two sweeps with unit weights give the exact Chebyshev distance. What lies beside the grid counts as
-  // solid here, so that no stride leaves it.
-  constexpr int cap = 255;
-  for (int k = 0; k < layers(); ++k) {
-    const auto at = [&](int i, int j) -> int { return inside(i, j) ? cells_[index(i, j, k)] : 0; };
-    const auto sweep = [&](int i, int j, int side) {
-      std::uint8_t& cell = cells_[index(i, j, k)];
-      if (cell == 0) return;
-      const int near = std::min({at(i - side, j), at(i - 1, j - side), at(i, j - side), at(i + 1, j - side)});
-      cell = static_cast<std::uint8_t>(std::min<int>(cell, std::min(cap, near + 1)));
-    };
-    for (int j = 0; j < ny_; ++j)
-      for (int i = 0; i < nx_; ++i)
-        if (cells_[index(i, j, k)] != 0) cells_[index(i, j, k)] = cap;
-    for (int j = 0; j < ny_; ++j)
-      for (int i = 0; i < nx_; ++i) sweep(i, j, 1);
-    for (int j = ny_ - 1; j >= 0; --j)
-      for (int i = nx_ - 1; i >= 0; --i) sweep(i, j, -1);
+  for (int quadrant = 0; quadrant < towards_both; ++quadrant) {
+    std::vector<std::uint8_t>& mirrored = strides_[quadrant];
+    mirrored.resize(strides_[towards_both].size());
+    for (int k = 0; k < layers(); ++k)
+      for (int j = 0; j < ny_; ++j)
+        for (int i = 0; i < nx_; ++i)
+          mirrored[index(quadrant & 1 ? i : nx_ - 1 - i, quadrant & 2 ? j : ny_ - 1 - j, k)] = solid(i, j, k) ? 0 : 1;
   }
+  for (std::vector<std::uint8_t>& strides : strides_)
+    for (int k = 0; k < layers(); ++k)
+      for (int j = ny_ - 1; j >= 0; --j)
+        for (int i = nx_ - 1; i >= 0; --i) {
+          std::uint8_t& here = strides[index(i, j, k)];
+          if (here == 0) continue;
+          // What lies beside the grid counts as solid: no stride leaves it by more than one cell.
+          const bool border = i == nx_ - 1 || j == ny_ - 1;
+          const int ahead = border ? 0
+                                   : std::min({strides[index(i + 1, j, k)], strides[index(i, j + 1, k)],
+                                               strides[index(i + 1, j + 1, k)]});
+          here = static_cast<std::uint8_t>(std::min(255, ahead + 1));
+        }
 }
 
 VoxelGrid::Start VoxelGrid::locate(const Eigen::Vector3d& position) const {
@@ -80,55 +94,107 @@ bool VoxelGrid::enter(Start& start, const Eigen::Vector3d& direction, double& t)
   return true;
 }
 
-double VoxelGrid::cast(const Start& from, const Eigen::Vector3d& direction, double max_range) const {
-  if (from.k < 0) return 0.0;
+/// A ray under way, in a grid mirrored so that it heads towards +x and +y.
+struct VoxelGrid::Ray {
+  const std::uint8_t* strides;  ///< of that mirrored grid
+  double gx, gy;                ///< where it starts, in columns
+  double sx, sy;                ///< columns a metre, >= 0
+  double ax, ay, az;            ///< metres a column, metres a metre of height
+  double t;                     ///< m
+  int i, j, k;
+  int up, dk;  ///< upwards: 1 and 1, downwards: 0 and -1
+  std::size_t slot;
+};
+
+bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
+                        double& range) const {
+  range = 0.0;
+  if (from.k < 0) return false;
   Start start = from;
-  double t = 0.0;
+  ray.t = 0.0;
   if (!inside(start.i, start.j)) {
-    if (!open_sides_) return 0.0;
-    if (!enter(start, direction, t)) return cast_beside(from, direction, max_range);
-    if (t >= max_range) return no_hit;
+    if (!open_sides_) return false;
+    if (!enter(start, direction, ray.t)) {
+      range = cast_beside(from, direction, max_range);
+      return false;
+    }
+    range = no_hit;
+    if (ray.t >= max_range) return false;
   }
   // An axis that the ray does not move along gets a border far away instead of a division by zero.
   constexpr double far = 1e30;
   const bool px = direction.x() >= 0.0, py = direction.y() >= 0.0, pz = direction.z() >= 0.0;
-  const double sx = direction.x() / resolution_, sy = direction.y() / resolution_;
-  const double ax = sx != 0.0 ? 1.0 / sx : far;
-  const double ay = sy != 0.0 ? 1.0 / sy : far;
-  const double az = direction.z() != 0.0 ? 1.0 / direction.z() : far;
-  const double gx = start.gx, gy = start.gy, z = start.position.z();
-  const int top = layers();
-  const std::uint8_t* const cells = cells_.data();
-  const std::size_t row = nx_, slice = static_cast<std::size_t>(nx_) * ny_;
-  int i = start.i, j = start.j, k = start.k;
-  while (true) {
-    const int stride = cells[k * slice + j * row + i];
-    if (stride == 0) return t;
-    const double tx = ((px ? i + stride : i - stride + 1) - gx) * ax;
-    const double ty = ((py ? j + stride : j - stride + 1) - gy) * ay;
-    const double tz = (levels_[pz ? k + 1 : k] - z) * az;
-    // The two axes that do not cross a border are kept inside the square: rounding cannot lead astray.
-    const int i0 = i - stride + 1, i1 = i + stride - 1, j0 = j - stride + 1, j1 = j + stride - 1;
-    if (tz < tx && tz < ty) {
-      t = std::max(t, tz);
-      k += pz ? 1 : -1;
-      if (t >= max_range) return no_hit;
-      if (k < 0 || k >= top) return t;
-      i = std::clamp(static_cast<int>(gx + t * sx), i0, i1);
-      j = std::clamp(static_cast<int>(gy + t * sy), j0, j1);
-      continue;
+  ray.strides = strides_[(px ? 1 : 0) + (py ? 2 : 0)].data();
+  ray.gx = px ? start.gx : nx_ - start.gx;
+  ray.gy = py ? start.gy : ny_ - start.gy;
+  const double dx = std::abs(direction.x()), dy = std::abs(direction.y());
+  ray.sx = dx * per_metre_;
+  ray.sy = dy * per_metre_;
+  ray.ax = dx != 0.0 ? resolution_ / dx : far;
+  ray.ay = dy != 0.0 ? resolution_ / dy : far;
+  ray.az = direction.z() != 0.0 ? 1.0 / direction.z() : far;
+  ray.i = px ? start.i : nx_ - 1 - start.i;
+  ray.j = py ? start.j : ny_ - 1 - start.j;
+  ray.k = start.k;
+  ray.up = pz ? 1 : 0;
+  ray.dk = pz ? 1 : -1;
+  return true;
+}
+
+void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
+                     std::span<double> ranges) const {
+  // A step waits for memory and arithmetic of the one before; several rays in turn fill those waits. Which
+  // border comes first is a coin toss, so the outcome is selected by masks: a branch would often be mispredicted.
+  std::array<Ray, batch> rays;
+  const double z = from.position.z();
+  const unsigned top = static_cast<unsigned>(layers()), columns = static_cast<unsigned>(nx_),
+                 rows = static_cast<unsigned>(ny_);
+  const int row = nx_, slice = nx_ * ny_;
+  const double* const levels = levels_.data();
+  for (std::size_t first = 0; first < directions.size(); first += batch) {
+    const std::size_t last = std::min(directions.size(), first + batch);
+    int active = 0;
+    for (std::size_t n = first; n < last; ++n)
+      if (prepare(from, directions[n], max_range, rays[active], ranges[n])) rays[active++].slot = n;
+    while (active > 0) {
+      for (Ray *ray = rays.data(), *end = ray + active; ray < end; ++ray) {
+        const int stride = ray->strides[ray->k * slice + ray->j * row + ray->i];
+        const int next_i = ray->i + stride, next_j = ray->j + stride;
+        const double tx = (next_i - ray->gx) * ray->ax;
+        const double ty = (next_j - ray->gy) * ray->ay;
+        const double tz = (levels[ray->k + ray->up] - z) * ray->az;
+        const double t = std::max(ray->t, std::min(std::min(tx, ty), tz));
+        const int z_first = -static_cast<int>((tz < tx) & (tz < ty)), x_before_y = -static_cast<int>(tx < ty);
+        const int x_first = x_before_y & ~z_first, y_first = ~x_before_y & ~z_first;
+        // The axes that do not cross a border are kept inside the square: rounding cannot lead astray.
+        const int in_i = keep(static_cast<int>(ray->gx + t * ray->sx), ray->i, next_i - 1);
+        const int in_j = keep(static_cast<int>(ray->gy + t * ray->sy), ray->j, next_j - 1);
+        const int i = (in_i & ~x_first) | (next_i & x_first), j = (in_j & ~y_first) | (next_j & y_first);
+        const int k = ray->k + (ray->dk & z_first);
+        const bool hit = stride == 0, far = t >= max_range, beyond = static_cast<unsigned>(k) >= top,
+                   beside = (static_cast<unsigned>(i) >= columns) | (static_cast<unsigned>(j) >= rows);
+        if (hit | far | beyond | beside) [[unlikely]] {
+          ranges[ray->slot] = hit                        ? ray->t
+                              : far                      ? no_hit
+                              : beyond || !open_sides_ ? t
+                                                         : cast_beside(from, directions[ray->slot], max_range);
+          *ray-- = *--end;
+          --active;
+          continue;
+        }
+        ray->t = t;
+        ray->i = i;
+        ray->j = j;
+        ray->k = k;
+      }
     }
-    t = std::max(t, std::min(tx, ty));
-    if (t >= max_range) return no_hit;
-    if (tx < ty) {
-      i = px ? i + stride : i - stride;
-      j = std::clamp(static_cast<int>(gy + t * sy), j0, j1);
-    } else {
-      j = py ? j + stride : j - stride;
-      i = std::clamp(static_cast<int>(gx + t * sx), i0, i1);
-    }
-    if (!inside(i, j)) return open_sides_ ? cast_beside(from, direction, max_range) : t;
   }
+}
+
+double VoxelGrid::cast(const Start& start, const Eigen::Vector3d& direction, double max_range) const {
+  double range = no_hit;
+  cast(start, std::span(&direction, 1), max_range, std::span(&range, 1));
+  return range;
 }
 
 }  // namespace adit::sim

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "sim/world/octomap_file.hpp"
-#include "sim/world/random.hpp"
+#include "sim/world/noise.hpp"
 #include "sim/world/read_file.hpp"
 #include "sim/world/world.hpp"
 #include "tests/sim/scratch.hpp"

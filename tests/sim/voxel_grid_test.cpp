@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sim/world/random.hpp"
+#include "sim/world/noise.hpp"
 
 namespace adit::sim {
 namespace {
@@ -41,7 +41,7 @@ TEST(VoxelGrid, cast_agrees_with_marching) {
     const bool open_sides = round % 2 == 0;
     const VoxelGrid grid = random_grid(random, open_sides, round % 3 == 0 ? 0.1 : 0.01);
     const Eigen::Vector3d start(-2.0 + 6.0 * random.uniform(), 1.0 + 5.0 * random.uniform(), 1.7 * random.uniform());
-    Eigen::Vector3d direction(random.gaussian(), random.gaussian(), 0.3 * random.gaussian());
+    Eigen::Vector3d direction(gaussian(random), gaussian(random), 0.3 * gaussian(random));
     if (round % 5 == 0) direction[round % 2] = 0.0;
     direction.normalize();
     const double expected = march(grid, start, direction, 4.0);

@@ -1,0 +1,37 @@
+#include "sim/world/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::sim {
+
+void Body::command(const Twist2& wanted) {
+  const auto finite = [](double v) { return std::isfinite(v) ? v : 0.0; };
+  wanted_ = {finite(wanted.vx), finite(wanted.vy), finite(wanted.wz)};
+  if (platform_.drive == Drive::differential) wanted_.vy = 0.0;
+  const double speed = std::hypot(wanted_.vx, wanted_.vy);
+  if (speed > platform_.max_speed) {
+    wanted_.vx *= platform_.max_speed / speed;
+    wanted_.vy *= platform_.max_speed / speed;
+  }
+  wanted_.wz = std::clamp(wanted_.wz, -platform_.max_turn, platform_.max_turn);
+  silence_ = 0.0;
+}
+
+Pose2 Body::advance(double dt) {
+  silence_ += dt;
+  if (silence_ > watchdog_) wanted_ = {};
+  const double dvx = wanted_.vx - twist_.vx, dvy = wanted_.vy - twist_.vy;
+  const double change = std::hypot(dvx, dvy), limit = platform_.max_acceleration * dt;
+  const double part = change > limit ? limit / change : 1.0;
+  const double turn_limit = platform_.max_turn_acceleration * dt;
+  // The last piece is taken as it is: rounding leaves no creeping remainder.
+  twist_.vx = part < 1.0 ? twist_.vx + part * dvx : wanted_.vx;
+  twist_.vy = part < 1.0 ? twist_.vy + part * dvy : wanted_.vy;
+  twist_.wz += std::clamp(wanted_.wz - twist_.wz, -turn_limit, turn_limit);
+  // The chord of the arc that the body describes: exact for a constant velocity up to second order.
+  const double half = 0.5 * twist_.wz * dt, c = std::cos(half), s = std::sin(half);
+  return pose_ * Pose2{(twist_.vx * c - twist_.vy * s) * dt, (twist_.vx * s + twist_.vy * c) * dt, twist_.wz * dt};
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,36 @@
+#pragma once
+#include "core/config/platform.hpp"
+#include "core/geometry/pose.hpp"
+
+namespace adit::sim {
+
+/// A robot's drive: what a commanded velocity becomes under the limits of its platform.
+class Body {
+ public:
+  /// `watchdog`: seconds after which a command that is not repeated counts as zero.
+  Body(const Platform& platform, const Pose2& start, double watchdog)
+      : platform_(platform), pose_(start), watchdog_(watchdog) {}
+
+  /// A new cmd_vel; values that are not finite count as zero, others are brought within the platform's limits.
+  void command(const Twist2& wanted);
+  /// Velocity and pose after `dt` seconds, if nothing is in the way; changes only the velocity.
+  Pose2 advance(double dt);
+  /// Takes the pose that advance() proposed.
+  void take(const Pose2& pose) { pose_ = pose; }
+  /// Contact: the body stands.
+  void halt() { twist_ = {}; }
+
+  const Platform& platform() const { return platform_; }
+  const Pose2& pose() const { return pose_; }
+  const Twist2& twist() const { return twist_; }
+
+ private:
+  Platform platform_;
+  Pose2 pose_;
+  Twist2 twist_{};
+  Twist2 wanted_{};
+  double watchdog_;
+  double silence_{0.0};  ///< since the last command, s
+};
+
+}  // namespace adit::sim

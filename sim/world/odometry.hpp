@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+
+#include "core/geometry/pose.hpp"
+#include "sim/world/noise.hpp"
+
+namespace adit::sim {
+
+/// How wrong a robot's odometry is.
+struct OdometryParams {
+  double scale{0.01};        ///< deviation of the error of the driven distance, fraction of it, [0, 0.5]
+  double drift{0.2};         ///< deviation of the error of the heading, degrees a metre, [0, 45]
+  double correlation{1.0};   ///< way over which the heading's error rate keeps its value, m, (0, 1000]
+};
+
+/// Dead reckoning with errors. A constant factor, drawn once, multiplies every distance (wheels worn, feet
+/// slipping): 1 % of distance. The heading drifts by a rate per metre that wanders around zero (a
+/// Gauss-Markov process over the driven way with the given deviation and correlation): 0.2 degrees per metre,
+/// nearly independent from one metre to the next. A robot that stands or turns on the spot gains no error.
+class Odometry {
+ public:
+  Odometry(const OdometryParams& params, std::uint64_t seed);
+
+  /// Takes the true motion of one step: from one pose to the next, over `dt` seconds.
+  void move(const Pose2& from, const Pose2& to, double dt);
+  /// Pose in the frame `odom`, which begins at the start pose.
+  const Pose2& pose() const { return pose_; }
+  /// Velocity as it was measured over the last step, body frame.
+  const Twist2& twist() const { return twist_; }
+
+ private:
+  OdometryParams params_;
+  Random random_;
+  double scale_;
+  double rate_;  ///< rad a metre
+  Pose2 pose_{};
+  Twist2 twist_{};
+};
+
+}  // namespace adit::sim

@@ -1,0 +1,24 @@
+#pragma once
+#include <array>
+
+#include "core/geometry/pose.hpp"
+
+namespace adit::sim {
+
+/// A rectangle on the ground: a footprint, or a cell. Metres.
+struct Rectangle {
+  Pose2 pose{};  ///< of its centre
+  double length{};  ///< along its x
+  double width{};   ///< along its y
+
+  std::array<Eigen::Vector2d, 4> corners() const;
+  /// Distance from its centre to a corner.
+  double radius() const { return 0.5 * std::hypot(length, width); }
+};
+
+/// Whether two rectangles share more than their border: separating axes.
+bool overlap(const Rectangle& a, const Rectangle& b);
+/// Shortest distance between two rectangles, m; 0 when they overlap.
+double distance(const Rectangle& a, const Rectangle& b);
+
+}  // namespace adit::sim

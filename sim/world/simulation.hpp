@@ -1,0 +1,121 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "core/time/time.hpp"
+#include "sim/world/body.hpp"
+#include "sim/world/lidar.hpp"
+#include "sim/world/odometry.hpp"
+#include "sim/world/standing_map.hpp"
+#include "sim/world/world.hpp"
+
+namespace adit::sim {
+
+struct SimulationParams {
+  Duration step{10ms};         ///< of the true motion, (0, 100 ms]
+  double watchdog{0.5};        ///< a driver stops without a command for this long, s, (0, 10]
+  LidarParams lidar{};
+  OdometryParams odometry{};
+  std::uint64_t seed{1};
+};
+
+/// A robot to be put into the world.
+struct RobotStart {
+  std::string id{};
+  Platform platform{};
+  Pose2 pose{};  ///< world
+};
+
+/// A contact; it lasts until the robot moves freely again.
+struct Collision {
+  Duration at{};
+  std::string robot{};    ///< the one that moved
+  std::string partner{};  ///< another robot's id, or "world"
+  Pose2 pose{};           ///< of `robot`, where it was held, world
+};
+
+/// What is true of a robot, whatever it believes.
+struct Truth {
+  Pose3 pose{};                ///< base_link on the ground, world
+  Twist2 twist{};              ///< body frame
+  double distance{0.0};        ///< driven, m
+  Duration moving{};           ///< time with more than 0.05 m/s or 0.1 rad/s
+  std::size_t collisions{0};   ///< contacts it was part of
+  double min_clearance{0.0};   ///< smallest distance ever to the world or a robot, m
+};
+
+/// The true world: bodies that drive, touch and see. Moves only when step() is called; the same seed and the same
+/// commands give the same run. Not for several threads, except where stated.
+class Simulation {
+ public:
+  /// Reason::bad_argument when two robots share an id or overlap, or one starts in a wall or without ground;
+  /// the text names them.
+  static Result<Simulation> create(std::shared_ptr<const World> world, std::vector<RobotStart> robots,
+                                   const SimulationParams& params);
+
+  /// One step of the true motion; robots move in the order they were given.
+  void step();
+  /// Time since the start.
+  Duration now() const { return now_; }
+
+  std::size_t size() const { return robots_.size(); }
+  const std::string& id(std::size_t robot) const { return robots_[robot].id; }
+  std::optional<std::size_t> find(const std::string& id) const;
+  const Platform& platform(std::size_t robot) const { return robots_[robot].body.platform(); }
+  const World& world() const { return *world_; }
+  const SimulationParams& params() const { return params_; }
+
+  /// What a driver does with a cmd_vel.
+  void command(std::size_t robot, const Twist2& wanted) { robots_[robot].body.command(wanted); }
+  const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
+  /// Pose in `odom` (which begins at the start pose) and measured velocity.
+  const Odometry& odometry(std::size_t robot) const { return robots_[robot].odometry; }
+  /// In the order they began; the first 1000 of them.
+  const std::vector<Collision>& collisions() const { return collisions_; }
+
+  /// All that one turn of a lidar depends on, by value: compute() may run on another thread, later.
+  struct ScanJob {
+    std::shared_ptr<const World> world{};
+    std::shared_ptr<const LidarPattern> lidar{};
+    std::vector<BodyBox> others{};
+    Pose3 base{};
+    double height{};
+    std::uint64_t seed{};
+    /// Points in base_link, see LidarPattern::scan.
+    PointCloud compute() const { return lidar->scan(*world, others, base, height, seed); }
+  };
+  /// The lidar of a robot as the world is now.
+  ScanJob scan(std::size_t robot) const;
+
+ private:
+  struct Robot {
+    std::string id;
+    Body body;
+    Odometry odometry;
+    std::shared_ptr<const StandingMap> ground;
+    Truth truth{};
+    bool touching{false};
+  };
+  Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
+
+  static Rectangle footprint(const Platform& platform, const Pose2& pose);
+  Result<void> add(const RobotStart& start);
+  void move(std::size_t robot);
+  /// What the footprint would touch: a robot's index, size() for the world, nothing.
+  std::optional<std::size_t> contact(std::size_t robot, const Rectangle& footprint) const;
+  void record(std::size_t robot, std::size_t partner);
+  void measure(std::size_t robot);
+
+  std::shared_ptr<const World> world_;
+  SimulationParams params_;
+  std::shared_ptr<const LidarPattern> lidar_;
+  Duration now_{};
+  std::uint64_t steps_{0};
+  std::vector<Robot> robots_{};
+  std::vector<Collision> collisions_{};
+};
+
+}  // namespace adit::sim

@@ -1,0 +1,54 @@
+#pragma once
+#include <vector>
+
+#include "sim/world/rectangle.hpp"
+#include "sim/world/world.hpp"
+
+namespace adit::sim {
+
+/// Where a body of a given height and step can stand: the world as its wheels and its hull meet it. Made once
+/// for each platform; never changes afterwards.
+///
+/// A column is blocked when it has no floor with headroom, or when its lowest such floor lies more than a step
+/// above the lowest floor next to it. So walls, furniture and the edges of steps are blocked; slopes and
+/// steps that the body climbs are not.
+class StandingMap {
+ public:
+  /// `height` of the body above the ground, m; `step`: highest step it climbs, m.
+  StandingMap(const World& world, double height, double step);
+
+  /// Height of the ground under a body at (x, y), m: the floors around, averaged, so that it rides over the steps
+  /// of a voxel map smoothly. NaN where there is none.
+  double ground(double x, double y) const;
+  /// Whether a footprint touches a blocked column.
+  bool touches(const Rectangle& footprint) const;
+  /// Distance from the footprint's border to the nearest blocked column, m, within half a column; 0 when it
+  /// touches. At most what lies inside the map is known of.
+  double clearance(const Rectangle& footprint) const;
+  /// Whether the column that holds (x, y) is blocked.
+  bool blocked(double x, double y) const { return blocked_at(column(x, 0), column(y, 1)); }
+  /// Distance from (x, y) to the middle of the nearest blocked column, m.
+  double distance(double x, double y) const;
+
+ private:
+  int column(double v, int axis) const {
+    return static_cast<int>(std::floor((v - origin_[axis]) / resolution_));
+  }
+  bool blocked_at(int i, int j) const;
+  std::size_t index(int i, int j) const { return static_cast<std::size_t>(j) * nx_ + i; }
+  void block(const World& world, double height, double step);
+  void smooth();
+  void measure();
+
+  Eigen::Vector2d origin_;
+  double resolution_;
+  int nx_, ny_;
+  bool open_sides_;
+  double outside_floor_;         ///< ground beside an open world, m
+  std::vector<float> floor_{};   ///< m, NaN: none
+  std::vector<float> ground_{};  ///< averaged, m, NaN: none near
+  std::vector<std::uint8_t> blocked_{};
+  std::vector<float> distance_{};  ///< from a column's middle to that of the nearest blocked one, m
+};
+
+}  // namespace adit::sim
