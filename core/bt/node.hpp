@@ -1,0 +1,132 @@
+#pragma once
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/bt/blackboard.hpp"
+#include "core/bt/ports.hpp"
+#include "core/bt/script/script.hpp"
+#include "core/bt/status.hpp"
+#include "core/bt/timers.hpp"
+
+namespace adit::bt {
+
+class Node;
+
+/// What the nodes of one tree share.
+struct Runtime {
+  Time now{};  ///< of the current tick
+  Timers timers{};
+  Enums enums{};
+  std::function<void(const Node&, NodeStatus from, NodeStatus to)> on_status{};
+  std::function<void(const Node&, std::string_view what)> on_error{};
+};
+
+enum class NodeKind : std::uint8_t { action, condition, control, decorator, subtree };
+/// "Action", "Condition", "Control", "Decorator", "SubTree".
+std::string_view name(NodeKind kind);
+
+/// The attributes that hold scripts, in the order in which preconditions are checked.
+enum class Hook : std::uint8_t {
+  failure_if,
+  success_if,
+  skip_if,
+  while_true,
+  on_success,
+  on_failure,
+  on_halted,
+  post
+};
+inline constexpr std::array<std::string_view, 8> kHookNames{"_failureIf", "_successIf", "_skipIf",   "_while",
+                                                            "_onSuccess", "_onFailure", "_onHalted", "_post"};
+
+/// What a node is made from.
+struct NodeConfig {
+  std::string id{};    ///< kind of node, e.g. "Sequence"; of a SubTree, the tree that it runs
+  std::string name{};  ///< name attribute, else the id
+  bool named{false};   ///< whether there is a name attribute
+  NodeKind kind{NodeKind::action};
+  std::string path{};  ///< "main/seq/leaf": unique within the tree
+  std::string file{};
+  int line{0};
+  std::map<std::string, std::string, std::less<>> ports{};  ///< text of each port, fallbacks included
+  std::array<std::shared_ptr<const Script>, kHookNames.size()> hooks{};
+  Blackboard* board{nullptr};
+  Runtime* runtime{nullptr};
+};
+
+/// One node of a running tree. Only its tree ticks it; everybody else may look.
+class Node {
+ public:
+  explicit Node(NodeConfig config) : config_(std::move(config)) {}
+  virtual ~Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  const std::string& id() const { return config_.id; }
+  const std::string& name() const { return config_.name; }
+  bool named() const { return config_.named; }
+  NodeKind kind() const { return config_.kind; }
+  const NodeConfig& config() const { return config_; }
+  NodeStatus status() const { return status_; }
+  const std::vector<std::unique_ptr<Node>>& children() const { return children_; }
+
+ protected:
+  friend class Tree;
+  friend class Builder;
+
+  /// Preconditions, tick(), postconditions, new status. Whatever is thrown becomes FAILURE and is reported.
+  NodeStatus execute_tick();
+  /// halt() and the _onHalted script; exceptions are reported.
+  void halt_node();
+  void reset_status();
+  void set_status(NodeStatus status);
+
+  virtual NodeStatus tick() = 0;
+  /// Stops what is running; leaves the node idle. Control nodes and decorators halt their children.
+  virtual void halt();
+
+  Node& child(std::size_t index = 0) { return *children_[index]; }
+  std::size_t child_count() const { return children_.size(); }
+  static NodeStatus tick_child(Node& child) { return child.execute_tick(); }
+  /// Halts the child if it is running, and leaves it idle in any case.
+  void reset_child(std::size_t index = 0);
+  void reset_children();
+
+  /// What the port holds. Throws NodeError when it is not given or its entry is missing or empty.
+  Value port_value(std::string_view port) const;
+  template <class T>
+  T port(std::string_view port_name) const;
+  /// Writes to the entry that the port names. Throws NodeError.
+  void write_port(std::string_view port, Value value) const;
+
+  Blackboard& board() const { return *config_.board; }
+  Runtime& runtime() const { return *config_.runtime; }
+  void report(std::string_view what) const;
+
+ private:
+  std::optional<NodeStatus> check_preconditions();
+  void run_hook(Hook hook);
+  /// Reports and cleans up after an exception; the answer is FAILURE.
+  NodeStatus fail(std::string_view what);
+  const Script* hook(Hook which) const { return config_.hooks[static_cast<std::size_t>(which)].get(); }
+
+  NodeConfig config_;
+  NodeStatus status_{NodeStatus::idle};
+  std::vector<std::unique_ptr<Node>> children_{};
+};
+
+template <class T>
+T Node::port(std::string_view port_name) const {
+  const Value value = port_value(port_name);
+  try {
+    return value_as<T>(value);
+  } catch (const NodeError& error) {
+    throw NodeError("port [" + std::string(port_name) + "]: " + error.what());
+  }
+}
+
+}  // namespace adit::bt

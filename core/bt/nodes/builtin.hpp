@@ -1,0 +1,52 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "core/bt/registry.hpp"
+
+namespace adit::bt {
+
+inline constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
+
+/// The manifest of a control node class that is made from a NodeConfig.
+template <class T>
+Manifest control(std::string id, Ports ports = {}, std::size_t least = 1, std::size_t most = kAnyNumber) {
+  return {std::move(id),
+          NodeKind::control,
+          std::move(ports),
+          least,
+          most,
+          [](NodeConfig config) -> std::unique_ptr<Node> { return std::make_unique<T>(std::move(config)); },
+          true};
+}
+template <class T>
+Manifest decorator(std::string id, Ports ports = {}) {
+  auto manifest = control<T>(std::move(id), std::move(ports), 1, 1);
+  manifest.kind = NodeKind::decorator;
+  return manifest;
+}
+template <class T>
+Manifest leaf(std::string id, NodeKind kind, Ports ports = {}) {
+  auto manifest = control<T>(std::move(id), std::move(ports), 0, 0);
+  manifest.kind = kind;
+  return manifest;
+}
+
+// One function per file of this folder: registers its nodes.
+void add_sequences(Registry& registry);
+void add_reactive(Registry& registry);
+void add_parallel(Registry& registry);
+void add_branches(Registry& registry);
+void add_switches(Registry& registry);
+void add_try_catch(Registry& registry);
+void add_decorators(Registry& registry);
+void add_loops(Registry& registry);
+void add_timed(Registry& registry);
+void add_actions(Registry& registry);
+void add_scripted(Registry& registry);
+
+/// The node that stands for another tree; its child is that tree's root.
+std::unique_ptr<Node> make_subtree(NodeConfig config);
+
+}  // namespace adit::bt

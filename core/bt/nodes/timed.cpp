@@ -1,0 +1,120 @@
+// Delay, Timeout and Sleep: on the clock that is handed to each tick.
+#include "core/bt/nodes/builtin.hpp"
+
+namespace adit::bt {
+
+namespace {
+
+/// Answers RUNNING for a while, then ticks its child.
+class Delay : public Node {
+ public:
+  using Node::Node;
+
+ protected:
+  NodeStatus tick() override {
+    const auto wait = std::chrono::milliseconds(port<std::uint32_t>("delay_msec"));
+    if (!started_) {
+      started_ = true;
+      over_ = false;
+      set_status(NodeStatus::running);
+      timer_ = runtime().timers.add(runtime().now + wait, [this] { over_ = true; });
+    }
+    if (!over_) return NodeStatus::running;
+    const NodeStatus answer = tick_child(child());
+    if (completed(answer)) {
+      started_ = false;
+      reset_child();
+    }
+    return answer;
+  }
+
+  void halt() override {
+    started_ = false;
+    runtime().timers.cancel(timer_);
+    Node::halt();
+  }
+
+ private:
+  bool started_{false};
+  bool over_{false};
+  Timers::Id timer_{0};
+};
+
+/// Halts the child when its time is over; the next tick answers FAILURE. 0 means no limit.
+class Timeout : public Node {
+ public:
+  using Node::Node;
+
+ protected:
+  NodeStatus tick() override {
+    const auto limit = std::chrono::milliseconds(port<std::uint32_t>("msec"));
+    if (!started_) {
+      started_ = true;
+      expired_ = false;
+      set_status(NodeStatus::running);
+      if (limit.count() > 0) timer_ = runtime().timers.add(runtime().now + limit, [this] { expire(); });
+    }
+    if (expired_) {
+      started_ = false;
+      return NodeStatus::failure;
+    }
+    const NodeStatus answer = tick_child(child());
+    if (completed(answer)) {
+      started_ = false;
+      runtime().timers.cancel(timer_);
+      reset_child();
+    }
+    return answer;
+  }
+
+  void halt() override {
+    started_ = false;
+    runtime().timers.cancel(timer_);
+    Node::halt();
+  }
+
+ private:
+  void expire() {
+    if (child().status() != NodeStatus::running) return;
+    expired_ = true;
+    reset_child();
+  }
+  bool started_{false};
+  bool expired_{false};
+  Timers::Id timer_{0};
+};
+
+class Sleep : public Leaf {
+ public:
+  using Leaf::Leaf;
+
+ protected:
+  NodeStatus tick() override {
+    if (status() == NodeStatus::running) return waiting_ ? NodeStatus::running : NodeStatus::success;
+    if (status() != NodeStatus::idle) return status();
+    const auto wait = std::chrono::milliseconds(port<std::uint32_t>("msec"));
+    if (wait.count() == 0) return NodeStatus::success;
+    waiting_ = true;
+    timer_ = runtime().timers.add(runtime().now + wait, [this] { waiting_ = false; });
+    return NodeStatus::running;
+  }
+
+  void halt() override {
+    runtime().timers.cancel(timer_);
+    reset_status();
+  }
+
+ private:
+  bool waiting_{false};
+  Timers::Id timer_{0};
+};
+
+}  // namespace
+
+void add_timed(Registry& registry) {
+  (void)registry.add(decorator<Delay>("Delay", {required_input("delay_msec", PortType::natural)}));
+  (void)registry.add(decorator<Timeout>("Timeout", {required_input("msec", PortType::natural)}));
+  (void)registry.add(leaf<Sleep>("Sleep", NodeKind::action, {required_input("msec", PortType::natural)}));
+}
+
+}  // namespace adit::bt

@@ -1,0 +1,25 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/bt/script/script.hpp"
+
+namespace adit::bt::script {
+
+// The nodes of a script's expression tree. They evaluate as BehaviorTree.CPP's do: both sides of && and
+// || are always evaluated, comparisons give 1.0 or 0.0 and may be chained, numbers compare with texts
+// that read as numbers.
+
+ExpressionPtr literal(Value value);
+ExpressionPtr variable(std::string name);
+/// `op`: - ~ !
+ExpressionPtr unary(std::string op, ExpressionPtr operand);
+/// `op`: + - * / .. & | ^ && ||
+ExpressionPtr binary(std::string op, ExpressionPtr left, ExpressionPtr right);
+/// a < b <= c: operands.size() == ops.size() + 1.
+ExpressionPtr comparison(std::vector<std::string> ops, std::vector<ExpressionPtr> operands);
+ExpressionPtr conditional(ExpressionPtr condition, ExpressionPtr then, ExpressionPtr otherwise);
+/// `op`: := = += -= *= /=
+ExpressionPtr assignment(std::string op, std::string name, ExpressionPtr value);
+
+}  // namespace adit::bt::script

@@ -1,0 +1,44 @@
+#include "core/bt/tree.hpp"
+
+namespace adit::bt {
+
+NodeStatus Tree::tick(Time now) {
+  if (!root_) return NodeStatus::failure;
+  runtime_->now = now;
+  runtime_->timers.expire(now);
+  const NodeStatus answer = root_->execute_tick();
+  if (completed(answer)) root_->reset_status();
+  return answer;
+}
+
+void Tree::halt() {
+  if (!root_) return;
+  root_->halt_node();
+  // The halt reaches what is running; this also makes idle what completed below a node that is idle already.
+  const std::function<void(Node&)> settle = [&](Node& node) {
+    for (const auto& child : node.children_) {
+      if (child->status_ == NodeStatus::running) child->halt_node();
+      child->reset_status();
+      settle(*child);
+    }
+  };
+  settle(*root_);
+}
+
+void Tree::on_status(std::function<void(const Node&, NodeStatus, NodeStatus)> listener) {
+  if (runtime_) runtime_->on_status = std::move(listener);
+}
+
+void Tree::on_error(std::function<void(const Node&, std::string_view)> listener) {
+  if (runtime_) runtime_->on_error = std::move(listener);
+}
+
+void Tree::for_each(const std::function<void(const Node&, std::size_t)>& visit) const {
+  const std::function<void(const Node&, std::size_t)> walk = [&](const Node& node, std::size_t depth) {
+    visit(node, depth);
+    for (const auto& child : node.children()) walk(*child, depth + 1);
+  };
+  if (root_) walk(*root_, 0);
+}
+
+}  // namespace adit::bt

@@ -1,0 +1,30 @@
+#pragma once
+#include "core/bt/registry.hpp"
+#include "core/bt/tree.hpp"
+#include "core/bt/xml/forest.hpp"
+
+namespace adit::bt {
+
+/// Makes the nodes and blackboards of one tree of a verified forest.
+class Builder {
+ public:
+  Builder(const xml::Forest& forest, const Registry& registry) : forest_(forest), registry_(registry) {}
+  /// Throws xml::LoadError: a SubTree that is not there or contains itself, a port of a SubTree's model that
+  /// is not given, or a tree that grows beyond 20 000 nodes or 500 levels.
+  Tree build(const std::string& tree_id);
+
+ private:
+  std::unique_ptr<Node> make(const xml::Element& element, Blackboard& board, const std::string& prefix);
+  void fill_subtree(Node& node, const xml::Element& element, Blackboard& outer, const std::string& prefix);
+  void connect(Blackboard& inner, const xml::Element& element, const std::string& id) const;
+  void fill_ports(NodeConfig& config, const xml::Element& element, const Manifest* manifest) const;
+
+  const xml::Forest& forest_;
+  const Registry& registry_;
+  Tree tree_{};
+  std::vector<std::string> open_{};  ///< trees that are being built, outermost first
+  std::size_t count_{0};
+  std::size_t depth_{0};
+};
+
+}  // namespace adit::bt
