@@ -16,13 +16,20 @@ struct Qos {
 
 inline Qos qos_of(QosClass qos) {
   switch (qos) {
-    case QosClass::urgent: return {true, false, 250ms, 0, false};
-    case QosClass::stream: return {false, false, 0ms, 2, true};
-    case QosClass::state: return {false, false, 0ms, 3, true};
-    case QosClass::status: return {true, true, 500ms, 4, false};
-    case QosClass::sensor: return {false, false, 0ms, 3, true};
-    case QosClass::bulk: return {true, false, 1000ms, 5, false};
-    case QosClass::video: return {false, false, 0ms, 6, true};
+    case QosClass::urgent:
+      return {true, false, 250ms, 0, false};
+    case QosClass::stream:
+      return {false, false, 0ms, 2, true};
+    case QosClass::state:
+      return {false, false, 0ms, 3, true};
+    case QosClass::status:
+      return {true, true, 500ms, 4, false};
+    case QosClass::sensor:
+      return {false, false, 0ms, 3, true};
+    case QosClass::bulk:
+      return {true, false, 1000ms, 5, false};
+    case QosClass::video:
+      return {false, false, 0ms, 6, true};
   }
   return {};
 }
@@ -46,10 +53,10 @@ inline Qos reader_qos(const TopicInfo& topic) {
 /// Discovery, equal everywhere: with leases of different lengths endpoints are not matched again after a
 /// gap between the two. Any message renews a lease, so announcements can be rare on a thin link.
 struct Discovery {
-  static constexpr Duration lease = 30s;                 ///< a silent participant is dropped after it
-  static constexpr Duration announcement = 10s;          ///< period of participant announcements
-  static constexpr Duration initial_period = 250ms;      ///< period of the first ones
-  static constexpr int initial_announcements = 8;        ///< their number
+  static constexpr Duration lease = 30s;             ///< a silent participant is dropped after it
+  static constexpr Duration announcement = 10s;      ///< period of participant announcements
+  static constexpr Duration initial_period = 250ms;  ///< period of the first ones
+  static constexpr int initial_announcements = 8;    ///< their number
 };
 
 }  // namespace adit::wire

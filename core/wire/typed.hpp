@@ -16,7 +16,8 @@ template <class T>
 void encode(const T& sample, std::vector<std::uint8_t>& out) {
   out.resize(4 + T::getCdrSerializedSize(sample));
   eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(out.data()), out.size());
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR);
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS,
+                             eprosima::fastcdr::Cdr::DDS_CDR);
   cdr.serialize_encapsulation();
   sample.serialize(cdr);
   out.resize(cdr.getSerializedDataLength());
@@ -30,7 +31,8 @@ bool decode(std::span<const std::uint8_t> bytes, T& sample) {
     // FastBuffer wants a mutable pointer but a deserialising Cdr only reads.
     auto* data = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
     eprosima::fastcdr::FastBuffer buffer(data, bytes.size());
-    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN, eprosima::fastcdr::Cdr::DDS_CDR);
+    eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
+                               eprosima::fastcdr::Cdr::DDS_CDR);
     cdr.read_encapsulation();
     sample.deserialize(cdr);
     return true;
@@ -64,8 +66,8 @@ class Writer {
 
 /// A reader of T: `handler(const T&, const SampleInfo&)` runs on `strand`.
 template <class T, class Handler>
-Result<std::unique_ptr<RawReader>> make_reader(Wire& wire, const Topic<T>& topic, Executor& strand, Handler handler,
-                                               const std::string& partition = {}) {
+Result<std::unique_ptr<RawReader>> make_reader(Wire& wire, const Topic<T>& topic, Executor& strand,
+                                               Handler handler, const std::string& partition = {}) {
   return wire.make_reader(topic, partition, strand,
                           [handler = std::move(handler), sample = std::make_shared<T>()](
                               std::span<const std::uint8_t> bytes, const SampleInfo& info) mutable {

@@ -22,8 +22,8 @@ enum class QosClass : std::uint8_t { urgent, stream, state, status, bulk, video,
 
 /// A topic without its type: what both adapters need.
 struct TopicInfo {
-  const char* name;   ///< DDS topic name
-  const char* type;   ///< DDS type name
+  const char* name;  ///< DDS topic name
+  const char* type;  ///< DDS type name
   QosClass qos;
   std::uint16_t depth;      ///< history: samples kept (per key where keyed)
   bool keyed;               ///< the key is the type's first member, a string
@@ -73,7 +73,7 @@ struct TopicCount {
 };
 
 struct WireCounters {
-  std::vector<TopicCount> topics{};  ///< sorted by topic, then peer
+  std::vector<TopicCount> topics{};               ///< sorted by topic, then peer
   std::uint64_t discovery_out{}, discovery_in{};  ///< bytes of discovery and liveliness traffic
   std::uint64_t total_out{}, total_in{};          ///< bytes of everything
 };
@@ -87,7 +87,8 @@ class Wire {
 
   virtual ParticipantId id() const = 0;
   /// `partition` empty: the default one. Writers and readers must not outlive the wire.
-  virtual Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic, const std::string& partition) = 0;
+  virtual Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic,
+                                                         const std::string& partition) = 0;
   virtual Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
                                                          Executor& strand, RawHandler handler) = 0;
   /// Calls `handler` on `strand` for every other participant that comes or goes; those present already

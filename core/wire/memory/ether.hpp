@@ -14,10 +14,10 @@
 namespace adit::wire {
 
 struct EtherParams {
-  std::uint64_t seed{1};            ///< of losses and participant ids
-  std::uint32_t radio_domain{77};   ///< this one passes the radio model; all others are inner networks
-  LinkProfile link{};               ///< between machines for which set_link() says nothing else
-  Duration inner_latency{100us};    ///< one way on inner networks, which lose nothing, [0, 1 s]
+  std::uint64_t seed{1};           ///< of losses and participant ids
+  std::uint32_t radio_domain{77};  ///< this one passes the radio model; all others are inner networks
+  LinkProfile link{};              ///< between machines for which set_link() says nothing else
+  Duration inner_latency{100us};   ///< one way on inner networks, which lose nothing, [0, 1 s]
 };
 
 /// One sample seen on the air: at the sender, and once more at each receiver.
@@ -39,8 +39,8 @@ struct Frame {
 /// The radio and the inner networks of a rehearsal: wires with the topics and QoS classes of the real one, on
 /// virtual time. What the real one costs is charged to the radio model: RTPS, UDP and IP headers,
 /// participant announcements, endpoint discovery of each pair, heartbeats, acknowledgements, repairs. A
-/// sender's datagrams leave one after another at the link's bandwidth, by priority of their class; frames of 1400
-/// bytes are lost one by one. All calls on the scheduler's thread. Same seed, same run.
+/// sender's datagrams leave one after another at the link's bandwidth, by priority of their class; frames of
+/// 1400 bytes are lost one by one. All calls on the scheduler's thread. Same seed, same run.
 ///
 /// Machines are known by name. Their positions and links outlive their participants.
 class Ether {

@@ -1,0 +1,166 @@
+#include "core/wire/memory/ether.hpp"
+
+#include <algorithm>
+
+#include "core/wire/memory/participant.hpp"
+
+namespace adit::wire {
+namespace {
+
+class MemoryWriter final : public RawWriter {
+ public:
+  MemoryWriter(std::shared_ptr<Participant> owner, std::shared_ptr<WriterState> state)
+      : owner_(std::move(owner)), state_(std::move(state)) {}
+  ~MemoryWriter() override { owner_->remove_writer(state_->entity); }
+  Result<void> write(std::span<const std::uint8_t> cdr) override { return state_->write(cdr); }
+  std::size_t matched() const override { return state_->readers.size(); }
+
+ private:
+  std::shared_ptr<Participant> owner_;
+  std::shared_ptr<WriterState> state_;
+};
+
+class MemoryReader final : public RawReader {
+ public:
+  MemoryReader(std::shared_ptr<Participant> owner, int entity) : owner_(std::move(owner)), entity_(entity) {}
+  ~MemoryReader() override { owner_->remove_reader(entity_); }
+
+ private:
+  std::shared_ptr<Participant> owner_;
+  int entity_;
+};
+
+TopicOf topic_of(const TopicInfo& topic, const std::string& partition, const Qos& qos) {
+  return {topic.name,  topic.type,     partition, topic.qos, qos, std::max<std::size_t>(topic.depth, 1),
+          topic.keyed, topic.max_bytes};
+}
+
+class MemoryWire final : public Wire {
+ public:
+  MemoryWire(std::shared_ptr<Ether::Core> core, std::shared_ptr<Participant> participant)
+      : core_(std::move(core)), participant_(std::move(participant)) {}
+  ~MemoryWire() override { participant_->stop(true); }
+
+  ParticipantId id() const override { return participant_->id; }
+
+  Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic,
+                                                 const std::string& partition) override {
+    auto state = std::make_shared<WriterState>();
+    state->owner = participant_.get();
+    state->entity = participant_->next_entity++;
+    state->topic = topic_of(topic, partition, writer_qos(topic));
+    participant_->add_writer(state);
+    return std::unique_ptr<RawWriter>(std::make_unique<MemoryWriter>(participant_, state));
+  }
+
+  Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
+                                                 Executor& strand, RawHandler handler) override {
+    auto state = std::make_shared<ReaderState>();
+    state->owner = participant_.get();
+    state->entity = participant_->next_entity++;
+    state->topic = topic_of(topic, partition, reader_qos(topic));
+    state->strand = &strand;
+    state->handler = std::move(handler);
+    participant_->add_reader(state);
+    return std::unique_ptr<RawReader>(std::make_unique<MemoryReader>(participant_, state->entity));
+  }
+
+  void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) override {
+    participant_->event_strand = &strand;
+    participant_->event_handler =
+        std::make_shared<std::function<void(const ParticipantEvent&)>>(std::move(handler));
+    for (const auto& [peer, state] : participant_->peers) participant_->tell(peer, true);
+  }
+
+  WireCounters counters() const override {
+    WireCounters result = participant_->totals;
+    for (const auto& [key, count] : participant_->counts) result.topics.push_back(count);
+    return result;
+  }
+
+ private:
+  std::shared_ptr<Ether::Core> core_;
+  std::shared_ptr<Participant> participant_;
+};
+
+}  // namespace
+
+Ether::Core::Core(VirtualScheduler& s, EtherParams p)
+    : scheduler(s),
+      params(std::move(p)),
+      radio(std::make_shared<Radio>(s, params.seed, params.link, params.inner_latency)),
+      ids(params.seed ^ 0x9d5c1f60a3b7e241ULL) {}
+
+void Ether::Core::after(Duration delay, Task task) {
+  scheduler.at(scheduler.elapsed() + delay, [weak = weak_from_this(), task = std::move(task)] {
+    const auto self = weak.lock();
+    if (self && !self->closed) task();
+  });
+}
+
+ParticipantId Ether::Core::new_id() {
+  ParticipantId id{};
+  const std::uint64_t drawn = ids.next();
+  for (std::size_t i = 0; i < 8; ++i) id[i] = static_cast<std::uint8_t>(drawn >> (8 * i));
+  const std::uint64_t number = participants.size() + 1;  // unique even if two draws were equal
+  for (std::size_t i = 0; i < 4; ++i) id[8 + i] = static_cast<std::uint8_t>(number >> (8 * i));
+  return id;
+}
+
+void Ether::Core::show(Frame::Kind kind, const Participant& from, const Participant* to, const TopicOf& topic,
+                       const Payload& bytes) {
+  if (!tap) return;
+  Frame frame;
+  frame.kind = kind;
+  frame.at = scheduler.elapsed();
+  frame.from = from.id;
+  frame.from_name = from.machine;
+  if (to != nullptr) frame.to = to->id, frame.to_name = to->machine;
+  frame.domain = from.domain;
+  frame.topic = topic.name;
+  frame.partition = topic.partition;
+  frame.bytes = *bytes;
+  tap(frame);
+}
+
+Ether::Ether(VirtualScheduler& scheduler, EtherParams params)
+    : core_(std::make_shared<Core>(scheduler, std::move(params))) {}
+
+Ether::~Ether() {
+  core_->closed = true;
+  core_->radio->close();
+  core_->tap = nullptr;
+  for (const auto& participant : core_->participants) participant->stop(false);
+}
+
+std::unique_ptr<Wire> Ether::join(std::uint32_t domain, const std::string& machine) {
+  auto participant = std::make_shared<Participant>();
+  participant->core = core_.get();
+  participant->id = core_->new_id();
+  participant->domain = domain;
+  participant->machine = machine;
+  participant->node = core_->radio->add(machine, domain != core_->params.radio_domain);
+  core_->participants.push_back(participant);
+  participant->start();
+  return std::make_unique<MemoryWire>(core_, std::move(participant));
+}
+
+void Ether::crash(const std::string& machine) {
+  for (const auto& participant : core_->participants) {
+    if (participant->machine == machine) participant->stop(false);
+  }
+}
+
+void Ether::set_link(const std::string& a, const std::string& b, const LinkProfile& profile) {
+  core_->radio->set_link(a, b, profile);
+}
+void Ether::cut(const std::string& a, const std::string& b, bool is_cut) { core_->radio->cut(a, b, is_cut); }
+void Ether::degrade(const std::string& a, const std::string& b, std::optional<double> loss) {
+  core_->radio->degrade(a, b, loss);
+}
+void Ether::set_position(const std::string& machine, double x, double y, double z) {
+  core_->radio->set_position(machine, x, y, z);
+}
+void Ether::set_tap(std::function<void(const Frame&)> tap) { core_->tap = std::move(tap); }
+
+}  // namespace adit::wire

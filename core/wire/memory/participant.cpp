@@ -1,0 +1,238 @@
+#include "core/wire/memory/participant.hpp"
+
+#include <algorithm>
+
+namespace adit::wire {
+namespace {
+
+bool fits(const TopicOf& writer, const TopicOf& reader) {
+  return writer.name == reader.name && writer.type == reader.type && writer.partition == reader.partition &&
+         writer.keyed == reader.keyed && (writer.qos.reliable || !reader.qos.reliable) &&
+         (writer.qos.transient_local || !reader.qos.transient_local);
+}
+
+constexpr int discovery_writer_entity = 1;
+constexpr int discovery_reader_entity = 2;
+
+}  // namespace
+
+void Participant::start() {
+  discovery_writer = std::make_shared<WriterState>();
+  discovery_writer->owner = this;
+  discovery_writer->entity = discovery_writer_entity;
+  discovery_writer->discovery = true;
+  discovery_writer->topic.qos = {true, true, 1000ms, WireCost::discovery_priority, false};
+  discovery_reader = std::make_shared<ReaderState>();
+  discovery_reader->owner = this;
+  discovery_reader->entity = discovery_reader_entity;
+  discovery_reader->discovery = true;
+  announce();
+  check_leases();
+}
+
+void Participant::announce() {
+  if (stopped) return;
+  std::vector<int> everybody;
+  for (const auto& other : core->participants) {
+    if (other.get() != this && other->domain == domain && !other->stopped) everybody.push_back(other->node);
+  }
+  const auto announcement = [this] {
+    Datagram datagram;
+    datagram.bytes = WireCost::participant;
+    datagram.priority = WireCost::discovery_priority;
+    return datagram;
+  };
+  const auto heard = [from = node](Participant& there, std::uint16_t) { there.on_announcement(from); };
+  // By multicast to whoever is there, and once more to each that is known: what Fast DDS does.
+  Datagram to_all = announcement();
+  to_all.sent = [self = shared_from_this()] {
+    self->totals.discovery_out += WireCost::participant;
+    self->totals.total_out += WireCost::participant;
+  };
+  to_all.arrived = [self = shared_from_this(), heard](int to, std::uint16_t frames) {
+    Participant* there = self->peer_participant(to);
+    if (there == nullptr || there->stopped) return;
+    there->totals.discovery_in += WireCost::participant;
+    there->totals.total_in += WireCost::participant;
+    heard(*there, frames);
+  };
+  core->radio->multicast(node, everybody, std::move(to_all));
+  for (const auto& [peer, state] : peers) send(peer, announcement(), heard, true);
+  const bool initial = ++announced < Discovery::initial_announcements;
+  core->after(initial ? Discovery::initial_period : Discovery::announcement, [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->announce();
+  });
+}
+
+void Participant::check_leases() {
+  if (stopped) return;
+  std::vector<int> silent;
+  for (const auto& [peer, state] : peers) {
+    if (core->scheduler.elapsed() - state.heard > Discovery::lease) silent.push_back(peer);
+  }
+  for (const int peer : silent) drop(peer);
+  core->after(1s, [weak = weak_from_this()] {
+    if (const auto self = weak.lock()) self->check_leases();
+  });
+}
+
+void Participant::on_announcement(int from) {
+  const auto [peer, is_new] = peers.try_emplace(from);
+  peer->second.heard = core->scheduler.elapsed();
+  if (!is_new) return;
+  tell(from, true);
+  Datagram datagram;
+  datagram.bytes = WireCost::participant;
+  datagram.priority = WireCost::discovery_priority;
+  send(
+      from, std::move(datagram),
+      [me = node](Participant& there, std::uint16_t) { there.on_announcement(me); }, true);
+  discovery_reader->writers.try_emplace(EndpointId{from, discovery_writer_entity},
+                                        ReaderState::Proxy{true, 0, {}});
+  discovery_writer->match({from, discovery_reader_entity}, true);
+}
+
+void Participant::on_endpoint(int from, int entity) {
+  const auto peer = peers.find(from);
+  const Participant* other = peer_participant(from);
+  if (peer == peers.end() || other == nullptr) return;
+  const EndpointId endpoint{from, entity};
+  const auto writer = other->writers.find(entity);
+  const auto reader = other->readers.find(entity);
+  if (writer != other->writers.end()) {
+    peer->second.writers[entity] = writer->second->topic;
+    for (const auto& [own, state] : readers) {
+      if (!fits(writer->second->topic, state->topic)) continue;
+      const bool reliable = state->topic.qos.reliable;
+      state->writers.try_emplace(endpoint, ReaderState::Proxy{reliable, 0, {}});
+    }
+  } else if (reader != other->readers.end()) {
+    peer->second.readers[entity] = reader->second->topic;
+    for (const auto& [own, state] : writers) {
+      if (fits(state->topic, reader->second->topic))
+        state->match(endpoint, reader->second->topic.qos.reliable);
+    }
+  } else {
+    peer->second.writers.erase(entity);
+    peer->second.readers.erase(entity);
+    for (const auto& [own, state] : readers) state->writers.erase(endpoint);
+    for (const auto& [own, state] : writers) state->readers.erase(endpoint);
+  }
+}
+
+void Participant::drop(int peer) {
+  if (peers.erase(peer) == 0) return;
+  const auto of_peer = [peer](const auto& entry) { return entry.first.node == peer; };
+  for (const auto& [own, state] : readers) std::erase_if(state->writers, of_peer);
+  for (const auto& [own, state] : writers) std::erase_if(state->readers, of_peer);
+  std::erase_if(discovery_reader->writers, of_peer);
+  std::erase_if(discovery_writer->readers, of_peer);
+  tell(peer, false);
+}
+
+void Participant::stop(bool goodbye) {
+  if (stopped) return;
+  if (goodbye && !core->closed) {
+    std::vector<int> known;
+    for (const auto& [peer, state] : peers) known.push_back(peer);
+    Datagram datagram;
+    datagram.bytes = WireCost::goodbye;
+    datagram.priority = 6;  // after what was written before
+    datagram.arrived = [self = shared_from_this()](int to, std::uint16_t) {
+      Participant* there = self->peer_participant(to);
+      if (there != nullptr && !there->stopped) there->drop(self->node);
+    };
+    core->radio->multicast(node, std::move(known), std::move(datagram));
+    core->after(1s, [keep = core->shared_from_this(), at = node] { keep->radio->remove(at); });
+  } else {
+    core->radio->remove(node);
+  }
+  stopped = true;
+  for (const auto& [entity, reader] : readers) reader->strand = nullptr;
+}
+
+void Participant::add_writer(const std::shared_ptr<WriterState>& writer) {
+  writers[writer->entity] = writer;
+  for (const auto& [peer_node, peer] : peers) {
+    for (const auto& [entity, topic] : peer.readers) {
+      if (fits(writer->topic, topic)) writer->match({peer_node, entity}, topic.qos.reliable);
+    }
+  }
+  publish_endpoint(writer->entity);
+}
+
+void Participant::add_reader(const std::shared_ptr<ReaderState>& reader) {
+  readers[reader->entity] = reader;
+  for (const auto& [peer_node, peer] : peers) {
+    for (const auto& [entity, topic] : peer.writers) {
+      if (!fits(topic, reader->topic)) continue;
+      reader->writers.try_emplace(EndpointId{peer_node, entity},
+                                  ReaderState::Proxy{reader->topic.qos.reliable, 0, {}});
+    }
+  }
+  publish_endpoint(reader->entity);
+}
+
+void Participant::remove_writer(int entity) {
+  if (writers.erase(entity) > 0) publish_endpoint(entity);
+}
+
+void Participant::remove_reader(int entity) {
+  const auto found = readers.find(entity);
+  if (found == readers.end()) return;
+  found->second->strand = nullptr;
+  readers.erase(found);
+  publish_endpoint(entity);
+}
+
+void Participant::publish_endpoint(int entity) {
+  if (stopped || core->closed) return;
+  Sample sample;
+  sample.key = std::to_string(entity);
+  sample.endpoint = entity;
+  sample.wire_bytes = WireCost::endpoint;
+  discovery_writer->add(std::move(sample));
+}
+
+void Participant::send(int to, Datagram datagram, std::function<void(Participant&, std::uint16_t)> arrive,
+                       bool discovery) {
+  if (core->closed) return;
+  const std::uint32_t bytes = datagram.bytes;
+  datagram.sent = [self = shared_from_this(), bytes, discovery, also = std::move(datagram.sent)] {
+    self->totals.total_out += bytes;
+    if (discovery) self->totals.discovery_out += bytes;
+    if (also) also();
+  };
+  datagram.arrived = [self = shared_from_this(), bytes, frames = datagram.frames, discovery,
+                      arrive = std::move(arrive)](int there_node, std::uint16_t through) {
+    Participant* there = self->peer_participant(there_node);
+    if (there == nullptr || there->stopped) return;
+    const std::uint32_t in = bytes * through / frames;
+    there->totals.total_in += in;
+    if (discovery) there->totals.discovery_in += in;
+    const auto peer = there->peers.find(self->node);
+    if (peer != there->peers.end()) peer->second.heard = there->core->scheduler.elapsed();
+    arrive(*there, through);
+  };
+  core->radio->send(node, to, std::move(datagram));
+}
+
+Participant* Participant::peer_participant(int peer_node) const {
+  return core->participants[static_cast<std::size_t>(peer_node)].get();
+}
+
+void Participant::tell(int peer, bool present) {
+  if (!event_handler || stopped) return;
+  event_strand->post([handler = std::weak_ptr(event_handler),
+                      event = ParticipantEvent{peer_participant(peer)->id, present}] {
+    if (const auto call = handler.lock()) (*call)(event);
+  });
+}
+
+TopicCount& Participant::count(const std::string& topic, const ParticipantId& peer) {
+  TopicCount& entry = counts[{topic, peer}];
+  if (entry.topic.empty()) entry.topic = topic, entry.peer = peer;
+  return entry;
+}
+
+}  // namespace adit::wire

@@ -1,0 +1,185 @@
+#pragma once
+#include <deque>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/radio.hpp"
+#include "core/wire/qos.hpp"
+
+/// How the in-memory wire behaves inside: RTPS in miniature. Everything here runs on the scheduler's thread.
+namespace adit::wire {
+
+/// Bytes on the wire, with RTPS header, UDP and IP; measured on Fast DDS (docs/wire.md).
+struct WireCost {
+  static constexpr std::uint32_t headers = 20 + 20 + 8;          ///< RTPS, IP, UDP: once per frame
+  static constexpr std::uint32_t data = headers + 16 + 12 + 24;  ///< + INFO_DST, INFO_TS, DATA
+  static constexpr std::uint32_t key = 24;                       ///< key hash as inline QoS
+  static constexpr std::uint32_t heartbeat = headers + 16 + 32;
+  static constexpr std::uint32_t acknack = headers + 16 + 32;
+  static constexpr std::uint32_t gap = headers + 16 + 36;
+  static constexpr std::uint32_t participant = 560;  ///< announcement
+  static constexpr std::uint32_t endpoint = 400;     ///< one endpoint announced to one peer
+  static constexpr std::uint32_t goodbye = 150;
+  static constexpr int discovery_priority = 1;
+  static constexpr Duration response = 5ms;  ///< to heartbeats and to acknacks
+};
+
+using Payload = std::shared_ptr<const std::vector<std::uint8_t>>;
+
+/// A participant's endpoint, as everybody names it.
+struct EndpointId {
+  int node{};
+  int entity{};
+  auto operator<=>(const EndpointId&) const = default;
+};
+
+/// What a topic is, with the strings its constant may not outlive.
+struct TopicOf {
+  std::string name{}, type{}, partition{};
+  QosClass qos_class{};
+  Qos qos{};
+  std::size_t depth{1};
+  bool keyed{};
+  std::uint32_t max_bytes{};
+};
+
+struct Sample {
+  std::uint64_t sequence{};
+  std::string key{};
+  Payload bytes{};
+  int endpoint{-1};  ///< discovery: the entity this sample announces
+  std::uint16_t frames{1};
+  std::uint32_t wire_bytes{};
+};
+
+struct Missing {
+  std::uint64_t sequence{};
+  std::uint16_t frames{};  ///< of it that did not arrive; 0: all
+};
+
+struct Participant;
+
+struct WriterState : std::enable_shared_from_this<WriterState> {
+  /// One matched reader.
+  struct Proxy {
+    bool reliable{};
+    std::uint64_t start{};         ///< first sequence that concerns it
+    std::uint64_t acknowledged{};  ///< all up to here
+  };
+  static constexpr std::size_t max_samples = 1024;  ///< of a history, all keys together
+
+  Result<void> write(std::span<const std::uint8_t> cdr);
+  void add(Sample sample);
+  void match(EndpointId reader, bool reader_reliable);
+  void send(EndpointId reader, const Sample& sample, std::uint16_t frames);
+  void arm_heartbeat();
+  void heartbeat();
+  void on_acknack(EndpointId reader, std::uint64_t base, const std::vector<Missing>& missing);
+
+  Participant* owner{};
+  int entity{};
+  TopicOf topic{};
+  bool discovery{};
+  std::uint64_t next{1};
+  std::deque<Sample> history{};
+  std::map<EndpointId, Proxy> readers{};
+  bool heartbeat_armed{};
+};
+
+struct ReaderState : std::enable_shared_from_this<ReaderState> {
+  /// A sample that waits for those before it, or for its own missing frames. No bytes: never coming.
+  struct Held {
+    Sample sample{};
+    std::uint16_t missing{};
+  };
+  /// One matched writer.
+  struct Proxy {
+    bool reliable{};
+    std::uint64_t next{};  ///< the sequence to deliver next; 0: nothing heard of it yet
+    std::map<std::uint64_t, Held> held{};
+  };
+
+  void on_data(EndpointId writer, std::uint64_t start, const Sample& sample, std::uint16_t frames);
+  void on_heartbeat(EndpointId writer, std::uint64_t start, std::uint64_t first, std::uint64_t last);
+  void on_gap(EndpointId writer, const std::vector<std::uint64_t>& sequences);
+  void drain(EndpointId writer, Proxy& proxy);
+  void deliver(EndpointId writer, const Sample& sample);
+
+  Participant* owner{};
+  int entity{};
+  TopicOf topic{};
+  bool discovery{};
+  Executor* strand{};
+  RawHandler handler{};
+  std::map<EndpointId, Proxy> writers{};
+};
+
+struct Participant : std::enable_shared_from_this<Participant> {
+  struct Peer {
+    Duration heard{};
+    std::map<int, TopicOf> writers{}, readers{};  ///< as announced, by entity
+  };
+
+  void start();
+  void announce();
+  void check_leases();
+  void on_announcement(int from);
+  void on_endpoint(int from, int entity);
+  void drop(int peer);
+  void stop(bool goodbye);
+
+  void add_writer(const std::shared_ptr<WriterState>& writer);
+  void add_reader(const std::shared_ptr<ReaderState>& reader);
+  void remove_writer(int entity);
+  void remove_reader(int entity);
+  /// Tells all peers of an endpoint that came or went.
+  void publish_endpoint(int entity);
+
+  /// Sends to one peer; `arrive` runs there with the frames that arrived, when it is still in the network.
+  void send(int to, Datagram datagram, std::function<void(Participant&, std::uint16_t)> arrive,
+            bool discovery);
+  Participant* peer_participant(int peer_node) const;
+  void tell(int peer, bool present);
+  TopicCount& count(const std::string& topic, const ParticipantId& peer);
+
+  Ether::Core* core{};
+  int node{};
+  ParticipantId id{};
+  std::uint32_t domain{};
+  std::string machine{};
+  bool stopped{};
+  int announced{};
+  int next_entity{3};  ///< 1 and 2 are discovery's own writer and reader
+  std::map<int, Peer> peers{};
+  std::map<int, std::shared_ptr<WriterState>> writers{};
+  std::map<int, std::shared_ptr<ReaderState>> readers{};
+  std::shared_ptr<WriterState> discovery_writer{};
+  std::shared_ptr<ReaderState> discovery_reader{};
+  Executor* event_strand{};
+  std::shared_ptr<std::function<void(const ParticipantEvent&)>> event_handler{};
+  std::map<std::pair<std::string, ParticipantId>, TopicCount> counts{};
+  WireCounters totals{};
+};
+
+/// What all wires of an ether share.
+struct Ether::Core : std::enable_shared_from_this<Ether::Core> {
+  Core(VirtualScheduler& s, EtherParams p);
+  ParticipantId new_id();
+  void after(Duration delay, Task task);
+  void show(Frame::Kind kind, const Participant& from, const Participant* to, const TopicOf& topic,
+            const Payload& bytes);
+
+  VirtualScheduler& scheduler;
+  EtherParams params;
+  std::shared_ptr<Radio> radio;
+  std::vector<std::shared_ptr<Participant>> participants{};  ///< by node, those that left included
+  std::function<void(const Frame&)> tap{};
+  Random ids;
+  bool closed{};
+};
+
+}  // namespace adit::wire

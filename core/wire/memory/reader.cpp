@@ -1,0 +1,133 @@
+#include <algorithm>
+
+#include "core/wire/memory/participant.hpp"
+
+namespace adit::wire {
+
+void ReaderState::on_data(EndpointId writer, std::uint64_t start, const Sample& sample,
+                          std::uint16_t frames) {
+  const auto found = writers.find(writer);
+  if (found == writers.end()) return;  // not matched yet: a reliable writer repeats it
+  Proxy& proxy = found->second;
+  if (proxy.next == 0) proxy.next = start;
+  if (sample.sequence < proxy.next) return;  // seen already
+  if (!proxy.reliable) {
+    if (frames < sample.frames) return;
+    if (!discovery)
+      owner->count(topic.name, owner->peer_participant(writer.node)->id).lost += sample.sequence - proxy.next;
+    proxy.next = sample.sequence + 1;
+    deliver(writer, sample);
+    return;
+  }
+  const auto held = proxy.held.try_emplace(sample.sequence, Held{sample, sample.frames}).first;
+  held->second.missing =
+      static_cast<std::uint16_t>(held->second.missing - std::min(frames, held->second.missing));
+  drain(writer, proxy);
+}
+
+void ReaderState::on_heartbeat(EndpointId writer, std::uint64_t start, std::uint64_t first,
+                               std::uint64_t last) {
+  constexpr std::size_t at_once = 32;  // missing samples asked for in one go
+  const auto found = writers.find(writer);
+  if (found == writers.end()) return;
+  Proxy& proxy = found->second;
+  if (proxy.next == 0) proxy.next = start;
+  // What is older than the writer's history never comes.
+  while (proxy.next < first) {
+    const auto held = proxy.held.begin();
+    if (held == proxy.held.end() || held->first >= first) {
+      if (!discovery)
+        owner->count(topic.name, owner->peer_participant(writer.node)->id).lost += first - proxy.next;
+      proxy.next = first;
+    } else if (held->first == proxy.next && held->second.missing == 0) {
+      drain(writer, proxy);
+    } else {
+      const bool whole = held->second.missing == 0;
+      if (!discovery) {
+        owner->count(topic.name, owner->peer_participant(writer.node)->id).lost +=
+            held->first - proxy.next + (whole ? 0 : 1);
+      }
+      proxy.next = held->first + (whole ? 0 : 1);
+      if (!whole) proxy.held.erase(held);
+    }
+  }
+  drain(writer, proxy);
+  std::vector<Missing> missing;
+  for (std::uint64_t s = proxy.next; s <= last && missing.size() < at_once; ++s) {
+    const auto held = proxy.held.find(s);
+    if (held == proxy.held.end()) {
+      missing.push_back({s, 0});
+    } else if (held->second.missing > 0) {
+      missing.push_back({s, held->second.missing});
+    }
+  }
+  owner->core->after(WireCost::response,
+                     [keep = owner->shared_from_this(), writer, entity_id = entity, base = proxy.next,
+                      missing = std::move(missing), is_discovery = discovery] {
+                       if (keep->stopped) return;
+                       Datagram datagram;
+                       datagram.bytes = WireCost::acknack;
+                       datagram.priority = WireCost::discovery_priority;
+                       keep->send(
+                           writer.node, std::move(datagram),
+                           [reader = EndpointId{keep->node, entity_id}, writer, base, missing, is_discovery](
+                               Participant& there, std::uint16_t) {
+                             if (is_discovery)
+                               return there.discovery_writer->on_acknack(reader, base, missing);
+                             const auto target = there.writers.find(writer.entity);
+                             if (target != there.writers.end())
+                               target->second->on_acknack(reader, base, missing);
+                           },
+                           is_discovery);
+                     });
+}
+
+void ReaderState::on_gap(EndpointId writer, const std::vector<std::uint64_t>& sequences) {
+  const auto found = writers.find(writer);
+  if (found == writers.end()) return;
+  for (const std::uint64_t sequence : sequences) {
+    if (sequence < found->second.next) continue;
+    Sample nothing;
+    nothing.sequence = sequence;
+    if (found->second.held.try_emplace(sequence, Held{nothing, 0}).second && !discovery) {
+      ++owner->count(topic.name, owner->peer_participant(writer.node)->id).lost;
+    }
+  }
+  drain(writer, found->second);
+}
+
+void ReaderState::drain(EndpointId writer, Proxy& proxy) {
+  while (!proxy.held.empty() && proxy.held.begin()->first == proxy.next &&
+         proxy.held.begin()->second.missing == 0) {
+    const Sample sample = std::move(proxy.held.begin()->second.sample);
+    proxy.held.erase(proxy.held.begin());
+    ++proxy.next;
+    if (sample.bytes || sample.endpoint >= 0) deliver(writer, sample);
+  }
+}
+
+void ReaderState::deliver(EndpointId writer, const Sample& sample) {
+  if (discovery) {
+    owner->on_endpoint(writer.node, sample.endpoint);
+    return;
+  }
+  const Participant* sender = owner->peer_participant(writer.node);
+  TopicCount& in = owner->count(topic.name, sender->id);
+  ++in.samples_in;
+  if (sample.bytes->size() > topic.max_bytes) {
+    ++in.malformed;
+    return;
+  }
+  owner->core->show(Frame::Kind::delivered, *sender, owner, topic, sample.bytes);
+  strand->post([weak = weak_from_this(), keep = std::weak_ptr(owner->shared_from_this()),
+                bytes = sample.bytes, sender_id = sender->id] {
+    const auto self = weak.lock();
+    const auto participant = keep.lock();
+    if (!self || !participant || self->strand == nullptr || participant->stopped) return;
+    if (!self->handler(*bytes, SampleInfo{sender_id, self->strand->now()})) {
+      ++participant->count(self->topic.name, sender_id).malformed;
+    }
+  });
+}
+
+}  // namespace adit::wire

@@ -1,0 +1,191 @@
+#include <algorithm>
+
+#include "core/wire/cdr_key.hpp"
+#include "core/wire/memory/participant.hpp"
+
+namespace adit::wire {
+namespace {
+
+std::uint16_t frames_of(std::size_t payload) {
+  constexpr std::size_t room = Datagram::frame_bytes - WireCost::data;
+  return static_cast<std::uint16_t>(
+      std::min<std::size_t>(std::max<std::size_t>(1, (payload + room - 1) / room), 65535));
+}
+
+std::uint64_t number_of(const std::string& key, int writer, int reader) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
+  const auto mix = [&hash](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3ULL; };
+  for (const char c : key) mix(static_cast<unsigned char>(c));
+  mix(static_cast<std::uint64_t>(writer));
+  mix(static_cast<std::uint64_t>(reader));
+  return hash | 1;
+}
+
+}  // namespace
+
+Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
+  TopicCount& out = owner->count(topic.name, {});
+  if (cdr.size() > topic.max_bytes) {
+    ++out.failed_writes;
+    return Error{Reason::out_of_range, topic.name + ": sample of " + std::to_string(cdr.size()) +
+                                           " bytes, at most " + std::to_string(topic.max_bytes) +
+                                           " are allowed"};
+  }
+  Sample sample;
+  if (topic.keyed) {
+    const auto key = first_string(cdr);
+    if (!key) {
+      ++out.failed_writes;
+      return Error{Reason::malformed, topic.name + ": the sample has no key"};
+    }
+    sample.key = *key;
+  }
+  ++out.samples_out;
+  sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(cdr.begin(), cdr.end());
+  sample.frames = frames_of(cdr.size());
+  sample.wire_bytes = static_cast<std::uint32_t>(cdr.size()) +
+                      sample.frames * (WireCost::data + (topic.keyed ? WireCost::key : 0U));
+  if (!owner->stopped) owner->core->show(Frame::Kind::sent, *owner, nullptr, topic, sample.bytes);
+  add(std::move(sample));
+  return {};
+}
+
+void WriterState::add(Sample sample) {
+  if (owner->stopped) return;
+  sample.sequence = next++;
+  if (topic.qos.reliable) {
+    const auto same_key = [&sample](const Sample& old) { return old.key == sample.key; };
+    const auto kept = static_cast<std::size_t>(std::count_if(history.begin(), history.end(), same_key));
+    if (kept >= topic.depth) {
+      history.erase(std::find_if(history.begin(), history.end(), same_key));
+    } else if (history.size() >= max_samples) {
+      history.pop_front();
+    }
+    history.push_back(sample);
+  }
+  for (const auto& [reader, proxy] : readers) send(reader, sample, sample.frames);
+  arm_heartbeat();
+}
+
+void WriterState::match(EndpointId reader, bool reader_reliable) {
+  Proxy proxy;
+  proxy.reliable = topic.qos.reliable && reader_reliable;
+  const bool late = topic.qos.transient_local && !history.empty();
+  proxy.start = late ? history.front().sequence : next;
+  proxy.acknowledged = proxy.start - 1;
+  if (!readers.emplace(reader, proxy).second) return;
+  if (late) {
+    for (const Sample& sample : history) send(reader, sample, sample.frames);
+    arm_heartbeat();
+  }
+}
+
+void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t frames) {
+  Datagram datagram;
+  datagram.frames = frames;
+  datagram.bytes = sample.wire_bytes * frames / sample.frames;
+  datagram.priority = discovery ? WireCost::discovery_priority : topic.qos.priority;
+  if (topic.qos.newest_wins && !topic.qos.reliable) {
+    datagram.supersedes = number_of(sample.key, entity, reader.entity);
+  }
+  if (!discovery) {
+    datagram.sent = [self = shared_from_this(), bytes = datagram.bytes] {
+      self->owner->count(self->topic.name, {}).bytes_out += bytes;
+    };
+    if (!topic.qos.reliable) {
+      datagram.lost = [self = shared_from_this(), sample](int to) {
+        const Participant* receiver = self->owner->peer_participant(to);
+        if (receiver != nullptr) {
+          self->owner->core->show(Frame::Kind::lost, *self->owner, receiver, self->topic, sample.bytes);
+        }
+      };
+    }
+  }
+  const auto proxy = readers.find(reader);
+  const std::uint64_t start = proxy == readers.end() ? next : proxy->second.start;
+  const auto arrive = [self = shared_from_this(), from = EndpointId{owner->node, entity}, reader, start,
+                       sample, bytes = datagram.bytes, frames](Participant& there, std::uint16_t through) {
+    if (self->discovery) {
+      there.discovery_reader->on_data(from, start, sample, through);
+      return;
+    }
+    there.count(self->topic.name, self->owner->id).bytes_in += bytes * through / frames;
+    const auto found = there.readers.find(reader.entity);
+    if (found != there.readers.end()) found->second->on_data(from, start, sample, through);
+  };
+  owner->send(reader.node, std::move(datagram), arrive, discovery);
+}
+
+void WriterState::arm_heartbeat() {
+  // Inner networks lose nothing: there is nothing to repair.
+  if (heartbeat_armed || !topic.qos.reliable || owner->core->radio->inner(owner->node)) return;
+  const bool wanted = std::any_of(readers.begin(), readers.end(), [this](const auto& entry) {
+    return entry.second.reliable && entry.second.acknowledged + 1 < next;
+  });
+  if (!wanted) return;
+  heartbeat_armed = true;
+  owner->core->after(topic.qos.heartbeat,
+                     [weak = weak_from_this(), keep = std::weak_ptr(owner->shared_from_this())] {
+                       const auto participant = keep.lock();
+                       const auto self = weak.lock();
+                       if (self && participant && !participant->stopped) self->heartbeat();
+                     });
+}
+
+void WriterState::heartbeat() {
+  heartbeat_armed = false;
+  const std::uint64_t first = history.empty() ? next : history.front().sequence, last = next - 1;
+  for (const auto& [reader, proxy] : readers) {
+    if (!proxy.reliable || proxy.acknowledged + 1 >= next) continue;
+    Datagram datagram;
+    datagram.bytes = WireCost::heartbeat;
+    datagram.priority = WireCost::discovery_priority;
+    datagram.supersedes = number_of("heartbeat", entity, reader.entity);
+    owner->send(
+        reader.node, std::move(datagram),
+        [from = EndpointId{owner->node, entity}, reader_id = reader.entity, start = proxy.start, first, last,
+         is_discovery = discovery](Participant& there, std::uint16_t) {
+          if (is_discovery) return there.discovery_reader->on_heartbeat(from, start, first, last);
+          const auto found = there.readers.find(reader_id);
+          if (found != there.readers.end()) found->second->on_heartbeat(from, start, first, last);
+        },
+        discovery);
+  }
+  arm_heartbeat();
+}
+
+void WriterState::on_acknack(EndpointId reader, std::uint64_t base, const std::vector<Missing>& missing) {
+  const auto proxy = readers.find(reader);
+  if (proxy == readers.end()) return;
+  proxy->second.acknowledged = std::max(proxy->second.acknowledged, base - 1);
+  if (missing.empty()) return;
+  owner->core->after(
+      WireCost::response, [self = shared_from_this(), keep = owner->shared_from_this(), reader, missing] {
+        if (keep->stopped || !self->readers.contains(reader)) return;
+        std::vector<std::uint64_t> gone;
+        for (const Missing& wanted : missing) {
+          const auto sample = std::find_if(self->history.begin(), self->history.end(),
+                                           [&](const Sample& s) { return s.sequence == wanted.sequence; });
+          if (sample == self->history.end()) {
+            gone.push_back(wanted.sequence);
+          } else {
+            self->send(reader, *sample, wanted.frames == 0 ? sample->frames : wanted.frames);
+          }
+        }
+        if (gone.empty()) return;
+        Datagram datagram;
+        datagram.bytes = WireCost::gap;
+        datagram.priority = WireCost::discovery_priority;
+        keep->send(
+            reader.node, std::move(datagram),
+            [from = EndpointId{keep->node, self->entity}, reader, gone, is_discovery = self->discovery](
+                Participant& there, std::uint16_t) {
+              if (is_discovery) return there.discovery_reader->on_gap(from, gone);
+              const auto found = there.readers.find(reader.entity);
+              if (found != there.readers.end()) found->second->on_gap(from, gone);
+            },
+            self->discovery);
+      });
+}
+
+}  // namespace adit::wire

@@ -1,0 +1,413 @@
+#include "core/wire/memory/ether.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+#include "adit/authority.h"
+#include "adit/command.h"
+#include "adit/robot.h"
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+
+namespace adit::wire {
+namespace {
+
+/// A machine on the ether that keeps what it hears.
+struct Machine {
+  Machine(VirtualScheduler& scheduler, Ether& ether, const std::string& name, Duration clock_offset = 0ms)
+      : runtime(scheduler.machine(name, clock_offset)),
+        strand(runtime->strand("main")),
+        wire(ether.join(77, name)) {}
+
+  Writer<radio::Command> commands(const std::string& partition) {
+    return std::move(Writer<radio::Command>::make(*wire, topics::command, partition)).value();
+  }
+  void hear_commands(const std::string& partition) {
+    readers.push_back(std::move(make_reader(
+                                    *wire, topics::command, *strand,
+                                    [this](const radio::Command& c, const SampleInfo& info) {
+                                      seen.push_back(c.seq());
+                                      senders.push_back(info.sender);
+                                      received.push_back(info.received);
+                                    },
+                                    partition))
+                          .value());
+  }
+
+  std::unique_ptr<Runtime> runtime;
+  std::shared_ptr<Executor> strand;
+  std::unique_ptr<Wire> wire;
+  std::vector<std::unique_ptr<RawReader>> readers{};
+  std::vector<std::uint64_t> seen{};
+  std::vector<ParticipantId> senders{};
+  std::vector<Time> received{};
+};
+
+LinkProfile profile(double bandwidth, double latency, double loss) {
+  LinkProfile link;
+  link.bandwidth = bandwidth;
+  link.latency = latency;
+  link.loss = loss;
+  return link;
+}
+
+radio::Command command(std::uint64_t seq) {
+  radio::Command c;
+  c.robot("r1");
+  c.station("op1");
+  c.seq(seq);
+  return c;
+}
+
+std::vector<std::uint64_t> up_to(std::uint64_t n) {
+  std::vector<std::uint64_t> v;
+  for (std::uint64_t i = 1; i <= n; ++i) v.push_back(i);
+  return v;
+}
+
+TEST(Ether, CarriesASampleWithItsSenderAndTheReceiversClock) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {.link = profile(1e6, 0.05, 0.0)});
+  Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1", 1h);
+  robot.hear_commands("r1");
+  auto writer = station.commands("r1");
+  scheduler.run_until(2s);
+  ASSERT_EQ(writer.matched(), 1U);
+  ASSERT_TRUE(writer.write(command(1)).ok());
+  scheduler.run_until(3s);
+  ASSERT_EQ(robot.seen, up_to(1));
+  EXPECT_EQ(robot.senders[0], station.wire->id());
+  const double delay = seconds(robot.received[0].time_since_epoch() - 1h) - 2.0;
+  EXPECT_GT(delay, 0.05);
+  EXPECT_LT(delay, 0.06);
+}
+
+TEST(Ether, RepairsReliableSamplesAfterLossAndKeepsTheirOrder) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {.link = profile(1e6, 0.02, 0.3)});
+  Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1");
+  robot.hear_commands("r1");
+  auto writer = station.commands("r1");
+  scheduler.run_until(10s);
+  for (std::uint64_t i = 1; i <= 100; ++i) {
+    ASSERT_TRUE(writer.write(command(i)).ok());
+    scheduler.run_until(scheduler.elapsed() + 200ms);
+  }
+  scheduler.run_until(scheduler.elapsed() + 10s);
+  EXPECT_EQ(robot.seen, up_to(100));
+}
+
+TEST(Ether, LosesBestEffortSamplesAndCountsThem) {
+  VirtualScheduler scheduler(3);
+  Ether ether(scheduler, {.link = profile(10e6, 0.01, 0.2)});
+  Machine robot(scheduler, ether, "r1"), station(scheduler, ether, "op1");
+  int heard = 0, lost = 0;
+  ether.set_tap([&](const Frame& frame) { lost += frame.kind == Frame::Kind::lost; });
+  auto reader = make_reader(*station.wire, topics::robot_state, *station.strand,
+                            [&](const radio::RobotState&, const SampleInfo&) { ++heard; });
+  auto writer = std::move(Writer<radio::RobotState>::make(*robot.wire, topics::robot_state)).value();
+  scheduler.run_until(10s);
+  radio::RobotState state;
+  state.robot("r1");
+  for (int i = 0; i < 1000; ++i) {
+    (void)writer.write(state);
+    scheduler.run_until(scheduler.elapsed() + 100ms);
+  }
+  EXPECT_NEAR(heard, 800, 50);
+  EXPECT_EQ(heard + lost, 1000);
+  const WireCounters counters = station.wire->counters();
+  ASSERT_EQ(counters.topics.size(), 1U);
+  EXPECT_NEAR(static_cast<double>(counters.topics[0].lost), lost, 3);
+  EXPECT_EQ(counters.topics[0].peer, robot.wire->id());
+}
+
+TEST(Ether, LateJoinersGetTheStatusOfEachKey) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {.link = profile(1e6, 0.05, 0.1)});
+  Machine robot(scheduler, ether, "r1");
+  auto writer = std::move(Writer<radio::AuthorityStatus>::make(*robot.wire, topics::authority)).value();
+  for (int round = 0; round < 3; ++round) {
+    for (int key = 0; key < 20; ++key) {
+      radio::AuthorityStatus status;
+      status.robot("r" + std::to_string(key));
+      status.seq(static_cast<std::uint64_t>(round));
+      ASSERT_TRUE(writer.write(status).ok());
+    }
+  }
+  scheduler.run_until(30s);
+  Machine station(scheduler, ether, "op1");
+  std::map<std::string, std::vector<std::uint64_t>> heard;
+  auto reader = make_reader(
+      *station.wire, topics::authority, *station.strand,
+      [&](const radio::AuthorityStatus& s, const SampleInfo&) { heard[s.robot()].push_back(s.seq()); });
+  scheduler.run_until(45s);
+  ASSERT_EQ(heard.size(), 20U);
+  for (const auto& [key, seqs] : heard) EXPECT_EQ(seqs, std::vector<std::uint64_t>{2}) << key;
+}
+
+TEST(Ether, CommandsAreNotReplayedToLateJoiners) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {});
+  Machine station(scheduler, ether, "op1");
+  auto writer = station.commands("r1");
+  ASSERT_TRUE(writer.write(command(1)).ok());
+  scheduler.run_until(1s);
+  Machine robot(scheduler, ether, "r1");
+  robot.hear_commands("r1");
+  scheduler.run_until(10s);
+  ASSERT_TRUE(writer.write(command(2)).ok());
+  scheduler.run_until(20s);
+  EXPECT_EQ(robot.seen, std::vector<std::uint64_t>{2});
+}
+
+TEST(Ether, PartitionsAndDomainsKeepApart) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {});
+  Machine station(scheduler, ether, "op1"), r1(scheduler, ether, "r1"), r2(scheduler, ether, "r2");
+  r1.hear_commands("r1");
+  r2.hear_commands("r2");
+  auto writer = station.commands("r1");
+  auto foreign_wire = ether.join(5, "r3");
+  scheduler.run_until(3s);
+  EXPECT_EQ(writer.matched(), 1U);
+  ASSERT_TRUE(writer.write(command(1)).ok());
+  scheduler.run_until(4s);
+  EXPECT_EQ(r1.seen, up_to(1));
+  EXPECT_TRUE(r2.seen.empty());
+  EXPECT_EQ(foreign_wire->counters().total_in, 0U);
+}
+
+TEST(Ether, BandwidthIsSharedByAllThatASenderSends) {
+  VirtualScheduler scheduler(1);
+  LinkProfile link = profile(100e3, 0.0, 0.0);
+  link.queue = 10.0;
+  Ether ether(scheduler, {.link = link});
+  Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1");
+  robot.hear_commands("r1");
+  auto writer = station.commands("r1");
+  scheduler.run_until(5s);
+  radio::Command big = command(1);
+  big.text(std::string(380, 'x'));
+  const std::uint64_t before = station.wire->counters().total_out;
+  for (int i = 1; i <= 10; ++i) {
+    big.seq(static_cast<std::uint64_t>(i));
+    ASSERT_TRUE(writer.write(big).ok());
+  }
+  scheduler.run_until(7s);
+  ASSERT_EQ(robot.seen, up_to(10));
+  std::uint64_t bytes = 0;
+  for (const auto& count : station.wire->counters().topics) bytes += count.bytes_out;
+  const double airtime = static_cast<double>(bytes) * 8 / 100e3;
+  EXPECT_GE(bytes, 10U * 450);
+  EXPECT_LE(bytes, station.wire->counters().total_out - before);
+  EXPECT_NEAR(seconds(robot.received.back().time_since_epoch()) - 5.0, airtime, 0.02);
+}
+
+TEST(Ether, UrgentGoesFirstAndOfAStreamTheNewestWins) {
+  VirtualScheduler scheduler(1);
+  LinkProfile link = profile(20e3, 0.0, 0.0);
+  link.queue = 10.0;
+  Ether ether(scheduler, {.link = link});
+  Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1");
+  robot.hear_commands("r1");
+  std::vector<std::uint64_t> sticks;
+  auto reader = make_reader(
+      *robot.wire, topics::joystick, *robot.strand,
+      [&](const radio::Joystick& j, const SampleInfo&) { sticks.push_back(j.seq()); }, "r1");
+  auto commands = station.commands("r1");
+  auto joystick = std::move(Writer<radio::Joystick>::make(*station.wire, topics::joystick, "r1")).value();
+  scheduler.run_until(20s);
+  radio::Joystick stick;
+  stick.robot("r1");
+  for (std::uint64_t i = 1; i <= 20; ++i) {
+    stick.seq(i);
+    (void)joystick.write(stick);
+  }
+  (void)commands.write(command(1));
+  bool command_first = false;
+  scheduler.run_until(20s + 200ms);
+  command_first = robot.seen.size() == 1 && sticks.size() <= 1;
+  scheduler.run_until(22s);
+  EXPECT_TRUE(command_first);
+  ASSERT_EQ(sticks.size(), 2U);  // the one on the air already, and the newest
+  EXPECT_EQ(sticks.back(), 20U);
+}
+
+TEST(Ether, CutNeitherBlocksNorGrowsAndHealsWithTheNewestStatus) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {.link = profile(1e6, 0.01, 0.0)});
+  Machine robot(scheduler, ether, "r1"), station(scheduler, ether, "op1");
+  std::vector<std::uint64_t> heard;
+  auto reader =
+      make_reader(*station.wire, topics::authority, *station.strand,
+                  [&](const radio::AuthorityStatus& s, const SampleInfo&) { heard.push_back(s.seq()); });
+  auto writer = std::move(Writer<radio::AuthorityStatus>::make(*robot.wire, topics::authority)).value();
+  std::vector<ParticipantEvent> events;
+  station.wire->on_participant(*station.strand, [&](const ParticipantEvent& e) { events.push_back(e); });
+  scheduler.run_until(5s);
+  for (const Duration cut_for : {10s, 60s}) {
+    heard.clear();
+    ether.cut("r1", "op1", true);
+    radio::AuthorityStatus status;
+    status.robot("r1");
+    for (std::uint64_t i = 1; i <= 100; ++i) {
+      status.seq(i);
+      ASSERT_TRUE(writer.write(status).ok());
+    }
+    scheduler.run_until(scheduler.elapsed() + cut_for);
+    EXPECT_TRUE(heard.empty());
+    ether.cut("r1", "op1", false);
+    scheduler.run_until(scheduler.elapsed() + 15s);
+    EXPECT_EQ(heard, std::vector<std::uint64_t>{100});
+  }
+  ASSERT_EQ(events.size(), 3U);  // came, lease ran out in the longer cut, came back
+  EXPECT_TRUE(events[0].present);
+  EXPECT_FALSE(events[1].present);
+  EXPECT_TRUE(events[2].present);
+}
+
+TEST(Ether, GoodbyeIsSeenAtOnceACrashWhenTheLeaseRunsOut) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {});
+  Machine station(scheduler, ether, "op1");
+  std::vector<std::pair<double, ParticipantEvent>> events;
+  station.wire->on_participant(*station.strand, [&](const ParticipantEvent& e) {
+    events.emplace_back(seconds(scheduler.elapsed()), e);
+  });
+  auto robot = std::make_unique<Machine>(scheduler, ether, "r1");
+  const ParticipantId first = robot->wire->id();
+  scheduler.run_until(5s);
+  robot.reset();
+  scheduler.run_until(6s);
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_LT(events[1].first, 5.1);
+  robot = std::make_unique<Machine>(scheduler, ether, "r1");
+  EXPECT_NE(robot->wire->id(), first);
+  scheduler.run_until(10s);
+  ASSERT_EQ(events.size(), 3U);
+  ether.crash("r1");
+  robot.reset();
+  scheduler.run_until(30s);
+  EXPECT_EQ(events.size(), 3U);
+  scheduler.run_until(50s);
+  ASSERT_EQ(events.size(), 4U);
+  EXPECT_FALSE(events[3].second.present);
+}
+
+TEST(Ether, RangeAndDegradeLoseFrames) {
+  VirtualScheduler scheduler(1);
+  LinkProfile link = profile(1e6, 0.01, 0.0);
+  link.range = 50.0;
+  Ether ether(scheduler, {.link = link});
+  Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1");
+  ether.set_position("op1", 0, 0);
+  ether.set_position("r1", 60, 0);
+  scheduler.run_until(15s);
+  EXPECT_EQ(robot.wire->counters().total_in, 0U);
+  ether.set_position("r1", 40, 0);
+  scheduler.run_until(30s);
+  const std::uint64_t heard = robot.wire->counters().total_in;
+  EXPECT_GT(heard, 0U);
+  ether.degrade("op1", "r1", 1.0);
+  scheduler.run_until(50s);
+  EXPECT_EQ(robot.wire->counters().total_in, heard);
+  ether.degrade("op1", "r1", std::nullopt);
+  scheduler.run_until(70s);
+  EXPECT_GT(robot.wire->counters().total_in, heard);
+}
+
+TEST(Ether, LargeSamplesPassInFramesAndAreRepairedByFrame) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {.link = profile(20e6, 0.005, 0.1)});
+  Machine robot(scheduler, ether, "r1"), station(scheduler, ether, "op1");
+  constexpr TopicInfo large{"adit/test_large", "Bytes", QosClass::bulk, 8, false, 1 << 20};
+  std::vector<std::size_t> sizes;
+  auto reader = station.wire->make_reader(large, "", *station.strand, [&](auto bytes, const SampleInfo&) {
+    sizes.push_back(bytes.size());
+    return true;
+  });
+  auto writer = std::move(robot.wire->make_writer(large, "")).value();
+  scheduler.run_until(10s);
+  ASSERT_TRUE(writer->write(std::vector<std::uint8_t>(32 * 1024)).ok());
+  scheduler.run_until(20s);
+  EXPECT_EQ(sizes, std::vector<std::size_t>{32 * 1024});
+}
+
+TEST(Ether, OversizeAndKeylessSamplesAreErrorsAndCounted) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {});
+  Machine robot(scheduler, ether, "r1");
+  auto writer = std::move(robot.wire->make_writer(topics::presence, "")).value();
+  EXPECT_EQ(writer->write(std::vector<std::uint8_t>(4096)).reason(), Reason::out_of_range);
+  EXPECT_EQ(writer->write(std::vector<std::uint8_t>(3)).reason(), Reason::malformed);
+  EXPECT_EQ(robot.wire->counters().topics.at(0).failed_writes, 2U);
+}
+
+TEST(Ether, MalformedSamplesAreCountedBySenderAndSurvived) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {});
+  Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1");
+  robot.hear_commands("r1");
+  auto writer = std::move(station.wire->make_writer(topics::command, "r1")).value();
+  scheduler.run_until(3s);
+  ASSERT_TRUE(writer->write(std::vector<std::uint8_t>{0, 1, 0, 0, 255, 255, 255, 255}).ok());
+  std::vector<std::uint8_t> good;
+  encode(command(7), good);
+  ASSERT_TRUE(writer->write(good).ok());
+  scheduler.run_until(4s);
+  EXPECT_EQ(robot.seen, std::vector<std::uint64_t>{7});
+  const auto counters = robot.wire->counters();
+  ASSERT_EQ(counters.topics.size(), 1U);
+  EXPECT_EQ(counters.topics[0].malformed, 1U);
+  EXPECT_EQ(counters.topics[0].peer, station.wire->id());
+}
+
+/// Everything seen on the air, as a number.
+std::uint64_t digest_of(std::uint64_t seed) {
+  std::uint64_t digest = 0xcbf29ce484222325ULL;
+  const auto mix = [&digest](std::uint64_t v) { digest = (digest ^ v) * 0x100000001b3ULL; };
+  VirtualScheduler scheduler(seed);
+  Ether ether(scheduler, {.seed = seed, .link = profile(500e3, 0.05, 0.2)});
+  ether.set_tap([&](const Frame& f) {
+    mix(static_cast<std::uint64_t>(f.kind));
+    mix(static_cast<std::uint64_t>(f.at.count()));
+    for (const auto byte : f.from) mix(byte);
+    for (const auto byte : f.bytes) mix(byte);
+  });
+  std::vector<std::unique_ptr<Machine>> machines;
+  std::vector<Writer<radio::Command>> writers;
+  for (int i = 0; i < 4; ++i) {
+    machines.push_back(std::make_unique<Machine>(scheduler, ether, "m" + std::to_string(i)));
+    machines.back()->hear_commands("all");
+    writers.push_back(machines.back()->commands("all"));
+  }
+  for (std::uint64_t i = 1; i <= 100; ++i) {
+    for (auto& writer : writers) (void)writer.write(command(i));
+    scheduler.run_until(scheduler.elapsed() + 100ms);
+  }
+  return digest;
+}
+
+TEST(Ether, SameSeedSameRun) {
+  EXPECT_EQ(digest_of(1), digest_of(1));
+  EXPECT_NE(digest_of(1), digest_of(2));
+}
+
+TEST(Ether, WiresMayOutliveIt) {
+  VirtualScheduler scheduler(1);
+  auto ether = std::make_unique<Ether>(scheduler, EtherParams{});
+  Machine station(scheduler, *ether, "op1"), robot(scheduler, *ether, "r1");
+  robot.hear_commands("r1");
+  auto writer = station.commands("r1");
+  scheduler.run_until(2s);
+  (void)writer.write(command(1));
+  ether.reset();
+  (void)writer.write(command(2));
+  scheduler.run_until(60s);
+  EXPECT_TRUE(robot.seen.empty());
+}
+
+}  // namespace
+}  // namespace adit::wire
