@@ -1,0 +1,73 @@
+#include "core/component/component.hpp"
+
+namespace adit {
+
+Component::Component(std::string name, Executor& executor, Log log, VitalParams vital)
+    : executor_(executor),
+      log_(log.named(name, &executor)),
+      vital_(std::make_shared<Vital>(std::move(name), vital)) {}
+
+Component::~Component() {
+  // on_stop() of a derived class can no longer be called: its part is gone. Those who need it call stop().
+  if (life_) life_->owner = nullptr;
+  vital_->stopped();
+}
+
+Result<void> Component::start() {
+  if (life_) return Error{Reason::in_use, name() + " is already running"};
+  life_ = std::make_shared<Life>(Life{this});
+  vital_->started(now());
+  heartbeat_ = executor_.every(vital_->params().beat, guard([this] { vital_->beat(now()); }));
+  Result<void> result;
+  try {
+    result = on_start();
+  } catch (...) {
+    const std::string text = current_exception_text();
+    fail(text);
+    result = Error{Reason::internal, name() + " did not start: " + text};
+  }
+  if (!result) {
+    life_->owner = nullptr;
+    life_.reset();
+    heartbeat_.cancel();
+    vital_->stopped();
+  }
+  return result;
+}
+
+void Component::stop() {
+  if (!life_) return;
+  life_->owner = nullptr;
+  life_.reset();
+  heartbeat_.cancel();
+  vital_->stopped();
+  try {
+    on_stop();
+  } catch (...) {
+    fail("stop: " + current_exception_text());
+  }
+}
+
+void Component::fail(const std::string& text) {
+  const Time at = now();
+  vital_->failed(at, text);
+  log_.error("failed: " + text);
+  ++failures_;
+  if (failure_handler_) failure_handler_({name(), text, at, failures_});
+}
+
+void Component::compute(Duration modelled, Task work, Task done) {
+  auto failure = std::make_shared<std::string>();
+  executor_.compute(
+      modelled,
+      [failure, work = std::move(work)] {
+        try {
+          work();
+        } catch (...) {
+          *failure = "compute: " + current_exception_text();
+        }
+      },
+      guard([this, failure, done = std::move(done)] { failure->empty() ? done() : fail(*failure); }));
+}
+
+}  // namespace adit

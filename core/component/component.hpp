@@ -1,0 +1,105 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "core/component/vital.hpp"
+#include "core/exec/executor.hpp"
+#include "core/exec/failure.hpp"
+#include "core/log/log.hpp"
+#include "core/result/result.hpp"
+
+namespace adit {
+
+/// A failure of a component, as a value: an exception left one of its callbacks.
+struct ComponentFailure {
+  std::string component{};
+  std::string text{};
+  Time at{};
+  std::uint64_t count{0};  ///< of this component, this one included
+};
+
+/// Base of what lives on a strand. It is made, started, stopped and destroyed on its strand, or while that
+/// strand does not run (before it is used, after it was dropped); the executor must outlive stop().
+///
+/// Everything it hands out to be called later goes through guard(): such a callback does nothing once
+/// the component is gone, and an exception that leaves it becomes a ComponentFailure instead of the end of
+/// the process. The heartbeat is a timer of the loop it vouches for: when a callback hangs, it stops.
+class Component {
+ public:
+  Component(std::string name, Executor& executor, Log log = {}, VitalParams vital = {});
+  virtual ~Component();
+  Component(const Component&) = delete;
+  Component& operator=(const Component&) = delete;
+
+  /// Starts the heartbeat and calls on_start(); an exception in it is an Error (internal). A second start
+  /// without a stop is an Error (in_use).
+  Result<void> start();
+  /// Ends the heartbeat and calls on_stop(). Callbacks are dropped from here on.
+  void stop();
+  bool running() const { return life_ != nullptr; }
+
+  const std::string& name() const { return vital_->name(); }
+  /// For watchers on other strands; lives on after the component.
+  std::shared_ptr<const Vital> vital() const { return vital_; }
+  ComponentHealth health() const { return vital_->health(executor_.now()); }
+  /// Told of each failure, on the strand.
+  void on_failure(std::function<void(const ComponentFailure&)> handler) {
+    failure_handler_ = std::move(handler);
+  }
+
+ protected:
+  virtual Result<void> on_start() { return {}; }
+  virtual void on_stop() {}
+
+  Executor& executor() const { return executor_; }
+  Time now() const { return executor_.now(); }
+  const Log& log() const { return log_; }
+  /// Reports a failure that is no exception.
+  void fail(const std::string& text);
+
+  /// Wraps a callback that returns nothing; valid between start() and stop(). It must be called on the
+  /// strand.
+  template <class F>
+  auto guard(F callback) {
+    return [life = std::weak_ptr<Life>(life_), callback = std::move(callback)](auto&&... args) mutable {
+      const auto alive = life.lock();
+      if (!alive || !alive->owner) return;
+      try {
+        callback(std::forward<decltype(args)>(args)...);
+      } catch (...) {
+        const std::string text = current_exception_text();
+        if (alive->owner) alive->owner->fail(text);
+      }
+    };
+  }
+  /// Guarded post, timers and compute. An exception of `work` is a failure of this component.
+  template <class F>
+  void post(F task) {
+    executor_.post(guard(std::move(task)));
+  }
+  template <class F>
+  Timer after(Duration delay, F task) {
+    return executor_.after(delay, guard(std::move(task)));
+  }
+  template <class F>
+  Timer every(Duration period, F task) {
+    return executor_.every(period, guard(std::move(task)));
+  }
+  void compute(Duration modelled, Task work, Task done);
+
+ private:
+  struct Life {
+    Component* owner;
+  };
+  Executor& executor_;
+  Log log_;
+  std::shared_ptr<Vital> vital_;
+  std::shared_ptr<Life> life_{};
+  std::function<void(const ComponentFailure&)> failure_handler_{};
+  std::uint64_t failures_{0};
+  Timer heartbeat_{};
+};
+
+}  // namespace adit

@@ -1,0 +1,51 @@
+#pragma once
+// The tree behind config::Node. Private to core/config.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/result/result.hpp"
+
+namespace adit::config {
+
+struct Value {
+  enum class Kind { null, scalar, list, mapping };
+  struct Entry {
+    std::string key;
+    int line;
+    std::shared_ptr<Value> value;
+  };
+  Kind kind{Kind::null};
+  int line{0};  ///< from 1
+  bool quoted{false};
+  std::string scalar{};
+  std::vector<std::shared_ptr<Value>> items{};
+  std::vector<Entry> entries{};
+  mutable std::vector<std::string> asked{};  ///< keys that a reader looked for
+  mutable bool checked{false};               ///< by finish(); aliases make one value appear twice
+};
+
+class Document {
+ public:
+  Document(std::string file, std::shared_ptr<Value> root) : file_(std::move(file)), root_(std::move(root)) {}
+  const std::string& file() const { return file_; }
+  const Value* root() const { return root_.get(); }
+  void fail(int line, Reason reason, const std::string& text);
+  Result<void> finish();
+
+ private:
+  struct Problem {
+    int line;
+    Reason reason;
+    std::string text;
+  };
+  void find_unknown(const Value& value);
+  std::string file_;
+  std::shared_ptr<Value> root_;
+  std::vector<Problem> problems_{};
+};
+
+/// A word of `words` that `text` is a misspelling of, or "".
+std::string nearest(const std::string& text, const std::vector<std::string>& words);
+
+}  // namespace adit::config

@@ -1,0 +1,15 @@
+#pragma once
+#include <string>
+
+#include "core/config/platform.hpp"
+#include "core/result/result.hpp"
+
+namespace adit::config {
+
+/// Reads a platform's file; every key of docs/configuration.md.
+Result<Platform> load_platform_file(const std::string& path);
+/// The platform of that name (config/platforms/NAME.yaml on the search path), or the file when `name`
+/// ends in .yaml. `beside`: the file that named it.
+Result<Platform> load_platform(const std::string& name, const std::string& beside = "");
+
+}  // namespace adit::config

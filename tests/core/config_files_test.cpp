@@ -1,0 +1,123 @@
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "core/config/platform_file.hpp"
+#include "core/config/search.hpp"
+#include "core/wire/link_file.hpp"
+
+namespace adit {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// A folder that is gone afterwards.
+struct Folder {
+  Folder() : path(fs::temp_directory_path() / ("adit_config_test_" + std::to_string(::getpid()))) {
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+  std::string write(const std::string& name, const std::string& text) const {
+    fs::create_directories((path / name).parent_path());
+    std::ofstream(path / name) << text;
+    return (path / name).string();
+  }
+  fs::path path;
+};
+
+TEST(Platforms, the_three_standard_ones_have_the_documented_values) {
+  struct Row {
+    const char* name;
+    double length, width, speed, turn, acceleration, step, lidar;
+    bool holonomic, stairs;
+  };
+  for (const Row& row : {Row{"wheeled", 0.60, 0.50, 2.0, 1.5, 1.5, 0.08, 0.50, false, false},
+                         Row{"tracked", 0.80, 0.60, 1.0, 1.0, 1.0, 0.15, 0.55, false, false},
+                         Row{"legged", 0.90, 0.45, 1.2, 1.2, 1.5, 0.22, 0.65, true, true}}) {
+    const auto p = config::load_platform(row.name);
+    ASSERT_TRUE(p) << p.error().text;
+    EXPECT_EQ(p->name, row.name);
+    EXPECT_EQ(p->length, row.length);
+    EXPECT_EQ(p->width, row.width);
+    EXPECT_EQ(p->max_speed, row.speed);
+    EXPECT_EQ(p->max_turn, row.turn);
+    EXPECT_EQ(p->max_acceleration, row.acceleration);
+    EXPECT_EQ(p->step, row.step);
+    EXPECT_EQ(p->lidar_height, row.lidar);
+    EXPECT_EQ(p->drive == Drive::holonomic, row.holonomic);
+    EXPECT_EQ(p->stairs, row.stairs);
+  }
+}
+
+TEST(Links, the_standard_ones_have_the_documented_values) {
+  struct Row {
+    const char* name;
+    double bandwidth, latency, loss;
+  };
+  for (const Row& row :
+       {Row{"lan", 100e6, 0.001, 0}, Row{"wifi", 20e6, 0.005, 0.01}, Row{"mesh_500k", 500e3, 0.05, 0.05},
+        Row{"mesh_100k", 100e3, 0.15, 0.1}, Row{"loopback", 1e10, 0, 0}}) {
+    const auto link = wire::load_link(row.name);
+    ASSERT_TRUE(link) << link.error().text;
+    EXPECT_EQ(link->name, row.name);
+    EXPECT_EQ(link->bandwidth, row.bandwidth);
+    EXPECT_EQ(link->latency, row.latency);
+    EXPECT_EQ(link->loss, row.loss);
+    EXPECT_EQ(link->range, 0);
+  }
+}
+
+TEST(Platforms, wrong_files_name_file_line_and_what_was_expected) {
+  const Folder folder;
+  const std::string good =
+      "name: x\ndrive: holonomic\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n"
+      "max_acceleration: 1\nstep: 0\nlidar_height: 1\n";
+  EXPECT_TRUE(config::load_platform_file(folder.write("good.yaml", good)));
+  const std::string path = folder.write("r1.yaml", good + "max_sped: 2\n");
+  const auto unknown = config::load_platform_file(path);
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.error().text, path + ":10: unknown key 'max_sped', did you mean 'max_speed'?");
+  const auto drive = config::load_platform_file(folder.write("d.yaml", "drive: hover\n"));
+  ASSERT_FALSE(drive);
+  EXPECT_THAT(drive.error().text,
+              HasSubstr("d.yaml:1: drive: expected one of differential, holonomic; got 'hover'"));
+}
+
+TEST(Links, wrong_files_are_errors) {
+  const Folder folder;
+  const auto link =
+      wire::load_link_file(folder.write("l.yaml", "name: l\nbandwidth: 1e6\nlatency: 0.1\nloss: 5\n"));
+  ASSERT_FALSE(link);
+  EXPECT_THAT(link.error().text, HasSubstr("l.yaml:4: loss: expected a number in [0, 1], got '5'"));
+}
+
+TEST(Search, looks_beside_the_file_first_and_tells_where_it_looked) {
+  const Folder folder;
+  const std::string own = folder.write("platforms/wheeled.yaml", "name: own\n");
+  const std::string beside = folder.write("scenario.yaml", "");
+  EXPECT_EQ(config::find_file("platforms/wheeled.yaml", beside).value(), own);
+  const auto elsewhere = config::find_file("platforms/tracked.yaml", beside);
+  ASSERT_TRUE(elsewhere);
+  EXPECT_THAT(*elsewhere, HasSubstr("config/platforms/tracked.yaml"));
+  const auto none = config::load_platform("flying", beside);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().reason, Reason::cannot_read);
+  EXPECT_THAT(none.error().text, HasSubstr("platforms/flying.yaml: no such file in "));
+  EXPECT_THAT(none.error().text, HasSubstr(folder.path.string()));
+}
+
+TEST(Search, the_environment_comes_before_the_source_tree) {
+  const Folder folder;
+  const std::string own = folder.write("links/wifi.yaml", "");
+  ::setenv("ADIT_CONFIG", ("/nonexistent:" + folder.path.string()).c_str(), 1);
+  const auto found = config::find_file("links/wifi.yaml");
+  ::unsetenv("ADIT_CONFIG");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(*found, own);
+}
+
+}  // namespace
+}  // namespace adit
