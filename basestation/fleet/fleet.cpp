@@ -1,0 +1,257 @@
+#include "basestation/fleet/fleet.hpp"
+
+#include <algorithm>
+
+#include "adit/authority.h"
+#include "adit/discovery.h"
+#include "adit/link.h"
+#include "adit/robot.h"
+#include "basestation/command/words.hpp"
+
+namespace adit::station {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::size_t text_limit = 240;
+constexpr std::size_t name_limit = 32;
+constexpr Duration forget_after = 60s;
+
+std::vector<std::string> cleaned(const std::vector<std::string>& words, std::size_t most) {
+  std::vector<std::string> out;
+  for (const std::string& word : words) {
+    if (out.size() == most) break;
+    out.push_back(clean(word, name_limit));
+  }
+  return out;
+}
+
+}  // namespace
+
+const char* to_string(GoalPhase phase) {
+  switch (phase) {
+    case GoalPhase::none: return "none";
+    case GoalPhase::kept: return "kept";
+    case GoalPhase::active: return "active";
+    case GoalPhase::blocked: return "blocked";
+    case GoalPhase::reached: return "reached";
+  }
+  return "unknown";
+}
+
+const char* to_string(Level level) {
+  switch (level) {
+    case Level::info: return "info";
+    case Level::warning: return "warning";
+    case Level::error: return "error";
+  }
+  return "unknown";
+}
+
+RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
+  const auto known = robots_.find(name);
+  if (known != robots_.end()) {
+    known->second.participant = info.sender;
+    return &known->second;
+  }
+  if (!valid_name(name) || robots_.size() == max_robots) {
+    ++ignored_;
+    return nullptr;
+  }
+  RobotView& robot = robots_[name];
+  robot.name = name;
+  robot.participant = info.sender;
+  robot.first_heard = robot.last_heard = info.received;
+  if (on_robot) on_robot(robot);
+  return &robot;
+}
+
+void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info) {
+  if (sample.kind() == radio::AGENT_STATION) {
+    radio::Presence presence;
+    presence.name(sample.name());
+    presence.id(sample.id());
+    return hear(presence, info);
+  }
+  RobotView* robot = touch(sample.name(), info);
+  if (!robot) return;
+  robot->described = true;
+  robot->platform = clean(sample.platform(), name_limit);
+  robot->software = clean(sample.software(), name_limit);
+  robot->protocol = sample.protocol();
+  robot->max_speed = sample.max_speed();
+  robot->max_turn = sample.max_turn();
+  robot->modes = cleaned(sample.modes(), 32);
+  robot->sensors = cleaned(sample.sensors(), 16);
+  robot->services = cleaned(sample.services(), 32);
+}
+
+void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
+  if (sample.name() == own_name_ && sample.id() != own_id_) {
+    // Robots will refuse one of the two: its operator has to choose another name.
+    if (!clashed_ || info.received - last_clash_ > forget_after)
+      notice({.at = info.received, .level = Level::warning, .code = "name_in_use", .reason = Reason::name_in_use,
+              .text = "another station on the air calls itself " + own_name_ + "; choose another --name"});
+    clashed_ = true;
+    last_clash_ = info.received;
+    return;
+  }
+  if (sample.name() == own_name_) return;
+  if (!valid_name(sample.name()) || (!stations_.contains(sample.name()) && stations_.size() == max_stations)) {
+    ++ignored_;
+    return;
+  }
+  stations_[sample.name()] = {sample.name(), sample.id(), info.sender, info.received};
+}
+
+void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) {
+  RobotView* robot = touch(sample.robot(), info);
+  if (!robot) return;
+  robot->located = true;
+  robot->last_heard = info.received;
+  robot->stamp = sample.stamp();
+  robot->x = sample.x();
+  robot->y = sample.y();
+  robot->z = sample.z();
+  robot->yaw = sample.yaw();
+  robot->vx = sample.vx();
+  robot->vy = sample.vy();
+  robot->wz = sample.wz();
+  robot->battery = sample.battery();
+  if (!robot->lost) return;
+  robot->lost = false;
+  notice({.at = info.received, .robot = robot->name, .code = "back", .text = robot->name + " is heard again"});
+}
+
+void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info) {
+  RobotView* robot = touch(sample.robot(), info);
+  if (!robot) return;
+  const Epoch epoch{sample.epoch().start(), sample.epoch().counter()};
+  // An acknowledgement can be newer than a status that was under way.
+  if (robot->owned && robot->epoch.start == epoch.start && epoch.counter < robot->epoch.counter) return;
+  robot->owned = true;
+  robot->epoch = epoch;
+  robot->holder = clean(sample.holder(), name_limit);
+  robot->holder_id = sample.holder_id();
+  robot->locked = sample.locked();
+  robot->lease_left = sample.lock_lease_left();
+  robot->stops.clear();
+  for (const auto& stop : sample.stops()) {
+    if (robot->stops.size() == 17) break;
+    robot->stops.push_back({clean(stop.station(), name_limit), stop.station_id()});
+  }
+}
+
+void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& info) {
+  RobotView* robot = touch(sample.robot(), info);
+  if (!robot) return;
+  ++robot->behaviour_count;
+  robot->mode = clean(sample.mode(), name_limit);
+  robot->stopped = sample.stopped();
+  robot->moving_allowed = sample.moving_allowed();
+  robot->reason = static_cast<Reason>(sample.reason());
+  const auto phase = static_cast<std::uint32_t>(sample.goal_state());
+  robot->goal_phase = phase <= 4 ? static_cast<GoalPhase>(phase) : GoalPhase::none;
+  robot->goal_id = sample.goal_id();
+  robot->goal = {sample.goal()[0], sample.goal()[1], sample.goal()[2]};
+  robot->choices.clear();
+  for (const auto& option : sample.modes()) {
+    if (robot->choices.size() == 16) break;
+    robot->choices.push_back({clean(option.mode(), name_limit), option.available(),
+                              static_cast<Reason>(option.reason())});
+  }
+}
+
+void Fleet::hear(const radio::Notification& sample, const wire::SampleInfo& info) {
+  if (!touch(sample.robot(), info)) return;
+  const auto severity = static_cast<std::uint32_t>(sample.severity());
+  notice({.at = info.received,
+          .robot = sample.robot(),
+          .operator_name = clean(sample.operator_name(), name_limit),
+          .level = severity <= 2 ? static_cast<Level>(severity) : Level::error,
+          .code = clean(sample.code(), name_limit),
+          .reason = static_cast<Reason>(sample.reason()),
+          .text = clean(sample.text(), text_limit)});
+}
+
+void Fleet::hear(const radio::Health& sample, const wire::SampleInfo& info) {
+  RobotView* robot = touch(sample.robot(), info);
+  if (!robot) return;
+  robot->components.clear();
+  for (const auto& part : sample.components()) {
+    if (robot->components.size() == 32) break;
+    robot->components.push_back({clean(part.name(), name_limit), part.healthy(), part.silent_for(),
+                                 part.restarts(), clean(part.text(), text_limit)});
+  }
+}
+
+void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) {
+  if (!valid_name(sample.agent()) || sample.agent() == own_name_ ||
+      (!traffic_.contains(sample.agent()) && traffic_.size() == max_robots + max_stations)) {
+    ++ignored_;
+    return;
+  }
+  TrafficView view{.agent = sample.agent(),
+                   .last_heard = info.received,
+                   .discovery_out = sample.discovery_out(),
+                   .discovery_in = sample.discovery_in(),
+                   .total_out = sample.total_out(),
+                   .total_in = sample.total_in(),
+                   .malformed = sample.malformed()};
+  for (const auto& row : sample.topics()) {
+    if (view.topics.size() == 16) break;
+    view.topics.push_back({clean(row.topic(), 64), row.bytes_out(), row.samples_out(), row.bytes_in(),
+                           row.samples_in(), row.dropped()});
+  }
+  traffic_[view.agent] = std::move(view);
+}
+
+void Fleet::learn_authority(const std::string& robot, const std::string& holder, const Epoch& epoch) {
+  const auto known = robots_.find(robot);
+  if (known == robots_.end()) return;
+  RobotView& view = known->second;
+  if (view.owned && view.epoch.start == epoch.start && epoch.counter < view.epoch.counter) return;
+  const bool changed = !view.owned || view.epoch != epoch || view.holder != holder;
+  view.owned = true;
+  view.epoch = epoch;
+  if (!changed) return;
+  view.holder = clean(holder, name_limit);
+  // The acknowledgement names the holder only; the next status tells whose station it is.
+  view.holder_id = holder == own_name_ ? own_id_ : Id{};
+  view.locked = false;  // every change of holder ends a lock
+  view.lease_left = -1.0F;
+}
+
+void Fleet::own_traffic(TrafficView traffic) { traffic_[own_name_] = std::move(traffic); }
+
+void Fleet::check(Time now) {
+  for (auto& [name, robot] : robots_) {
+    if (robot.lost || now - robot.last_heard <= lost_after) continue;
+    robot.lost = true;
+    notice({.at = now, .robot = name, .level = Level::warning, .code = "lost",
+            .text = name + " has not been heard for 3 s"});
+  }
+  const auto silent = [now](const auto& entry) { return now - entry.second.last_heard > forget_after; };
+  std::erase_if(stations_, silent);
+  std::erase_if(traffic_, silent);
+}
+
+const RobotView* Fleet::robot(const std::string& name) const {
+  const auto found = robots_.find(name);
+  return found == robots_.end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> Fleet::robot_names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, robot] : robots_) names.push_back(name);
+  return names;
+}
+
+void Fleet::notice(Notice notice) {
+  notice.mine = notice.operator_name.empty() || notice.operator_name == own_name_;
+  if (notices_.size() == max_notices) notices_.pop_front();
+  notices_.push_back(notice);
+  if (on_notice) on_notice(notices_.back());
+}
+
+}  // namespace adit::station

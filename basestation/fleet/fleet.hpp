@@ -1,0 +1,72 @@
+#pragma once
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "basestation/fleet/views.hpp"
+#include "core/exec/executor.hpp"
+#include "core/wire/topics.hpp"
+
+namespace adit::station {
+
+/// What one station knows of robots and other stations. Plain data: it is told what was heard and what time it
+/// is. Names that are none and robots beyond the bound are ignored and counted.
+class Fleet {
+ public:
+  static constexpr std::size_t max_robots = 64;
+  static constexpr std::size_t max_stations = 64;
+  static constexpr std::size_t max_notices = 200;
+  static constexpr Duration lost_after = std::chrono::seconds(3);
+
+  Fleet(std::string own_name, Id own_id) : own_name_(std::move(own_name)), own_id_(own_id) {}
+
+  void hear(const radio::Capabilities& sample, const wire::SampleInfo& info);
+  void hear(const radio::Presence& sample, const wire::SampleInfo& info);
+  void hear(const radio::RobotState& sample, const wire::SampleInfo& info);
+  void hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info);
+  void hear(const radio::BehaviourState& sample, const wire::SampleInfo& info);
+  void hear(const radio::Notification& sample, const wire::SampleInfo& info);
+  void hear(const radio::Health& sample, const wire::SampleInfo& info);
+  void hear(const radio::LinkReport& sample, const wire::SampleInfo& info);
+  /// What an acknowledgement says of the holder and the epoch in force.
+  void learn_authority(const std::string& robot, const std::string& holder, const Epoch& epoch);
+  /// This station's own report.
+  void own_traffic(TrafficView traffic);
+  /// Marks silent robots lost, and forgets stations and reports that were silent for a minute.
+  void check(Time now);
+
+  /// Null when the robot is not known.
+  const RobotView* robot(const std::string& name) const;
+  std::vector<std::string> robot_names() const;
+  const std::map<std::string, RobotView>& robots() const { return robots_; }
+  const std::map<std::string, StationView>& stations() const { return stations_; }
+  const std::map<std::string, TrafficView>& traffic() const { return traffic_; }
+  /// Oldest first, the last 200.
+  const std::deque<Notice>& notices() const { return notices_; }
+  /// True when this very station (name and id) holds the robot.
+  bool held_by_me(const RobotView& robot) const { return robot.holder == own_name_ && robot.holder_id == own_id_; }
+  const std::string& own_name() const { return own_name_; }
+  std::uint64_t ignored() const { return ignored_; }
+
+  std::function<void(const Notice&)> on_notice{};
+  /// Called once per robot, when it is first heard of.
+  std::function<void(const RobotView&)> on_robot{};
+
+ private:
+  RobotView* touch(const std::string& name, const wire::SampleInfo& info);
+  void notice(Notice notice);
+
+  std::string own_name_;
+  Id own_id_;
+  std::map<std::string, RobotView> robots_{};
+  std::map<std::string, StationView> stations_{};
+  std::map<std::string, TrafficView> traffic_{};
+  std::deque<Notice> notices_{};
+  Time last_clash_{};
+  bool clashed_{false};
+  std::uint64_t ignored_{};
+};
+
+}  // namespace adit::station
