@@ -15,8 +15,8 @@ struct CommandInfo {
   std::string_view usage;    ///< arguments, as in the help
   std::string_view summary;  ///< one line
   std::string_view example;
-  int robots_min;            ///< robot names wanted; -1: takes none
-  int robots_max;            ///< 0: any number
+  int robots_min;  ///< robot names wanted; -1: takes none
+  int robots_max;  ///< 0: any number
 };
 
 /// Every command, in the order of the help.

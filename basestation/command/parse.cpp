@@ -9,13 +9,14 @@
 namespace adit::station {
 namespace {
 
-constexpr double max_speed = 20.0;      // m/s, rad/s: beyond any robot; a slip of the finger
-constexpr double max_distance = 1e4;    // m
-constexpr double max_duration = 3600.0; // s
+constexpr double max_speed = 20.0;       // m/s, rad/s: beyond any robot; a slip of the finger
+constexpr double max_distance = 1e4;     // m
+constexpr double max_duration = 3600.0;  // s
 constexpr std::size_t max_robots = 64;
 
 std::string usage(const CommandInfo& command) {
-  return "usage: " + std::string(command.name) + (command.usage.empty() ? "" : " ") + std::string(command.usage);
+  return "usage: " + std::string(command.name) + (command.usage.empty() ? "" : " ") +
+         std::string(command.usage);
 }
 
 Error wrong(const CommandInfo& command, const std::string& what) {
@@ -31,10 +32,12 @@ bool to_number(std::string_view word, double& out) {
 
 Result<double> number(const CommandInfo& command, const std::string& word, const char* what, double limit) {
   double value = 0.0;
-  if (!to_number(word, value)) return wrong(command, std::string(what) + " is a number, not '" + clean(word, 32) + "'");
+  if (!to_number(word, value))
+    return wrong(command, std::string(what) + " is a number, not '" + clean(word, 32) + "'");
   if (std::abs(value) > limit) {
     std::string text(std::to_string(static_cast<int>(limit)));
-    return {Reason::out_of_range, std::string(command.name) + ": " + what + " is at most " + text + " either way"};
+    return {Reason::out_of_range,
+            std::string(command.name) + ": " + what + " is at most " + text + " either way"};
   }
   return value;
 }
@@ -73,10 +76,12 @@ Result<void> take_options(const CommandInfo& command, std::vector<std::string>& 
 }
 
 /// The words that are left are robot names.
-Result<void> take_robots(const CommandInfo& command, const std::vector<std::string>& words, Request& request) {
+Result<void> take_robots(const CommandInfo& command, const std::vector<std::string>& words,
+                         Request& request) {
   for (const std::string& word : words) {
     if (!valid_name(word))
-      return wrong(command, "'" + clean(word, 40) + "' cannot be a robot's name (1 to 32 of A-Z a-z 0-9 _ -)");
+      return wrong(command,
+                   "'" + clean(word, 40) + "' cannot be a robot's name (1 to 32 of A-Z a-z 0-9 _ -)");
     if (std::find(request.robots.begin(), request.robots.end(), word) == request.robots.end())
       request.robots.push_back(word);
   }
@@ -89,7 +94,8 @@ Result<void> take_robots(const CommandInfo& command, const std::vector<std::stri
 }
 
 Result<void> take_mode(const CommandInfo& command, std::vector<std::string>& words, Request& request) {
-  if (words.size() < 2) return wrong(command, words.empty() ? "a robot and a mode are missing" : "a mode is missing");
+  if (words.size() < 2)
+    return wrong(command, words.empty() ? "a robot and a mode are missing" : "a mode is missing");
   request.word = words.back();
   words.pop_back();
   const auto& modes = mode_names();
@@ -104,8 +110,8 @@ Result<void> take_numbers(const CommandInfo& command, std::vector<std::string>& 
   const bool drive = request.verb == Verb::drive;
   const std::size_t least = drive ? 4 : 3;
   if (words.size() < least || words.size() > 4)
-    return wrong(command, "takes a robot and " + std::string(drive ? "three" : "two or three") + " numbers, not " +
-                              std::to_string(words.size()) + " words");
+    return wrong(command, "takes a robot and " + std::string(drive ? "three" : "two or three") +
+                              " numbers, not " + std::to_string(words.size()) + " words");
   static constexpr std::array<const char*, 3> drive_names{"VX", "VY", "WZ"};
   static constexpr std::array<const char*, 3> goto_names{"X", "Y", "Z"};
   for (std::size_t i = 1; i < words.size(); ++i) {
@@ -143,7 +149,8 @@ Result<Request> parse(const std::vector<std::string>& all_words) {
       break;
     case Verb::grant:
       if (words.size() != 2) return wrong(*command, "takes a robot and an operator");
-      if (!valid_name(words[1])) return wrong(*command, "'" + clean(words[1], 40) + "' cannot be an operator's name");
+      if (!valid_name(words[1]))
+        return wrong(*command, "'" + clean(words[1], 40) + "' cannot be an operator's name");
       request.word = words[1];
       words.pop_back();
       break;

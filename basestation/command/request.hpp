@@ -9,10 +9,26 @@ namespace adit::station {
 
 /// What an operator can ask. The names are in the grammar (basestation/command/grammar.hpp).
 enum class Verb {
-  up, down, list, status, watch, net, health, actions, run,
-  take, release, lock, unlock, grant,
-  mode, drive, go_to, teleop,
-  stop, reset,
+  up,
+  down,
+  list,
+  status,
+  watch,
+  net,
+  health,
+  actions,
+  run,
+  take,
+  release,
+  lock,
+  unlock,
+  grant,
+  mode,
+  drive,
+  go_to,
+  teleop,
+  stop,
+  reset,
 };
 
 /// One parsed command line.
@@ -23,8 +39,8 @@ struct Request {
   std::string word{};                 ///< mode: its name; grant: the operator; run: the file
   /// goto: x y z in the map frame, m (z NaN when not given); drive: vx vy in m/s, wz in rad/s, body frame
   std::array<double, 3> numbers{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};
-  double duration{1.0};  ///< drive --for: s, (0, 3600]
-  bool wait{false};      ///< goto --wait
+  double duration{1.0};       ///< drive --for: s, (0, 3600]
+  bool wait{false};           ///< goto --wait
   bool override_stop{false};  ///< reset --override
   bool all_operators{false};  ///< run --all
 };

@@ -30,20 +30,28 @@ std::vector<std::string> cleaned(const std::vector<std::string>& words, std::siz
 
 const char* to_string(GoalPhase phase) {
   switch (phase) {
-    case GoalPhase::none: return "none";
-    case GoalPhase::kept: return "kept";
-    case GoalPhase::active: return "active";
-    case GoalPhase::blocked: return "blocked";
-    case GoalPhase::reached: return "reached";
+    case GoalPhase::none:
+      return "none";
+    case GoalPhase::kept:
+      return "kept";
+    case GoalPhase::active:
+      return "active";
+    case GoalPhase::blocked:
+      return "blocked";
+    case GoalPhase::reached:
+      return "reached";
   }
   return "unknown";
 }
 
 const char* to_string(Level level) {
   switch (level) {
-    case Level::info: return "info";
-    case Level::warning: return "warning";
-    case Level::error: return "error";
+    case Level::info:
+      return "info";
+    case Level::warning:
+      return "warning";
+    case Level::error:
+      return "error";
   }
   return "unknown";
 }
@@ -90,14 +98,18 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
   if (sample.name() == own_name_ && sample.id() != own_id_) {
     // Robots will refuse one of the two: its operator has to choose another name.
     if (!clashed_ || info.received - last_clash_ > forget_after)
-      notice({.at = info.received, .level = Level::warning, .code = "name_in_use", .reason = Reason::name_in_use,
+      notice({.at = info.received,
+              .level = Level::warning,
+              .code = "name_in_use",
+              .reason = Reason::name_in_use,
               .text = "another station on the air calls itself " + own_name_ + "; choose another --name"});
     clashed_ = true;
     last_clash_ = info.received;
     return;
   }
   if (sample.name() == own_name_) return;
-  if (!valid_name(sample.name()) || (!stations_.contains(sample.name()) && stations_.size() == max_stations)) {
+  if (!valid_name(sample.name()) ||
+      (!stations_.contains(sample.name()) && stations_.size() == max_stations)) {
     ++ignored_;
     return;
   }
@@ -120,7 +132,8 @@ void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) 
   robot->battery = sample.battery();
   if (!robot->lost) return;
   robot->lost = false;
-  notice({.at = info.received, .robot = robot->name, .code = "back", .text = robot->name + " is heard again"});
+  notice(
+      {.at = info.received, .robot = robot->name, .code = "back", .text = robot->name + " is heard again"});
 }
 
 void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info) {
@@ -157,8 +170,8 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   robot->choices.clear();
   for (const auto& option : sample.modes()) {
     if (robot->choices.size() == 16) break;
-    robot->choices.push_back({clean(option.mode(), name_limit), option.available(),
-                              static_cast<Reason>(option.reason())});
+    robot->choices.push_back(
+        {clean(option.mode(), name_limit), option.available(), static_cast<Reason>(option.reason())});
   }
 }
 
@@ -228,7 +241,10 @@ void Fleet::check(Time now) {
   for (auto& [name, robot] : robots_) {
     if (robot.lost || now - robot.last_heard <= lost_after) continue;
     robot.lost = true;
-    notice({.at = now, .robot = name, .level = Level::warning, .code = "lost",
+    notice({.at = now,
+            .robot = name,
+            .level = Level::warning,
+            .code = "lost",
             .text = name + " has not been heard for 3 s"});
   }
   const auto silent = [now](const auto& entry) { return now - entry.second.last_heard > forget_after; };

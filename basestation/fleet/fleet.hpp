@@ -11,8 +11,8 @@
 
 namespace adit::station {
 
-/// What one station knows of robots and other stations. Plain data: it is told what was heard and what time it
-/// is. Names that are none and robots beyond the bound are ignored and counted.
+/// What one station knows of robots and other stations. Plain data: it is told what was heard and what time
+/// it is. Names that are none and robots beyond the bound are ignored and counted.
 class Fleet {
  public:
   static constexpr std::size_t max_robots = 64;
@@ -46,7 +46,9 @@ class Fleet {
   /// Oldest first, the last 200.
   const std::deque<Notice>& notices() const { return notices_; }
   /// True when this very station (name and id) holds the robot.
-  bool held_by_me(const RobotView& robot) const { return robot.holder == own_name_ && robot.holder_id == own_id_; }
+  bool held_by_me(const RobotView& robot) const {
+    return robot.holder == own_name_ && robot.holder_id == own_id_;
+  }
   const std::string& own_name() const { return own_name_; }
   std::uint64_t ignored() const { return ignored_; }
 

@@ -41,7 +41,8 @@ struct ComponentView {
   std::string text{};
 };
 
-/// All that was heard of one robot. Positions in the map frame (m, rad), speeds in the body frame (m/s, rad/s).
+/// All that was heard of one robot. Positions in the map frame (m, rad), speeds in the body frame (m/s,
+/// rad/s).
 struct RobotView {
   std::string name{};
   wire::ParticipantId participant{};
@@ -59,15 +60,15 @@ struct RobotView {
   std::vector<std::string> sensors{};
   std::vector<std::string> services{};
 
-  bool located{false};     ///< a RobotState was heard
-  std::uint64_t stamp{};   ///< the robot's clock, as it is to be echoed
+  bool located{false};    ///< a RobotState was heard
+  std::uint64_t stamp{};  ///< the robot's clock, as it is to be echoed
   float x{}, y{}, z{}, yaw{};
   float vx{}, vy{}, wz{};
-  float battery{-1.0F};    ///< 0..1; negative: not known
+  float battery{-1.0F};  ///< 0..1; negative: not known
 
-  bool owned{false};       ///< an AuthorityStatus was heard
+  bool owned{false};  ///< an AuthorityStatus was heard
   Epoch epoch{};
-  std::string holder{};    ///< empty: nobody
+  std::string holder{};  ///< empty: nobody
   Id holder_id{};
   bool locked{};
   float lease_left{-1.0F};  ///< s; negative: no lease runs

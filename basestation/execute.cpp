@@ -1,0 +1,398 @@
+// What a station does with a command line.
+#include <algorithm>
+#include <utility>
+
+#include "basestation/command/grammar.hpp"
+#include "basestation/command/words.hpp"
+#include "basestation/report/json.hpp"
+#include "basestation/report/table.hpp"
+#include "basestation/report/text.hpp"
+#include "basestation/station_impl.hpp"
+
+namespace adit::station {
+namespace {
+
+constexpr std::size_t max_waiting = 64;
+constexpr std::size_t max_flows = 64;
+
+bool is_query(Verb verb) {
+  return verb == Verb::list || verb == Verb::status || verb == Verb::net || verb == Verb::health ||
+         verb == Verb::actions;
+}
+
+Kind kind_of(Verb verb) {
+  switch (verb) {
+    case Verb::take:
+      return Kind::take;
+    case Verb::release:
+      return Kind::release;
+    case Verb::lock:
+      return Kind::lock;
+    case Verb::unlock:
+      return Kind::unlock;
+    case Verb::grant:
+      return Kind::grant;
+    case Verb::mode:
+      return Kind::mode;
+    case Verb::go_to:
+      return Kind::go_to;
+    case Verb::stop:
+      return Kind::stop;
+    case Verb::reset:
+      return Kind::reset;
+    default:
+      return Kind::query;
+  }
+}
+
+/// What an accepted command reads like.
+std::string done_text(const Request& request) {
+  switch (request.verb) {
+    case Verb::take:
+      return "yours";
+    case Verb::release:
+      return "released";
+    case Verb::lock:
+      return "locked";
+    case Verb::unlock:
+      return "unlocked";
+    case Verb::grant:
+      return "granted to " + request.word;
+    case Verb::mode:
+      return "mode " + request.word;
+    case Verb::drive:
+      return "drove for " + fixed(request.duration, 1) + " s";
+    case Verb::go_to:
+      return (request.wait ? "arrived at " : "on its way to ") + fixed(request.numbers[0], 2) + " " +
+             fixed(request.numbers[1], 2);
+    case Verb::teleop:
+      return "let go";
+    case Verb::stop:
+      return "stopped";
+    case Verb::reset:
+      return "reset";
+    default:
+      return "done";
+  }
+}
+
+int exit_of(const Answer& answer) {
+  if (answer.accepted) return 0;
+  return answer.reason == Reason::no_answer ? 3 : 1;
+}
+
+nlohmann::json json_of(Verb verb, int exit_code) {
+  return {{"command", info(verb).name}, {"exit", exit_code}, {"ok", exit_code == 0}};
+}
+
+std::string unknown_text(const Fleet& fleet) {
+  return "no robot of that name has been heard; known robots: " + joined(fleet.robot_names(), "none");
+}
+
+Outcome unknown_robot(const Request& request, const Fleet& fleet, const std::string& robot) {
+  Outcome outcome{
+      .exit_code = 1, .error = robot + ": " + unknown_text(fleet) + "\n", .json = json_of(request.verb, 1)};
+  outcome.json["reason"] = name(Reason::unknown_robot);
+  outcome.json["error"] = outcome.error;
+  return outcome;
+}
+
+bool manual_mode(const std::string& mode) { return mode == "manual" || mode == "smart_joystick"; }
+
+}  // namespace
+
+bool Station::Impl::known(const Request& request) const {
+  return std::all_of(request.robots.begin(), request.robots.end(),
+                     [this](const std::string& robot) { return fleet_.robot(robot) != nullptr; });
+}
+
+bool Station::Impl::must_wait(const Request& request) const {
+  if (!known(request) && fresh(params_.discovery_grace)) return true;
+  return is_query(request.verb) && fresh(params_.settle);
+}
+
+std::uint64_t Station::Impl::execute(const Request& request, Done done) {
+  const std::uint64_t handle = next_handle_++;
+  // What was typed later does not pass what waits for the same robot.
+  const bool behind = request.verb != Verb::stop &&
+                      std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
+                        return std::find_first_of(earlier.request.robots.begin(),
+                                                  earlier.request.robots.end(), request.robots.begin(),
+                                                  request.robots.end()) != earlier.request.robots.end();
+                      });
+  if ((behind || must_wait(request)) && waiting_.size() < max_waiting)
+    waiting_.push_back({handle, request, std::move(done)});
+  else
+    run(handle, request, std::move(done));
+  return handle;
+}
+
+std::uint64_t Station::Impl::refuse(const Error& error, const Done& done) {
+  note({.reason = error.reason, .text = error.text});
+  Outcome outcome{.exit_code = 2, .error = error.text + "\n"};
+  outcome.json = {{"exit", 2}, {"ok", false}, {"reason", name(error.reason)}, {"error", error.text}};
+  done(outcome);
+  return next_handle_++;
+}
+
+void Station::Impl::run(std::uint64_t handle, const Request& request, Done done) {
+  if (is_query(request.verb)) return answer_query(request, done);
+  if (request.verb == Verb::up) {
+    closed_ = false;
+    announce();
+    return done({.text = "station " + params_.name + " is up\n", .json = json_of(request.verb, 0)});
+  }
+  if (closed_) {
+    note({.command = std::string(info(request.verb).name),
+          .reason = Reason::no_station,
+          .text = std::string(describe(Reason::no_station))});
+    Outcome outcome{.exit_code = 1, .error = std::string(describe(Reason::no_station)) + "\n"};
+    outcome.json = json_of(request.verb, 1);
+    outcome.json["reason"] = name(Reason::no_station);
+    return done(outcome);
+  }
+  if (request.verb == Verb::down) return down(std::move(done));
+  if (request.verb == Verb::stop && request.all) return stop_all(request, std::move(done));
+  command_robots(handle, request, std::move(done));
+}
+
+void Station::Impl::answer_query(const Request& request, const Done& done) {
+  std::vector<const RobotView*> selection;
+  for (const std::string& robot : request.robots) {
+    selection.push_back(fleet_.robot(robot));
+    if (!selection.back()) return done(unknown_robot(request, fleet_, robot));
+  }
+  const Time at = strand_.now();
+  Outcome outcome{.json = json_of(request.verb, 0)};
+  if (request.verb == Verb::list) {
+    outcome.text = list_text(fleet_, at);
+    outcome.json.update(list_json(fleet_, at));
+  } else if (request.verb == Verb::status && !selection.empty()) {
+    outcome.text = status_text(fleet_, *selection.front(), at);
+    outcome.json.update(robot_json(fleet_, *selection.front(), at));
+  } else if (request.verb == Verb::status) {
+    const Counts& c = sender_.counts();
+    outcome.text = "station " + params_.name + " on " + params_.link + ", up " +
+                   fixed(seconds(at - started_), 0) + " s; commands " + std::to_string(c.sent) + " sent, " +
+                   std::to_string(c.accepted) + " accepted, " + std::to_string(c.refused) + " refused, " +
+                   std::to_string(c.unanswered) + " unanswered\n" + list_text(fleet_, at);
+    outcome.json.update(list_json(fleet_, at));
+    outcome.json["station"] = params_.name;
+    outcome.json["link"] = params_.link;
+    outcome.json["up_for"] = seconds(at - started_);
+    outcome.json["commands"] = {{"sent", c.sent},
+                                {"repeats", c.repeats},
+                                {"accepted", c.accepted},
+                                {"refused", c.refused},
+                                {"unanswered", c.unanswered}};
+    nlohmann::json notices = nlohmann::json::array();
+    for (const Notice& notice : fleet_.notices()) notices.push_back(notice_json(notice, at));
+    outcome.json["notifications"] = notices;
+  } else if (request.verb == Verb::net) {
+    outcome.text = net_text(fleet_, at, params_.link, params_.bandwidth);
+    outcome.json.update(net_json(fleet_, at));
+  } else if (request.verb == Verb::actions) {
+    const std::vector<Action> rows = actions(fleet_, selection);
+    outcome.text = actions_text(rows);
+    outcome.json["actions"] = actions_json(rows);
+  } else {
+    if (selection.empty())
+      for (const auto& [robot_name, robot] : fleet_.robots()) selection.push_back(&robot);
+    outcome.json["robots"] = nlohmann::json::array();
+    for (const RobotView* robot : selection) {
+      outcome.text += health_text(*robot);
+      outcome.json["robots"].push_back(health_json(*robot));
+    }
+    if (selection.empty()) outcome.text = "no robot has been heard\n";
+  }
+  done(outcome);
+}
+
+void Station::Impl::command_robots(std::uint64_t handle, const Request& request, Done done) {
+  auto gather = std::make_shared<Gather>();
+  gather->request = request;
+  gather->answers.resize(request.robots.size());
+  gather->missing = request.robots.size();
+  gather->done = std::move(done);
+  for (std::size_t i = 0; i < request.robots.size(); ++i) command_robot(handle, request.robots[i], gather, i);
+}
+
+void Station::Impl::command_robot(std::uint64_t handle, const std::string& robot,
+                                  const std::shared_ptr<Gather>& gather, std::size_t index) {
+  const Request& request = gather->request;
+  const auto ended = [this, gather, index](const Answer& answer) { gathered(gather, index, answer); };
+  if (!fleet_.robot(robot))
+    return ended({.robot = robot, .reason = Reason::unknown_robot, .text = unknown_text(fleet_)});
+  SteerParams steer{.velocity = request.numbers, .duration = from_seconds(request.duration)};
+  if (request.verb == Verb::drive)
+    return add_flow(handle, std::make_shared<Steer>(parts(), robot, steer, ended));
+  if (request.verb == Verb::teleop) {
+    steer.purpose = SteerParams::Purpose::teleop;
+    return add_flow(handle, std::make_shared<Steer>(parts(), robot, steer, ended));
+  }
+  if (request.verb == Verb::mode && manual_mode(request.word)) {
+    steer.purpose = SteerParams::Purpose::enter;
+    steer.mode = request.word;
+    return add_flow(handle, std::make_shared<Steer>(parts(), robot, steer, ended));
+  }
+  if (request.verb == Verb::stop) end_flows(robot, Reason::stopped);
+  if (request.verb == Verb::mode || request.verb == Verb::go_to) end_flows(robot, Reason::cancelled);
+  if (request.verb == Verb::go_to && request.wait)
+    return add_flow(handle, std::make_shared<Arrival>(parts(), robot, request.numbers, ended));
+  sender_.send({.robot = robot,
+                .kind = kind_of(request.verb),
+                .text = request.word,
+                .position = request.numbers,
+                .flag = request.override_stop},
+               ended);
+}
+
+void Station::Impl::stop_all(const Request& request, Done done) {
+  auto gather = std::make_shared<Gather>();
+  gather->request = request;
+  gather->done = std::move(done);
+  stop_alls_.push_back({.gather = gather});
+  for (const auto& [robot_name, robot] : fleet_.robots()) ask_stop(stop_alls_.back(), robot_name);
+  if (!fresh(params_.discovery_grace)) finish_stop_all();
+}
+
+void Station::Impl::ask_stop(StopAll& all, const std::string& robot) {
+  if (!all.asked.insert(robot).second) return;
+  const std::size_t index = all.gather->answers.size();
+  all.gather->answers.emplace_back();
+  ++all.gather->missing;
+  command_robot(0, robot, all.gather, index);
+}
+
+void Station::Impl::finish_stop_all() {
+  for (StopAll& all : std::exchange(stop_alls_, {})) {
+    if (all.gather->missing == 0) finish(*all.gather);
+    // Otherwise its last answer finishes it.
+  }
+}
+
+void Station::Impl::gathered(const std::shared_ptr<Gather>& gather, std::size_t index, const Answer& answer) {
+  gather->answers[index] = answer;
+  gather->answers[index].command = info(gather->request.verb).name;
+  note(gather->answers[index]);
+  if (--gather->missing > 0) return;
+  const bool growing = std::any_of(stop_alls_.begin(), stop_alls_.end(),
+                                   [&](const StopAll& all) { return all.gather == gather; });
+  if (!growing) finish(*gather);
+}
+
+void Station::Impl::finish(Gather& gather) {
+  Outcome outcome;
+  nlohmann::json results = nlohmann::json::array();
+  bool refused = false, silent = false;
+  for (const Answer& answer : gather.answers) {
+    const int code = exit_of(answer);
+    refused = refused || code == 1;
+    silent = silent || code == 3;
+    (code == 0 ? outcome.text : outcome.error) += answer_text(answer, done_text(gather.request));
+    results.push_back(answer_json(answer));
+  }
+  if (gather.answers.empty()) {
+    silent = true;
+    outcome.error = "no robot has been heard; nothing was stopped\n";
+  }
+  outcome.exit_code = refused ? 1 : silent ? 3 : 0;
+  outcome.json = json_of(gather.request.verb, outcome.exit_code);
+  outcome.json["results"] = results;
+  if (const Done done = std::exchange(gather.done, nullptr)) done(outcome);
+}
+
+void Station::Impl::down(Done done) {
+  Request request{.verb = Verb::down};
+  for (const auto& [robot_name, robot] : fleet_.robots())
+    if (fleet_.held_by_me(robot)) request.robots.push_back(robot_name);
+  auto gather = std::make_shared<Gather>();
+  gather->request = request;
+  gather->request.verb = Verb::release;
+  gather->answers.resize(request.robots.size());
+  gather->missing = request.robots.size();
+  gather->done = [this, done = std::move(done)](const Outcome& released) {
+    closed_ = true;
+    // A robot that does not answer keeps its holder; the station goes down all the same, and says so.
+    Outcome outcome = released;
+    outcome.exit_code = 0;
+    outcome.text += "station " + params_.name + " is down\n";
+    outcome.json = json_of(Verb::down, 0);
+    outcome.json["results"] = released.json["results"];
+    done(outcome);
+    if (owner_.on_down) owner_.on_down();
+  };
+  if (request.robots.empty()) {
+    gather->answers.clear();
+    const Done finished = std::exchange(gather->done, nullptr);
+    return finished({.json = {{"results", nlohmann::json::array()}}});
+  }
+  for (std::size_t i = 0; i < request.robots.size(); ++i) {
+    end_flows(request.robots[i], Reason::cancelled);
+    command_robot(0, request.robots[i], gather, i);
+  }
+}
+
+void Station::Impl::note(const Answer& answer) {
+  last_answer_ = answer;
+  if (owner_.on_answer) owner_.on_answer(answer);
+}
+
+void Station::Impl::add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow) {
+  std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
+  for (const auto& [other, running] : std::multimap(flows_))
+    if (running->robot() == flow->robot() && dynamic_cast<Steer*>(running.get())) running->hand_over();
+  std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
+  flows_.emplace(handle, flow);
+  flow->start();
+  if (flows_.size() > max_flows)
+    flows_.begin()->second->cancel(Reason::queue_full, "too much is going on at once");
+}
+
+void Station::Impl::end_flows(const std::string& robot, Reason reason) {
+  for (const auto& [handle, flow] : std::multimap(flows_))
+    if (flow->robot() == robot && dynamic_cast<Steer*>(flow.get()))
+      flow->cancel(reason, reason == Reason::cancelled ? "another command took its place" : "");
+}
+
+void Station::Impl::cancel(std::uint64_t handle) {
+  const auto [first, last] = flows_.equal_range(handle);
+  for (const auto& [same, flow] : std::multimap(first, last)) flow->cancel(Reason::cancelled, "cancelled");
+  for (auto it = waiting_.begin(); it != waiting_.end(); ++it) {
+    if (it->handle != handle) continue;
+    const Waiting dropped = std::move(*it);
+    waiting_.erase(it);
+    Outcome outcome{.exit_code = 1, .error = "cancelled\n", .json = json_of(dropped.request.verb, 1)};
+    outcome.json["reason"] = name(Reason::cancelled);
+    return dropped.done(outcome);
+  }
+}
+
+std::uint64_t Station::Impl::teleop(const std::string& robot, Done done) {
+  return execute(Request{.verb = Verb::teleop, .robots = {robot}}, std::move(done));
+}
+
+void Station::Impl::stick(std::uint64_t handle, const std::array<double, 3>& velocity) {
+  const auto [first, last] = flows_.equal_range(handle);
+  for (const auto& [same, flow] : std::multimap(first, last))
+    if (auto* steer = dynamic_cast<Steer*>(flow.get())) steer->set_velocity(velocity);
+}
+
+void Station::Impl::tick() {
+  fleet_.check(strand_.now());
+  std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
+  for (Waiting& next : std::exchange(waiting_, {})) {
+    const bool behind = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
+      return earlier.request.robots == next.request.robots;
+    });
+    if (behind || must_wait(next.request))
+      waiting_.push_back(std::move(next));
+    else
+      run(next.handle, next.request, std::move(next.done));
+  }
+  for (StopAll& all : stop_alls_)
+    for (const std::string& robot : fleet_.robot_names()) ask_stop(all, robot);
+  if (!stop_alls_.empty() && !fresh(params_.discovery_grace)) finish_stop_all();
+}
+
+}  // namespace adit::station

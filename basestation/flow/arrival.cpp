@@ -1,0 +1,72 @@
+#include "basestation/flow/arrival.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace adit::station {
+
+using namespace std::chrono_literals;
+
+Arrival::Arrival(FlowParts parts, std::string robot, std::array<double, 3> goal, Done done)
+    : Flow(parts, std::move(robot), std::move(done)), goal_(goal) {}
+
+void Arrival::start() {
+  parts_.sender.send({.robot = robot(), .kind = Kind::go_to, .position = goal_},
+                     [weak = weak_from_this()](const Answer& answer) {
+                       if (auto self = weak.lock()) static_cast<Arrival&>(*self).answered(answer);
+                     });
+  goal_before_ = view() ? view()->goal_id : 0;
+}
+
+void Arrival::answered(const Answer& answer) {
+  if (over()) return;
+  outcome_ = answer;
+  if (!answer.accepted) return tell(answer);
+  accepted_at_ = parts_.strand.now();
+  behaviour_before_ = view() ? view()->behaviour_count : 0;
+  timer_ = parts_.strand.every(100ms, [weak = weak_from_this()] {
+    if (auto self = weak.lock()) static_cast<Arrival&>(*self).poll();
+  });
+}
+
+void Arrival::poll() {
+  const Time now = parts_.strand.now();
+  const RobotView* robot_now = view();
+  if (!robot_now) return;
+  if (now - robot_now->last_heard > 30s)
+    return end(Reason::no_answer, "the robot has not been heard for 30 s");
+  if (!seen_) {
+    // The state that shows the new goal may be under way still, or have come before the answer.
+    seen_ = robot_now->goal_id != goal_before_ &&
+            std::hypot(robot_now->goal[0] - goal_[0], robot_now->goal[1] - goal_[1]) < 0.5;
+    goal_id_ = robot_now->goal_id;
+    if (!seen_ && now - accepted_at_ > 5s && robot_now->behaviour_count > behaviour_before_)
+      return end(Reason::cancelled, "the robot does not show the goal");
+    if (!seen_) return;
+  }
+  if (robot_now->goal_id != goal_id_) return end(Reason::cancelled, "the robot was given another goal");
+  if (robot_now->goal_phase == GoalPhase::reached) return end(Reason::none, "");
+  if (robot_now->stopped) return end(Reason::stopped, "");
+  if (robot_now->mode != "waypoint")
+    return end(Reason::cancelled, "the robot left waypoint for " + robot_now->mode);
+  if (robot_now->goal_phase != GoalPhase::blocked) {
+    blocked_ = false;
+  } else if (!blocked_) {
+    blocked_ = true;
+    blocked_since_ = now;
+  } else if (now - blocked_since_ > 5s) {
+    return end(Reason::blocked, "every path to the goal has been blocked for 5 s");
+  }
+}
+
+void Arrival::cancel(Reason reason, const std::string& text) { end(reason, text); }
+
+void Arrival::end(Reason reason, const std::string& text) {
+  timer_.cancel();
+  outcome_.accepted = reason == Reason::none;
+  outcome_.reason = reason;
+  outcome_.text = text;
+  tell(outcome_);
+}
+
+}  // namespace adit::station

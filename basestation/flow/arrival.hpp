@@ -1,0 +1,33 @@
+#pragma once
+#include <array>
+
+#include "basestation/flow/flow.hpp"
+
+namespace adit::station {
+
+/// `goto --wait`: asks for the goal, then waits until it is reached, or the robot is blocked for 5 s, leaves
+/// the mode, gets another goal, or is lost for 30 s.
+class Arrival final : public Flow {
+ public:
+  Arrival(FlowParts parts, std::string robot, std::array<double, 3> goal, Done done);
+  void start() override;
+  void cancel(Reason reason, const std::string& text) override;
+
+ private:
+  void answered(const Answer& answer);
+  void poll();
+  void end(Reason reason, const std::string& text);
+
+  std::array<double, 3> goal_;
+  Answer outcome_{};
+  Timer timer_{};
+  Time accepted_at_{};
+  Time blocked_since_{};
+  bool blocked_{false};
+  bool seen_{false};
+  std::uint32_t goal_before_{};
+  std::uint32_t goal_id_{};
+  std::uint64_t behaviour_before_{};
+};
+
+}  // namespace adit::station

@@ -1,0 +1,188 @@
+#include "basestation/flow/steer.hpp"
+
+#include <utility>
+
+namespace adit::station {
+
+using namespace std::chrono_literals;
+
+namespace {
+constexpr std::array<double, 3> centred{0.0, 0.0, 0.0};
+constexpr Duration lead = 150ms;         // zeros ahead of asking, so that one of them arrives
+constexpr Duration insist = 3s;          // a robot that has not heard the stick yet is asked again
+constexpr Duration settle = 300ms;       // zeros before letting go
+constexpr Duration stick_lapse = 250ms;  // a live stick that is not renewed counts as let go
+constexpr Duration appear = 2s;          // by then the mode shows in the behaviour state
+}  // namespace
+
+Steer::Steer(FlowParts parts, std::string robot, SteerParams params, Done done)
+    : Flow(parts, std::move(robot), std::move(done)), params_(std::move(params)) {}
+
+void Steer::start() {
+  enter_phase(Phase::waiting);
+  timer_ = parts_.strand.every(Stick::period, [weak = weak_from_this()] {
+    if (auto self = weak.lock()) static_cast<Steer&>(*self).poll();
+  });
+  poll();
+}
+
+void Steer::enter_phase(Phase phase) {
+  phase_ = phase;
+  phase_since_ = parts_.strand.now();
+}
+
+void Steer::stream(const std::array<double, 3>& velocity) {
+  if (auto streamed = parts_.stick.stream(robot(), velocity); !streamed)
+    end(streamed.error().reason, streamed.error().text);
+}
+
+void Steer::poll() {
+  const Duration since = parts_.strand.now() - phase_since_;
+  Reason reason{};
+  std::string text;
+  switch (phase_) {
+    case Phase::waiting:
+      if (parts_.sender.idle(robot())) begin();
+      break;
+    case Phase::centring:
+      if (since >= lead) ask();
+      break;
+    case Phase::asking:
+      break;
+    case Phase::moving:
+      if (left_mode(reason, text)) return end(reason, text);
+      if (params_.purpose == SteerParams::Purpose::teleop) {
+        if (parts_.strand.now() - stick_at_ > stick_lapse) stream(centred);
+      } else if (since >= params_.duration) {
+        const bool lost = view() && view()->lost;
+        end(lost ? Reason::no_answer : Reason::none, lost ? "the robot was lost while it drove" : "");
+      }
+      break;
+    case Phase::settling:
+      if (since >= settle) settled();
+      break;
+    case Phase::keeping:
+      if (left_mode(reason, text)) {
+        parts_.stick.end(robot());
+        timer_.cancel();
+        enter_phase(Phase::over);
+      }
+      break;
+    case Phase::over:
+      break;
+  }
+}
+
+void Steer::begin() {
+  const RobotView* robot_now = view();
+  const bool mine = robot_now && parts_.fleet.held_by_me(*robot_now);
+  if (mine && params_.purpose != SteerParams::Purpose::enter && robot_now->mode == "smart_joystick") {
+    params_.mode = "smart_joystick";
+    keep_after_ = seen_in_mode_ = true;
+    return move();
+  }
+  if (!mine)
+    return ask();  // the robot will say why not; a stream that it does not take tells nobody anything
+  enter_phase(Phase::centring);
+  stream(centred);
+}
+
+void Steer::ask() {
+  enter_phase(Phase::asking);
+  if (!asked_) first_asked_ = parts_.strand.now();
+  asked_ = true;
+  behaviour_before_ = view() ? view()->behaviour_count : 0;
+  parts_.sender.send({.robot = robot(), .kind = Kind::mode, .text = params_.mode},
+                     [weak = weak_from_this()](const Answer& answer) {
+                       if (auto self = weak.lock()) static_cast<Steer&>(*self).answered(answer);
+                     });
+}
+
+void Steer::answered(const Answer& answer) {
+  if (phase_ != Phase::asking) return;
+  const bool no_stick = answer.reason == Reason::joystick_stale || answer.reason == Reason::stick_not_centred;
+  if (no_stick && parts_.stick.streaming(robot()) && parts_.strand.now() - first_asked_ < insist)
+    return enter_phase(Phase::centring);
+  outcome_ = answer;
+  if (!answer.accepted) {
+    parts_.stick.end(robot());
+    timer_.cancel();
+    enter_phase(Phase::over);
+    return tell(answer);
+  }
+  if (params_.purpose != SteerParams::Purpose::enter) return move();
+  enter_phase(Phase::keeping);
+  tell(answer);
+}
+
+void Steer::move() {
+  enter_phase(Phase::moving);
+  outcome_.accepted = outcome_.answered = true;
+  if (params_.purpose == SteerParams::Purpose::drive) stream(params_.velocity);
+}
+
+void Steer::set_velocity(const std::array<double, 3>& velocity) {
+  if (phase_ != Phase::moving) return;
+  stick_at_ = parts_.strand.now();
+  stream(velocity);
+}
+
+bool Steer::left_mode(Reason& reason, std::string& text) {
+  const RobotView* robot_now = view();
+  if (!robot_now || robot_now->behaviour_count == behaviour_before_) return false;
+  if (!parts_.fleet.held_by_me(*robot_now)) {
+    reason = robot_now->holder.empty() ? Reason::nobody_holds : Reason::not_holder;
+    text = robot_now->holder.empty() ? "" : robot_now->holder + " holds the robot now";
+    return true;
+  }
+  if (robot_now->mode == params_.mode && !robot_now->stopped) {
+    seen_in_mode_ = true;
+    return false;
+  }
+  if (!seen_in_mode_ && parts_.strand.now() - phase_since_ < appear) return false;
+  reason = robot_now->stopped ? Reason::stopped : Reason::wrong_mode;
+  text = robot_now->stopped ? "" : "the robot left " + params_.mode + " for " + robot_now->mode;
+  return true;
+}
+
+void Steer::stream_refused(Reason reason, const std::string& text) {
+  // A stale echo passes; these do not.
+  const bool lasting = reason == Reason::not_holder || reason == Reason::nobody_holds ||
+                       reason == Reason::stopped || reason == Reason::stale_epoch ||
+                       reason == Reason::wrong_mode || reason == Reason::identity_mismatch ||
+                       reason == Reason::name_in_use;
+  if (phase_ == Phase::moving && lasting && parts_.strand.now() - phase_since_ > settle) end(reason, text);
+}
+
+void Steer::cancel(Reason reason, const std::string& text) { end(reason, text); }
+
+void Steer::hand_over() {
+  if (parts_.stick.streaming(robot())) (void)parts_.stick.stream(robot(), centred);
+  timer_.cancel();
+  enter_phase(Phase::over);
+  tell({.command = {}, .reason = Reason::cancelled, .text = "another command took its place"});
+}
+
+void Steer::end(Reason reason, const std::string& text) {
+  if (phase_ == Phase::settling || phase_ == Phase::over) return;
+  outcome_.accepted = reason == Reason::none;
+  outcome_.reason = reason;
+  outcome_.text = text;
+  if (reason != Reason::none) keep_after_ = keep_after_ && reason == Reason::cancelled;
+  const bool streaming = parts_.stick.streaming(robot());
+  enter_phase(Phase::settling);
+  if (!streaming || !parts_.stick.stream(robot(), centred)) settled();
+}
+
+void Steer::settled() {
+  if (keep_after_) {
+    enter_phase(Phase::keeping);
+  } else {
+    parts_.stick.end(robot());
+    timer_.cancel();
+    enter_phase(Phase::over);
+  }
+  tell(outcome_);
+}
+
+}  // namespace adit::station

@@ -1,0 +1,123 @@
+#include "basestation/report/json.hpp"
+
+namespace adit::station {
+
+using nlohmann::json;
+
+json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
+  json stops = json::array();
+  for (const StopLatch& stop : robot.stops) stops.push_back(stop.station);
+  json modes = json::array();
+  for (const ModeChoice& choice : robot.choices)
+    modes.push_back(
+        {{"mode", choice.mode}, {"available", choice.available}, {"reason", name(choice.reason)}});
+  json out{{"robot", robot.name},
+           {"age", seconds(now - robot.last_heard)},
+           {"lost", robot.lost},
+           {"kind", robot.platform},
+           {"software", robot.software},
+           {"protocol", robot.protocol},
+           {"max_speed", robot.max_speed},
+           {"max_turn", robot.max_turn},
+           {"sensors", robot.sensors},
+           {"services", robot.services},
+           {"holder", robot.holder},
+           {"mine", fleet.held_by_me(robot)},
+           {"locked", robot.locked},
+           {"lock_lease_left", robot.lease_left},
+           {"epoch", {{"start", robot.epoch.start}, {"counter", robot.epoch.counter}}},
+           {"stops", stops},
+           {"stopped", robot.stopped || !robot.stops.empty()},
+           {"mode", robot.mode},
+           {"moving_allowed", robot.moving_allowed},
+           {"reason", name(robot.reason)},
+           {"goal_state", to_string(robot.goal_phase)},
+           {"goal_id", robot.goal_id},
+           {"modes", modes}};
+  if (robot.located) {
+    out["pose"] = {robot.x, robot.y, robot.z, robot.yaw};
+    out["velocity"] = {robot.vx, robot.vy, robot.wz};
+    if (robot.battery >= 0.0F) out["battery"] = robot.battery;
+  }
+  if (robot.goal_phase != GoalPhase::none) out["goal"] = robot.goal;
+  return out;
+}
+
+json notice_json(const Notice& notice, Time now) {
+  return {{"age", seconds(now - notice.at)},
+          {"robot", notice.robot},
+          {"operator", notice.operator_name},
+          {"level", to_string(notice.level)},
+          {"code", notice.code},
+          {"reason", name(notice.reason)},
+          {"text", notice.text},
+          {"mine", notice.mine}};
+}
+
+json answer_json(const Answer& answer) {
+  return {{"robot", answer.robot},
+          {"accepted", answer.accepted},
+          {"answered", answer.answered},
+          {"reason", name(answer.reason)},
+          {"text", answer.text},
+          {"holder", answer.holder},
+          {"latency", seconds(answer.latency)}};
+}
+
+json actions_json(const std::vector<Action>& actions) {
+  json rows = json::array();
+  for (const Action& action : actions)
+    rows.push_back({{"command", action.command},
+                    {"valid", action.valid},
+                    {"reason", name(action.reason)},
+                    {"text", action.text},
+                    {"robot", action.robot}});
+  return rows;
+}
+
+json net_json(const Fleet& fleet, Time now) {
+  json agents = json::array();
+  for (const auto& [agent, traffic] : fleet.traffic()) {
+    json topics = json::array();
+    for (const TopicRate& row : traffic.topics)
+      topics.push_back({{"topic", row.topic},
+                        {"bytes_out", row.bytes_out},
+                        {"samples_out", row.samples_out},
+                        {"bytes_in", row.bytes_in},
+                        {"samples_in", row.samples_in},
+                        {"dropped", row.dropped}});
+    agents.push_back({{"agent", agent},
+                      {"age", seconds(now - traffic.last_heard)},
+                      {"discovery_out", traffic.discovery_out},
+                      {"discovery_in", traffic.discovery_in},
+                      {"total_out", traffic.total_out},
+                      {"total_in", traffic.total_in},
+                      {"malformed", traffic.malformed},
+                      {"topics", topics}});
+  }
+  return {{"agents", agents}};
+}
+
+json health_json(const RobotView& robot) {
+  json parts = json::array();
+  for (const ComponentView& part : robot.components)
+    parts.push_back({{"component", part.name},
+                     {"healthy", part.healthy},
+                     {"silent_for", part.silent_for},
+                     {"restarts", part.restarts},
+                     {"text", part.text}});
+  return {{"robot", robot.name}, {"components", parts}};
+}
+
+json list_json(const Fleet& fleet, Time now) {
+  json robots = json::array();
+  for (const auto& [robot_name, robot] : fleet.robots()) robots.push_back(robot_json(fleet, robot, now));
+  json stations = json::array();
+  stations.push_back({{"station", fleet.own_name()}, {"self", true}, {"age", 0.0}});
+  for (const auto& [station_name, station] : fleet.stations())
+    stations.push_back(
+        {{"station", station_name}, {"self", false}, {"age", seconds(now - station.last_heard)}});
+  return {{"robots", robots}, {"stations", stations}};
+}
+
+}  // namespace adit::station

@@ -1,0 +1,21 @@
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "basestation/fleet/actions.hpp"
+#include "basestation/fleet/fleet.hpp"
+#include "basestation/send/answer.hpp"
+
+/// The fleet model for scripts and dashboards. Units as in the views: m, rad, m/s, s, bytes a second.
+namespace adit::station {
+
+nlohmann::json robot_json(const Fleet& fleet, const RobotView& robot, Time now);
+nlohmann::json notice_json(const Notice& notice, Time now);
+nlohmann::json answer_json(const Answer& answer);
+nlohmann::json actions_json(const std::vector<Action>& actions);
+nlohmann::json net_json(const Fleet& fleet, Time now);
+nlohmann::json health_json(const RobotView& robot);
+
+/// {"robots": [...], "stations": [...]}
+nlohmann::json list_json(const Fleet& fleet, Time now);
+
+}  // namespace adit::station

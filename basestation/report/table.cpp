@@ -1,0 +1,50 @@
+#include "basestation/report/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace adit::station {
+namespace {
+
+bool is_number(const std::string& cell) {
+  return cell.find_first_not_of("0123456789+-.%") == std::string::npos;
+}
+
+}  // namespace
+
+std::string table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> width;
+  std::vector<bool> right;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    width.resize(std::max(width.size(), rows[r].size()), 0);
+    right.resize(width.size(), rows.size() > 1);
+    for (std::size_t c = 0; c < rows[r].size(); ++c) {
+      width[c] = std::max(width[c], rows[r][c].size());
+      if (r > 0 && !is_number(rows[r][c])) right[c] = false;
+    }
+  }
+  std::string out;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string space(width[c] - row[c].size(), ' ');
+      line += right[c] ? space + row[c] : row[c] + space;
+      line += "  ";
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
+  std::string out(buffer);
+  if (out.starts_with('-') && out.find_first_not_of("-0.") == std::string::npos) out.erase(0, 1);
+  return out;
+}
+
+}  // namespace adit::station

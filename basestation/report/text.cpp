@@ -1,0 +1,158 @@
+#include "basestation/report/text.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "basestation/command/words.hpp"
+#include "basestation/report/table.hpp"
+
+namespace adit::station {
+namespace {
+
+std::string or_dash(const std::string& text) { return text.empty() ? "-" : text; }
+
+std::string battery_text(const RobotView& robot) {
+  return robot.battery < 0.0F ? "-" : fixed(robot.battery * 100.0, 0) + "%";
+}
+
+std::string age_text(const RobotView& robot, Time now) {
+  return (robot.lost ? "lost " : "") + fixed(seconds(now - robot.last_heard), 1);
+}
+
+std::string holder_text(const Fleet& fleet, const RobotView& robot) {
+  if (!robot.owned) return "?";
+  if (robot.holder.empty()) return "-";
+  return robot.holder + (fleet.held_by_me(robot) ? "*" : "");
+}
+
+}  // namespace
+
+std::string mode_text(const RobotView& robot) { return robot.behaviour_count == 0 ? "?" : robot.mode; }
+
+std::string pose_text(const RobotView& robot) {
+  if (!robot.located) return "-";
+  return fixed(robot.x, 1) + " " + fixed(robot.y, 1) + " " + fixed(robot.yaw * 180.0 / std::numbers::pi, 0) +
+         "d";
+}
+
+std::string goal_text(const RobotView& robot) {
+  if (robot.goal_phase == GoalPhase::none) return "-";
+  return std::string(to_string(robot.goal_phase)) + " " + fixed(robot.goal[0], 1) + " " +
+         fixed(robot.goal[1], 1);
+}
+
+std::string stops_text(const RobotView& robot) {
+  if (robot.stops.empty()) return robot.stopped ? "stopped" : "-";
+  std::vector<std::string> names;
+  for (const StopLatch& stop : robot.stops) names.push_back(stop.station);
+  return joined(names, "-");
+}
+
+std::string list_text(const Fleet& fleet, Time now) {
+  std::vector<std::vector<std::string>> rows{
+      {"ROBOT", "KIND", "MODE", "HOLDER", "LOCK", "STOPPED BY", "X Y YAW", "M/S", "GOAL", "BATT", "AGE S"}};
+  for (const auto& [robot_name, robot] : fleet.robots())
+    rows.push_back({robot_name, or_dash(robot.platform), mode_text(robot), holder_text(fleet, robot),
+                    robot.locked ? "locked" : "-", stops_text(robot), pose_text(robot),
+                    robot.located ? fixed(std::hypot(robot.vx, robot.vy), 2) : "-", goal_text(robot),
+                    battery_text(robot), age_text(robot, now)});
+  std::string out = rows.size() == 1 ? "no robot has been heard\n" : table(rows);
+  out += "stations: " + fleet.own_name() + " (this one)";
+  for (const auto& [station_name, station] : fleet.stations())
+    out += ", " + station_name + (now - station.last_heard > Fleet::lost_after ? " (silent)" : "");
+  return out + "\n";
+}
+
+std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
+  std::string out = robot.name + "  " + or_dash(robot.platform) + ", " + or_dash(robot.software) +
+                    ", heard " + fixed(seconds(now - robot.last_heard), 1) + " s ago" +
+                    (robot.lost ? ", LOST" : "") + "\n";
+  std::string holder = robot.owned ? (robot.holder.empty() ? "nobody" : robot.holder) : "not heard yet";
+  if (fleet.held_by_me(robot)) holder += " (you)";
+  if (robot.locked) holder += ", locked";
+  if (robot.locked && robot.lease_left >= 0.0F) holder += ", lapses in " + fixed(robot.lease_left, 0) + " s";
+  out += "  holder   " + holder + "\n";
+  std::string mode = mode_text(robot);
+  if (robot.behaviour_count > 0 && !robot.moving_allowed && robot.reason != Reason::none)
+    mode += ", does not move: " + std::string(describe(robot.reason)) + " [" +
+            std::string(name(robot.reason)) + "]";
+  out += "  mode     " + mode + "\n";
+  out += "  stops    " + stops_text(robot) + "\n";
+  out += "  goal     " + goal_text(robot) + "\n";
+  if (robot.located)
+    out += "  pose     x " + fixed(robot.x, 2) + " y " + fixed(robot.y, 2) + " z " + fixed(robot.z, 2) +
+           " m, yaw " + fixed(robot.yaw * 180.0 / std::numbers::pi, 1) + " degrees\n  speed    " +
+           fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
+  if (robot.described)
+    out += "  limits   " + fixed(robot.max_speed, 1) + " m/s, " + fixed(robot.max_turn, 1) +
+           " rad/s\n  sensors  " + joined(robot.sensors, "-") + "\n";
+  out += "  battery  " + battery_text(robot) + "\n";
+  for (const ModeChoice& choice : robot.choices) {
+    std::string row = "  can " + choice.mode;
+    row.resize(std::max<std::size_t>(row.size() + 1, 22), ' ');
+    out += row + (choice.available ? "yes" : "no: " + std::string(describe(choice.reason))) + "\n";
+  }
+  return out;
+}
+
+std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth) {
+  if (fleet.traffic().empty()) return "no link report has been heard yet; they come every 2 s\n";
+  std::vector<std::vector<std::string>> rows{
+      {"AGENT", "TOPIC", "B/S OUT", "N/S OUT", "B/S IN", "N/S IN", "DROPPED"}};
+  double out_sum = 0.0, discovery_sum = 0.0;
+  for (const auto& [agent, traffic] : fleet.traffic()) {
+    const bool silent = now - traffic.last_heard > 2 * Fleet::lost_after;
+    std::string first = agent + (silent ? " (silent)" : "");
+    for (const TopicRate& row : traffic.topics) {
+      rows.push_back({first, row.topic, fixed(row.bytes_out, 0), fixed(row.samples_out, 1),
+                      fixed(row.bytes_in, 0), fixed(row.samples_in, 1), std::to_string(row.dropped)});
+      first.clear();
+    }
+    rows.push_back(
+        {first, "discovery", fixed(traffic.discovery_out, 0), "-", fixed(traffic.discovery_in, 0), "-", "-"});
+    rows.push_back({"", "total", fixed(traffic.total_out, 0), "-", fixed(traffic.total_in, 0), "-",
+                    std::to_string(traffic.malformed)});
+    if (silent) continue;
+    out_sum += traffic.total_out;
+    discovery_sum += traffic.discovery_out;
+  }
+  std::string out = table(rows) + "all agents send " + fixed(out_sum, 0) + " B/s, of it discovery " +
+                    fixed(discovery_sum, 0) + " B/s";
+  if (bandwidth > 0.0)
+    out += ": " + fixed(out_sum * 8.0 / bandwidth * 100.0, 1) + " % of " + link + " (" +
+           fixed(bandwidth / 1000.0, 0) + " kbit/s)";
+  return out + "\n";
+}
+
+std::string health_text(const RobotView& robot) {
+  if (robot.components.empty()) return robot.name + ": no health report has been heard\n";
+  std::vector<std::vector<std::string>> rows{
+      {"ROBOT", "COMPONENT", "STATE", "SILENT S", "RESTARTS", "REMARK"}};
+  for (const ComponentView& part : robot.components)
+    rows.push_back({robot.name, part.name, part.healthy ? "ok" : "FAILED", fixed(part.silent_for, 1),
+                    std::to_string(part.restarts), part.text});
+  return table(rows);
+}
+
+std::string actions_text(const std::vector<Action>& actions) {
+  std::vector<std::vector<std::string>> rows{{"COMMAND", "NOW", "REMARK"}};
+  for (const Action& action : actions) {
+    std::string remark = action.text;
+    if (!remark.empty() && !action.robot.empty()) remark = action.robot + ": " + remark;
+    if (!action.valid) remark += " [" + std::string(name(action.reason)) + "]";
+    rows.push_back({action.command, action.valid ? "yes" : "no", remark});
+  }
+  return table(rows);
+}
+
+std::string answer_text(const Answer& answer, const std::string& done) {
+  if (answer.accepted) return answer.robot + ": " + done + "\n";
+  std::string why = answer.text.empty() ? std::string(describe(answer.reason)) : answer.text;
+  const bool named = answer.holder.empty() || why.find(answer.holder) != std::string::npos;
+  if (!named) why += " (holder: " + answer.holder + ")";
+  const bool refused = answer.answered || answer.reason != Reason::no_answer;
+  return (answer.robot.empty() ? "" : answer.robot + ": ") + (refused ? "refused: " : "") + why + " [" +
+         std::string(name(answer.reason)) + "]\n";
+}
+
+}  // namespace adit::station

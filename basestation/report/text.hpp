@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+
+#include "basestation/fleet/actions.hpp"
+#include "basestation/fleet/fleet.hpp"
+#include "basestation/send/answer.hpp"
+
+/// The fleet model for people: lines that end in \n.
+namespace adit::station {
+
+std::string list_text(const Fleet& fleet, Time now);
+std::string status_text(const Fleet& fleet, const RobotView& robot, Time now);
+/// Bytes a second by agent and topic; `bandwidth` (bit/s, 0: not known) sets the total against the link.
+std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth);
+std::string health_text(const RobotView& robot);
+std::string actions_text(const std::vector<Action>& actions);
+/// "r1: taken" or "r1: refused: ... [locked]".
+std::string answer_text(const Answer& answer, const std::string& done);
+
+/// What stands in a MODE column: the mode, and why it does not move where that matters.
+std::string mode_text(const RobotView& robot);
+/// "12.0 3.5 90d": m, m, degrees; "-" before the first RobotState.
+std::string pose_text(const RobotView& robot);
+std::string goal_text(const RobotView& robot);
+/// "none", or who stopped it.
+std::string stops_text(const RobotView& robot);
+
+}  // namespace adit::station

@@ -1,0 +1,235 @@
+#include "basestation/send/sender.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "adit/command.h"
+#include "basestation/command/words.hpp"
+#include "core/wire/typed.hpp"
+
+namespace adit::station {
+
+using namespace std::chrono_literals;
+
+const char* to_string(Kind kind) {
+  switch (kind) {
+    case Kind::take:
+      return "take";
+    case Kind::release:
+      return "release";
+    case Kind::lock:
+      return "lock";
+    case Kind::unlock:
+      return "unlock";
+    case Kind::grant:
+      return "grant";
+    case Kind::stop:
+      return "stop";
+    case Kind::reset:
+      return "reset";
+    case Kind::mode:
+      return "mode";
+    case Kind::go_to:
+      return "goto";
+    case Kind::query:
+      return "query";
+  }
+  return "unknown";
+}
+
+struct Sender::Pending {
+  Order order{};
+  std::vector<Done> done{};
+  radio::Command message{};
+  Time first_sent{};
+  Timer timer{};
+  bool overtaken{};  ///< a stop went out after it, with a higher number
+  bool resting{};    ///< refused for a cause that passes: sent anew at the next repeat
+  bool is_stop() const { return order.kind == Kind::stop; }
+};
+
+struct Sender::Lane {
+  wire::Writer<radio::Command> writer{};
+  std::uint64_t next_seq{1};
+  std::deque<std::shared_ptr<Pending>> queue{};
+  std::shared_ptr<Pending> current{};
+  std::shared_ptr<Pending> stop{};
+};
+
+Sender::Sender(SenderParams params, Executor& strand, wire::Wire& radio, Fleet& fleet)
+    : params_(std::move(params)), strand_(strand), radio_(radio), fleet_(fleet), started_(strand.now()) {}
+
+Sender::~Sender() = default;
+
+Sender::Lane* Sender::lane(const std::string& robot) {
+  const auto found = lanes_.find(robot);
+  if (found != lanes_.end()) return found->second.get();
+  if (lanes_.size() == Fleet::max_robots) return nullptr;
+  auto writer = wire::Writer<radio::Command>::make(radio_, wire::topics::command, robot);
+  if (!writer) return nullptr;
+  auto made = std::make_unique<Lane>();
+  made->writer = std::move(*writer);
+  return lanes_.emplace(robot, std::move(made)).first->second.get();
+}
+
+void Sender::prepare(const std::string& robot) { lane(robot); }
+
+void Sender::send(Order order, Done done) {
+  Lane* to = lane(order.robot);
+  if (!to) {
+    return done({.robot = order.robot,
+                 .command = to_string(order.kind),
+                 .reason = Reason::wire_failed,
+                 .text = "the network layer has no writer left for this robot"});
+  }
+  auto pending = std::make_shared<Pending>();
+  pending->order = std::move(order);
+  pending->done.push_back(std::move(done));
+  if (pending->is_stop()) {
+    if (to->stop) {  // one is on its way: the same answer serves both
+      to->stop->done.push_back(std::move(pending->done.front()));
+      return;
+    }
+    if (to->current) to->current->overtaken = true;
+    to->stop = pending;
+    return start(*to, pending);
+  }
+  if (to->current && to->queue.size() == max_queue) {
+    return pending->done.front()({.robot = pending->order.robot,
+                                  .command = to_string(pending->order.kind),
+                                  .reason = Reason::queue_full,
+                                  .text = "16 commands wait for this robot already"});
+  }
+  if (to->current) {
+    to->queue.push_back(std::move(pending));
+    return;
+  }
+  to->current = pending;
+  start(*to, pending);
+}
+
+void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
+  pending->first_sent = strand_.now();
+  renumber(to, *pending);
+  ++counts_.sent;
+  if (on_sent) on_sent(pending->order, pending->message.seq());
+  const Duration repeat = pending->is_stop() ? params_.repeat_stop : params_.repeat;
+  pending->timer =
+      strand_.every(repeat, [this, robot = pending->order.robot, weak = std::weak_ptr<Pending>(pending)] {
+        if (auto alive = weak.lock()) tick(robot, alive);
+      });
+  transmit(to, *pending);
+}
+
+void Sender::renumber(Lane& to, Pending& pending) {
+  radio::Command& message = pending.message;
+  message.robot(pending.order.robot);
+  message.station(params_.name);
+  message.station_id(params_.id);
+  if (const RobotView* robot = fleet_.robot(pending.order.robot)) {
+    message.epoch().start(robot->epoch.start);
+    message.epoch().counter(robot->epoch.counter);
+  }
+  message.seq(to.next_seq++);
+  message.kind(static_cast<radio::CommandKind>(pending.order.kind));
+  message.text(pending.order.text);
+  message.position({pending.order.position[0], pending.order.position[1], pending.order.position[2]});
+  message.flag(pending.order.flag);
+  pending.resting = false;
+  pending.overtaken = false;
+}
+
+void Sender::transmit(Lane& to, Pending& pending) {
+  // A sample that could not be queued is counted by the wire, and the next repeat takes its place.
+  (void)to.writer.write(pending.message);
+}
+
+void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pending) {
+  Lane& to = *lanes_.at(robot);
+  const Duration limit = pending->is_stop() ? params_.give_up_stop : params_.give_up;
+  if (strand_.now() - pending->first_sent >= limit) {
+    const std::string text = "no answer within " + std::to_string(limit / 1s) + " s";
+    return finish(to, pending, {.reason = Reason::no_answer, .text = text});
+  }
+  if (pending->resting) {
+    renumber(to, *pending);
+    if (pending->is_stop() && to.current) to.current->overtaken = true;
+  } else {
+    ++counts_.repeats;
+  }
+  transmit(to, *pending);
+}
+
+bool Sender::worth_another(const Pending& pending, Reason reason) const {
+  // The robot never saw it: a stop overtook it, or a later command a stop that was lost on its way.
+  if (reason == Reason::stale_sequence && (pending.overtaken || pending.is_stop())) return true;
+  // The robot has not heard this participant's presence yet.
+  const bool unknown = reason == Reason::identity_mismatch || reason == Reason::unknown_station;
+  return unknown && (pending.is_stop() || pending.first_sent - started_ < 5s);
+}
+
+void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&) {
+  if (sample.station() != params_.name || sample.station_id() != params_.id) return;
+  const auto found = lanes_.find(sample.robot());
+  if (found == lanes_.end() || sample.seq() == 0) return;
+  Lane& to = *found->second;
+  std::shared_ptr<Pending> pending;
+  for (const auto& candidate : {to.stop, to.current})
+    if (candidate && candidate->message.seq() == sample.seq()) pending = candidate;
+  if (!pending || pending->resting) return;
+  const auto reason = static_cast<Reason>(sample.reason());
+  if (!sample.accepted() && worth_another(*pending, reason) &&
+      strand_.now() - pending->first_sent < (pending->is_stop() ? params_.give_up_stop : params_.give_up)) {
+    pending->resting = true;
+    return;
+  }
+  finish(to, pending,
+         {.seq = sample.seq(),
+          .accepted = sample.accepted(),
+          .answered = true,
+          .reason = sample.accepted() ? Reason::none : reason,
+          .text = clean(sample.text(), 240),
+          .holder = clean(sample.holder(), 32),
+          .latency = strand_.now() - pending->first_sent});
+}
+
+void Sender::finish(Lane& to, const std::shared_ptr<Pending>& pending, Answer answer) {
+  answer.robot = pending->order.robot;
+  answer.command = to_string(pending->order.kind);
+  if (answer.accepted)
+    ++counts_.accepted;
+  else
+    ++(answer.answered ? counts_.refused : counts_.unanswered);
+  pending->timer.cancel();
+  if (to.stop == pending) {
+    to.stop.reset();
+  } else {
+    to.current.reset();
+    if (!to.queue.empty()) {
+      to.current = to.queue.front();
+      to.queue.pop_front();
+      start(to, to.current);
+    }
+  }
+  for (const Done& done : pending->done) done(answer);
+}
+
+bool Sender::idle(const std::string& robot) const {
+  const auto found = lanes_.find(robot);
+  return found == lanes_.end() || (!found->second->current && !found->second->stop);
+}
+
+void Sender::cancel_all() {
+  for (auto& [robot, to] : lanes_) {
+    std::deque<std::shared_ptr<Pending>> all = std::exchange(to->queue, {});
+    for (auto& running : {std::exchange(to->stop, nullptr), std::exchange(to->current, nullptr)})
+      if (running) all.push_front(running);
+    for (auto& pending : all) {
+      pending->timer.cancel();
+      for (const Done& done : pending->done)
+        done({.robot = robot, .command = to_string(pending->order.kind), .reason = Reason::cancelled});
+    }
+  }
+}
+
+}  // namespace adit::station

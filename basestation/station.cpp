@@ -1,0 +1,207 @@
+#include "basestation/station.hpp"
+
+#include <utility>
+
+#include "adit/authority.h"
+#include "adit/command.h"
+#include "adit/discovery.h"
+#include "adit/link.h"
+#include "adit/robot.h"
+#include "basestation/command/grammar.hpp"
+#include "basestation/command/parse.hpp"
+#include "basestation/command/words.hpp"
+#include "basestation/station_impl.hpp"
+#include "core/wire/typed.hpp"
+
+namespace adit::station {
+
+using namespace std::chrono_literals;
+
+namespace {
+constexpr std::uint16_t protocol = 1;
+constexpr Duration report_period = 2s;
+constexpr Duration tick_period = 100ms;
+constexpr std::size_t max_report_topics = 16;
+}  // namespace
+
+struct Station::Impl::Radio {
+  wire::Writer<radio::Presence> presence{};
+  wire::Writer<radio::Capabilities> capabilities{};
+  wire::Writer<radio::LinkReport> report{};
+  std::vector<std::unique_ptr<wire::RawReader>> readers{};
+};
+
+Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire::Wire& radio)
+    : owner_(owner),
+      params_(std::move(params)),
+      strand_(strand),
+      radio_(radio),
+      fleet_(params_.name, params_.id),
+      sender_({.name = params_.name, .id = params_.id}, strand, radio, fleet_),
+      stick_(params_.id, strand, radio, fleet_),
+      started_(strand.now()),
+      random_(params_.seed),
+      topics_(std::make_unique<Radio>()) {}
+
+Station::Impl::~Impl() = default;
+
+template <class T>
+Result<void> Station::Impl::read(const wire::Topic<T>& topic) {
+  auto reader =
+      wire::make_reader(radio_, topic, strand_,
+                        [this](const T& sample, const wire::SampleInfo& info) { fleet_.hear(sample, info); });
+  if (!reader) return reader.error();
+  topics_->readers.push_back(std::move(*reader));
+  return {};
+}
+
+Result<void> Station::Impl::start() {
+  if (!valid_name(params_.name))
+    return {Reason::bad_argument, "'" + clean(params_.name, 40) +
+                                      "' cannot be an operator's name "
+                                      "(1 to 32 of A-Z a-z 0-9 _ -); choose another --name"};
+  fleet_.on_notice = [this](const Notice& notice) {
+    if (owner_.on_notice) owner_.on_notice(notice);
+  };
+  fleet_.on_robot = [this](const RobotView& robot) {
+    sender_.prepare(robot.name);
+    announce_often();
+  };
+  sender_.on_sent = [this](const Order& order, std::uint64_t seq) {
+    if (owner_.on_sent) owner_.on_sent(order, seq);
+  };
+
+  auto presence = wire::Writer<radio::Presence>::make(radio_, wire::topics::presence);
+  if (!presence) return presence.error();
+  topics_->presence = std::move(*presence);
+  auto capabilities = wire::Writer<radio::Capabilities>::make(radio_, wire::topics::capabilities);
+  if (!capabilities) return capabilities.error();
+  topics_->capabilities = std::move(*capabilities);
+  auto report = wire::Writer<radio::LinkReport>::make(radio_, wire::topics::link_report);
+  if (!report) return report.error();
+  topics_->report = std::move(*report);
+
+  auto answers =
+      wire::make_reader(radio_, wire::topics::acknowledgement, strand_,
+                        [this](const radio::Acknowledgement& sample, const wire::SampleInfo& info) {
+                          heard_acknowledgement(sample, info);
+                        });
+  if (!answers) return answers.error();
+  topics_->readers.push_back(std::move(*answers));
+  for (const Result<void>& opened :
+       {read(wire::topics::capabilities), read(wire::topics::presence), read(wire::topics::robot_state),
+        read(wire::topics::authority), read(wire::topics::behaviour), read(wire::topics::notification),
+        read(wire::topics::health), read(wire::topics::link_report)})
+    if (!opened) return opened.error();
+
+  radio::Capabilities self;
+  self.name(params_.name);
+  self.kind(radio::AGENT_STATION);
+  self.id(params_.id);
+  self.protocol(protocol);
+  self.software(params_.software);
+  if (auto written = topics_->capabilities.write(self); !written) return written.error();
+  announce();
+
+  radio_.on_participant(strand_, [this](const wire::ParticipantEvent& event) {
+    if (event.present) announce_often();
+  });
+  // Phases drawn apart, so that stations that start together do not talk all at once.
+  timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {
+    timers_.push_back(strand_.every(params_.presence, [this] { announce(); }));
+  }));
+  timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(report_period)), [this] {
+    timers_.push_back(strand_.every(report_period, [this] { report_traffic(); }));
+  }));
+  timers_.push_back(strand_.every(tick_period, [this] { tick(); }));
+  return {};
+}
+
+void Station::Impl::announce() {
+  if (closed_) return;
+  radio::Presence presence;
+  presence.name(params_.name);
+  presence.id(params_.id);
+  presence.protocol(protocol);
+  presence.seq(++presence_seq_);
+  (void)topics_->presence.write(presence);  // the next one is at most a second away
+}
+
+void Station::Impl::announce_often() {
+  announce();
+  // Its endpoints may not be matched yet, and presence is sent without repair.
+  std::erase_if(timers_, [](const Timer& timer) { return !timer.active(); });
+  if (timers_.size() > 32) return;
+  for (const Duration delay : {100ms, 300ms, 700ms})
+    timers_.push_back(strand_.after(delay, [this] { announce(); }));
+}
+
+void Station::Impl::report_traffic() {
+  TrafficView view = meter_.read(params_.name, radio_.counters(), strand_.now());
+  radio::LinkReport report;
+  report.agent(params_.name);
+  report.discovery_out(view.discovery_out);
+  report.discovery_in(view.discovery_in);
+  report.total_out(view.total_out);
+  report.total_in(view.total_in);
+  report.malformed(view.malformed);
+  report.seq(++report_seq_);
+  for (const TopicRate& rate : view.topics) {
+    if (report.topics().size() == max_report_topics) break;
+    radio::TopicTraffic row;
+    row.topic(rate.topic);
+    row.bytes_out(rate.bytes_out);
+    row.samples_out(rate.samples_out);
+    row.bytes_in(rate.bytes_in);
+    row.samples_in(rate.samples_in);
+    row.dropped(rate.dropped);
+    report.topics().push_back(row);
+  }
+  fleet_.own_traffic(std::move(view));
+  if (!closed_) (void)topics_->report.write(report);  // best effort; the next one replaces it
+}
+
+void Station::Impl::heard_acknowledgement(const radio::Acknowledgement& sample,
+                                          const wire::SampleInfo& info) {
+  if (sample.station() != params_.name || sample.station_id() != params_.id) return;
+  fleet_.learn_authority(sample.robot(), sample.holder(), {sample.epoch().start(), sample.epoch().counter()});
+  if (sample.seq() != 0) return sender_.hear(sample, info);
+  const auto reason = static_cast<Reason>(sample.reason());
+  const auto text = clean(sample.text(), 240);
+  for (const auto& [handle, flow] : std::multimap(flows_))
+    if (flow->robot() == sample.robot()) flow->stream_refused(reason, text);
+}
+
+Station::Station(StationParams params, Executor& strand, wire::Wire& radio)
+    : impl_(std::make_unique<Impl>(*this, std::move(params), strand, radio)) {}
+Station::~Station() = default;
+
+Result<void> Station::start() { return impl_->start(); }
+
+std::uint64_t Station::execute(const std::string& line, Done done) {
+  auto request = parse(line);
+  if (!request) return impl_->refuse(request.error(), done);
+  if (request->verb == Verb::watch || request->verb == Verb::run || request->verb == Verb::teleop)
+    return impl_->refuse(
+        {Reason::not_supported, std::string(info(request->verb).name) + " works in a terminal only"}, done);
+  return impl_->execute(*request, std::move(done));
+}
+
+std::uint64_t Station::execute(const Request& request, Done done) {
+  return impl_->execute(request, std::move(done));
+}
+void Station::cancel(std::uint64_t handle) { impl_->cancel(handle); }
+std::uint64_t Station::teleop(const std::string& robot, Done done) {
+  return impl_->teleop(robot, std::move(done));
+}
+void Station::stick(std::uint64_t handle, const std::array<double, 3>& velocity) {
+  impl_->stick(handle, velocity);
+}
+const Fleet& Station::fleet() const { return impl_->fleet_; }
+const StationParams& Station::params() const { return impl_->params_; }
+Time Station::now() const { return impl_->now(); }
+const Counts& Station::counts() const { return impl_->sender_.counts(); }
+const std::optional<Answer>& Station::last_answer() const { return impl_->last_answer_; }
+bool Station::closed() const { return impl_->closed_; }
+
+}  // namespace adit::station

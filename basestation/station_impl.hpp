@@ -1,0 +1,103 @@
+#pragma once
+#include <deque>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "basestation/fleet/traffic.hpp"
+#include "basestation/flow/arrival.hpp"
+#include "basestation/flow/steer.hpp"
+#include "basestation/station.hpp"
+#include "core/time/random.hpp"
+
+namespace adit::station {
+
+/// Collects the answers of one command line to several robots.
+struct Gather {
+  Request request{};
+  std::vector<Answer> answers{};  ///< in the order of the robots typed
+  std::size_t missing{};
+  Station::Done done{};
+};
+
+class Station::Impl {
+ public:
+  Impl(Station& owner, StationParams params, Executor& strand, wire::Wire& radio);
+  ~Impl();
+
+  Result<void> start();
+  std::uint64_t execute(const Request& request, Done done);
+  std::uint64_t refuse(const Error& error, const Done& done);
+  void cancel(std::uint64_t handle);
+  std::uint64_t teleop(const std::string& robot, Done done);
+  void stick(std::uint64_t handle, const std::array<double, 3>& velocity);
+  Time now() const { return strand_.now(); }
+
+  Station& owner_;
+  StationParams params_;
+  Executor& strand_;
+  wire::Wire& radio_;
+  Fleet fleet_;
+  Sender sender_;
+  Stick stick_;
+  std::optional<Answer> last_answer_{};
+  bool closed_{false};
+
+ private:
+  /// A command line that waits for its robots to be discovered.
+  struct Waiting {
+    std::uint64_t handle{};
+    Request request{};
+    Done done{};
+  };
+  /// A `stop all` of a station that has only begun to hear robots.
+  struct StopAll {
+    std::shared_ptr<Gather> gather{};
+    std::set<std::string> asked{};
+  };
+
+  // station.cpp: what is heard and said
+  template <class T>
+  Result<void> read(const wire::Topic<T>& topic);
+  void announce();
+  void announce_often();
+  void report_traffic();
+  void tick();
+  void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
+
+  // execute.cpp: what is asked
+  bool must_wait(const Request& request) const;
+  bool known(const Request& request) const;
+  void run(std::uint64_t handle, const Request& request, Done done);
+  void answer_query(const Request& request, const Done& done);
+  void command_robots(std::uint64_t handle, const Request& request, Done done);
+  void command_robot(std::uint64_t handle, const std::string& robot, const std::shared_ptr<Gather>& gather,
+                     std::size_t index);
+  void stop_all(const Request& request, Done done);
+  void ask_stop(StopAll& all, const std::string& robot);
+  void finish_stop_all();
+  void down(Done done);
+  void gathered(const std::shared_ptr<Gather>& gather, std::size_t index, const Answer& answer);
+  void finish(Gather& gather);
+  void note(const Answer& answer);
+  void add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow);
+  void end_flows(const std::string& robot, Reason reason);
+  FlowParts parts() { return {strand_, fleet_, sender_, stick_}; }
+  bool fresh(Duration span) const { return strand_.now() - started_ < span; }
+
+  Time started_;
+  Random random_;
+  TrafficMeter meter_{};
+  std::uint64_t next_handle_{1};
+  std::uint64_t presence_seq_{};
+  std::uint64_t report_seq_{};
+  std::multimap<std::uint64_t, std::shared_ptr<Flow>> flows_{};
+  std::deque<Waiting> waiting_{};
+  std::vector<StopAll> stop_alls_{};
+
+  struct Radio;  // the typed writers and readers
+  std::unique_ptr<Radio> topics_;
+  std::vector<Timer> timers_{};
+};
+
+}  // namespace adit::station
