@@ -12,6 +12,8 @@ float depth(const SweptBody& body, float x, float y) {
                   static_cast<float>(body.half_width) - std::fabs(y));
 }
 
+constexpr float kSlack = 0.002f;  ///< m: straight on along a wall is not "deeper"
+
 /// Marks the cells that the body covers while it stands at `pose`.
 class Painter {
  public:
@@ -22,46 +24,56 @@ class Painter {
       cos_[a] = static_cast<float>(std::cos(angle));
       sin_[a] = static_cast<float>(std::sin(angle));
     }
-    constexpr float kSlack = 0.002f;  // m: straight on along a wall is not "deeper"
-    start_.resize(masks.size());
-    for (int ring = 0; ring < rings_; ++ring)
+    start_rings_ = std::min(rings, static_cast<int>(std::ceil(radius_ / CorrespondenceGrid::kRing)));
+    for (int ring = 0; ring < start_rings_; ++ring)
       for (int a = 0; a < CorrespondenceGrid::kAngles; ++a)
-        start_[ring * CorrespondenceGrid::kAngles + a] =
-            kSlack + std::max(0.0f, depth(body, range(ring) * cos_[a], range(ring) * sin_[a]));
+        start_.push_back(kSlack + std::max(0.0f, depth(body, range(ring) * cos_[a], range(ring) * sin_[a])));
   }
 
   void paint(const Pose2& pose, int bit) {
-    constexpr double kRing = CorrespondenceGrid::kRing;
     const double distance = std::hypot(pose.x, pose.y);
-    const int first = std::max(0, static_cast<int>((distance - radius_) / kRing));
-    const int last = std::min(rings_ - 1, static_cast<int>((distance + radius_) / kRing));
     int half = CorrespondenceGrid::kAngles / 2;
     if (distance > radius_) half = static_cast<int>(std::asin(radius_ / distance) * 180.0 / M_PI) + 2;
     const int middle = static_cast<int>(std::floor(std::atan2(pose.y, pose.x) * 180.0 / M_PI));
     const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
     const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
+    const float bx = c * x0 + s * y0, by = c * y0 - s * x0;
     for (int i = middle - half; i < middle + half; ++i) {
       const int a = (i + 2 * CorrespondenceGrid::kAngles) % CorrespondenceGrid::kAngles;
-      // Along a ray the body's coordinates are linear in the range.
+      // Along a ray the body's coordinates are linear in the range, so that it covers one interval of it.
       const float ux = c * cos_[a] + s * sin_[a], uy = c * sin_[a] - s * cos_[a];
-      const float bx = c * x0 + s * y0, by = c * y0 - s * x0;
-      for (int ring = first; ring <= last; ++ring) {
+      float from = 0.0f, to = range(rings_);
+      clip(ux, bx, static_cast<float>(body_.half_length) - kSlack, from, to);
+      clip(uy, by, static_cast<float>(body_.half_width) - kSlack, from, to);
+      const int last = std::min(rings_ - 1, static_cast<int>(to / kRing - 0.5f));
+      for (int ring = static_cast<int>(std::ceil(from / kRing - 0.5f)); ring <= last; ++ring) {
         const int index = ring * CorrespondenceGrid::kAngles + a;
         const float r = range(ring);
-        if (depth(body_, r * ux - bx, r * uy - by) > start_[index]) masks_[index].set(bit);
+        if (ring < start_rings_ && depth(body_, r * ux - bx, r * uy - by) <= start_[index]) continue;
+        masks_[index].set(bit);
       }
     }
   }
 
  private:
-  static float range(int ring) {
-    return (static_cast<float>(ring) + 0.5f) * static_cast<float>(CorrespondenceGrid::kRing);
+  static constexpr auto kRing = static_cast<float>(CorrespondenceGrid::kRing);
+  static float range(int ring) { return (static_cast<float>(ring) + 0.5f) * kRing; }
+  /// Narrows [from, to] to the ranges r with |r * slope - middle| <= half.
+  static void clip(float slope, float middle, float half, float& from, float& to) {
+    if (std::fabs(slope) < 1e-6f) {
+      if (std::fabs(middle) > half) to = -1.0f;
+      return;
+    }
+    const float a = (middle - half) / slope, b = (middle + half) / slope;
+    from = std::max(from, std::min(a, b));
+    to = std::min(to, std::max(a, b));
   }
 
   std::vector<PathMask>& masks_;
   int rings_;
   SweptBody body_;
   double radius_;
+  int start_rings_{};
   std::array<float, CorrespondenceGrid::kAngles> cos_{}, sin_{};
   std::vector<float> start_{};  ///< how deep each cell may come: as deep as it is at the start
 };

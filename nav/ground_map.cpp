@@ -1,5 +1,6 @@
 #include "nav/ground_map.hpp"
 
+#include <cmath>
 #include <cstdlib>
 
 namespace adit::nav {

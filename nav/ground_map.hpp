@@ -1,10 +1,16 @@
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
 namespace adit::nav {
+
+/// The whole number below: without SSE 4.1, which the build does not assume, std::floor is a call, and this
+/// runs for every point.
+inline int floor_int(float v) {
+  const int i = static_cast<int>(v);
+  return i - (v < static_cast<float>(i));
+}
 
 struct GroundMapParams {
   double slope{0.35};      ///< steepest ground that is still ground, rise per run, [0, 1]
@@ -60,7 +66,7 @@ class GroundMap {
     int index, dx, dy, inner_a, inner_b;
   };
 
-  static int cell(float v) { return static_cast<int>(std::floor(v * (1.0f / kCell))); }
+  static int cell(float v) { return floor_int(v * (1.0f / kCell)); }
   static std::size_t slot(int ix, int iy) {
     return static_cast<std::size_t>((ix & (kTorus - 1)) * kTorus + (iy & (kTorus - 1)));
   }

@@ -34,8 +34,8 @@ float heading_weight(double degrees) {
 
 }  // namespace
 
-LocalPlanner::LocalPlanner(const Platform& platform, const LocalPlannerParams& params)
-    : platform_(platform), params_(params) {
+std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& platform,
+                                                            const LocalPlannerParams& params) {
   const double half_length = platform.length / 2, half_width = platform.width / 2;
   const double turn_needs = std::hypot(half_length, half_width) - half_length + kTurnSlack;
   const SweptBody wide{half_length + std::max(params.front_margin, turn_needs),
@@ -48,19 +48,22 @@ LocalPlanner::LocalPlanner(const Platform& platform, const LocalPlannerParams& p
   for (double& c : small.curvature) c /= params.short_scale;
 
   const PathTree long_tree(params.tree), short_tree(small);
-  options_.push_back({long_tree, CorrespondenceGrid(long_tree, wide), false, 3});
-  options_.push_back({short_tree, CorrespondenceGrid(short_tree, wide), false, 1});
-  options_.push_back({short_tree, CorrespondenceGrid(short_tree, tight), true, 1});
-  rotation_ = RotationTable({half_length + kTurnMargin, half_width + kTurnMargin});
-
-  int rings = rotation_.rings();
-  for (const Option& o : options_) rings = std::max(rings, o.grid.rings());
-  seen_.resize((static_cast<std::size_t>(rings) * kAngles + 63) / 64);
-  occupied_.reserve(static_cast<std::size_t>(rings) * kAngles);
+  auto library = std::make_shared<PlannerLibrary>();
+  library->options.push_back({long_tree, CorrespondenceGrid(long_tree, wide), false, 3});
+  library->options.push_back({short_tree, CorrespondenceGrid(short_tree, wide), false, 1});
+  library->options.push_back({short_tree, CorrespondenceGrid(short_tree, tight), true, 1});
+  library->rotation = RotationTable({half_length + kTurnMargin, half_width + kTurnMargin});
+  return library;
 }
 
-void LocalPlanner::drop_correspondences() {
-  for (Option& o : options_) o.grid = {};
+LocalPlanner::LocalPlanner(const Platform& platform, const LocalPlannerParams& params,
+                           std::shared_ptr<const PlannerLibrary> library)
+    : platform_(platform),
+      params_(params),
+      library_(library ? std::move(library) : PlannerLibrary::build(platform, params)) {
+  for (const Option& o : library_->options) rings_ = std::max(rings_, o.grid.rings());
+  seen_.resize((static_cast<std::size_t>(rings_) * kAngles + 63) / 64);
+  occupied_.reserve(static_cast<std::size_t>(rings_) * kAngles);
 }
 
 Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const Eigen::Vector2f> obstacles,
@@ -126,7 +129,7 @@ void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const 
   const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
   const auto bearing = static_cast<float>(goal.bearing);
   const auto hl = static_cast<float>(platform_.length / 2), hw = static_cast<float>(platform_.width / 2);
-  const int rings = options_.front().grid.rings();
+  const RotationTable& rotation = library_->rotation;
   // What the follower's braking check can need: the way to a stop from full speed, and a reaction.
   const auto watch = static_cast<float>(
       std::hypot(hl, hw) + platform_.max_speed * platform_.max_speed / (2 * platform_.max_acceleration) +
@@ -144,12 +147,12 @@ void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const 
     const float range = std::sqrt(x * x + y * y);
     const int ring = CorrespondenceGrid::ring_of(range);
     if (range <= kNearest) give(p);
-    if (ring >= rings && ring >= rotation_.rings()) continue;
+    if (ring >= rings_ && ring >= rotation.rings()) continue;
     const float angle = std::atan2(y, x);
-    if (ring < rotation_.rings()) rotation_.limit(ring, whole_degrees(angle), room_);
+    if (ring < rotation.rings()) rotation.limit(ring, whole_degrees(angle), room_);
     const float ox = std::max(0.0f, std::fabs(x) - hl), oy = std::max(0.0f, std::fabs(y) - hw);
     clearance = std::min(clearance, std::sqrt(ox * ox + oy * oy));
-    if (ring >= rings) continue;
+    if (ring >= rings_) continue;
     const auto bit = static_cast<std::size_t>(ring * kAngles + whole_degrees(angle - bearing));
     seen_[bit >> 6] |= std::uint64_t{1} << (bit & 63);
   }
@@ -275,7 +278,7 @@ bool LocalPlanner::vote(const Option& option, const Goal& goal, int stage, doubl
 
 bool LocalPlanner::choose(const Goal& goal, Choice& best) {
   const double detour = std::min(goal.spread, params_.detour_spread);
-  for (const Option& option : options_) {
+  for (const Option& option : library_->options) {
     block_paths(option, goal);
     const int need = option.tree.stage_for(goal.distance);
     if (vote(option, goal, need, goal.spread, best)) return true;
@@ -293,7 +296,7 @@ void LocalPlanner::write_path(const Choice& choice, const Goal& goal, const Pose
   plan.turn = way.turn;
   plan.heading = static_cast<int>(std::lround(turned / kDegree));
   plan.group = choice.group;
-  plan.option = static_cast<int>(choice.option - options_.data());
+  plan.option = static_cast<int>(choice.option - library_->options.data());
 
   const Pose2 start = pose * Pose2{0, 0, turned};
   const auto path = tree.path(PathTree::path_through(choice.stage, choice.node));

@@ -28,6 +28,24 @@ struct LocalPlannerParams {
   double caution_gain{2.4};  ///< more speed for each metre of clearance, 1/s, [0, 10]
 };
 
+/// What a local planner looks up: its libraries, longest and widest first, and the turning table of the
+/// footprint. Immutable; robots of one platform can share it.
+struct PlannerLibrary {
+  /// One library: a scale and a margin.
+  struct Option {
+    PathTree tree;
+    CorrespondenceGrid grid;
+    bool tight;
+    int least_stage;  ///< a shorter way than this is left to the next library
+  };
+  std::vector<Option> options{};
+  RotationTable rotation{};
+
+  /// Builds it (about 40 ms, 5 MB).
+  static std::shared_ptr<const PlannerLibrary> build(const Platform& platform,
+                                                     const LocalPlannerParams& params = {});
+};
+
 /// The local planner: looks for the heading, group and path of the trajectory library along which the robot
 /// can go on towards its target. After Falco (see PathTree and CorrespondenceGrid): 36 headings, a vote of
 /// the free paths for their group, weighted by how well they lead to the target and how little the robot has
@@ -44,8 +62,9 @@ class LocalPlanner {
  public:
   static constexpr int kHeadings = 36;
 
-  /// Builds the libraries (about 60 ms).
-  explicit LocalPlanner(const Platform& platform, const LocalPlannerParams& params = {});
+  /// `library`: of this platform and these params; built here when null.
+  explicit LocalPlanner(const Platform& platform, const LocalPlannerParams& params = {},
+                        std::shared_ptr<const PlannerLibrary> library = nullptr);
 
   /// One cycle. `pose`: the body in the odometry frame at `stamp_s`. `obstacles`: odometry frame, m. Never
   /// leads through an obstacle; when nothing is free the plan says `blocked` and is empty. Allocates nothing.
@@ -53,17 +72,10 @@ class LocalPlanner {
             double stamp_s);
 
   const LocalPlannerParams& params() const { return params_; }
-  /// Blocks nothing any more: a planner without its correspondence grids, for tests of the tests.
-  void drop_correspondences();
 
  private:
-  /// One library: a scale and a margin.
-  struct Option {
-    PathTree tree;
-    CorrespondenceGrid grid;
-    bool tight;
-    int least_stage;  ///< a shorter way than this is left to the next library
-  };
+  using Option = PlannerLibrary::Option;
+
   struct Goal {
     double distance;  ///< m, or infinite
     double bearing;   ///< in the body frame, rad
@@ -100,8 +112,8 @@ class LocalPlanner {
 
   Platform platform_;
   LocalPlannerParams params_;
-  std::vector<Option> options_{};
-  RotationTable rotation_{};
+  std::shared_ptr<const PlannerLibrary> library_;
+  int rings_{0};  ///< of the largest grid
   int last_turn_{0};
   double course_{0};        ///< of a stick held ahead or back, odometry frame, rad
   double course_stick_{0};  ///< the stick's direction that set it

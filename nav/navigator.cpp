@@ -3,8 +3,8 @@
 namespace adit::nav {
 
 Navigator::Navigator(const Platform& platform, const ObstacleMapParams& map,
-                     const LocalPlannerParams& planner)
-    : map_(platform, map), planner_(platform, planner) {}
+                     const LocalPlannerParams& planner, std::shared_ptr<const PlannerLibrary> library)
+    : map_(platform, map), planner_(platform, planner, std::move(library)) {}
 
 void Navigator::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   map_.add_scan(points, body, stamp_s);

@@ -9,7 +9,8 @@ namespace adit::nav {
 class Navigator {
  public:
   explicit Navigator(const Platform& platform, const ObstacleMapParams& map = {},
-                     const LocalPlannerParams& planner = {});
+                     const LocalPlannerParams& planner = {},
+                     std::shared_ptr<const PlannerLibrary> library = nullptr);
 
   /// See ObstacleMap::add_scan.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
@@ -21,7 +22,6 @@ class Navigator {
   bool has_scan() const { return has_scan_; }
   double scan_stamp() const { return scan_stamp_; }
   const ObstacleMap& obstacles() const { return map_; }
-  LocalPlanner& planner() { return planner_; }
   /// Forgets what was seen, as after a jump of the odometry.
   void clear();
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -55,7 +56,7 @@ class ObstacleMap {
     double stamp;
   };
 
-  static int cell(float v) { return static_cast<int>(std::floor(v * (1.0f / kCell))); }
+  static int cell(float v) { return floor_int(v * (1.0f / kCell)); }
   static std::size_t slot(int ix, int iy) {
     return static_cast<std::size_t>((ix & (kTorus - 1)) * kTorus + (iy & (kTorus - 1)));
   }

@@ -152,7 +152,9 @@ TEST(ClosedLoopWithoutCorrespondences, HitsTheHeldCheckInsteadOfPlanningAround) 
   // only the braking check is left between the robot and the wall.
   BoxWorld world{{{4, 4.2, -1.2, 1.2}}};
   ClosedLoop with(wheeled(), world, {0, 0, 0}), without(wheeled(), world, {0, 0, 0});
-  without.navigator.planner().drop_correspondences();
+  auto emptied = std::make_shared<PlannerLibrary>(*PlannerLibrary::build(wheeled()));
+  for (auto& option : emptied->options) option.grid = {};
+  without.navigator = Navigator(wheeled(), {}, {}, emptied);
   EXPECT_TRUE(with.drive(Target::to({8, 0}), 25));
   EXPECT_FALSE(without.drive(Target::to({8, 0}), 25));
   EXPECT_EQ(without.blocked_cycles, 0);
