@@ -42,10 +42,9 @@ bool ObstacleMap::in_body(float dx, float dy, double margin) const {
 
 void ObstacleMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   ++scan_;
-  const Pose3 mount{{0.0, 0.0, platform_.lidar_height}, Eigen::Quaterniond::Identity()};
-  const Pose3 pose = body * mount;
-  const Eigen::Matrix3f turn = pose.orientation.toRotationMatrix().cast<float>();
-  const Eigen::Vector3f sensor = pose.position.cast<float>();
+  const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
+  const Eigen::Vector3f sensor = body.position.cast<float>() + turn * lidar;
   body_x_ = static_cast<float>(body.position.x());
   body_y_ = static_cast<float>(body.position.y());
   body_cos_ = static_cast<float>(std::cos(body.yaw()));
@@ -57,7 +56,7 @@ void ObstacleMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3&
   const auto range2 = static_cast<float>(params_.range * params_.range);
   const auto min2 = static_cast<float>(params_.min_range * params_.min_range);
   for (const Eigen::Vector3f& p : points) {
-    const Eigen::Vector3f d = turn * p;
+    const Eigen::Vector3f d = turn * (p - lidar);
     const float flat2 = d.x() * d.x() + d.y() * d.y();
     const float full2 = flat2 + d.z() * d.z();
     // Written so that a NaN fails; straight up and down says nothing about the way.

@@ -35,9 +35,9 @@ class ObstacleMap {
 
   explicit ObstacleMap(const Platform& platform, const ObstacleMapParams& params = {});
 
-  /// Takes one scan. `points`: in the sensor's frame (which is base_link raised by the platform's
-  /// lidar_height), m, not finite or shorter than min_range where nothing was hit. `body`: base_link on the
-  /// ground, in the odometry frame, at the scan's time. `stamp_s`: that time, s, not decreasing.
+  /// Takes one scan. `points`: in base_link, m, not finite or within min_range of the lidar (which is
+  /// lidar_height above base_link) where nothing was hit. `body`: base_link, which is on the ground, in the
+  /// odometry frame at the scan's time. `stamp_s`: that time, s, not decreasing.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
 
   /// Centres of the occupied cells, odometry frame, m; valid until the next scan.

@@ -55,7 +55,7 @@ Case all_blocked() {
   Case c{"all blocked, 10 000 points", 4.0};
   c.expect_blocked = true;
   std::mt19937 random(5);
-  std::uniform_real_distribution<float> square(0.25f, 12.25f), turn(-3.14f, 3.14f), height(-0.35f, 0.0f);
+  std::uniform_real_distribution<float> square(0.25f, 12.25f), turn(-3.14f, 3.14f), height(0.15f, 0.5f);
   for (int i = 0; i < 8; ++i) {
     c.poses.push_back({});
     auto& scan = c.scans.emplace_back();

@@ -36,7 +36,7 @@ struct BoxWorld {
     return nearest;
   }
 
-  /// A scan of `rings` x `columns` from a lidar at `height` above `body`: points in the sensor's frame.
+  /// A scan of `rings` x `columns` from a lidar at `height` above `body`: points in base_link.
   /// Rings spread over +-15 degrees; one ring alone is level. `noise`: of the range, m (standard deviation).
   std::vector<Eigen::Vector3f> scan(const Pose2& body, double height, int rings, int columns, double noise,
                                     std::mt19937& random) const {
@@ -53,7 +53,8 @@ struct BoxWorld {
         const Eigen::Vector3d direction = Eigen::AngleAxisd(body.yaw, Eigen::Vector3d::UnitZ()) * local;
         const double range = cast(from, direction);
         if (range >= 100.0) continue;
-        points.push_back((local * (range + noise * error(random))).cast<float>());
+        const Eigen::Vector3d point = local * (range + noise * error(random));
+        points.push_back((point + Eigen::Vector3d(0, 0, height)).cast<float>());
       }
     return points;
   }

@@ -1,0 +1,166 @@
+#include "nav/obstacle_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/nav/box_world.hpp"
+
+namespace adit::nav::test {
+namespace {
+
+/// A robot that stands or is put somewhere, and looks.
+struct Looker {
+  BoxWorld world{};
+  Platform platform{wheeled()};
+  ObstacleMap map{platform};
+  Pose2 pose{};
+  double time{0};
+  int rings{16};
+  double noise{0.01};
+  std::mt19937 random{11};
+
+  void look(int scans = 1) {
+    for (int i = 0; i < scans; ++i, time += 0.1)
+      map.add_scan(world.scan(pose, platform.lidar_height, rings, 900, noise, random), Pose3::level(pose, 0),
+                   time);
+  }
+  /// Cells within a box of the odometry frame.
+  int count(double x0, double x1, double y0, double y1) const {
+    int n = 0;
+    for (const auto& c : map.cells()) n += c.x() >= x0 && c.x() <= x1 && c.y() >= y0 && c.y() <= y1;
+    return n;
+  }
+};
+
+TEST(ObstacleMap, AFloorIsFree) {
+  Looker robot;
+  robot.world.boxes = {{20, 20.2, -20, 20}};
+  robot.look(5);
+  EXPECT_EQ(robot.map.cells().size(), 0u);
+}
+
+TEST(ObstacleMap, AWallIsWhereItIs) {
+  Looker robot;
+  robot.world.boxes = {{2.0, 2.2, -1, 1}};
+  robot.look(5);
+  EXPECT_GT(robot.count(1.9, 2.1, -1.1, 1.1), 35);
+  EXPECT_EQ(robot.count(-5, 1.9, -5, 5), 0);
+}
+
+TEST(ObstacleMap, OnlyWhatIsHigherThanTheStepCounts) {
+  for (const double height : {0.05, 0.30}) {
+    Looker robot;
+    robot.world.boxes = {{1.9, 2.6, -0.5, 0.5, 0.0, height}};
+    robot.look(3);
+    EXPECT_EQ(robot.count(1.5, 3, -1, 1) > 0, height > robot.platform.step) << height;
+  }
+}
+
+TEST(ObstacleMap, PassesUnderWhatHangsHigh) {
+  for (const double low : {0.4, 0.9}) {
+    Looker robot;
+    robot.world.boxes = {{1.5, 1.7, -1, 1, low, 1.4}};
+    robot.look(3);
+    EXPECT_EQ(robot.count(1, 2, -1, 1) > 0, low < 0.6) << low;
+  }
+}
+
+TEST(ObstacleMap, ARampIsGroundAndAWallOnItIsNot) {
+  // The world is level; the robot's own height and the points are what a ramp would give.
+  ObstacleMap map(wheeled());
+  std::vector<Eigen::Vector3f> points;
+  for (float x = 0.1f; x < 4; x += 0.1f)
+    for (float y = -2; y < 2; y += 0.1f) points.emplace_back(x, y, 0.2f * x);
+  for (float y = -1; y < 1; y += 0.02f) points.emplace_back(3.0f, y, 0.2f * 3 + 0.3f);
+  map.add_scan(points, Pose3{}, 0.0);
+  ASSERT_GT(map.cells().size(), 20u);
+  for (const auto& c : map.cells()) ASSERT_NEAR(c.x(), 3.0f, 0.06f) << c.y();
+}
+
+TEST(ObstacleMap, AHoleIsAnObstacle) {
+  ObstacleMap map(wheeled());
+  std::vector<Eigen::Vector3f> points;
+  for (float x = 0.4f; x < 4; x += 0.05f)
+    for (float y = -1; y < 1; y += 0.05f) points.emplace_back(x, y, (x > 2 && x < 3 ? -0.6f : 0.0f));
+  map.add_scan(points, Pose3{}, 0.0);
+  EXPECT_GT(map.cells().size(), 100u);
+  for (const auto& c : map.cells()) EXPECT_GT(c.x(), 1.9f);
+}
+
+TEST(ObstacleMap, SomebodyWhoWentLeavesNoGhost) {
+  Looker robot;
+  robot.world.boxes = {{6, 6.2, -5, 5}, {2.0, 2.6, -0.3, 0.3, 0.0, 0.5}};
+  robot.look(5);
+  ASSERT_GT(robot.count(1.9, 2.7, -0.4, 0.4), 5);
+  robot.world.boxes.pop_back();
+  robot.look(2);
+  EXPECT_GT(robot.count(1.9, 2.7, -0.4, 0.4), 0);  // two scans could be bad luck
+  robot.look(8);
+  EXPECT_EQ(robot.count(1.9, 2.7, -0.4, 0.4), 0);
+}
+
+TEST(ObstacleMap, WhatTheBlindSpotHidesIsRemembered) {
+  Looker robot;
+  robot.world.boxes = {{10, 10.2, -5, 5}, {2.0, 2.2, -0.3, 0.3, 0.0, 0.15}};
+  robot.look(3);
+  ASSERT_GT(robot.count(1.9, 2.3, -0.4, 0.4), 3);
+  robot.pose.x = 1.3;  // 0.7 m before it the lowest ray is 0.31 m above the floor
+  robot.look(100);
+  EXPECT_GT(robot.count(1.9, 2.3, -0.4, 0.4), 3);
+}
+
+TEST(ObstacleMap, WhatIsHiddenBySomethingElseIsForgottenInTime) {
+  Looker robot;
+  robot.world.boxes = {{3.0, 3.2, -0.2, 0.2}};
+  robot.look(3);
+  ASSERT_GT(robot.count(2.9, 3.2, -0.3, 0.3), 3);
+  robot.world.boxes = {{1.0, 1.2, -1.5, 1.5}};  // a screen before it
+  robot.look(20);
+  EXPECT_GT(robot.count(2.9, 3.2, -0.3, 0.3), 3);
+  robot.look(30);
+  EXPECT_EQ(robot.count(2.9, 3.2, -0.3, 0.3), 0);
+}
+
+TEST(ObstacleMap, TheOwnBodyIsNotAnObstacle) {
+  ObstacleMap map(wheeled());
+  const std::vector<Eigen::Vector3f> mast{{0.1f, 0.1f, 0.4f}, {-0.28f, 0.2f, 0.3f}, {0.29f, -0.24f, 0.2f}};
+  map.add_scan(mast, Pose3{}, 0.0);
+  EXPECT_EQ(map.cells().size(), 0u);
+}
+
+TEST(ObstacleMap, SurvivesBadPoints) {
+  ObstacleMap map(wheeled());
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  const std::vector<Eigen::Vector3f> bad{{nan, 0, 0},  {0, nan, nan}, {inf, 0, 0}, {0, 0, -inf},
+                                         {0, 0, 0.5f}, {1e30f, 0, 0}, {0, 0, 0},   {1e-3f, 0, 9}};
+  map.add_scan(bad, Pose3{}, 0.0);
+  map.add_scan({}, Pose3{}, 0.1);
+  EXPECT_EQ(map.cells().size(), 0u);
+}
+
+TEST(ObstacleMap, KeepsToItsRangeAndForgetsWhatIsLeftBehind) {
+  Looker robot;
+  robot.world.boxes = {{-30, 30, 2, 2.2}, {-30, 30, -2.2, -2}};
+  for (; robot.pose.x < 15; robot.pose.x += 0.25) {
+    robot.look();
+    for (const auto& c : robot.map.cells())
+      ASSERT_LT(std::hypot(c.x() - robot.pose.x, c.y() - robot.pose.y), 5.1);
+  }
+  EXPECT_GT(robot.map.cells().size(), 200u);
+  robot.map.clear();
+  EXPECT_EQ(robot.map.cells().size(), 0u);
+  robot.look(2);
+  EXPECT_GT(robot.map.cells().size(), 200u);
+}
+
+TEST(ObstacleMap, OneLevelRingIsEnoughForAWall) {
+  Looker robot;
+  robot.rings = 1;
+  robot.world.boxes = {{2.0, 2.2, -1, 1}};
+  robot.look(5);
+  EXPECT_GT(robot.count(1.9, 2.1, -1.1, 1.1), 35);
+}
+
+}  // namespace
+}  // namespace adit::nav::test
