@@ -23,23 +23,50 @@ function(adit_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# The headers that nearly every test parses, parsed once for all of them.
+function(adit_test_headers target)
+  if(NOT TARGET adit_test_pch)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_pch.cpp CONTENT "int main() { return 0; }\n")
+    # A program, as the tests are: the header must be compiled with the same -fPIE.
+    add_executable(adit_test_pch ${PROJECT_BINARY_DIR}/test_pch.cpp)
+    set_target_properties(adit_test_pch PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+    target_link_libraries(adit_test_pch PRIVATE GTest::gmock Eigen3::Eigen Threads::Threads)
+    target_precompile_headers(adit_test_pch PRIVATE
+      <gmock/gmock.h> <gtest/gtest.h> <chrono> <filesystem> <fstream> <functional> <memory> <string> <thread> <vector>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM adit_test_pch)
+  # A test whose other libraries set a flag that the header was not compiled with parses it again, quietly.
+  set_target_properties(${target} PROPERTIES PCH_WARN_INVALID OFF)
+endfunction()
+
 # adit_test(NAME SOURCES ... LINK dep ... [LABELS label ...] [TIMEOUT seconds] [SERIAL])
 # A GoogleTest program test_NAME; each of its cases is one ctest.
 # Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow.
 # SERIAL: its cases never run beside other tests (live timing).
+# Under sanitizers only some are built: address takes those labelled unit; thread takes those in tests/core, tests/wire
+# and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
 function(adit_test name)
   if(NOT ADIT_TESTS)
     return()
   endif()
-  cmake_parse_arguments(arg "SERIAL" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(arg "SERIAL;NO_SANITIZE" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
   if(NOT arg_LABELS)
     set(arg_LABELS unit)
+  endif()
+  get_filename_component(part ${CMAKE_CURRENT_SOURCE_DIR} NAME)
+  if(ADIT_SANITIZE AND arg_NO_SANITIZE)
+    return()
+  elseif(ADIT_SANITIZE MATCHES address AND NOT "unit" IN_LIST arg_LABELS)
+    return()
+  elseif(ADIT_SANITIZE STREQUAL thread AND NOT part MATCHES "^(core|wire|live)$")
+    return()
   endif()
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 60)
   endif()
   add_executable(test_${name} ${arg_SOURCES})
   target_link_libraries(test_${name} PRIVATE ${arg_LINK} GTest::gmock GTest::gtest_main)
+  adit_test_headers(test_${name})
   target_compile_definitions(test_${name} PRIVATE
     ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ADIT_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
   set(serial "")

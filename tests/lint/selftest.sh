@@ -1,0 +1,54 @@
+#!/bin/bash
+# Every check of tools/lint.sh finds what it is there for, and leaves a clean tree alone.
+set -uo pipefail
+lint="$(cd "$(dirname "$0")/../.." && pwd)/tools/lint.sh"
+tree="$(mktemp -d)"
+trap 'rm -rf "$tree"' EXIT
+failed=0
+
+put() { mkdir -p "$tree/$(dirname "$1")"; printf '%b' "$2" > "$tree/$1"; }
+# expect CHECK TEXT: the check fails and says so; expect CHECK "": it passes.
+expect() {
+  local out status
+  out="$("$lint" --root "$tree" "$1" 2>&1)"
+  status=$?
+  if [ -n "$2" ]; then
+    if [ $status -ne 1 ] || ! grep -qF -- "$2" <<< "$out"; then
+      echo "$1: expected a finding '$2', got ($status): $out"
+      failed=1
+    fi
+  elif [ $status -ne 0 ]; then
+    echo "$1: expected nothing, got: $out"
+    failed=1
+  fi
+}
+
+put core/a.hpp '#include "core/b.hpp"\n#include <vector>\n'
+put nav/a.hpp '#include "core/geometry/pose.hpp"\n#include "nav/b.hpp"\n'
+put core/wire/w.cpp '#include <fastdds/dds/x.hpp>\n#include "adit/command.h"\n'
+put tests/t.cpp '#include "robot_agent/a.hpp"\n#include <fastdds/dds/x.hpp>\n'
+for check in includes sizes words sleeps; do expect $check ""; done
+
+put core/up.hpp '\n#include "robot_agent/agent.hpp"\n'
+expect includes 'core/up.hpp:2: core may not include robot_agent/agent.hpp'
+put nav/exec.cpp '#include "core/exec/executor.hpp"\n'
+expect includes 'nav/exec.cpp:1: nav may not include core/exec/executor.hpp'
+put basestation/n.cpp '  #  include "nav/planner.hpp"\n'
+expect includes 'basestation/n.cpp:1: basestation may not include nav/planner.hpp'
+put robot_agent/f.cpp '#include <fastdds/dds/x.hpp>\n'
+expect includes 'robot_agent/f.cpp:1: Fast DDS headers'
+put nav/m.cpp '#include "geometry_msgs/msg/Twist.h"\n'
+expect includes 'nav/m.cpp:1: generated types'
+put core/rel.cpp '#include "../x.hpp"\n'
+expect includes 'core/rel.cpp:1: includes are written from the root'
+
+put sim/long.cpp "$(printf 'x\\n%.0s' $(seq 601))"
+expect sizes 'sim/long.cpp: 601 lines'
+put core/word.cpp '// TO''DO later\n'
+expect words 'core/word.cpp:1'
+put tests/s.cpp 'std::this_thread::sleep''_for(1s);\n'
+expect sleeps 'tests/s.cpp:1'
+put core/format.cpp 'int   x ;\n'
+put .clang-format 'BasedOnStyle: Google\n'
+expect format 'core/format.cpp: '
+exit $failed

@@ -1,0 +1,104 @@
+#!/bin/bash
+# The rules of the source tree, checked. usage: tools/lint.sh [--root DIR] [CHECK...]
+# Each finding is one line "file[:line]: what"; exit status 1 when there is one.
+set -uo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+if [ "${1:-}" = --root ]; then root="$2"; shift 2; fi
+cd "$root" || exit 2
+
+# Sources that are there, whether git knows them or not: the tree may be an unpacked archive.
+files() {
+  find . -path ./build -prune -o -path ./data -prune -o -path ./.git -prune -o -type f \( "$@" \) -print |
+    sed 's|^\./||' | sort
+}
+cpp() { files -name '*.hpp' -o -name '*.cpp'; }
+
+# --- includes: the table of docs/architecture.md ---------------------------------------------------
+check_includes() {
+  cpp | xargs -r awk '
+    BEGIN {
+      split("idl core nav perception robot_agent basestation sim", order, " ")
+      may["core"] = "core"
+      may["nav"] = "nav"; may["perception"] = "perception"
+      may["robot_agent"] = "core nav perception robot_agent"
+      may["basestation"] = "core basestation"
+      may["sim"] = "core nav perception robot_agent basestation sim"
+      for (i in order) part[order[i]] = 1
+      part["tests"] = part["bench"] = 1
+    }
+    function allowed(from, to, whole,   list, n, i) {
+      if (from == "tests" || from == "bench") return 1
+      if ((from == "nav" || from == "perception") && to == "core")
+        return whole ~ /^core\/(time|geometry|result|config)\//
+      n = split(may[from], list, " ")
+      for (i = 1; i <= n; i++) if (list[i] == to) return 1
+      return 0
+    }
+    /^[ \t]*#[ \t]*include[ \t]*[<"]/ {
+      split(FILENAME, path, "/"); from = path[1]
+      if (!(from in part)) next
+      file = $0; sub(/^[^<"]*[<"]/, "", file); sub(/[>"].*/, "", file)
+      split(file, parts, "/"); to = parts[1]
+      in_wire = FILENAME ~ /^core\/wire\//
+      if (to in part && !allowed(from, to, file))
+        printf "%s:%d: %s may not include %s\n", FILENAME, FNR, from, file
+      if (file ~ /^\.\.?\//) printf "%s:%d: includes are written from the root\n", FILENAME, FNR
+      if ((to == "fastdds" || to == "fastrtps" || to == "fastcdr") && !in_wire && from != "tests" && from != "bench")
+        printf "%s:%d: Fast DDS headers belong into core/wire/\n", FILENAME, FNR
+      if ((to == "adit" || file ~ /^(builtin_interfaces|std_msgs|geometry_msgs|nav_msgs|sensor_msgs)\//) && !in_wire &&
+          from !~ /^(robot_agent|basestation|sim|tests|bench)$/)
+        printf "%s:%d: generated types belong into core/wire, robot_agent, basestation and sim\n", FILENAME, FNR
+    }'
+}
+
+# --- sizes: median at most 120 lines, nine of ten at most 400, none above 600 -------------------------
+check_sizes() {
+  cpp | xargs -r wc -l | awk '$2 != "total" { print $1, $2 }' | sort -n | awk '
+    { lines[NR] = $1; if ($1 > 600) printf "%s: %d lines, at most 600\n", $2, $1 }
+    END {
+      if (NR == 0) exit
+      if (lines[int((NR + 1) / 2)] > 120) printf "(all): the median file has %d lines, at most 120\n", lines[int((NR + 1) / 2)]
+      if (lines[int((NR * 9 + 9) / 10)] > 400) printf "(all): the 90th percentile is %d lines, at most 400\n", lines[int((NR * 9 + 9) / 10)]
+    }'
+}
+
+# --- words that announce unfinished work ------------------------------------------------------------
+check_words() {
+  files -name '*.hpp' -o -name '*.cpp' -o -name '*.md' -o -name '*.cmake' -o -name 'CMakeLists.txt' -o -name '*.sh' \
+      -o -name '*.idl' -o -name '*.yaml' -o -name '*.xml' -o -name run |
+    grep -v '^tools/lint.sh$\|^tests/lint/' |
+    xargs -r grep -nwiE 'TODO|FIXME|XXX|HACK|for now|stubs?|placeholders?' /dev/null | sed 's/$/   <- unfinished/'
+}
+
+# --- tests wait for something, never for time; components never sleep --------------------------------
+check_sleeps() {
+  cpp | grep -E '^(tests|core|nav|perception|robot_agent|basestation|sim)/' |
+    xargs -r grep -nE '\b(sleep_for|sleep_until|usleep|nanosleep)\b|[^_a-zA-Z]sleep\(' /dev/null |
+    sed 's/$/   <- sleeps/'
+}
+
+# --- formatting ----------------------------------------------------------------------------------------
+check_format() {
+  command -v clang-format > /dev/null || { echo "(format): clang-format is not installed"; return; }
+  cpp | xargs -r -P "$(nproc)" -n 1 sh -c \
+    'clang-format --dry-run -Werror "$1" > /dev/null 2>&1 || echo "$1: not as clang-format writes it (./run format)"' lint | sort
+}
+
+check_shell() {
+  command -v shellcheck > /dev/null || return 0
+  { files -name '*.sh'; ls run .ci/run 2> /dev/null; } | xargs -r shellcheck -x -S warning -f gcc
+}
+
+checks=("$@")
+[ ${#checks[@]} -gt 0 ] || checks=(includes sizes words sleeps format shell)
+status=0
+for check in "${checks[@]}"; do
+  declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }
+  found="$("check_$check")"
+  if [ -n "$found" ]; then
+    echo "$found"
+    status=1
+  fi
+  [ -z "$found" ] && echo "lint: $check ok" || echo "lint: $check FAILED"
+done
+exit $status
