@@ -9,7 +9,7 @@ constexpr std::uint64_t kept_per_rule = 100;
 
 // Within one instant the order on the wire says nothing about the order of thought.
 int rank(const Event& event) {
-  if (std::holds_alternative<Truth>(event)) return 3;
+  if (std::holds_alternative<Motion>(event)) return 3;
   if (std::holds_alternative<VelocitySent>(event)) return 2;
   if (std::holds_alternative<AuthoritySent>(event) || std::holds_alternative<BehaviourSent>(event) ||
       std::holds_alternative<NotificationSent>(event))

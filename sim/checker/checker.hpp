@@ -39,7 +39,7 @@ class Checker {
   struct Watch;
   void dispatch(Watch& watch);
 
-  std::map<std::string, std::unique_ptr<Watch>> watches_{};
+  std::map<std::string, std::unique_ptr<Watch>> watches_;
   std::vector<Violation> violations_{};
   std::array<std::uint64_t, rules + 1> counts_{};
 };

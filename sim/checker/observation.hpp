@@ -102,13 +102,13 @@ struct VelocitySent {
 };
 
 // What the world did ----------------------------------------------------------------------------------
-struct Truth {
+struct Motion {
   Pose2 pose{};       ///< world frame
   Twist2 velocity{};  ///< body frame
 };
 
 using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
-                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Truth>;
+                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

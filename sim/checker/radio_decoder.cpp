@@ -1,7 +1,5 @@
 #include "sim/checker/radio_decoder.hpp"
 
-#include <string_view>
-
 #include "adit/authority.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
@@ -15,9 +13,7 @@ namespace {
 
 namespace topics = wire::topics;
 
-bool is(const wire::TopicInfo& topic, const wire::TopicInfo& other) {
-  return topic.name == other.name || std::string_view(topic.name) == other.name;
-}
+bool is(std::string_view topic, const wire::TopicInfo& other) { return topic == other.name; }
 
 Verb verb_of(radio::CommandKind kind) {
   switch (kind) {
@@ -103,7 +99,7 @@ Decoded authority(std::span<const std::uint8_t> cdr) {
 
 }  // namespace
 
-Decoded decode_received(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr,
+Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cdr,
                         const wire::ParticipantId& from) {
   if (is(topic, topics::command)) return command(cdr, from);
   if (is(topic, topics::joystick)) return joystick(cdr, from);
@@ -112,7 +108,7 @@ Decoded decode_received(const wire::TopicInfo& topic, std::span<const std::uint8
   return std::nullopt;
 }
 
-Decoded decode_sent(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr) {
+Decoded decode_sent(std::string_view topic, std::span<const std::uint8_t> cdr) {
   if (is(topic, topics::cmd_vel)) {
     const auto t = read<geometry_msgs::msg::Twist>(cdr);
     if (!t) return std::nullopt;

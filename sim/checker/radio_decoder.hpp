@@ -2,6 +2,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "sim/checker/observation.hpp"
 
@@ -15,9 +16,9 @@ struct DecodedSample {
 
 /// Decodes what a robot receives: Presence, Capabilities of a station, Command, Joystick. Nothing for other
 /// topics and for bytes that are no sample.
-std::optional<DecodedSample> decode_received(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr,
+std::optional<DecodedSample> decode_received(std::string_view topic, std::span<const std::uint8_t> cdr,
                                              const wire::ParticipantId& from);
 /// Decodes what a robot sends: acknowledgements, its states, notifications, cmd_vel.
-std::optional<DecodedSample> decode_sent(const wire::TopicInfo& topic, std::span<const std::uint8_t> cdr);
+std::optional<DecodedSample> decode_sent(std::string_view topic, std::span<const std::uint8_t> cdr);
 
 }  // namespace adit::sim

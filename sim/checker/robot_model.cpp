@@ -11,7 +11,7 @@ void RobotModel::take_in(const Event& event) {
 void RobotModel::take_in_event(const AgentStarted&) {
   // A new process remembers nothing: neither holder nor stops nor whom it heard.
   const RobotFacts facts = facts_;
-  const Truth truth = truth_;
+  const Motion truth = truth_;
   const Duration now = now_, died = died_, velocity_at = velocity_at_;
   const std::optional<VelocitySent> velocity = velocity_;
   *this = RobotModel(facts);

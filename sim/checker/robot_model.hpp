@@ -82,7 +82,7 @@ class RobotModel {
   const std::optional<Stick>& pushed_stick() const { return pushed_stick_; }
   /// The last sample, with motion in it, that the robot had no right to obey, and why.
   const std::optional<std::pair<std::string, Duration>>& forbidden_stick() const { return forbidden_stick_; }
-  const Truth& truth() const { return truth_; }
+  const Motion& truth() const { return truth_; }
 
   /// Empty when the sample may move the robot, else why it may not.
   std::string refusal(const JoystickHeard& sample) const;
@@ -99,7 +99,7 @@ class RobotModel {
   void take_in_event(const StateSent& e);
   void take_in_event(const NotificationSent&) {}
   void take_in_event(const VelocitySent& e);
-  void take_in_event(const Truth& e) { truth_ = e; }
+  void take_in_event(const Motion& e) { truth_ = e; }
   void hear(const std::string& station, const StationId& id, const wire::ParticipantId& from);
   void apply(const CommandHeard& command, const AckSent& ack);
 
@@ -117,7 +117,7 @@ class RobotModel {
   std::optional<VelocitySent> velocity_{};
   std::optional<Stick> stick_{}, pushed_stick_{};
   std::optional<std::pair<std::string, Duration>> forbidden_stick_{};
-  Truth truth_{};
+  Motion truth_{};
 };
 
 }  // namespace adit::sim

@@ -23,7 +23,7 @@ class Stop : public Rule {
     if (const auto* sent = std::get_if<VelocitySent>(&event); sent && !sent->velocity.zero()) {
       if (stopped_since_ && robot.now() > *stopped_since_) broken("sent a velocity while stopped");
     }
-    if (const auto* truth = std::get_if<Truth>(&event)) see_truth(robot, *truth, broken);
+    if (const auto* truth = std::get_if<Motion>(&event)) see_truth(robot, *truth, broken);
   }
 
   void settle(const RobotModel& robot, const Report&) override {
@@ -63,7 +63,7 @@ class Stop : public Rule {
     broken(status.stops.empty() ? "published no stop while one was set" : "published a stop that nobody set");
   }
 
-  void see_truth(const RobotModel& robot, const Truth& truth, const Report& broken) {
+  void see_truth(const RobotModel& robot, const Motion& truth, const Report& broken) {
     if (!stopped_since_ || told_moving_ || robot.now() < at_rest_by_) return;
     const Twist2& v = truth.velocity;
     if (std::hypot(v.vx, v.vy) < resting_speed && std::abs(v.wz) < resting_turn) return;

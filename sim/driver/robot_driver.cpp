@@ -1,0 +1,139 @@
+#include "sim/driver/robot_driver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "geometry_msgs/msg/Twist.h"
+#include "nav_msgs/msg/Odometry.h"
+#include "sensor_msgs/msg/BatteryState.h"
+#include "sensor_msgs/msg/PointCloud2.h"
+
+namespace adit::sim {
+namespace {
+
+constexpr std::uint8_t float32 = 7;  // sensor_msgs/msg/PointField.FLOAT32
+constexpr std::uint32_t point_bytes = 12;
+static_assert(sizeof(Eigen::Vector3f) == point_bytes);
+
+std_msgs::msg::Header header(Time now, const char* frame) {
+  const std::int64_t ns = now.time_since_epoch().count();
+  std_msgs::msg::Header out;
+  out.stamp().sec(static_cast<std::int32_t>(ns / 1'000'000'000));
+  out.stamp().nanosec(static_cast<std::uint32_t>(ns % 1'000'000'000));
+  out.frame_id(frame);
+  return out;
+}
+
+// The serialised sample: made beside everything else, for it is large.
+std::vector<std::uint8_t> cloud_bytes(const PointCloud& points, const std_msgs::msg::Header& stamp) {
+  sensor_msgs::msg::PointCloud2 cloud;
+  cloud.header(stamp);
+  cloud.height(1);
+  cloud.width(static_cast<std::uint32_t>(points.size()));
+  const std::array names{"x", "y", "z"};
+  for (std::uint32_t i = 0; i < names.size(); ++i) {
+    sensor_msgs::msg::PointField field;
+    field.name(names[i]);
+    field.offset(4 * i);
+    field.datatype(float32);
+    field.count(1);
+    cloud.fields().push_back(field);
+  }
+  cloud.point_step(point_bytes);
+  cloud.row_step(point_bytes * cloud.width());
+  cloud.data().resize(points.size() * point_bytes);
+  if (!points.empty()) std::memcpy(cloud.data().data(), points.data(), cloud.data().size());
+  cloud.is_dense(true);
+  std::vector<std::uint8_t> out;
+  wire::encode(cloud, out);
+  return out;
+}
+
+}  // namespace
+
+struct RobotDriver::Endpoints {
+  wire::Writer<nav_msgs::msg::Odometry> odom{};
+  wire::Writer<sensor_msgs::msg::BatteryState> battery{};
+  std::unique_ptr<wire::RawWriter> points{};
+  std::unique_ptr<wire::RawReader> cmd_vel{};
+};
+
+RobotDriver::RobotDriver(Simulation& simulation, std::size_t robot, Executor& strand, wire::Wire& wire,
+                         const DriverParams& params)
+    : simulation_(simulation), robot_(robot), strand_(strand), wire_(wire), params_(params) {}
+
+RobotDriver::~RobotDriver() = default;
+
+Result<void> RobotDriver::start() {
+  endpoints_ = std::make_shared<Endpoints>();
+  auto odom = wire::Writer<nav_msgs::msg::Odometry>::make(wire_, wire::topics::odom);
+  if (!odom) return odom.error();
+  auto battery = wire::Writer<sensor_msgs::msg::BatteryState>::make(wire_, wire::topics::battery);
+  if (!battery) return battery.error();
+  auto points = wire_.make_writer(wire::topics::points, {});
+  if (!points) return points.error();
+  auto cmd_vel = wire::make_reader<geometry_msgs::msg::Twist>(
+      wire_, wire::topics::cmd_vel, strand_,
+      [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
+        simulation_.command(robot_, {t.linear().x(), t.linear().y(), t.angular().z()});
+      });
+  if (!cmd_vel) return cmd_vel.error();
+  endpoints_->odom = std::move(*odom);
+  endpoints_->battery = std::move(*battery);
+  endpoints_->points = std::move(*points);
+  endpoints_->cmd_vel = std::move(*cmd_vel);
+
+  started_ = strand_.now();
+  odom_ = strand_.every(params_.odom_period, [this] { send_odom(); });
+  battery_ = strand_.every(params_.battery_period, [this] { send_battery(); });
+  first_points_ = strand_.after(params_.first_scan, [this] {
+    send_points();
+    points_ = strand_.every(from_seconds(1.0 / simulation_.params().lidar.rate), [this] { send_points(); });
+  });
+  return {};
+}
+
+// A failed write is counted by the wire and shown with its counters; the next sample replaces it.
+void RobotDriver::send_odom() {
+  const Odometry& measured = simulation_.odometry(robot_);
+  nav_msgs::msg::Odometry odom;
+  odom.header(header(strand_.now(), "odom"));
+  odom.child_frame_id("base_link");
+  auto& pose = odom.pose().pose();
+  pose.position().x(measured.pose().x);
+  pose.position().y(measured.pose().y);
+  pose.orientation().z(std::sin(measured.pose().yaw / 2.0));
+  pose.orientation().w(std::cos(measured.pose().yaw / 2.0));
+  auto& twist = odom.twist().twist();
+  twist.linear().x(measured.twist().vx);
+  twist.linear().y(measured.twist().vy);
+  twist.angular().z(measured.twist().wz);
+  (void)endpoints_->odom.write(odom);
+}
+
+void RobotDriver::send_battery() {
+  const double used = seconds(strand_.now() - started_) / (params_.battery_hours * 3600.0);
+  sensor_msgs::msg::BatteryState battery;
+  battery.header(header(strand_.now(), "base_link"));
+  battery.percentage(static_cast<float>(std::max(0.0, 1.0 - used)));
+  battery.voltage(static_cast<float>(25.2 - 4.2 * std::min(1.0, used)));
+  battery.present(true);
+  (void)endpoints_->battery.write(battery);
+}
+
+void RobotDriver::send_points() {
+  auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
+  auto bytes = std::make_shared<std::vector<std::uint8_t>>();
+  auto stamp = header(strand_.now(), "base_link");
+  std::weak_ptr<Endpoints> alive = endpoints_;
+  strand_.compute(
+      params_.scan_delay, [job, bytes, stamp] { *bytes = cloud_bytes(job->compute(), stamp); },
+      [alive, bytes] {
+        if (const auto endpoints = alive.lock()) (void)endpoints->points->write(*bytes);
+      });
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,48 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/exec/executor.hpp"
+#include "core/wire/wire.hpp"
+#include "sim/world/simulation.hpp"
+
+namespace adit::sim {
+
+struct DriverParams {
+  Duration odom_period{20ms};   ///< (0, 1 s]
+  Duration battery_period{1s};  ///< (0, 60 s]
+  Duration scan_delay{20ms};    ///< from the instant a scan shows to its sample, in rehearsal; (0, 100 ms]
+  Duration first_scan{100ms};   ///< lets the robots' scans be spread over the period, > 0
+  double battery_hours{4.0};    ///< a full battery lasts so long, (0, 1000]
+};
+
+/// A simulated robot's driver: obeys rt/cmd_vel and gives rt/odom, rt/points and rt/battery_state, as a ROS 2
+/// driver does. The same code on the in-memory wire and on Fast DDS. All drivers of one simulation
+/// live on strands of one thread.
+class RobotDriver {
+ public:
+  /// `strand`, `wire` (the robot domain) and `simulation` outlive the driver.
+  RobotDriver(Simulation& simulation, std::size_t robot, Executor& strand, wire::Wire& wire,
+              const DriverParams& params);
+  ~RobotDriver();
+  /// Makes the endpoints and begins to send. Errors of the wire.
+  Result<void> start();
+
+ private:
+  struct Endpoints;
+  void send_odom();
+  void send_battery();
+  void send_points();
+
+  Simulation& simulation_;
+  std::size_t robot_;
+  Executor& strand_;
+  wire::Wire& wire_;
+  DriverParams params_;
+  std::shared_ptr<Endpoints> endpoints_;  // shared with scans under way
+  Time started_{};
+  Timer odom_{}, battery_{}, first_points_{}, points_{};
+};
+
+}  // namespace adit::sim

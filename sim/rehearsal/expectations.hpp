@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <map>
+
+#include "sim/rehearsal/report.hpp"
+#include "sim/rehearsal/scenario.hpp"
+#include "sim/rehearsal/witness.hpp"
+
+namespace adit::sim {
+
+/// What expectations are judged by, read when they are judged.
+struct Evidence {
+  std::function<const RobotWord&(const std::string& robot)> word{};
+  std::function<Pose2(const std::string& robot)> pose{};  ///< true, world frame
+  std::function<int(const std::string& robot)> collisions{};
+  std::map<std::string, Reason> last_answer{};  ///< by operator
+};
+
+/// Judges a scenario's expectations as time goes on.
+class Expectations {
+ public:
+  explicit Expectations(const Scenario& scenario);
+
+  /// Instants at which something must be judged exactly, ascending.
+  std::vector<Duration> instants() const;
+  /// To be called at those instants and at 50 Hz, with everything until `now` done.
+  void judge(Duration now, const Evidence& evidence);
+  /// At the end of the run: what never came, and what is counted over the whole of it.
+  std::vector<ExpectationResult> finish(const Evidence& evidence, const RunReport& report);
+
+ private:
+  struct State {
+    bool settled{};
+    ExpectationResult result{};
+  };
+  const Scenario& scenario_;
+  std::vector<State> states_;
+};
+
+}  // namespace adit::sim

@@ -1,0 +1,69 @@
+#include "sim/rehearsal/random_script.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace adit::sim {
+namespace {
+
+constexpr std::array verbs{"take", "release", "lock", "unlock", "grant",
+                           "goto", "drive",   "stop", "reset",  "mode"};
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+const std::string& pick(const std::vector<std::string>& from, Random& random) {
+  return from[random.below(from.size())];
+}
+
+std::string draw_command(const RandomScript& spec, const Scenario& scenario, const std::string& by,
+                         const std::string& robot, Random& random) {
+  const std::string& verb = pick(spec.verbs, random);
+  const std::string head = verb + " " + robot;
+  if (verb == "grant") {
+    // Mostly another operator of the list, now and then himself.
+    std::string to = pick(spec.by, random);
+    if (to == by) to = pick(spec.by, random);
+    return head + " " + to;
+  }
+  if (verb == "goto") {
+    const RobotSpec* start = scenario.robot(robot);
+    const Pose2 pose = start ? start->pose : Pose2{};
+    return head + " " + number(pose.x + random.uniform(-spec.reach, spec.reach)) + " " +
+           number(pose.y + random.uniform(-spec.reach, spec.reach));
+  }
+  if (verb == "drive")
+    return head + " " + number(random.uniform(-0.5, 1.0)) + " 0 " + number(random.uniform(-0.8, 0.8)) +
+           " --for " + number(random.uniform(0.3, 2.0));
+  if (verb == "reset") return random.chance(0.4) ? head + " --override" : head;
+  if (verb == "mode") {
+    static constexpr std::array modes{"hold", "waypoint", "manual", "smart_joystick", "explore"};
+    return head + " " + modes[random.below(modes.size())];
+  }
+  return head;
+}
+
+}  // namespace
+
+bool is_random_verb(const std::string& verb) {
+  return std::find(verbs.begin(), verbs.end(), verb) != verbs.end();
+}
+
+std::vector<ScriptLine> draw_script(const RandomScript& spec, const Scenario& scenario, Random random) {
+  std::vector<ScriptLine> lines;
+  std::string robot = pick(spec.robots, random);
+  for (int i = 0; i < spec.commands; ++i) {
+    const Duration at = from_seconds(random.uniform(seconds(spec.from), seconds(spec.to)));
+    const std::string by = pick(spec.by, random);
+    if (!random.chance(0.25)) robot = pick(spec.robots, random);
+    lines.push_back({at, by, draw_command(spec, scenario, by, robot, random)});
+  }
+  std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+  return lines;
+}
+
+}  // namespace adit::sim

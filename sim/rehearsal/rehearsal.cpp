@@ -1,0 +1,265 @@
+#include "sim/rehearsal/rehearsal.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/config/platform_file.hpp"
+#include "sim/rehearsal/expectations.hpp"
+#include "sim/rehearsal/forger.hpp"
+#include "sim/rehearsal/random_script.hpp"
+#include "sim/rehearsal/station_machine.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr Duration truth_period{20ms};
+constexpr Duration trail_period{100ms};
+
+std::vector<RobotFacts> facts_of(const Scenario& scenario, const Simulation& simulation) {
+  std::vector<RobotFacts> out;
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const Platform& platform = simulation.platform(i);
+    out.push_back({simulation.id(i), platform.max_acceleration, platform.max_turn_acceleration,
+                   seconds(scenario.lock_lease)});
+  }
+  return out;
+}
+
+template <class Spec>
+std::vector<std::string> ids_of(const std::vector<Spec>& specs) {
+  std::vector<std::string> out;
+  for (const Spec& spec : specs) out.push_back(spec.id);
+  return out;
+}
+
+wire::EtherParams ether_params(const Scenario& scenario, std::uint64_t seed) {
+  wire::EtherParams params;
+  params.seed = seed;
+  params.radio_domain = Witness::radio_domain;
+  params.link = scenario.link;
+  return params;
+}
+
+VirtualParams scheduler_params(const RunParams& params) {
+  VirtualParams out;
+  out.seed = params.seed;
+  out.workers = params.workers;
+  return out;
+}
+
+/// One run: the stage, the machines on it, and the loop through virtual time.
+class Run {
+ public:
+  Run(const Scenario& scenario, Simulation simulation, const RunParams& params)
+      : scenario_(scenario),
+        params_(params),
+        random_(params.seed),
+        simulation_(std::move(simulation)),
+        scheduler_(scheduler_params(params)),
+        ether_(scheduler_, ether_params(scenario, random_.next())),
+        checker_(facts_of(scenario, simulation_)),
+        witness_(checker_, ids_of(scenario.robots), ids_of(scenario.stations)),
+        stage_{scenario_, scheduler_, ether_, simulation_, witness_, params_.make_agent},
+        expectations_(scenario) {}
+
+  Result<RunOutcome> go() {
+    if (auto ready = set_up(); !ready) return ready.error();
+    const auto begin = std::chrono::steady_clock::now();  // for people: nothing depends on it
+    for (const Duration instant : instants()) {
+      scheduler_.run_until(instant);
+      observe(instant);
+    }
+    RunOutcome out;
+    if (auto healthy = health(); !healthy) return healthy.error();
+    out.report = report(seconds(std::chrono::steady_clock::now() - begin));
+    out.trails = std::move(trails_);
+    out.collisions = simulation_.collisions();
+    return out;
+  }
+
+ private:
+  Result<void> set_up() {
+    ether_.set_tap([this](const wire::Frame& frame) { witness_.see(frame); });
+    world_runtime_ = scheduler_.machine("world", 0ns);
+    world_ = world_runtime_->strand("world");
+    step_ = world_->every(simulation_.params().step, [this] { simulation_.step(); });
+    for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
+      const RobotSpec& spec = scenario_.robots[i];
+      robots_[spec.id] = std::make_unique<RobotMachine>(stage_, i, spec, random_.fork(100 + i));
+      ether_.set_position(spec.id, spec.pose.x, spec.pose.y);
+      if (auto started = robots_[spec.id]->start(); !started) return started;
+    }
+    for (std::size_t i = 0; i < scenario_.stations.size(); ++i) {
+      const StationSpec& spec = scenario_.stations[i];
+      stations_[spec.id] = std::make_unique<StationMachine>(stage_, spec, random_.fork(1000 + i));
+      if (auto started = stations_[spec.id]->start(); !started) return started;
+    }
+    schedule(scenario_.script);
+    if (scenario_.random) schedule(draw_script(*scenario_.random, scenario_, random_.fork(7)));
+    for (const Fault& fault : scenario_.faults) scheduler_.at(fault.at, [this, &fault] { happen(fault); });
+    return {};
+  }
+
+  void schedule(const std::vector<ScriptLine>& lines) {
+    for (const ScriptLine& line : lines)
+      scheduler_.at(line.at, [this, line] { stations_.at(line.by)->type(line.command); });
+  }
+
+  void happen(const Fault& fault) {
+    const Duration now = scheduler_.elapsed();
+    if (const auto* crash = std::get_if<Crash>(&fault.what)) {
+      if (robots_.contains(crash->victim)) robots_[crash->victim]->crash();
+      if (stations_.contains(crash->victim)) stations_[crash->victim]->crash();
+    } else if (const auto* cut = std::get_if<CutLink>(&fault.what)) {
+      ether_.cut(cut->a, cut->b, true);
+      scheduler_.at(now + cut->duration, [this, cut] { ether_.cut(cut->a, cut->b, false); });
+    } else if (const auto* worse = std::get_if<DegradeLink>(&fault.what)) {
+      ether_.degrade(worse->a, worse->b, worse->loss);
+      scheduler_.at(now + worse->duration,
+                    [this, worse] { ether_.degrade(worse->a, worse->b, std::nullopt); });
+    } else if (const auto* forge = std::get_if<Forge>(&fault.what)) {
+      forgers_.push_back(std::make_unique<Forger>(stage_, *forge, stations_.at(forge->as)->id()));
+      forger_health_ = forgers_.back()->start();
+    }
+  }
+
+  // 50 Hz, and whenever an expectation wants to be judged.
+  std::vector<Duration> instants() const {
+    std::vector<Duration> out = expectations_.instants();
+    for (Duration t = truth_period; t < scenario_.duration; t += truth_period) out.push_back(t);
+    out.push_back(scenario_.duration);
+    std::sort(out.begin(), out.end());
+    out.erase(std::unique(out.begin(), out.end()), out.end());
+    return out;
+  }
+
+  void observe(Duration now) {
+    for (std::size_t i = 0; i < simulation_.size(); ++i) {
+      const std::string& id = simulation_.id(i);
+      const Truth& truth = simulation_.truth(i);
+      const Pose2 pose = truth.pose.planar();
+      witness_.truth(id, now, {pose, truth.twist});
+      if (now % trail_period == 0ns) {
+        trails_[id].poses.push_back(pose);
+        ether_.set_position(id, pose.x, pose.y, truth.pose.position.z());
+      }
+      const std::string& mode = witness_.word(id).mode;
+      mode_seconds_[id][mode.empty() ? "none" : mode] += seconds(now - observed_);
+    }
+    checker_.advance(now);
+    expectations_.judge(now, evidence());
+    observed_ = now;
+    if (params_.progress && now % 1s == 0ns) params_.progress(now);
+  }
+
+  Evidence evidence() const {
+    Evidence out;
+    out.word = [this](const std::string& robot) -> const RobotWord& { return witness_.word(robot); };
+    out.pose = [this](const std::string& robot) { return truth(robot).pose.planar(); };
+    out.collisions = [this](const std::string& robot) { return static_cast<int>(truth(robot).collisions); };
+    for (const auto& [id, station] : stations_)
+      if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
+    return out;
+  }
+
+  const Truth& truth(const std::string& robot) const {
+    return simulation_.truth(simulation_.find(robot).value());
+  }
+
+  Result<void> health() const {
+    for (const auto& [id, robot] : robots_)
+      if (!robot->health()) return robot->health();
+    for (const auto& [id, station] : stations_)
+      if (!station->health()) return station->health();
+    return forger_health_;
+  }
+
+  RunReport report(double wall) {
+    RunReport out;
+    out.scenario = scenario_.file.string();
+    out.seed = params_.seed;
+    out.digest = witness_.digest();
+    out.virtual_s = seconds(scenario_.duration);
+    out.wall_s = wall;
+    out.topics = witness_.topics();
+    out.commands = witness_.commands();
+    out.events = witness_.events();
+    out.failures = scheduler_.failures();
+    for (int rule = 1; rule <= Checker::rules; ++rule) {
+      RuleResult result{rule, Checker::title(rule), checker_.count(rule), {}};
+      for (const Violation& violation : checker_.violations())
+        if (violation.rule == rule) result.first.push_back(violation);
+      out.rules.push_back(std::move(result));
+    }
+    for (const RobotSpec& robot : scenario_.robots) {
+      const Truth& is = truth(robot.id);
+      out.robots[robot.id] = {is.distance, static_cast<int>(is.collisions), is.min_clearance,
+                              seconds(is.moving) / out.virtual_s, mode_seconds_[robot.id]};
+    }
+    out.expectations = expectations_.finish(evidence(), out);
+    return out;
+  }
+
+  const Scenario& scenario_;
+  const RunParams& params_;
+  Random random_;
+  Simulation simulation_;
+  VirtualScheduler scheduler_;
+  wire::Ether ether_;
+  Checker checker_;
+  Witness witness_;
+  Stage stage_;
+  Expectations expectations_;
+  std::unique_ptr<Runtime> world_runtime_{};
+  std::shared_ptr<Executor> world_{};
+  Timer step_{};
+  std::map<std::string, std::unique_ptr<RobotMachine>> robots_{};
+  std::map<std::string, std::unique_ptr<StationMachine>> stations_{};
+  std::vector<std::unique_ptr<Forger>> forgers_{};
+  Result<void> forger_health_{};
+  std::map<std::string, Trail> trails_{};
+  std::map<std::string, std::map<std::string, double>> mode_seconds_{};
+  Duration observed_{};
+};
+
+}  // namespace
+
+Result<std::shared_ptr<const World>> make_world(const WorldSpec& spec) {
+  auto world = !spec.map.empty()          ? load_octomap(spec.map)
+               : !spec.floor_plan.empty() ? load_floor_plan(spec.floor_plan, spec.ceiling)
+                                          : make_box_world(spec.boxes, spec.floor, spec.ceiling);
+  if (!world) return world.error();
+  return std::shared_ptr<const World>(std::make_shared<World>(std::move(*world)));
+}
+
+Result<std::vector<RobotStart>> make_starts(const Scenario& scenario) {
+  std::vector<RobotStart> out;
+  for (const RobotSpec& spec : scenario.robots) {
+    auto platform = config::load_platform(spec.platform, scenario.file.string());
+    if (!platform) return platform.error();
+    out.push_back({spec.id, *platform, spec.pose});
+  }
+  return out;
+}
+
+SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t seed) {
+  SimulationParams out;
+  if (scenario.lidar == LidarKind::planar) out.lidar = LidarParams::planar();
+  out.seed = seed;
+  return out;
+}
+
+Result<RunOutcome> rehearse(const Scenario& scenario, std::shared_ptr<const World> world,
+                            const RunParams& params) {
+  auto starts = make_starts(scenario);
+  if (!starts) return starts.error();
+  Random random(params.seed);
+  auto simulation = Simulation::create(std::move(world), std::move(*starts),
+                                       make_simulation_params(scenario, random.fork(3).next()));
+  if (!simulation)
+    return Error{simulation.error().reason, scenario.file.string() + ": " + simulation.error().text};
+  Run run(scenario, std::move(*simulation), params);
+  return run.go();
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,43 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "sim/rehearsal/agent_factory.hpp"
+#include "sim/rehearsal/report.hpp"
+#include "sim/rehearsal/scenario.hpp"
+#include "sim/world/simulation.hpp"
+
+namespace adit::sim {
+
+struct RunParams {
+  std::uint64_t seed{1};
+  int workers{2};  ///< threads for the heavy work of one run, [1, 64]
+  AgentFactory make_agent{};
+  std::function<void(Duration)> progress{};  ///< told the virtual time, every second of it
+};
+
+/// A robot's way, for the picture.
+struct Trail {
+  std::vector<Pose2> poses{};  ///< 10 a second, true, world frame
+};
+
+struct RunOutcome {
+  RunReport report{};
+  std::map<std::string, Trail> trails{};
+  std::vector<Collision> collisions{};
+};
+
+/// Builds a scenario's world; it may be shared by many runs. Errors name the file.
+Result<std::shared_ptr<const World>> make_world(const WorldSpec& spec);
+/// The robots as the simulation takes them, with their platforms. Errors of core/config.
+Result<std::vector<RobotStart>> make_starts(const Scenario& scenario);
+SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t seed);
+
+/// Runs a scenario on virtual time. Same scenario and seed, same run, whatever the number of workers.
+/// Errors: robots that overlap or start in a wall, an agent that cannot be started.
+Result<RunOutcome> rehearse(const Scenario& scenario, std::shared_ptr<const World> world,
+                            const RunParams& params);
+
+}  // namespace adit::sim

@@ -1,0 +1,77 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/result/result.hpp"
+#include "sim/checker/checker.hpp"
+
+namespace adit::sim {
+
+struct ExpectationResult {
+  std::string text{};  ///< as written in the scenario
+  int line{};
+  bool ok{};
+  std::string found{};  ///< what was there instead, for people; empty when ok
+};
+
+struct RuleResult {
+  int number{};
+  std::string title{};
+  std::uint64_t violations{};
+  std::vector<Violation> first{};  ///< the first of them
+};
+
+struct RobotResult {
+  double distance{};       ///< driven, m, truth
+  int collisions{};        ///< contacts that began
+  double min_clearance{};  ///< m; to anything, over the run
+  double moving{};         ///< part of the time in motion, 0..1
+  std::map<std::string, double> mode_seconds{};
+};
+
+struct TopicResult {
+  std::uint64_t samples{};
+  std::uint64_t bytes{};  ///< payload handed to the wire
+  std::uint64_t delivered{};
+};
+
+struct CommandResult {
+  std::uint64_t sent{}, accepted{}, refused{};
+  std::map<std::string, std::uint64_t> reasons{};  ///< refusals by reason
+};
+
+/// An event on the time line: for the picture and for people.
+struct TimedEvent {
+  Duration at{};
+  std::string robot{};
+  std::string text{};
+};
+
+/// What one run gave.
+struct RunReport {
+  std::string scenario{};
+  std::uint64_t seed{};
+  std::string digest{};
+  double virtual_s{}, wall_s{};
+  std::vector<ExpectationResult> expectations{};
+  std::vector<RuleResult> rules{};
+  std::map<std::string, RobotResult> robots{};
+  std::map<std::string, TopicResult, std::less<>> topics{};
+  CommandResult commands{};
+  std::vector<TimedEvent> events{};
+  std::uint64_t failures{};  ///< exceptions that left a task
+
+  bool ok() const;
+  /// One line for each thing that failed.
+  std::vector<std::string> complaints() const;
+};
+
+/// The report as one JSON object (docs/rehearsal.md).
+std::string to_json(const RunReport& report);
+/// Writes it. Reason::cannot_write names the file.
+Result<void> write_json(const RunReport& report, const std::string& file);
+
+}  // namespace adit::sim

@@ -1,0 +1,101 @@
+#include "sim/rehearsal/robot_machine.hpp"
+
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "geometry_msgs/msg/Twist.h"
+
+namespace adit::sim {
+namespace {
+
+constexpr Duration parent_notices{20ms};
+constexpr Duration zero_period{50ms};
+constexpr Duration restart_after{500ms};
+constexpr std::uint32_t first_robot_domain = 100;
+
+}  // namespace
+
+/// What stays when the agent dies: sends zero until a new one runs.
+struct RobotMachine::Parent {
+  std::unique_ptr<Runtime> runtime{};
+  std::shared_ptr<Executor> strand{};
+  std::unique_ptr<wire::Wire> wire{};
+  wire::Writer<geometry_msgs::msg::Twist> cmd_vel{};
+  Timer zero{};
+
+  void send_zero() { (void)cmd_vel.write({}); }  // counted by the wire when it fails; the next follows
+};
+
+struct RobotMachine::Agent {
+  std::unique_ptr<Runtime> runtime{};
+  std::unique_ptr<wire::Wire> radio{}, robot{};
+  std::shared_ptr<void> program{};
+};
+
+RobotMachine::RobotMachine(Stage& stage, std::size_t index, const RobotSpec& spec, Random random)
+    : stage_(stage),
+      index_(index),
+      spec_(spec),
+      random_(random),
+      clock_offset_(from_seconds(random_.uniform(10.0, 100000.0))),
+      domain_(first_robot_domain + static_cast<std::uint32_t>(index)) {}
+
+RobotMachine::~RobotMachine() = default;
+
+Result<void> RobotMachine::start() {
+  const std::string driver = Witness::driver_machine(spec_.id);
+  driver_runtime_ = stage_.scheduler.machine(driver, clock_offset_);
+  driver_strand_ = driver_runtime_->strand("driver");
+  driver_wire_ = stage_.ether.join(domain_, driver);
+  DriverParams params;
+  // Scans of different robots do not all fall into the same instant.
+  params.first_scan = 100ms + 5ms * static_cast<int>(index_);
+  driver_ = std::make_unique<RobotDriver>(stage_.simulation, index_, *driver_strand_, *driver_wire_, params);
+  if (auto started = driver_->start(); !started) return started;
+
+  parent_ = std::make_unique<Parent>();
+  const std::string name = Witness::parent_machine(spec_.id);
+  parent_->runtime = stage_.scheduler.machine(name, clock_offset_);
+  parent_->strand = parent_->runtime->strand("parent");
+  parent_->wire = stage_.ether.join(domain_, name);
+  auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(*parent_->wire, wire::topics::cmd_vel);
+  if (!writer) return writer.error();
+  parent_->cmd_vel = std::move(*writer);
+  return start_agent();
+}
+
+Result<void> RobotMachine::start_agent() {
+  auto agent = std::make_unique<Agent>();
+  agent->runtime = stage_.scheduler.machine(spec_.id, clock_offset_);
+  agent->radio = stage_.ether.join(Witness::radio_domain, spec_.id);
+  agent->robot = stage_.ether.join(domain_, spec_.id);
+  stage_.witness.agent_started(spec_.id, stage_.scheduler.elapsed(), agent->radio->id());
+  auto program =
+      stage_.make_agent({spec_, stage_.simulation.platform(index_), random_.next(),
+                         stage_.scenario.lock_lease, *agent->runtime, *agent->radio, *agent->robot});
+  if (!program) return program.error();
+  agent->program = std::move(*program);
+  agent_ = std::move(agent);
+  return {};
+}
+
+void RobotMachine::crash() {
+  if (!agent_) return;
+  // Silent first: whatever the object's end would still say is not heard, as with a killed process.
+  stage_.ether.crash(spec_.id);
+  agent_->program.reset();
+  agent_.reset();
+  const Duration now = stage_.scheduler.elapsed();
+  stage_.witness.agent_died(spec_.id, now);
+  stage_.scheduler.at(now + parent_notices, [this] {
+    parent_->strand->post([this] {
+      parent_->send_zero();
+      parent_->zero = parent_->strand->every(zero_period, [this] { parent_->send_zero(); });
+    });
+  });
+  stage_.scheduler.at(now + restart_after, [this] {
+    parent_->zero.cancel();
+    health_ = start_agent();
+  });
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,58 @@
+#pragma once
+#include <memory>
+
+#include "core/exec/virtual_runtime.hpp"
+#include "core/time/random.hpp"
+#include "core/wire/memory/ether.hpp"
+#include "sim/driver/robot_driver.hpp"
+#include "sim/rehearsal/agent_factory.hpp"
+#include "sim/rehearsal/witness.hpp"
+
+namespace adit::sim {
+
+/// What all machines of a rehearsal share; outlives them.
+struct Stage {
+  const Scenario& scenario;
+  VirtualScheduler& scheduler;
+  wire::Ether& ether;
+  Simulation& simulation;
+  Witness& witness;
+  const AgentFactory& make_agent;
+};
+
+/// One robot: its computer with the agent and the agent's parent, and its driver, on one clock. The
+/// computer's agent can crash; parent and driver go on.
+class RobotMachine {
+ public:
+  /// `random`: of this robot alone.
+  RobotMachine(Stage& stage, std::size_t index, const RobotSpec& spec, Random random);
+  ~RobotMachine();
+  Result<void> start();
+  /// The agent's process dies in this instant: its parent sends zero 20 ms later and starts it again
+  /// after 0.5 s. Nothing happens when it is dead already.
+  void crash();
+  /// Why the agent could not be started again, if so.
+  const Result<void>& health() const { return health_; }
+
+ private:
+  struct Parent;
+  struct Agent;
+  Result<void> start_agent();
+
+  Stage& stage_;
+  std::size_t index_;
+  const RobotSpec& spec_;
+  Random random_;
+  Duration clock_offset_;
+  std::uint32_t domain_;
+  // In the order they are needed: a wire before what speaks on it.
+  std::unique_ptr<Runtime> driver_runtime_{};
+  std::shared_ptr<Executor> driver_strand_{};
+  std::unique_ptr<wire::Wire> driver_wire_{};
+  std::unique_ptr<RobotDriver> driver_{};
+  std::unique_ptr<Parent> parent_{};
+  std::unique_ptr<Agent> agent_{};
+  Result<void> health_{};
+};
+
+}  // namespace adit::sim

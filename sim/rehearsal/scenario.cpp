@@ -1,0 +1,18 @@
+#include "sim/rehearsal/scenario.hpp"
+
+#include <algorithm>
+
+namespace adit::sim {
+
+const RobotSpec* Scenario::robot(const std::string& id) const {
+  const auto it = std::find_if(robots.begin(), robots.end(), [&](const RobotSpec& r) { return r.id == id; });
+  return it == robots.end() ? nullptr : &*it;
+}
+
+const StationSpec* Scenario::station(const std::string& id) const {
+  const auto it =
+      std::find_if(stations.begin(), stations.end(), [&](const StationSpec& s) { return s.id == id; });
+  return it == stations.end() ? nullptr : &*it;
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,129 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/geometry/pose.hpp"
+#include "core/result/reason.hpp"
+#include "core/time/time.hpp"
+#include "core/wire/link.hpp"
+
+/// A rehearsal as its YAML file says it; docs/rehearsal.md is the reference.
+namespace adit::sim {
+
+using BoxCorners = std::array<double, 6>;  ///< x0, x1, y0, y1, z0, z1, m
+
+struct WorldSpec {
+  std::filesystem::path map{};         ///< OctoMap; empty: none
+  std::filesystem::path floor_plan{};  ///< map_server YAML; empty: none
+  std::vector<BoxCorners> boxes{};
+  double floor{0.0};
+  double ceiling{3.0};
+};
+
+enum class LidarKind { full, planar };
+
+struct RobotSpec {
+  std::string id{};
+  std::string platform{};
+  Pose2 pose{};  ///< at the start, world frame
+};
+
+struct StationSpec {
+  std::string id{};
+  Eigen::Vector2d position{Eigen::Vector2d::Zero()};  ///< world frame, m
+};
+
+/// A command line that an operator types at a given time.
+struct ScriptLine {
+  Duration at{};
+  std::string by{};
+  std::string command{};
+};
+
+/// Random commands: `commands` of them between `from` and `to`, each by one of `by`, to one of `robots`.
+struct RandomScript {
+  int commands{};
+  Duration from{}, to{};
+  std::vector<std::string> by{};
+  std::vector<std::string> robots{};
+  std::vector<std::string> verbs{};
+  double reach{3.0};  ///< of a random goto from the robot's start, m
+};
+
+struct Crash {
+  std::string victim{};  ///< a robot or a basestation
+};
+struct CutLink {
+  std::string a{}, b{};
+  Duration duration{};
+};
+struct DegradeLink {
+  std::string a{}, b{};
+  double loss{};
+  Duration duration{};
+};
+/// A foreign participant writes well-formed commands and joystick samples to `robot` in `as`'s name.
+struct Forge {
+  std::string as{}, robot{};
+  Duration duration{};
+};
+struct Fault {
+  Duration at{};
+  std::variant<Crash, CutLink, DegradeLink, Forge> what{};
+};
+
+/// What a robot says of itself.
+struct StateExpectation {
+  std::string robot{};
+  std::optional<std::string> mode{};
+  std::optional<std::string> holder{};  ///< empty: nobody
+  std::optional<bool> locked{};
+  std::optional<bool> stopped{};
+};
+struct NearExpectation {
+  std::string robot{};
+  double x{}, y{}, tolerance{};  ///< true position in the world, m
+};
+struct AnswerExpectation {
+  std::string by{};
+  Reason refused{Reason::none};
+};
+struct NoCollision {};
+/// Counted over the whole run.
+struct AtLeast {
+  std::string what{};  ///< commands, refusals, or distance (of every robot)
+  double amount{};
+};
+struct Expectation {
+  enum class When { at, by, always } when{When::always};
+  Duration time{};
+  std::variant<StateExpectation, NearExpectation, AnswerExpectation, NoCollision, AtLeast> what{};
+  int line{};          ///< in the scenario file
+  std::string text{};  ///< as written
+};
+
+struct Scenario {
+  std::filesystem::path file{};
+  std::string name{};
+  WorldSpec world{};
+  Duration duration{};
+  wire::LinkProfile link{};
+  LidarKind lidar{LidarKind::full};
+  Duration lock_lease{300s};  ///< 0: a lock never lapses
+  std::vector<RobotSpec> robots{};
+  std::vector<StationSpec> stations{};
+  std::vector<ScriptLine> script{};  ///< by time
+  std::optional<RandomScript> random{};
+  std::vector<Fault> faults{};  ///< by time
+  std::vector<Expectation> expectations{};
+
+  const RobotSpec* robot(const std::string& id) const;
+  const StationSpec* station(const std::string& id) const;
+};
+
+}  // namespace adit::sim

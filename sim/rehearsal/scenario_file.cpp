@@ -1,0 +1,165 @@
+#include "sim/rehearsal/scenario_file.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "core/config/node.hpp"
+#include "core/config/search.hpp"
+#include "sim/rehearsal/scenario_parts.hpp"
+#include "sim/world/read_file.hpp"
+
+namespace adit::sim {
+namespace {
+
+using config::Node;
+
+constexpr double longest = 86400.0;  // s
+
+std::filesystem::path find_map(const Node& world, const std::string& key, const std::string& file) {
+  const std::string name = world.text(key);
+  if (name.empty()) return {};
+  auto found = config::find_file(name, file);
+  if (!found) {
+    // Where liboctomap-dev's package leaves it when nobody ran ./run setup.
+    const std::filesystem::path package =
+        std::filesystem::path("/usr/share/doc/liboctomap-dev/examples/data") / name;
+    std::error_code ignored;  // not there: the error below tells
+    if (std::filesystem::exists(package, ignored)) return package;
+    world.child(key).fail(found.error().reason, found.error().text);
+    return {};
+  }
+  return *found;
+}
+
+WorldSpec read_world(const Node& world, const std::string& file) {
+  WorldSpec out;
+  const int kinds = static_cast<int>(world.has("map")) + world.has("boxes") + world.has("floorplan");
+  if (world.is_mapping() && kinds != 1)
+    world.fail(Reason::missing_key, "expected one of map, boxes and floorplan");
+  if (world.has("map")) out.map = find_map(world, "map", file);
+  if (world.has("floorplan")) {
+    out.floor_plan = find_map(world, "floorplan", file);
+    out.ceiling = world.number("ceiling", config::above(0.0, 100.0), 3.0);
+  }
+  if (world.has("boxes")) {
+    for (const Node& box : world.list("boxes")) {
+      const std::vector<double> v = box.as_numbers(6, 6, config::within(-1e4, 1e4));
+      if (v.size() != 6) continue;
+      if (v[0] >= v[1] || v[2] >= v[3] || v[4] >= v[5])
+        box.fail(Reason::bad_argument,
+                 "expected [x0, x1, y0, y1, z0, z1], each first smaller than its second");
+      out.boxes.push_back({v[0], v[1], v[2], v[3], v[4], v[5]});
+    }
+    out.floor = world.number("floor", config::within(-1e3, 1e3), 0.0);
+    out.ceiling = world.number("ceiling", config::within(-1e3, 1e3), 3.0);
+    if (out.ceiling <= out.floor) world.fail(Reason::out_of_range, "expected a ceiling above the floor");
+  }
+  return out;
+}
+
+void read_robots(const Node& root, Scenario& out) {
+  static const std::vector<std::string> platforms{"wheeled", "tracked", "legged"};
+  std::set<std::string> names;
+  for (const Node& robot : root.list("robots")) {
+    RobotSpec spec;
+    spec.id = read_name(robot, "id");
+    const std::string platform = robot.text("platform");
+    spec.platform = platform;
+    const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));
+    if (pose.size() == 3) spec.pose = {pose[0], pose[1], wrap_angle(pose[2])};
+    if (!names.insert(spec.id).second)
+      robot.fail(Reason::in_use, "expected another id: " + spec.id + " is taken");
+    out.robots.push_back(std::move(spec));
+  }
+  if (out.robots.empty()) root.child("robots").fail(Reason::missing_key, "expected at least one robot");
+  for (const Node& station : root.list_if("basestations")) {
+    StationSpec spec;
+    spec.id = read_name(station, "id");
+    const std::vector<double> pose = station.numbers("pose", 2, 3, config::within(-1e5, 1e5), {0.0, 0.0});
+    if (pose.size() >= 2) spec.position = {pose[0], pose[1]};
+    if (!names.insert(spec.id).second)
+      station.fail(Reason::in_use, "expected another id: " + spec.id + " is taken");
+    out.stations.push_back(std::move(spec));
+  }
+}
+
+}  // namespace
+
+std::string read_name(const config::Node& node, const char* key) {
+  const std::string name = node.text(key);
+  const auto allowed = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+  };
+  const bool fits = !name.empty() && name.size() <= 32 && std::all_of(name.begin(), name.end(), allowed);
+  if (node.has(key) && !fits)
+    node.child(key).fail(Reason::bad_argument,
+                         "expected 1 to 32 letters, digits, _ or - for " + std::string(key));
+  return name;
+}
+
+std::string read_robot(const config::Node& node, const char* key, const Scenario& scenario) {
+  const std::string id = node.text(key);
+  if (node.has(key) && !scenario.robot(id))
+    node.child(key).fail(Reason::unknown_robot, "expected one of the scenario's robots, not " + id);
+  return id;
+}
+
+std::string read_station(const config::Node& node, const char* key, const Scenario& scenario) {
+  const std::string id = node.text(key);
+  if (node.has(key) && !scenario.station(id))
+    node.child(key).fail(Reason::unknown_operator, "expected one of the scenario's basestations, not " + id);
+  return id;
+}
+
+Duration read_time(const config::Node& node, const char* key, const Scenario& scenario) {
+  return from_seconds(node.number(key, config::within(0.0, seconds(scenario.duration))));
+}
+
+namespace {
+
+// A line as it was written, without its dash and its comment.
+std::string source_line(const std::string& text, int number) {
+  std::size_t begin = 0;
+  for (int i = 1; i < number && begin != std::string::npos; ++i) begin = text.find('\n', begin) + 1;
+  std::string line = text.substr(begin, text.find('\n', begin) - begin);
+  line = line.substr(0, line.find(" #"));
+  const std::size_t first = line.find_first_not_of(" -");
+  const std::size_t last = line.find_last_not_of(" \r");
+  return first == std::string::npos ? std::string() : line.substr(first, last + 1 - first);
+}
+
+Result<Scenario> read(const Node& root, const std::string& text, const std::string& file) {
+  Scenario out;
+  out.file = file;
+  out.name = std::filesystem::path(file).stem().string();
+  out.duration = from_seconds(root.number("duration", config::above(0.0, longest), 1.0));
+  if (!root.has("duration")) root.number("duration", config::above(0.0, longest));
+  out.world = read_world(root.child("world"), file);
+  out.link = read_link(root.child_if("link"), file);
+  out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;
+  out.lock_lease = from_seconds(root.number("lock_lease", config::within(0.0, longest), 300.0));
+  read_robots(root, out);
+  out.script = read_script(root, out);
+  if (root.has("random_script")) out.random = read_random(root.child("random_script"), out);
+  out.faults = read_faults(root, out);
+  out.expectations = read_expectations(root, out);
+  for (Expectation& e : out.expectations) e.text = source_line(text, e.line);
+  if (auto done = root.finish(); !done) return done.error();
+  return out;
+}
+
+}  // namespace
+
+Result<Scenario> load_scenario(const std::string& file) {
+  auto text = read_file(file);
+  if (!text) return text.error();
+  return parse_scenario(*text, file);
+}
+
+Result<Scenario> parse_scenario(const std::string& text, const std::string& file) {
+  auto root = config::parse(text, file);
+  if (!root) return root.error();
+  return read(*root, text, file);
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,25 @@
+#pragma once
+// Parts of the scenario reader, private to sim/rehearsal. Each notes what is wrong at the node.
+#include <string>
+#include <vector>
+
+#include "core/config/node.hpp"
+#include "sim/rehearsal/scenario.hpp"
+
+namespace adit::sim {
+
+/// 1 to 32 of [A-Za-z0-9_-].
+std::string read_name(const config::Node& node, const char* key);
+std::string read_robot(const config::Node& node, const char* key, const Scenario& scenario);
+std::string read_station(const config::Node& node, const char* key, const Scenario& scenario);
+/// Seconds from 0 to the scenario's duration.
+Duration read_time(const config::Node& node, const char* key, const Scenario& scenario);
+
+/// The name of a profile in config/links/, or a mapping with the profile itself.
+wire::LinkProfile read_link(const config::Node& node, const std::string& file);
+std::vector<ScriptLine> read_script(const config::Node& root, const Scenario& scenario);
+RandomScript read_random(const config::Node& node, const Scenario& scenario);
+std::vector<Fault> read_faults(const config::Node& root, const Scenario& scenario);
+std::vector<Expectation> read_expectations(const config::Node& root, const Scenario& scenario);
+
+}  // namespace adit::sim

@@ -1,0 +1,73 @@
+#include "sim/rehearsal/station_machine.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr Duration restart_after{500ms};
+
+}  // namespace
+
+struct StationMachine::Process {
+  std::unique_ptr<Runtime> runtime{};
+  std::shared_ptr<Executor> strand{};
+  std::unique_ptr<wire::Wire> radio{};
+  std::unique_ptr<station::Station> station{};
+};
+
+StationMachine::StationMachine(Stage& stage, const StationSpec& spec, Random random)
+    : stage_(stage),
+      spec_(spec),
+      random_(random),
+      clock_offset_(from_seconds(random_.uniform(10.0, 100000.0))) {
+  for (std::uint8_t& byte : id_) byte = static_cast<std::uint8_t>(random_.next());
+}
+
+StationMachine::~StationMachine() = default;
+
+Result<void> StationMachine::start() {
+  stage_.ether.set_position(spec_.id, spec_.position.x(), spec_.position.y());
+  return start_process();
+}
+
+Result<void> StationMachine::start_process() {
+  auto process = std::make_unique<Process>();
+  process->runtime = stage_.scheduler.machine(spec_.id, clock_offset_);
+  process->strand = process->runtime->strand("station");
+  process->radio = stage_.ether.join(Witness::radio_domain, spec_.id);
+  station::StationParams params;
+  params.name = spec_.id;
+  params.id = id_;
+  params.seed = random_.next();
+  params.software = "rehearsal";
+  params.link = stage_.scenario.link.name;
+  params.bandwidth = stage_.scenario.link.bandwidth;
+  process->station = std::make_unique<station::Station>(params, *process->strand, *process->radio);
+  if (auto started = process->station->start(); !started) return started;
+  process_ = std::move(process);
+  return {};
+}
+
+void StationMachine::type(const std::string& line) {
+  if (!process_) return;
+  process_->strand->post([this, line, station = process_->station.get()] {
+    // The line was typed into a station that has crashed since.
+    if (!process_ || process_->station.get() != station) return;
+    station->execute(line, [](const station::Outcome&) {});
+  });
+}
+
+void StationMachine::crash() {
+  if (!process_) return;
+  answer_before_crash_ = last_answer();
+  stage_.ether.crash(spec_.id);
+  process_->station.reset();
+  process_.reset();
+  stage_.scheduler.at(stage_.scheduler.elapsed() + restart_after, [this] { health_ = start_process(); });
+}
+
+std::optional<Reason> StationMachine::last_answer() const {
+  if (!process_ || !process_->station->last_answer()) return answer_before_crash_;
+  return process_->station->last_answer()->reason;
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,40 @@
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "basestation/station.hpp"
+#include "core/time/random.hpp"
+#include "sim/rehearsal/robot_machine.hpp"
+
+namespace adit::sim {
+
+/// One operator's computer with his station. The station can crash; it comes back with the same identity.
+class StationMachine {
+ public:
+  StationMachine(Stage& stage, const StationSpec& spec, Random random);
+  ~StationMachine();
+  Result<void> start();
+  /// Types a command line; nothing happens while the station is dead.
+  void type(const std::string& line);
+  /// The station's process dies in this instant and is started again after 0.5 s.
+  void crash();
+  const Result<void>& health() const { return health_; }
+  /// Of the newest answer this operator got, from a robot or from his station.
+  std::optional<Reason> last_answer() const;
+  const station::Id& id() const { return id_; }
+
+ private:
+  struct Process;
+  Result<void> start_process();
+
+  Stage& stage_;
+  const StationSpec& spec_;
+  Random random_;
+  Duration clock_offset_;
+  station::Id id_{};
+  std::optional<Reason> answer_before_crash_{};
+  std::unique_ptr<Process> process_{};
+  Result<void> health_{};
+};
+
+}  // namespace adit::sim

@@ -1,0 +1,119 @@
+#include "sim/rehearsal/witness.hpp"
+
+#include "sim/checker/radio_decoder.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr std::size_t most_events = 2000;
+
+std::uint64_t number(const wire::ParticipantId& id) {
+  std::uint64_t out = 0;
+  for (std::uint8_t byte : id) out = out * 257 + byte;
+  return out;
+}
+
+}  // namespace
+
+Witness::Witness(Checker& checker, std::vector<std::string> robots, std::vector<std::string> stations)
+    : checker_(checker), stations_(stations.begin(), stations.end()) {
+  for (std::string& robot : robots) words_.try_emplace(std::move(robot));
+}
+
+std::string Witness::robot_of(std::string_view machine) const {
+  const std::string robot(machine.substr(0, machine.find('/')));
+  if (!words_.contains(robot)) return {};
+  if (machine.size() > robot.size() && machine != parent_machine(robot)) return {};
+  return robot;
+}
+
+void Witness::note(const std::string& robot, Duration at, std::string text) {
+  if (events_.size() < most_events) events_.push_back({at, robot, std::move(text)});
+}
+
+void Witness::see(const wire::Frame& frame) {
+  digest_.add(static_cast<std::uint64_t>(frame.at.count()) * 4 + static_cast<std::uint64_t>(frame.kind));
+  digest_.add(number(frame.from));
+  digest_.add(number(frame.to));
+  digest_.add(frame.topic);
+  // A sample's bytes count where they are sent; at its receivers, that it came.
+  if (frame.kind == wire::Frame::Kind::sent) digest_.add(frame.bytes);
+  if (frame.kind == wire::Frame::Kind::sent) sent(frame);
+  if (frame.kind == wire::Frame::Kind::delivered) delivered(frame);
+}
+
+void Witness::sent(const wire::Frame& frame) {
+  auto it = topics_.find(frame.topic);
+  if (it == topics_.end()) it = topics_.emplace(std::string(frame.topic), TopicResult{}).first;
+  ++it->second.samples;
+  it->second.bytes += frame.bytes.size();
+
+  if (stations_.contains(frame.from_name)) {
+    const auto asked = decode_received(frame.topic, frame.bytes, frame.from);
+    if (!asked || !std::holds_alternative<CommandHeard>(asked->event)) return;
+    const auto& command = std::get<CommandHeard>(asked->event);
+    if (asked_.try_emplace({asked->robot, command.id, command.seq}, false).second) ++commands_.sent;
+    return;
+  }
+  const std::string robot = robot_of(frame.from_name);
+  if (robot.empty()) return;
+  const auto decoded = decode_sent(frame.topic, frame.bytes);
+  if (!decoded) return;
+  RobotWord& said = words_.at(robot);
+  if (const auto* behaviour = std::get_if<BehaviourSent>(&decoded->event)) {
+    if (said.heard && said.mode != behaviour->mode) note(robot, frame.at, "mode " + behaviour->mode);
+    if (said.heard && said.stopped != behaviour->stopped)
+      note(robot, frame.at, behaviour->stopped ? "stopped" : "stop cleared");
+    said.mode = behaviour->mode;
+    said.stopped = behaviour->stopped;
+    said.heard = true;
+  }
+  if (const auto* status = std::get_if<AuthoritySent>(&decoded->event)) {
+    if (said.authority.holder != status->authority.holder)
+      note(robot, frame.at,
+           status->authority.holder.empty() ? "released" : "held by " + status->authority.holder);
+    said.authority = status->authority;
+  }
+  if (const auto* ack = std::get_if<AckSent>(&decoded->event)) count(robot, *ack);
+  checker_.observe(robot, frame.at, decoded->event);
+}
+
+void Witness::count(const std::string& robot, const AckSent& ack) {
+  const auto it = asked_.find({robot, ack.id, ack.seq});
+  if (it == asked_.end() || it->second) return;
+  it->second = true;
+  if (ack.accepted) {
+    ++commands_.accepted;
+    return;
+  }
+  ++commands_.refused;
+  ++commands_.reasons[std::string(name(ack.reason))];
+}
+
+void Witness::delivered(const wire::Frame& frame) {
+  const auto it = topics_.find(frame.topic);
+  if (it != topics_.end()) ++it->second.delivered;
+  if (frame.domain != radio_domain) return;
+  const std::string robot = robot_of(frame.to_name);
+  if (robot.empty()) return;
+  auto decoded = decode_received(frame.topic, frame.bytes, frame.from);
+  if (decoded) checker_.observe(robot, frame.at, std::move(decoded->event));
+}
+
+void Witness::agent_started(const std::string& robot, Duration at, const wire::ParticipantId& participant) {
+  words_.at(robot) = {};
+  note(robot, at, "agent started");
+  checker_.observe(robot, at, AgentStarted{participant});
+}
+
+void Witness::agent_died(const std::string& robot, Duration at) {
+  note(robot, at, "agent died");
+  checker_.observe(robot, at, AgentDied{});
+}
+
+void Witness::truth(const std::string& robot, Duration at, const Motion& truth) {
+  for (double value : {truth.pose.x, truth.pose.y, truth.pose.yaw}) digest_.add(value);
+  checker_.observe(robot, at, truth);
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,64 @@
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "core/wire/memory/ether.hpp"
+#include "sim/checker/checker.hpp"
+#include "sim/rehearsal/digest.hpp"
+#include "sim/rehearsal/report.hpp"
+
+namespace adit::sim {
+
+/// What a robot last said of itself.
+struct RobotWord {
+  std::string mode{};
+  Authority authority{};
+  bool stopped{};
+  bool heard{};
+};
+
+/// Sees every frame of a rehearsal: feeds the checker, the digest and the counters, and keeps each robot's
+/// last word. Robots and their helpers on the inner network are told apart by machine name.
+class Witness {
+ public:
+  static constexpr std::uint32_t radio_domain = 77;
+
+  Witness(Checker& checker, std::vector<std::string> robots, std::vector<std::string> stations);
+
+  /// The machine that runs a robot's driver; its parent's is `ROBOT/parent`.
+  static std::string driver_machine(const std::string& robot) { return robot + "/driver"; }
+  static std::string parent_machine(const std::string& robot) { return robot + "/parent"; }
+
+  void see(const wire::Frame& frame);
+  void agent_started(const std::string& robot, Duration at, const wire::ParticipantId& participant);
+  void agent_died(const std::string& robot, Duration at);
+  void truth(const std::string& robot, Duration at, const Motion& truth);
+
+  const RobotWord& word(const std::string& robot) const { return words_.at(robot); }
+  const std::map<std::string, TopicResult, std::less<>>& topics() const { return topics_; }
+  /// Commands of stations, repeats not counted, and the robots' first answers to them.
+  const CommandResult& commands() const { return commands_; }
+  const std::vector<TimedEvent>& events() const { return events_; }
+  std::string digest() const { return digest_.text(); }
+
+ private:
+  void sent(const wire::Frame& frame);
+  void delivered(const wire::Frame& frame);
+  void count(const std::string& robot, const AckSent& ack);
+  void note(const std::string& robot, Duration at, std::string text);
+  /// The robot whose agent or parent runs on that machine; empty: none.
+  std::string robot_of(std::string_view machine) const;
+
+  Checker& checker_;
+  std::map<std::string, RobotWord> words_{};
+  std::map<std::string, TopicResult, std::less<>> topics_{};
+  std::set<std::string, std::less<>> stations_{};
+  std::map<std::tuple<std::string, StationId, std::uint64_t>, bool> asked_{};  ///< true: answered
+  CommandResult commands_{};
+  std::vector<TimedEvent> events_{};
+  Digest digest_{};
+};
+
+}  // namespace adit::sim
