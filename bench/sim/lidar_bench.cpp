@@ -14,7 +14,8 @@ using namespace adit;
 using namespace adit::sim;
 
 std::filesystem::path map_file() {
-  const std::array<std::filesystem::path, 3> folders{ADIT_SOURCE_DIR "/config/maps", ADIT_SOURCE_DIR "/config",
+  const std::array<std::filesystem::path, 3> folders{ADIT_SOURCE_DIR "/config/maps",
+                                                     ADIT_SOURCE_DIR "/config",
                                                      "/usr/share/doc/liboctomap-dev/examples/data"};
   const auto found = find_map("geb079.bt", folders);
   return found ? *found : std::filesystem::path("geb079.bt");

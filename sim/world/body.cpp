@@ -31,7 +31,8 @@ Pose2 Body::advance(double dt) {
   twist_.wz += std::clamp(wanted_.wz - twist_.wz, -turn_limit, turn_limit);
   // The chord of the arc that the body describes: exact for a constant velocity up to second order.
   const double half = 0.5 * twist_.wz * dt, c = std::cos(half), s = std::sin(half);
-  return pose_ * Pose2{(twist_.vx * c - twist_.vy * s) * dt, (twist_.vx * s + twist_.vy * c) * dt, twist_.wz * dt};
+  return pose_ *
+         Pose2{(twist_.vx * c - twist_.vy * s) * dt, (twist_.vx * s + twist_.vy * c) * dt, twist_.wz * dt};
 }
 
 }  // namespace adit::sim

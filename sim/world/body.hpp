@@ -11,7 +11,8 @@ class Body {
   Body(const Platform& platform, const Pose2& start, double watchdog)
       : platform_(platform), pose_(start), watchdog_(watchdog) {}
 
-  /// A new cmd_vel; values that are not finite count as zero, others are brought within the platform's limits.
+  /// A new cmd_vel; values that are not finite count as zero, others are brought within the platform's
+  /// limits.
   void command(const Twist2& wanted);
   /// Velocity and pose after `dt` seconds, if nothing is in the way; changes only the velocity.
   Pose2 advance(double dt);

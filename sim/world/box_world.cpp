@@ -49,7 +49,8 @@ Result<World> make_box_world(std::span<const Box> boxes, double floor, double ce
     if (!sane(box))
       return {Reason::bad_argument,
               fmt::format("boxes: box {}: expected [x0, x1, y0, y1, z0, z1] in metres with x0 < x1, y0 < y1, "
-                          "z0 < z1", n + 1)};
+                          "z0 < z1",
+                          n + 1)};
     x0 = n == 0 ? box[0] : std::min(x0, box[0]);
     x1 = n == 0 ? box[1] : std::max(x1, box[1]);
     y0 = n == 0 ? box[2] : std::min(y0, box[2]);

@@ -51,7 +51,8 @@ std::vector<float> distance_transform(const std::vector<std::uint8_t>& targets, 
   for (std::size_t n = 0; n < targets.size(); ++n) squares[n] = targets[n] ? 0.0 : unreached;
   Line line(std::max(width, height));
   for (int i = 0; i < width; ++i) line.transform(squares.data() + i, height, width);
-  for (int j = 0; j < height; ++j) line.transform(squares.data() + static_cast<std::size_t>(j) * width, width, 1);
+  for (int j = 0; j < height; ++j)
+    line.transform(squares.data() + static_cast<std::size_t>(j) * width, width, 1);
   std::vector<float> distances(targets.size());
   for (std::size_t n = 0; n < targets.size(); ++n) distances[n] = static_cast<float>(std::sqrt(squares[n]));
   return distances;

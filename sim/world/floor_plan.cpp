@@ -24,7 +24,8 @@ Error at(const YAML::Node& node, const std::string& name, Reason reason, const s
   return {reason, fmt::format("{}:{}: {}", name, node.Mark().line + 1, text)};
 }
 
-Result<double> number(const YAML::Node& root, const std::string& name, const char* key, double low, double high) {
+Result<double> number(const YAML::Node& root, const std::string& name, const char* key, double low,
+                      double high) {
   const YAML::Node node = root[key];
   if (!node) return Error{Reason::missing_key, fmt::format("{}: missing key `{}`", name, key)};
   double value = 0.0;
@@ -36,11 +37,13 @@ Result<double> number(const YAML::Node& root, const std::string& name, const cha
 }
 
 Result<FloorPlan> parse(const YAML::Node& root, const std::string& name) {
-  if (!root.IsMap()) return at(root, name, Reason::wrong_type, "expected the keys of a map_server floor plan");
+  if (!root.IsMap())
+    return at(root, name, Reason::wrong_type, "expected the keys of a map_server floor plan");
   for (const auto& entry : root) {
     const std::string key = entry.first.as<std::string>();
     bool known = false;
-    for (const char* k : {"image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"})
+    for (const char* k :
+         {"image", "mode", "resolution", "origin", "negate", "occupied_thresh", "free_thresh"})
       known = known || key == k;
     if (!known) return at(entry.first, name, Reason::unknown_key, "unknown key `" + key + "`");
   }
@@ -55,9 +58,11 @@ Result<FloorPlan> parse(const YAML::Node& root, const std::string& name) {
   double pose[3] = {};
   bool numbers = origin.IsSequence() && origin.size() == 3;
   for (int n = 0; numbers && n < 3; ++n)
-    numbers = origin[n].IsScalar() && YAML::convert<double>::decode(origin[n], pose[n]) && std::abs(pose[n]) < 1e5;
+    numbers =
+        origin[n].IsScalar() && YAML::convert<double>::decode(origin[n], pose[n]) && std::abs(pose[n]) < 1e5;
   if (!numbers) return at(origin, name, Reason::wrong_type, "origin: expected [x, y, yaw]");
-  if (pose[2] != 0.0) return at(origin, name, Reason::not_supported, "origin: a rotated plan is not supported");
+  if (pose[2] != 0.0)
+    return at(origin, name, Reason::not_supported, "origin: a rotated plan is not supported");
   plan.origin_x = pose[0];
   plan.origin_y = pose[1];
   const struct {
@@ -99,8 +104,8 @@ Result<World> load_floor_plan(const std::filesystem::path& file, double ceiling)
   const Result<GreyImage> image = parse_pgm(*pixels, picture.string());
   if (!image) return image.error();
 
-  VoxelGrid grid({plan->origin_x, plan->origin_y}, plan->resolution, image->width, image->height, {0.0, ceiling},
-                 false);
+  VoxelGrid grid({plan->origin_x, plan->origin_y}, plan->resolution, image->width, image->height,
+                 {0.0, ceiling}, false);
   for (int row = 0; row < image->height; ++row)
     for (int i = 0; i < image->width; ++i) {
       const int value = image->pixels[static_cast<std::size_t>(row) * image->width + i];

@@ -10,9 +10,9 @@ namespace {
 
 /// A box in its own frame, with the sensor's position there.
 struct Target {
-  Eigen::Vector2d axis;   ///< cos, sin of its yaw in the world
-  Eigen::Vector3d start;  ///< of the beams, box frame
-  Eigen::Vector3d half;   ///< half its edges, m
+  Eigen::Vector2d axis;     ///< cos, sin of its yaw in the world
+  Eigen::Vector3d start;    ///< of the beams, box frame
+  Eigen::Vector3d half;     ///< half its edges, m
   Eigen::Vector2d towards;  ///< unit vector from the sensor, world
   double cos_spread;        ///< cosine of the half angle that the box fills, seen from above
 };
@@ -40,7 +40,8 @@ double cast_box(const Target& target, const Eigen::Vector3d& direction) {
       if (std::abs(target.start[n]) > target.half[n]) return VoxelGrid::no_hit;
       continue;
     }
-    const double a = (-target.half[n] - target.start[n]) / d[n], b = (target.half[n] - target.start[n]) / d[n];
+    const double a = (-target.half[n] - target.start[n]) / d[n],
+                 b = (target.half[n] - target.start[n]) / d[n];
     enter = std::max(enter, std::min(a, b));
     leave = std::min(leave, std::max(a, b));
   }

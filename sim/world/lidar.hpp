@@ -10,14 +10,14 @@ namespace adit::sim {
 
 /// A spinning lidar.
 struct LidarParams {
-  int rings{16};                 ///< beams one above the other, [1, 128]
-  int columns{900};              ///< directions a turn, [4, 4096]
-  double lowest{-15.0};          ///< elevation of the lowest ring, degrees, [-89, 89]; a single ring is level
-  double highest{15.0};          ///< of the highest, degrees, [lowest, 89]
-  double rate{10.0};             ///< turns a second, Hz, (0, 100]
-  double min_range{0.3};         ///< nearer hits are lost, m, [0, max_range)
-  double max_range{30.0};        ///< farther hits are lost, m, (0, 1000]
-  double range_noise{0.02};      ///< standard deviation of a range, m, [0, 1]
+  int rings{16};             ///< beams one above the other, [1, 128]
+  int columns{900};          ///< directions a turn, [4, 4096]
+  double lowest{-15.0};      ///< elevation of the lowest ring, degrees, [-89, 89]; a single ring is level
+  double highest{15.0};      ///< of the highest, degrees, [lowest, 89]
+  double rate{10.0};         ///< turns a second, Hz, (0, 100]
+  double min_range{0.3};     ///< nearer hits are lost, m, [0, max_range)
+  double max_range{30.0};    ///< farther hits are lost, m, (0, 1000]
+  double range_noise{0.02};  ///< standard deviation of a range, m, [0, 1]
 
   /// One level ring of 360: for many seeds.
   static LidarParams planar();

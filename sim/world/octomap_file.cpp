@@ -32,7 +32,8 @@ class Reader {
       for (int child = 0; child < 8; ++child) {
         const unsigned kind = bits >> (2 * child) & 3u;
         if (kind == unknown || (kind != inner) != leaves) continue;
-        const int cx = x + (child & 1 ? half : 0), cy = y + (child & 2 ? half : 0), cz = z + (child & 4 ? half : 0);
+        const int cx = x + (child & 1 ? half : 0), cy = y + (child & 2 ? half : 0),
+                  cz = z + (child & 4 ? half : 0);
         if (kind == inner) {
           if (!node(cx, cy, cz, half)) return false;
           continue;
@@ -54,7 +55,8 @@ class Reader {
 Result<double> read_header(const std::string& name, std::string_view& content) {
   constexpr std::string_view magic = "# Octomap OcTree binary file";
   if (content.substr(0, magic.size()) != magic)
-    return {Reason::syntax, name + ": not an OctoMap binary file (.bt); convert an .ot file with octomap's tools"};
+    return {Reason::syntax,
+            name + ": not an OctoMap binary file (.bt); convert an .ot file with octomap's tools"};
   double resolution = 0.0;
   while (true) {
     const std::size_t end = content.find('\n');
@@ -86,7 +88,8 @@ Result<OctomapFile> read_octomap_file(const std::filesystem::path& file) {
   if (!resolution) return resolution.error();
   OctomapFile map{*resolution, {}};
   if (!Reader(rest, map.leaves).node(-half_tree, -half_tree, -half_tree, 2 * half_tree))
-    return {Reason::syntax, file.string() + ": the tree is cut off or damaged; run ./run setup to fetch it anew"};
+    return {Reason::syntax,
+            file.string() + ": the tree is cut off or damaged; run ./run setup to fetch it anew"};
   if (map.leaves.empty()) return {Reason::syntax, file.string() + ": the map is empty"};
   return map;
 }

@@ -16,9 +16,7 @@ struct Cells {
   int nx, ny, nz;
   std::vector<std::uint8_t> state;
 
-  std::uint8_t& at(int i, int j, int k) {
-    return state[(static_cast<std::size_t>(k) * ny + j) * nx + i];
-  }
+  std::uint8_t& at(int i, int j, int k) { return state[(static_cast<std::size_t>(k) * ny + j) * nx + i]; }
   bool open(int i, int j, int k) {
     const std::uint8_t s = at(i, j, k);
     return s == known_free || s == opened;
@@ -68,8 +66,10 @@ void fill_floors(Cells& cells) {
       while (k < cells.nz && !cells.open(i, j, k)) ++k;
       if (k == cells.nz) continue;
       lowest[j * cells.nx + i] = k;
-      if (k > 0 && cells.at(i, j, k - 1) == occupied) floor[j * cells.nx + i] = k;
-      else missing.emplace_back(i, j);
+      if (k > 0 && cells.at(i, j, k - 1) == occupied)
+        floor[j * cells.nx + i] = k;
+      else
+        missing.emplace_back(i, j);
     }
   while (!missing.empty()) {
     std::vector<std::pair<int, int>> left;
@@ -83,8 +83,10 @@ void fill_floors(Cells& cells) {
           const int f = floor[b * cells.nx + a];
           if (f != none && (best == none || f < best)) best = f;
         }
-      if (best == none) left.emplace_back(i, j);
-      else found.push_back({i, j, best});
+      if (best == none)
+        left.emplace_back(i, j);
+      else
+        found.push_back({i, j, best});
     }
     if (found.empty()) return;
     for (const auto& [i, j, f] : found) {
@@ -110,9 +112,8 @@ Result<World> load_octomap(const std::filesystem::path& file) {
   }
   const std::int64_t nx = high[0] - low[0], ny = high[1] - low[1], nz = high[2] - low[2];
   if (nx * ny * nz > VoxelGrid::max_cells)
-    return {Reason::not_supported,
-            fmt::format("{}: {} x {} x {} cells are too many (at most {})", file.string(), nx, ny, nz,
-                        VoxelGrid::max_cells)};
+    return {Reason::not_supported, fmt::format("{}: {} x {} x {} cells are too many (at most {})",
+                                               file.string(), nx, ny, nz, VoxelGrid::max_cells)};
   Cells cells{static_cast<int>(nx), static_cast<int>(ny), static_cast<int>(nz),
               std::vector<std::uint8_t>(static_cast<std::size_t>(nx * ny * nz), unknown)};
   for (const OctreeLeaf& leaf : map->leaves)

@@ -8,9 +8,9 @@ namespace adit::sim {
 
 /// How wrong a robot's odometry is.
 struct OdometryParams {
-  double scale{0.01};        ///< deviation of the error of the driven distance, fraction of it, [0, 0.5]
-  double drift{0.2};         ///< deviation of the error of the heading, degrees a metre, [0, 45]
-  double correlation{1.0};   ///< way over which the heading's error rate keeps its value, m, (0, 1000]
+  double scale{0.01};       ///< deviation of the error of the driven distance, fraction of it, [0, 0.5]
+  double drift{0.2};        ///< deviation of the error of the heading, degrees a metre, [0, 45]
+  double correlation{1.0};  ///< way over which the heading's error rate keeps its value, m, (0, 1000]
 };
 
 /// Dead reckoning with errors. A constant factor, drawn once, multiplies every distance (wheels worn, feet

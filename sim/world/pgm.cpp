@@ -43,7 +43,8 @@ Result<GreyImage> parse_pgm(std::string_view content, const std::string& name) {
     return {Reason::syntax, name + ": the image is cut off: fewer pixels than its header says"};
   image.pixels.reserve(count);
   for (std::size_t n = 0; n < count; ++n) {
-    const auto value = raw ? std::optional<int>(static_cast<unsigned char>(content[n + 1])) : next_number(content);
+    const auto value =
+        raw ? std::optional<int>(static_cast<unsigned char>(content[n + 1])) : next_number(content);
     if (!value || *value > *top)
       return {Reason::syntax, name + ": pixel " + std::to_string(n + 1) + " is missing or too large"};
     image.pixels.push_back(scaled(*value));

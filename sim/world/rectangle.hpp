@@ -7,7 +7,7 @@ namespace adit::sim {
 
 /// A rectangle on the ground: a footprint, or a cell. Metres.
 struct Rectangle {
-  Pose2 pose{};  ///< of its centre
+  Pose2 pose{};     ///< of its centre
   double length{};  ///< along its x
   double width{};   ///< along its y
 

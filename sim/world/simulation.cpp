@@ -31,7 +31,9 @@ Rectangle Simulation::footprint(const Platform& platform, const Pose2& pose) {
 
 Result<void> Simulation::add(const RobotStart& start) {
   const Platform& platform = start.platform;
-  const auto where = [&] { return fmt::format("{}: start at ({:.2f}, {:.2f})", start.id, start.pose.x, start.pose.y); };
+  const auto where = [&] {
+    return fmt::format("{}: start at ({:.2f}, {:.2f})", start.id, start.pose.x, start.pose.y);
+  };
   if (find(start.id)) return {Reason::bad_argument, start.id + ": two robots have this id"};
   if (!std::isfinite(start.pose.x) || !std::isfinite(start.pose.y) || !std::isfinite(start.pose.yaw) ||
       std::abs(start.pose.x) > 1e5 || std::abs(start.pose.y) > 1e5)
@@ -103,7 +105,8 @@ void Simulation::move(std::size_t index) {
   Truth& truth = robot.truth;
   truth.twist = robot.body.twist();
   truth.distance += (now.position() - before.position()).norm();
-  if (std::hypot(truth.twist.vx, truth.twist.vy) > 0.05 || std::abs(truth.twist.wz) > 0.1) truth.moving += params_.step;
+  if (std::hypot(truth.twist.vx, truth.twist.vy) > 0.05 || std::abs(truth.twist.wz) > 0.1)
+    truth.moving += params_.step;
   const double ground = robot.ground->ground(now.x, now.y);
   truth.pose = Pose3::level(now, std::isnan(ground) ? truth.pose.position.z() : ground);
 }
@@ -114,7 +117,8 @@ void Simulation::measure(std::size_t index) {
   double clearance = std::min(robot.truth.min_clearance, robot.ground->clearance(body));
   for (std::size_t n = 0; n < robots_.size(); ++n)
     if (n != index)
-      clearance = std::min(clearance, distance(body, footprint(robots_[n].body.platform(), robots_[n].body.pose())));
+      clearance =
+          std::min(clearance, distance(body, footprint(robots_[n].body.platform(), robots_[n].body.pose())));
   robot.truth.min_clearance = clearance;
 }
 

@@ -15,8 +15,8 @@
 namespace adit::sim {
 
 struct SimulationParams {
-  Duration step{10ms};         ///< of the true motion, (0, 100 ms]
-  double watchdog{0.5};        ///< a driver stops without a command for this long, s, (0, 10]
+  Duration step{10ms};   ///< of the true motion, (0, 100 ms]
+  double watchdog{0.5};  ///< a driver stops without a command for this long, s, (0, 10]
   LidarParams lidar{};
   OdometryParams odometry{};
   std::uint64_t seed{1};
@@ -39,16 +39,16 @@ struct Collision {
 
 /// What is true of a robot, whatever it believes.
 struct Truth {
-  Pose3 pose{};                ///< base_link on the ground, world
-  Twist2 twist{};              ///< body frame
-  double distance{0.0};        ///< driven, m
-  Duration moving{};           ///< time with more than 0.05 m/s or 0.1 rad/s
-  std::size_t collisions{0};   ///< contacts it was part of
-  double min_clearance{0.0};   ///< smallest distance ever to the world or a robot, m
+  Pose3 pose{};               ///< base_link on the ground, world
+  Twist2 twist{};             ///< body frame
+  double distance{0.0};       ///< driven, m
+  Duration moving{};          ///< time with more than 0.05 m/s or 0.1 rad/s
+  std::size_t collisions{0};  ///< contacts it was part of
+  double min_clearance{0.0};  ///< smallest distance ever to the world or a robot, m
 };
 
-/// The true world: bodies that drive, touch and see. Moves only when step() is called; the same seed and the same
-/// commands give the same run. Not for several threads, except where stated.
+/// The true world: bodies that drive, touch and see. Moves only when step() is called; the same seed and the
+/// same commands give the same run. Not for several threads, except where stated.
 class Simulation {
  public:
   /// Reason::bad_argument when two robots share an id or overlap, or one starts in a wall or without ground;

@@ -47,8 +47,8 @@ void StandingMap::block(const World& world, double height, double step) {
 void StandingMap::smooth() {
   // A box average over columns that carry; along x, then along y.
   const int reach = std::max(1, static_cast<int>(support / resolution_));
-  const auto pass = [&](const std::vector<float>& sum, const std::vector<float>& count, std::vector<float>& sum_out,
-                        std::vector<float>& count_out, int di, int dj) {
+  const auto pass = [&](const std::vector<float>& sum, const std::vector<float>& count,
+                        std::vector<float>& sum_out, std::vector<float>& count_out, int di, int dj) {
     for (int j = 0; j < ny_; ++j)
       for (int i = 0; i < nx_; ++i) {
         float s = 0.0f, c = 0.0f;
@@ -62,7 +62,8 @@ void StandingMap::smooth() {
         count_out[index(i, j)] = c;
       }
   };
-  std::vector<float> sum(floor_.size()), count(floor_.size()), row_sum(floor_.size()), row_count(floor_.size());
+  std::vector<float> sum(floor_.size()), count(floor_.size()), row_sum(floor_.size()),
+      row_count(floor_.size());
   for (std::size_t n = 0; n < floor_.size(); ++n) {
     sum[n] = blocked_[n] ? 0.0f : floor_[n];
     count[n] = blocked_[n] ? 0.0f : 1.0f;
@@ -78,7 +79,8 @@ void StandingMap::measure() {
   const int rim = open_sides_ ? 0 : 1, width = nx_ + 2 * rim, height = ny_ + 2 * rim;
   std::vector<std::uint8_t> targets(static_cast<std::size_t>(width) * height, 1);
   for (int j = 0; j < ny_; ++j)
-    for (int i = 0; i < nx_; ++i) targets[static_cast<std::size_t>(j + rim) * width + i + rim] = blocked_[index(i, j)];
+    for (int i = 0; i < nx_; ++i)
+      targets[static_cast<std::size_t>(j + rim) * width + i + rim] = blocked_[index(i, j)];
   const std::vector<float> cells = distance_transform(targets, width, height);
   distance_.resize(floor_.size());
   for (int j = 0; j < ny_; ++j)
@@ -115,7 +117,8 @@ double StandingMap::distance(double x, double y) const {
   const int a = std::clamp(i, 0, nx_ - 1), b = std::clamp(j, 0, ny_ - 1);
   if (a == i && b == j) return distance_[index(i, j)];
   // Beside an open world: what the nearest column of the map knows, less the way there.
-  return open_sides_ ? std::max<double>(0.0, distance_[index(a, b)] - resolution_ * std::hypot(i - a, j - b)) : 0.0;
+  return open_sides_ ? std::max<double>(0.0, distance_[index(a, b)] - resolution_ * std::hypot(i - a, j - b))
+                     : 0.0;
 }
 
 bool StandingMap::touches(const Rectangle& footprint) const {

@@ -9,16 +9,16 @@ namespace adit::sim {
 /// Where a body of a given height and step can stand: the world as its wheels and its hull meet it. Made once
 /// for each platform; never changes afterwards.
 ///
-/// A column is blocked when it has no floor with headroom, or when its lowest such floor lies more than a step
-/// above the lowest floor next to it. So walls, furniture and the edges of steps are blocked; slopes and
+/// A column is blocked when it has no floor with headroom, or when its lowest such floor lies more than a
+/// step above the lowest floor next to it. So walls, furniture and the edges of steps are blocked; slopes and
 /// steps that the body climbs are not.
 class StandingMap {
  public:
   /// `height` of the body above the ground, m; `step`: highest step it climbs, m.
   StandingMap(const World& world, double height, double step);
 
-  /// Height of the ground under a body at (x, y), m: the floors around, averaged, so that it rides over the steps
-  /// of a voxel map smoothly. NaN where there is none.
+  /// Height of the ground under a body at (x, y), m: the floors around, averaged, so that it rides over the
+  /// steps of a voxel map smoothly. NaN where there is none.
   double ground(double x, double y) const;
   /// Whether a footprint touches a blocked column.
   bool touches(const Rectangle& footprint) const;

@@ -34,7 +34,8 @@ void VoxelGrid::build() {
     for (int k = 0; k < layers(); ++k)
       for (int j = 0; j < ny_; ++j)
         for (int i = 0; i < nx_; ++i)
-          mirrored[index(quadrant & 1 ? i : nx_ - 1 - i, quadrant & 2 ? j : ny_ - 1 - j, k)] = solid(i, j, k) ? 0 : 1;
+          mirrored[index(quadrant & 1 ? i : nx_ - 1 - i, quadrant & 2 ? j : ny_ - 1 - j, k)] =
+              solid(i, j, k) ? 0 : 1;
   }
   for (std::vector<std::uint8_t>& strides : strides_)
     for (int k = 0; k < layers(); ++k)
@@ -52,14 +53,16 @@ void VoxelGrid::build() {
 }
 
 VoxelGrid::Start VoxelGrid::locate(const Eigen::Vector3d& position) const {
-  Start start{position, (position.x() - origin_.x()) / resolution_, (position.y() - origin_.y()) / resolution_,
-              0, 0, -1};
+  Start start{
+      position, (position.x() - origin_.x()) / resolution_, (position.y() - origin_.y()) / resolution_, 0, 0,
+      -1};
   // Far outside the range of int the value is only compared, so it may be clamped.
   start.i = static_cast<int>(std::floor(std::clamp(start.gx, -1e6, 1e6)));
   start.j = static_cast<int>(std::floor(std::clamp(start.gy, -1e6, 1e6)));
   if (position.z() >= levels_.front() && position.z() < levels_.back())
-    start.k = static_cast<int>(std::upper_bound(levels_.begin(), levels_.end(), position.z()) -
-                               levels_.begin()) - 1;
+    start.k =
+        static_cast<int>(std::upper_bound(levels_.begin(), levels_.end(), position.z()) - levels_.begin()) -
+        1;
   return start;
 }
 
@@ -88,8 +91,10 @@ bool VoxelGrid::enter(Start& start, const Eigen::Vector3d& direction, double& t)
   const double z = start.position.z() + first * direction.z();
   if (z < levels_.front() || z >= levels_.back()) return false;
   t = first;
-  start.i = std::clamp(static_cast<int>(std::floor(start.gx + first * direction.x() / resolution_)), 0, nx_ - 1);
-  start.j = std::clamp(static_cast<int>(std::floor(start.gy + first * direction.y() / resolution_)), 0, ny_ - 1);
+  start.i =
+      std::clamp(static_cast<int>(std::floor(start.gx + first * direction.x() / resolution_)), 0, nx_ - 1);
+  start.j =
+      std::clamp(static_cast<int>(std::floor(start.gy + first * direction.y() / resolution_)), 0, ny_ - 1);
   start.k = static_cast<int>(std::upper_bound(levels_.begin(), levels_.end(), z) - levels_.begin()) - 1;
   return true;
 }
@@ -144,7 +149,8 @@ bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, dou
 void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
                      std::span<double> ranges) const {
   // A step waits for memory and arithmetic of the one before; several rays in turn fill those waits. Which
-  // border comes first is a coin toss, so the outcome is selected by masks: a branch would often be mispredicted.
+  // border comes first is a coin toss, so the outcome is selected by masks: a branch would often be
+  // mispredicted.
   std::array<Ray, batch> rays;
   const double z = from.position.z();
   const unsigned top = static_cast<unsigned>(layers()), columns = static_cast<unsigned>(nx_),
@@ -174,10 +180,10 @@ void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directi
         const bool hit = stride == 0, far = t >= max_range, beyond = static_cast<unsigned>(k) >= top,
                    beside = (static_cast<unsigned>(i) >= columns) | (static_cast<unsigned>(j) >= rows);
         if (hit | far | beyond | beside) [[unlikely]] {
-          ranges[ray->slot] = hit                        ? ray->t
-                              : far                      ? no_hit
+          ranges[ray->slot] = hit                      ? ray->t
+                              : far                    ? no_hit
                               : beyond || !open_sides_ ? t
-                                                         : cast_beside(from, directions[ray->slot], max_range);
+                                                       : cast_beside(from, directions[ray->slot], max_range);
           *ray-- = *--end;
           --active;
           continue;

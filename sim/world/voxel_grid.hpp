@@ -72,9 +72,7 @@ class VoxelGrid {
   /// Puts a ray on its way, or gives its range at once (false).
   bool prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
                double& range) const;
-  std::size_t index(int i, int j, int k) const {
-    return (static_cast<std::size_t>(k) * ny_ + j) * nx_ + i;
-  }
+  std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * ny_ + j) * nx_ + i; }
   /// Moves a start that lies beside the grid to the point where the ray enters; false when it never does.
   bool enter(Start& start, const Eigen::Vector3d& direction, double& t) const;
   /// Floor or ceiling of an open world, beside the grid.

@@ -46,9 +46,8 @@ Result<std::filesystem::path> find_map(const std::string& name,
     if (std::filesystem::is_regular_file(file, ignored)) return file;
     looked += (looked.empty() ? "" : ", ") + folder.string();
   }
-  return {Reason::cannot_read,
-          fmt::format("{}: no such map in {}; run ./run setup to fetch the maps", name,
-                      looked.empty() ? "any folder" : looked)};
+  return {Reason::cannot_read, fmt::format("{}: no such map in {}; run ./run setup to fetch the maps", name,
+                                           looked.empty() ? "any folder" : looked)};
 }
 
 }  // namespace adit::sim

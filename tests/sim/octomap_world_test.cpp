@@ -6,8 +6,8 @@
 #include <sstream>
 #include <tuple>
 
-#include "sim/world/octomap_file.hpp"
 #include "sim/world/noise.hpp"
+#include "sim/world/octomap_file.hpp"
 #include "sim/world/read_file.hpp"
 #include "sim/world/world.hpp"
 #include "tests/sim/scratch.hpp"
@@ -71,7 +71,8 @@ TEST(OctomapWorld, unknown_is_solid_but_for_narrow_gaps) {
   EXPECT_FALSE(solid_at(*world, 1.25, 1.0, 0.5)) << "free within 0.5 m on both sides";
   EXPECT_TRUE(solid_at(*world, 3.05, 1.0, 0.5)) << "free farther than 0.5 m away on one side";
   EXPECT_TRUE(solid_at(*world, 0.5, 1.0, 0.05)) << "the floor";
-  EXPECT_EQ(world->grid().cast(world->grid().locate({0.55, 1.0, 0.55}), {-1, 0, 0}, 5.0), 0.55) << "beside the map";
+  EXPECT_EQ(world->grid().cast(world->grid().locate({0.55, 1.0, 0.55}), {-1, 0, 0}, 5.0), 0.55)
+      << "beside the map";
 }
 
 TEST(OctomapWorld, a_missing_floor_is_filled_from_its_neighbours) {

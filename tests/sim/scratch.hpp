@@ -35,7 +35,8 @@ class Scratch {
 inline std::filesystem::path building_map() {
   for (const char* folder : {ADIT_SOURCE_DIR "/config/maps", ADIT_SOURCE_DIR "/config",
                              "/usr/share/doc/liboctomap-dev/examples/data"})
-    if (const auto file = std::filesystem::path(folder) / "geb079.bt"; std::filesystem::exists(file)) return file;
+    if (const auto file = std::filesystem::path(folder) / "geb079.bt"; std::filesystem::exists(file))
+      return file;
   return {};
 }
 

@@ -19,7 +19,8 @@ VoxelGrid random_grid(Random& random, bool open_sides, double density) {
 }
 
 /// Small steps along the ray: slow, and wrong by less than a step.
-double march(const VoxelGrid& grid, const Eigen::Vector3d& start, const Eigen::Vector3d& direction, double range) {
+double march(const VoxelGrid& grid, const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
+             double range) {
   constexpr double step = 0.0005;
   for (double t = 0.0; t < range; t += step) {
     const Eigen::Vector3d p = start + t * direction;
@@ -40,14 +41,16 @@ TEST(VoxelGrid, cast_agrees_with_marching) {
   for (int round = 0; round < 600; ++round) {
     const bool open_sides = round % 2 == 0;
     const VoxelGrid grid = random_grid(random, open_sides, round % 3 == 0 ? 0.1 : 0.01);
-    const Eigen::Vector3d start(-2.0 + 6.0 * random.uniform(), 1.0 + 5.0 * random.uniform(), 1.7 * random.uniform());
+    const Eigen::Vector3d start(-2.0 + 6.0 * random.uniform(), 1.0 + 5.0 * random.uniform(),
+                                1.7 * random.uniform());
     Eigen::Vector3d direction(gaussian(random), gaussian(random), 0.3 * gaussian(random));
     if (round % 5 == 0) direction[round % 2] = 0.0;
     direction.normalize();
     const double expected = march(grid, start, direction, 4.0);
     const double range = grid.cast(grid.locate(start), direction, 4.0);
     // A ray that grazes a corner may hit in one method and slip by in the other within a step.
-    if (std::isinf(expected) != std::isinf(range) || (!std::isinf(range) && std::abs(range - expected) > 0.002)) {
+    if (std::isinf(expected) != std::isinf(range) ||
+        (!std::isinf(range) && std::abs(range - expected) > 0.002)) {
       const double nearer = std::min(range, expected);
       const Eigen::Vector3d p = start + nearer * direction;
       const double fx = (p.x() + 1.0) / 0.1, fy = (p.y() - 2.0) / 0.1;

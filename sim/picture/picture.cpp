@@ -1,0 +1,247 @@
+#include "sim/picture/picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/picture/ground_plan.hpp"
+#include "sim/picture/sketch.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr Colour paper{0.955, 0.95, 0.935}, floor_tone{1.0, 1.0, 0.995}, furniture_tone{0.80, 0.82, 0.835},
+    wall_tone{0.17, 0.20, 0.25}, ink{0.13, 0.15, 0.19}, faint{0.42, 0.45, 0.50},
+    grid_tone{0.35, 0.45, 0.55, 0.16};
+// Okabe and Ito: told apart by the colour-blind too.
+constexpr std::array<Colour, 6> palette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
+                                        {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
+constexpr Colour event_tone{0.13, 0.15, 0.19};
+constexpr double margin = 28.0, header = 84.0, row = 24.0;
+constexpr std::size_t most_events = 40;
+
+/// World to pixels.
+struct View {
+  Eigen::Vector2d low, high;
+  double scale;  ///< pixels a metre
+  double x(double wx) const { return margin + (wx - low.x()) * scale; }
+  double y(double wy) const { return header + (high.y() - wy) * scale; }
+  double width() const { return (high.x() - low.x()) * scale; }
+  double height() const { return (high.y() - low.y()) * scale; }
+};
+
+void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, const View& view) {
+  const double r = grid.resolution();
+  cairo_save(sketch.cairo());
+  cairo_rectangle(sketch.cairo(), margin, header, view.width(), view.height());
+  cairo_clip(sketch.cairo());
+  for (int j = 0; j < plan.ny; ++j)
+    for (int i = 0; i < plan.nx;) {
+      // Runs of the same kind as one rectangle on whole pixels: no seams.
+      const GroundPlan::Kind kind = plan.at(i, j);
+      const int first = i;
+      while (i < plan.nx && plan.at(i, j) == kind) ++i;
+      if (kind == GroundPlan::unknown) continue;
+      const double x0 = std::round(view.x(grid.origin().x() + first * r)),
+                   x1 = std::round(view.x(grid.origin().x() + i * r));
+      const double y0 = std::round(view.y(grid.origin().y() + (j + 1) * r)),
+                   y1 = std::round(view.y(grid.origin().y() + j * r));
+      sketch.fill(x0, y0, x1 - x0, y1 - y0,
+                  kind == GroundPlan::floor  ? floor_tone
+                  : kind == GroundPlan::wall ? wall_tone
+                                             : furniture_tone);
+    }
+  cairo_restore(sketch.cairo());
+}
+
+void draw_grid(Sketch& sketch, const View& view) {
+  const double bottom = header + view.height(), right = margin + view.width();
+  const double step = view.high.x() - view.low.x() > 12.0 ? 5.0 : 1.0;
+  for (double x = std::ceil(view.low.x() / step) * step; x <= view.high.x(); x += step) {
+    sketch.line(view.x(x), header, view.x(x), bottom, 1.0, grid_tone);
+    sketch.text(view.x(x), bottom + 13, 12, fmt::format("{:.0f}", x + 0.0), faint, Align::centre);
+  }
+  for (double y = std::ceil(view.low.y() / step) * step; y <= view.high.y(); y += step) {
+    sketch.line(margin, view.y(y), right, view.y(y), 1.0, grid_tone);
+    sketch.text(margin - 6, view.y(y), 12, fmt::format("{:.0f}", y + 0.0), faint, Align::right);
+  }
+  const double bar = view.high.x() - view.low.x() > 12.0 ? 5.0 : 1.0, y = header - 16, x1 = right,
+               x0 = x1 - bar * view.scale;
+  sketch.line(x0, y, x1, y, 2.5, ink);
+  sketch.line(x0, y - 5, x0, y + 5, 2.5, ink);
+  sketch.line(x1, y - 5, x1, y + 5, 2.5, ink);
+  sketch.text(0.5 * (x0 + x1), y - 13, 13, fmt::format("{:.0f} m", bar), ink, Align::centre);
+}
+
+void trace(Sketch& sketch, const View& view, const std::vector<Pose2>& poses, double thickness,
+           Colour colour) {
+  cairo_set_source_rgba(sketch.cairo(), colour.r, colour.g, colour.b, colour.a);
+  cairo_set_line_width(sketch.cairo(), thickness);
+  for (const Pose2& p : poses) cairo_line_to(sketch.cairo(), view.x(p.x), view.y(p.y));
+  cairo_stroke(sketch.cairo());
+}
+
+void draw_body(Sketch& sketch, const View& view, const PictureTrail& trail, Colour colour) {
+  const Pose2& pose = trail.poses.back();
+  cairo_save(sketch.cairo());
+  cairo_translate(sketch.cairo(), view.x(pose.x), view.y(pose.y));
+  cairo_rotate(sketch.cairo(), -pose.yaw);
+  const double l = trail.length * view.scale, w = trail.width * view.scale;
+  sketch.rounded(-l / 2 - 2, -w / 2 - 2, l + 4, w + 4, 4, {1, 1, 1, 0.9});
+  sketch.rounded(-l / 2, -w / 2, l, w, 3, colour);
+  cairo_set_source_rgb(sketch.cairo(), 1, 1, 1);  // an arrow head that points forward
+  cairo_move_to(sketch.cairo(), 0.38 * l, 0);
+  cairo_line_to(sketch.cairo(), 0.05 * l, 0.32 * w);
+  cairo_line_to(sketch.cairo(), 0.05 * l, -0.32 * w);
+  cairo_close_path(sketch.cairo());
+  cairo_fill(sketch.cairo());
+  cairo_restore(sketch.cairo());
+}
+
+void draw_label(Sketch& sketch, double x, double y, const std::string& text, Colour colour) {
+  const double width = sketch.text_width(14, text, true) + 14;
+  sketch.rounded(x - width / 2 - 1.5, y - 12.5, width + 3, 25, 7, {1, 1, 1, 0.95});
+  sketch.rounded(x - width / 2, y - 11, width, 22, 6, colour);
+  sketch.text(x, y, 14, text, {1, 1, 1}, Align::centre, true);
+}
+
+Colour colour_of(const PictureSpec& spec, const std::string& id) {
+  for (std::size_t n = 0; n < spec.trails.size(); ++n)
+    if (spec.trails[n].id == id) return palette[n % palette.size()];
+  return ink;
+}
+
+/// Returns where labels stand, in pixels.
+std::vector<Eigen::Vector2d> draw_run(Sketch& sketch, const View& view, const PictureSpec& spec) {
+  std::vector<Eigen::Vector2d> labels;
+  const auto label = [&](const Eigen::Vector2d& at, const std::string& text, Colour colour) {
+    draw_label(sketch, at.x(), at.y(), text, colour);
+    labels.push_back(at);
+  };
+  const double thick = std::clamp(view.scale * 0.09, 2.5, 6.0);
+  for (const PictureTrail& trail : spec.trails) trace(sketch, view, trail.poses, thick + 3.5, {1, 1, 1, 0.9});
+  for (const PictureTrail& trail : spec.trails)
+    trace(sketch, view, trail.poses, thick, colour_of(spec, trail.id));
+  for (const PictureGoal& goal : spec.goals) {
+    const Colour colour = colour_of(spec, goal.robot);
+    const double x = view.x(goal.position.x()), y = view.y(goal.position.y()),
+                 r = std::clamp(0.25 * view.scale, 6.0, 12.0);
+    sketch.disc(x, y, r + 3.0, {1, 1, 1, 0.85});
+    sketch.ring(x, y, r, 2.5, colour);
+    sketch.line(x - r * 0.5, y, x + r * 0.5, y, 2.0, colour);
+    sketch.line(x, y - r * 0.5, x, y + r * 0.5, 2.0, colour);
+  }
+  for (const PictureTrail& trail : spec.trails) {
+    if (trail.poses.empty()) continue;
+    const Colour colour = colour_of(spec, trail.id);
+    const Pose2& start = trail.poses.front();
+    sketch.disc(view.x(start.x), view.y(start.y), thick * 1.7 + 2, {1, 1, 1});
+    sketch.disc(view.x(start.x), view.y(start.y), thick * 1.7, colour);
+    draw_body(sketch, view, trail, colour);
+    label({view.x(start.x), view.y(start.y) - 30}, trail.id, colour);
+    const Pose2& end = trail.poses.back();
+    if ((end.position() - start.position()).norm() > 1.5)
+      label({view.x(end.x), view.y(end.y) + 0.5 * view.scale * std::max(trail.length, trail.width) + 20},
+            trail.id, colour);
+  }
+  return labels;
+}
+
+void draw_marker(Sketch& sketch, double x, double y, std::size_t number) {
+  sketch.disc(x, y, 11.5, {1, 1, 1});
+  sketch.disc(x, y, 10, event_tone);
+  sketch.text(x, y, number < 10 ? 13 : 11, std::to_string(number), {1, 1, 1}, Align::centre, true);
+}
+
+/// Markers that would fall onto one another or onto a label are moved upwards.
+void draw_events(Sketch& sketch, const View& view, const PictureSpec& spec,
+                 std::vector<Eigen::Vector2d> taken) {
+  for (std::size_t n = 0; n < std::min(spec.events.size(), most_events); ++n) {
+    const Eigen::Vector2d place(view.x(spec.events[n].position.x()), view.y(spec.events[n].position.y()));
+    Eigen::Vector2d spot = place + Eigen::Vector2d(0, -0.6 * view.scale - 14);
+    const auto free = [&] {
+      return std::none_of(taken.begin(), taken.end(),
+                          [&](const auto& t) { return (t - spot).norm() < 25.0; });
+    };
+    for (int tries = 0; tries < 40 && !free(); ++tries) spot.y() -= 24.0;
+    taken.push_back(spot);
+    sketch.line(place.x(), place.y(), spot.x(), spot.y(), 1.2, {ink.r, ink.g, ink.b, 0.6});
+    sketch.disc(place.x(), place.y(), 2.5, ink);
+    draw_marker(sketch, spot.x(), spot.y(), n + 1);
+  }
+}
+
+/// Rows that the legend takes, and its columns.
+struct Legend {
+  std::size_t columns, event_rows, rows;
+};
+Legend plan_legend(const PictureSpec& spec) {
+  const std::size_t events = std::min(spec.events.size(), most_events);
+  const std::size_t columns = spec.width >= 1400 ? 3 : spec.width >= 900 ? 2 : 1;
+  const std::size_t event_columns = std::max<std::size_t>(1, columns - 1);
+  const std::size_t event_rows = (events + event_columns - 1) / event_columns;
+  const std::size_t robots = spec.trails.size();
+  return {columns, event_rows, columns == 1 ? robots + event_rows : std::max(robots, event_rows)};
+}
+
+void draw_legend(Sketch& sketch, const PictureSpec& spec, const Legend& legend, double top) {
+  const double column = (spec.width - 2 * margin) / static_cast<double>(legend.columns);
+  for (std::size_t n = 0; n < spec.trails.size(); ++n) {
+    const double y = top + row * (static_cast<double>(n) + 0.5);
+    const Colour colour = palette[n % palette.size()];
+    sketch.line(margin + 4, y, margin + 34, y, 5, colour);
+    sketch.text(margin + 46, y, 15, spec.trails[n].id, ink, Align::left, true);
+    sketch.text(margin + 54 + sketch.text_width(15, spec.trails[n].id, true), y, 15, spec.trails[n].label,
+                ink);
+  }
+  const double first = legend.columns == 1 ? top + row * static_cast<double>(spec.trails.size()) : top;
+  for (std::size_t n = 0; n < std::min(spec.events.size(), most_events); ++n) {
+    const std::size_t c = legend.columns == 1 ? 0 : 1 + n / legend.event_rows;
+    const double x = margin + column * static_cast<double>(c) + 12,
+                 y = first + row * (static_cast<double>(n % legend.event_rows) + 0.5);
+    draw_marker(sketch, x, y, n + 1);
+    std::string text = spec.events[n].text;
+    while (text.size() > 4 && sketch.text_width(14, text) > column - 40)
+      text = text.substr(0, text.size() - 4) + "...";
+    sketch.text(x + 20, y, 14, text, ink);
+  }
+}
+
+}  // namespace
+
+Result<void> write_picture(const World& world, const PictureSpec& spec, const std::filesystem::path& file) {
+  if (spec.width < 400 || spec.width > 8000)
+    return {Reason::bad_argument, "picture: width: expected 400 to 8000 pixels"};
+  if (!(spec.headroom > 0.0 && spec.headroom <= 5.0))
+    return {Reason::bad_argument, "picture: headroom: expected up to 5 m"};
+  const GroundPlan plan = make_ground_plan(world, spec.headroom);
+  View view{plan.low, plan.high, 1.0};
+  for (const PictureTrail& trail : spec.trails)
+    for (const Pose2& p : trail.poses) {
+      view.low = view.low.cwiseMin(p.position() - Eigen::Vector2d::Constant(1.0));
+      view.high = view.high.cwiseMax(p.position() + Eigen::Vector2d::Constant(1.0));
+    }
+  if (!view.low.allFinite() || !view.high.allFinite() || (view.high - view.low).maxCoeff() > 1e5)
+    return {Reason::bad_argument, "picture: a trail leaves the world"};
+  view.scale = (spec.width - 2 * margin) / (view.high.x() - view.low.x());
+  view.scale = std::min(view.scale, 6000.0 / (view.high.y() - view.low.y()));
+  const Legend legend = plan_legend(spec);
+  const double below = header + view.height() + 30.0;
+  const int height =
+      static_cast<int>(below + row * static_cast<double>(legend.rows) + (legend.rows ? 20.0 : 4.0));
+  Sketch sketch(spec.width, height);
+  sketch.fill(0, 0, spec.width, height, paper);
+  draw_plan(sketch, plan, world.grid(), view);
+  draw_grid(sketch, view);
+  draw_events(sketch, view, spec, draw_run(sketch, view, spec));
+  sketch.text(margin, 32, 26, spec.title, ink, Align::left, true);
+  sketch.text(margin, 62, 15, spec.subtitle, faint);
+  draw_legend(sketch, spec, legend, below);
+  if (!sketch.save(file.string()))
+    return {Reason::cannot_write, file.string() + ": the picture cannot be written; does its folder exist?"};
+  return {};
+}
+
+}  // namespace adit::sim

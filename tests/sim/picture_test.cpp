@@ -1,0 +1,78 @@
+#include "sim/picture/picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+
+#include "sim/picture/ground_plan.hpp"
+#include "sim/world/read_file.hpp"
+#include "tests/sim/scratch.hpp"
+
+namespace adit::sim {
+namespace {
+
+World room() {
+  const std::array<Box, 3> boxes{Box{0, 8, -0.2, 0, 0, 3}, Box{0, 8, 4, 4.2, 0, 3}, Box{3, 4, 1, 2, 0, 0.8}};
+  return *make_box_world(boxes, 0, 3);
+}
+
+PictureSpec run() {
+  PictureSpec spec;
+  spec.title = "A room";
+  spec.trails.push_back({"r1", "wheeled", {{1, 1, 0}, {1, 3, 0}, {6, 3, 0}}, 0.6, 0.5});
+  spec.goals.push_back({"r1", {6, 3}});
+  for (int n = 0; n < 60; ++n)
+    spec.events.push_back({{2, 2}, "something happened at the same place as all else"});
+  return spec;
+}
+
+TEST(Picture, the_same_run_gives_the_same_file) {
+  const Scratch scratch;
+  const World world = room();
+  ASSERT_TRUE(write_picture(world, run(), scratch.path("a.png")));
+  ASSERT_TRUE(write_picture(world, run(), scratch.path("b.png")));
+  const std::string a = *read_file(scratch.path("a.png")), b = *read_file(scratch.path("b.png"));
+  EXPECT_EQ(a.substr(1, 3), "PNG");
+  EXPECT_TRUE(a == b);
+  PictureSpec other = run();
+  other.trails[0].poses.back().x = 5.0;
+  ASSERT_TRUE(write_picture(world, other, scratch.path("c.png")));
+  EXPECT_FALSE(a == *read_file(scratch.path("c.png")));
+}
+
+TEST(Picture, an_empty_run_is_a_map) {
+  const Scratch scratch;
+  PictureSpec spec;
+  spec.width = 400;
+  spec.trails.push_back({"r1", "never moved", {}, 0.6, 0.5});
+  EXPECT_TRUE(write_picture(room(), spec, scratch.path("map.png")));
+  EXPECT_TRUE(write_picture(*make_box_world({}, 0, 3), {}, scratch.path("empty.png")));
+}
+
+TEST(Picture, says_what_is_wrong) {
+  const Scratch scratch;
+  const auto nowhere = write_picture(room(), run(), scratch.path("no/such/folder.png"));
+  EXPECT_EQ(nowhere.reason(), Reason::cannot_write);
+  EXPECT_NE(nowhere.error().text.find("folder.png"), std::string::npos);
+  PictureSpec spec = run();
+  spec.width = 10;
+  EXPECT_EQ(write_picture(room(), spec, scratch.path("a.png")).reason(), Reason::bad_argument);
+  spec = run();
+  spec.trails[0].poses.push_back({std::numeric_limits<double>::infinity(), 0, 0});
+  EXPECT_EQ(write_picture(room(), spec, scratch.path("a.png")).reason(), Reason::bad_argument);
+}
+
+TEST(GroundPlan, tells_walls_from_furniture) {
+  const World world = room();
+  const GroundPlan plan = make_ground_plan(world, 0.5);
+  const auto kind = [&](double x, double y) {
+    return plan.at(world.grid().column_x(x), world.grid().column_y(y));
+  };
+  EXPECT_EQ(kind(1.02, 2.02), GroundPlan::floor);
+  EXPECT_EQ(kind(1.02, 4.02), GroundPlan::wall);
+  EXPECT_EQ(kind(3.52, 1.52), GroundPlan::furniture);
+}
+
+}  // namespace
+}  // namespace adit::sim
