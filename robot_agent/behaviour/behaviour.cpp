@@ -1,0 +1,188 @@
+#include "robot_agent/behaviour/behaviour.hpp"
+
+#include <cmath>
+
+namespace adit::agent {
+
+Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, Mux& mux, Inputs inputs,
+                     Outputs outputs)
+    : params_(params),
+      decider_(std::move(decider)),
+      mux_(mux),
+      inputs_(std::move(inputs)),
+      outputs_(std::move(outputs)),
+      manual_(mux.connect("manual", Stick::kFresh)),
+      smart_(mux.connect("smart_joystick", Stick::kFresh)),
+      waypoint_(mux.connect("waypoint", params.goal_age)),
+      requested_(&mode_table().front()),
+      decision_{requested_, false, Reason::none} {}
+
+Facts Behaviour::facts(Time now) const {
+  Facts f = inputs_.sense(now);
+  f.stopped = stopped_;
+  f.stick_fresh = stick_.fresh(now);
+  f.stick_kept = stick_.kept(now);
+  f.stick_centred = stick_.centred() || params_.defects.has(Defect::enter_off_centre);
+  f.goal_known = goal_.known;
+  f.goal_free = !goal_.known || inputs_.goal_free(goal_.place.head<2>());
+  return f;
+}
+
+Result<void> Behaviour::refuse(Reason reason, std::string_view mode) const {
+  return {reason, std::string(mode) + ": " + std::string(describe(reason))};
+}
+
+Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
+  const ModeRow* row = find_mode(mode);
+  if (!row) return refuse(known_but_not_installed(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
+  // Who is in a manual mode already need not centre his stick to ask for it again.
+  const bool goes_on = row == decision_.mode && row->manual();
+  if (!goes_on) {
+    const Reason reason = entry_refusal(*row, facts(now));
+    if (reason != Reason::none) return refuse(reason, mode);
+  }
+  enter(*row, now);
+  return {};
+}
+
+Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Time now) {
+  const ModeRow& row = *find_mode("waypoint");
+  // z is NaN where none was given.
+  if (!std::isfinite(goal.x()) || !std::isfinite(goal.y()) || std::isinf(goal.z()) ||
+      std::hypot(goal.x(), goal.y()) > params_.farthest_goal)
+    return {Reason::out_of_range, "goto: the goal is no place within 10 km"};
+  Facts f = facts(now);
+  f.goal_known = true;
+  f.goal_free = inputs_.goal_free(goal.head<2>());
+  const Reason reason = entry_refusal(row, f);
+  if (reason != Reason::none) return refuse(reason, "goto");
+  goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), std::isnan(goal.z()) ? 0.0 : goal.z()}};
+  progress_ = {};
+  enter(row, now);
+  return {};
+}
+
+void Behaviour::enter(const ModeRow& row, Time now) {
+  if (row.accepts != Accepts::goal) goal_ = {false, false, goal_.id, Eigen::Vector3d::Zero()};
+  requested_ = &row;
+  fell_because_ = Reason::none;
+  idle_told_ = blocked_told_ = false;
+  idle_since_ = free_since_ = now;
+  tick(now);
+}
+
+void Behaviour::stop_changed(bool stopped, Time now) {
+  stopped_ = stopped;
+  tick(now);
+}
+
+void Behaviour::holder_changed(Time now) {
+  if (params_.defects.has(Defect::manual_survives_handover)) return;
+  stick_.forget();
+  idle_since_ = now;
+  idle_told_ = false;
+  if (requested_->manual()) {
+    requested_ = &mode_table().front();
+    fell_because_ = Reason::not_holder;
+  }
+  tick(now);
+}
+
+Result<void> Behaviour::stick(const Twist2& twist, Time now) {
+  stick_.update(twist, now);
+  if (!decision_.mode->manual())
+    return twist.zero() ? Result<void>{} : refuse(Reason::wrong_mode, decision_.mode->name);
+  if (decision_.mode->name == "manual")
+    manual_.write(Velocity{twist}, now);
+  else
+    smart_.write(Guidance{twist}, now);
+  return {};
+}
+
+void Behaviour::resume_goal(Time now) {
+  if (!goal_.known) return;
+  requested_ = find_mode("waypoint");
+  tick(now);
+}
+
+void Behaviour::tick(Time now) {
+  if (!begun_) idle_since_ = free_since_ = now;
+  begun_ = true;
+  const BehaviourView before = view();
+  decision_ = decider_->decide(requested_->name, facts(now), now);
+  if (decision_.mode != requested_) fall(decision_);
+  mux_.enable(decision_.runs ? decision_.mode->name : std::string_view{}, now);
+  feed_waypoint(now);
+  watch(now);
+  if (view() != before) outputs_.changed();
+}
+
+void Behaviour::fall(const Decision& decision) {
+  fell_because_ = decision.reason;
+  const std::string text = std::string(requested_->name) + " ended: " + std::string(describe(decision.reason));
+  requested_ = decision.mode;
+  if (decision.reason == Reason::stopped) return;  // who stopped it was told already
+  const bool lost = decision.reason == Reason::joystick_stale;
+  outputs_.tell_holder({{}, Severity::warning, lost ? "joystick_lost" : "mode_changed", decision.reason, text});
+}
+
+void Behaviour::feed_waypoint(Time now) {
+  if (decision_.mode->accepts != Accepts::goal || !goal_.known) return;
+  if (progress_.arrived && !goal_.reached && decision_.runs) {
+    goal_.reached = true;
+    idle_since_ = now;
+    outputs_.tell_holder({{}, Severity::info, "arrived", Reason::none, "goal reached"});
+  }
+  if (goal_.reached)
+    waypoint_.write(Stand{}, now);
+  else
+    waypoint_.write(GoTo{goal_.place.head<2>()}, now);
+}
+
+void Behaviour::watch(Time now) {
+  const bool waits = decision_.mode == &mode_table().front() || goal_state() == GoalState::reached;
+  if (!waits) idle_since_ = now;
+  if (waits && !idle_told_ && now - idle_since_ >= params_.idle_after) {
+    idle_told_ = true;
+    outputs_.tell_holder({{}, Severity::info, "idle", Reason::none, "idle in " + std::string(decision_.mode->name)});
+  }
+  if (goal_state() != GoalState::blocked) {
+    free_since_ = now;
+    blocked_told_ = false;
+  } else if (!blocked_told_ && now - free_since_ >= params_.blocked_after) {
+    blocked_told_ = true;
+    outputs_.tell_holder({{}, Severity::warning, "blocked", Reason::blocked, "every path to the goal is blocked"});
+  }
+}
+
+GoalState Behaviour::goal_state() const {
+  if (!goal_.known) return GoalState::none;
+  if (goal_.reached) return GoalState::reached;
+  if (decision_.mode->accepts != Accepts::goal || !decision_.runs) return GoalState::kept;
+  return progress_.blocked ? GoalState::blocked : GoalState::active;
+}
+
+BehaviourView Behaviour::view() const {
+  BehaviourView v;
+  v.mode = decision_.mode->name;
+  v.stopped = stopped_;
+  v.moving_allowed = decision_.runs && decision_.mode->accepts != Accepts::nothing;
+  v.goal_state = goal_state();
+  v.goal_id = goal_.id;
+  v.goal = goal_.place;
+  v.reason = stopped_                          ? Reason::stopped
+             : v.goal_state == GoalState::blocked ? Reason::blocked
+             : v.moving_allowed                   ? Reason::none
+             : decision_.reason != Reason::none   ? decision_.reason
+                                                  : fell_because_;
+  return v;
+}
+
+std::vector<ModeOption> Behaviour::options(Time now) const {
+  const Facts f = facts(now);
+  std::vector<ModeOption> all;
+  for (const ModeRow& row : mode_table()) all.push_back({row.name, entry_refusal(row, f)});
+  return all;
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,116 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "robot_agent/behaviour/decider.hpp"
+#include "robot_agent/behaviour/stick.hpp"
+#include "robot_agent/command/requests.hpp"
+#include "robot_agent/command/types.hpp"
+#include "robot_agent/motion/mux.hpp"
+
+namespace adit::agent {
+
+enum class GoalState : std::uint8_t { none, kept, active, blocked, reached };
+
+/// How navigation gets on with the goal.
+struct Progress {
+  bool arrived{};
+  bool blocked{};  ///< every way is blocked
+  bool operator==(const Progress&) const = default;
+};
+
+/// A mode and whether it could be entered now.
+struct ModeOption {
+  std::string_view mode{};
+  Reason reason{Reason::none};  ///< none: available
+  bool operator==(const ModeOption&) const = default;
+};
+
+struct BehaviourView {
+  std::string_view mode{"hold"};
+  bool stopped{};
+  bool moving_allowed{};
+  Reason reason{Reason::none};  ///< why it does not move
+  GoalState goal_state{GoalState::none};
+  std::uint32_t goal_id{};
+  Eigen::Vector3d goal{Eigen::Vector3d::Zero()};
+  bool operator==(const BehaviourView&) const = default;
+};
+
+struct BehaviourParams {
+  double farthest_goal{10'000.0};  ///< from the map's origin, m, (0, 1e6]
+  Duration goal_age{500ms};        ///< the mux forgets a source that is silent so long
+  Duration idle_after{60s};        ///< in hold, or at the goal, until the holder is told
+  Duration blocked_after{5s};      ///< until the holder is told
+  Defects defects{};
+};
+
+/// Modes and goals: answers requests by the mode table, has the tree decide, enables its source at the
+/// mux. Runs on the command strand; every call takes effect before it returns.
+class Behaviour : public Requests {
+ public:
+  struct Inputs {
+    /// driver_alive, localised and terrain_fresh; the rest is known here.
+    std::function<Facts(Time)> sense{};
+    /// No known obstacle covers that place (map frame, m).
+    std::function<bool(const Eigen::Vector2d&)> goal_free{};
+  };
+  struct Outputs {
+    /// A notice for the holder; its operator_name is left empty.
+    std::function<void(const Notice&)> tell_holder{};
+    std::function<void()> changed{};
+  };
+
+  Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, Mux& mux, Inputs inputs, Outputs outputs);
+
+  Result<void> request_mode(const std::string& mode, Time now) override;
+  Result<void> request_goal(const Eigen::Vector3d& goal, Time now) override;
+  void stop_changed(bool stopped, Time now) override;
+  void holder_changed(Time now) override;
+  Result<void> stick(const Twist2& twist, Time now) override;
+  void resume_goal(Time now) override;
+
+  /// At 20 Hz, and by the calls above.
+  void tick(Time now);
+  void set_progress(const Progress& progress) { progress_ = progress; }
+  BehaviourView view() const;
+  /// Every mode of the table, and whether it could be entered now.
+  std::vector<ModeOption> options(Time now) const;
+  const ModeRow& mode() const { return *decision_.mode; }
+
+ private:
+  Facts facts(Time now) const;
+  Result<void> refuse(Reason reason, std::string_view mode) const;
+  void enter(const ModeRow& row, Time now);
+  void fall(const Decision& decision);
+  void feed_waypoint(Time now);
+  void watch(Time now);
+  GoalState goal_state() const;
+
+  struct Goal {
+    bool known{};
+    bool reached{};
+    std::uint32_t id{};
+    Eigen::Vector3d place{Eigen::Vector3d::Zero()};
+  };
+
+  BehaviourParams params_;
+  std::unique_ptr<Decider> decider_;
+  Mux& mux_;
+  Inputs inputs_;
+  Outputs outputs_;
+  Mux::Output manual_, smart_, waypoint_;
+
+  const ModeRow* requested_;
+  Decision decision_;
+  Reason fell_because_{Reason::none};  ///< of the last fall to hold, until the next request
+  bool stopped_{};
+  Stick stick_{};
+  Goal goal_{};
+  Progress progress_{};
+  Time idle_since_{}, free_since_{};
+  bool idle_told_{}, blocked_told_{}, begun_{};
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,66 @@
+#include "robot_agent/behaviour/mode_table.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace adit::agent {
+namespace {
+
+constexpr Condition kNotStopped{"NotStopped", Reason::stopped, [](const Facts& f) { return !f.stopped; }, false};
+constexpr Condition kDriverAlive{"DriverAlive", Reason::driver_silent,
+                                 [](const Facts& f) { return f.driver_alive; }, false};
+constexpr Condition kLocalised{"Localised", Reason::no_localisation, [](const Facts& f) { return f.localised; },
+                               false};
+constexpr Condition kTerrainFresh{"TerrainFresh", Reason::terrain_stale,
+                                  [](const Facts& f) { return f.terrain_fresh; }, false};
+constexpr Condition kStickFresh{"StickFresh", Reason::joystick_stale,
+                                [](const Facts& f) { return f.stick_fresh; }, true};
+constexpr Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
+                                  [](const Facts& f) { return f.stick_centred; }, true};
+constexpr Condition kStickKept{"StickKept", Reason::joystick_stale, [](const Facts& f) { return f.stick_kept; },
+                               false};
+constexpr Condition kGoalKnown{"GoalKnown", Reason::goal_missing, [](const Facts& f) { return f.goal_known; },
+                               false};
+constexpr Condition kGoalFree{"GoalFree", Reason::goal_unreachable, [](const Facts& f) { return f.goal_free; },
+                              true};
+
+constexpr std::array kAll{kNotStopped,   kDriverAlive, kLocalised, kTerrainFresh, kStickFresh,
+                          kStickCentred, kStickKept,   kGoalKnown, kGoalFree};
+
+// StickKept comes last: on entry the clock of the mode has not begun, StickFresh has spoken already.
+constexpr std::array kManual{kNotStopped, kDriverAlive, kStickFresh, kStickCentred, kStickKept};
+constexpr std::array kSmart{kNotStopped, kDriverAlive,  kLocalised, kTerrainFresh,
+                            kStickFresh, kStickCentred, kStickKept};
+constexpr std::array kWaypoint{kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kGoalKnown, kGoalFree};
+
+constexpr std::array kTable{
+    ModeRow{"hold", "holder", Accepts::nothing, GoalOnLeaving::none, OnFailure::falls_to_hold, {}},
+    ModeRow{"manual", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold, kManual},
+    ModeRow{"smart_joystick", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold, kSmart},
+    ModeRow{"waypoint", "holder", Accepts::goal, GoalOnLeaving::cleared, OnFailure::pauses, kWaypoint},
+};
+
+constexpr std::array<std::string_view, 3> kNotInstalled{"explore", "convoy_follow", "get_out"};
+
+}  // namespace
+
+std::span<const ModeRow> mode_table() { return kTable; }
+
+const ModeRow* find_mode(std::string_view name) {
+  const auto row = std::find_if(kTable.begin(), kTable.end(), [&](const ModeRow& r) { return r.name == name; });
+  return row == kTable.end() ? nullptr : &*row;
+}
+
+bool known_but_not_installed(std::string_view name) {
+  return std::find(kNotInstalled.begin(), kNotInstalled.end(), name) != kNotInstalled.end();
+}
+
+Reason entry_refusal(const ModeRow& row, const Facts& facts) {
+  for (const Condition& condition : row.conditions)
+    if (!condition.holds(facts)) return condition.reason;
+  return Reason::none;
+}
+
+std::span<const Condition> all_conditions() { return kAll; }
+
+}  // namespace adit::agent

@@ -1,0 +1,29 @@
+#pragma once
+#include "core/geometry/pose.hpp"
+#include "core/time/time.hpp"
+
+namespace adit::agent {
+
+/// The holder's stick as far as it is known.
+class Stick {
+ public:
+  static constexpr Duration kFresh = 300ms;  ///< older: zero is sent
+  static constexpr Duration kKept = 1s;      ///< older: manual modes fall to hold
+
+  void update(const Twist2& value, Time now) {
+    value_ = value;
+    at_ = now;
+    known_ = true;
+  }
+  void forget() { known_ = false; }
+  bool fresh(Time now) const { return known_ && now - at_ < kFresh; }
+  bool kept(Time now) const { return known_ && now - at_ < kKept; }
+  bool centred() const { return known_ && value_.zero(); }
+
+ private:
+  Twist2 value_{};
+  Time at_{};
+  bool known_{};
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,52 @@
+#include "robot_agent/motion/mux.hpp"
+
+namespace adit::agent {
+
+Mux::Output Mux::connect(std::string name, Duration max_age) {
+  inputs_.push_back({std::move(name), max_age, Stand{}, false, Time{}});
+  return {this, inputs_.size() - 1};
+}
+
+void Mux::enable(std::string_view name, Time now) {
+  std::size_t next = kNone;
+  for (std::size_t i = 0; i < inputs_.size(); ++i)
+    if (inputs_[i].name == name) next = i;
+  if (next == enabled_) return;
+  enabled_ = next;
+  if (next != kNone) inputs_[next].written = false;  // what it said before it was enabled moves nothing
+  if (params_.defects.has(Defect::change_without_zero)) return;
+  settled_ = now + params_.settle;
+  pass(Stand{}, now);
+}
+
+void Mux::write(std::size_t index, const Motion& motion, Time now) {
+  Input& input = inputs_[index];
+  input.motion = motion;
+  input.written = true;
+  input.at = now;
+  const bool passes = index == enabled_ && now >= settled_;
+  if (passes || params_.defects.has(Defect::two_sources)) pass(motion, now);
+}
+
+bool Mux::fresh(Time now) const {
+  if (enabled_ == kNone) return false;
+  const Input& input = inputs_[enabled_];
+  return input.written && now - input.at < input.max_age;
+}
+
+void Mux::step(Time now) {
+  if (enabled_ == kNone && params_.defects.has(Defect::two_sources)) return;
+  const bool stale = !fresh(now) && !(enabled_ != kNone && inputs_[enabled_].written &&
+                                      params_.defects.has(Defect::no_zero_on_stale));
+  if (enabled_ == kNone || stale || now < settled_)
+    pass(Stand{}, now);
+  else
+    pass(inputs_[enabled_].motion, now);
+}
+
+const std::string& Mux::enabled() const {
+  static const std::string none{};
+  return enabled_ == kNone ? none : inputs_[enabled_].name;
+}
+
+}  // namespace adit::agent

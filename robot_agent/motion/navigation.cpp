@@ -1,0 +1,149 @@
+#include "robot_agent/motion/navigation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::agent {
+namespace {
+
+constexpr double kTurnLooksAhead = 0.6;  // s: how far a stick's turn rate shifts the direction asked for
+constexpr double kTurningSpeed = 0.05;   // m/s: of a stick that only turns
+constexpr Duration kCycleLost = 2s;
+
+}  // namespace
+
+struct Navigation::Job {
+  std::shared_ptr<Scan> scan{};
+  nav::Target target{};
+  Pose2 pose{};
+  std::uint64_t generation{};
+  Time made{};
+  nav::Plan plan{};
+  std::vector<Eigen::Vector2f> obstacles{};
+};
+
+Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
+                       Outputs outputs)
+    : Component("navigation", strand, std::move(log)),
+      params_(std::move(params)),
+      localisation_(localisation),
+      outputs_(std::move(outputs)),
+      navigator_(std::make_shared<nav::Navigator>(params_.platform)),
+      follower_(params_.platform) {}
+
+void Navigation::accept(MuxKey, const Motion& motion, Time) {
+  if (motion == motion_) return;
+  const bool other_kind = motion.index() != motion_.index();
+  if (std::holds_alternative<GoTo>(motion)) ++goal_generation_;
+  motion_ = motion;
+  if (other_kind) {
+    has_plan_ = false;
+    follower_.stop_now();
+  }
+  if (const auto* velocity = std::get_if<Velocity>(&motion_))
+    emit(limited(velocity->twist));
+  else if (std::holds_alternative<Stand>(motion_))
+    emit({});
+}
+
+void Navigation::step(Time now) {
+  if (const auto* velocity = std::get_if<Velocity>(&motion_))
+    emit(limited(velocity->twist));
+  else if (std::holds_alternative<Stand>(motion_))
+    emit({});
+  else
+    emit(along_plan(now));
+}
+
+Twist2 Navigation::along_plan(Time now) {
+  const auto* guidance = std::get_if<Guidance>(&motion_);
+  const bool centred = guidance && guidance->stick.zero();
+  if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !localisation_.alive(now))
+    return follower_.stop_now();
+  return follower_.follow(localisation_.odom().planar(), seconds(params_.period));
+}
+
+nav::Target Navigation::target() const {
+  if (const auto* go = std::get_if<GoTo>(&motion_)) return nav::Target::to(localisation_.to_odom(go->goal));
+  const auto* guidance = std::get_if<Guidance>(&motion_);
+  if (!guidance || guidance->stick.zero()) return {};
+  const Twist2& stick = guidance->stick;
+  const double speed = std::hypot(stick.vx, stick.vy);
+  if (speed < kTurningSpeed) return nav::Target::along(std::copysign(M_PI / 2, stick.wz), kTurningSpeed);
+  const double turn = std::clamp(stick.wz * kTurnLooksAhead, -M_PI / 2, M_PI / 2);
+  return nav::Target::along(wrap_angle(std::atan2(stick.vy, stick.vx) + turn),
+                            std::min(speed, params_.platform.max_speed));
+}
+
+Twist2 Navigation::limited(const Twist2& wanted) const {
+  const Platform& p = params_.platform;
+  Twist2 t = wanted;
+  if (p.drive == Drive::differential) t.vy = 0.0;
+  const double speed = std::hypot(t.vx, t.vy);
+  if (speed > p.max_speed) {
+    t.vx *= p.max_speed / speed;
+    t.vy *= p.max_speed / speed;
+  }
+  t.wz = std::clamp(t.wz, -p.max_turn, p.max_turn);
+  return t;
+}
+
+void Navigation::emit(const Twist2& velocity) { outputs_.velocity(velocity); }
+
+void Navigation::add_scan(std::shared_ptr<Scan> scan, Time now) {
+  scanned_ = now;
+  // A cycle that failed never reports back.
+  if (planning_ && now - *planning_ < kCycleLost)
+    waiting_ = std::move(scan);
+  else
+    plan(std::move(scan), now);
+}
+
+void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
+  auto job = std::make_shared<Job>();
+  job->scan = std::move(scan);
+  job->target = target();
+  job->pose = localisation_.odom().planar();
+  job->generation = goal_generation_;
+  job->made = now;
+  planning_ = now;
+  const double lidar = params_.platform.lidar_height;
+  compute(
+      params_.planning,
+      [job, navigator = navigator_, lidar] {
+        // The library wants points as the sensor sees them, above base_link.
+        for (Eigen::Vector3f& p : job->scan->points) p.z() -= static_cast<float>(lidar);
+        const double stamp = seconds(job->made.time_since_epoch());
+        navigator->add_scan(job->scan->points, job->scan->body, stamp);
+        if (job->target.kind != nav::Target::Kind::none)
+          job->plan = navigator->plan(job->target, job->pose, stamp);
+        const auto cells = navigator->obstacles().cells();
+        job->obstacles.assign(cells.begin(), cells.end());
+      },
+      [this, job] { planned(*job); });
+}
+
+void Navigation::planned(const Job& job) {
+  planning_.reset();
+  obstacles_ = std::make_shared<const std::vector<Eigen::Vector2f>>(job.obstacles);
+  const bool for_goal = job.target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_);
+  const bool for_stick =
+      job.target.kind == nav::Target::Kind::direction && std::holds_alternative<Guidance>(motion_);
+  if ((for_goal && job.generation == goal_generation_) || for_stick) {
+    follower_.set_plan(job.plan);
+    has_plan_ = true;
+    plan_made_ = job.made;
+    if (for_goal) outputs_.progress({job.plan.arrived, job.plan.blocked});
+  }
+  if (waiting_) plan(std::exchange(waiting_, nullptr), now());
+}
+
+bool Navigation::goal_free(const Eigen::Vector2d& place) const {
+  if (!obstacles_) return true;
+  const Eigen::Vector2f at = localisation_.to_odom(place).cast<float>();
+  const float radius = static_cast<float>(std::min(params_.platform.width, params_.platform.length) / 2);
+  return std::none_of(obstacles_->begin(), obstacles_->end(),
+                      [&](const Eigen::Vector2f& o) { return (o - at).squaredNorm() < radius * radius; });
+}
+
+}  // namespace adit::agent

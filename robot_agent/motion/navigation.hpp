@@ -1,0 +1,77 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/component/component.hpp"
+#include "nav/navigator.hpp"
+#include "nav/path_follower.hpp"
+#include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/motion/motion.hpp"
+
+namespace adit::agent {
+
+struct NavigationParams {
+  Platform platform{};
+  Duration period{50ms};     ///< of step(): the driver's rate, [20 ms, 50 ms]
+  Duration plan_age{500ms};  ///< an older plan moves nothing
+  Duration scan_age{500ms};  ///< older points: the terrain is not known
+  Duration planning{20ms};   ///< what a planning cycle takes in rehearsal
+};
+
+/// A scan: points in the frame of base_link, m, and where base_link was.
+struct Scan {
+  PointCloud points{};
+  Pose3 body{};  ///< odometry frame
+};
+
+/// Turns what the mux passes into velocities within the platform's limits: as they are, or along the local
+/// planner's paths. Plans beside the strand, once per scan, follows on it.
+class Navigation : public Component, public NavigationInput {
+ public:
+  struct Outputs {
+    std::function<void(const Twist2&)> velocity{};    ///< to the driver
+    std::function<void(const Progress&)> progress{};  ///< of the goal asked for last
+  };
+
+  Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
+             Outputs outputs);
+
+  /// Velocities and zero go to the driver within the call.
+  void accept(MuxKey, const Motion& motion, Time now) override;
+  /// The velocity for the next period, every period.
+  void step(Time now);
+  void add_scan(std::shared_ptr<Scan> scan, Time now);
+
+  bool terrain_fresh(Time now) const { return scanned_ && now - *scanned_ < params_.scan_age; }
+  /// Whether the body would stand there without touching a known obstacle (map frame, m).
+  bool goal_free(const Eigen::Vector2d& place) const;
+
+ private:
+  struct Job;
+  nav::Target target() const;
+  Twist2 along_plan(Time now);
+  Twist2 limited(const Twist2& wanted) const;
+  void emit(const Twist2& velocity);
+  void plan(std::shared_ptr<Scan> scan, Time now);
+  void planned(const Job& job);
+
+  NavigationParams params_;
+  const Localisation& localisation_;
+  Outputs outputs_;
+  std::shared_ptr<nav::Navigator> navigator_;
+  nav::PathFollower follower_;
+
+  Motion motion_{Stand{}};
+  std::uint64_t goal_generation_{};  // rises with every other goal, so that late plans report no progress
+  bool has_plan_{};
+  Time plan_made_{};
+  std::optional<Time> planning_{};   // since when a cycle is under way
+  std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning
+  std::optional<Time> scanned_{};
+  std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // odometry frame
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,267 @@
+#include "robot_agent/behaviour/behaviour.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+namespace adit::agent {
+namespace {
+
+struct Recorder : NavigationInput {
+  void accept(MuxKey, const Motion& motion, Time) override { last = motion; }
+  Motion last{};
+};
+
+class BehaviourTest : public testing::Test {
+ protected:
+  BehaviourTest() { run(100ms); }
+
+  /// The 20 Hz beat, with the stick sent along when it is streaming.
+  void run(Duration time) {
+    for (const Time end = now + time; now < end;) {
+      now += 50ms;
+      if (streaming) (void)behaviour.stick(value, now);
+      behaviour.tick(now);
+      mux.step(now);
+    }
+  }
+  void enter_manual(const char* mode = "manual") {
+    streaming = true;
+    value = {};
+    run(100ms);
+    ASSERT_TRUE(behaviour.request_mode(mode, now));
+  }
+  std::string_view mode() const { return behaviour.view().mode; }
+  std::vector<std::string> codes() const {
+    std::vector<std::string> all;
+    for (const Notice& n : told) all.push_back(n.code);
+    return all;
+  }
+
+  Facts facts{false, true, true, true, false, false, false, false, false};
+  bool goal_free{true};
+  Recorder nav{};
+  Mux mux{nav};
+  std::vector<Notice> told{};
+  int changes{};
+  Behaviour behaviour{{},
+                      Decider::load(std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml").value(),
+                      mux,
+                      {[this](Time) { return facts; }, [this](const Eigen::Vector2d&) { return goal_free; }},
+                      {[this](const Notice& n) { told.push_back(n); }, [this] { ++changes; }}};
+  Time now{Duration{1h}};
+  bool streaming{};
+  Twist2 value{};
+};
+
+TEST_F(BehaviourTest, StartsInHoldWithZero) {
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_FALSE(behaviour.view().moving_allowed);
+}
+
+TEST_F(BehaviourTest, ManualPassesTheStickAtOnce) {
+  enter_manual();
+  EXPECT_EQ(mode(), "manual");
+  run(100ms);
+  now += 10ms;
+  ASSERT_TRUE(behaviour.stick({0.4, 0, 0.1}, now));
+  EXPECT_EQ(nav.last, (Motion{Velocity{{0.4, 0, 0.1}}}));
+}
+
+TEST_F(BehaviourTest, ManualNeedsAFreshCentredStick) {
+  EXPECT_EQ(behaviour.request_mode("manual", now).reason(), Reason::joystick_stale);
+  streaming = true;
+  value = {0.3, 0, 0};
+  run(100ms);
+  EXPECT_EQ(behaviour.request_mode("manual", now).reason(), Reason::stick_not_centred);
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+}
+
+TEST_F(BehaviourTest, PushedStickInHoldIsRefusedAndMovesNothing) {
+  EXPECT_EQ(behaviour.stick({0.5, 0, 0}, now).reason(), Reason::wrong_mode);
+  EXPECT_TRUE(behaviour.stick({}, now));
+  run(200ms);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+}
+
+TEST_F(BehaviourTest, SilentStickIsZeroAfter300msAndHoldAfterOneSecond) {
+  enter_manual();
+  value = {0.5, 0, 0};
+  run(200ms);
+  EXPECT_EQ(nav.last, (Motion{Velocity{value}}));
+  streaming = false;
+  run(250ms);
+  EXPECT_EQ(nav.last, (Motion{Velocity{value}}));
+  run(100ms);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_EQ(mode(), "manual");
+  run(600ms);
+  EXPECT_EQ(mode(), "manual");
+  run(100ms);
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_THAT(codes(), testing::ElementsAre("joystick_lost"));
+  EXPECT_EQ(behaviour.view().reason, Reason::joystick_stale);
+  // A fresh joystick alone moves nothing (rule 7).
+  streaming = true;
+  run(500ms);
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+}
+
+TEST_F(BehaviourTest, StopIsZeroWithinTheCallAndResetMovesNothing) {
+  enter_manual();
+  value = {0.5, 0, 0};
+  run(200ms);
+  behaviour.stop_changed(true, now);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(behaviour.view().reason, Reason::stopped);
+  run(200ms);
+  behaviour.stop_changed(false, now);
+  run(500ms);
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+}
+
+TEST_F(BehaviourTest, GoalIsKeptOverAStopAndGoesOnByRequest) {
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  run(100ms);
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::active);
+  behaviour.stop_changed(true, now);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::kept);
+  behaviour.stop_changed(false, now);
+  run(500ms);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  ASSERT_TRUE(behaviour.request_mode("waypoint", now));
+  run(100ms);
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+  EXPECT_EQ(behaviour.view().goal_id, 1u);
+}
+
+TEST_F(BehaviourTest, GoalIsClearedByAnotherMode) {
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  ASSERT_TRUE(behaviour.request_mode("hold", now));
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::none);
+  EXPECT_EQ(behaviour.request_mode("waypoint", now).reason(), Reason::goal_missing);
+}
+
+TEST_F(BehaviourTest, GoalsAreNumberedAndChecked) {
+  const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& bad : {Eigen::Vector3d{nan, 0, 0}, Eigen::Vector3d{0, inf, 0},
+                                     Eigen::Vector3d{10'001, 0, 0}, Eigen::Vector3d{0, 0, inf}})
+    EXPECT_EQ(behaviour.request_goal(bad, now).reason(), Reason::out_of_range);
+  goal_free = false;
+  EXPECT_EQ(behaviour.request_goal({1, 0, 0}, now).reason(), Reason::goal_unreachable);
+  goal_free = true;
+  facts.terrain_fresh = false;
+  EXPECT_EQ(behaviour.request_goal({1, 0, 0}, now).reason(), Reason::terrain_stale);
+  facts.terrain_fresh = true;
+  EXPECT_EQ(behaviour.view().goal_id, 0u);
+  EXPECT_TRUE(behaviour.request_goal({1, 0, nan}, now));
+  EXPECT_TRUE(behaviour.request_goal({2, 0, 0}, now));
+  EXPECT_EQ(behaviour.view().goal_id, 2u);
+}
+
+TEST_F(BehaviourTest, ArrivalEndsTheMotionNotTheMode) {
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  run(100ms);
+  behaviour.set_progress({true, false});
+  run(50ms);
+  EXPECT_EQ(mode(), "waypoint");
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::reached);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_THAT(codes(), testing::ElementsAre("arrived"));
+  ASSERT_TRUE(behaviour.request_goal({9, 1, 0}, now));
+  run(100ms);
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::active);
+}
+
+TEST_F(BehaviourTest, HandoverEndsManualModesOnly) {
+  enter_manual();
+  behaviour.holder_changed(now);
+  EXPECT_EQ(mode(), "hold");
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  behaviour.holder_changed(now);
+  run(100ms);
+  EXPECT_EQ(mode(), "waypoint");
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+}
+
+TEST_F(BehaviourTest, StickOfTheFormerHolderDoesNotCount) {
+  enter_manual();
+  streaming = false;
+  behaviour.holder_changed(now);
+  EXPECT_EQ(behaviour.request_mode("manual", now).reason(), Reason::joystick_stale);
+}
+
+TEST_F(BehaviourTest, SilentDriverPausesAutonomousModesAndEndsManualOnes) {
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  facts.driver_alive = false;
+  run(50ms);
+  EXPECT_EQ(mode(), "waypoint");
+  EXPECT_FALSE(behaviour.view().moving_allowed);
+  EXPECT_EQ(behaviour.view().reason, Reason::driver_silent);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  facts.driver_alive = true;
+  run(100ms);
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+  enter_manual();
+  facts.driver_alive = false;
+  run(50ms);
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(told.back().reason, Reason::driver_silent);
+}
+
+TEST_F(BehaviourTest, SmartJoystickGuidesTheLocalPlanner) {
+  enter_manual("smart_joystick");
+  value = {0.5, 0, 0.2};
+  run(100ms);
+  EXPECT_EQ(nav.last, (Motion{Guidance{value}}));
+}
+
+TEST_F(BehaviourTest, UnknownModesAreRefused) {
+  EXPECT_EQ(behaviour.request_mode("fly", now).reason(), Reason::mode_unknown);
+  EXPECT_EQ(behaviour.request_mode("explore", now).reason(), Reason::mode_not_installed);
+  EXPECT_EQ(behaviour.request_mode("", now).reason(), Reason::mode_unknown);
+}
+
+TEST_F(BehaviourTest, OptionsTellWhyNot) {
+  const auto option = [&](std::string_view wanted) {
+    for (const ModeOption& o : behaviour.options(now))
+      if (o.mode == wanted) return o.reason;
+    return Reason::internal;
+  };
+  EXPECT_EQ(option("hold"), Reason::none);
+  EXPECT_EQ(option("manual"), Reason::joystick_stale);
+  EXPECT_EQ(option("waypoint"), Reason::goal_missing);
+  behaviour.stop_changed(true, now);
+  EXPECT_EQ(option("waypoint"), Reason::stopped);
+}
+
+TEST_F(BehaviourTest, IdleAndBlockedAreToldOnce) {
+  run(61s);
+  EXPECT_THAT(codes(), testing::ElementsAre("idle"));
+  told.clear();
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  behaviour.set_progress({false, true});
+  run(4s);
+  EXPECT_TRUE(told.empty());
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
+  run(10s);
+  EXPECT_THAT(codes(), testing::ElementsAre("blocked"));
+}
+
+TEST_F(BehaviourTest, ChangesAreTold) {
+  const int before = changes;
+  run(1s);
+  EXPECT_EQ(changes, before);
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  EXPECT_EQ(changes, before + 1);
+}
+
+}  // namespace
+}  // namespace adit::agent

@@ -1,0 +1,98 @@
+#include "robot_agent/behaviour/decider.hpp"
+
+#include <gmock/gmock.h>
+
+namespace adit::agent {
+namespace {
+
+const std::string kTree = std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml";
+constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true};
+
+std::unique_ptr<Decider> load() {
+  auto decider = Decider::load(kTree);
+  if (!decider) ADD_FAILURE() << decider.error().text;
+  return std::move(*decider);
+}
+
+TEST(Decider, RunsTheModeAskedForWhileItsConditionsHold) {
+  const auto decider = load();
+  Time now{};
+  for (const ModeRow& row : mode_table()) {
+    const Decision d = decider->decide(row.name, kAllGood, now += 50ms);
+    EXPECT_EQ(d.mode->name, row.name);
+    EXPECT_TRUE(d.runs);
+    EXPECT_EQ(d.reason, Reason::none);
+  }
+}
+
+// What the tree does when a condition of the table that lasts fails must be what the table says.
+TEST(Decider, FollowsTheTableWhenAConditionFails) {
+  const auto decider = load();
+  const auto spoilt = [](const Condition& c) {
+    Facts f = kAllGood;
+    f.stopped = true;
+    if (!c.holds(f)) return f;
+    for (bool Facts::*fact :
+         {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
+          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free}) {
+      f = kAllGood;
+      f.*fact = false;
+      if (!c.holds(f)) return f;
+    }
+    ADD_FAILURE() << c.leaf << " never fails";
+    return f;
+  };
+  Time now{};
+  for (const ModeRow& row : mode_table())
+    for (const Condition& condition : row.conditions) {
+      const Decision d = decider->decide(row.name, spoilt(condition), now += 50ms);
+      if (condition.entry_only) {
+        EXPECT_TRUE(d.runs) << row.name << " " << condition.leaf;
+        continue;
+      }
+      EXPECT_EQ(name(d.reason), name(condition.reason)) << row.name;
+      const bool pauses = row.on_failure == OnFailure::pauses && condition.reason != Reason::stopped &&
+                          condition.reason != Reason::goal_missing;
+      EXPECT_EQ(d.mode->name, pauses ? row.name : "hold") << condition.leaf;
+      EXPECT_TRUE(!d.runs || d.mode->name == "hold");
+    }
+}
+
+TEST(Decider, UnknownRequestHolds) {
+  const auto decider = load();
+  EXPECT_EQ(decider->decide("fly", kAllGood, Time{}).mode->name, "hold");
+}
+
+TEST(Decider, MissingFileAndBrokenTreesAreErrors) {
+  EXPECT_FALSE(Decider::load("/nowhere/robot.xml"));
+  const auto with = [](const std::string& body) {
+    return Decider::load_text("<root BTCPP_format=\"4\" main_tree_to_execute=\"T\"><BehaviorTree ID=\"T\">" +
+                              body + "</BehaviorTree></root>");
+  };
+  EXPECT_FALSE(with("<Fallback><Fly/></Fallback>"));
+  EXPECT_FALSE(with("<Fallback><Run/></Fallback>"));
+  const auto incomplete = with("<Run mode=\"hold\"/>");
+  ASSERT_FALSE(incomplete);
+  EXPECT_THAT(incomplete.error().text, testing::HasSubstr("manual"));
+  const auto unknown = with(
+      "<Fallback><Run mode=\"hold\"/><Run mode=\"manual\"/><Run mode=\"smart_joystick\"/><Run "
+      "mode=\"waypoint\"/>"
+      "<Run mode=\"fly\"/></Fallback>");
+  ASSERT_FALSE(unknown);
+  EXPECT_EQ(unknown.reason(), Reason::mode_unknown);
+}
+
+TEST(Decider, TreeThatFailsHolds) {
+  const auto decider = Decider::load_text(
+      "<root BTCPP_format=\"4\" main_tree_to_execute=\"T\"><BehaviorTree ID=\"T\"><Sequence><AlwaysFailure/>"
+      "<Run mode=\"hold\"/><Run mode=\"manual\"/><Run mode=\"smart_joystick\"/><Run mode=\"waypoint\"/>"
+      "</Sequence></BehaviorTree></root>");
+  ASSERT_TRUE(decider) << decider.error().text;
+  const Decision d = (*decider)->decide("manual", kAllGood, Time{});
+  EXPECT_EQ(d.mode->name, "hold");
+  EXPECT_FALSE(d.runs);
+  EXPECT_EQ(d.reason, Reason::internal);
+}
+
+}  // namespace
+}  // namespace adit::agent

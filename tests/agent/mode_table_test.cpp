@@ -1,0 +1,85 @@
+#include "robot_agent/behaviour/mode_table.hpp"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+namespace adit::agent {
+namespace {
+
+constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true};
+
+struct Row {
+  const char* mode;
+  const char* broken;
+  void (*spoil)(Facts&);
+  Reason reason;
+};
+
+class ModeConditions : public testing::TestWithParam<Row> {};
+
+TEST_P(ModeConditions, EntryIsRefusedWithTheReason) {
+  const Row& row = GetParam();
+  Facts facts = kAllGood;
+  row.spoil(facts);
+  EXPECT_EQ(name(entry_refusal(*find_mode(row.mode), facts)), name(row.reason));
+  EXPECT_EQ(entry_refusal(*find_mode(row.mode), kAllGood), Reason::none);
+}
+
+void stop(Facts& f) { f.stopped = true; }
+void no_driver(Facts& f) { f.driver_alive = false; }
+void lost(Facts& f) { f.localised = false; }
+void blind(Facts& f) { f.terrain_fresh = false; }
+void no_stick(Facts& f) { f.stick_fresh = f.stick_kept = f.stick_centred = false; }
+void pushed(Facts& f) { f.stick_centred = false; }
+void no_goal(Facts& f) { f.goal_known = false; }
+void walled(Facts& f) { f.goal_free = false; }
+
+INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
+                         testing::Values(Row{"hold", "stop", stop, Reason::none},
+                                         Row{"hold", "driver", no_driver, Reason::none},
+                                         Row{"manual", "stop", stop, Reason::stopped},
+                                         Row{"manual", "driver", no_driver, Reason::driver_silent},
+                                         Row{"manual", "localisation", lost, Reason::none},
+                                         Row{"manual", "terrain", blind, Reason::none},
+                                         Row{"manual", "stick", no_stick, Reason::joystick_stale},
+                                         Row{"manual", "pushed", pushed, Reason::stick_not_centred},
+                                         Row{"smart_joystick", "stop", stop, Reason::stopped},
+                                         Row{"smart_joystick", "driver", no_driver, Reason::driver_silent},
+                                         Row{"smart_joystick", "localisation", lost, Reason::no_localisation},
+                                         Row{"smart_joystick", "terrain", blind, Reason::terrain_stale},
+                                         Row{"smart_joystick", "stick", no_stick, Reason::joystick_stale},
+                                         Row{"smart_joystick", "pushed", pushed, Reason::stick_not_centred},
+                                         Row{"waypoint", "stop", stop, Reason::stopped},
+                                         Row{"waypoint", "driver", no_driver, Reason::driver_silent},
+                                         Row{"waypoint", "localisation", lost, Reason::no_localisation},
+                                         Row{"waypoint", "terrain", blind, Reason::terrain_stale},
+                                         Row{"waypoint", "stick", no_stick, Reason::none},
+                                         Row{"waypoint", "goal", no_goal, Reason::goal_missing},
+                                         Row{"waypoint", "walled", walled, Reason::goal_unreachable}),
+                         [](const auto& each) {
+                           return std::string(each.param.mode) + "_" + each.param.broken;
+                         });
+
+TEST(ModeTable, HoldIsFirstAndUnconditional) {
+  EXPECT_EQ(mode_table().front().name, "hold");
+  EXPECT_TRUE(mode_table().front().conditions.empty());
+  EXPECT_EQ(entry_refusal(mode_table().front(), Facts{}), Reason::none);
+}
+
+TEST(ModeTable, ModesOfTheDesignThatHaveNoModuleAreKnown) {
+  for (const char* mode : {"explore", "convoy_follow", "get_out"}) {
+    EXPECT_EQ(find_mode(mode), nullptr);
+    EXPECT_TRUE(known_but_not_installed(mode));
+  }
+  EXPECT_FALSE(known_but_not_installed("fly"));
+}
+
+TEST(ModeTable, EveryConditionOfARowIsALeaf) {
+  for (const ModeRow& row : mode_table())
+    for (const Condition& c : row.conditions)
+      EXPECT_THAT(all_conditions(), testing::Contains(testing::Field(&Condition::leaf, c.leaf)));
+}
+
+}  // namespace
+}  // namespace adit::agent
