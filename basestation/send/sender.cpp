@@ -45,6 +45,7 @@ struct Sender::Pending {
   Timer timer{};
   bool overtaken{};  ///< a stop went out after it, with a higher number
   bool resting{};    ///< refused for a cause that passes: sent anew at the next repeat
+  Answer refusal{};  ///< that refusal
   bool is_stop() const { return order.kind == Kind::stop; }
 };
 
@@ -148,6 +149,7 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
   Lane& to = *lanes_.at(robot);
   const Duration limit = pending->is_stop() ? params_.give_up_stop : params_.give_up;
   if (strand_.now() - pending->first_sent >= limit) {
+    if (pending->resting) return finish(to, pending, pending->refusal);
     const std::string text = "no answer within " + std::to_string(limit / 1s) + " s";
     return finish(to, pending, {.reason = Reason::no_answer, .text = text});
   }
@@ -178,19 +180,19 @@ void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&)
     if (candidate && candidate->message.seq() == sample.seq()) pending = candidate;
   if (!pending || pending->resting) return;
   const auto reason = static_cast<Reason>(sample.reason());
-  if (!sample.accepted() && worth_another(*pending, reason) &&
-      strand_.now() - pending->first_sent < (pending->is_stop() ? params_.give_up_stop : params_.give_up)) {
+  Answer answer{.seq = sample.seq(),
+                .accepted = sample.accepted(),
+                .answered = true,
+                .reason = sample.accepted() ? Reason::none : reason,
+                .text = clean(sample.text(), 240),
+                .holder = clean(sample.holder(), 32),
+                .latency = strand_.now() - pending->first_sent};
+  if (!sample.accepted() && worth_another(*pending, reason)) {
     pending->resting = true;
+    pending->refusal = std::move(answer);
     return;
   }
-  finish(to, pending,
-         {.seq = sample.seq(),
-          .accepted = sample.accepted(),
-          .answered = true,
-          .reason = sample.accepted() ? Reason::none : reason,
-          .text = clean(sample.text(), 240),
-          .holder = clean(sample.holder(), 32),
-          .latency = strand_.now() - pending->first_sent});
+  finish(to, pending, std::move(answer));
 }
 
 void Sender::finish(Lane& to, const std::shared_ptr<Pending>& pending, Answer answer) {

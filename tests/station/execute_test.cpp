@@ -1,0 +1,180 @@
+// Command lines at a station: exit codes, texts, several robots.
+#include "tests/station/fake_robot.hpp"
+
+namespace adit::station {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class ExecuteTest : public StationTest {
+ protected:
+  ExecuteTest() {
+    add("r1");
+    add("r2");
+    start();
+    run_for(6s);
+  }
+};
+
+std::optional<Reason> refuse_locked(const radio::Command&) { return Reason::locked; }
+
+TEST_F(ExecuteTest, ARefusalIsExitOneWithItsReason) {
+  robots_[0]->holder = "op2";
+  robots_[0]->answering = refuse_locked;
+  const Outcome outcome = execute("take r1");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_TRUE(outcome.text.empty());
+  EXPECT_THAT(outcome.error, HasSubstr("r1: refused: "));
+  EXPECT_THAT(outcome.error, HasSubstr("op2"));
+  EXPECT_EQ(outcome.json["results"][0]["reason"], "locked");
+  EXPECT_EQ(outcome.json["exit"], 1);
+  ASSERT_TRUE(op_->last_answer());
+  EXPECT_EQ(op_->last_answer()->reason, Reason::locked);
+  EXPECT_EQ(op_->counts().refused, 1U);
+}
+
+TEST_F(ExecuteTest, SeveralRobotsAnswerOneByOne) {
+  robots_[1]->answering = refuse_locked;
+  const Outcome outcome = execute("take r1 r2");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_EQ(outcome.text, "r1: yours\n");
+  EXPECT_THAT(outcome.error, HasSubstr("r2: refused"));
+}
+
+TEST_F(ExecuteTest, ASilentRobotDelaysNoOther) {
+  robots_[0]->alive = false;
+  begin("take r1 r2");
+  run_for(50ms);
+  EXPECT_EQ(robots_[1]->holder, "op1");
+  run_for(4s);
+  ASSERT_EQ(late_.size(), 1U);
+  EXPECT_EQ(late_[0].exit_code, 3);
+  robots_[1]->answering = refuse_locked;
+  EXPECT_EQ(execute("lock r1 r2").exit_code, 1) << "a refusal counts more than silence";
+}
+
+TEST_F(ExecuteTest, AnUnknownRobotNamesTheKnownOnes) {
+  const Outcome outcome = execute("take r9");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.error, HasSubstr("r9: "));
+  EXPECT_THAT(outcome.error, HasSubstr("known robots: r1, r2"));
+  EXPECT_EQ(op_->last_answer()->reason, Reason::unknown_robot);
+  EXPECT_EQ(execute("status r9").exit_code, 1);
+  EXPECT_EQ(execute("actions r1 r9").exit_code, 1);
+}
+
+TEST_F(ExecuteTest, WrongUsageIsExitTwo) {
+  EXPECT_EQ(execute("tkae r1").exit_code, 2);
+  EXPECT_EQ(execute("goto r1 north").exit_code, 2);
+  EXPECT_EQ(execute("teleop r1").exit_code, 2);
+  EXPECT_EQ(execute("watch").exit_code, 2);
+  EXPECT_EQ(op_->counts().sent, 0U);
+  EXPECT_EQ(op_->last_answer()->reason, Reason::not_supported);
+}
+
+TEST_F(ExecuteTest, StopAllReachesEveryRobot) {
+  EXPECT_EQ(execute("stop all").exit_code, 0);
+  EXPECT_TRUE(robots_[0]->behaviour.stopped());
+  EXPECT_TRUE(robots_[1]->behaviour.stopped());
+}
+
+TEST_F(ExecuteTest, QueriesShowTheFleet) {
+  execute("take r1");
+  run_for(1500ms);
+  const Outcome list = execute("list");
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_THAT(list.text, HasSubstr("op1*"));
+  EXPECT_EQ(list.json["robots"].size(), 2U);
+  EXPECT_EQ(list.json["robots"][0]["mine"], true);
+  EXPECT_THAT(execute("status r1").text, HasSubstr("op1 (you)"));
+  EXPECT_EQ(execute("status").json["commands"]["accepted"], 1);
+  EXPECT_THAT(execute("actions r1").text, HasSubstr("release"));
+  EXPECT_THAT(execute("health").text, HasSubstr("r1: no health report"));
+  const Outcome net = execute("net");
+  EXPECT_THAT(net.text, HasSubstr("adit/presence"));
+  EXPECT_GT(net.json["agents"][0]["total_out"].get<float>(), 0.0F);
+}
+
+TEST_F(ExecuteTest, DownReleasesWhatItHoldsAndFallsSilent) {
+  execute("take r1");
+  bool told = false;
+  op_->on_down = [&] { told = true; };
+  const Outcome outcome = execute("down");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(robots_[0]->holder, "");
+  EXPECT_TRUE(told);
+  EXPECT_TRUE(robots_[1]->commands().empty());
+  EXPECT_EQ(execute("take r1").exit_code, 1);
+  EXPECT_EQ(op_->last_answer()->reason, Reason::no_station);
+  EXPECT_EQ(execute("up").exit_code, 0);
+  EXPECT_EQ(execute("take r1").exit_code, 0);
+}
+
+TEST_F(ExecuteTest, ObserversSeeWhatGoesOutAndComesBack) {
+  std::vector<std::string> seen;
+  op_->on_sent = [&](const Order& order, std::uint64_t seq) {
+    seen.push_back(std::string(to_string(order.kind)) + " " + std::to_string(seq));
+  };
+  op_->on_answer = [&](const Answer& answer) { seen.push_back(answer.robot + " " + answer.command); };
+  execute("take r1");
+  EXPECT_THAT(seen, ElementsAre("take 1", "r1 take"));
+}
+
+TEST_F(ExecuteTest, ALostRobotIsToldToTheOperator) {
+  std::vector<std::string> codes;
+  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  robots_[0]->alive = false;
+  run_for(4s);
+  robots_[0]->alive = true;
+  run_for(1s);
+  EXPECT_THAT(codes, ElementsAre("lost r1", "back r1"));
+}
+
+class FreshStation : public StationTest {};
+
+TEST_F(FreshStation, WaitsForARobotThatItHasNotDiscoveredYet) {
+  start();
+  scheduler_.at(2s, [this] { add("r1"); });
+  EXPECT_EQ(execute("take r1").exit_code, 0);
+  EXPECT_LT(scheduler_.elapsed(), 4s);
+  EXPECT_EQ(execute("take r9").exit_code, 1);
+  EXPECT_NEAR(seconds(scheduler_.elapsed()), 5.0, 0.3);
+}
+
+TEST_F(FreshStation, KeepsTheOrderOfWhatWaits) {
+  start();
+  begin("take r1");
+  begin("goto r1 1 2");
+  add("r1");
+  run_for(5s);
+  EXPECT_EQ(late_.size(), 2U);
+  ASSERT_EQ(robots_[0]->numbers().size(), 2U);
+  EXPECT_EQ(robots_[0]->commands().back().command.kind(), radio::CMD_GOTO);
+}
+
+TEST_F(FreshStation, StopAllCatchesRobotsThatAppear) {
+  start();
+  add("r1");
+  begin("stop all");
+  scheduler_.at(3s, [this] { add("r2"); });
+  run_for(6s);
+  ASSERT_EQ(late_.size(), 1U);
+  EXPECT_EQ(late_[0].exit_code, 0);
+  EXPECT_TRUE(robots_[1]->behaviour.stopped());
+}
+
+TEST_F(FreshStation, StopAllWithNobodyThereIsNoAnswer) {
+  start();
+  EXPECT_EQ(execute("stop all").exit_code, 3);
+}
+
+TEST_F(FreshStation, AWrongNameDoesNotStart) {
+  wire_ = ether_.join(77, "op");
+  Station station({.name = "op 1", .id = id}, *strand_, *wire_);
+  EXPECT_EQ(station.start().reason(), Reason::bad_argument);
+}
+
+}  // namespace
+}  // namespace adit::station

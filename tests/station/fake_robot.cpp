@@ -1,0 +1,157 @@
+#include "tests/station/fake_robot.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace adit::station {
+
+using namespace std::chrono_literals;
+
+FakeRobot::FakeRobot(VirtualScheduler& scheduler, wire::Ether& ether, std::string name)
+    : scheduler_(scheduler),
+      name_(std::move(name)),
+      machine_(scheduler.machine(name_, 1000s)),
+      strand_(machine_->strand("robot")),
+      wire_(ether.join(77, name_)) {
+  state_ = wire::Writer<radio::RobotState>::make(*wire_, wire::topics::robot_state).value();
+  authority_ = wire::Writer<radio::AuthorityStatus>::make(*wire_, wire::topics::authority).value();
+  behaviour_ = wire::Writer<radio::BehaviourState>::make(*wire_, wire::topics::behaviour).value();
+  answers_ = wire::Writer<radio::Acknowledgement>::make(*wire_, wire::topics::acknowledgement).value();
+  readers_.push_back(wire::make_reader(
+                         *wire_, wire::topics::command, *strand_,
+                         [this](const radio::Command& command, const wire::SampleInfo&) {
+                           commands_.push_back({scheduler_.elapsed(), command});
+                           answer(command);
+                         },
+                         name_)
+                         .value());
+  readers_.push_back(wire::make_reader(
+                         *wire_, wire::topics::joystick, *strand_,
+                         [this](const radio::Joystick& sample, const wire::SampleInfo&) {
+                           sticks_.push_back({scheduler_.elapsed(), sample});
+                         },
+                         name_)
+                         .value());
+  behaviour.robot(name_);
+  behaviour.mode("hold");
+  timers_.push_back(strand_->every(100ms, [this] {
+    if (!alive) return;
+    radio::RobotState sample;
+    sample.robot(name_);
+    sample.stamp(to_stamp(strand_->now()));
+    (void)state_.write(sample);
+  }));
+  timers_.push_back(strand_->every(1s, [this] { publish(); }));
+}
+
+void FakeRobot::publish() {
+  if (!alive) return;
+  radio::AuthorityStatus authority;
+  authority.robot(name_);
+  authority.epoch().start(99);
+  authority.epoch().counter(epoch);
+  authority.holder(holder);
+  authority.holder_id(holder_id);
+  (void)authority_.write(authority);
+  (void)behaviour_.write(behaviour);
+}
+
+void FakeRobot::refuse_stream(const std::string& station, Id id, Reason reason) {
+  radio::Acknowledgement sample;
+  sample.robot(name_);
+  sample.station(station);
+  sample.station_id(id);
+  sample.reason(static_cast<std::uint16_t>(reason));
+  sample.holder(holder);
+  sample.epoch().start(99);
+  sample.epoch().counter(epoch);
+  (void)answers_.write(sample);
+}
+
+void FakeRobot::act(const radio::Command& command) {
+  if (command.kind() == radio::CMD_TAKE || command.kind() == radio::CMD_RELEASE) {
+    holder = command.kind() == radio::CMD_TAKE ? command.station() : "";
+    holder_id = command.kind() == radio::CMD_TAKE ? command.station_id() : Id{};
+    ++epoch;
+  } else if (command.kind() == radio::CMD_MODE) {
+    behaviour.mode(command.text());
+  } else if (command.kind() == radio::CMD_STOP) {
+    behaviour.stopped(true);
+    behaviour.mode("hold");
+  } else if (command.kind() == radio::CMD_GOTO) {
+    behaviour.mode("waypoint");
+    behaviour.goal_id(behaviour.goal_id() + 1);
+    behaviour.goal(command.position());
+    behaviour.goal_state(radio::GOAL_ACTIVE);
+  }
+}
+
+void FakeRobot::answer(const radio::Command& command) {
+  if (!alive) return;
+  const auto before = answered_.find(command.seq());
+  if (before != answered_.end()) return void(answers_.write(before->second));
+  const auto reason = answering ? answering(command) : std::optional(Reason::none);
+  if (!reason) return;
+  if (*reason == Reason::none) act(command);
+  radio::Acknowledgement sample;
+  sample.robot(name_);
+  sample.station(command.station());
+  sample.station_id(command.station_id());
+  sample.seq(command.seq());
+  sample.accepted(*reason == Reason::none);
+  sample.reason(static_cast<std::uint16_t>(*reason));
+  sample.holder(holder);
+  sample.epoch().start(99);
+  sample.epoch().counter(epoch);
+  answered_[command.seq()] = sample;
+  (void)answers_.write(sample);
+  publish();
+}
+
+std::vector<std::uint64_t> FakeRobot::numbers() const {
+  std::vector<std::uint64_t> out;
+  for (const Heard& heard : commands_)
+    if (std::find(out.begin(), out.end(), heard.command.seq()) == out.end())
+      out.push_back(heard.command.seq());
+  return out;
+}
+
+StationTest::StationTest(wire::LinkProfile link)
+    : ether_(scheduler_, {.link = std::move(link)}),
+      machine_(scheduler_.machine("op", 5s)),
+      strand_(machine_->strand("station")) {}
+
+StationTest::~StationTest() = default;
+
+FakeRobot& StationTest::add(const std::string& name) {
+  robots_.push_back(std::make_unique<FakeRobot>(scheduler_, ether_, name));
+  return *robots_.back();
+}
+
+Station& StationTest::start(const std::string& name) {
+  op_.reset();
+  wire_ = ether_.join(77, "op");
+  op_ = std::make_unique<Station>(StationParams{.name = name, .id = id}, *strand_, *wire_);
+  EXPECT_TRUE(op_->start().ok());
+  return *op_;
+}
+
+Outcome StationTest::execute(const std::string& line, Duration limit) {
+  auto ended = std::make_shared<std::optional<Outcome>>();
+  strand_->post(
+      [this, line, ended] { op_->execute(line, [ended](const Outcome& outcome) { *ended = outcome; }); });
+  const Duration until = scheduler_.elapsed() + limit;
+  while (!*ended && scheduler_.elapsed() < until) run_for(10ms);
+  if (!*ended) ADD_FAILURE() << line << " did not end";
+  return ended->value_or(Outcome{.exit_code = -1});
+}
+
+std::uint64_t StationTest::begin(const std::string& line) {
+  std::uint64_t handle = 0;
+  strand_->post(
+      [&] { handle = op_->execute(line, [this](const Outcome& outcome) { late_.push_back(outcome); }); });
+  run_for(1us);
+  return handle;
+}
+
+}  // namespace adit::station

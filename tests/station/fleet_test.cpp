@@ -1,0 +1,176 @@
+#include "basestation/fleet/fleet.hpp"
+
+#include <gmock/gmock.h>
+
+#include "adit/authority.h"
+#include "adit/discovery.h"
+#include "adit/link.h"
+#include "adit/robot.h"
+#include "basestation/fleet/traffic.hpp"
+
+namespace adit::station {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+
+constexpr Id own_id{1};
+
+wire::SampleInfo at(Duration when) { return {.sender = {9}, .received = Time(when)}; }
+
+radio::RobotState state(const std::string& robot) {
+  radio::RobotState sample;
+  sample.robot(robot);
+  sample.x(1.5F);
+  sample.battery(0.5F);
+  return sample;
+}
+
+std::vector<std::string> codes(const Fleet& fleet) {
+  std::vector<std::string> out;
+  for (const Notice& notice : fleet.notices()) out.push_back(notice.code);
+  return out;
+}
+
+TEST(Fleet, RobotIsLostAfterThreeSecondsAndBackAtTheNextState) {
+  Fleet fleet("op1", own_id);
+  fleet.hear(state("r1"), at(1s));
+  fleet.check(Time(4s));
+  EXPECT_FALSE(fleet.robot("r1")->lost);
+  fleet.check(Time(4001ms));
+  EXPECT_TRUE(fleet.robot("r1")->lost);
+  fleet.check(Time(9s));
+  fleet.hear(state("r1"), at(10s));
+  EXPECT_FALSE(fleet.robot("r1")->lost);
+  EXPECT_THAT(codes(fleet), ElementsAre("lost", "back"));
+}
+
+TEST(Fleet, FirstHearingIsToldOnce) {
+  Fleet fleet("op1", own_id);
+  int told = 0;
+  fleet.on_robot = [&](const RobotView& robot) { told += robot.name == "r1"; };
+  radio::Capabilities capabilities;
+  capabilities.name("r1");
+  capabilities.platform("legged");
+  fleet.hear(capabilities, at(0s));
+  fleet.hear(state("r1"), at(0s));
+  EXPECT_EQ(told, 1);
+  EXPECT_EQ(fleet.robot("r1")->platform, "legged");
+}
+
+TEST(Fleet, HolderIsNameAndId) {
+  Fleet fleet("op1", own_id);
+  radio::AuthorityStatus status;
+  status.robot("r1");
+  status.holder("op1");
+  status.holder_id({2});
+  fleet.hear(status, at(0s));
+  EXPECT_FALSE(fleet.held_by_me(*fleet.robot("r1")));
+  status.holder_id(own_id);
+  fleet.hear(status, at(0s));
+  EXPECT_TRUE(fleet.held_by_me(*fleet.robot("r1")));
+}
+
+TEST(Fleet, AnAcknowledgementIsNewerThanALateStatus) {
+  Fleet fleet("op1", own_id);
+  radio::AuthorityStatus late;
+  late.robot("r1");
+  late.holder("op2");
+  late.epoch().start(7);
+  late.epoch().counter(3);
+  fleet.hear(late, at(0s));
+  fleet.learn_authority("r1", "op1", {7, 4});
+  fleet.hear(late, at(0s));
+  EXPECT_EQ(fleet.robot("r1")->holder, "op1");
+  EXPECT_EQ(fleet.robot("r1")->epoch, (Epoch{7, 4}));
+  late.epoch().start(8);  // another start of the agent begins anew
+  late.epoch().counter(0);
+  fleet.hear(late, at(0s));
+  EXPECT_EQ(fleet.robot("r1")->holder, "op2");
+}
+
+TEST(Fleet, NamesAndNumbersAreBounded) {
+  Fleet fleet("op1", own_id);
+  fleet.hear(state("bad name"), at(0s));
+  fleet.hear(state("\x1b[2J"), at(0s));
+  for (int i = 0; i < 100; ++i) fleet.hear(state("r" + std::to_string(i)), at(0s));
+  EXPECT_EQ(fleet.robots().size(), Fleet::max_robots);
+  EXPECT_EQ(fleet.ignored(), 2 + 100 - Fleet::max_robots);
+  for (int i = 0; i < 100; ++i) {
+    radio::Presence presence;
+    presence.name("op" + std::to_string(i + 10));
+    fleet.hear(presence, at(0s));
+  }
+  EXPECT_EQ(fleet.stations().size(), Fleet::max_stations);
+}
+
+TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
+  Fleet fleet("op1", own_id);
+  radio::Notification sample;
+  sample.robot("r1");
+  for (int i = 0; i < 300; ++i) {
+    sample.operator_name(i % 2 == 0 ? "op1" : "op2");
+    sample.text("t" + std::to_string(i));
+    fleet.hear(sample, at(0s));
+  }
+  ASSERT_EQ(fleet.notices().size(), Fleet::max_notices);
+  EXPECT_EQ(fleet.notices().front().text, "t100");
+  EXPECT_TRUE(fleet.notices().front().mine);
+  EXPECT_FALSE(fleet.notices().back().mine);
+}
+
+TEST(Fleet, TextFromTheRadioIsMadeSafe) {
+  Fleet fleet("op1", own_id);
+  radio::Notification sample;
+  sample.robot("r1");
+  sample.text("a\x1b]0;owned\x07" + std::string(1000, 'x'));
+  sample.severity(static_cast<radio::Severity>(77));
+  fleet.hear(sample, at(0s));
+  EXPECT_EQ(fleet.notices().back().text.find('\x1b'), std::string::npos);
+  EXPECT_LE(fleet.notices().back().text.size(), 240U);
+  EXPECT_EQ(fleet.notices().back().level, Level::error);
+}
+
+TEST(Fleet, AnotherStationWithOurNameIsReportedOnceAMinute) {
+  Fleet fleet("op1", own_id);
+  radio::Presence presence;
+  presence.name("op1");
+  presence.id({3});
+  for (int i = 0; i < 10; ++i) fleet.hear(presence, at(std::chrono::seconds(i)));
+  EXPECT_THAT(codes(fleet), ElementsAre("name_in_use"));
+  presence.id(own_id);  // ourselves, or our own former participant
+  fleet.hear(presence, at(11s));
+  EXPECT_TRUE(fleet.stations().empty());
+}
+
+TEST(Fleet, SilentStationsAreForgotten) {
+  Fleet fleet("op1", own_id);
+  radio::Presence presence;
+  presence.name("op2");
+  fleet.hear(presence, at(0s));
+  fleet.check(Time(59s));
+  EXPECT_EQ(fleet.stations().size(), 1U);
+  fleet.check(Time(61s));
+  EXPECT_TRUE(fleet.stations().empty());
+}
+
+TEST(Traffic, RatesAreDifferencesOverTime) {
+  TrafficMeter meter;
+  wire::WireCounters counters;
+  counters.topics = {
+      {.topic = "adit/command", .peer = {1}, .samples_out = 10, .bytes_out = 1000},
+      {.topic = "adit/command", .peer = {2}, .samples_out = 5, .bytes_out = 500, .malformed = 3}};
+  counters.discovery_out = 100;
+  EXPECT_EQ(meter.read("op1", counters, Time(1s)).total_out, 0.0F);
+  counters.topics[0].bytes_out += 200;
+  counters.topics[1].bytes_out += 100;
+  counters.discovery_out += 50;
+  const TrafficView view = meter.read("op1", counters, Time(3s));
+  ASSERT_EQ(view.topics.size(), 1U);
+  EXPECT_FLOAT_EQ(view.topics[0].bytes_out, 150.0F);
+  EXPECT_FLOAT_EQ(view.discovery_out, 25.0F);
+  EXPECT_EQ(view.malformed, 3U);
+}
+
+}  // namespace
+}  // namespace adit::station

@@ -1,0 +1,147 @@
+#include "basestation/command/parse.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "basestation/command/grammar.hpp"
+#include "basestation/command/words.hpp"
+#include "core/time/random.hpp"
+
+namespace adit::station {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Parse, EveryExampleOfTheGrammarIsAccepted) {
+  for (const CommandInfo& command : commands()) {
+    const auto request = parse(command.example);
+    ASSERT_TRUE(request.ok()) << command.example << ": " << request.error().text;
+    EXPECT_EQ(request->verb, command.verb) << command.example;
+    EXPECT_EQ(&info(command.verb), &command);
+    EXPECT_THAT(help(command), HasSubstr(std::string(command.example)));
+  }
+}
+
+TEST(Parse, SeveralRobotsEachOnce) {
+  EXPECT_THAT(parse("take r1 r2 r1")->robots, ElementsAre("r1", "r2"));
+  EXPECT_THAT(parse("mode r1 r2 smart_joystick")->robots, ElementsAre("r1", "r2"));
+  EXPECT_EQ(parse("mode r1 r2 smart_joystick")->word, "smart_joystick");
+}
+
+TEST(Parse, GotoWithAndWithoutHeight) {
+  const auto flat = parse("goto r1 12 -0.5");
+  EXPECT_EQ(flat->numbers[0], 12.0);
+  EXPECT_EQ(flat->numbers[1], -0.5);
+  EXPECT_TRUE(std::isnan(flat->numbers[2]));
+  EXPECT_FALSE(flat->wait);
+  const auto high = parse("goto --wait r1 1e1 +2 3.25");
+  EXPECT_EQ(high->numbers[0], 10.0);
+  EXPECT_EQ(high->numbers[2], 3.25);
+  EXPECT_TRUE(high->wait);
+}
+
+TEST(Parse, DriveWithDuration) {
+  EXPECT_EQ(parse("drive r1 0.5 0 -0.2")->duration, 1.0);
+  EXPECT_EQ(parse("drive r1 0.5 0 -0.2 --for 3")->duration, 3.0);
+  EXPECT_EQ(parse("drive r1 0.5 0 -0.2 --for=2.5")->duration, 2.5);
+}
+
+TEST(Parse, StopOfAllAndResetWithOverride) {
+  EXPECT_TRUE(parse("stop all")->all);
+  EXPECT_FALSE(parse("stop r1")->all);
+  EXPECT_TRUE(parse("reset r1 --override")->override_stop);
+  EXPECT_EQ(parse("grant r1 op2")->word, "op2");
+  EXPECT_TRUE(parse("run demo.yaml --all")->all_operators);
+}
+
+struct Bad {
+  const char* line;
+  Reason reason;
+  const char* says;
+};
+
+class ParseBad : public testing::TestWithParam<Bad> {};
+
+TEST_P(ParseBad, TellsWhatToDoInOneLine) {
+  const auto request = parse(GetParam().line);
+  ASSERT_FALSE(request.ok()) << GetParam().line;
+  EXPECT_EQ(request.reason(), GetParam().reason);
+  EXPECT_THAT(request.error().text, HasSubstr(GetParam().says));
+  EXPECT_EQ(request.error().text.find('\n'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, ParseBad,
+    testing::Values(
+        Bad{"", Reason::syntax, "no command"}, Bad{"tkae r1", Reason::unknown_command, "did you mean take?"},
+        Bad{"yield r1 on", Reason::unknown_command, "unknown command 'yield'"},
+        Bad{"convoy start r1 r2", Reason::unknown_command, "unknown command 'convoy'"},
+        Bad{"peeloff r1", Reason::unknown_command, "unknown command"},
+        Bad{"restart r1 mux", Reason::unknown_command, "unknown command"},
+        Bad{"policy r1 mux auto", Reason::unknown_command, "unknown command"},
+        Bad{"plan r1 1 2", Reason::unknown_command, "unknown command"},
+        Bad{"map save x", Reason::unknown_command, "unknown command"},
+        Bad{"stairs", Reason::unknown_command, "unknown command"},
+        Bad{"camera r1 on", Reason::unknown_command, "unknown command"},
+        Bad{"take", Reason::bad_argument, "usage: take R..."},
+        Bad{"take r!", Reason::bad_argument, "cannot be a robot's name"},
+        Bad{"stop", Reason::bad_argument, "usage: stop R...|all"},
+        Bad{"list r1", Reason::bad_argument, "takes no arguments"},
+        Bad{"teleop r1 r2", Reason::bad_argument, "takes one robot"},
+        Bad{"mode r1", Reason::bad_argument, "a mode is missing"},
+        Bad{"mode hold", Reason::bad_argument, "a mode is missing"},
+        Bad{"mode r1 waypont", Reason::mode_unknown, "did you mean waypoint?"},
+        Bad{"mode r1 get_out", Reason::mode_unknown, "hold, manual, smart_joystick, waypoint, explore"},
+        Bad{"goto r1 12", Reason::bad_argument, "usage: goto"},
+        Bad{"goto r1 1 2 3 4", Reason::bad_argument, "usage: goto"},
+        Bad{"goto r1 12 north", Reason::bad_argument, "Y is a number, not 'north'"},
+        Bad{"goto r1 nan 1", Reason::bad_argument, "X is a number"},
+        Bad{"goto r1 0x10 1", Reason::bad_argument, "X is a number"},
+        Bad{"goto r1 1,5 1", Reason::bad_argument, "X is a number"},
+        Bad{"goto r1 1e9 1", Reason::out_of_range, "at most 10000"},
+        Bad{"goto r1 1 1 --for 3", Reason::bad_argument, "no option --for"},
+        Bad{"drive r1 1 0", Reason::bad_argument, "usage: drive"},
+        Bad{"drive r1 inf 0 0", Reason::bad_argument, "VX is a number"},
+        Bad{"drive r1 99 0 0", Reason::out_of_range, "VX is at most 20"},
+        Bad{"drive r1 1 0 0 --for", Reason::bad_argument, "--for wants"},
+        Bad{"drive r1 1 0 0 --for 0", Reason::out_of_range, "more than 0"},
+        Bad{"drive r1 1 0 0 --for x", Reason::bad_argument, "--for is a number"},
+        Bad{"drive r1 1 0 0 --for 99999", Reason::out_of_range, "at most 3600"},
+        Bad{"grant r1", Reason::bad_argument, "a robot and an operator"},
+        Bad{"grant r1 op!", Reason::bad_argument, "cannot be an operator's name"},
+        Bad{"reset r1 --force", Reason::bad_argument, "no option --force"},
+        Bad{"run", Reason::bad_argument, "takes one file"}, Bad{"take \"r1", Reason::syntax, "not closed"}));
+
+TEST(Parse, MutatedLinesNeverHarm) {
+  Random random(7);
+  const std::string alphabet = "abr1 \"'\\-.0+e\t\x01\xff";
+  int accepted = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const auto rows = commands();
+    std::string line(rows[random.below(rows.size())].example);
+    for (std::uint64_t i = 0, n = random.below(4); i < n; ++i) {
+      const std::size_t at = random.below(line.size() + 1);
+      const char c = alphabet[random.below(alphabet.size())];
+      if (random.chance(0.5) || at == line.size())
+        line.insert(at, 1, c);
+      else
+        line[at] = c;
+    }
+    const auto request = parse(line);
+    if (!request.ok()) {
+      EXPECT_FALSE(request.error().text.empty());
+      EXPECT_EQ(request.error().text.find('\n'), std::string::npos) << line;
+      continue;
+    }
+    ++accepted;
+    for (const std::string& robot : request->robots) EXPECT_TRUE(valid_name(robot)) << line;
+    EXPECT_TRUE(std::isfinite(request->numbers[0]) && std::isfinite(request->numbers[1])) << line;
+    EXPECT_TRUE(request->duration > 0.0 && request->duration <= 3600.0) << line;
+  }
+  EXPECT_GT(accepted, 2000);
+}
+
+}  // namespace
+}  // namespace adit::station

@@ -1,0 +1,82 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "adit/link.h"
+#include "adit/robot.h"
+#include "basestation/report/json.hpp"
+#include "basestation/report/table.hpp"
+#include "basestation/report/text.hpp"
+
+namespace adit::station {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+TEST(Table, AlignsTextLeftAndNumbersRight) {
+  EXPECT_EQ(table({{"NAME", "N"}, {"a", "1"}, {"long_name", "10.5"}}),
+            "NAME          N\n"
+            "a             1\n"
+            "long_name  10.5\n");
+}
+
+TEST(Table, NumbersWithoutNegativeZero) {
+  EXPECT_EQ(fixed(-0.001, 2), "0.00");
+  EXPECT_EQ(fixed(-0.01, 2), "-0.01");
+  EXPECT_EQ(fixed(std::nan(""), 2), "-");
+}
+
+TEST(Report, ListSaysWhoIsThere) {
+  Fleet fleet("op1", {1});
+  EXPECT_THAT(list_text(fleet, Time(1s)), HasSubstr("no robot has been heard"));
+  radio::RobotState state;
+  state.robot("r1");
+  state.x(3.25F);
+  fleet.hear(state, {.received = Time(1s)});
+  EXPECT_THAT(list_text(fleet, Time(2s)), HasSubstr("r1"));
+  EXPECT_THAT(list_text(fleet, Time(2s)), HasSubstr("op1 (this one)"));
+  const auto json = list_json(fleet, Time(2s));
+  EXPECT_EQ(json["robots"][0]["robot"], "r1");
+  EXPECT_FLOAT_EQ(json["robots"][0]["pose"][0].get<float>(), 3.25F);
+  EXPECT_FALSE(json["robots"][0]["lost"].get<bool>());
+}
+
+TEST(Report, NetShowsDiscoveryApartAndTheShareOfTheLink) {
+  Fleet fleet("op1", {1});
+  radio::LinkReport report;
+  report.agent("r1");
+  report.total_out(625.0F);
+  report.discovery_out(125.0F);
+  radio::TopicTraffic row;
+  row.topic("adit/robot_state");
+  row.bytes_out(500.0F);
+  report.topics().push_back(row);
+  fleet.hear(report, {.received = Time(1s)});
+  const std::string text = net_text(fleet, Time(2s), "mesh_100k", 100e3);
+  EXPECT_THAT(text, HasSubstr("adit/robot_state"));
+  EXPECT_THAT(text, HasSubstr("discovery"));
+  EXPECT_THAT(text, HasSubstr("5.0 % of mesh_100k"));
+  EXPECT_EQ(net_json(fleet, Time(2s))["agents"][0]["topics"][0]["topic"], "adit/robot_state");
+}
+
+TEST(Report, ARefusalNamesReasonAndHolder) {
+  const Answer answer{.robot = "r1", .answered = true, .reason = Reason::not_holder, .holder = "op2"};
+  const std::string text = answer_text(answer, "yours");
+  EXPECT_THAT(text, HasSubstr("r1: refused: "));
+  EXPECT_THAT(text, HasSubstr("(holder: op2)"));
+  EXPECT_THAT(text, HasSubstr("[not_holder]"));
+  EXPECT_EQ(answer_text({.robot = "r1", .accepted = true}, "yours"), "r1: yours\n");
+}
+
+TEST(Report, NotANumberStaysValidJson) {
+  Fleet fleet("op1", {1});
+  radio::RobotState state;
+  state.robot("r1");
+  state.x(std::nanf(""));
+  fleet.hear(state, {.received = Time(1s)});
+  EXPECT_THAT(list_json(fleet, Time(1s)).dump(), HasSubstr("\"pose\":[null,"));
+}
+
+}  // namespace
+}  // namespace adit::station
