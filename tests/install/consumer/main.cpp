@@ -1,0 +1,12 @@
+#include <cstdio>
+
+#include "core/config/platform_file.hpp"
+#include "core/exec/virtual_runtime.hpp"
+
+int main() {
+  adit::VirtualScheduler scheduler(1);
+  scheduler.run_until(adit::Duration(5));
+  const auto platform = adit::config::load_platform("legged");
+  if (!platform) std::fprintf(stderr, "%s\n", platform.error().text.c_str());
+  return platform && platform->stairs && scheduler.elapsed() == adit::Duration(5) ? 0 : 1;
+}
