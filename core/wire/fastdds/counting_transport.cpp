@@ -1,0 +1,56 @@
+#include "core/wire/fastdds/counting_transport.hpp"
+
+#include <fastdds/rtps/common/LocatorList.hpp>
+#include <fastrtps/utils/IPLocator.h>
+
+namespace adit::wire {
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+constexpr std::uint64_t udp_and_ip = 28;
+
+/// RTPS port numbers: 7400 + 250 * domain + {0: discovery by multicast, 1: data by multicast,
+/// 10 + 2 n: discovery, 11 + 2 n: data of participant n}.
+bool is_discovery(std::uint32_t port) { return port >= 7400 && (port - 7400) % 250 % 2 == 0; }
+
+}  // namespace
+
+CountingTransport::CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
+                                     std::shared_ptr<Traffic> traffic)
+    : ChainingTransport(descriptor),
+      descriptor_(const_cast<eprosima::fastdds::rtps::ChainingTransportDescriptor*>(&descriptor)),
+      traffic_(std::move(traffic)) {}
+
+eprosima::fastdds::rtps::TransportDescriptorInterface* CountingTransport::get_configuration() { return descriptor_; }
+
+bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rtps::octet* send_buffer,
+                             std::uint32_t send_buffer_size, rtps::LocatorsIterator* destination_locators_begin,
+                             rtps::LocatorsIterator* destination_locators_end,
+                             const std::chrono::steady_clock::time_point& timeout) {
+  // The lower transport walks `begin`: look first, on a copy. Senders always pass rtps::Locators.
+  rtps::Locators walk(static_cast<const rtps::Locators&>(*destination_locators_begin));
+  for (; walk != *destination_locators_end; ++walk) {
+    if (!IsLocatorSupported(*walk)) continue;
+    const std::uint64_t bytes = send_buffer_size + udp_and_ip;
+    traffic_->total_out.fetch_add(bytes, std::memory_order_relaxed);
+    if (is_discovery(rtps::IPLocator::getPhysicalPort(*walk))) {
+      traffic_->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
+    }
+  }
+  return low_sender_resource->send(send_buffer, send_buffer_size, destination_locators_begin, destination_locators_end,
+                                   timeout);
+}
+
+void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterface* next_receiver,
+                                const rtps::octet* receive_buffer, std::uint32_t receive_buffer_size,
+                                const rtps::Locator_t& local_locator, const rtps::Locator_t& remote_locator) {
+  const std::uint64_t bytes = receive_buffer_size + udp_and_ip;
+  traffic_->total_in.fetch_add(bytes, std::memory_order_relaxed);
+  if (is_discovery(rtps::IPLocator::getPhysicalPort(local_locator))) {
+    traffic_->discovery_in.fetch_add(bytes, std::memory_order_relaxed);
+  }
+  next_receiver->OnDataReceived(receive_buffer, receive_buffer_size, local_locator, remote_locator);
+}
+
+}  // namespace adit::wire
