@@ -54,8 +54,9 @@ bool BytesType::getKey(void* data, rtps::InstanceHandle_t* handle, bool) {
   }
   // As RTPS has it: MD5 of the key in big-endian CDR, which is the length with terminator, then the text.
   const auto length = static_cast<std::uint32_t>(key->size() + 1);
-  const unsigned char prefix[4] = {static_cast<unsigned char>(length >> 24), static_cast<unsigned char>(length >> 16),
-                                   static_cast<unsigned char>(length >> 8), static_cast<unsigned char>(length)};
+  const unsigned char prefix[4] = {
+      static_cast<unsigned char>(length >> 24), static_cast<unsigned char>(length >> 16),
+      static_cast<unsigned char>(length >> 8), static_cast<unsigned char>(length)};
   MD5 md5;
   md5.init();
   md5.update(prefix, 4);

@@ -1,7 +1,7 @@
 #include "core/wire/fastdds/counting_transport.hpp"
 
-#include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastdds/rtps/common/LocatorList.hpp>
 
 namespace adit::wire {
 namespace rtps = eprosima::fastrtps::rtps;
@@ -22,10 +22,13 @@ CountingTransport::CountingTransport(const eprosima::fastdds::rtps::ChainingTran
       descriptor_(const_cast<eprosima::fastdds::rtps::ChainingTransportDescriptor*>(&descriptor)),
       traffic_(std::move(traffic)) {}
 
-eprosima::fastdds::rtps::TransportDescriptorInterface* CountingTransport::get_configuration() { return descriptor_; }
+eprosima::fastdds::rtps::TransportDescriptorInterface* CountingTransport::get_configuration() {
+  return descriptor_;
+}
 
 bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rtps::octet* send_buffer,
-                             std::uint32_t send_buffer_size, rtps::LocatorsIterator* destination_locators_begin,
+                             std::uint32_t send_buffer_size,
+                             rtps::LocatorsIterator* destination_locators_begin,
                              rtps::LocatorsIterator* destination_locators_end,
                              const std::chrono::steady_clock::time_point& timeout) {
   // The lower transport walks `begin`: look first, on a copy. Senders always pass rtps::Locators.
@@ -38,8 +41,8 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
       traffic_->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
     }
   }
-  return low_sender_resource->send(send_buffer, send_buffer_size, destination_locators_begin, destination_locators_end,
-                                   timeout);
+  return low_sender_resource->send(send_buffer, send_buffer_size, destination_locators_begin,
+                                   destination_locators_end, timeout);
 }
 
 void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterface* next_receiver,

@@ -8,8 +8,8 @@ namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
 namespace {
 
-constexpr int max_keys = 256;      // the library's default of 10 loses every peer beyond the tenth in silence
-constexpr int reader_depth = 64;   // unkeyed: samples of all writers together until taken, which is at once
+constexpr int max_keys = 256;     // the library's default of 10 loses every peer beyond the tenth in silence
+constexpr int reader_depth = 64;  // unkeyed: samples of all writers together until taken, which is at once
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
   return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
@@ -19,7 +19,8 @@ template <class EndpointQos>
 void common(const TopicInfo& topic, const Qos& qos, int depth, EndpointQos& out) {
   out.reliability().kind = qos.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
   out.reliability().max_blocking_time = duration(0ms);  // never blocks: the newest samples are kept
-  out.durability().kind = qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  out.durability().kind =
+      qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   out.history().depth = depth;
   const int keys = topic.keyed ? max_keys : 1;

@@ -22,17 +22,20 @@ std::vector<TopicCount> SharedCounts::all() const {
 }
 
 Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher, dds::Topic& dds_topic,
-                                                       const TopicInfo& topic, std::shared_ptr<SharedCounts> counts) {
+                                                       const TopicInfo& topic,
+                                                       std::shared_ptr<SharedCounts> counts) {
   std::unique_ptr<FastDdsWriter> writer(new FastDdsWriter(publisher, topic, std::move(counts)));
   writer->writer_ = publisher.create_datawriter(&dds_topic, dds_writer_qos(topic), writer.get(),
                                                 dds::StatusMask::publication_matched());
   if (writer->writer_ == nullptr) {
-    return Error{Reason::wire_failed, std::string(topic.name) + ": Fast DDS refused the writer; its log says why"};
+    return Error{Reason::wire_failed,
+                 std::string(topic.name) + ": Fast DDS refused the writer; its log says why"};
   }
   return std::unique_ptr<RawWriter>(std::move(writer));
 }
 
-FastDdsWriter::FastDdsWriter(dds::Publisher& publisher, const TopicInfo& topic, std::shared_ptr<SharedCounts> counts)
+FastDdsWriter::FastDdsWriter(dds::Publisher& publisher, const TopicInfo& topic,
+                             std::shared_ptr<SharedCounts> counts)
     : publisher_(publisher),
       topic_(topic.name),
       keyed_(topic.keyed),
@@ -53,7 +56,8 @@ Result<void> FastDdsWriter::write(std::span<const std::uint8_t> cdr) {
     return failed(Reason::out_of_range, "sample of " + std::to_string(cdr.size()) + " bytes, at most " +
                                             std::to_string(max_bytes_) + " are allowed");
   }
-  if (cdr.size() < 4 || (keyed_ && !first_string(cdr))) return failed(Reason::malformed, "the sample has no key");
+  if (cdr.size() < 4 || (keyed_ && !first_string(cdr)))
+    return failed(Reason::malformed, "the sample has no key");
   Bytes bytes;
   bytes.out = cdr;
   ReturnCode_t code;
@@ -63,7 +67,8 @@ Result<void> FastDdsWriter::write(std::span<const std::uint8_t> cdr) {
     return failed(Reason::wire_failed, e.what());
   }
   if (code != ReturnCode_t::RETCODE_OK) {
-    return failed(Reason::queue_full, "Fast DDS did not take the sample (return code " + std::to_string(code()) + ")");
+    return failed(Reason::queue_full,
+                  "Fast DDS did not take the sample (return code " + std::to_string(code()) + ")");
   }
   const std::uint64_t on_the_network =
       static_cast<std::uint64_t>(matched_.load()) * WireCost::sample(cdr.size(), keyed_);
@@ -79,8 +84,9 @@ void FastDdsWriter::on_publication_matched(dds::DataWriter*, const dds::Publicat
 }
 
 Result<std::unique_ptr<RawReader>> FastDdsReader::make(dds::Subscriber& subscriber, dds::Topic& dds_topic,
-                                                       const TopicInfo& topic, std::shared_ptr<SharedCounts> counts,
-                                                       Executor& strand, RawHandler handler) {
+                                                       const TopicInfo& topic,
+                                                       std::shared_ptr<SharedCounts> counts, Executor& strand,
+                                                       RawHandler handler) {
   std::unique_ptr<FastDdsReader> reader(new FastDdsReader(subscriber, topic.keyed));
   reader->target_->handler = std::move(handler);
   reader->target_->strand = &strand;
@@ -90,7 +96,8 @@ Result<std::unique_ptr<RawReader>> FastDdsReader::make(dds::Subscriber& subscrib
       subscriber.create_datareader(&dds_topic, dds_reader_qos(topic), reader.get(),
                                    dds::StatusMask::data_available() << dds::StatusMask::sample_lost());
   if (reader->reader_ == nullptr) {
-    return Error{Reason::wire_failed, std::string(topic.name) + ": Fast DDS refused the reader; its log says why"};
+    return Error{Reason::wire_failed,
+                 std::string(topic.name) + ": Fast DDS refused the reader; its log says why"};
   }
   return std::unique_ptr<RawReader>(std::move(reader));
 }
@@ -131,7 +138,8 @@ void FastDdsReader::on_data_available(dds::DataReader* reader) {
       if (bytes.too_long) ++c.malformed;
     });
     if (bytes.too_long) continue;
-    target_->strand->post([target = target_, in = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes.in)),
+    target_->strand->post([target = target_,
+                           in = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes.in)),
                            sender] { target->run(*in, sender); });
   }
 }

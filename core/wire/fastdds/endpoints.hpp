@@ -44,7 +44,8 @@ class SharedCounts {
 class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::DataWriterListener {
  public:
   static Result<std::unique_ptr<RawWriter>> make(eprosima::fastdds::dds::Publisher& publisher,
-                                                 eprosima::fastdds::dds::Topic& dds_topic, const TopicInfo& topic,
+                                                 eprosima::fastdds::dds::Topic& dds_topic,
+                                                 const TopicInfo& topic,
                                                  std::shared_ptr<SharedCounts> counts);
   ~FastDdsWriter() override;
   Result<void> write(std::span<const std::uint8_t> cdr) override;
@@ -70,9 +71,9 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
 class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::DataReaderListener {
  public:
   static Result<std::unique_ptr<RawReader>> make(eprosima::fastdds::dds::Subscriber& subscriber,
-                                                 eprosima::fastdds::dds::Topic& dds_topic, const TopicInfo& topic,
-                                                 std::shared_ptr<SharedCounts> counts, Executor& strand,
-                                                 RawHandler handler);
+                                                 eprosima::fastdds::dds::Topic& dds_topic,
+                                                 const TopicInfo& topic, std::shared_ptr<SharedCounts> counts,
+                                                 Executor& strand, RawHandler handler);
   /// The handler is not running when this returns, and will not run again.
   ~FastDdsReader() override;
 
@@ -88,7 +89,8 @@ class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::Da
     void run(const std::vector<std::uint8_t>& bytes, const ParticipantId& sender);
   };
 
-  FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber, bool keyed) : subscriber_(subscriber), keyed_(keyed) {}
+  FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber, bool keyed)
+      : subscriber_(subscriber), keyed_(keyed) {}
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
   void on_sample_lost(eprosima::fastdds::dds::DataReader* reader,
                       const eprosima::fastdds::dds::SampleLostStatus& status) override;

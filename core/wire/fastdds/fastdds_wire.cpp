@@ -1,10 +1,10 @@
 #include "core/wire/fastdds/fastdds_wire.hpp"
 
+#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 
 #include <algorithm>
 #include <set>
@@ -95,18 +95,20 @@ class FastDdsWire final : public Wire {
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
     auto qos = dds_participant_qos(params, traffic_);
     if (!qos) return qos.error();
-    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(params.domain, *qos, &presence_,
-                                                                                     dds::StatusMask::none());
+    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
+        params.domain, *qos, &presence_, dds::StatusMask::none());
     if (participant_ == nullptr) {
-      return Error{Reason::wire_failed, "no DDS participant on domain " + std::to_string(params.domain) +
-                                            ": check that the configured interfaces are addresses of this machine"};
+      return Error{Reason::wire_failed,
+                   "no DDS participant on domain " + std::to_string(params.domain) +
+                       ": check that the configured interfaces are addresses of this machine"};
     }
     return {};
   }
 
   ParticipantId id() const override { return id_of(participant_->guid().guidPrefix); }
 
-  Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic, const std::string& partition) override {
+  Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic,
+                                                 const std::string& partition) override {
     const std::lock_guard lock(mutex_);
     auto dds_topic = topic_of(topic);
     if (!dds_topic) return dds_topic.error();
@@ -115,13 +117,14 @@ class FastDdsWire final : public Wire {
       dds::PublisherQos qos;
       if (!partition.empty()) qos.partition().push_back(partition.c_str());
       publisher = participant_->create_publisher(qos);
-      if (publisher == nullptr) return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
+      if (publisher == nullptr)
+        return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
     }
     return FastDdsWriter::make(*publisher, **dds_topic, topic, counts_);
   }
 
-  Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition, Executor& strand,
-                                                 RawHandler handler) override {
+  Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
+                                                 Executor& strand, RawHandler handler) override {
     const std::lock_guard lock(mutex_);
     auto dds_topic = topic_of(topic);
     if (!dds_topic) return dds_topic.error();
@@ -130,7 +133,8 @@ class FastDdsWire final : public Wire {
       dds::SubscriberQos qos;
       if (!partition.empty()) qos.partition().push_back(partition.c_str());
       subscriber = participant_->create_subscriber(qos);
-      if (subscriber == nullptr) return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
+      if (subscriber == nullptr)
+        return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
     }
     return FastDdsReader::make(*subscriber, **dds_topic, topic, counts_, strand, std::move(handler));
   }
@@ -159,7 +163,8 @@ class FastDdsWire final : public Wire {
       return Error{Reason::wire_failed, std::string("Fast DDS refused the type ") + topic.type};
     }
     known = participant_->create_topic(topic.name, topic.type, dds::TOPIC_QOS_DEFAULT);
-    if (known == nullptr) return Error{Reason::wire_failed, std::string("Fast DDS refused the topic ") + topic.name};
+    if (known == nullptr)
+      return Error{Reason::wire_failed, std::string("Fast DDS refused the topic ") + topic.name};
     return known;
   }
 

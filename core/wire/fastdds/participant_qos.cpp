@@ -16,7 +16,8 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace {
 
 constexpr std::uint32_t loopback_datagram = 65000;
-constexpr std::uint32_t segment = 8 << 20;   // the default of 512 kB makes samples of 1 MiB take 22 ms instead of 1 ms
+constexpr std::uint32_t segment =
+    8 << 20;  // the default of 512 kB makes samples of 1 MiB take 22 ms instead of 1 ms
 constexpr std::uint32_t participants_per_host = 16;  // ports tried at an address that is named without one
 constexpr const char* everybody = "239.255.0.1";     // RTPS multicast group
 
@@ -48,7 +49,8 @@ Result<rtps::Locator_t> locator(const std::string& text) {
 
 }  // namespace
 
-Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params, std::shared_ptr<Traffic> traffic) {
+Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params,
+                                                      std::shared_ptr<Traffic> traffic) {
   if (params.domain > 232) {
     return Error{Reason::bad_argument, "domain " + std::to_string(params.domain) + ": expected 0 to 232"};
   }
@@ -61,14 +63,16 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   udp->interfaceWhiteList = params.interfaces;
   for (const std::string& address : params.interfaces) {
     if (!rtps::IPLocator::isIPv4(address)) {
-      return Error{Reason::bad_argument, "interface " + address + ": expected an IPv4 address of this machine"};
+      return Error{Reason::bad_argument,
+                   "interface " + address + ": expected an IPv4 address of this machine"};
     }
   }
   if (udp->interfaceWhiteList.empty()) udp->interfaceWhiteList.push_back("127.0.0.1");
   udp->non_blocking_send = true;
   udp->maxMessageSize = params.shared_memory ? loopback_datagram : WireCost::frame;
   udp->maxInitialPeersRange = participants_per_host;
-  qos.transport().user_transports.push_back(std::make_shared<CountingTransportDescriptor>(udp, std::move(traffic)));
+  qos.transport().user_transports.push_back(
+      std::make_shared<CountingTransportDescriptor>(udp, std::move(traffic)));
   if (params.shared_memory) {
     auto shared = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
     shared->segment_size(segment);
