@@ -31,18 +31,23 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
                              rtps::LocatorsIterator* destination_locators_begin,
                              rtps::LocatorsIterator* destination_locators_end,
                              const std::chrono::steady_clock::time_point& timeout) {
-  // The lower transport walks `begin`: look first, on a copy. Senders always pass rtps::Locators.
-  rtps::Locators walk(static_cast<const rtps::Locators&>(*destination_locators_begin));
-  for (; walk != *destination_locators_end; ++walk) {
-    if (!IsLocatorSupported(*walk)) continue;
+  // The iterators are of several kinds and can be walked once: one datagram at a time goes down.
+  bool all_sent = true;
+  for (auto& destination = *destination_locators_begin; destination != *destination_locators_end;
+       ++destination) {
+    const rtps::Locator_t& locator = *destination;
+    if (!IsLocatorSupported(locator)) continue;
     const std::uint64_t bytes = send_buffer_size + udp_and_ip;
     traffic_->total_out.fetch_add(bytes, std::memory_order_relaxed);
-    if (is_discovery(rtps::IPLocator::getPhysicalPort(*walk))) {
+    if (is_discovery(rtps::IPLocator::getPhysicalPort(locator))) {
       traffic_->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
     }
+    rtps::LocatorList_t one;
+    one.push_back(locator);
+    rtps::Locators begin(one.begin()), end(one.end());
+    all_sent &= low_sender_resource->send(send_buffer, send_buffer_size, &begin, &end, timeout);
   }
-  return low_sender_resource->send(send_buffer, send_buffer_size, destination_locators_begin,
-                                   destination_locators_end, timeout);
+  return all_sent;
 }
 
 void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterface* next_receiver,
