@@ -12,7 +12,7 @@ TEST(StructureErrors, Documents) {
   expect_error("<root><Sequence/></root>", "t.xml:1: <Sequence> is not expected in <root>");
   expect_error("<root><TreeNodesModel/>\n<TreeNodesModel/></root>", "t.xml:2: only one <TreeNodesModel>");
   expect_error("<root><TreeNodesModel>\n<Action/></TreeNodesModel></root>",
-               "t.xml:2: <Action> in <TreeNodesModel> needs the attribute [ID]");
+               "t.xml:2: <Action> in <TreeNodesModel> needs the attribute [ID]", Reason::missing_key);
 }
 
 TEST(StructureErrors, NumbersOfChildren) {
