@@ -72,6 +72,14 @@ void Checker::advance(Duration now) {
 }
 
 void Checker::dispatch(Watch& watch) {
+  // Of several states published in one instant the last is the one that holds after it.
+  const auto is_status = [](const Event& e) { return std::holds_alternative<AuthoritySent>(e); };
+  const auto last = std::find_if(watch.waiting.rbegin(), watch.waiting.rend(), is_status);
+  if (last != watch.waiting.rend()) {
+    const Event kept = *last;
+    std::erase_if(watch.waiting, is_status);
+    watch.waiting.push_back(kept);
+  }
   std::stable_sort(watch.waiting.begin(), watch.waiting.end(),
                    [](const Event& a, const Event& b) { return rank(a) < rank(b); });
   watch.model.set_now(watch.instant);

@@ -57,6 +57,7 @@ struct CommandHeard {
   Verb verb{Verb::query};
   std::string text{};
   bool flag{};
+  std::array<double, 2> position{};  ///< goto: map frame, m
 };
 struct JoystickHeard {
   wire::ParticipantId from{};

@@ -52,9 +52,17 @@ using Decoded = std::optional<DecodedSample>;
 Decoded command(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from) {
   const auto c = read<radio::Command>(cdr);
   if (!c) return std::nullopt;
-  return DecodedSample{
-      c->robot(), CommandHeard{from, c->station(), c->station_id(), c->epoch().start(), c->epoch().counter(),
-                               c->seq(), verb_of(c->kind()), c->text(), c->flag()}};
+  CommandHeard heard{from,
+                     c->station(),
+                     c->station_id(),
+                     c->epoch().start(),
+                     c->epoch().counter(),
+                     c->seq(),
+                     verb_of(c->kind()),
+                     c->text(),
+                     c->flag(),
+                     {c->position()[0], c->position()[1]}};
+  return DecodedSample{c->robot(), std::move(heard)};
 }
 
 Decoded joystick(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from) {

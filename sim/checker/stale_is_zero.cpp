@@ -38,6 +38,7 @@ class StaleIsZero : public Rule {
  private:
   void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
     if (!robot.alive()) {
+      if (robot.now() == robot.died()) return;  // the agent's own last word
       if (velocity.zero())
         zero_after_death_ = true;
       else

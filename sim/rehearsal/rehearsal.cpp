@@ -13,7 +13,6 @@ namespace adit::sim {
 namespace {
 
 constexpr Duration truth_period{20ms};
-constexpr Duration trail_period{100ms};
 
 std::vector<RobotFacts> facts_of(const Scenario& scenario, const Simulation& simulation) {
   std::vector<RobotFacts> out;
@@ -73,6 +72,7 @@ class Run {
     if (auto healthy = health(); !healthy) return healthy.error();
     out.report = report(seconds(std::chrono::steady_clock::now() - begin));
     out.trails = std::move(trails_);
+    out.goals = witness_.goals();
     out.collisions = simulation_.collisions();
     return out;
   }
@@ -139,7 +139,7 @@ class Run {
       const Truth& truth = simulation_.truth(i);
       const Pose2 pose = truth.pose.planar();
       witness_.truth(id, now, {pose, truth.twist});
-      if (now % trail_period == 0ns) {
+      if (now % Trail::period == 0ns) {
         trails_[id].poses.push_back(pose);
         ether_.set_position(id, pose.x, pose.y, truth.pose.position.z());
       }

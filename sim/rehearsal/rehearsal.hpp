@@ -7,6 +7,7 @@
 #include "sim/rehearsal/agent_factory.hpp"
 #include "sim/rehearsal/report.hpp"
 #include "sim/rehearsal/scenario.hpp"
+#include "sim/rehearsal/witness.hpp"
 #include "sim/world/simulation.hpp"
 
 namespace adit::sim {
@@ -20,12 +21,14 @@ struct RunParams {
 
 /// A robot's way, for the picture.
 struct Trail {
-  std::vector<Pose2> poses{};  ///< 10 a second, true, world frame
+  static constexpr Duration period{100ms};
+  std::vector<Pose2> poses{};  ///< one a period, true, world frame
 };
 
 struct RunOutcome {
   RunReport report{};
   std::map<std::string, Trail> trails{};
+  std::vector<Goal> goals{};  ///< accepted
   std::vector<Collision> collisions{};
 };
 

@@ -132,7 +132,9 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   Scenario out;
   out.file = file;
   out.name = std::filesystem::path(file).stem().string();
-  out.duration = from_seconds(root.number("duration", config::above(0.0, longest), 1.0));
+  // Missing: that is told, and not what it makes of every time in the file.
+  out.duration =
+      from_seconds(root.has("duration") ? root.number("duration", config::above(0.0, longest)) : longest);
   if (!root.has("duration")) root.number("duration", config::above(0.0, longest));
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);

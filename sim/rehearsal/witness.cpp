@@ -52,7 +52,9 @@ void Witness::sent(const wire::Frame& frame) {
     const auto asked = decode_received(frame.topic, frame.bytes, frame.from);
     if (!asked || !std::holds_alternative<CommandHeard>(asked->event)) return;
     const auto& command = std::get<CommandHeard>(asked->event);
-    if (asked_.try_emplace({asked->robot, command.id, command.seq}, false).second) ++commands_.sent;
+    Asked entry;
+    if (command.verb == Verb::go_to) entry.goal = command.position;
+    if (asked_.try_emplace({asked->robot, command.id, command.seq}, entry).second) ++commands_.sent;
     return;
   }
   const std::string robot = robot_of(frame.from_name);
@@ -80,10 +82,12 @@ void Witness::sent(const wire::Frame& frame) {
 
 void Witness::count(const std::string& robot, const AckSent& ack) {
   const auto it = asked_.find({robot, ack.id, ack.seq});
-  if (it == asked_.end() || it->second) return;
-  it->second = true;
+  if (it == asked_.end() || it->second.answered) return;
+  it->second.answered = true;
   if (ack.accepted) {
     ++commands_.accepted;
+    if (it->second.goal && goals_.size() < most_events)
+      goals_.push_back({robot, {(*it->second.goal)[0], (*it->second.goal)[1]}});
     return;
   }
   ++commands_.refused;

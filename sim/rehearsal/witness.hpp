@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -10,6 +11,12 @@
 #include "sim/rehearsal/report.hpp"
 
 namespace adit::sim {
+
+/// Where a robot was sent.
+struct Goal {
+  std::string robot{};
+  Eigen::Vector2d position{Eigen::Vector2d::Zero()};  ///< m
+};
 
 /// What a robot last said of itself.
 struct RobotWord {
@@ -40,6 +47,8 @@ class Witness {
   const std::map<std::string, TopicResult, std::less<>>& topics() const { return topics_; }
   /// Commands of stations, repeats not counted, and the robots' first answers to them.
   const CommandResult& commands() const { return commands_; }
+  /// Goals that robots accepted, map frame.
+  const std::vector<Goal>& goals() const { return goals_; }
   const std::vector<TimedEvent>& events() const { return events_; }
   std::string digest() const { return digest_.text(); }
 
@@ -55,8 +64,13 @@ class Witness {
   std::map<std::string, RobotWord> words_{};
   std::map<std::string, TopicResult, std::less<>> topics_{};
   std::set<std::string, std::less<>> stations_{};
-  std::map<std::tuple<std::string, StationId, std::uint64_t>, bool> asked_{};  ///< true: answered
+  struct Asked {
+    std::optional<std::array<double, 2>> goal{};
+    bool answered{};
+  };
+  std::map<std::tuple<std::string, StationId, std::uint64_t>, Asked> asked_{};
   CommandResult commands_{};
+  std::vector<Goal> goals_{};
   std::vector<TimedEvent> events_{};
   Digest digest_{};
 };

@@ -1,0 +1,173 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/rehearsal/record.hpp"
+
+namespace adit::sim {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+TEST(CheckerAuthority, HealthyHandOverBreaksNothing) {
+  Record r;
+  r.pass(1s);
+  r.take(1);
+  r.lock(1);
+  const CommandHeard refused = r.ask(2, Verb::take);
+  r.answer(refused, Reason::locked);
+  r.see(NotificationSent{"asked", "op1", 1});
+  r.pass(1s);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerAuthority, ChangeOfHolderWithoutNewEpoch) {
+  Record r;
+  r.take(1);
+  const CommandHeard c = r.ask(2, Verb::take);
+  r.authority.holder = "op2";
+  r.authority.holder_id = station_id(2);
+  r.answer(c);
+  r.publish();
+  r.see(NotificationSent{"taken", "op1", 1});
+  EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
+}
+
+TEST(CheckerAuthority, CommandOfAnOldEpoch) {
+  Record r;
+  r.take(1);
+  r.see(CommandHeard{participant(1), "op1", station_id(1), 9, r.epoch - 1, 50, Verb::lock, {}, false, {}});
+  r.authority.locked = true;
+  r.see(AckSent{"op1", station_id(1), 50, true, Reason::none, "", "op1", 9, r.epoch});
+  r.publish();
+  EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
+}
+
+TEST(CheckerAuthority, CommandOfWhoDoesNotHold) {
+  Record r;
+  r.take(1);
+  r.enter("waypoint");
+  r.answer(r.ask(2, Verb::mode, "hold"));
+  EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
+}
+
+TEST(CheckerAuthority, CommandOfAForeignParticipantInTheHoldersName) {
+  Record r;
+  r.take(1);
+  r.see(CommandHeard{participant(66), "op1", station_id(1), 9, r.epoch, 50, Verb::go_to, {}, false, {}});
+  r.see(AckSent{"op1", station_id(1), 50, true, Reason::none, "", "op1", 9, r.epoch});
+  EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
+}
+
+TEST(CheckerAuthority, RestartedStationOfTheSameIdIsTheHolder) {
+  Record r;
+  r.take(1);
+  r.see(PresenceHeard{participant(11), "op1", station_id(1)});
+  r.see(CommandHeard{participant(11), "op1", station_id(1), 9, r.epoch, 1, Verb::lock, {}, false, {}});
+  r.authority.locked = true;
+  r.see(AckSent{"op1", station_id(1), 1, true, Reason::none, "", "op1", 9, r.epoch});
+  r.publish();
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerAuthority, RepeatWithAnotherAnswer) {
+  Record r;
+  r.take(1);
+  const CommandHeard c = r.ask(1, Verb::unlock);
+  r.answer(c);
+  r.see(c);
+  r.answer(c, Reason::stale_sequence);
+  EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
+}
+
+TEST(CheckerAuthority, AuthorityThatNobodyChanged) {
+  Record r;
+  r.take(1);
+  r.pass(500ms);
+  r.authority.holder = "op2";
+  ++r.epoch;
+  r.publish();
+  EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
+}
+
+TEST(CheckerAuthority, LockedRobotTaken) {
+  Record r;
+  r.take(1);
+  r.lock(1);
+  r.take(2);
+  EXPECT_THAT(r.broken(), ElementsAre(2)) << r.texts();
+}
+
+TEST(CheckerAuthority, FormerHolderNotTold) {
+  Record r;
+  r.take(1);
+  const CommandHeard c = r.ask(2, Verb::take);
+  r.authority.holder = "op2";
+  r.authority.holder_id = station_id(2);
+  ++r.epoch;
+  r.answer(c);
+  r.publish();
+  r.pass(500ms);
+  EXPECT_THAT(r.broken(), ElementsAre(2)) << r.texts();
+}
+
+TEST(CheckerAuthority, LockLapsesWhenItsHolderIsSilentForTheLease) {
+  Record r;
+  r.take(1);
+  r.lock(1);
+  r.stations = false;
+  r.pass(21s);
+  r.authority.locked = false;
+  r.publish();
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerAuthority, LockLapsesTooEarly) {
+  Record r;
+  r.take(1);
+  r.lock(1);
+  r.stations = false;
+  r.pass(10s);
+  r.authority.locked = false;
+  r.publish();
+  EXPECT_THAT(r.broken(), ElementsAre(2)) << r.texts();
+}
+
+TEST(CheckerAuthority, CommandNotAnswered) {
+  Record r;
+  r.take(1);
+  r.ask(2, Verb::go_to);
+  r.pass(500ms);
+  EXPECT_THAT(r.broken(), ElementsAre(3)) << r.texts();
+}
+
+TEST(CheckerAuthority, RefusalWithoutReason) {
+  Record r;
+  const CommandHeard c = r.ask(2, Verb::lock);
+  r.see(AckSent{c.station, c.id, c.seq, false, Reason::none, "", "", 9, r.epoch});
+  EXPECT_THAT(r.broken(), ElementsAre(3)) << r.texts();
+}
+
+TEST(CheckerAuthority, StrangersJoystickRefusedInSilence) {
+  Record r;
+  r.take(1);
+  for (int i = 0; i < 30; ++i) {
+    r.push(2, forward);
+    r.pass(50ms);
+  }
+  EXPECT_THAT(r.broken(), ElementsAre(3)) << r.texts();
+}
+
+TEST(CheckerAuthority, StreamAnsweredMoreThanOnceASecond) {
+  Record r;
+  r.take(1);
+  for (int i = 0; i < 2; ++i) {
+    r.push(2, forward);
+    r.see(AckSent{"op2", station_id(2), 0, false, Reason::not_holder, "no", "op1", 9, r.epoch});
+    r.pass(500ms);
+  }
+  EXPECT_THAT(r.broken(), ElementsAre(3)) << r.texts();
+}
+
+}  // namespace
+}  // namespace adit::sim

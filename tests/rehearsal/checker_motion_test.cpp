@@ -1,0 +1,237 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/rehearsal/record.hpp"
+
+namespace adit::sim {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// op1 holds the robot and drives it by joystick.
+void drive(Record& r) {
+  r.pass(1s);
+  r.take(1);
+  r.pass(200ms, still, &still);
+  r.enter("manual");
+  r.pass(100ms, still, &still);
+  r.pass(500ms, forward, &forward);
+}
+
+void stop(Record& r, int by) {
+  const CommandHeard c = r.ask(by, Verb::stop);
+  r.stops.push_back({c.station, c.id});
+  r.answer(c);
+  r.behave("hold", true);
+  r.publish();
+}
+
+TEST(CheckerMotion, HealthyDriveBreaksNothing) {
+  Record r;
+  drive(r);
+  r.pass(300ms, still, &still);
+  r.pass(900ms);
+  r.behave("hold");
+  r.pass(1s);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerMotion, HealthyStopBreaksNothing) {
+  Record r;
+  drive(r);
+  stop(r, 2);
+  r.pass(2s);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerMotion, RefusedStop) {
+  Record r;
+  r.take(1);
+  r.answer(r.ask(2, Verb::stop), Reason::not_holder);
+  r.pass(100ms);
+  EXPECT_THAT(r.broken(), ElementsAre(4)) << r.texts();
+}
+
+TEST(CheckerMotion, VelocityWhileStopped) {
+  Record r;
+  drive(r);
+  const CommandHeard c = r.ask(2, Verb::stop);
+  r.stops.push_back({c.station, c.id});
+  r.answer(c);
+  r.publish();
+  r.pass(200ms, forward, &forward);
+  EXPECT_THAT(r.broken(), testing::Contains(4)) << r.texts();
+}
+
+TEST(CheckerMotion, BodyThatDoesNotComeToRest) {
+  Record r;
+  drive(r);
+  r.moving = {0.4, 0.0, 0.0};
+  r.pass(40ms, forward, &forward);
+  stop(r, 1);
+  r.pass(2s);
+  EXPECT_THAT(r.broken(), ElementsAre(4)) << r.texts();
+}
+
+TEST(CheckerMotion, ResetOfAnothersStopWithoutOverride) {
+  Record r;
+  drive(r);
+  stop(r, 2);
+  r.pass(1s);
+  const CommandHeard c = r.ask(1, Verb::reset);
+  r.answer(c);
+  r.pass(100ms);
+  EXPECT_THAT(r.broken(), ElementsAre(4)) << r.texts();
+}
+
+TEST(CheckerMotion, VelocityInHold) {
+  Record r;
+  r.take(1);
+  r.enter("waypoint");
+  r.pass(1s, forward);
+  r.pass(100ms);
+  const CommandHeard c = r.ask(1, Verb::mode, "hold");
+  r.answer(c);
+  r.behave("hold");
+  r.pass(200ms);
+  r.pass(200ms, forward);
+  EXPECT_THAT(r.broken(), ElementsAre(5, 7)) << r.texts();
+}
+
+TEST(CheckerMotion, ChangeOfSourceWithoutZero) {
+  Record r;
+  drive(r);
+  const CommandHeard c = r.ask(1, Verb::mode, "waypoint");
+  r.answer(c);
+  r.behave("waypoint");
+  r.pass(200ms, {0.4, 0.0, 0.1});
+  EXPECT_THAT(r.broken(), ElementsAre(5)) << r.texts();
+}
+
+TEST(CheckerMotion, VelocityGoesOnWhenTheStickFallsSilent) {
+  Record r;
+  drive(r);
+  r.pass(600ms, forward);
+  EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
+}
+
+TEST(CheckerMotion, ManualModeStaysWithoutStick) {
+  Record r;
+  drive(r);
+  r.pass(3s);
+  EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
+}
+
+TEST(CheckerMotion, DriverLeftAlone) {
+  Record r;
+  r.pass(2s);
+  r.driven = false;
+  r.pass(300ms);
+  EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
+}
+
+TEST(CheckerMotion, NoZeroAfterTheAgentsDeath) {
+  Record r;
+  r.pass(2s);
+  r.see(AgentDied{});
+  r.driven = false;
+  r.pass(300ms);
+  EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
+}
+
+TEST(CheckerMotion, ZeroAfterTheAgentsDeath) {
+  Record r;
+  r.pass(2s);
+  r.see(AgentDied{});
+  r.pass(300ms);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerMotion, MotionAfterReset) {
+  Record r;
+  r.take(1);
+  r.enter("waypoint");
+  r.pass(1s, forward);
+  stop(r, 1);
+  r.pass(1s);
+  const CommandHeard c = r.ask(1, Verb::reset);
+  r.stops.clear();
+  r.answer(c);
+  r.publish();
+  r.behave("waypoint");
+  r.pass(200ms, forward);
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, MotionAfterRestart) {
+  Record r;
+  r.take(1);
+  r.enter("waypoint");
+  r.pass(1s, forward);
+  r.see(AgentDied{});
+  r.pass(500ms);
+  r.see(AgentStarted{participant(101)});
+  r.authority = {};
+  r.epoch = 1;
+  r.publish();
+  r.behave("waypoint");
+  r.pass(500ms, forward);
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, ManualModeUnderTheNextHolder) {
+  Record r;
+  drive(r);
+  r.pass(100ms, still, &still);
+  r.take(2);
+  r.pass(300ms);
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, ManualModeEnteredWithAPushedStick) {
+  Record r;
+  r.pass(1s);
+  r.take(1);
+  r.pass(200ms, still, &forward);
+  r.enter("manual");
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, ManualModeEnteredWithoutAStick) {
+  Record r;
+  r.pass(1s);
+  r.take(1);
+  r.enter("smart_joystick");
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, StaleEchoIsNoStick) {
+  Record r;
+  r.pass(1s);
+  r.take(1);
+  for (int i = 0; i < 4; ++i) {
+    r.see(JoystickHeard{participant(1), station_id(1), 9, r.epoch, ++r.sequence, 200'000'000, still});
+    r.pass(50ms);
+  }
+  r.enter("manual");
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, MovedByAForeignStick) {
+  Record r;
+  r.pass(1s);
+  r.take(1);
+  r.pass(200ms, still, &still);
+  r.enter("manual");
+  for (int i = 0; i < 10; ++i) {
+    r.push(1, still);
+    const auto stamp = static_cast<std::uint64_t>((r.now / 100ms * 100ms - 100ms).count());
+    r.see(JoystickHeard{participant(66), station_id(1), 9, r.epoch, 1000, stamp, forward});
+    r.pass(50ms, forward);
+  }
+  EXPECT_THAT(r.broken(), testing::Contains(1)) << r.texts();
+}
+
+}  // namespace
+}  // namespace adit::sim

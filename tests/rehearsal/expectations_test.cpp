@@ -1,0 +1,110 @@
+#include "sim/rehearsal/expectations.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::sim {
+namespace {
+
+/// A scenario with one expectation, and evidence to be set by hand.
+struct Case {
+  explicit Case(Expectation e) {
+    scenario.robots = {{"r1", "wheeled", {}}};
+    scenario.duration = 60s;
+    scenario.expectations = {std::move(e)};
+    expectations.emplace(scenario);
+    evidence.word = [this](const std::string&) -> const RobotWord& { return word; };
+    evidence.pose = [this](const std::string&) { return pose; };
+    evidence.collisions = [this](const std::string&) { return collisions; };
+  }
+  ExpectationResult finish() { return expectations->finish(evidence, report).at(0); }
+
+  Scenario scenario{};
+  std::optional<Expectations> expectations{};
+  Evidence evidence{};
+  RobotWord word{};
+  Pose2 pose{};
+  int collisions{};
+  RunReport report{};
+};
+
+using When = Expectation::When;
+
+TEST(Expectations, AtIsJudgedAtThatInstantOnly) {
+  Case c({When::at, 10s, StateExpectation{"r1", "waypoint", "op1", false, {}}, 1, ""});
+  c.word.mode = "hold";
+  c.expectations->judge(9s, c.evidence);
+  c.word = {"waypoint", {1, 1, "op1", {}, false}, false, true};
+  c.expectations->judge(10s, c.evidence);
+  c.word = {};
+  c.expectations->judge(11s, c.evidence);
+  EXPECT_TRUE(c.finish().ok);
+}
+
+TEST(Expectations, WhatIsWrongIsTold) {
+  Case c({When::at, 10s, StateExpectation{"r1", "waypoint", "", true, true}, 1, ""});
+  c.word = {"hold", {1, 1, "op2", {}, false}, false, true};
+  c.expectations->judge(10s, c.evidence);
+  EXPECT_EQ(c.finish().found, "mode is hold, holder is op2, it is not locked, it is not stopped");
+}
+
+TEST(Expectations, ByHoldsWhenItWasSoOnceBefore) {
+  Case c({When::by, 10s, NearExpectation{"r1", 3.0, 4.0, 0.5}, 1, ""});
+  c.pose = {3.2, 4.1, 0.0};
+  c.expectations->judge(5s, c.evidence);
+  c.pose = {};
+  c.expectations->judge(10s, c.evidence);
+  EXPECT_TRUE(c.finish().ok);
+}
+
+TEST(Expectations, ByFailsWhenItComesLater) {
+  Case c({When::by, 10s, NearExpectation{"r1", 3.0, 4.0, 0.5}, 1, ""});
+  c.expectations->judge(5s, c.evidence);
+  c.expectations->judge(10s, c.evidence);
+  c.pose = {3.0, 4.0, 0.0};
+  c.expectations->judge(11s, c.evidence);
+  EXPECT_FALSE(c.finish().ok);
+  EXPECT_EQ(c.finish().found, "at 0.00 0.00, 5.00 m away");
+}
+
+TEST(Expectations, LastAnswerOfAnOperator) {
+  Case c({When::at, 10s, AnswerExpectation{"op2", Reason::locked}, 1, ""});
+  c.evidence.last_answer["op2"] = Reason::locked;
+  c.expectations->judge(10s, c.evidence);
+  EXPECT_TRUE(c.finish().ok);
+}
+
+TEST(Expectations, NoAnswerIsNotTheAnswerExpected) {
+  Case c({When::at, 10s, AnswerExpectation{"op2", Reason::none}, 1, ""});
+  c.expectations->judge(10s, c.evidence);
+  EXPECT_FALSE(c.finish().ok);
+}
+
+TEST(Expectations, CollisionFailsAtTheEnd) {
+  Case c({When::always, 0s, NoCollision{}, 1, ""});
+  EXPECT_TRUE(c.finish().ok);
+  c.collisions = 1;
+  EXPECT_FALSE(c.finish().ok);
+}
+
+TEST(Expectations, Counts) {
+  Case c({When::always, 0s, AtLeast{"refusals", 20}, 1, ""});
+  c.report.commands.refused = 19;
+  EXPECT_FALSE(c.finish().ok);
+  c.report.commands.refused = 20;
+  EXPECT_TRUE(c.finish().ok);
+}
+
+TEST(Expectations, DistanceIsThatOfEveryRobot) {
+  Case c({When::always, 0s, AtLeast{"distance", 15}, 1, ""});
+  c.report.robots["r1"].distance = 16.0;
+  c.report.robots["r2"].distance = 14.0;
+  EXPECT_FALSE(c.finish().ok);
+}
+
+TEST(Expectations, RunThatEndsBeforeIsAFailure) {
+  Case c({When::at, 10s, AnswerExpectation{"op2", Reason::none}, 1, ""});
+  EXPECT_EQ(c.finish().found, "the run ended before");
+}
+
+}  // namespace
+}  // namespace adit::sim

@@ -1,0 +1,63 @@
+#include "sim/rehearsal/random_script.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "basestation/command/parse.hpp"
+
+namespace adit::sim {
+namespace {
+
+RandomScript spec() {
+  return {
+      200,          5s,
+      55s,          {"op1", "op2", "op3"},
+      {"r1", "r2"}, {"take", "release", "lock", "unlock", "grant", "goto", "drive", "stop", "reset", "mode"},
+      3.0};
+}
+
+Scenario scenario() {
+  Scenario s;
+  s.robots = {{"r1", "wheeled", {1, 2, 0}}, {"r2", "legged", {5, 5, 0}}};
+  return s;
+}
+
+TEST(RandomScript, SameSeedSameLines) {
+  const auto a = draw_script(spec(), scenario(), Random(4)), b = draw_script(spec(), scenario(), Random(4));
+  ASSERT_EQ(a.size(), 200U);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].at, b[i].at);
+    EXPECT_EQ(a[i].command, b[i].command);
+  }
+}
+
+TEST(RandomScript, AnotherSeedOtherLines) {
+  const auto a = draw_script(spec(), scenario(), Random(4)), b = draw_script(spec(), scenario(), Random(5));
+  EXPECT_FALSE(std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                          [](const auto& x, const auto& y) { return x.command == y.command; }));
+}
+
+TEST(RandomScript, EveryLineIsOneThatAnOperatorCanType) {
+  for (const ScriptLine& line : draw_script(spec(), scenario(), Random(6))) {
+    const auto request = station::parse(line.command);
+    if (line.command.find("explore") != std::string::npos) continue;
+    EXPECT_TRUE(request.ok()) << line.command << ": " << (request ? "" : request.error().text);
+  }
+}
+
+TEST(RandomScript, KeepsToItsTimesAndUsesEveryVerb) {
+  std::set<std::string> verbs;
+  Duration last{};
+  for (const ScriptLine& line : draw_script(spec(), scenario(), Random(7))) {
+    EXPECT_GE(line.at, std::max(last, Duration(5s)));
+    EXPECT_LE(line.at, Duration(55s));
+    last = line.at;
+    verbs.insert(line.command.substr(0, line.command.find(' ')));
+  }
+  EXPECT_EQ(verbs.size(), spec().verbs.size());
+}
+
+}  // namespace
+}  // namespace adit::sim

@@ -1,0 +1,144 @@
+#include <gtest/gtest.h>
+
+#include "sim/rehearsal/scenario_file.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr const char* good = R"(world: {boxes: [[0, 1, 5, 6, 0, 2]], floor: 0, ceiling: 3}
+duration: 120
+link: mesh_500k
+lidar: planar
+robots:
+  - {id: r1, platform: wheeled, pose: [1, 0, 0]}
+  - {id: r2, platform: legged, pose: [4, 0, 1.5]}
+basestations:
+  - {id: op1, pose: [0, 0]}
+  - {id: op2, pose: [0, 1]}
+script:
+  - {at: 3, by: op1, do: goto r1 12 0.5}
+  - {at: 2, by: op1, do: take r1}
+faults:
+  - {at: 20, crash: r1}
+  - {at: 30, cut: [op1, r1], for: 10}
+  - {at: 31, degrade: [op1, r1], loss: 0.3, for: 10}
+  - {at: 32, forge: [op1, r1], for: 3}
+expect:
+  - {at: 10, robot: r1, mode: waypoint, holder: op1, locked: false, stopped: false}
+  - {at: 12, by_operator: op2, refused: locked}   # told
+  - {by: 60, robot: r1, near: [12, 0.5, 0.5]}
+  - {always: no_collision}
+  - {commands_at_least: 2}
+)";
+
+std::string with(const std::string& what, const std::string& instead) {
+  std::string text = good;
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), instead);
+}
+
+TEST(Scenario, ReadsEveryKey) {
+  const auto s = parse_scenario(good, "a/b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  EXPECT_EQ(s->name, "b");
+  EXPECT_EQ(s->duration, Duration(120s));
+  EXPECT_DOUBLE_EQ(s->link.bandwidth, 500e3);
+  EXPECT_EQ(s->lidar, LidarKind::planar);
+  ASSERT_EQ(s->robots.size(), 2U);
+  EXPECT_EQ(s->robots[1].platform, "legged");
+  EXPECT_DOUBLE_EQ(s->robots[1].pose.yaw, 1.5);
+  ASSERT_EQ(s->script.size(), 2U);
+  EXPECT_EQ(s->script[0].command, "take r1") << "lines are sorted by time";
+  ASSERT_EQ(s->faults.size(), 4U);
+  EXPECT_EQ(std::get<DegradeLink>(s->faults[2].what).loss, 0.3);
+  ASSERT_EQ(s->expectations.size(), 5U);
+  EXPECT_EQ(std::get<AnswerExpectation>(s->expectations[1].what).refused, Reason::locked);
+  EXPECT_EQ(s->expectations[1].text, "{at: 12, by_operator: op2, refused: locked}");
+  EXPECT_EQ(s->expectations[1].line, 21);
+}
+
+TEST(Scenario, RandomScriptAndOwnLink) {
+  std::string text = with("link: mesh_500k", "link: {bandwidth: 1e6, latency: 0.02, loss: 0.2}");
+  text += "random_script: {commands: 120, from: 5, to: 55, verbs: [take, stop]}\n";
+  const auto s = parse_scenario(text, "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  EXPECT_DOUBLE_EQ(s->link.loss, 0.2);
+  ASSERT_TRUE(s->random.has_value());
+  EXPECT_EQ(s->random->robots, (std::vector<std::string>{"r1", "r2"}));
+}
+
+struct Bad {
+  const char* name;
+  const char* what;
+  const char* instead;
+  int line;
+  const char* told;  ///< a part of the message
+};
+
+class BadScenario : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadScenario, NamesFileLineAndWhatWasExpected) {
+  const Bad& bad = GetParam();
+  const auto s = parse_scenario(with(bad.what, bad.instead), "bad.yaml");
+  ASSERT_FALSE(s.ok());
+  const std::string& text = s.error().text;
+  EXPECT_EQ(text.find("bad.yaml:" + std::to_string(bad.line)), 0U) << text;
+  EXPECT_NE(text.find(bad.told), std::string::npos) << text;
+  EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, BadScenario,
+    testing::Values(
+        Bad{"unknown_key", "duration: 120", "duration: 120\nweather: bad", 3, "weather"},
+        Bad{"misspelt_key", "link: mesh_500k", "lnik: mesh_500k", 3, "link"},
+        Bad{"unknown_key_in_robot", "pose: [1, 0, 0]}", "pose: [1, 0, 0], colour: red}", 6, "colour"},
+        Bad{"unknown_key_in_script", "do: take r1}", "do: take r1, loud: yes}", 13, "loud"},
+        Bad{"unknown_key_in_expect", "refused: locked}", "refused: locked, why: x}", 21, "why"},
+        Bad{"duration_negative", "duration: 120", "duration: -1", 2, "(0, 86400]"},
+        Bad{"duration_text", "duration: 120", "duration: long", 2, "number"},
+        Bad{"duration_missing", "duration: 120", "", 1, "duration"},
+        Bad{"no_world", "world: {boxes: [[0, 1, 5, 6, 0, 2]], floor: 0, ceiling: 3}", "world: {}", 1, "map"},
+        Bad{"two_worlds", "world: {boxes:", "world: {map: geb079.bt, boxes:", 1, "one of map"},
+        Bad{"missing_map", "world: {boxes: [[0, 1, 5, 6, 0, 2]], floor: 0, ceiling: 3}",
+            "world: {map: nowhere.bt}", 1, "nowhere.bt"},
+        Bad{"short_box", "[0, 1, 5, 6, 0, 2]", "[0, 1, 5, 6, 0]", 1, "6"},
+        Bad{"box_inside_out", "[0, 1, 5, 6, 0, 2]", "[1, 0, 5, 6, 0, 2]", 1, "smaller"},
+        Bad{"ceiling_below_floor", "ceiling: 3", "ceiling: -1", 1, "above the floor"},
+        Bad{"unknown_link", "link: mesh_500k", "link: string_and_tins", 3, "string_and_tins"},
+        Bad{"unknown_lidar", "lidar: planar", "lidar: round", 4, "planar"},
+        Bad{"robot_without_pose", ", pose: [1, 0, 0]", "", 6, "pose"},
+        Bad{"robot_twice", "id: r2", "id: r1", 7, "taken"},
+        Bad{"robot_badly_named", "id: r2", "id: 'r 2'", 7, "letters"},
+        Bad{"station_named_as_robot", "id: op1, pose: [0, 0]", "id: r1, pose: [0, 0]", 9, "taken"},
+        Bad{"script_by_nobody", "by: op1, do: take r1", "by: op9, do: take r1", 13, "op9"},
+        Bad{"script_unknown_robot", "do: take r1", "do: take r9", 13, "r9"},
+        Bad{"script_unknown_verb", "do: take r1", "do: tak r1", 13, "take"},
+        Bad{"script_after_the_end", "{at: 2,", "{at: 200,", 13, "120"},
+        Bad{"fault_of_nothing", "crash: r1", "crash: r7", 15, "r7"},
+        Bad{"fault_of_two_kinds", "crash: r1}", "crash: r1, hang: r2/nav}", 15, "one of"},
+        Bad{"fault_in_a_component", "crash: r1", "crash: r1/nav", 15, "crash: r1"},
+        Bad{"hang", "crash: r1", "hang: r1/nav", 15, "hang"},
+        Bad{"cut_of_one", "cut: [op1, r1]", "cut: [op1]", 16, "[A, B]"},
+        Bad{"cut_for_ever", "cut: [op1, r1], for: 10", "cut: [op1, r1]", 16, "for"},
+        Bad{"loss_above_one", "loss: 0.3", "loss: 1.3", 17, "[0, 1]"},
+        Bad{"expect_unknown_mode", "mode: waypoint", "mode: dance", 20, "waypoint"},
+        Bad{"expect_unknown_reason", "refused: locked", "refused: tired", 21, "reason"},
+        Bad{"expect_nothing", "mode: waypoint, holder: op1, locked: false, stopped: false", "", 20,
+            "expected near"},
+        Bad{"expect_no_time", "{at: 12, by_operator", "{by_operator", 21, "one of at"},
+        Bad{"near_without_tolerance", "[12, 0.5, 0.5]", "[12, 0.5]", 22, "3"},
+        Bad{"always_what", "no_collision", "happy", 23, "no_collision"},
+        Bad{"no_yaml", "robots:", "robots: [", 6, ""}),
+    [](const auto& bad_case) { return std::string(bad_case.param.name); });
+
+TEST(Scenario, FileThatIsNotThere) {
+  const auto s = load_scenario("/nowhere/at/all.yaml");
+  ASSERT_FALSE(s.ok());
+  EXPECT_EQ(s.error().reason, Reason::cannot_read);
+  EXPECT_NE(s.error().text.find("/nowhere/at/all.yaml"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace adit::sim
