@@ -34,7 +34,8 @@ Result<void> Behaviour::refuse(Reason reason, std::string_view mode) const {
 
 Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   const ModeRow* row = find_mode(mode);
-  if (!row) return refuse(known_but_not_installed(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
+  if (!row)
+    return refuse(known_but_not_installed(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
   // Who is in a manual mode already need not centre his stick to ask for it again.
   const bool goes_on = row == decision_.mode && row->manual();
   if (!goes_on) {
@@ -119,11 +120,13 @@ void Behaviour::tick(Time now) {
 
 void Behaviour::fall(const Decision& decision) {
   fell_because_ = decision.reason;
-  const std::string text = std::string(requested_->name) + " ended: " + std::string(describe(decision.reason));
+  const std::string text =
+      std::string(requested_->name) + " ended: " + std::string(describe(decision.reason));
   requested_ = decision.mode;
   if (decision.reason == Reason::stopped) return;  // who stopped it was told already
   const bool lost = decision.reason == Reason::joystick_stale;
-  outputs_.tell_holder({{}, Severity::warning, lost ? "joystick_lost" : "mode_changed", decision.reason, text});
+  outputs_.tell_holder(
+      {{}, Severity::warning, lost ? "joystick_lost" : "mode_changed", decision.reason, text});
 }
 
 void Behaviour::feed_waypoint(Time now) {
@@ -144,14 +147,16 @@ void Behaviour::watch(Time now) {
   if (!waits) idle_since_ = now;
   if (waits && !idle_told_ && now - idle_since_ >= params_.idle_after) {
     idle_told_ = true;
-    outputs_.tell_holder({{}, Severity::info, "idle", Reason::none, "idle in " + std::string(decision_.mode->name)});
+    outputs_.tell_holder(
+        {{}, Severity::info, "idle", Reason::none, "idle in " + std::string(decision_.mode->name)});
   }
   if (goal_state() != GoalState::blocked) {
     free_since_ = now;
     blocked_told_ = false;
   } else if (!blocked_told_ && now - free_since_ >= params_.blocked_after) {
     blocked_told_ = true;
-    outputs_.tell_holder({{}, Severity::warning, "blocked", Reason::blocked, "every path to the goal is blocked"});
+    outputs_.tell_holder(
+        {{}, Severity::warning, "blocked", Reason::blocked, "every path to the goal is blocked"});
   }
 }
 
@@ -170,7 +175,7 @@ BehaviourView Behaviour::view() const {
   v.goal_state = goal_state();
   v.goal_id = goal_.id;
   v.goal = goal_.place;
-  v.reason = stopped_                          ? Reason::stopped
+  v.reason = stopped_                             ? Reason::stopped
              : v.goal_state == GoalState::blocked ? Reason::blocked
              : v.moving_allowed                   ? Reason::none
              : decision_.reason != Reason::none   ? decision_.reason

@@ -62,7 +62,8 @@ class Behaviour : public Requests {
     std::function<void()> changed{};
   };
 
-  Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, Mux& mux, Inputs inputs, Outputs outputs);
+  Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, Mux& mux, Inputs inputs,
+            Outputs outputs);
 
   Result<void> request_mode(const std::string& mode, Time now) override;
   Result<void> request_goal(const Eigen::Vector3d& goal, Time now) override;

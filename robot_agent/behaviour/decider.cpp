@@ -20,7 +20,8 @@ Result<void> check_complete(const bt::Tree& tree) {
     if (!runs.contains(row.name))
       return Error{Reason::not_supported, "the behaviour tree has no Run for mode " + std::string(row.name)};
   for (const std::string& mode : runs)
-    if (!find_mode(mode)) return Error{Reason::mode_unknown, "the behaviour tree runs the unknown mode " + mode};
+    if (!find_mode(mode))
+      return Error{Reason::mode_unknown, "the behaviour tree runs the unknown mode " + mode};
   return {};
 }
 
@@ -45,9 +46,11 @@ Result<bt::Registry> Decider::registry() {
       },
       mode);
   if (!requested) return requested.error();
-  const auto run = leaves.add_action("Run", [this](bt::Leaf& leaf) { return choose(leaf, true); }, mode);
+  const auto run = leaves.add_action(
+      "Run", [this](bt::Leaf& leaf) { return choose(leaf, true); }, mode);
   if (!run) return run.error();
-  const auto pause = leaves.add_action("Pause", [this](bt::Leaf& leaf) { return choose(leaf, false); }, mode);
+  const auto pause = leaves.add_action(
+      "Pause", [this](bt::Leaf& leaf) { return choose(leaf, false); }, mode);
   if (!pause) return pause.error();
   return leaves;
 }

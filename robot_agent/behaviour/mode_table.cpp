@@ -6,23 +6,24 @@
 namespace adit::agent {
 namespace {
 
-constexpr Condition kNotStopped{"NotStopped", Reason::stopped, [](const Facts& f) { return !f.stopped; }, false};
+constexpr Condition kNotStopped{"NotStopped", Reason::stopped, [](const Facts& f) { return !f.stopped; },
+                                false};
 constexpr Condition kDriverAlive{"DriverAlive", Reason::driver_silent,
                                  [](const Facts& f) { return f.driver_alive; }, false};
-constexpr Condition kLocalised{"Localised", Reason::no_localisation, [](const Facts& f) { return f.localised; },
-                               false};
+constexpr Condition kLocalised{"Localised", Reason::no_localisation,
+                               [](const Facts& f) { return f.localised; }, false};
 constexpr Condition kTerrainFresh{"TerrainFresh", Reason::terrain_stale,
                                   [](const Facts& f) { return f.terrain_fresh; }, false};
 constexpr Condition kStickFresh{"StickFresh", Reason::joystick_stale,
                                 [](const Facts& f) { return f.stick_fresh; }, true};
 constexpr Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
                                   [](const Facts& f) { return f.stick_centred; }, true};
-constexpr Condition kStickKept{"StickKept", Reason::joystick_stale, [](const Facts& f) { return f.stick_kept; },
-                               false};
+constexpr Condition kStickKept{"StickKept", Reason::joystick_stale,
+                               [](const Facts& f) { return f.stick_kept; }, false};
 constexpr Condition kGoalKnown{"GoalKnown", Reason::goal_missing, [](const Facts& f) { return f.goal_known; },
                                false};
-constexpr Condition kGoalFree{"GoalFree", Reason::goal_unreachable, [](const Facts& f) { return f.goal_free; },
-                              true};
+constexpr Condition kGoalFree{"GoalFree", Reason::goal_unreachable,
+                              [](const Facts& f) { return f.goal_free; }, true};
 
 constexpr std::array kAll{kNotStopped,   kDriverAlive, kLocalised, kTerrainFresh, kStickFresh,
                           kStickCentred, kStickKept,   kGoalKnown, kGoalFree};
@@ -36,7 +37,8 @@ constexpr std::array kWaypoint{kNotStopped, kDriverAlive, kLocalised, kTerrainFr
 constexpr std::array kTable{
     ModeRow{"hold", "holder", Accepts::nothing, GoalOnLeaving::none, OnFailure::falls_to_hold, {}},
     ModeRow{"manual", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold, kManual},
-    ModeRow{"smart_joystick", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold, kSmart},
+    ModeRow{"smart_joystick", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold,
+            kSmart},
     ModeRow{"waypoint", "holder", Accepts::goal, GoalOnLeaving::cleared, OnFailure::pauses, kWaypoint},
 };
 
@@ -47,7 +49,8 @@ constexpr std::array<std::string_view, 3> kNotInstalled{"explore", "convoy_follo
 std::span<const ModeRow> mode_table() { return kTable; }
 
 const ModeRow* find_mode(std::string_view name) {
-  const auto row = std::find_if(kTable.begin(), kTable.end(), [&](const ModeRow& r) { return r.name == name; });
+  const auto row =
+      std::find_if(kTable.begin(), kTable.end(), [&](const ModeRow& r) { return r.name == name; });
   return row == kTable.end() ? nullptr : &*row;
 }
 

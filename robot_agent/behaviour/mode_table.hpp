@@ -9,14 +9,14 @@ namespace adit::agent {
 /// What the conditions of the modes look at.
 struct Facts {
   bool stopped{};
-  bool driver_alive{};    ///< odometry within the last 0.5 s
-  bool localised{};       ///< start pose known and odometry heard
-  bool terrain_fresh{};   ///< lidar points within the last 0.5 s
-  bool stick_fresh{};     ///< a sample within the last 0.3 s
-  bool stick_kept{};      ///< a sample, or the entry into the mode, within the last 1 s
+  bool driver_alive{};   ///< odometry within the last 0.5 s
+  bool localised{};      ///< start pose known and odometry heard
+  bool terrain_fresh{};  ///< lidar points within the last 0.5 s
+  bool stick_fresh{};    ///< a sample within the last 0.3 s
+  bool stick_kept{};     ///< a sample, or the entry into the mode, within the last 1 s
   bool stick_centred{};
   bool goal_known{};
-  bool goal_free{};       ///< no obstacle that is known covers it
+  bool goal_free{};  ///< no obstacle that is known covers it
 };
 
 /// A condition: the leaf of that name in the behaviour tree, and what the operator reads when it fails.
@@ -38,8 +38,8 @@ struct ModeRow {
   std::string_view name{};
   std::string_view commanded_by{};  ///< who may ask for it
   Accepts accepts{};
-  GoalOnLeaving goal{};             ///< on stop and restart a goal is always kept
-  OnFailure on_failure{};           ///< `pauses`: autonomous, goes on under the next holder
+  GoalOnLeaving goal{};    ///< on stop and restart a goal is always kept
+  OnFailure on_failure{};  ///< `pauses`: autonomous, goes on under the next holder
   std::span<const Condition> conditions{};
 
   bool manual() const { return accepts == Accepts::stick; }

@@ -11,7 +11,8 @@ bool steers(CommandKind kind) {
 }
 /// Take, stop and query need neither holder nor epoch.
 bool open_to_all(CommandKind kind) {
-  return kind == CommandKind::take || kind == CommandKind::stop || kind == CommandKind::query;
+  return kind == CommandKind::take || kind == CommandKind::stop || kind == CommandKind::query ||
+         kind == CommandKind::unknown;
 }
 
 std::string hex(const wire::ParticipantId& id) {
@@ -120,6 +121,8 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       return {};
     case CommandKind::query:
       return {};
+    case CommandKind::unknown:
+      break;
   }
   return {Reason::unknown_command};
 }

@@ -12,6 +12,9 @@
 /// converts at the edge.
 namespace adit::agent {
 
+/// Of the radio contract.
+inline constexpr std::uint16_t kProtocolVersion = 1;
+
 /// 128 random bits kept on the owner's disk.
 using Id = std::array<std::uint8_t, 16>;
 
@@ -29,7 +32,19 @@ struct Sender {
   wire::ParticipantId participant{};
 };
 
-enum class CommandKind : std::uint8_t { take, release, lock, unlock, grant, stop, reset, mode, go_to, query };
+enum class CommandKind : std::uint8_t {
+  take,
+  release,
+  lock,
+  unlock,
+  grant,
+  stop,
+  reset,
+  mode,
+  go_to,
+  query,
+  unknown
+};
 
 struct Command {
   std::string robot{};

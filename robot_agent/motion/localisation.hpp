@@ -26,6 +26,8 @@ class Localisation {
 
   bool initialised() const { return heard_.has_value(); }
   bool alive(Time now) const { return heard_ && now - *heard_ < kAlive; }
+  /// Since the last odometry; since ever when there was none.
+  Duration silence(Time now) const { return heard_ ? now - *heard_ : now.time_since_epoch(); }
   const Pose3& odom() const { return odom_; }
   const Twist2& twist() const { return twist_; }
   /// Map frame.

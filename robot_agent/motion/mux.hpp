@@ -36,7 +36,8 @@ class Mux {
     std::size_t index_{0};
   };
 
-  explicit Mux(NavigationInput& navigation, MuxParams params = {}) : navigation_(navigation), params_(params) {}
+  explicit Mux(NavigationInput& navigation, MuxParams params = {})
+      : navigation_(navigation), params_(params) {}
   Mux(const Mux&) = delete;
   Mux& operator=(const Mux&) = delete;
 

@@ -107,12 +107,9 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->generation = goal_generation_;
   job->made = now;
   planning_ = now;
-  const double lidar = params_.platform.lidar_height;
   compute(
       params_.planning,
-      [job, navigator = navigator_, lidar] {
-        // The library wants points as the sensor sees them, above base_link.
-        for (Eigen::Vector3f& p : job->scan->points) p.z() -= static_cast<float>(lidar);
+      [job, navigator = navigator_] {
         const double stamp = seconds(job->made.time_since_epoch());
         navigator->add_scan(job->scan->points, job->scan->body, stamp);
         if (job->target.kind != nav::Target::Kind::none)

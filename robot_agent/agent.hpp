@@ -1,0 +1,57 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/config/platform.hpp"
+#include "core/exec/executor.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/log/log.hpp"
+#include "core/result/result.hpp"
+#include "core/wire/wire.hpp"
+#include "robot_agent/command/types.hpp"
+#include "robot_agent/defects.hpp"
+
+namespace adit::agent {
+
+struct AgentParams {
+  std::string name{"r1"};  ///< 1 to 32 of [A-Za-z0-9_-]
+  Platform platform{};
+  Id id{};                              ///< kept on the robot's disk; all zero: drawn from the seed
+  std::uint64_t seed{1};                ///< of the epoch; another one at each start
+  Pose2 start{};                        ///< map frame, where odometry begins
+  Duration lock_lease{300s};            ///< a lock lapses when its holder was silent so long; 0: never
+  std::string tree{"trees/robot.xml"};  ///< behaviour tree, on the configuration's search path
+  Duration planning{20ms};              ///< what a planning cycle takes in rehearsal
+  Defects defects{};                    ///< effective in adit::agent_defects only
+  std::shared_ptr<LogSink> log{};
+};
+
+/// One robot's agent: discovery, command interface, behaviours, mux, navigation, driver, telemetry, composed.
+/// The same object live and in rehearsal. Made, started and destroyed outside its strands; runtime and
+/// wires must outlive it.
+class Agent {
+ public:
+  Agent(AgentParams params, Runtime& runtime, wire::Wire& radio, wire::Wire& robot);
+  ~Agent();
+  Agent(const Agent&) = delete;
+  Agent& operator=(const Agent&) = delete;
+
+  /// Errors: bad_argument (name), those of the tree and of the wires.
+  Result<void> start();
+
+  /// The robot's own console: "status" or "unlock". Runs on the command strand, and so does `answer`. From
+  /// any thread, after start().
+  void at_console(const std::string& line, std::function<void(const std::string&)> answer);
+
+ private:
+  class Core;
+  AgentParams params_;
+  Runtime& runtime_;
+  wire::Wire& radio_;
+  wire::Wire& robot_;
+  std::shared_ptr<Executor> command_{}, sensors_{};
+  std::unique_ptr<Core> core_{};
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,205 @@
+#include "robot_agent/radio/convert.hpp"
+
+namespace adit::agent {
+namespace {
+
+// A number that this version does not know is no reason to stop reading.
+CommandKind from_radio(radio::CommandKind kind) {
+  switch (kind) {
+    case radio::CMD_TAKE:
+      return CommandKind::take;
+    case radio::CMD_RELEASE:
+      return CommandKind::release;
+    case radio::CMD_LOCK:
+      return CommandKind::lock;
+    case radio::CMD_UNLOCK:
+      return CommandKind::unlock;
+    case radio::CMD_GRANT:
+      return CommandKind::grant;
+    case radio::CMD_STOP:
+      return CommandKind::stop;
+    case radio::CMD_RESET:
+      return CommandKind::reset;
+    case radio::CMD_MODE:
+      return CommandKind::mode;
+    case radio::CMD_GOTO:
+      return CommandKind::go_to;
+    case radio::CMD_QUERY:
+      return CommandKind::query;
+  }
+  return CommandKind::unknown;
+}
+
+radio::Severity to_radio(Severity severity) {
+  switch (severity) {
+    case Severity::info:
+      return radio::SEVERITY_INFO;
+    case Severity::warning:
+      return radio::SEVERITY_WARNING;
+    case Severity::error:
+      return radio::SEVERITY_ERROR;
+  }
+  return radio::SEVERITY_ERROR;
+}
+
+radio::GoalState to_radio(GoalState state) {
+  switch (state) {
+    case GoalState::none:
+      return radio::GOAL_NONE;
+    case GoalState::kept:
+      return radio::GOAL_KEPT;
+    case GoalState::active:
+      return radio::GOAL_ACTIVE;
+    case GoalState::blocked:
+      return radio::GOAL_BLOCKED;
+    case GoalState::reached:
+      return radio::GOAL_REACHED;
+  }
+  return radio::GOAL_NONE;
+}
+
+}  // namespace
+
+Command from_radio(const radio::Command& in, const wire::ParticipantId& sender) {
+  Command c{};
+  c.robot = in.robot();
+  c.from = {in.station(), in.station_id(), sender};
+  c.epoch = from_radio(in.epoch());
+  c.seq = in.seq();
+  c.kind = from_radio(in.kind());
+  c.text = in.text();
+  c.position = {in.position()[0], in.position()[1], in.position()[2]};
+  c.flag = in.flag();
+  return c;
+}
+
+StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sender) {
+  return {in.robot(),
+          in.station_id(),
+          sender,
+          from_radio(in.epoch()),
+          in.seq(),
+          in.echo(),
+          {in.vx(), in.vy(), in.wz()}};
+}
+
+AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender) {
+  AgentRecord r{};
+  r.name = in.name();
+  r.id = in.id();
+  r.station = in.kind() == radio::AGENT_STATION;
+  r.participant = sender;
+  r.protocol = in.protocol();
+  r.software = in.software();
+  r.platform = in.platform();
+  r.length = in.length();
+  r.width = in.width();
+  r.max_speed = in.max_speed();
+  r.modes = in.modes();
+  return r;
+}
+
+radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot) {
+  radio::Acknowledgement out;
+  out.robot(robot);
+  out.station(answer.station);
+  out.station_id(answer.station_id);
+  out.seq(answer.seq);
+  out.accepted(answer.accepted());
+  out.reason(static_cast<std::uint16_t>(answer.reason));
+  out.text(answer.text);
+  out.holder(answer.holder);
+  out.epoch(to_radio(answer.epoch));
+  return out;
+}
+
+radio::Notification to_radio(const Notice& notice, const std::string& robot) {
+  radio::Notification out;
+  out.robot(robot);
+  out.operator_name(notice.operator_name);
+  out.severity(to_radio(notice.severity));
+  out.code(notice.code);
+  out.reason(static_cast<std::uint16_t>(notice.reason));
+  out.text(notice.text);
+  return out;
+}
+
+radio::AuthorityStatus to_radio(const CommandInterface& commands, const std::string& robot, Time now) {
+  const Authority& authority = commands.authority();
+  radio::AuthorityStatus out;
+  out.robot(robot);
+  out.epoch(to_radio(authority.epoch()));
+  if (authority.holder()) {
+    out.holder(authority.holder()->name);
+    out.holder_id(authority.holder()->id);
+  }
+  out.locked(authority.locked());
+  out.lock_lease_left(static_cast<float>(authority.lease_left(now)));
+  for (const Party& stopper : commands.stops().all()) {
+    radio::Stopper latch;
+    latch.station(stopper.name);
+    latch.station_id(stopper.id);
+    out.stops().push_back(latch);
+  }
+  return out;
+}
+
+radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<ModeOption>& options,
+                               const std::string& robot) {
+  radio::BehaviourState out;
+  out.robot(robot);
+  out.mode(std::string(view.mode));
+  out.stopped(view.stopped);
+  out.moving_allowed(view.moving_allowed);
+  out.reason(static_cast<std::uint16_t>(view.reason));
+  out.goal_state(to_radio(view.goal_state));
+  out.goal_id(view.goal_id);
+  out.goal({view.goal.x(), view.goal.y(), view.goal.z()});
+  for (const ModeOption& option : options) {
+    radio::ModeOption mode;
+    mode.mode(std::string(option.mode));
+    mode.available(option.reason == Reason::none);
+    mode.reason(static_cast<std::uint16_t>(option.reason));
+    out.modes().push_back(mode);
+  }
+  return out;
+}
+
+radio::Health to_radio(const std::vector<ComponentHealth>& components, const std::string& robot) {
+  radio::Health out;
+  out.robot(robot);
+  for (const ComponentHealth& c : components) {
+    radio::ComponentHealth part;
+    part.name(c.name);
+    part.healthy(c.healthy);
+    part.silent_for(static_cast<float>(seconds(c.beat_age)));
+    part.text(c.last_failure);
+    out.components().push_back(part);
+  }
+  return out;
+}
+
+radio::Capabilities to_radio(const Platform& platform, const std::string& robot, const Id& id,
+                             std::uint16_t protocol) {
+  radio::Capabilities out;
+  out.name(robot);
+  out.kind(radio::AGENT_ROBOT);
+  out.id(id);
+  out.protocol(protocol);
+  out.software(ADIT_VERSION);
+  out.platform(platform.name);
+  out.holonomic(platform.drive == Drive::holonomic);
+  out.length(static_cast<float>(platform.length));
+  out.width(static_cast<float>(platform.width));
+  out.height(static_cast<float>(platform.height));
+  out.max_speed(static_cast<float>(platform.max_speed));
+  out.max_turn(static_cast<float>(platform.max_turn));
+  out.max_acceleration(static_cast<float>(platform.max_acceleration));
+  out.step(static_cast<float>(platform.step));
+  out.stairs(platform.stairs);
+  out.sensors({"lidar", "odometry", "battery"});
+  for (const ModeRow& row : mode_table()) out.modes().push_back(std::string(row.name));
+  return out;
+}
+
+}  // namespace adit::agent

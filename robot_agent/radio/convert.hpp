@@ -1,0 +1,37 @@
+#pragma once
+// Between the radio contract's generated types and ours. Included by .cpp files only.
+#include "adit/authority.h"
+#include "adit/command.h"
+#include "adit/discovery.h"
+#include "adit/link.h"
+#include "adit/robot.h"
+#include "core/component/vital.hpp"
+#include "core/config/platform.hpp"
+#include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/command/command_interface.hpp"
+#include "robot_agent/discovery/directory.hpp"
+
+namespace adit::agent {
+
+inline radio::Epoch to_radio(const Epoch& epoch) {
+  radio::Epoch out;
+  out.start(epoch.start);
+  out.counter(epoch.counter);
+  return out;
+}
+inline Epoch from_radio(const radio::Epoch& epoch) { return {epoch.start(), epoch.counter()}; }
+
+Command from_radio(const radio::Command& in, const wire::ParticipantId& sender);
+StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sender);
+AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender);
+
+radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot);
+radio::Notification to_radio(const Notice& notice, const std::string& robot);
+radio::AuthorityStatus to_radio(const CommandInterface& commands, const std::string& robot, Time now);
+radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<ModeOption>& options,
+                               const std::string& robot);
+radio::Health to_radio(const std::vector<ComponentHealth>& components, const std::string& robot);
+radio::Capabilities to_radio(const Platform& platform, const std::string& robot, const Id& id,
+                             std::uint16_t protocol);
+
+}  // namespace adit::agent

@@ -1,0 +1,150 @@
+#include "robot_agent/radio/radio_edge.hpp"
+
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "robot_agent/radio/convert.hpp"
+#include "robot_agent/radio/link_meter.hpp"
+
+namespace adit::agent {
+
+namespace topics = wire::topics;
+
+struct RadioEdge::Endpoints {
+  wire::Wire& wire;
+  Executor& strand;
+  std::string robot;
+  LinkMeter meter{};
+  std::uint64_t seq{};
+
+  wire::Writer<radio::Acknowledgement> acknowledgement{};
+  wire::Writer<radio::Notification> notification{};
+  wire::Writer<radio::AuthorityStatus> authority{};
+  wire::Writer<radio::BehaviourState> behaviour{};
+  wire::Writer<radio::RobotState> state{};
+  wire::Writer<radio::Health> health{};
+  wire::Writer<radio::Capabilities> capabilities{};
+  wire::Writer<radio::LinkReport> link{};
+  radio::RobotState state_sample{};
+  std::vector<std::unique_ptr<wire::RawReader>> readers{};
+
+  template <class T>
+  Result<void> open(wire::Writer<T>& writer, const wire::Topic<T>& topic) {
+    auto made = wire::Writer<T>::make(wire, topic);
+    if (!made) return made.error();
+    writer = std::move(*made);
+    return {};
+  }
+  template <class T, class Handler>
+  Result<void> read(const wire::Topic<T>& topic, Handler handler, const std::string& partition = {}) {
+    auto reader = wire::make_reader(wire, topic, strand, std::move(handler), partition);
+    if (!reader) return reader.error();
+    readers.push_back(std::move(*reader));
+    return {};
+  }
+  // A failed write is counted by the wire, and the link report shows it.
+  template <class T>
+  void send(wire::Writer<T>& writer, T sample) {
+    sample.seq(++seq);
+    (void)writer.write(sample);
+  }
+};
+
+RadioEdge::RadioEdge(std::unique_ptr<Endpoints> endpoints) : endpoints_(std::move(endpoints)) {}
+RadioEdge::~RadioEdge() = default;
+
+Result<std::unique_ptr<RadioEdge>> RadioEdge::open(wire::Wire& wire, Executor& strand,
+                                                   const std::string& robot) {
+  std::unique_ptr<Endpoints> e(new Endpoints{wire, strand, robot});
+  for (const auto& made :
+       {e->open(e->acknowledgement, topics::acknowledgement), e->open(e->notification, topics::notification),
+        e->open(e->authority, topics::authority), e->open(e->behaviour, topics::behaviour),
+        e->open(e->state, topics::robot_state), e->open(e->health, topics::health),
+        e->open(e->capabilities, topics::capabilities), e->open(e->link, topics::link_report)})
+    if (!made) return made.error();
+  return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
+}
+
+Result<void> RadioEdge::listen(Parts parts) {
+  Endpoints& e = *endpoints_;
+  CommandInterface& commands = parts.commands;
+  Directory& directory = parts.directory;
+  const auto answer = [&e](const std::optional<Answer>& a) {
+    if (a) (void)e.acknowledgement.write(to_radio(*a, e.robot));
+  };
+  e.wire.on_participant(e.strand, [&e, &directory](const wire::ParticipantEvent& event) {
+    directory.participant(event, e.strand.now());
+  });
+  for (const auto& made : {
+           e.read(topics::presence,
+                  [&e, &commands, &directory](const radio::Presence&p, const wire::SampleInfo&info) {
+                    const Time now = e.strand.now();
+                    commands.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
+                    directory.presence(p.name(), info.sender, now);
+                  }),
+           e.read(topics::capabilities,
+                  [&e, &commands, &directory](const radio::Capabilities&c, const wire::SampleInfo&info) {
+                    const Time now = e.strand.now();
+                    if (c.kind() == radio::AGENT_STATION)
+                      commands.hear({c.name(), c.id(), info.sender}, c.protocol(), now);
+                    if (c.name() != e.robot) directory.capabilities(from_radio(c, info.sender), now);
+                  }),
+           e.read(
+               topics::command,
+               [&e, &commands, answer](const radio::Command&c, const wire::SampleInfo&info) {
+                 answer(commands.handle(from_radio(c, info.sender), e.strand.now()));
+               },
+               e.robot),
+           e.read(
+               topics::joystick,
+               [&e, &commands, answer](const radio::Joystick&j, const wire::SampleInfo&info) {
+                 answer(commands.handle(from_radio(j, info.sender), e.strand.now()));
+               },
+               e.robot),
+       })
+    if (!made) return made.error();
+  return {};
+}
+
+void RadioEdge::close() { endpoints_->readers.clear(); }
+
+void RadioEdge::send(const Notice& notice) {
+  endpoints_->send(endpoints_->notification, to_radio(notice, endpoints_->robot));
+}
+
+void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
+  endpoints_->send(endpoints_->authority, to_radio(commands, endpoints_->robot, now));
+}
+
+void RadioEdge::send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options) {
+  endpoints_->send(endpoints_->behaviour, to_radio(view, options, endpoints_->robot));
+}
+
+void RadioEdge::send_health(const std::vector<ComponentHealth>& components) {
+  endpoints_->send(endpoints_->health, to_radio(components, endpoints_->robot));
+}
+
+void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
+  radio::RobotState& s = endpoints_->state_sample;
+  s.robot(endpoints_->robot);
+  s.stamp(stamp);
+  s.x(static_cast<float>(report.pose.x));
+  s.y(static_cast<float>(report.pose.y));
+  s.z(static_cast<float>(report.z));
+  s.yaw(static_cast<float>(report.pose.yaw));
+  s.vx(static_cast<float>(report.twist.vx));
+  s.vy(static_cast<float>(report.twist.vy));
+  s.wz(static_cast<float>(report.twist.wz));
+  s.battery(report.battery);
+  (void)endpoints_->state.write(s);
+}
+
+void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol) {
+  (void)endpoints_->capabilities.write(to_radio(platform, endpoints_->robot, id, protocol));
+}
+
+void RadioEdge::send_link_report(Time now) {
+  Endpoints& e = *endpoints_;
+  e.send(e.link, e.meter.report(e.wire.counters(), e.robot, now));
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,58 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "core/component/vital.hpp"
+#include "core/config/platform.hpp"
+#include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/command/command_interface.hpp"
+#include "robot_agent/discovery/directory.hpp"
+
+namespace adit::agent {
+
+/// The state of the robot that goes out ten times a second.
+struct RobotReport {
+  Pose2 pose{};         ///< map frame
+  double z{};           ///< m
+  Twist2 twist{};       ///< body frame
+  float battery{-1.0};  ///< 0..1; negative: not known
+};
+
+/// The radio domain: what arrives goes to the command interface and the directory, what we say goes out. All
+/// on the command strand. Every message is numbered here.
+class RadioEdge {
+ public:
+  struct Parts {
+    CommandInterface& commands;
+    Directory& directory;
+  };
+
+  /// Errors of the wire.
+  static Result<std::unique_ptr<RadioEdge>> open(wire::Wire& wire, Executor& strand,
+                                                 const std::string& robot);
+  ~RadioEdge();
+  RadioEdge(const RadioEdge&) = delete;
+  RadioEdge& operator=(const RadioEdge&) = delete;
+
+  /// From now on the parts hear what arrives; they must outlive this. Errors of the wire.
+  Result<void> listen(Parts parts);
+
+  /// Nothing is heard any more. From any thread.
+  void close();
+
+  void send(const Notice& notice);
+  void send_authority(const CommandInterface& commands, Time now);
+  void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
+  void send_state(const RobotReport& report, std::uint64_t stamp);
+  void send_health(const std::vector<ComponentHealth>& components);
+  void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
+  /// What passed on the wire since the last call.
+  void send_link_report(Time now);
+
+ private:
+  struct Endpoints;
+  explicit RadioEdge(std::unique_ptr<Endpoints> endpoints);
+  std::unique_ptr<Endpoints> endpoints_;
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,263 @@
+#pragma once
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adit/authority.h"
+#include "adit/command.h"
+#include "adit/discovery.h"
+#include "adit/robot.h"
+#include "core/exec/virtual_runtime.hpp"
+#include "core/wire/memory/ether.hpp"
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "geometry_msgs/msg/Twist.h"
+#include "nav_msgs/msg/Odometry.h"
+#include "robot_agent/agent.hpp"
+#include "sensor_msgs/msg/PointCloud2.h"
+
+namespace adit::agent {
+
+/// An agent in a rehearsal of its own: a driver that obeys exactly, in an empty plain, and operators that
+/// send raw messages.
+class AgentBench {
+ public:
+  /// A basestation reduced to its messages.
+  struct Operator {
+    std::string name{};
+    Id id{};
+    std::unique_ptr<wire::Wire> wire{};
+    wire::Writer<radio::Presence> presence{};
+    wire::Writer<radio::Command> command{};
+    wire::Writer<radio::Joystick> joystick{};
+    std::vector<std::unique_ptr<wire::RawReader>> readers{};
+    std::vector<radio::Acknowledgement> answers{};
+    std::vector<radio::Notification> notices{};
+    radio::AuthorityStatus authority{};
+    radio::BehaviourState behaviour{};
+    radio::RobotState state{};
+    radio::Capabilities capabilities{};
+    radio::Health health{};
+    std::uint64_t seq{}, stick_seq{};
+    bool up{true};
+    Timer beat{};
+
+    std::vector<std::string> told() const {
+      std::vector<std::string> codes;
+      for (const auto& n : notices)
+        if (n.operator_name() == name || n.operator_name().empty()) codes.push_back(n.code());
+      return codes;
+    }
+  };
+
+  explicit AgentBench(AgentParams params = {}, std::uint64_t seed = 1)
+      : params_(std::move(params)), scheduler_(seed), ether_(scheduler_, {seed}) {
+    params_.tree = std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml";
+    machine_ = scheduler_.machine("r1", 77777s);
+    world_ = scheduler_.machine("world", 3s);
+    strand_ = world_->strand("bench");
+    driver_wire_ = ether_.join(100, "driver");
+    odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*driver_wire_, wire::topics::odom).value();
+    points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*driver_wire_, wire::topics::points).value();
+    cmd_vel_ = wire::make_reader(*driver_wire_, wire::topics::cmd_vel, *strand_,
+                                 [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
+                                   command = {t.linear().x(), t.linear().y(), t.angular().z()};
+                                   commands.push_back(command);
+                                   command_at = scheduler_.elapsed();
+                                 })
+                   .value();
+    odom_timer_ = strand_->every(20ms, [this] { drive(); });
+    points_timer_ = strand_->every(100ms, [this] { scan(); });
+    start_agent();
+  }
+  ~AgentBench() { stop_agent(); }
+
+  void start_agent() {
+    radio_ = ether_.join(77, "r1");
+    robot_ = ether_.join(100, "r1");
+    ++params_.seed;
+    agent_ = std::make_unique<Agent>(params_, *machine_, *radio_, *robot_);
+    const auto started = agent_->start();
+    if (!started) throw std::runtime_error(started.error().text);
+  }
+  void stop_agent() {
+    agent_.reset();
+    radio_.reset();
+    robot_.reset();
+  }
+
+  Operator& join(const std::string& name) {
+    Operator& op = *operators_.emplace_back(std::make_unique<Operator>());
+    op.name = name;
+    for (std::size_t i = 0; i < name.size(); ++i) op.id[i] = static_cast<std::uint8_t>(name[i]);
+    connect(op);
+    return op;
+  }
+  /// A new process of the same operator: other participant, numbers from 1.
+  void restart(Operator& op) {
+    op.readers.clear();
+    op.presence = {};
+    op.command = {};
+    op.joystick = {};
+    op.wire.reset();
+    op.seq = op.stick_seq = 0;
+    connect(op);
+  }
+
+  std::uint64_t send(Operator& op, radio::CommandKind kind, const std::string& text = {}, double x = 0,
+                     double y = 0, bool flag = false) {
+    radio::Command c;
+    c.robot("r1");
+    c.station(op.name);
+    c.station_id(op.id);
+    c.epoch(op.authority.epoch());
+    c.seq(++op.seq);
+    c.kind(kind);
+    c.text(text);
+    c.position({x, y, std::nan("")});
+    c.flag(flag);
+    last_command = c;
+    (void)op.command.write(c);
+    return op.seq;
+  }
+  /// Sends, lets half a second pass, and gives the answer's reason; Reason::no_answer when there was none.
+  Reason ask(Operator& op, radio::CommandKind kind, const std::string& text = {}, double x = 0, double y = 0,
+             bool flag = false) {
+    const std::uint64_t seq = send(op, kind, text, x, y, flag);
+    run(300ms);
+    for (const auto& a : op.answers)
+      if (a.seq() == seq && a.station_id() == op.id) return static_cast<Reason>(a.reason());
+    return Reason::no_answer;
+  }
+  void stick(Operator& op, double vx, double wz = 0) {
+    radio::Joystick j;
+    j.robot("r1");
+    j.station_id(op.id);
+    j.epoch(op.authority.epoch());
+    j.seq(++op.stick_seq);
+    j.echo(op.state.stamp());
+    j.vx(static_cast<float>(vx));
+    j.wz(static_cast<float>(wz));
+    (void)op.joystick.write(j);
+  }
+  /// Streams the stick at 20 Hz for so long.
+  void stream(Operator& op, double vx, Duration time) {
+    for (Duration t{}; t < time; t += 50ms) {
+      stick(op, vx);
+      run(50ms);
+    }
+  }
+  void run(Duration time) { scheduler_.run_until(scheduler_.elapsed() + time); }
+  void at(Duration after, Task task) { scheduler_.at(scheduler_.elapsed() + after, std::move(task)); }
+  Duration elapsed() const { return scheduler_.elapsed(); }
+
+  Twist2 command{};
+  std::vector<Twist2> commands{};
+  Duration command_at{};
+  Pose2 pose{};  ///< odometry frame, as the driver has it
+  bool driver_alive{true}, lidar_alive{true};
+  PointCloud obstacles{};  ///< odometry frame, beside the plain
+  radio::Command last_command{};
+  wire::Ether& ether() { return ether_; }
+  Agent& agent() { return *agent_; }
+
+ private:
+  void connect(Operator& op) {
+    op.wire = ether_.join(77, op.name);
+    op.presence = wire::Writer<radio::Presence>::make(*op.wire, wire::topics::presence).value();
+    op.command = wire::Writer<radio::Command>::make(*op.wire, wire::topics::command, "r1").value();
+    op.joystick = wire::Writer<radio::Joystick>::make(*op.wire, wire::topics::joystick, "r1").value();
+    Operator* o = &op;
+    keep(op, wire::topics::acknowledgement,
+         [o](const radio::Acknowledgement& a) { o->answers.push_back(a); });
+    keep(op, wire::topics::notification, [o](const radio::Notification& n) { o->notices.push_back(n); });
+    keep(op, wire::topics::authority, [o](const radio::AuthorityStatus& a) { o->authority = a; });
+    keep(op, wire::topics::behaviour, [o](const radio::BehaviourState& b) { o->behaviour = b; });
+    keep(op, wire::topics::robot_state, [o](const radio::RobotState& s) { o->state = s; });
+    keep(op, wire::topics::capabilities, [o](const radio::Capabilities& c) { o->capabilities = c; });
+    keep(op, wire::topics::health, [o](const radio::Health& h) { o->health = h; });
+    const auto announce = [o] {
+      if (!o->up) return;
+      radio::Presence p;
+      p.name(o->name);
+      p.id(o->id);
+      p.protocol(1);
+      (void)o->presence.write(p);
+    };
+    announce();
+    op.beat = strand_->every(500ms, announce);
+  }
+  template <class T, class F>
+  void keep(Operator& op, const wire::Topic<T>& topic, F store) {
+    op.readers.push_back(
+        wire::make_reader(*op.wire, topic, *strand_, [store](const T& s, const wire::SampleInfo&) {
+          store(s);
+        }).value());
+  }
+  void drive() {
+    pose = pose * Pose2{command.vx * 0.02, command.vy * 0.02, command.wz * 0.02};
+    if (!driver_alive) return;
+    nav_msgs::msg::Odometry o;
+    stamp(o.header());
+    o.pose().pose().position().x(pose.x);
+    o.pose().pose().position().y(pose.y);
+    o.pose().pose().orientation().z(std::sin(pose.yaw / 2));
+    o.pose().pose().orientation().w(std::cos(pose.yaw / 2));
+    o.twist().twist().linear().x(command.vx);
+    o.twist().twist().angular().z(command.wz);
+    (void)odom_.write(o);
+  }
+  void scan() {
+    if (!lidar_alive) return;
+    PointCloud cloud;
+    for (int i = 0; i < 360; ++i)
+      for (const float r : {1.0f, 2.0f, 4.0f}) {
+        const float a = static_cast<float>(i) * 0.0174533f;
+        cloud.push_back({r * std::cos(a), r * std::sin(a), 0.0f});
+      }
+    const Pose2 back = pose.inverse();
+    for (const Eigen::Vector3f& o : obstacles) {
+      const Eigen::Vector2d p = back * Eigen::Vector2d(o.x(), o.y());
+      cloud.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), o.z()});
+    }
+    sensor_msgs::msg::PointCloud2 c;
+    stamp(c.header());
+    c.height(1);
+    c.width(static_cast<std::uint32_t>(cloud.size()));
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      sensor_msgs::msg::PointField f;
+      f.name(std::string(1, "xyz"[i]));
+      f.offset(4 * i);
+      f.datatype(7);
+      f.count(1);
+      c.fields().push_back(f);
+    }
+    c.point_step(12);
+    c.row_step(12 * c.width());
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(cloud.data());
+    c.data().assign(bytes, bytes + cloud.size() * 12);
+    (void)points_.write(c);
+  }
+  void stamp(std_msgs::msg::Header& h) {
+    const auto ns = strand_->now().time_since_epoch().count();
+    h.stamp().sec(static_cast<std::int32_t>(ns / 1'000'000'000));
+    h.stamp().nanosec(static_cast<std::uint32_t>(ns % 1'000'000'000));
+  }
+
+  AgentParams params_;
+  VirtualScheduler scheduler_;
+  wire::Ether ether_;
+  std::unique_ptr<Runtime> machine_, world_;
+  std::shared_ptr<Executor> strand_;
+  std::unique_ptr<wire::Wire> driver_wire_, radio_, robot_;
+  wire::Writer<nav_msgs::msg::Odometry> odom_{};
+  wire::Writer<sensor_msgs::msg::PointCloud2> points_{};
+  std::unique_ptr<wire::RawReader> cmd_vel_{};
+  Timer odom_timer_{}, points_timer_{};
+  std::vector<std::unique_ptr<Operator>> operators_{};
+  std::unique_ptr<Agent> agent_{};
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,246 @@
+#include <gmock/gmock.h>
+
+#include "tests/agent/agent_bench.hpp"
+
+namespace adit::agent {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+
+class AgentTest : public testing::Test {
+ protected:
+  AgentTest() { bench.run(1500ms); }
+  void take() { ASSERT_EQ(bench.ask(op1, radio::CMD_TAKE), Reason::none); }
+  void enter_manual() {
+    take();
+    bench.stream(op1, 0.0, 300ms);
+    bench.send(op1, radio::CMD_MODE, "manual");
+    bench.stream(op1, 0.0, 300ms);
+    ASSERT_EQ(op1.behaviour.mode(), "manual");
+  }
+  AgentBench bench{};
+  AgentBench::Operator& op1 = bench.join("op1");
+  AgentBench::Operator& op2 = bench.join("op2");
+};
+
+TEST_F(AgentTest, SaysWhoItIsAndThatItHolds) {
+  EXPECT_EQ(op1.capabilities.name(), "r1");
+  EXPECT_EQ(op1.capabilities.protocol(), 1);
+  EXPECT_THAT(op1.capabilities.modes(), Contains("waypoint"));
+  EXPECT_EQ(op1.behaviour.mode(), "hold");
+  EXPECT_EQ(op1.authority.holder(), "");
+  EXPECT_NE(op1.authority.epoch().start(), 0u);
+  ASSERT_FALSE(op1.health.components().empty());
+  for (const auto& c : op1.health.components()) EXPECT_TRUE(c.healthy()) << c.name();
+}
+
+TEST_F(AgentTest, SendsZeroToTheDriverAtTwentyHertz) {
+  bench.commands.clear();
+  bench.run(1s);
+  EXPECT_EQ(bench.commands.size(), 20u);
+  EXPECT_THAT(bench.commands, testing::Each(Twist2{}));
+}
+
+TEST_F(AgentTest, TakenByOneThenByTheOther) {
+  take();
+  EXPECT_EQ(op2.authority.holder(), "op1");
+  EXPECT_EQ(bench.ask(op2, radio::CMD_TAKE), Reason::none);
+  EXPECT_EQ(op1.authority.holder(), "op2");
+  EXPECT_THAT(op1.told(), ElementsAre("taken"));
+}
+
+TEST_F(AgentTest, RepeatsAreAnsweredButDoneOnce) {
+  take();
+  const auto counter = op1.authority.epoch().counter();
+  (void)op1.command.write(bench.last_command);
+  (void)op1.command.write(bench.last_command);
+  bench.run(300ms);
+  EXPECT_EQ(op1.answers.size(), 3u);
+  EXPECT_EQ(op1.authority.epoch().counter(), counter);
+}
+
+TEST_F(AgentTest, JoystickReachesTheDriverAtOnce) {
+  enter_manual();
+  const Duration sent = bench.elapsed();
+  bench.stick(op1, 0.5);
+  bench.run(10ms);
+  EXPECT_NEAR(bench.command.vx, 0.5, 1e-6);
+  EXPECT_LT(seconds(bench.command_at - sent), 0.005);
+}
+
+TEST_F(AgentTest, VelocityIsCutToThePlatform) {
+  enter_manual();
+  bench.stream(op1, 50.0, 200ms);
+  EXPECT_NEAR(bench.command.vx, Platform{}.max_speed, 1e-6);
+}
+
+TEST_F(AgentTest, SilentJoystickIsZeroThenHold) {
+  enter_manual();
+  bench.stream(op1, 0.5, 500ms);
+  bench.run(400ms);
+  EXPECT_EQ(bench.command, Twist2{});
+  EXPECT_EQ(op1.behaviour.mode(), "manual");
+  bench.run(700ms);
+  EXPECT_EQ(op1.behaviour.mode(), "hold");
+  EXPECT_THAT(op1.told(), Contains("joystick_lost"));
+}
+
+TEST_F(AgentTest, StopOfAnotherIsZeroAtOnce) {
+  enter_manual();
+  bench.stream(op1, 0.5, 500ms);
+  bench.send(op2, radio::CMD_STOP);
+  bench.run(20ms);
+  EXPECT_EQ(bench.command, Twist2{});
+  bench.stream(op1, 0.5, 300ms);
+  EXPECT_EQ(bench.command, Twist2{});
+  EXPECT_TRUE(op1.behaviour.stopped());
+  EXPECT_THAT(op1.told(), Contains("stopped"));
+  EXPECT_EQ(bench.ask(op1, radio::CMD_RESET), Reason::stop_of_another);
+  EXPECT_EQ(bench.ask(op1, radio::CMD_RESET, {}, 0, 0, true), Reason::none);
+  bench.stream(op1, 0.5, 300ms);
+  EXPECT_EQ(bench.command, Twist2{});  // in hold: a reset moves nothing
+}
+
+TEST_F(AgentTest, DrivesToItsGoal) {
+  take();
+  ASSERT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 4.0, 1.0), Reason::none);
+  EXPECT_EQ(op1.behaviour.mode(), "waypoint");
+  bench.run(15s);
+  EXPECT_NEAR(bench.pose.x, 4.0, 0.4);
+  EXPECT_NEAR(bench.pose.y, 1.0, 0.4);
+  EXPECT_EQ(op1.behaviour.goal_state(), radio::GOAL_REACHED);
+  EXPECT_THAT(op1.told(), Contains("arrived"));
+  EXPECT_EQ(bench.command, Twist2{});
+  EXPECT_NEAR(op1.state.x(), 4.0, 0.4);
+}
+
+TEST_F(AgentTest, GoalsAreInTheMapFrame) {
+  AgentParams params{};
+  params.start = {10.0, 5.0, M_PI / 2};
+  AgentBench turned(params);
+  auto& op = turned.join("op1");
+  turned.run(1500ms);
+  EXPECT_NEAR(op.state.x(), 10.0, 1e-3);
+  ASSERT_EQ(turned.ask(op, radio::CMD_TAKE), Reason::none);
+  ASSERT_EQ(turned.ask(op, radio::CMD_GOTO, {}, 10.0, 8.0), Reason::none);
+  turned.run(12s);
+  EXPECT_NEAR(turned.pose.x, 3.0, 0.4);
+  EXPECT_NEAR(turned.pose.y, 0.0, 0.4);
+  EXPECT_NEAR(op.state.y(), 8.0, 0.4);
+}
+
+TEST_F(AgentTest, GoalInAnObstacleIsRefused) {
+  for (float x = 2.8f; x < 3.2f; x += 0.05f)
+    for (float y = -0.2f; y < 0.2f; y += 0.05f)
+      for (const float z : {0.3f, 0.4f}) bench.obstacles.push_back({x, y, z});
+  bench.run(1s);
+  take();
+  EXPECT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 3.0, 0.0), Reason::goal_unreachable);
+  EXPECT_THAT(op1.told(), Contains("mode_refused"));
+}
+
+TEST_F(AgentTest, SilentLidarStopsTheWayAndItGoesOn) {
+  take();
+  ASSERT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 8.0, 0.0), Reason::none);
+  bench.run(2s);
+  EXPECT_GT(bench.command.vx, 0.1);
+  bench.lidar_alive = false;
+  bench.run(700ms);
+  EXPECT_EQ(bench.command, Twist2{});
+  EXPECT_EQ(op1.behaviour.mode(), "waypoint");
+  EXPECT_EQ(op1.behaviour.reason(), static_cast<std::uint16_t>(Reason::terrain_stale));
+  bench.lidar_alive = true;
+  bench.run(1s);
+  EXPECT_GT(bench.command.vx, 0.1);
+}
+
+TEST_F(AgentTest, SilentDriverEndsManualAndIsTold) {
+  enter_manual();
+  bench.driver_alive = false;
+  bench.stream(op1, 0.5, 700ms);
+  EXPECT_EQ(bench.command, Twist2{});
+  EXPECT_EQ(op1.behaviour.mode(), "hold");
+  EXPECT_THAT(op1.told(), Contains("driver_lost"));
+  EXPECT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 1.0, 0.0), Reason::driver_silent);
+}
+
+TEST_F(AgentTest, SmartJoystickDrivesAhead) {
+  take();
+  bench.stream(op1, 0.0, 300ms);
+  bench.send(op1, radio::CMD_MODE, "smart_joystick");
+  bench.stream(op1, 0.0, 300ms);
+  ASSERT_EQ(op1.behaviour.mode(), "smart_joystick");
+  bench.stream(op1, 0.6, 4s);
+  EXPECT_GT(bench.pose.x, 1.0);
+  bench.stream(op1, 0.0, 300ms);
+  EXPECT_EQ(bench.command, Twist2{});
+}
+
+TEST_F(AgentTest, RestartedOperatorHasHisRobotBack) {
+  take();
+  ASSERT_EQ(bench.ask(op1, radio::CMD_LOCK), Reason::none);
+  bench.restart(op1);
+  bench.run(500ms);
+  EXPECT_EQ(op1.authority.holder(), "op1");
+  EXPECT_TRUE(op1.authority.locked());
+  EXPECT_EQ(bench.ask(op1, radio::CMD_MODE, "hold"), Reason::none);
+}
+
+TEST_F(AgentTest, RestartedAgentHoldsWithoutHolder) {
+  take();
+  ASSERT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 8.0, 0.0), Reason::none);
+  const auto start = op1.authority.epoch().start();
+  bench.stop_agent();
+  bench.command = {};
+  bench.run(500ms);
+  bench.start_agent();
+  bench.run(1500ms);
+  EXPECT_EQ(op1.authority.holder(), "");
+  EXPECT_NE(op1.authority.epoch().start(), start);
+  EXPECT_EQ(op1.behaviour.mode(), "hold");
+  EXPECT_EQ(bench.command, Twist2{});
+  EXPECT_EQ(bench.ask(op1, radio::CMD_MODE, "hold"), Reason::nobody_holds);
+}
+
+TEST_F(AgentTest, ConsoleEndsALock) {
+  take();
+  ASSERT_EQ(bench.ask(op1, radio::CMD_LOCK), Reason::none);
+  std::string answer;
+  bench.agent().at_console("unlock", [&](const std::string& a) { answer = a; });
+  bench.run(300ms);
+  EXPECT_EQ(answer, "unlocked\n");
+  EXPECT_FALSE(op1.authority.locked());
+  bench.agent().at_console("status", [&](const std::string& a) { answer = a; });
+  bench.run(10ms);
+  EXPECT_THAT(answer, testing::HasSubstr("held by op1"));
+}
+
+TEST(AgentRun, SameSeedSameRun) {
+  const auto run = [](std::uint64_t seed) {
+    AgentBench bench({}, seed);
+    auto& op = bench.join("op1");
+    bench.run(1s);
+    (void)bench.ask(op, radio::CMD_TAKE);
+    (void)bench.ask(op, radio::CMD_GOTO, {}, 3.0, 0.5);
+    bench.run(5s);
+    return bench.commands;
+  };
+  EXPECT_EQ(run(3), run(3));
+}
+
+TEST(AgentRun, BadNameAndMissingTreeAreErrors) {
+  VirtualScheduler scheduler(1);
+  wire::Ether ether(scheduler, {});
+  const auto machine = scheduler.machine("r1", 0s);
+  const auto radio = ether.join(77, "r1"), robot = ether.join(100, "r1");
+  AgentParams params{};
+  params.name = "no good";
+  EXPECT_EQ(Agent(params, *machine, *radio, *robot).start().reason(), Reason::bad_argument);
+  params.name = "r1";
+  params.tree = "/nowhere/robot.xml";
+  EXPECT_EQ(Agent(params, *machine, *radio, *robot).start().reason(), Reason::cannot_read);
+}
+
+}  // namespace
+}  // namespace adit::agent
