@@ -24,9 +24,13 @@ void encode(const T& sample, std::vector<std::uint8_t>& out) {
 }
 
 /// False when the bytes are no sample of T (wrong encapsulation, truncated, a bool of 2, lengths beyond the
-/// data). Never throws, never allocates more than the bytes can hold.
+/// data). Never throws. A sequence is never longer than the bytes left, so what is allocated stays below 128
+/// times their number. Bounds of sequences are not checked (the generated code does not): a receiver that
+/// keeps one looks at its length.
 template <class T>
 bool decode(std::span<const std::uint8_t> bytes, T& sample) {
+  if (bytes.size() < 4 || bytes[0] != 0 || bytes[1] > 1)
+    return false;  // Fast CDR takes parameter lists for it, too
   try {
     // FastBuffer wants a mutable pointer but a deserialising Cdr only reads.
     auto* data = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));

@@ -84,10 +84,11 @@ GroundPlan make_ground_plan(const World& world, double headroom) {
       for (int b = std::max(0, j - reach); b <= std::min(plan.ny - 1, j + reach); ++b)
         for (int a = std::max(0, i - reach); a <= std::min(plan.nx - 1, i + reach); ++a)
           beside = beside || at(a, b) == GroundPlan::floor;
-      if (open_between(grid, i, j, floor + overhead, floor + overhead + 0.3))
-        at(i, j) = GroundPlan::furniture;
-      else if (beside)
-        at(i, j) = GroundPlan::wall;
+      const bool above = open_between(grid, i, j, floor + overhead, floor + overhead + 0.3);
+      if (beside)
+        at(i, j) = above ? GroundPlan::furniture : GroundPlan::wall;
+      else if (above)
+        at(i, j) = GroundPlan::glimpsed;
     }
   frame(plan, grid);
   return plan;

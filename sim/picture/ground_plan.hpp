@@ -8,7 +8,7 @@ namespace adit::sim {
 
 /// A world seen from above, one class for each column.
 struct GroundPlan {
-  enum Kind : std::uint8_t { unknown, floor, furniture, wall };
+  enum Kind : std::uint8_t { unknown, floor, glimpsed, furniture, wall };
 
   int nx{}, ny{};
   std::vector<Kind> kind{};
@@ -18,7 +18,8 @@ struct GroundPlan {
 };
 
 /// Floor: open for a body of that height at the most common floor level; wall: solid up to above a man's
-/// head, beside what is open; furniture: solid beside it but open above; unknown: the rest. Open patches of
+/// head, beside what is open; furniture: solid beside it but open above; glimpsed:
+/// open at that height only; unknown: the rest. Open patches of
 /// less than a square metre do not widen the part worth showing.
 GroundPlan make_ground_plan(const World& world, double headroom);
 

@@ -12,9 +12,9 @@
 namespace adit::sim {
 namespace {
 
-constexpr Colour paper{0.955, 0.95, 0.935}, floor_tone{1.0, 1.0, 0.995}, furniture_tone{0.80, 0.82, 0.835},
-    wall_tone{0.17, 0.20, 0.25}, ink{0.13, 0.15, 0.19}, faint{0.42, 0.45, 0.50},
-    grid_tone{0.35, 0.45, 0.55, 0.16};
+constexpr Colour paper{0.955, 0.95, 0.935}, floor_tone{1.0, 1.0, 0.995}, glimpsed_tone{0.865, 0.875, 0.88},
+    furniture_tone{0.57, 0.61, 0.66}, wall_tone{0.17, 0.20, 0.25}, ink{0.13, 0.15, 0.19},
+    faint{0.42, 0.45, 0.50}, grid_tone{0.35, 0.45, 0.55, 0.16};
 // Okabe and Ito: told apart by the colour-blind too.
 constexpr std::array<Colour, 6> palette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
                                         {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
@@ -32,6 +32,22 @@ struct View {
   double height() const { return (high.y() - low.y()) * scale; }
 };
 
+Colour tone(GroundPlan::Kind kind) {
+  switch (kind) {
+    case GroundPlan::floor:
+      return floor_tone;
+    case GroundPlan::glimpsed:
+      return glimpsed_tone;
+    case GroundPlan::furniture:
+      return furniture_tone;
+    case GroundPlan::wall:
+      return wall_tone;
+    case GroundPlan::unknown:
+      break;
+  }
+  return paper;
+}
+
 void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, const View& view) {
   const double r = grid.resolution();
   cairo_save(sketch.cairo());
@@ -48,10 +64,7 @@ void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, co
                    x1 = std::round(view.x(grid.origin().x() + i * r));
       const double y0 = std::round(view.y(grid.origin().y() + (j + 1) * r)),
                    y1 = std::round(view.y(grid.origin().y() + j * r));
-      sketch.fill(x0, y0, x1 - x0, y1 - y0,
-                  kind == GroundPlan::floor  ? floor_tone
-                  : kind == GroundPlan::wall ? wall_tone
-                                             : furniture_tone);
+      sketch.fill(x0, y0, x1 - x0, y1 - y0, tone(kind));
     }
   cairo_restore(sketch.cairo());
 }

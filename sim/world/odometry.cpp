@@ -13,7 +13,7 @@ Odometry::Odometry(const OdometryParams& params, std::uint64_t seed)
 void Odometry::move(const Pose2& from, const Pose2& to, double dt) {
   Pose2 motion = from.inverse() * to;
   const double way = std::hypot(motion.x, motion.y);
-  if (way > 0.0) {
+  if (way > 1e-9) {  // less is rounding
     const double keep = std::exp(-way / params_.correlation);
     const double deviation = params_.drift * M_PI / 180.0;
     rate_ = keep * rate_ + std::sqrt(1.0 - keep * keep) * deviation * gaussian(random_);

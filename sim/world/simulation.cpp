@@ -72,6 +72,7 @@ std::optional<std::size_t> Simulation::contact(std::size_t robot, const Rectangl
 
 void Simulation::record(std::size_t robot, std::size_t partner) {
   constexpr std::size_t limit = 1000;
+  robots_[robot].contact = robots_[robot].body.pose();
   robots_[robot].truth.collisions++;
   if (partner < robots_.size()) {
     robots_[partner].truth.collisions++;
@@ -95,11 +96,13 @@ void Simulation::move(std::size_t index) {
   const std::optional<std::size_t> partner = contact(index, footprint(robot.body.platform(), after));
   if (partner) {
     robot.body.halt();
-    if (!robot.touching) record(index, *partner);
+    if (robot.partner != partner) record(index, *partner);
+    robot.partner = partner;
   } else {
     robot.body.take(after);
+    const Pose2 away = robot.contact.inverse() * after;
+    if (std::hypot(away.x, away.y) > 0.05 || std::abs(away.yaw) > 0.1) robot.partner.reset();
   }
-  robot.touching = partner.has_value();
   const Pose2 now = robot.body.pose();
   robot.odometry.move(before, now, dt);
   Truth& truth = robot.truth;

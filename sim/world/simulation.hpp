@@ -29,7 +29,7 @@ struct RobotStart {
   Pose2 pose{};  ///< world
 };
 
-/// A contact; it lasts until the robot moves freely again.
+/// A contact; it lasts until the robot has moved 0.05 m or 0.1 rad away from where it was held.
 struct Collision {
   Duration at{};
   std::string robot{};    ///< the one that moved
@@ -97,7 +97,8 @@ class Simulation {
     Odometry odometry;
     std::shared_ptr<const StandingMap> ground;
     Truth truth{};
-    bool touching{false};
+    std::optional<std::size_t> partner{};  ///< of the contact that lasts; size() for the world
+    Pose2 contact{};                       ///< where it began
   };
   Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
 

@@ -5,12 +5,14 @@ namespace adit::wire {
 
 /// One Fast DDS participant. With no interface named, nothing leaves the machine.
 struct FastDdsParams {
-  std::uint32_t domain{77};              ///< DDS domain, [0, 232]
-  std::string name{"adit"};              ///< participant name, for people
-  std::vector<std::string> interfaces{}; ///< addresses to use; empty: 127.0.0.1 alone
-  std::vector<std::string> peers{};      ///< ADDRESS or ADDRESS:PORT of others, for networks without multicast
-  bool multicast{true};                  ///< ask for others by multicast
-  bool shared_memory{false};             ///< robot domain: large sensor samples between processes of one machine
+  std::uint32_t domain{77};               ///< DDS domain, [0, 232]
+  std::string name{"adit"};               ///< participant name, for people
+  std::vector<std::string> interfaces{};  ///< addresses to use; empty: 127.0.0.1 alone
+  std::vector<std::string> peers{};  ///< ADDRESS or ADDRESS:PORT of others, for networks without multicast
+  bool multicast{true};              ///< ask for others by multicast
+  /// Robot domain: large sensor samples between processes of one machine through shared memory, and UDP
+  /// datagrams of up to 65 kB; without it datagrams stay below 1400 bytes, as a radio wants them.
+  bool shared_memory{false};
 };
 
 /// Opens the participant. Errors: wire_failed (with what to do), bad_argument.

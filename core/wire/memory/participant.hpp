@@ -6,27 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "core/wire/cost.hpp"
 #include "core/wire/memory/ether.hpp"
 #include "core/wire/memory/radio.hpp"
 #include "core/wire/qos.hpp"
 
 /// How the in-memory wire behaves inside: RTPS in miniature. Everything here runs on the scheduler's thread.
 namespace adit::wire {
-
-/// Bytes on the wire, with RTPS header, UDP and IP; measured on Fast DDS (docs/wire.md).
-struct WireCost {
-  static constexpr std::uint32_t headers = 20 + 20 + 8;          ///< RTPS, IP, UDP: once per frame
-  static constexpr std::uint32_t data = headers + 16 + 12 + 24;  ///< + INFO_DST, INFO_TS, DATA
-  static constexpr std::uint32_t key = 24;                       ///< key hash as inline QoS
-  static constexpr std::uint32_t heartbeat = headers + 16 + 32;
-  static constexpr std::uint32_t acknack = headers + 16 + 32;
-  static constexpr std::uint32_t gap = headers + 16 + 36;
-  static constexpr std::uint32_t participant = 560;  ///< announcement
-  static constexpr std::uint32_t endpoint = 400;     ///< one endpoint announced to one peer
-  static constexpr std::uint32_t goodbye = 150;
-  static constexpr int discovery_priority = 1;
-  static constexpr Duration response = 5ms;  ///< to heartbeats and to acknacks
-};
 
 using Payload = std::shared_ptr<const std::vector<std::uint8_t>>;
 

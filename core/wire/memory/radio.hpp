@@ -16,8 +16,6 @@ namespace adit::wire {
 
 /// What a participant puts on the air: sizes and what becomes of it, never its content.
 struct Datagram {
-  static constexpr std::uint32_t frame_bytes = 1400;  ///< RTPS fragments are cut to this
-
   std::uint32_t bytes{};  ///< headers included, all frames together
   std::uint16_t frames{1};
   int priority{};                ///< 0 goes first, up to 6

@@ -6,12 +6,6 @@
 namespace adit::wire {
 namespace {
 
-std::uint16_t frames_of(std::size_t payload) {
-  constexpr std::size_t room = Datagram::frame_bytes - WireCost::data;
-  return static_cast<std::uint16_t>(
-      std::min<std::size_t>(std::max<std::size_t>(1, (payload + room - 1) / room), 65535));
-}
-
 std::uint64_t number_of(const std::string& key, int writer, int reader) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
   const auto mix = [&hash](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3ULL; };
@@ -42,9 +36,8 @@ Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
   }
   ++out.samples_out;
   sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(cdr.begin(), cdr.end());
-  sample.frames = frames_of(cdr.size());
-  sample.wire_bytes = static_cast<std::uint32_t>(cdr.size()) +
-                      sample.frames * (WireCost::data + (topic.keyed ? WireCost::key : 0U));
+  sample.frames = WireCost::frames(cdr.size());
+  sample.wire_bytes = WireCost::sample(cdr.size(), topic.keyed);
   if (!owner->stopped) owner->core->show(Frame::Kind::sent, *owner, nullptr, topic, sample.bytes);
   add(std::move(sample));
   return {};

@@ -1,0 +1,64 @@
+#include "core/wire/fastdds/counting_transport.hpp"
+
+#include <fastrtps/utils/IPLocator.h>
+#include <fastdds/rtps/common/LocatorList.hpp>
+
+namespace adit::wire {
+namespace rtps = eprosima::fastrtps::rtps;
+
+namespace {
+
+constexpr std::uint64_t udp_and_ip = 28;
+
+/// RTPS port numbers: 7400 + 250 * domain + {0: discovery by multicast, 1: data by multicast,
+/// 10 + 2 n: discovery, 11 + 2 n: data of participant n}.
+bool is_discovery(std::uint32_t port) { return port >= 7400 && (port - 7400) % 250 % 2 == 0; }
+
+}  // namespace
+
+CountingTransport::CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
+                                     std::shared_ptr<Traffic> traffic)
+    : ChainingTransport(descriptor),
+      descriptor_(const_cast<eprosima::fastdds::rtps::ChainingTransportDescriptor*>(&descriptor)),
+      traffic_(std::move(traffic)) {}
+
+eprosima::fastdds::rtps::TransportDescriptorInterface* CountingTransport::get_configuration() {
+  return descriptor_;
+}
+
+bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rtps::octet* send_buffer,
+                             std::uint32_t send_buffer_size,
+                             rtps::LocatorsIterator* destination_locators_begin,
+                             rtps::LocatorsIterator* destination_locators_end,
+                             const std::chrono::steady_clock::time_point& timeout) {
+  // The iterators are of several kinds and can be walked once: one datagram at a time goes down.
+  bool all_sent = true;
+  for (auto& destination = *destination_locators_begin; destination != *destination_locators_end;
+       ++destination) {
+    const rtps::Locator_t& locator = *destination;
+    if (!IsLocatorSupported(locator)) continue;
+    const std::uint64_t bytes = send_buffer_size + udp_and_ip;
+    traffic_->total_out.fetch_add(bytes, std::memory_order_relaxed);
+    if (is_discovery(rtps::IPLocator::getPhysicalPort(locator))) {
+      traffic_->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
+    }
+    rtps::LocatorList_t one;
+    one.push_back(locator);
+    rtps::Locators begin(one.begin()), end(one.end());
+    all_sent &= low_sender_resource->send(send_buffer, send_buffer_size, &begin, &end, timeout);
+  }
+  return all_sent;
+}
+
+void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterface* next_receiver,
+                                const rtps::octet* receive_buffer, std::uint32_t receive_buffer_size,
+                                const rtps::Locator_t& local_locator, const rtps::Locator_t& remote_locator) {
+  const std::uint64_t bytes = receive_buffer_size + udp_and_ip;
+  traffic_->total_in.fetch_add(bytes, std::memory_order_relaxed);
+  if (is_discovery(rtps::IPLocator::getPhysicalPort(local_locator))) {
+    traffic_->discovery_in.fetch_add(bytes, std::memory_order_relaxed);
+  }
+  next_receiver->OnDataReceived(receive_buffer, receive_buffer_size, local_locator, remote_locator);
+}
+
+}  // namespace adit::wire

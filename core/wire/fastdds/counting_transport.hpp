@@ -1,0 +1,48 @@
+#pragma once
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+namespace adit::wire {
+
+/// Bytes that went through a participant's sockets, UDP and IP headers included.
+struct Traffic {
+  std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
+};
+
+/// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them.
+class CountingTransport final : public eprosima::fastdds::rtps::ChainingTransport {
+ public:
+  CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
+                    std::shared_ptr<Traffic> traffic);
+
+  eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override;
+  bool send(eprosima::fastrtps::rtps::SenderResource* low_sender_resource,
+            const eprosima::fastrtps::rtps::octet* send_buffer, std::uint32_t send_buffer_size,
+            eprosima::fastrtps::rtps::LocatorsIterator* destination_locators_begin,
+            eprosima::fastrtps::rtps::LocatorsIterator* destination_locators_end,
+            const std::chrono::steady_clock::time_point& timeout) override;
+  void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next_receiver,
+               const eprosima::fastrtps::rtps::octet* receive_buffer, std::uint32_t receive_buffer_size,
+               const eprosima::fastrtps::rtps::Locator_t& local_locator,
+               const eprosima::fastrtps::rtps::Locator_t& remote_locator) override;
+
+ private:
+  eprosima::fastdds::rtps::ChainingTransportDescriptor* descriptor_;  // owned by whoever made us
+  std::shared_ptr<Traffic> traffic_;
+};
+
+struct CountingTransportDescriptor final : eprosima::fastdds::rtps::ChainingTransportDescriptor {
+  CountingTransportDescriptor(std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface> low,
+                              std::shared_ptr<Traffic> counters)
+      : ChainingTransportDescriptor(std::move(low)), traffic(std::move(counters)) {}
+  eprosima::fastdds::rtps::TransportInterface* create_transport() const override {
+    return new CountingTransport(*this, traffic);
+  }
+  std::shared_ptr<Traffic> traffic;
+};
+
+}  // namespace adit::wire

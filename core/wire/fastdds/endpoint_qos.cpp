@@ -1,0 +1,56 @@
+#include "core/wire/fastdds/endpoint_qos.hpp"
+
+#include <algorithm>
+
+#include "core/wire/qos.hpp"
+
+namespace adit::wire {
+namespace dds = eprosima::fastdds::dds;
+namespace {
+
+constexpr int max_keys = 256;     // the library's default of 10 loses every peer beyond the tenth in silence
+constexpr int reader_depth = 64;  // unkeyed: samples of all writers together until taken, which is at once
+
+eprosima::fastrtps::Duration_t duration(Duration d) {
+  return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
+}
+
+template <class EndpointQos>
+void common(const TopicInfo& topic, const Qos& qos, int depth, EndpointQos& out) {
+  out.reliability().kind = qos.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
+  out.reliability().max_blocking_time = duration(0ms);  // never blocks: the newest samples are kept
+  out.durability().kind =
+      qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
+  out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
+  out.history().depth = depth;
+  const int keys = topic.keyed ? max_keys : 1;
+  out.resource_limits().max_instances = keys;
+  out.resource_limits().max_samples_per_instance = depth;
+  out.resource_limits().max_samples = keys * depth;
+  out.resource_limits().allocated_samples = std::min(16, keys * depth);
+  out.endpoint().history_memory_policy = eprosima::fastrtps::rtps::DYNAMIC_REUSABLE_MEMORY_MODE;
+  out.data_sharing().off();
+}
+
+}  // namespace
+
+dds::DataWriterQos dds_writer_qos(const TopicInfo& topic) {
+  const Qos qos = writer_qos(topic);
+  dds::DataWriterQos out;
+  common(topic, qos, std::max<int>(1, topic.depth), out);
+  out.writer_data_lifecycle().autodispose_unregistered_instances = false;
+  if (qos.reliable) out.reliable_writer_qos().times.heartbeatPeriod = duration(qos.heartbeat);
+  // Written from the caller's thread: the shortest way. What may be large and can wait does not hold it up.
+  const bool wait = topic.qos == QosClass::bulk || topic.qos == QosClass::video;
+  out.publish_mode().kind = wait ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  return out;
+}
+
+dds::DataReaderQos dds_reader_qos(const TopicInfo& topic) {
+  const Qos qos = reader_qos(topic);
+  dds::DataReaderQos out;
+  common(topic, qos, topic.keyed ? std::max<int>(4, topic.depth) : reader_depth, out);
+  return out;
+}
+
+}  // namespace adit::wire

@@ -1,0 +1,104 @@
+#pragma once
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+
+#include "core/wire/fastdds/bytes_type.hpp"
+#include "core/wire/wire.hpp"
+
+namespace adit::wire {
+
+/// Counts of a wire, touched by the application's strands and by Fast DDS's threads.
+class SharedCounts {
+ public:
+  template <class Change>
+  void change(const std::string& topic, const ParticipantId& peer, Change change) {
+    const std::lock_guard lock(mutex_);
+    auto found = counts_.find({topic, peer});
+    if (found == counts_.end()) {
+      // Peers come and go for days: beyond the bound they share one line.
+      const ParticipantId counted = counts_.size() < max_counts ? peer : ParticipantId{};
+      found = counts_.try_emplace({topic, counted}).first;
+      found->second.topic = topic;
+      found->second.peer = counted;
+    }
+    change(found->second);
+  }
+  std::vector<TopicCount> all() const;
+
+ private:
+  static constexpr std::size_t max_counts = 4096;
+  mutable std::mutex mutex_{};
+  std::map<std::pair<std::string, ParticipantId>, TopicCount> counts_{};
+};
+
+/// One Fast DDS DataWriter.
+class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::DataWriterListener {
+ public:
+  static Result<std::unique_ptr<RawWriter>> make(eprosima::fastdds::dds::Publisher& publisher,
+                                                 eprosima::fastdds::dds::Topic& dds_topic,
+                                                 const TopicInfo& topic,
+                                                 std::shared_ptr<SharedCounts> counts);
+  ~FastDdsWriter() override;
+  Result<void> write(std::span<const std::uint8_t> cdr) override;
+  std::size_t matched() const override { return static_cast<std::size_t>(matched_.load()); }
+
+ private:
+  FastDdsWriter(eprosima::fastdds::dds::Publisher& publisher, const TopicInfo& topic,
+                std::shared_ptr<SharedCounts> counts);
+  void on_publication_matched(eprosima::fastdds::dds::DataWriter* writer,
+                              const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
+  Result<void> failed(Reason reason, const std::string& why);
+
+  eprosima::fastdds::dds::Publisher& publisher_;
+  eprosima::fastdds::dds::DataWriter* writer_{};
+  std::string topic_;
+  bool keyed_;
+  std::uint32_t max_bytes_;
+  std::shared_ptr<SharedCounts> counts_;
+  std::atomic<int> matched_{0};
+};
+
+/// One Fast DDS DataReader: takes in Fast DDS's thread, hands on to the strand.
+class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::DataReaderListener {
+ public:
+  static Result<std::unique_ptr<RawReader>> make(eprosima::fastdds::dds::Subscriber& subscriber,
+                                                 eprosima::fastdds::dds::Topic& dds_topic,
+                                                 const TopicInfo& topic, std::shared_ptr<SharedCounts> counts,
+                                                 Executor& strand, RawHandler handler);
+  /// The handler is not running when this returns, and will not run again.
+  ~FastDdsReader() override;
+
+ private:
+  /// What a task on the strand needs; outlives the reader while one waits there.
+  struct Target {
+    std::recursive_mutex mutex{};  // recursive: a handler may drop its own reader
+    bool closed{};
+    RawHandler handler{};
+    Executor* strand{};
+    std::string topic{};
+    std::shared_ptr<SharedCounts> counts{};
+    void run(const std::vector<std::uint8_t>& bytes, const ParticipantId& sender);
+  };
+
+  FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber, bool keyed)
+      : subscriber_(subscriber), keyed_(keyed) {}
+  void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
+  void on_sample_lost(eprosima::fastdds::dds::DataReader* reader,
+                      const eprosima::fastdds::dds::SampleLostStatus& status) override;
+
+  eprosima::fastdds::dds::Subscriber& subscriber_;
+  eprosima::fastdds::dds::DataReader* reader_{};
+  bool keyed_;
+  std::shared_ptr<Target> target_{std::make_shared<Target>()};
+};
+
+}  // namespace adit::wire

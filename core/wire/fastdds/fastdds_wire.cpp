@@ -1,0 +1,189 @@
+#include "core/wire/fastdds/fastdds_wire.hpp"
+
+#include <fastrtps/xmlparser/XMLProfileManager.h>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include <algorithm>
+#include <set>
+
+#include "core/wire/fastdds/counting_transport.hpp"
+#include "core/wire/fastdds/endpoints.hpp"
+#include "core/wire/fastdds/participant_qos.hpp"
+
+namespace adit::wire {
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+using eprosima::fastrtps::types::ReturnCode_t;
+namespace {
+
+ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
+  ParticipantId id{};
+  std::copy(std::begin(prefix.value), std::end(prefix.value), id.begin());
+  return id;
+}
+
+/// Who is there, told to one handler on its strand.
+class Presence final : public dds::DomainParticipantListener {
+ public:
+  void watch(Executor& strand, std::function<void(const ParticipantEvent&)> handler) {
+    const std::lock_guard lock(mutex_);
+    if (target_) target_->close();
+    target_ = std::make_shared<Target>();
+    target_->handler = std::move(handler);
+    strand_ = &strand;
+    for (const ParticipantId& id : present_) tell({id, true});
+  }
+  /// The handler is not running when this returns, and will not run again.
+  void close() {
+    const std::lock_guard lock(mutex_);
+    if (target_) target_->close();
+    target_.reset();
+  }
+
+ private:
+  struct Target {
+    std::recursive_mutex mutex{};
+    std::function<void(const ParticipantEvent&)> handler{};
+    bool closed{};
+    void close() {
+      const std::lock_guard lock(mutex);
+      closed = true;
+    }
+  };
+
+  void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) override {
+    const ParticipantId id = id_of(info.info.m_guid.guidPrefix);
+    const bool gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
+                      info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
+    const std::lock_guard lock(mutex_);
+    const bool changed = gone ? present_.erase(id) > 0 : present_.insert(id).second;
+    if (changed) tell({id, !gone});
+  }
+
+  void tell(ParticipantEvent event) {
+    if (!target_) return;
+    strand_->post([target = target_, event] {
+      const std::lock_guard lock(target->mutex);
+      if (!target->closed) target->handler(event);
+    });
+  }
+
+  std::mutex mutex_{};
+  std::set<ParticipantId> present_{};
+  Executor* strand_{};
+  std::shared_ptr<Target> target_{};
+};
+
+class FastDdsWire final : public Wire {
+ public:
+  FastDdsWire() = default;
+  ~FastDdsWire() override {
+    presence_.close();
+    if (participant_ == nullptr) return;
+    participant_->set_listener(nullptr);
+    participant_->delete_contained_entities();
+    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  }
+
+  Result<void> open(const FastDdsParams& params) {
+    // Everything passes the transports, also between participants of one process: it is counted there.
+    eprosima::fastrtps::LibrarySettingsAttributes settings;
+    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
+    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    auto qos = dds_participant_qos(params, traffic_);
+    if (!qos) return qos.error();
+    participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
+        params.domain, *qos, &presence_, dds::StatusMask::none());
+    if (participant_ == nullptr) {
+      return Error{Reason::wire_failed,
+                   "no DDS participant on domain " + std::to_string(params.domain) +
+                       ": check that the configured interfaces are addresses of this machine"};
+    }
+    return {};
+  }
+
+  ParticipantId id() const override { return id_of(participant_->guid().guidPrefix); }
+
+  Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic,
+                                                 const std::string& partition) override {
+    const std::lock_guard lock(mutex_);
+    auto dds_topic = topic_of(topic);
+    if (!dds_topic) return dds_topic.error();
+    dds::Publisher*& publisher = publishers_[partition];
+    if (publisher == nullptr) {
+      dds::PublisherQos qos;
+      if (!partition.empty()) qos.partition().push_back(partition.c_str());
+      publisher = participant_->create_publisher(qos);
+      if (publisher == nullptr)
+        return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
+    }
+    return FastDdsWriter::make(*publisher, **dds_topic, topic, counts_);
+  }
+
+  Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
+                                                 Executor& strand, RawHandler handler) override {
+    const std::lock_guard lock(mutex_);
+    auto dds_topic = topic_of(topic);
+    if (!dds_topic) return dds_topic.error();
+    dds::Subscriber*& subscriber = subscribers_[partition];
+    if (subscriber == nullptr) {
+      dds::SubscriberQos qos;
+      if (!partition.empty()) qos.partition().push_back(partition.c_str());
+      subscriber = participant_->create_subscriber(qos);
+      if (subscriber == nullptr)
+        return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
+    }
+    return FastDdsReader::make(*subscriber, **dds_topic, topic, counts_, strand, std::move(handler));
+  }
+
+  void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) override {
+    presence_.watch(strand, std::move(handler));
+  }
+
+  WireCounters counters() const override {
+    WireCounters result;
+    result.topics = counts_->all();
+    result.discovery_out = traffic_->discovery_out;
+    result.discovery_in = traffic_->discovery_in;
+    result.total_out = traffic_->total_out;
+    result.total_in = traffic_->total_in;
+    return result;
+  }
+
+ private:
+  Result<dds::Topic*> topic_of(const TopicInfo& topic) {
+    dds::Topic*& known = topics_[topic.name];
+    if (known != nullptr) return known;
+    dds::TypeSupport type(new BytesType(topic.type, topic.keyed, topic.max_bytes));
+    if (participant_->find_type(topic.type).empty() &&
+        type.register_type(participant_) != ReturnCode_t::RETCODE_OK) {
+      return Error{Reason::wire_failed, std::string("Fast DDS refused the type ") + topic.type};
+    }
+    known = participant_->create_topic(topic.name, topic.type, dds::TOPIC_QOS_DEFAULT);
+    if (known == nullptr)
+      return Error{Reason::wire_failed, std::string("Fast DDS refused the topic ") + topic.name};
+    return known;
+  }
+
+  Presence presence_{};
+  std::shared_ptr<Traffic> traffic_{std::make_shared<Traffic>()};
+  std::shared_ptr<SharedCounts> counts_{std::make_shared<SharedCounts>()};
+  dds::DomainParticipant* participant_{};
+  std::mutex mutex_{};
+  std::map<std::string, dds::Topic*> topics_{};
+  std::map<std::string, dds::Publisher*> publishers_{};
+  std::map<std::string, dds::Subscriber*> subscribers_{};
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Wire>> open_fastdds(const FastDdsParams& params) {
+  auto wire = std::make_unique<FastDdsWire>();
+  if (auto opened = wire->open(params); !opened) return opened.error();
+  return std::unique_ptr<Wire>(std::move(wire));
+}
+
+}  // namespace adit::wire

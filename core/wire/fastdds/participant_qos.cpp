@@ -1,0 +1,111 @@
+#include "core/wire/fastdds/participant_qos.hpp"
+
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+
+#include <charconv>
+
+#include "core/wire/cost.hpp"
+#include "core/wire/fastdds/counting_transport.hpp"
+#include "core/wire/qos.hpp"
+
+namespace adit::wire {
+namespace dds = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+namespace {
+
+constexpr std::uint32_t loopback_datagram = 65000;
+constexpr std::uint32_t segment =
+    8 << 20;  // the default of 512 kB makes samples of 1 MiB take 22 ms instead of 1 ms
+constexpr std::uint32_t participants_per_host = 16;  // ports tried at an address that is named without one
+constexpr const char* everybody = "239.255.0.1";     // RTPS multicast group
+
+eprosima::fastrtps::Duration_t duration(Duration d) {
+  return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
+}
+
+/// ADDRESS or ADDRESS:PORT; port 0: those of the first participants there.
+Result<rtps::Locator_t> locator(const std::string& text) {
+  rtps::Locator_t result;
+  result.kind = LOCATOR_KIND_UDPv4;
+  result.port = 0;
+  const std::size_t colon = text.find(':');
+  const std::string address = text.substr(0, colon);
+  std::uint16_t port = 0;
+  if (colon != std::string::npos) {
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data() + colon + 1, end, port);
+    if (parsed.ec != std::errc{} || parsed.ptr != end || port == 0) {
+      return Error{Reason::bad_argument, "peer " + text + ": expected ADDRESS or ADDRESS:PORT"};
+    }
+  }
+  if (!rtps::IPLocator::isIPv4(address) || !rtps::IPLocator::setIPv4(result, address)) {
+    return Error{Reason::bad_argument, "peer " + text + ": " + address + " is no IPv4 address"};
+  }
+  result.port = port;
+  return result;
+}
+
+}  // namespace
+
+Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params,
+                                                      std::shared_ptr<Traffic> traffic) {
+  if (params.domain > 232) {
+    return Error{Reason::bad_argument, "domain " + std::to_string(params.domain) + ": expected 0 to 232"};
+  }
+  dds::DomainParticipantQos qos;
+  qos.name(params.name.c_str());
+
+  // Never the built-in transports: they use every interface of the machine.
+  qos.transport().use_builtin_transports = false;
+  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  udp->interfaceWhiteList = params.interfaces;
+  for (const std::string& address : params.interfaces) {
+    if (!rtps::IPLocator::isIPv4(address)) {
+      return Error{Reason::bad_argument,
+                   "interface " + address + ": expected an IPv4 address of this machine"};
+    }
+  }
+  if (udp->interfaceWhiteList.empty()) udp->interfaceWhiteList.push_back("127.0.0.1");
+  udp->non_blocking_send = true;
+  udp->maxMessageSize = params.shared_memory ? loopback_datagram : WireCost::frame;
+  udp->maxInitialPeersRange = participants_per_host;
+  qos.transport().user_transports.push_back(
+      std::make_shared<CountingTransportDescriptor>(udp, std::move(traffic)));
+  if (params.shared_memory) {
+    auto shared = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+    shared->segment_size(segment);
+    shared->max_message_size(loopback_datagram);
+    qos.transport().user_transports.push_back(shared);
+  }
+
+  auto& builtin = qos.wire_protocol().builtin;
+  auto& discovery = builtin.discovery_config;
+  discovery.leaseDuration = duration(Discovery::lease);
+  discovery.leaseDuration_announcementperiod = duration(Discovery::announcement);
+  discovery.initial_announcements.count = Discovery::initial_announcements;
+  discovery.initial_announcements.period = duration(Discovery::initial_period);
+  builtin.typelookup_config.use_client = false;
+  builtin.typelookup_config.use_server = false;
+  builtin.use_WriterLivelinessProtocol = false;  // silence is judged by the application's own samples
+
+  for (const std::string& peer : params.peers) {
+    auto parsed = locator(peer);
+    if (!parsed) return parsed.error();
+    builtin.initialPeersList.push_back(*parsed);
+  }
+  if (!params.multicast) {
+    // A unicast list of our own keeps the library from listening to the group.
+    rtps::Locator_t any;
+    any.kind = LOCATOR_KIND_UDPv4;
+    any.port = 0;
+    builtin.metatrafficUnicastLocatorList.push_back(any);
+    if (builtin.initialPeersList.empty()) builtin.initialPeersList.push_back(*locator("127.0.0.1"));
+  } else if (!params.peers.empty()) {
+    builtin.initialPeersList.push_back(*locator(everybody));
+  }
+  return qos;
+}
+
+}  // namespace adit::wire

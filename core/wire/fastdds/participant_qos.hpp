@@ -1,0 +1,16 @@
+#pragma once
+#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <memory>
+
+#include "core/result/result.hpp"
+#include "core/wire/fastdds/fastdds_wire.hpp"
+
+namespace adit::wire {
+
+struct Traffic;
+
+/// Transports, discovery and limits of a participant. Errors: bad_argument for a wrong domain or address.
+Result<eprosima::fastdds::dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params,
+                                                                         std::shared_ptr<Traffic> traffic);
+
+}  // namespace adit::wire

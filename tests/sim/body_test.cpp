@@ -1,0 +1,124 @@
+#include "sim/world/body.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "sim/world/odometry.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr double dt = 0.01;
+
+Platform platform(Drive drive) {
+  Platform p;
+  p.drive = drive;
+  p.max_speed = 2.0;
+  p.max_turn = 1.5;
+  p.max_acceleration = 1.5;
+  p.max_turn_acceleration = 3.0;
+  return p;
+}
+
+void run(Body& body, const Twist2& wanted, double time) {
+  for (int n = 0; n < std::lround(time / dt); ++n) {
+    body.command(wanted);
+    body.take(body.advance(dt));
+  }
+}
+
+TEST(Body, reaches_a_speed_at_its_acceleration) {
+  Body body(platform(Drive::differential), {}, 0.5);
+  run(body, {1.5, 0, 0}, 0.5);
+  EXPECT_NEAR(body.twist().vx, 0.75, 1e-9);
+  run(body, {1.5, 0, 0}, 0.6);
+  EXPECT_EQ(body.twist().vx, 1.5);
+  run(body, {0, 0, 0}, 1.01);
+  EXPECT_EQ(body.twist().vx, 0.0) << "no remainder creeps";
+}
+
+TEST(Body, keeps_the_limits_of_its_platform) {
+  Body body(platform(Drive::differential), {}, 0.5);
+  run(body, {9, 9, 9}, 5.0);
+  EXPECT_EQ(body.twist().vx, 2.0);
+  EXPECT_EQ(body.twist().vy, 0.0) << "wheels do not slide sideways";
+  EXPECT_EQ(body.twist().wz, 1.5);
+  Body legs(platform(Drive::holonomic), {}, 0.5);
+  run(legs, {9, 9, 0}, 5.0);
+  EXPECT_NEAR(std::hypot(legs.twist().vx, legs.twist().vy), 2.0, 1e-9);
+  EXPECT_NEAR(legs.pose().x, legs.pose().y, 1e-9);
+}
+
+TEST(Body, stops_when_nothing_is_commanded) {
+  Body body(platform(Drive::differential), {}, 0.5);
+  run(body, {1, 0, 0}, 2.0);
+  for (int n = 0; n < 48; ++n) body.take(body.advance(dt));
+  EXPECT_EQ(body.twist().vx, 1.0) << "just before 0.5 s of silence";
+  for (int n = 0; n < 120; ++n) body.take(body.advance(dt));
+  EXPECT_EQ(body.twist().vx, 0.0);
+}
+
+TEST(Body, what_is_not_a_number_is_zero) {
+  Body body(platform(Drive::holonomic), {}, 0.5);
+  run(body, {std::nan(""), std::numeric_limits<double>::infinity(), -std::nan("")}, 1.0);
+  EXPECT_EQ(body.pose(), Pose2{});
+}
+
+TEST(Body, drives_a_circle) {
+  Body body(platform(Drive::differential), {}, 0.5);
+  run(body, {1, 0, 1}, 2.0);
+  const Pose2 before = body.pose();
+  run(body, {1, 0, 1}, 2 * M_PI);
+  EXPECT_NEAR((body.pose().position() - before.position()).norm(), 0.0, 0.01);
+}
+
+/// Error along the way, error sideways and of the heading after a straight drive.
+Pose2 error_after(double way, std::uint64_t seed, const OdometryParams& params) {
+  Odometry odometry(params, seed);
+  const int steps = static_cast<int>(way / 0.01);
+  for (int n = 0; n < steps; ++n) odometry.move({3 + n * 0.01, 4, 0}, {3 + (n + 1) * 0.01, 4, 0}, dt);
+  return {odometry.pose().x - way, odometry.pose().y, odometry.pose().yaw};
+}
+
+TEST(Odometry, errs_as_much_as_it_is_told) {
+  double along = 0, heading_1 = 0, heading_20 = 0;
+  constexpr int runs = 400;
+  for (int n = 0; n < runs; ++n) {
+    along += std::pow(error_after(10, n, {}).x, 2) / runs;
+    heading_1 += std::pow(error_after(1, n, {}).yaw, 2) / runs;
+    heading_20 += std::pow(error_after(20, n, {}).yaw, 2) / runs;
+  }
+  constexpr double degree = M_PI / 180;
+  EXPECT_NEAR(std::sqrt(along), 0.10, 0.02) << "1 % of 10 m";
+  EXPECT_NEAR(std::sqrt(heading_1), 0.2 * degree, 0.05 * degree) << "0.2 degrees in a metre";
+  EXPECT_NEAR(std::sqrt(heading_20), 1.25 * degree, 0.25 * degree) << "a random walk over 20 m";
+}
+
+TEST(Odometry, without_noise_it_is_the_truth) {
+  const Pose2 e = error_after(20, 1, {0, 0, 1});
+  EXPECT_NEAR(e.x, 0, 1e-9);
+  EXPECT_NEAR(e.y, 0, 1e-9);
+  Odometry odometry({0, 0, 1}, 1);
+  const Pose2 start{1, 2, 0.5}, end = start * Pose2{0.1, 0, 0.02};
+  odometry.move(start, end, 0.1);
+  EXPECT_NEAR(odometry.pose().x, 0.1, 1e-12) << "odom begins at the start pose";
+  EXPECT_NEAR(odometry.twist().vx, 1.0, 1e-9);
+  EXPECT_NEAR(odometry.twist().wz, 0.2, 1e-9);
+}
+
+TEST(Odometry, same_seed_same_error) {
+  EXPECT_EQ(error_after(5, 3, {}), error_after(5, 3, {}));
+  EXPECT_NE(error_after(5, 3, {}), error_after(5, 4, {}));
+}
+
+TEST(Odometry, standing_and_turning_gain_no_error) {
+  Odometry odometry({}, 3);
+  for (int n = 0; n < 1000; ++n) odometry.move({1, 1, 0.01 * n}, {1, 1, 0.01 * (n + 1)}, dt);
+  EXPECT_NEAR(odometry.pose().yaw, wrap_angle(10.0), 1e-9);
+  EXPECT_NEAR(odometry.pose().x, 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace adit::sim

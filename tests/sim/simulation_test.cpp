@@ -1,0 +1,154 @@
+#include "sim/world/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/sim/scratch.hpp"
+
+namespace adit::sim {
+namespace {
+
+Platform wheeled() {
+  Platform p;
+  p.name = "wheeled";
+  p.length = 0.6;
+  p.width = 0.5;
+  p.max_speed = 2.0;
+  p.max_turn = 1.5;
+  p.max_acceleration = 1.5;
+  return p;
+}
+
+std::shared_ptr<const World> hall() {  // walls at x = 5 and y = 3
+  const std::array<Box, 2> boxes{Box{5, 5.2, -3, 3.2, 0, 3}, Box{-5, 5.2, 3, 3.2, 0, 3}};
+  return std::make_shared<const World>(*make_box_world(boxes, 0, 3));
+}
+
+Simulation make(std::vector<RobotStart> robots, std::uint64_t seed = 1) {
+  SimulationParams params;
+  params.seed = seed;
+  auto simulation = Simulation::create(hall(), std::move(robots), params);
+  EXPECT_TRUE(simulation) << simulation.error().text;
+  return std::move(simulation).value();
+}
+
+void drive(Simulation& simulation, std::size_t robot, const Twist2& wanted, double time) {
+  for (int n = 0; n < std::lround(time / 0.01); ++n) {
+    simulation.command(robot, wanted);
+    simulation.step();
+  }
+}
+
+TEST(Simulation, drives_and_keeps_the_books) {
+  Simulation s = make({{"r1", wheeled(), {-4, 0, 0}}});
+  drive(s, 0, {1, 0, 0}, 3.0);
+  const Truth& truth = s.truth(0);
+  EXPECT_NEAR(truth.pose.position.x(), -4 + 3.0 - 0.5 / 1.5, 0.01);
+  EXPECT_NEAR(truth.distance, truth.pose.position.x() + 4, 1e-9);
+  EXPECT_NEAR(seconds(truth.moving), 3.0, 0.05);
+  EXPECT_EQ(truth.collisions, 0u);
+  EXPECT_NEAR(truth.min_clearance, 2.75, 0.05) << "the wall at y = 3";
+  EXPECT_EQ(s.now(), 3s);
+  EXPECT_NEAR(s.odometry(0).pose().x, truth.distance, 0.2);
+}
+
+TEST(Simulation, a_wall_stops_the_body_and_is_recorded_once) {
+  Simulation s = make({{"r1", wheeled(), {3, 0, 0}}});
+  drive(s, 0, {2, 0, 0}, 4.0);
+  EXPECT_LE(s.truth(0).pose.position.x(), 4.7);
+  EXPECT_GT(s.truth(0).pose.position.x(), 4.65);
+  ASSERT_EQ(s.collisions().size(), 1u);
+  EXPECT_EQ(s.collisions()[0].partner, "world");
+  EXPECT_GT(seconds(s.collisions()[0].at), 0.9);
+  EXPECT_EQ(s.truth(0).min_clearance, 0.0);
+  drive(s, 0, {-1, 0, 0}, 1.0);
+  EXPECT_LT(s.truth(0).pose.position.x(), 4.2) << "it can back off";
+  drive(s, 0, {2, 0, 0}, 2.0);
+  EXPECT_EQ(s.truth(0).collisions, 2u) << "a second contact";
+}
+
+TEST(Simulation, turning_against_a_wall_is_a_contact) {
+  Simulation s = make({{"r1", wheeled(), {4.72, 0, M_PI / 2}}});
+  drive(s, 0, {0, 0, 1}, 2.0);
+  EXPECT_EQ(s.collisions().size(), 1u);
+}
+
+TEST(Simulation, robots_hit_each_other) {
+  Simulation s =
+      make({{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {2, 0, 1.2}}, {"r3", wheeled(), {-3, 0, 0}}});
+  drive(s, 0, {1, 0, 0}, 4.0);
+  ASSERT_EQ(s.collisions().size(), 1u);
+  EXPECT_EQ(s.collisions()[0].robot, "r1");
+  EXPECT_EQ(s.collisions()[0].partner, "r2");
+  EXPECT_EQ(s.truth(0).collisions, 1u);
+  EXPECT_EQ(s.truth(1).collisions, 1u);
+  EXPECT_EQ(s.truth(1).min_clearance, 0.0);
+  EXPECT_EQ(s.truth(2).collisions, 0u);
+  EXPECT_LT(s.truth(0).pose.position.x(), 1.7);
+}
+
+TEST(Simulation, refuses_impossible_starts) {
+  const auto error = [](std::vector<RobotStart> robots) {
+    auto s = Simulation::create(hall(), std::move(robots), {});
+    EXPECT_FALSE(s);
+    return s ? Error{} : s.error();
+  };
+  const Error overlap = error({{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {0.5, 0.3, 1}}});
+  EXPECT_EQ(overlap.reason, Reason::bad_argument);
+  EXPECT_EQ(overlap.text, "r2: start at (0.50, 0.30) overlaps r1");
+  EXPECT_NE(error({{"r1", wheeled(), {4.9, 0, 0}}}).text.find("wall"), std::string::npos);
+  EXPECT_EQ(error({{"r1", wheeled(), {0, 0, 0}}, {"r1", wheeled(), {2, 0, 0}}}).reason, Reason::bad_argument);
+  EXPECT_EQ(error({{"r1", wheeled(), {std::nan(""), 0, 0}}}).reason, Reason::bad_argument);
+  EXPECT_EQ(Simulation::create(nullptr, {}, {}).reason(), Reason::bad_argument);
+}
+
+TEST(Simulation, the_same_seed_gives_the_same_run) {
+  const auto play = [](std::uint64_t seed) {
+    Simulation s = make({{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {2, 1, 0}}}, seed);
+    drive(s, 0, {0.8, 0, 0.4}, 5.0);
+    return std::tuple{s.odometry(0).pose(), s.scan(0).compute(), s.truth(0).pose.planar()};
+  };
+  EXPECT_TRUE(play(1) == play(1));
+  const auto a = play(1), b = play(2);
+  EXPECT_FALSE(std::get<0>(a) == std::get<0>(b));
+  EXPECT_FALSE(std::get<1>(a) == std::get<1>(b));
+  EXPECT_TRUE(std::get<2>(a) == std::get<2>(b)) << "the same commands drive the same way";
+}
+
+TEST(Simulation, a_scan_job_keeps_its_moment) {
+  Simulation s = make({{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {2, 0, 0}}});
+  const Simulation::ScanJob job = s.scan(0);
+  const PointCloud before = job.compute();
+  drive(s, 1, {0, 0, 1}, 1.0);
+  EXPECT_TRUE(job.compute() == before);
+  EXPECT_FALSE(s.scan(0).compute() == before);
+  EXPECT_FALSE(s.scan(0).seed == s.scan(1).seed);
+}
+
+/// The legs that sim/README.md recommends in the building, driven by footprints alone.
+TEST(Simulation, the_corridor_of_the_building_is_free) {
+  if (building_map().empty()) GTEST_SKIP() << "geb079.bt is not installed; run ./run setup";
+  const auto world = load_octomap(building_map());
+  ASSERT_TRUE(world) << world.error().text;
+  const struct {
+    double length, width, step, x0, y0, x1, y1, clearance;
+  } legs[] = {{0.6, 0.5, 0.08, -5.2, -0.1, 0.6, -0.1, 0.4},
+              {0.6, 0.5, 0.08, 0.6, -0.1, 2.4, -0.35, 0.3},
+              {0.8, 0.6, 0.15, 14.0, -0.1, 26.0, -0.1, 0.4},
+              {0.9, 0.45, 0.22, 4.8, -0.4, 10.2, -0.4, 0.4},
+              {0.6, 0.5, 0.08, 10.4, -0.08, 12.6, -0.08, 0.1}};
+  for (const auto& leg : legs) {
+    const StandingMap map(*world, 0.5, leg.step);
+    const double yaw = std::atan2(leg.y1 - leg.y0, leg.x1 - leg.x0);
+    for (double f = 0; f <= 1.0; f += 0.01) {
+      const Pose2 at{leg.x0 + f * (leg.x1 - leg.x0), leg.y0 + f * (leg.y1 - leg.y0), yaw};
+      ASSERT_GE(map.clearance({at, leg.length, leg.width}), leg.clearance) << at.x << ' ' << at.y;
+      ASSERT_NEAR(map.ground(at.x, at.y), 0.0, 0.1) << at.x;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::sim

@@ -1,0 +1,246 @@
+// The same small body over the in-memory wire and over Fast DDS: what a rehearsal shows is what happens live.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "adit/authority.h"
+#include "adit/command.h"
+#include "adit/discovery.h"
+#include "adit/robot.h"
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "tests/wire/nets.hpp"
+
+namespace adit::wire {
+namespace {
+
+using Seqs = std::vector<std::uint64_t>;
+
+radio::Command command(std::uint64_t seq) {
+  radio::Command c;
+  c.robot("r1");
+  c.station("op1");
+  c.seq(seq);
+  return c;
+}
+
+std::uint64_t total(const Wire& wire, std::uint64_t TopicCount::*field) {
+  std::uint64_t sum = 0;
+  for (const TopicCount& count : wire.counters().topics) sum += count.*field;
+  return sum;
+}
+
+template <class Net>
+class Conformance : public testing::Test {
+ protected:
+  std::unique_ptr<RawReader> hear(Wire& wire, const std::string& partition, Seen<std::uint64_t>& seen) {
+    return std::move(make_reader(
+                         wire, topics::command, *strand,
+                         [&seen](const radio::Command& c, const SampleInfo&) { seen.add(c.seq()); },
+                         partition))
+        .value();
+  }
+  Writer<radio::Command> commands(Wire& wire, const std::string& partition) {
+    return std::move(Writer<radio::Command>::make(wire, topics::command, partition)).value();
+  }
+
+  Net net{};
+  std::shared_ptr<Executor> strand{net.strand("test")};
+  std::unique_ptr<Wire> station{net.join("op1")}, robot{net.join("r1")};
+};
+
+struct Names {
+  template <class Net>
+  static std::string GetName(int) {
+    return std::is_same_v<Net, MemoryNet> ? "Memory" : "FastDds";
+  }
+};
+using Nets = testing::Types<MemoryNet, LiveNet>;
+TYPED_TEST_SUITE(Conformance, Nets, Names);
+
+TYPED_TEST(Conformance, CommandsArriveInOrderInTheirPartitionOnly) {
+  Seen<std::uint64_t> own, other;
+  const auto reader = this->hear(*this->robot, "r1", own);
+  const auto elsewhere = this->hear(*this->robot, "r2", other);
+  auto writer = this->commands(*this->station, "r1");
+  ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
+  Seqs expected;
+  for (std::uint64_t i = 1; i <= 50; ++i) {
+    ASSERT_TRUE(writer.write(command(i)).ok());
+    expected.push_back(i);
+    ASSERT_TRUE(this->net.until([&] { return own.size() == i; }));
+  }
+  EXPECT_EQ(own.all(), expected);
+  EXPECT_EQ(other.size(), 0U);
+}
+
+TYPED_TEST(Conformance, TheSenderIsKnownWhateverTheSampleSays) {
+  Seen<ParticipantId> senders;
+  const auto reader =
+      make_reader(*this->robot, topics::command, *this->strand,
+                  [&](const radio::Command&, const SampleInfo& info) { senders.add(info.sender); });
+  const auto intruder = this->net.join("intruder");
+  auto honest = this->commands(*this->station, ""), forged = this->commands(*intruder, "");
+  ASSERT_TRUE(this->net.until([&] { return honest.matched() == 1 && forged.matched() == 1; }));
+  ASSERT_TRUE(honest.write(command(1)).ok());
+  ASSERT_TRUE(this->net.until([&] { return senders.size() == 1; }));
+  ASSERT_TRUE(forged.write(command(1)).ok());
+  ASSERT_TRUE(this->net.until([&] { return senders.size() == 2; }));
+  EXPECT_EQ(senders.all()[0], this->station->id());
+  EXPECT_EQ(senders.all()[1], intruder->id());
+}
+
+TYPED_TEST(Conformance, StatusOf20KeysReachesALateJoinerOnceEach) {
+  auto writer = std::move(Writer<radio::AuthorityStatus>::make(*this->robot, topics::authority)).value();
+  for (std::uint64_t round = 0; round < 3; ++round) {
+    for (int key = 0; key < 20; ++key) {
+      radio::AuthorityStatus status;
+      status.robot("robot" + std::to_string(key));
+      status.seq(round);
+      ASSERT_TRUE(writer.write(status).ok());
+    }
+  }
+  this->net.pass(100ms);
+  const auto late = this->net.join("late");
+  Seen<std::pair<std::string, std::uint64_t>> seen;
+  const auto reader = make_reader(*late, topics::authority, *this->strand,
+                                  [&](const radio::AuthorityStatus& s, const SampleInfo&) {
+                                    seen.add({s.robot(), s.seq()});
+                                  });
+  ASSERT_TRUE(this->net.until([&] { return seen.size() >= 20; }));
+  this->net.pass(300ms);
+  std::set<std::string> robots;
+  for (const auto& [name, seq] : seen.all()) {
+    EXPECT_EQ(seq, 2U);
+    robots.insert(name);
+  }
+  EXPECT_EQ(robots.size(), 20U);
+  EXPECT_EQ(seen.size(), 20U);
+}
+
+TYPED_TEST(Conformance, NotificationsKeepTheLastEightForALateJoiner) {
+  auto writer = std::move(Writer<radio::Notification>::make(*this->robot, topics::notification)).value();
+  for (std::uint64_t i = 1; i <= 12; ++i) {
+    radio::Notification notification;
+    notification.robot("r1");
+    notification.seq(i);
+    ASSERT_TRUE(writer.write(notification).ok());
+  }
+  Seen<std::uint64_t> seen;
+  const auto reader =
+      make_reader(*this->station, topics::notification, *this->strand,
+                  [&](const radio::Notification& n, const SampleInfo&) { seen.add(n.seq()); });
+  ASSERT_TRUE(this->net.until([&] { return seen.size() >= 8; }));
+  this->net.pass(300ms);
+  EXPECT_EQ(seen.all(), (Seqs{5, 6, 7, 8, 9, 10, 11, 12}));
+}
+
+TYPED_TEST(Conformance, CommandsAreNotReplayed) {
+  auto writer = this->commands(*this->station, "r1");
+  ASSERT_TRUE(writer.write(command(1)).ok());
+  Seen<std::uint64_t> seen;
+  const auto reader = this->hear(*this->robot, "r1", seen);
+  ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
+  this->net.pass(500ms);
+  ASSERT_TRUE(writer.write(command(2)).ok());
+  ASSERT_TRUE(this->net.until([&] { return seen.size() > 0; }));
+  EXPECT_EQ(seen.all(), Seqs{2});
+}
+
+TYPED_TEST(Conformance, ParticipantsComeAndGo) {
+  Seen<std::pair<ParticipantId, bool>> events;
+  this->station->on_participant(*this->strand, [&](const ParticipantEvent& e) {
+    events.add({e.id, e.present});
+  });
+  ASSERT_TRUE(this->net.until([&] { return events.size() == 1; }));
+  const ParticipantId first = this->robot->id();
+  EXPECT_EQ(events.all()[0], std::pair(first, true));
+  this->robot.reset();
+  ASSERT_TRUE(this->net.until([&] { return events.size() == 2; }, 2s));
+  EXPECT_EQ(events.all()[1], std::pair(first, false));
+  this->robot = this->net.join("r1");
+  EXPECT_NE(this->robot->id(), first);
+  ASSERT_TRUE(this->net.until([&] { return events.size() == 3; }, 3s));
+  EXPECT_EQ(events.all()[2], std::pair(this->robot->id(), true));
+  this->station.reset();  // its handler writes to `events`
+}
+
+TYPED_TEST(Conformance, MalformedSamplesAreCountedBySenderAndSurvived) {
+  Seen<std::uint64_t> seen;
+  const auto reader = this->hear(*this->robot, "r1", seen);
+  const auto raw = std::move(this->station->make_writer(topics::command, "r1")).value();
+  ASSERT_TRUE(this->net.until([&] { return raw->matched() == 1; }));
+  std::vector<std::uint8_t> good;
+  encode(command(9), good);
+  std::vector<std::uint8_t> truncated(good.begin(), good.begin() + 40), encapsulation = good;
+  encapsulation[1] = 0x77;
+  for (const auto& bad : {std::vector<std::uint8_t>{0, 1, 0, 0}, truncated, encapsulation,
+                          std::vector<std::uint8_t>{0, 1, 0, 0, 0xff, 0xff, 0xff, 0xff}}) {
+    ASSERT_TRUE(raw->write(bad).ok());
+  }
+  ASSERT_TRUE(raw->write(good).ok());
+  ASSERT_TRUE(this->net.until([&] { return seen.size() == 1; }));
+  EXPECT_EQ(total(*this->robot, &TopicCount::malformed), 4U);
+  EXPECT_EQ(this->robot->counters().topics.at(0).peer, this->station->id());
+}
+
+TYPED_TEST(Conformance, LargeSamplesPassInFragments) {
+  constexpr TopicInfo large{"adit/test_large", "Bytes", QosClass::urgent, 4, topics::unkeyed, 1 << 16};
+  Seen<std::vector<std::uint8_t>> seen;
+  const auto reader =
+      std::move(this->station->make_reader(large, "", *this->strand, [&](auto bytes, const SampleInfo&) {
+        seen.add({bytes.begin(), bytes.end()});
+        return true;
+      }));
+  const auto writer = std::move(this->robot->make_writer(large, "")).value();
+  ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
+  std::vector<std::uint8_t> sample(32 * 1024);
+  for (std::size_t i = 4; i < sample.size(); ++i) sample[i] = static_cast<std::uint8_t>(i * 31);
+  ASSERT_TRUE(writer->write(sample).ok());
+  ASSERT_TRUE(this->net.until([&] { return seen.size() == 1; }));
+  EXPECT_EQ(seen.all()[0], sample);
+  EXPECT_EQ(writer->write(std::vector<std::uint8_t>((1 << 16) + 1)).reason(), Reason::out_of_range);
+  EXPECT_EQ(total(*this->robot, &TopicCount::failed_writes), 1U);
+}
+
+TYPED_TEST(Conformance, ADroppedReaderIsNotCalledAgain) {
+  Seen<std::uint64_t> seen;
+  auto reader = this->hear(*this->robot, "r1", seen);
+  auto writer = this->commands(*this->station, "r1");
+  ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
+  for (std::uint64_t i = 1; i <= 5; ++i) ASSERT_TRUE(writer.write(command(i)).ok());
+  reader.reset();
+  const std::size_t before = seen.size();
+  for (std::uint64_t i = 6; i <= 10; ++i) ASSERT_TRUE(writer.write(command(i)).ok());
+  this->net.pass(200ms);
+  EXPECT_EQ(seen.size(), before);
+  EXPECT_TRUE(this->net.until([&] { return writer.matched() == 0; }));
+}
+
+TYPED_TEST(Conformance, BytesAndSamplesAreCounted) {
+  Seen<std::uint64_t> seen;
+  const auto reader = this->hear(*this->robot, "r1", seen);
+  auto writer = this->commands(*this->station, "r1");
+  ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
+  const WireCounters before = this->station->counters();
+  for (std::uint64_t i = 1; i <= 10; ++i) {
+    ASSERT_TRUE(writer.write(command(i)).ok());
+    ASSERT_TRUE(this->net.until([&] { return seen.size() == i; }));
+  }
+  std::vector<std::uint8_t> bytes;
+  encode(command(1), bytes);
+  EXPECT_EQ(total(*this->station, &TopicCount::samples_out), 10U);
+  EXPECT_EQ(total(*this->robot, &TopicCount::samples_in), 10U);
+  const WireCounters after = this->station->counters();
+  const std::uint64_t user =
+      (after.total_out - after.discovery_out) - (before.total_out - before.discovery_out);
+  const std::uint64_t topic = total(*this->station, &TopicCount::bytes_out);
+  EXPECT_GT(topic, 10 * bytes.size());
+  EXPECT_GE(user, topic);  // acknowledgements and heartbeats besides
+  EXPECT_LE(user, topic * 2);
+  EXPECT_GT(after.discovery_out, 500U);
+  EXPECT_GT(after.discovery_in, 500U);
+}
+
+}  // namespace
+}  // namespace adit::wire

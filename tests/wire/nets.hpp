@@ -1,0 +1,80 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/exec/live_runtime.hpp"
+#include "core/exec/virtual_runtime.hpp"
+#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/memory/ether.hpp"
+#include "tests/live/process.hpp"
+
+namespace adit::wire {
+
+/// One small network, by either adapter, so that the same test body runs over both.
+class MemoryNet {
+ public:
+  std::unique_ptr<Wire> join(const std::string& name) { return ether_.join(77, name); }
+  std::shared_ptr<Executor> strand(const std::string& name) {
+    machines_.push_back(scheduler_.machine(name, 0ms));
+    return machines_.back()->strand(name);
+  }
+  /// Lets time pass until the condition holds; false when it does not within `limit`.
+  bool until(const std::function<bool()>& condition, Duration limit = 10s) {
+    const Duration end = scheduler_.elapsed() + limit;
+    while (!condition()) {
+      if (scheduler_.elapsed() >= end) return false;
+      scheduler_.run_until(scheduler_.elapsed() + 1ms);
+    }
+    return true;
+  }
+  void pass(Duration time) { scheduler_.run_until(scheduler_.elapsed() + time); }
+
+ private:
+  VirtualScheduler scheduler_{1};
+  Ether ether_{scheduler_, {.link = {.latency = 0.0001}}};
+  std::vector<std::unique_ptr<Runtime>> machines_{};
+};
+
+class LiveNet {
+ public:
+  std::unique_ptr<Wire> join(const std::string& name) {
+    return std::move(open_fastdds({.domain = live::domain(), .name = name})).value();
+  }
+  std::shared_ptr<Executor> strand(const std::string& name) { return runtime_.strand(name); }
+  bool until(const std::function<bool()>& condition, Duration limit = 10s) {
+    return live::eventually(condition, live::Seconds(seconds(limit)));
+  }
+  void pass(Duration time) {
+    until([] { return false; }, time);
+  }
+
+ private:
+  LiveRuntime runtime_{};
+};
+
+/// What handlers saw, readable from the test's thread.
+template <class T>
+class Seen {
+ public:
+  void add(T value) {
+    const std::lock_guard lock(mutex_);
+    values_.push_back(std::move(value));
+  }
+  std::vector<T> all() const {
+    const std::lock_guard lock(mutex_);
+    return values_;
+  }
+  std::size_t size() const {
+    const std::lock_guard lock(mutex_);
+    return values_.size();
+  }
+
+ private:
+  mutable std::mutex mutex_{};
+  std::vector<T> values_{};
+};
+
+}  // namespace adit::wire
