@@ -1,0 +1,29 @@
+#pragma once
+#include <memory>
+
+#include "bench/wire/bare_dds.hpp"
+#include "core/exec/live_runtime.hpp"
+#include "core/wire/fastdds/fastdds_wire.hpp"
+
+namespace adit::bench {
+
+constexpr wire::TopicInfo ping_urgent{"adit/ping", "Bytes", wire::QosClass::urgent, 16, false, 1 << 16};
+constexpr wire::TopicInfo pong_urgent{"adit/pong", "Bytes", wire::QosClass::urgent, 16, false, 1 << 16};
+constexpr wire::TopicInfo ping_stream{"adit/ping_stream", "Bytes", wire::QosClass::stream, 1, false, 1 << 16};
+constexpr wire::TopicInfo pong_stream{"adit/pong_stream", "Bytes", wire::QosClass::stream, 1, false, 1 << 16};
+
+/// Sends back what it gets: over our wire from a strand, over bare Fast DDS from its thread.
+class Echo {
+ public:
+  explicit Echo(unsigned domain);
+
+ private:
+  LiveRuntime runtime_{};
+  std::shared_ptr<Executor> strand_{runtime_.strand("echo")};
+  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::RawWriter> urgent_, stream_;
+  std::unique_ptr<wire::RawReader> urgent_in_, stream_in_;
+  std::unique_ptr<BareDds> bare_;
+};
+
+}  // namespace adit::bench

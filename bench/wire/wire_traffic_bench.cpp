@@ -1,0 +1,175 @@
+// What the radio carries when nobody does anything, live on loopback beside the ether, and the bytes of a
+// start-up: bench_wire_traffic [SECONDS].
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "tests/wire/nets.hpp"
+#include "tests/wire/samples.hpp"
+
+namespace adit::bench {
+namespace {
+
+using wire::Example;
+using wire::WireCounters;
+
+/// Writes what an idle robot or station writes, and reads what it reads.
+struct Idle {
+  Idle(std::unique_ptr<wire::Wire> w, std::shared_ptr<Executor> s)
+      : wire(std::move(w)), strand(std::move(s)) {}
+
+  void write(const wire::TopicInfo& topic, const std::string& partition, Duration period) {
+    auto writer = std::shared_ptr<wire::RawWriter>(std::move(wire->make_writer(topic, partition)).value());
+    writers.push_back(writer);
+    for (const Example& e : wire::examples()) {
+      if (std::string(e.topic.name) != topic.name || period == 0ms) continue;
+      (void)writer->write(e.bytes);
+      strand->post([this, writer, bytes = e.bytes, period] {
+        timers.push_back(strand->every(period, [writer, bytes] { (void)writer->write(bytes); }));
+      });
+    }
+  }
+  void read(const wire::TopicInfo& topic, const std::string& partition) {
+    readers.push_back(
+        std::move(wire->make_reader(topic, partition, *strand, [](auto, const wire::SampleInfo&) {
+          return true;
+        })).value());
+  }
+
+  std::unique_ptr<wire::Wire> wire;
+  std::shared_ptr<Executor> strand;
+  std::vector<std::shared_ptr<wire::RawWriter>> writers{};
+  std::vector<std::unique_ptr<wire::RawReader>> readers{};
+  std::vector<Timer> timers{};
+};
+
+template <class Net>
+std::unique_ptr<Idle> robot(Net& net, const std::string& name) {
+  using namespace wire;
+  auto idle = std::make_unique<Idle>(net.join(name), net.strand(name));
+  idle->write(topics::capabilities, "", 1h);
+  idle->write(topics::robot_state, "", 100ms);
+  idle->write(topics::authority, "", 1s);
+  idle->write(topics::behaviour, "", 1s);
+  idle->write(topics::health, "", 5s);
+  idle->write(topics::link_report, "", 2s);
+  idle->write(topics::notification, "", 1h);
+  idle->write(topics::acknowledgement, "", 0ms);
+  idle->read(topics::command, name);
+  idle->read(topics::joystick, name);
+  idle->read(topics::presence, "");
+  idle->read(topics::capabilities, "");
+  return idle;
+}
+
+template <class Net>
+std::unique_ptr<Idle> station(Net& net, const std::string& name, int robots) {
+  using namespace wire;
+  auto idle = std::make_unique<Idle>(net.join(name), net.strand(name));
+  idle->write(topics::capabilities, "", 1h);
+  idle->write(topics::presence, "", 1s);
+  idle->write(topics::link_report, "", 2s);
+  for (int i = 0; i < robots; ++i) {
+    idle->write(topics::command, "r" + std::to_string(i), 0ms);
+    idle->write(topics::joystick, "r" + std::to_string(i), 0ms);
+  }
+  for (const TopicInfo& topic :
+       {TopicInfo(topics::capabilities), TopicInfo(topics::robot_state), TopicInfo(topics::authority),
+        TopicInfo(topics::behaviour), TopicInfo(topics::health), TopicInfo(topics::link_report),
+        TopicInfo(topics::notification), TopicInfo(topics::acknowledgement)}) {
+    idle->read(topic, "");
+  }
+  return idle;
+}
+
+template <class Net>
+void measure(Net& net, const char* where, int pairs, Duration time) {
+  std::vector<std::unique_ptr<Idle>> all;
+  for (int i = 0; i < pairs; ++i) {
+    all.push_back(robot(net, "r" + std::to_string(i)));
+    all.push_back(station(net, "op" + std::to_string(i), pairs));
+  }
+  net.pass(5s);
+  std::vector<WireCounters> before, after;
+  for (const auto& one : all) before.push_back(one->wire->counters());
+  net.pass(time);
+  for (const auto& one : all) after.push_back(one->wire->counters());
+  const double n = static_cast<double>(all.size()), s = seconds(time);
+  double startup = 0, total = 0, discovery = 0, received = 0;
+  std::map<std::string, double> topics;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    startup += static_cast<double>(before[i].discovery_out);
+    total += static_cast<double>(after[i].total_out - before[i].total_out);
+    received += static_cast<double>(after[i].total_in - before[i].total_in);
+    discovery += static_cast<double>(after[i].discovery_out - before[i].discovery_out);
+    for (const auto& count : after[i].topics) topics[count.topic] += static_cast<double>(count.bytes_out);
+    for (const auto& count : before[i].topics) topics[count.topic] -= static_cast<double>(count.bytes_out);
+  }
+  std::printf(
+      "%-9s %d participants: start-up discovery %6.0f B each; at rest, each: sent %6.0f B/s, received %6.0f "
+      "B/s, "
+      "discovery %4.0f B/s\n",
+      where, 2 * pairs, startup / n, total / n / s, received / n / s, discovery / n / s);
+  for (const auto& [topic, bytes] : topics) {
+    if (bytes > 0) std::printf("            %-22s %7.1f B/s all together\n", topic.c_str(), bytes / s);
+  }
+  for (auto& one : all) one->timers.clear();
+}
+
+/// A fleet that starts on the thinnest link: bytes and time until all know each other.
+void start_up(const wire::LinkProfile& link, int pairs) {
+  VirtualScheduler scheduler(1);
+  wire::Ether ether(scheduler, {.link = link});
+  struct Net {
+    VirtualScheduler& scheduler;
+    wire::Ether& ether;
+    std::vector<std::unique_ptr<Runtime>> machines{};
+    std::unique_ptr<wire::Wire> join(const std::string& name) { return ether.join(77, name); }
+    std::shared_ptr<Executor> strand(const std::string& name) {
+      machines.push_back(scheduler.machine(name, 0ms));
+      return machines.back()->strand(name);
+    }
+  } net{scheduler, ether};
+  std::vector<std::unique_ptr<Idle>> all;
+  for (int i = 0; i < pairs; ++i) {
+    all.push_back(robot(net, "r" + std::to_string(i)));
+    all.push_back(station(net, "op" + std::to_string(i), pairs));
+  }
+  const auto complete = [&] {
+    for (const auto& one : all) {
+      for (const auto& writer : one->writers) {
+        if (writer->matched() == 0) return false;
+      }
+    }
+    return true;
+  };
+  while (!complete() && scheduler.elapsed() < 120s) scheduler.run_until(scheduler.elapsed() + 100ms);
+  double bytes = 0, discovery = 0;
+  for (const auto& one : all) {
+    bytes += static_cast<double>(one->wire->counters().total_out);
+    discovery += static_cast<double>(one->wire->counters().discovery_out);
+  }
+  std::printf(
+      "start-up of %d participants on %s: all matched after %.1f s, %.0f B sent, %.0f B of them discovery\n",
+      2 * pairs, link.name.c_str(), seconds(scheduler.elapsed()), bytes, discovery);
+}
+
+}  // namespace
+}  // namespace adit::bench
+
+int main(int argc, char** argv) {
+  using namespace adit;
+  const Duration time = std::chrono::seconds(argc > 1 ? std::atoi(argv[1]) : 20);
+  for (const int pairs : {1, 2}) {
+    wire::LiveNet live;
+    bench::measure(live, "live", pairs, time);
+    wire::MemoryNet memory;
+    bench::measure(memory, "rehearsal", pairs, time);
+  }
+  wire::LinkProfile thin;
+  thin.name = "mesh_100k";
+  thin.bandwidth = 100e3;
+  thin.latency = 0.15;
+  thin.loss = 0.1;
+  for (const int pairs : {1, 2}) bench::start_up(thin, pairs);
+}
