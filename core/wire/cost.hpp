@@ -17,8 +17,9 @@ struct WireCost {
   static constexpr std::uint32_t heartbeat = headers + 16 + 32;
   static constexpr std::uint32_t acknack = headers + 16 + 32;
   static constexpr std::uint32_t gap = headers + 16 + 36;
-  static constexpr std::uint32_t participant = 560;  ///< announcement
-  static constexpr std::uint32_t endpoint = 400;     ///< one endpoint announced to one peer
+  static constexpr std::uint32_t participant = 500;  ///< announcement
+  static constexpr std::uint32_t endpoint =
+      950;  ///< one endpoint announced to one peer, with what acknowledges it
   static constexpr std::uint32_t goodbye = 150;
   static constexpr int discovery_priority = 1;  ///< after urgent samples
   static constexpr Duration response = 5ms;     ///< to heartbeats and to acknacks

@@ -5,7 +5,8 @@
 
 std::size_t adit::wire::largest_allocation = 0;
 
-// A translation unit of its own: nothing of it is inlined where the compiler would pair it with the library's.
+// A translation unit of its own: nothing of it is inlined where the compiler would pair it with the
+// library's.
 void* operator new(std::size_t size) {
   if (size > adit::wire::largest_allocation) adit::wire::largest_allocation = size;
   if (void* memory = std::malloc(size)) return memory;
