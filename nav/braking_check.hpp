@@ -8,7 +8,7 @@
 namespace adit::nav {
 
 struct BrakingCheckParams {
-  double margin{0.02};    ///< around the footprint, m, [0, 0.2]
+  double margin{0.01};    ///< around the footprint, m, [0, 0.2]
   double reaction{0.15};  ///< the command goes on this long before braking begins, s, [0, 1]
 };
 

@@ -8,6 +8,7 @@ namespace {
 /// Bounds of the buffers: every cell within the largest range fits, and more returns than a scan has.
 constexpr std::size_t kMaxCells = 50000;
 constexpr std::size_t kUsualReturns = 32768;
+constexpr int kMany = 8;               ///< a surface has this many times the hits of the noise before it
 constexpr double kForgetBeyond = 0.3;  ///< m beyond the range
 
 GroundMapParams ground_params(const Platform& platform, const ObstacleMapParams& params) {
@@ -106,26 +107,45 @@ void ObstacleMap::mark(const Eigen::Vector3f& point, double stamp_s) {
     if (e.ix == ix && e.iy == iy) {
       e.z_low = std::min(e.z_low, point.z());
       e.z_high = std::max(e.z_high, point.z());
+      e.hits = e.scan == scan_ ? e.hits + 1 : 1;
       e.scan = scan_;
-      e.misses = 0;
-      e.stamp = stamp_s;
       return;
     }
     // Left behind on the other side of the torus: its place is taken.
-    e = {ix, iy, point.z(), point.z(), scan_, 0, stamp_s};
+    e = {ix, iy, point.z(), point.z(), scan_, 1, 0, false, stamp_s};
     return;
   }
   if (entries_.size() >= kMaxCells) return;
-  entries_.push_back({ix, iy, point.z(), point.z(), scan_, 0, stamp_s});
+  entries_.push_back({ix, iy, point.z(), point.z(), scan_, 1, 0, false, stamp_s});
   index = static_cast<std::uint16_t>(entries_.size());
 }
 
+bool ObstacleMap::stray(const Entry& entry, float dx, float dy, float range) const {
+  if (entry.hits >= kMany || range < 0.05f) return false;
+  for (int further = 1; further <= 2; ++further) {
+    const float along = static_cast<float>(further) / range;
+    const int ix = entry.ix + floor_int(along * dx + 0.5f), iy = entry.iy + floor_int(along * dy + 0.5f);
+    const std::uint16_t index = slots_[slot(ix, iy)];
+    if (index == 0) continue;
+    const Entry& behind = entries_[index - 1u];
+    if (behind.ix == ix && behind.iy == iy && behind.scan == scan_ && behind.hits >= kMany * entry.hits)
+      return true;
+  }
+  return false;
+}
+
 bool ObstacleMap::keep(Entry& entry, const Eigen::Vector3f& sensor, double stamp_s) const {
-  if (entry.scan == scan_) return true;
   const float x = (static_cast<float>(entry.ix) + 0.5f) * kCell;
   const float y = (static_cast<float>(entry.iy) + 0.5f) * kCell;
   const float dx = x - sensor.x(), dy = y - sensor.y();
   const float range = std::sqrt(dx * dx + dy * dy);
+  if (entry.scan == scan_) {
+    entry.misses = 0;
+    if (stray(entry, dx, dy, range)) return entry.solid && stamp_s - entry.stamp <= params_.memory;
+    entry.solid = true;
+    entry.stamp = stamp_s;
+    return true;
+  }
   if (range > params_.range + kForgetBeyond) return false;
   // Where the robot stands nothing else does.
   if (in_body(x - body_x_, y - body_y_, -0.05)) return false;

@@ -52,7 +52,9 @@ class ObstacleMap {
     int ix, iy;
     float z_low, z_high;
     std::uint32_t scan;
+    std::int32_t hits;  ///< of the newest scan that hit it
     std::int32_t misses;
+    bool solid;  ///< once hit by more than stray returns
     double stamp;
   };
 
@@ -62,6 +64,7 @@ class ObstacleMap {
   }
   void mark(const Eigen::Vector3f& point, double stamp_s);
   bool keep(Entry& entry, const Eigen::Vector3f& sensor, double stamp_s) const;
+  bool stray(const Entry& entry, float dx, float dy, float range) const;
   bool in_body(float dx, float dy, double margin) const;
 
   Platform platform_;
