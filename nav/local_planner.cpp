@@ -70,7 +70,12 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
                         double stamp_s) {
   Plan plan;
   plan.stamp_s = stamp_s;
-  const Goal goal = goal_of(target, pose);
+  Goal goal = goal_of(target, pose);
+  watch_progress(target, goal.distance);
+  if (retreating_) {
+    const Goal back = retreat_goal(pose);
+    if (retreating_) goal = back;
+  }
   project(pose, goal, obstacles, plan);
 
   const bool nowhere =
@@ -79,22 +84,63 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
     plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
-  if (goal.distance <= params_.tolerance) {
+  if (!retreating_ && goal.distance <= params_.tolerance) {
     plan.arrived = true;
     return plan;
   }
   judge_headings(goal);
   Choice choice;
-  if (!choose(goal, choice)) {
+  const bool found = choose(goal, choice);
+  if (found && !retreating_) free_stamp_ = stamp_s;
+  if (!found) {
     plan.blocked = true;
     plan.reason = Reason::blocked;
     last_turn_ = 0;
+    if (target.kind == Target::Kind::goal) consider_retreat(pose, stamp_s);
     return plan;
   }
   write_path(choice, goal, pose, plan);
   plan.max_speed = speed_limit(target, choice.option->tight, plan.clearance);
   last_turn_ = plan.turn;
   return plan;
+}
+
+void LocalPlanner::watch_progress(const Target& target, double distance) {
+  constexpr double kSameGoal = 0.1, kProgress = 0.5;  // m
+  const bool other = target.kind != Target::Kind::goal || (target.goal - goal_).norm() > kSameGoal;
+  if (other) {
+    goal_ = target.goal;
+    retreating_ = false;
+    free_stamp_ = std::numeric_limits<double>::infinity();
+  }
+  if (other || distance < nearest_ - kProgress) {
+    nearest_ = distance;
+    retreats_left_ = params_.retreats;
+  }
+}
+
+LocalPlanner::Goal LocalPlanner::retreat_goal(const Pose2& pose) {
+  const Eigen::Vector2d to = pose.inverse() * retreat_to_;
+  constexpr double kSpread = 45.0;
+  Goal goal{to.norm(), std::atan2(to.y(), to.x()), kSpread, static_cast<int>(kSpread / kHeadingStep), false};
+  goal.backwards = std::fabs(goal.bearing) > M_PI / 2;
+  if (goal.distance <= params_.tolerance) retreating_ = false;
+  return goal;
+}
+
+void LocalPlanner::consider_retreat(const Pose2& pose, double stamp_s) {
+  if (retreating_ || retreats_left_ == 0) {
+    retreating_ = false;
+    return;
+  }
+  free_stamp_ = std::min(free_stamp_, stamp_s);
+  if (stamp_s - free_stamp_ < params_.patience) return;
+  // Straight back, or ahead when that leads away from the goal.
+  const Eigen::Vector2d to = pose.inverse() * goal_;
+  retreat_to_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
+  retreating_ = true;
+  free_stamp_ = std::numeric_limits<double>::infinity();
+  --retreats_left_;
 }
 
 LocalPlanner::Goal LocalPlanner::goal_of(const Target& target, const Pose2& pose) {

@@ -23,8 +23,11 @@ struct LocalPlannerParams {
   double goal_spread{95.0};   ///< paths may lead away from the goal's bearing by this, degrees, [10, 120]
   double stick_spread{45.0};  ///< the same for a direction, degrees, [10, 120]
   double detour_spread{
-      60.0};            ///< the same for paths that are free for a part of the way only, degrees, [10, 120]
-  double caution{0.3};  ///< speed with an obstacle at the footprint, m/s, (0, 2]
+      60.0};             ///< the same for paths that are free for a part of the way only, degrees, [10, 120]
+  double patience{3.0};  ///< stands blocked this long before it backs away, s, [0, 60]
+  double retreat{1.2};   ///< backs away this far to look for another way, m, [0.5, 3]
+  int retreats{2};       ///< as often, until it came nearer to the goal again; then it stays blocked, [0, 10]
+  double caution{0.3};   ///< speed with an obstacle at the footprint, m/s, (0, 2]
   double caution_gain{2.4};  ///< more speed for each metre of clearance, 1/s, [0, 10]
 };
 
@@ -56,6 +59,8 @@ struct PlannerLibrary {
 ///   (or, failing that, when the robot can get into it backwards);
 /// - a stick held straight ahead (or back) holds the course that the robot had: it goes round an obstacle and
 ///   on, and stops at a wall; turning with each detour it would follow the wall;
+/// - on the way to a goal, a robot that stood blocked backs away a little and tries again, a few times: in a
+///   passage it cannot turn, and so cannot take the way beside the one that it tried;
 /// - shorter paths and tighter margins are further libraries of the true footprint: scaling the obstacle
 ///   points, as Falco does, would scale the robot as well.
 class LocalPlanner {
@@ -107,6 +112,9 @@ class LocalPlanner {
   void block_paths(const Option& option, const Goal& goal);
   bool vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best);
   bool choose(const Goal& goal, Choice& best);
+  Goal retreat_goal(const Pose2& pose);
+  void consider_retreat(const Pose2& pose, double stamp_s);
+  void watch_progress(const Target& target, double distance);
   void write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const;
   double speed_limit(const Target& target, bool tight, double clearance) const;
 
@@ -118,6 +126,12 @@ class LocalPlanner {
   double course_{0};        ///< of a stick held ahead or back, odometry frame, rad
   double course_stick_{0};  ///< the stick's direction that set it
   bool on_course_{false};
+  Eigen::Vector2d goal_{0, 0};  ///< that the following three are about
+  double nearest_{0};           ///< to it so far, m
+  double free_stamp_{0};        ///< when a way was last free or it began to be blocked, s; or infinite
+  int retreats_left_{0};
+  bool retreating_{false};
+  Eigen::Vector2d retreat_to_{0, 0};  ///< odometry frame
 
   // Of one cycle.
   std::vector<std::uint64_t> seen_{};  ///< one bit per polar cell

@@ -159,7 +159,8 @@ bool ObstacleMap::keep(Entry& entry, const Eigen::Vector3f& sensor, double stamp
   } else {
     entry.misses = 0;
   }
-  return stamp_s - entry.stamp <= params_.memory;
+  // A lidar has a shortest range, too: what came so close is not gone because it is no longer seen.
+  return range < params_.blind_range || stamp_s - entry.stamp <= params_.memory;
 }
 
 }  // namespace adit::nav

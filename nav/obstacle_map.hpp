@@ -21,7 +21,9 @@ struct ObstacleMapParams {
   double body_margin{
       0.02};               ///< returns from this close around the own footprint are the own body, m, [0, 0.5]
   double min_range{0.05};  ///< shorter returns are not returns, m, [0, 1]
-  double slope{0.35};      ///< steepest ground, rise per run, [0, 1]
+  double blind_range{
+      0.6};            ///< obstacles this near to the lidar are kept until rays went through them, m, [0, 2]
+  double slope{0.35};  ///< steepest ground, rise per run, [0, 1]
 };
 
 /// What the robot must not touch: the returns of its lidar that stand higher above the ground than its step

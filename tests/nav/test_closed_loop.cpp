@@ -97,7 +97,7 @@ TEST_P(EveryPlatform, SeesAWallWithOneRing) {
   BoxWorld world = corridor(-2, 10);
   ClosedLoop run(GetParam(), world, {0, 0, 0});
   run.rings = 1;
-  EXPECT_FALSE(run.drive(Target::to({15, 0}), 30));
+  EXPECT_FALSE(run.drive(Target::to({15, 0}), 50));
   EXPECT_TRUE(run.last.blocked);
   EXPECT_GT(run.least_clearance, 0.03);
   EXPECT_GT(run.truth.x, 7.5);
