@@ -6,7 +6,7 @@
 namespace adit::sim {
 namespace {
 
-/// `value` brought between two others. Not std::clamp: by reference it is compiled to branches.
+/// `value` brought between two others. Not std::clamp, which GCC 12 compiles to branches.
 int keep(int value, int low, int high) {
   value = value < low ? low : value;
   return value > high ? high : value;
@@ -108,7 +108,6 @@ struct VoxelGrid::Ray {
   double t;                     ///< m
   int i, j, k;
   int up, dk;  ///< upwards: 1 and 1, downwards: 0 and -1
-  std::size_t slot;
 };
 
 bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
@@ -148,50 +147,53 @@ bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, dou
 
 void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
                      std::span<double> ranges) const {
-  // A step waits for memory and arithmetic of the one before; several rays in turn fill those waits. Which
-  // border comes first is a coin toss, so the outcome is selected by masks: a branch would often be
-  // mispredicted.
-  std::array<Ray, batch> rays;
   const double z = from.position.z();
-  const unsigned top = static_cast<unsigned>(layers()), columns = static_cast<unsigned>(nx_),
-                 rows = static_cast<unsigned>(ny_);
-  const int row = nx_, slice = nx_ * ny_;
+  const int row = nx_, slice = nx_ * ny_, top = layers();
   const double* const levels = levels_.data();
-  for (std::size_t first = 0; first < directions.size(); first += batch) {
-    const std::size_t last = std::min(directions.size(), first + batch);
-    int active = 0;
-    for (std::size_t n = first; n < last; ++n)
-      if (prepare(from, directions[n], max_range, rays[active], ranges[n])) rays[active++].slot = n;
-    while (active > 0) {
-      for (Ray *ray = rays.data(), *end = ray + active; ray < end; ++ray) {
-        const int stride = ray->strides[ray->k * slice + ray->j * row + ray->i];
-        const int next_i = ray->i + stride, next_j = ray->j + stride;
-        const double tx = (next_i - ray->gx) * ray->ax;
-        const double ty = (next_j - ray->gy) * ray->ay;
-        const double tz = (levels[ray->k + ray->up] - z) * ray->az;
-        const double t = std::max(ray->t, std::min(std::min(tx, ty), tz));
-        const int z_first = -static_cast<int>((tz < tx) & (tz < ty)), x_before_y = -static_cast<int>(tx < ty);
-        const int x_first = x_before_y & ~z_first, y_first = ~x_before_y & ~z_first;
-        // The axes that do not cross a border are kept inside the square: rounding cannot lead astray.
-        const int in_i = keep(static_cast<int>(ray->gx + t * ray->sx), ray->i, next_i - 1);
-        const int in_j = keep(static_cast<int>(ray->gy + t * ray->sy), ray->j, next_j - 1);
-        const int i = (in_i & ~x_first) | (next_i & x_first), j = (in_j & ~y_first) | (next_j & y_first);
-        const int k = ray->k + (ray->dk & z_first);
-        const bool hit = stride == 0, far = t >= max_range, beyond = static_cast<unsigned>(k) >= top,
-                   beside = (static_cast<unsigned>(i) >= columns) | (static_cast<unsigned>(j) >= rows);
-        if (hit | far | beyond | beside) [[unlikely]] {
-          ranges[ray->slot] = hit                      ? ray->t
-                              : far                    ? no_hit
-                              : beyond || !open_sides_ ? t
-                                                       : cast_beside(from, directions[ray->slot], max_range);
-          *ray-- = *--end;
-          --active;
-          continue;
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    Ray ray;
+    double& range = ranges[n];
+    if (!prepare(from, directions[n], max_range, ray, range)) continue;
+    int i = ray.i, j = ray.j, k = ray.k;
+    double t = ray.t;
+    double tz = (levels[k + ray.up] - z) * ray.az;
+    while (true) {
+      const int stride = ray.strides[k * slice + j * row + i];
+      if (stride == 0) {
+        range = t;
+        break;
+      }
+      const int next_i = i + stride, next_j = j + stride;
+      const double tx = (next_i - ray.gx) * ray.ax, ty = (next_j - ray.gy) * ray.ay;
+      // The axes that do not cross a border are kept inside the square: rounding cannot lead astray.
+      if (tz < tx && tz < ty) {
+        t = std::max(t, tz);
+        if (t >= max_range) {
+          range = no_hit;
+          break;
         }
-        ray->t = t;
-        ray->i = i;
-        ray->j = j;
-        ray->k = k;
+        k += ray.dk;
+        if (k < 0 || k >= top) {
+          range = t;
+          break;
+        }
+        tz = (levels[k + ray.up] - z) * ray.az;
+        i = keep(static_cast<int>(ray.gx + t * ray.sx), i, next_i - 1);
+        j = keep(static_cast<int>(ray.gy + t * ray.sy), j, next_j - 1);
+        continue;
+      }
+      t = std::max(t, std::min(tx, ty));
+      if (t >= max_range) {
+        range = no_hit;
+        break;
+      }
+      const int in_i = keep(static_cast<int>(ray.gx + t * ray.sx), i, next_i - 1);
+      const int in_j = keep(static_cast<int>(ray.gy + t * ray.sy), j, next_j - 1);
+      i = tx < ty ? next_i : in_i;
+      j = tx < ty ? in_j : next_j;
+      if (i >= nx_ || j >= ny_) {
+        range = open_sides_ ? cast_beside(from, directions[n], max_range) : t;
+        break;
       }
     }
   }

@@ -61,14 +61,13 @@ class VoxelGrid {
   /// Distance along `direction` (unit vector) to the first solid cell, m, 0 when the start is solid; no_hit
   /// beyond `max_range`. Voxel traversal after Amanatides and Woo (1987), with strides over empty squares.
   double cast(const Start& start, const Eigen::Vector3d& direction, double max_range) const;
-  /// The same for many rays, into `ranges` (as many as directions): several times faster.
+  /// The same for many rays from one start, into `ranges` (as many as directions).
   void cast(const Start& start, std::span<const Eigen::Vector3d> directions, double max_range,
             std::span<double> ranges) const;
 
  private:
   struct Ray;
   static constexpr int towards_both = 3;
-  static constexpr std::size_t batch = 8;  ///< rays cast in turn
   /// Puts a ray on its way, or gives its range at once (false).
   bool prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
                double& range) const;

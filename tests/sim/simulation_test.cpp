@@ -127,7 +127,7 @@ TEST(Simulation, a_scan_job_keeps_its_moment) {
   EXPECT_FALSE(s.scan(0).seed == s.scan(1).seed);
 }
 
-/// The legs that sim/README.md recommends in the building, driven by footprints alone.
+/// The legs that sim/world/README.md recommends in the building, driven by footprints alone.
 TEST(Simulation, the_corridor_of_the_building_is_free) {
   if (building_map().empty()) GTEST_SKIP() << "geb079.bt is not installed; run ./run setup";
   const auto world = load_octomap(building_map());
