@@ -49,7 +49,7 @@ class Executor {
   /// The machine's clock, read on this strand: constant while a task runs in rehearsal.
   virtual Time now() const = 0;
   /// Runs the task on this strand later. May be called from any thread. The queue is bounded: a post
-  /// that does not fit is dropped, counted and logged.
+  /// that does not fit is dropped, counted and logged. The strand must outlive the call.
   virtual void post(Task task) = 0;
   /// Runs the task once, `delay` from now. Called on the strand (or before it runs).
   virtual Timer after(Duration delay, Task task) = 0;

@@ -92,7 +92,7 @@ std::shared_ptr<Executor> LiveRuntime::strand(const std::string& name) {
   return make_live_strand(shared_, name);
 }
 
-std::uint64_t LiveRuntime::failures() const { return shared_->failures.load(std::memory_order_relaxed); }
+std::uint64_t LiveRuntime::failures() const { return shared_->failures.load(std::memory_order_acquire); }
 std::uint64_t LiveRuntime::dropped() const { return shared_->dropped.load(std::memory_order_relaxed); }
 
 }  // namespace adit

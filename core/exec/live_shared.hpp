@@ -52,8 +52,8 @@ struct LiveRuntime::Shared {
   explicit Shared(LiveParams p)
       : params(std::move(p)), pool(params.compute_threads, params.compute_queue, params.compute_nice) {}
   void fail(const std::string& strand, const std::string& what) {
-    failures.fetch_add(1, std::memory_order_relaxed);
     if (params.on_failure) params.on_failure(strand, what);
+    failures.fetch_add(1, std::memory_order_release);  // whoever sees the count finds the report made
   }
   void drop(const std::string& strand, const std::string& what) {
     // The first, then each thousandth: a full queue must not flood the log as well.

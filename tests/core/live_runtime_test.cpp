@@ -16,6 +16,10 @@ using testing::ElementsAre;
 struct Failures {
   std::mutex mutex{};
   std::vector<std::string> lines{};
+  std::vector<std::string> seen() {
+    const std::lock_guard lock(mutex);
+    return lines;
+  }
   LiveParams params() {
     LiveParams p;
     p.on_failure = [this](const std::string& strand, const std::string& what) {
@@ -123,7 +127,7 @@ TEST(LiveRuntime, drops_counts_and_reports_what_does_not_fit) {
   done.get_future().wait();
   drain(*strand);
   EXPECT_EQ(ran, 10);
-  EXPECT_THAT(failures.lines, ElementsAre("busy: queue full, post dropped"));
+  EXPECT_THAT(failures.seen(), ElementsAre("busy: queue full, post dropped"));
 }
 
 TEST(LiveRuntime, reports_exceptions_of_tasks_timers_and_work_and_goes_on) {
@@ -143,7 +147,7 @@ TEST(LiveRuntime, reports_exceptions_of_tasks_timers_and_work_and_goes_on) {
       0ns, [] { throw std::runtime_error("work"); }, [] { FAIL(); });
   while (runtime.failures() < 3) std::this_thread::yield();
   drain(*strand);
-  EXPECT_THAT(failures.lines, ElementsAre("s: task", "s: timer", "s: compute: work"));
+  EXPECT_THAT(failures.seen(), ElementsAre("s: task", "s: timer", "s: compute: work"));
 }
 
 TEST(LiveRuntime, compute_runs_elsewhere_and_comes_back) {
@@ -198,7 +202,7 @@ TEST(LiveRuntime, a_strand_outlives_its_runtime) {
       0ns, [&] { ++ran; }, [&] { ++ran; });
   drain(*strand);
   EXPECT_EQ(ran, 1);
-  EXPECT_THAT(failures.lines, ElementsAre("s: compute queue full, work dropped"));
+  EXPECT_THAT(failures.seen(), ElementsAre("s: compute queue full, work dropped"));
 }
 
 }  // namespace

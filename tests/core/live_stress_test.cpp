@@ -59,6 +59,9 @@ TEST(LiveStress, strands_come_and_go_under_fire) {
       });
     });
     came_back.get_future().wait();
+    std::promise<void> b_left_a;  // b may still be inside a's compute()
+    b->post([&] { b_left_a.set_value(); });
+    b_left_a.get_future().wait();
     for (int i = 0; i < 20; ++i)
       (i % 2 ? a : b)
           ->compute(
@@ -71,8 +74,9 @@ TEST(LiveStress, strands_come_and_go_under_fire) {
 
 TEST(LiveStress, two_strands_play_ball) {
   LiveRuntime runtime;
-  const auto a = runtime.strand("a");
+  // A strand must outlive whoever is inside its post(): the last one there is a, in b's, so a goes first.
   const auto b = runtime.strand("b");
+  const auto a = runtime.strand("a");
   std::promise<void> done;
   int left = 20'000;
   std::function<void()> ping, pong;
