@@ -1,0 +1,190 @@
+// robot_agent: one agent on one robot. See robot_agent/README.md.
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/random.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <iostream>
+
+#include "core/config/search.hpp"
+#include "core/exec/live_runtime.hpp"
+#include "robot_agent/agent.hpp"
+#include "robot_agent/program/console.hpp"
+#include "robot_agent/program/parent.hpp"
+#include "robot_agent/program/robot_config.hpp"
+#include "robot_agent/program/zero.hpp"
+
+namespace {
+
+using namespace adit;
+using namespace adit::agent;
+
+constexpr const char* kExamples = R"(
+Examples:
+  robot_agent --config robots/r1.yaml                    the robot of that file
+  robot_agent --config robots/r1.yaml --supervised       restarted when it dies; zero is sent meanwhile
+  robot_agent --config robots/r1.yaml --name r7 --pose 4 2 1.57 --robot-domain 7
+  robot_agent console status --name r1                   at the robot itself
+  robot_agent console unlock --name r1                   end the lock of an operator who is gone
+
+Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration.)";
+
+struct Options {
+  std::string config{}, name{}, log{};
+  std::vector<double> pose{};
+  int domain{-1}, robot_domain{-1};
+  bool supervised{}, reports{};
+};
+
+int fail(const Error& error, int code) {
+  std::cerr << "robot_agent: " << error.text << "\n";
+  return code;
+}
+
+Result<RobotConfig> load(const Options& options) {
+  const auto file = config::find_file(options.config);
+  if (!file) return file.error();
+  auto config = load_robot_config(*file);
+  if (!config) return config;
+  if (!options.name.empty()) config->name = config->radio.name = options.name;
+  if (!valid_name(config->name))
+    return Error{Reason::bad_argument,
+                 "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + config->name + "'"};
+  if (!options.pose.empty()) config->start = {options.pose[0], options.pose[1], options.pose[2]};
+  if (options.domain >= 0) config->radio.domain = static_cast<std::uint32_t>(options.domain);
+  if (options.robot_domain >= 0) config->robot_domain = static_cast<std::uint32_t>(options.robot_domain);
+  if (!options.log.empty() && !level_from_name(options.log, config->log))
+    return Error{Reason::bad_argument, "--log is trace, debug, info, warn, error or off"};
+  return config;
+}
+
+wire::FastDdsParams robot_wire(const RobotConfig& config) {
+  wire::FastDdsParams params{};
+  params.domain = config.robot_domain;
+  params.name = config.name;
+  params.shared_memory = config.shared_memory;
+  return params;
+}
+
+std::uint64_t drawn_seed() {
+  std::uint64_t seed{};
+  while (::getrandom(&seed, sizeof seed, 0) != sizeof seed) {
+  }
+  return seed;
+}
+
+sigset_t end_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  return set;
+}
+
+int run_agent(const RobotConfig& config, bool reports) {
+  auto log = make_live_log({config.log});
+  if (!log) return fail(log.error(), 1);
+  LiveRuntime runtime;
+  auto radio = wire::open_fastdds(config.radio);
+  if (!radio) return fail(radio.error(), 1);
+  auto robot = wire::open_fastdds(robot_wire(config));
+  if (!robot) return fail(robot.error(), 1);
+
+  AgentParams params{};
+  params.name = config.name;
+  params.platform = config.platform;
+  params.seed = drawn_seed();
+  params.start = config.start;
+  params.lock_lease = config.lock_lease;
+  params.tree = config.tree;
+  params.log = *log;
+  agent::Agent agent(params, runtime, **radio, **robot);
+  // The console's socket is also what keeps two agents of one name apart.
+  std::atomic<bool> up{false};
+  auto console = Console::open(config.name, [&agent, &up](const std::string& line, auto answer) {
+    if (up)
+      agent.at_console(line, std::move(answer));
+    else
+      answer("starting\n");
+  });
+  if (!console) return fail(console.error(), 2);
+  if (const auto started = agent.start(); !started) return fail(started.error(), 1);
+  up = true;
+  if (reports)
+    // The command strand answers after it sent its first zero.
+    agent.at_console("status", [](const std::string&) { (void)!::write(kReportFd, "1", 1); });
+  Log(*log, config.name)
+      .info("up on radio domain " + std::to_string(config.radio.domain) + ", robot domain " +
+            std::to_string(config.robot_domain));
+  const sigset_t set = end_signals();
+  int number = 0;
+  sigwait(&set, &number);
+  console->reset();
+  return 0;
+}
+
+int run_parent(const RobotConfig& config, int argc, char** argv) {
+  ParentParams params{};
+  params.command.push_back("/proc/self/exe");
+  for (int i = 1; i < argc; ++i)
+    if (std::string(argv[i]) != "--supervised") params.command.push_back(argv[i]);
+  params.command.push_back("--reports");
+  ZeroSender zero;
+  Parent parent(
+      params,
+      [&] {
+        if (const auto opened = zero.open(robot_wire(config)); !opened)
+          std::cerr << "robot_agent: the parent cannot send zero: " << opened.error().text << "\n";
+      },
+      [&] { zero.send(); });
+  return parent.run();
+}
+
+int ask(const std::string& name, const std::string& line) {
+  const auto answer = ask_console(name, line);
+  if (!answer) return fail(answer.error(), 3);
+  std::cout << *answer;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"The agent of one robot: takes commands by radio and drives.", "robot_agent"};
+  app.footer(kExamples);
+  app.set_version_flag("--version", ADIT_VERSION);
+  Options options;
+  app.add_option("--config", options.config, "robot file, as config/robots/r1.yaml");
+  app.add_option("--name", options.name, "another name than the file's");
+  app.add_option("--pose", options.pose, "start pose X Y YAW in the map: m, m, rad")->expected(3);
+  app.add_option("--domain", options.domain, "DDS domain of the radio")->check(CLI::Range(0, 232));
+  app.add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
+      ->check(CLI::Range(0, 232));
+  app.add_option("--log", options.log, "trace, debug, info, warn, error or off");
+  app.add_flag("--supervised", options.supervised, "run under a parent that sends zero when the agent dies");
+  app.add_flag("--reports", options.reports)->group("");  // set by the parent
+  auto* console = app.add_subcommand("console", "the robot's own console: status, unlock");
+  std::string verb, robot;
+  console->add_option("verb", verb, "status or unlock")
+      ->required()
+      ->check(CLI::IsMember({"status", "unlock"}));
+  console->add_option("--name", robot, "the robot")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (*console) return ask(robot, verb);
+  if (options.config.empty()) return fail({Reason::bad_argument, "--config FILE is missing; see --help"}, 2);
+  const auto config = load(options);
+  if (!config) return fail(config.error(), 2);
+
+  const sigset_t set = end_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  if (options.supervised) return run_parent(*config, argc, argv);
+  if (options.reports) prctl(PR_SET_PDEATHSIG, SIGTERM);
+  return run_agent(*config, options.reports);
+}

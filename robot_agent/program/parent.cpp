@@ -1,0 +1,137 @@
+#include "robot_agent/program/parent.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/signalfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+
+// glibc 2.36 forgets that C++ reads this header, too.
+extern "C" {
+#include <sys/pidfd.h>
+}
+extern char** environ;
+
+namespace adit::agent {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+int milliseconds(Duration d) {
+  return static_cast<int>(std::chrono::duration_cast<std::chrono::milliseconds>(d).count());
+}
+
+int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
+void close_fd(int& fd) {
+  if (fd >= 0) ::close(fd);
+  fd = -1;
+}
+
+}  // namespace
+
+Parent::Parent(ParentParams params, std::function<void()> prepare, std::function<void()> send_zero)
+    : params_(std::move(params)), prepare_(std::move(prepare)), send_zero_(std::move(send_zero)) {}
+
+bool Parent::spawn() {
+  int pipe[2];
+  if (::pipe2(pipe, O_CLOEXEC) != 0) return false;
+  std::vector<char*> argv;
+  for (std::string& word : params_.command) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  posix_spawn_file_actions_adddup2(&actions, pipe[1], kReportFd);
+  // The sockets of our participant are not the child's.
+  posix_spawn_file_actions_addclosefrom_np(&actions, kReportFd + 1);
+  const int failed = ::posix_spawn(&child_, argv[0], &actions, &attributes, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  ::close(pipe[1]);
+  report_ = pipe[0];
+  if (failed != 0) {
+    std::fprintf(stderr, "robot_agent: cannot start %s: %s\n", argv[0], std::strerror(failed));
+    close_fd(report_);
+    child_ = -1;
+    return false;
+  }
+  pidfd_ = ::pidfd_open(child_, 0);
+  return pidfd_ >= 0;
+}
+
+int Parent::wait_for_end() {
+  auto killed_at = Clock::time_point::max();
+  for (;;) {
+    pollfd wait[3] = {{pidfd_, POLLIN, 0}, {signals_, POLLIN, 0}, {report_, POLLIN, 0}};
+    const bool zero = prepared_ && !commands_;
+    const int patience = zero ? milliseconds(params_.zero_period) : ending_ ? 100 : -1;
+    ::poll(wait, 3, patience);
+    if (wait[0].revents != 0) {
+      int status = 0;
+      ::waitpid(child_, &status, 0);
+      if (prepared_) send_zero_();  // before anything else
+      commands_ = false;
+      close_fd(pidfd_);
+      close_fd(report_);
+      child_ = -1;
+      return exit_code(status);
+    }
+    if (wait[2].revents != 0) {
+      char byte{};
+      if (::read(report_, &byte, 1) == 1) commands_ = true;
+      close_fd(report_);
+    }
+    if (wait[1].revents != 0) {
+      signalfd_siginfo info{};
+      (void)!::read(signals_, &info, sizeof info);
+      ending_ = true;
+      ::kill(child_, SIGTERM);
+      killed_at = Clock::now() + params_.patience;
+    }
+    if (Clock::now() > killed_at) ::kill(child_, SIGKILL);
+    if (zero) send_zero_();
+  }
+}
+
+void Parent::rest(Duration pause) {
+  const auto until = Clock::now() + pause;
+  while (!ending_ && Clock::now() < until) {
+    send_zero_();
+    pollfd wait{signals_, POLLIN, 0};
+    if (::poll(&wait, 1, milliseconds(params_.zero_period)) > 0) ending_ = true;
+  }
+}
+
+int Parent::run() {
+  sigset_t passed;
+  sigemptyset(&passed);
+  sigaddset(&passed, SIGINT);
+  sigaddset(&passed, SIGTERM);
+  signals_ = ::signalfd(-1, &passed, SFD_CLOEXEC);
+  Duration pause = params_.first_restart;
+  for (;;) {
+    const auto started = Clock::now();
+    if (!spawn()) return 1;
+    if (!prepared_) {
+      prepare_();
+      prepared_ = true;
+    }
+    const int code = wait_for_end();
+    if (ending_ || code == 0 || code == 2) return ending_ ? 0 : code;
+    if (Clock::now() - started > params_.good_run) pause = params_.first_restart;
+    std::fprintf(stderr, "robot_agent: the agent ended with %d; sending zero, starting it again in %.1f s\n",
+                 code, seconds(pause));
+    rest(pause);
+    if (ending_) return 0;
+    pause = std::min(2 * pause, params_.longest_restart);
+  }
+}
+
+}  // namespace adit::agent

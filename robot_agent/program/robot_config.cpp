@@ -1,0 +1,44 @@
+#include "robot_agent/program/robot_config.hpp"
+
+#include "core/config/node.hpp"
+#include "core/config/platform_file.hpp"
+#include "robot_agent/command/types.hpp"
+
+namespace adit::agent {
+namespace {
+
+void read_radio(const config::Node& node, wire::FastDdsParams& radio) {
+  radio.domain = static_cast<std::uint32_t>(node.integer("domain", 0, 232, radio.domain));
+  radio.interfaces = node.texts("interfaces", {});
+  radio.peers = node.texts("peers", {});
+  radio.multicast = node.flag("multicast", radio.multicast);
+}
+
+}  // namespace
+
+Result<RobotConfig> load_robot_config(const std::string& file) {
+  auto root = config::load(file);
+  if (!root) return root.error();
+  RobotConfig c;
+  c.name = root->text("name");
+  if (!c.name.empty() && !valid_name(c.name))
+    root->child("name").fail(Reason::out_of_range, "expected 1 to 32 of [A-Za-z0-9_-]");
+  const std::string platform = root->text("platform");
+  const std::vector<double> pose = root->numbers("pose", 3, 3, config::within(-1e6, 1e6), {0.0, 0.0, 0.0});
+  c.start = {pose[0], pose[1], wrap_angle(pose[2])};
+  if (const auto radio = root->child_if("radio"); radio.present()) read_radio(radio, c.radio);
+  c.robot_domain = static_cast<std::uint32_t>(root->integer("robot_domain", 0, 232, 0));
+  c.shared_memory = root->flag("shared_memory", c.shared_memory);
+  c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));
+  c.tree = root->text("tree", c.tree);
+  if (!level_from_name(root->text("log", "info"), c.log))
+    root->child("log").fail(Reason::out_of_range, "expected trace, debug, info, warn, error or off");
+  if (const auto read = root->finish(); !read) return read.error();
+  auto loaded = config::load_platform(platform, file);
+  if (!loaded) return loaded.error();
+  c.platform = *loaded;
+  c.radio.name = c.name;
+  return c;
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+
+#include "core/config/platform.hpp"
+#include "core/geometry/pose.hpp"
+#include "core/log/log.hpp"
+#include "core/result/result.hpp"
+#include "core/wire/fastdds/fastdds_wire.hpp"
+
+namespace adit::agent {
+
+/// What config/robots/NAME.yaml says; docs/configuration.md lists the keys.
+struct RobotConfig {
+  std::string name{};  ///< 1 to 32 of [A-Za-z0-9_-]
+  Platform platform{};
+  Pose2 start{};                  ///< map frame: m, m, rad
+  wire::FastDdsParams radio{};    ///< radio domain
+  std::uint32_t robot_domain{0};  ///< of the driver, on loopback, [0, 232]
+  bool shared_memory{true};       ///< towards the driver, when it runs on the same machine
+  Duration lock_lease{300s};      ///< 0: never
+  std::string tree{"trees/robot.xml"};
+  LogLevel log{LogLevel::info};
+};
+
+/// Reads it. Errors: one line with file, line and what was expected.
+Result<RobotConfig> load_robot_config(const std::string& file);
+
+}  // namespace adit::agent
