@@ -103,8 +103,9 @@ Result<void> Station::Impl::start() {
   if (auto written = topics_->capabilities.write(self); !written) return written.error();
   announce();
 
-  radio_.on_participant(strand_, [this](const wire::ParticipantEvent& event) {
-    if (event.present) announce_often();
+  // The wire keeps this handler for longer than we may live.
+  radio_.on_participant(strand_, [this, alive = std::weak_ptr(alive_)](const wire::ParticipantEvent& event) {
+    if (!alive.expired() && event.present) announce_often();
   });
   // Phases drawn apart, so that stations that start together do not talk all at once.
   timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {

@@ -98,6 +98,7 @@ class Station::Impl {
   struct Radio;  // the typed writers and readers
   std::unique_ptr<Radio> topics_;
   std::vector<Timer> timers_{};
+  std::shared_ptr<bool> alive_{std::make_shared<bool>(true)};
 };
 
 }  // namespace adit::station

@@ -1,0 +1,121 @@
+#include "basestation/cli/client.hpp"
+
+#include <poll.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+
+#include "basestation/cli/interrupt.hpp"
+
+namespace adit::station::cli {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+void Client::send(const json& object) {
+  if (connected_) connected_ = socket_.send(object);
+}
+
+std::int64_t Client::execute(const std::string& line) {
+  send({{"id", next_}, {"do", line}});
+  return next_++;
+}
+
+std::int64_t Client::teleop(const std::string& robot) {
+  send({{"id", next_}, {"teleop", robot}});
+  return next_++;
+}
+
+void Client::stick(std::int64_t id, double vx, double vy, double wz) {
+  send({{"id", id}, {"stick", {vx, vy, wz}}});
+}
+
+void Client::cancel(std::int64_t id) { send({{"cancel", id}}); }
+
+void Client::handle(const std::string& line) {
+  const json object = json::parse(line, nullptr, false);
+  if (!object.is_object()) return;  // a station of another version; what it says is not for us
+  if (object.contains("snapshot") && on_snapshot) on_snapshot(object["snapshot"]);
+  if (object.contains("notice") && on_notice) on_notice(object["notice"]);
+  if (!object.contains("id")) return;
+  const auto id = object.value("id", std::int64_t{0});
+  if (object.contains("begun") && on_begun) on_begun(id);
+  if (object.contains("outcome") && on_outcome) on_outcome(id, object["outcome"]);
+}
+
+bool Client::wait(int timeout_ms, int other_fd) {
+  if (!connected_) return false;
+  pollfd fds[2] = {{socket_.fd(), static_cast<short>(POLLIN | (socket_.has_backlog() ? POLLOUT : 0)), 0},
+                   {other_fd, POLLIN, 0}};
+  if (::poll(fds, other_fd >= 0 ? 2 : 1, timeout_ms) <= 0 || fds[0].revents == 0) return true;
+  const bool open = socket_.pump() && socket_.flush();
+  for (auto line = socket_.line(); line; line = socket_.line()) handle(*line);
+  connected_ = connected_ && open;
+  return connected_;
+}
+
+int print_outcome(const Options& options, const json& outcome) {
+  if (options.json) {
+    std::printf("%s\n", outcome.value("json", json::object()).dump().c_str());
+  } else {
+    std::fputs(outcome.value("text", std::string()).c_str(), stdout);
+    std::fflush(stdout);
+    std::fputs(outcome.value("error", std::string()).c_str(), stderr);
+  }
+  return outcome.value("exit", exit_refused);
+}
+
+int fail(const Options& options, int exit_code, const Error& error) {
+  if (options.json)
+    std::printf(
+        "%s\n",
+        json{{"exit", exit_code}, {"ok", false}, {"reason", name(error.reason)}, {"error", error.text}}
+            .dump(-1, ' ', true, json::error_handler_t::replace)
+            .c_str());
+  else
+    std::fprintf(stderr, "basestation: %s\n", error.text.c_str());
+  return exit_code;
+}
+
+int run_line(Client& client, const Options& options, const std::string& line) {
+  std::optional<json> outcome;
+  bool begun = false;
+  client.on_begun = [&](std::int64_t) { begun = true; };
+  client.on_outcome = [&](std::int64_t, const json& object) { outcome = object; };
+  const std::int64_t id = client.execute(line);
+  const auto started = Clock::now();
+  std::optional<Clock::time_point> cancelled;
+  while (!outcome) {
+    if (!client.wait(200) && !outcome)
+      return fail(options, exit_no_answer, {Reason::no_answer, "the station ended before it answered"});
+    const auto now = Clock::now();
+    if (!begun && !outcome && now - started > std::chrono::seconds(5))
+      return fail(
+          options, exit_no_answer,
+          {Reason::no_answer, "the station of " + options.name + " does not answer; end its process"});
+    if (interrupted()) {
+      if (cancelled) return 130;
+      cancelled = now;
+      client.cancel(id);
+    }
+    // What cannot be cancelled (a command under way) is left to the station.
+    if (cancelled && now - *cancelled > std::chrono::milliseconds(800)) return 130;
+  }
+  const int code = print_outcome(options, *outcome);
+  return cancelled ? 130 : code;
+}
+
+std::string quoted(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) {
+    if (!line.empty()) line += ' ';
+    line += '\'';
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += '\'';
+  }
+  return line;
+}
+
+}  // namespace adit::station::cli

@@ -1,0 +1,102 @@
+#include "basestation/cli/completion.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "basestation/cli/client.hpp"
+#include "basestation/cli/process/launch.hpp"
+#include "basestation/command/grammar.hpp"
+#include "basestation/command/words.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+constexpr const char* bash_script = R"(_basestation() {
+  local IFS=$'\n'
+  COMPREPLY=($(compgen -W "$(basestation completion words "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)" -- "${COMP_WORDS[COMP_CWORD]}"))
+}
+complete -o default -F _basestation basestation
+)";
+
+constexpr const char* zsh_script = R"(#compdef basestation
+_basestation() {
+  local -a found
+  found=("${(@f)$(basestation completion words "${(@)words[2,CURRENT]}" 2>/dev/null)}")
+  compadd -a found
+}
+compdef _basestation basestation
+)";
+
+constexpr const char* fish_script =
+    R"(complete -c basestation -f -a '(basestation completion words (commandline -opc)[2..-1] (commandline -ct) 2>/dev/null)'
+)";
+
+/// The robots a running station knows; none when it does not say so at once.
+std::vector<std::string> known_robots(const Options& options) {
+  std::vector<std::string> robots;
+  auto path = socket_path(options);
+  if (!path) return robots;
+  auto socket = LineSocket::connect(*path);
+  if (!socket) return robots;
+  Client client(std::move(*socket));
+  bool answered = false;
+  client.on_outcome = [&](std::int64_t, const nlohmann::json& outcome) {
+    answered = true;
+    const auto list =
+        outcome.value("json", nlohmann::json::object()).value("robots", nlohmann::json::array());
+    for (const auto& robot : list) robots.push_back(robot.value("robot", std::string()));
+  };
+  client.execute("list");
+  for (int i = 0; i < 5 && !answered; ++i)
+    if (!client.wait(100)) break;
+  return robots;
+}
+
+}  // namespace
+
+std::vector<std::string> candidates(const std::vector<std::string>& all_words,
+                                    const std::vector<std::string>& robots) {
+  // Options before the command.
+  std::size_t at = 0;
+  while (at + 1 < all_words.size() && all_words[at].starts_with('-')) at += all_words[at] == "--json" ? 1 : 2;
+  std::vector<std::string> words(
+      all_words.begin() + static_cast<std::ptrdiff_t>(std::min(at, all_words.size())), all_words.end());
+  if (words.size() <= 1) {
+    std::vector<std::string> out = command_names();
+    out.insert(out.end(),
+               {"help", "completion", "--name", "--link", "--json", "--domain", "--interface", "--peer"});
+    return out;
+  }
+  if (words[0] == "help") return command_names();
+  if (words[0] == "completion") return {"bash", "zsh", "fish"};
+  const CommandInfo* command = find_command(words[0]);
+  if (!command || command->robots_min < 0) return {};
+  std::vector<std::string> out;
+  const bool first = words.size() == 2;
+  if (command->robots_max != 1 || first) out = robots;
+  if (command->verb == Verb::stop && first) out.push_back("all");
+  if (command->verb == Verb::mode && !first) out.insert(out.end(), mode_names().begin(), mode_names().end());
+  if (command->verb == Verb::drive && words.size() > 5) out = {"--for"};
+  if (command->verb == Verb::go_to && words.size() > 4) out = {"--wait"};
+  if (command->verb == Verb::reset && !first) out.push_back("--override");
+  return out;
+}
+
+int print_completion(const Options& options, const std::vector<std::string>& words) {
+  const std::string shell = words.size() > 1 ? words[1] : "";
+  if (shell == "words") {
+    const std::vector<std::string> typed(words.begin() + 2, words.end());
+    Options asked = options;
+    for (std::size_t i = 0; i + 1 < typed.size(); ++i)
+      if (typed[i] == "--name" && valid_name(typed[i + 1])) asked.name = typed[i + 1];
+    for (const std::string& word : candidates(typed, known_robots(asked))) std::printf("%s\n", word.c_str());
+    return exit_done;
+  }
+  if (words.size() == 2 && (shell == "bash" || shell == "zsh" || shell == "fish")) {
+    std::fputs(shell == "bash" ? bash_script : shell == "zsh" ? zsh_script : fish_script, stdout);
+    return exit_done;
+  }
+  return fail(options, exit_usage, {Reason::bad_argument, "completion: usage: completion bash|zsh|fish"});
+}
+
+}  // namespace adit::station::cli

@@ -1,0 +1,136 @@
+// The program basestation: options, then one command, the prompt or the dashboard.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "basestation/cli/client.hpp"
+#include "basestation/cli/completion.hpp"
+#include "basestation/cli/interrupt.hpp"
+#include "basestation/cli/process/launch.hpp"
+#include "basestation/cli/process/serve.hpp"
+#include "basestation/cli/prompt.hpp"
+#include "basestation/cli/script.hpp"
+#include "basestation/cli/stop.hpp"
+#include "basestation/cli/teleop.hpp"
+#include "basestation/cli/watch/watch.hpp"
+#include "basestation/command/grammar.hpp"
+#include "basestation/command/parse.hpp"
+#include "basestation/command/words.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+std::string footer() {
+  return "Commands (without one: a prompt that takes them):\n" + help_all() +
+         "  help [COMMAND]              this help, or that of one command\n"
+         "  completion bash|zsh|fish    a completion script for the shell\n"
+         "\nExamples:\n"
+         "  basestation list                          who is there\n"
+         "  basestation take r1 r2                    become their holder\n"
+         "  basestation goto r1 12 0.5 --wait         send r1 to a point, return on arrival\n"
+         "  basestation --json status r1              for scripts\n"
+         "  basestation --name op2 --link wifi watch  another operator's dashboard\n"
+         "  basestation stop all                      software stop of every robot; needs no authority\n"
+         "\nExit status: 0 done, 1 refused (why: on stderr), 2 wrong usage, 3 no answer.";
+}
+
+int show_help(const std::vector<std::string>& words, const Options& options) {
+  if (words.size() < 2) {
+    std::printf("usage: basestation [--name op1] [--link wifi] [--json] COMMAND\n\n%s\n", footer().c_str());
+    return exit_done;
+  }
+  if (const CommandInfo* command = find_command(words[1])) {
+    std::fputs(help(*command).c_str(), stdout);
+    return exit_done;
+  }
+  return fail(options, exit_usage, parse(std::vector<std::string>{words[1]}).error());
+}
+
+int down_without_station(const Options& options) {
+  std::printf("%s", options.json ? "{\"command\":\"down\",\"exit\":0,\"ok\":true,\"results\":[]}\n" : "");
+  if (!options.json) std::printf("no station of %s is running\n", options.name.c_str());
+  return exit_done;
+}
+
+int run_command(const Options& options, const std::vector<std::string>& words) {
+  if (words[0] == "help") return show_help(words, options);
+  if (words[0] == "completion") return print_completion(options, words);
+  auto request = parse(words);
+  if (!request) return fail(options, exit_usage, request.error());
+  const std::string line = quoted(words);
+  if (request->verb == Verb::stop) return stop(options, line);
+  if (request->verb == Verb::down) {
+    auto path = socket_path(options);
+    if (!path) return fail(options, exit_refused, path.error());
+    auto socket = LineSocket::connect(*path);
+    if (!socket) return down_without_station(options);
+    Client client(std::move(*socket));
+    return run_line(client, options, line);
+  }
+  if (request->verb == Verb::run) {
+    auto script = read_script(request->word);  // before anything starts
+    if (!script) return fail(options, exit_usage, script.error());
+    return play(options, *script, request->all_operators);
+  }
+  auto socket = connect_or_launch(options);
+  if (!socket)
+    return fail(options, socket.reason() == Reason::no_answer ? exit_no_answer : exit_refused,
+                socket.error());
+  Client client(std::move(*socket));
+  if (request->verb == Verb::watch) return watch(client, options);
+  if (request->verb == Verb::teleop) return teleop(client, options, request->robots.front());
+  return run_line(client, options, line);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  std::error_code failed;
+  options.program = std::filesystem::read_symlink("/proc/self/exe", failed).string();
+  if (failed) options.program = argv[0];
+
+  CLI::App app{"The operator's side of a team of robots: one station per operator name."};
+  app.set_help_flag("-h,--help", "This help");
+  app.option_defaults()->always_capture_default();
+  int ready_fd = -1;
+  app.add_option("--name", options.name, "Operator name; one station runs per name");
+  app.add_option("--link", options.link, "Link profile (config/links), for a station that is started");
+  app.add_flag("--json", options.json, "One JSON object instead of text");
+  app.add_option("--domain", options.domain, "Radio domain")->check(CLI::Range(0, 232));
+  app.add_option("--interface", options.interfaces,
+                 "Address of a network interface to use; loopback when none is named");
+  app.add_option("--peer", options.peers, "ADDRESS[:PORT] of an agent, for networks without multicast");
+  CLI::Option* served = app.add_option("--serve", ready_fd, "Run the station in this process")->group("");
+  app.prefix_command();
+  app.footer(footer());
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    std::printf("%s\n", app.help().c_str());
+    return exit_done;
+  } catch (const CLI::ParseError& error) {
+    return fail(options, exit_usage, {Reason::bad_argument, std::string(error.what()) + "; try --help"});
+  }
+  if (!valid_name(options.name))
+    return fail(options, exit_usage,
+                {Reason::bad_argument,
+                 "--name is 1 to 32 of A-Z a-z 0-9 _ -, not '" + clean(options.name, 40) + "'"});
+  if (served->count() > 0) return serve(options, ready_fd);
+
+  std::vector<std::string> words = app.remaining();
+  if (!words.empty() && words[0].starts_with('-'))
+    return fail(options, exit_usage,
+                {Reason::bad_argument, "no option " + clean(words[0], 40) + "; try --help"});
+  // These two are understood behind the command as well.
+  if (std::erase(words, "--json") > 0) options.json = true;
+  if (std::erase(words, "--help") + std::erase(words, "-h") > 0) words.insert(words.begin(), "help");
+  catch_interrupts();
+  if (words.empty()) return prompt(options);
+  return run_command(options, words);
+}
+
+}  // namespace adit::station::cli
+
+int main(int argc, char** argv) { return adit::station::cli::main(argc, argv); }

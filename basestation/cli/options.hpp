@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace adit::station::cli {
+
+/// What stands before the command on the command line.
+struct Options {
+  std::string name{"op1"};  ///< the operator's
+  std::string link{"lan"};  ///< profile of config/links, or a .yaml file
+  bool json{false};
+  std::uint32_t domain{77};               ///< radio domain, [0, 232]
+  std::vector<std::string> interfaces{};  ///< addresses; none: loopback
+  std::vector<std::string> peers{};       ///< for networks without multicast
+  std::string program{};                  ///< path of this program, to start a station with
+};
+
+/// Exit codes of the program.
+inline constexpr int exit_done = 0;
+inline constexpr int exit_refused = 1;
+inline constexpr int exit_usage = 2;
+inline constexpr int exit_no_answer = 3;
+
+}  // namespace adit::station::cli

@@ -1,0 +1,119 @@
+#include "basestation/cli/process/launch.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "basestation/cli/process/paths.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+constexpr int ready_fd = 3;
+constexpr int start_limit_ms = 10000;
+
+std::vector<std::string> arguments(const Options& options) {
+  std::vector<std::string> words{options.program,
+                                 "--name",
+                                 options.name,
+                                 "--link",
+                                 options.link,
+                                 "--domain",
+                                 std::to_string(options.domain)};
+  for (const std::string& address : options.interfaces) words.insert(words.end(), {"--interface", address});
+  for (const std::string& peer : options.peers) words.insert(words.end(), {"--peer", peer});
+  words.insert(words.end(), {"--serve", std::to_string(ready_fd)});
+  return words;
+}
+
+/// Between fork and exec: only what is safe there.
+[[noreturn]] void become_station(char* const* argv, int ready, int log) {
+  ::setsid();
+  if (::fork() != 0) ::_exit(0);  // the grandchild belongs to init: nobody has to reap it
+  const int null = ::open("/dev/null", O_RDWR);
+  ::dup2(null, 0);
+  ::dup2(log >= 0 ? log : null, 1);
+  ::dup2(log >= 0 ? log : null, 2);
+  if (ready == ready_fd)
+    ::fcntl(ready, F_SETFD, 0);
+  else
+    ::dup2(ready, ready_fd);
+  ::close_range(ready_fd + 1, ~0U, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::execv(argv[0], argv);
+  static constexpr char failed[] = "this program cannot be started again\n";
+  (void)!::write(ready_fd, failed, sizeof failed - 1);
+  ::_exit(127);
+}
+
+}  // namespace
+
+Result<std::string> socket_path(const Options& options) {
+  auto folder = runtime_folder();
+  if (!folder) return folder.error();
+  return *folder + "/" + options.name + ".sock";
+}
+
+Result<void> launch(const Options& options) {
+  auto state = state_folder();
+  if (!state) return state.error();
+  const std::string log_path = *state + "/" + options.name + ".log";
+  const File log(::open(log_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    return {Reason::internal, std::string("no pipe: ") + std::strerror(errno)};
+  File reading(ends[0]);
+  File writing(ends[1]);
+
+  std::vector<std::string> words = arguments(options);
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child < 0) return {Reason::internal, std::string("cannot fork: ") + std::strerror(errno)};
+  if (child == 0) become_station(argv.data(), writing.get(), log.get());
+  writing.reset();
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+
+  std::string text;
+  for (;;) {
+    pollfd readable{reading.get(), POLLIN, 0};
+    const int ready = ::poll(&readable, 1, start_limit_ms);
+    if (ready < 0 && errno == EINTR) return {Reason::cancelled, "interrupted while the station starts"};
+    if (ready <= 0) return {Reason::no_answer, "the station did not start within 10 s; see " + log_path};
+    char buffer[512];
+    const ssize_t size = ::read(reading.get(), buffer, sizeof buffer);
+    if (size <= 0) break;
+    text.append(buffer, static_cast<std::size_t>(size));
+  }
+  if (text == "ready\n") return {};
+  while (text.ends_with('\n')) text.pop_back();
+  return {Reason::no_station, text.empty() ? "the station ended while it started; see " + log_path : text};
+}
+
+Result<LineSocket> connect_or_launch(const Options& options) {
+  auto path = socket_path(options);
+  if (!path) return path.error();
+  auto socket = LineSocket::connect(*path);
+  if (socket || socket.reason() != Reason::no_station) return socket;
+  if (auto started = launch(options); !started) {
+    socket = LineSocket::connect(*path);  // another process may have started it at the same time
+    if (socket) return socket;
+    return started.error();
+  }
+  std::fprintf(stderr,
+               "no station of %s was running: started one (end it with: basestation --name %s down)\n",
+               options.name.c_str(), options.name.c_str());
+  return LineSocket::connect(*path);
+}
+
+}  // namespace adit::station::cli

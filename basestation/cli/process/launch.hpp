@@ -1,0 +1,17 @@
+#pragma once
+#include <functional>
+
+#include "basestation/cli/options.hpp"
+#include "basestation/cli/process/line_socket.hpp"
+
+namespace adit::station::cli {
+
+/// Path of the socket of this operator's station. Error: cannot_write.
+Result<std::string> socket_path(const Options& options);
+/// Starts this operator's station as a process of its own, which outlives this one, and waits until it is
+/// ready. Errors: what the station said when it could not start, no_answer. Uses no DDS in this process.
+Result<void> launch(const Options& options);
+/// The station's socket; starts the station when none is running, and says so on stderr.
+Result<LineSocket> connect_or_launch(const Options& options);
+
+}  // namespace adit::station::cli

@@ -1,0 +1,70 @@
+#include "basestation/cli/process/line_socket.hpp"
+
+#include <fcntl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace adit::station::cli {
+
+LineSocket::LineSocket(File socket) : file_(std::move(socket)) {
+  ::fcntl(file_.get(), F_SETFL, ::fcntl(file_.get(), F_GETFL) | O_NONBLOCK);
+}
+
+Result<LineSocket> LineSocket::connect(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path)
+    return {Reason::cannot_read, "the path " + path + " is too long for a socket; set XDG_RUNTIME_DIR"};
+  std::memcpy(address.sun_path, path.c_str(), path.size() + 1);
+  File file(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (!file) return {Reason::cannot_read, std::string("no socket: ") + std::strerror(errno)};
+  if (::connect(file.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    return {Reason::no_station, "nobody listens at " + path + ": " + std::strerror(errno)};
+  return LineSocket(std::move(file));
+}
+
+bool LineSocket::pump() {
+  char buffer[16384];
+  for (;;) {
+    const ssize_t size = ::recv(file_.get(), buffer, sizeof buffer, 0);
+    if (size > 0) {
+      in_.append(buffer, static_cast<std::size_t>(size));
+      if (in_.size() > max_line && in_.find('\n') == std::string::npos) return false;
+      if (in_.size() > 4 * max_line) return true;  // the rest after these lines
+    } else {
+      return size < 0 && (errno == EAGAIN || errno == EINTR);
+    }
+  }
+}
+
+std::optional<std::string> LineSocket::line() {
+  const std::size_t end = in_.find('\n');
+  if (end == std::string::npos) return std::nullopt;
+  std::string text = in_.substr(0, end);
+  in_.erase(0, end + 1);
+  return text;
+}
+
+bool LineSocket::send(const nlohmann::json& object) {
+  if (out_.size() > max_backlog) return false;
+  out_ += object.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + "\n";
+  return flush();
+}
+
+bool LineSocket::flush() {
+  while (!out_.empty()) {
+    const ssize_t size = ::send(file_.get(), out_.data(), out_.size(), MSG_NOSIGNAL);
+    if (size > 0)
+      out_.erase(0, static_cast<std::size_t>(size));
+    else if (size < 0 && errno == EINTR)
+      continue;
+    else
+      return size < 0 && errno == EAGAIN;
+  }
+  return true;
+}
+
+}  // namespace adit::station::cli

@@ -1,0 +1,40 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "basestation/cli/process/file.hpp"
+#include "core/result/result.hpp"
+
+namespace adit::station::cli {
+
+/// One end of a local stream socket that carries JSON, one object a line. Never blocks; what comes in and
+/// what waits to go out is bounded.
+class LineSocket {
+ public:
+  static constexpr std::size_t max_line = 256 << 10;
+  static constexpr std::size_t max_backlog = 4 << 20;
+
+  LineSocket() = default;
+  explicit LineSocket(File socket);
+  /// Errors: no_station (nobody listens there), cannot_read.
+  static Result<LineSocket> connect(const std::string& path);
+
+  int fd() const { return file_.get(); }
+  /// Reads what has arrived; false when the other side is gone or sent an endless line.
+  bool pump();
+  /// The next whole line; nullopt when there is none yet.
+  std::optional<std::string> line();
+  /// Queues an object and sends what fits; false when the other side is gone or does not read.
+  bool send(const nlohmann::json& object);
+  /// Sends what waits; false when the other side is gone.
+  bool flush();
+  bool has_backlog() const { return !out_.empty(); }
+
+ private:
+  File file_{};
+  std::string in_{};
+  std::string out_{};
+};
+
+}  // namespace adit::station::cli

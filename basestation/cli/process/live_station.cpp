@@ -1,0 +1,66 @@
+#include "basestation/cli/process/live_station.hpp"
+
+#include <future>
+
+#include "basestation/cli/process/paths.hpp"
+#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/link_file.hpp"
+
+namespace adit::station::cli {
+
+Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, const Hooks& hooks) {
+  auto id = station_id(options.name);
+  if (!id) return id.error();
+  auto link = wire::load_link(options.link);
+  if (!link) return link.error();
+  std::unique_ptr<LiveStation> live(new LiveStation);
+  auto opened = wire::open_fastdds({.domain = options.domain,
+                                    .name = options.name,
+                                    .interfaces = options.interfaces,
+                                    .peers = options.peers});
+  if (!opened) return opened.error();
+  live->wire_ = std::move(*opened);
+  live->strand_ = live->runtime_.strand("station");
+  StationParams params{.name = options.name,
+                       .id = *id,
+                       .software = ADIT_VERSION,
+                       .link = link->name,
+                       .bandwidth = link->bandwidth,
+                       .presence = hooks.presence};
+  for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
+  Result<void> started;
+  live->on_strand([&] {
+    live->station_ = std::make_unique<Station>(std::move(params), *live->strand_, *live->wire_);
+    if (hooks.ready) hooks.ready(*live->station_);
+    started = live->station_->start();
+  });
+  if (!started) return started.error();
+  return live;
+}
+
+LiveStation::~LiveStation() {
+  if (strand_ && station_) on_strand([this] { station_.reset(); });
+}
+
+void LiveStation::on_strand(const std::function<void()>& work) {
+  std::promise<void> done;
+  strand_->post([&] {
+    work();
+    done.set_value();
+  });
+  done.get_future().wait();
+}
+
+Outcome LiveStation::execute(const std::string& line, std::chrono::milliseconds limit) {
+  const auto ended = std::make_shared<std::promise<Outcome>>();
+  auto future = ended->get_future();
+  strand_->post([this, line, ended] {
+    station_->execute(line, [ended](const Outcome& outcome) { ended->set_value(outcome); });
+  });
+  if (future.wait_for(limit) == std::future_status::ready) return future.get();
+  Outcome outcome{.exit_code = exit_no_answer, .error = "no answer\n"};
+  outcome.json = {{"exit", exit_no_answer}, {"ok", false}, {"reason", "no_answer"}};
+  return outcome;
+}
+
+}  // namespace adit::station::cli

@@ -1,0 +1,39 @@
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "basestation/cli/options.hpp"
+#include "basestation/station.hpp"
+#include "core/exec/live_runtime.hpp"
+
+namespace adit::station::cli {
+
+/// A station on the real clock and the real wire, in this process.
+class LiveStation {
+ public:
+  struct Hooks {
+    std::function<void(Station&)> ready{};  ///< called on the strand before the station starts
+    Duration presence{std::chrono::seconds(1)};
+  };
+  /// Errors: as of station_id(), load_link(), open_fastdds() and Station::start().
+  static Result<std::unique_ptr<LiveStation>> open(const Options& options, const Hooks& hooks);
+  ~LiveStation();
+
+  Station& station() { return *station_; }
+  Executor& strand() { return *strand_; }
+  /// Runs a line and waits for its end, at most `limit`: no_answer then. Not on the strand.
+  Outcome execute(const std::string& line, std::chrono::milliseconds limit);
+  /// As `down`, for a station that is told to end: at most a second.
+  void release_all() { (void)execute("down", std::chrono::milliseconds(1000)); }
+
+ private:
+  LiveStation() = default;
+  void on_strand(const std::function<void()>& work);
+
+  LiveRuntime runtime_{};
+  std::shared_ptr<Executor> strand_{};
+  std::unique_ptr<wire::Wire> wire_{};
+  std::unique_ptr<Station> station_{};
+};
+
+}  // namespace adit::station::cli

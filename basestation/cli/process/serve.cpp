@@ -1,0 +1,59 @@
+#include "basestation/cli/process/serve.hpp"
+
+#include <signal.h>
+#include <sys/signalfd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <future>
+
+#include "basestation/cli/process/live_station.hpp"
+#include "basestation/cli/process/paths.hpp"
+#include "basestation/cli/process/server.hpp"
+#include "basestation/report/json.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+void answer(int ready_fd, const std::string& text) {
+  if (ready_fd < 0) return;
+  (void)!::write(ready_fd, text.data(), text.size());
+  ::close(ready_fd);
+}
+
+Result<void> run(const Options& options, int ready_fd, const File& signals) {
+  auto folder = runtime_folder();
+  if (!folder) return folder.error();
+  auto server = Server::open(*folder, options.name);
+  if (!server) return server.error();
+  auto live = LiveStation::open(options, {.ready = [&](Station& station) {
+                                  station.on_notice = [&](const Notice& notice) {
+                                    (*server)->tell(notice_json(notice, notice.at));
+                                  };
+                                  station.on_down = [&] { (*server)->end(); };
+                                }});
+  if (!live) return live.error();
+  answer(ready_fd, "ready\n");
+  const nlohmann::json hello{
+      {"station", options.name}, {"pid", ::getpid()}, {"domain", options.domain}, {"link", options.link}};
+  (*server)->serve((*live)->station(), (*live)->strand(), hello, signals.get());
+  (*live)->release_all();
+  return {};
+}
+
+}  // namespace
+
+int serve(const Options& options, int ready_fd) {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, number);
+  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread, so that all of them have it
+  const File signals(::signalfd(-1, &set, SFD_CLOEXEC));
+  const auto ended = run(options, ready_fd, signals);
+  if (ended) return exit_done;
+  answer(ready_fd, ended.error().text + "\n");
+  std::fprintf(stderr, "basestation: %s\n", ended.error().text.c_str());
+  return exit_refused;
+}
+
+}  // namespace adit::station::cli

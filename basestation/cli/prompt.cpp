@@ -1,0 +1,200 @@
+#include "basestation/cli/prompt.hpp"
+
+#include <editline/readline.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <optional>
+
+#include "basestation/cli/client.hpp"
+#include "basestation/cli/completion.hpp"
+#include "basestation/cli/interrupt.hpp"
+#include "basestation/cli/process/launch.hpp"
+#include "basestation/cli/process/paths.hpp"
+#include "basestation/cli/script.hpp"
+#include "basestation/cli/stop.hpp"
+#include "basestation/cli/teleop.hpp"
+#include "basestation/cli/watch/watch.hpp"
+#include "basestation/command/grammar.hpp"
+#include "basestation/command/parse.hpp"
+#include "basestation/command/words.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+using nlohmann::json;
+
+class Prompt {
+ public:
+  explicit Prompt(const Options& options) : options_(options) {}
+
+  Result<void> connect() {
+    auto socket = connect_or_launch(options_);
+    if (!socket) return socket.error();
+    client_.emplace(std::move(*socket));
+    listen();
+    return {};
+  }
+
+  /// False when the line ends the prompt.
+  bool execute(const std::string& line) {
+    auto words = split_words(line);
+    if (words && words->empty()) return true;
+    if (words && (words->front() == "quit" || words->front() == "exit")) return false;
+    if (words && words->front() == "help") {
+      const CommandInfo* command = words->size() > 1 ? find_command((*words)[1]) : nullptr;
+      std::fputs((command ? help(*command) : help_all() + "  quit, Ctrl-D                leave the prompt\n")
+                     .c_str(),
+                 stdout);
+      return true;
+    }
+    auto request = words ? parse(*words) : Result<Request>(words.error());
+    const int code = request ? run(*request, line) : fail(options_, exit_usage, request.error());
+    if (code != exit_done) code_ = code;
+    return !request || request->verb != Verb::down;
+  }
+
+  /// Prints what came in; true when something was printed.
+  bool poll_notices(int timeout_ms, int other_fd) {
+    printed_ = false;
+    if (client_ && client_->connected() && !client_->wait(timeout_ms, other_fd)) {
+      std::printf("\r\x1b[Kthe station has ended; the next command starts one\n");
+      printed_ = true;
+    } else if (!client_ || !client_->connected()) {
+      pollfd input{other_fd, POLLIN, 0};
+      ::poll(&input, 1, timeout_ms);
+    }
+    return printed_;
+  }
+
+  const std::vector<std::string>& robots() const { return robots_; }
+  int code() const { return code_; }
+
+ private:
+  void listen() {
+    client_->on_notice = [this](const json& notice) {
+      if (!notice.value("mine", false)) return;
+      std::printf("\r\x1b[K* %s\n", notice.value("text", std::string()).c_str());
+      printed_ = true;
+    };
+    client_->on_snapshot = [this](const json& snapshot) {
+      robots_.clear();
+      for (const json& robot : snapshot.value("robots", json::array()))
+        robots_.push_back(robot.value("robot", std::string()));
+    };
+    client_->notices();
+    client_->watch();
+  }
+
+  int run(const Request& request, const std::string& line) {
+    if (request.verb == Verb::stop) return stop(options_, line);
+    if (request.verb == Verb::run) {
+      auto script = read_script(request.word);
+      if (!script) return fail(options_, exit_usage, script.error());
+      return play(options_, *script, request.all_operators);
+    }
+    if (!client_ || !client_->connected())
+      if (auto connected = connect(); !connected) return fail(options_, exit_refused, connected.error());
+    if (request.verb == Verb::watch || request.verb == Verb::teleop) {
+      auto socket = connect_or_launch(options_);
+      if (!socket) return fail(options_, exit_refused, socket.error());
+      Client own(std::move(*socket));
+      return request.verb == Verb::watch ? watch(own, options_)
+                                         : teleop(own, options_, request.robots.front());
+    }
+    return run_line(*client_, options_, line);
+  }
+
+  Options options_;
+  std::optional<Client> client_{};
+  std::vector<std::string> robots_{};
+  int code_{exit_done};
+  bool printed_{false};
+};
+
+// libedit calls back without a context.
+Prompt* current = nullptr;
+std::optional<std::string> typed;
+bool at_end = false;
+std::vector<std::string> matches;
+
+char* next_match(const char*, int state) {
+  const auto index = static_cast<std::size_t>(state);
+  return index < matches.size() ? ::strdup(matches[index].c_str()) : nullptr;
+}
+
+char** complete(const char* text, int start, int) {
+  const std::string before(rl_line_buffer, static_cast<std::size_t>(start));
+  auto words = split_words(before);
+  rl_attempted_completion_over = 1;
+  matches.clear();
+  if (!words) return nullptr;
+  words->push_back(text);
+  for (const std::string& word : candidates(*words, current->robots()))
+    if (word.starts_with(text) && (words->size() > 1 || !word.starts_with("--"))) matches.push_back(word);
+  return matches.empty() ? nullptr : rl_completion_matches(text, next_match);
+}
+
+void on_line(char* line) {
+  if (line == nullptr) {
+    at_end = true;
+    return;
+  }
+  typed = line;
+  std::free(line);
+}
+
+int read_terminal(Prompt& prompt, const Options& options) {
+  const std::string sign = options.name + "> ";
+  current = &prompt;
+  rl_readline_name = "basestation";
+  rl_attempted_completion_function = complete;
+  using_history();
+  stifle_history(500);
+  auto state = state_folder();
+  const std::string history = state ? *state + "/" + options.name + ".history" : "";
+  if (!history.empty()) read_history(history.c_str());
+  std::printf("commands: help; leave: Ctrl-D (the station stays, down ends it)\n");
+  bool going = true;
+  while (going && !at_end) {
+    typed.reset();
+    rl_callback_handler_install(sign.c_str(), on_line);
+    while (!typed && !at_end) {
+      if (prompt.poll_notices(500, STDIN_FILENO)) rl_forced_update_display();
+      std::fflush(stdout);
+      pollfd input{STDIN_FILENO, POLLIN, 0};
+      if (::poll(&input, 1, 0) > 0) rl_callback_read_char();
+      if (interrupted() && !typed) {
+        std::printf("\n");
+        typed = "";
+      }
+    }
+    rl_callback_handler_remove();
+    if (!typed || typed->empty()) continue;
+    add_history(typed->c_str());
+    going = prompt.execute(*typed);
+    catch_interrupts();  // libedit puts handlers of its own
+  }
+  if (!history.empty()) write_history(history.c_str());
+  if (at_end) std::printf("\n");
+  return exit_done;
+}
+
+}  // namespace
+
+int prompt(const Options& options) {
+  Prompt prompt(options);
+  if (auto connected = prompt.connect(); !connected) return fail(options, exit_refused, connected.error());
+  if (::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) return read_terminal(prompt, options);
+  std::string line;
+  while (!interrupted() && std::getline(std::cin, line))
+    if (!prompt.execute(line)) break;
+  return prompt.code();
+}
+
+}  // namespace adit::station::cli

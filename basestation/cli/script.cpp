@@ -1,0 +1,141 @@
+#include "basestation/cli/script.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <set>
+
+#include "basestation/cli/client.hpp"
+#include "basestation/cli/interrupt.hpp"
+#include "basestation/cli/process/launch.hpp"
+#include "basestation/command/parse.hpp"
+#include "basestation/command/words.hpp"
+#include "core/config/node.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+/// One operator's part of a play.
+struct Player {
+  std::unique_ptr<Client> client{};
+  std::map<std::int64_t, std::string> open{};
+};
+
+class Play {
+ public:
+  explicit Play(const Options& options) : options_(options), started_(std::chrono::steady_clock::now()) {}
+
+  Result<void> add(const std::string& name) {
+    Options own = options_;
+    own.name = name;
+    auto socket = connect_or_launch(own);
+    if (!socket) return socket.error();
+    Player& player = players_[name];
+    player.client = std::make_unique<Client>(std::move(*socket));
+    player.client->on_outcome = [this, name](std::int64_t id, const nlohmann::json& outcome) {
+      Player& owner = players_[name];
+      const auto found = owner.open.find(id);
+      if (found == owner.open.end()) return;
+      event(name, found->second, &outcome);
+      owner.open.erase(found);
+    };
+    return {};
+  }
+
+  void begin() { started_ = std::chrono::steady_clock::now(); }
+  double now() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  }
+  void execute(const ScriptLine& next) {
+    event(next.by, next.line, nullptr);
+    Player& player = players_[next.by];
+    player.open[player.client->execute(next.line)] = next.line;
+  }
+  /// False when a station went away.
+  bool wait() {
+    const int share = static_cast<int>(20 / players_.size()) + 1;
+    return std::all_of(players_.begin(), players_.end(),
+                       [&](auto& p) { return p.second.client->wait(share); });
+  }
+  bool idle() const {
+    return std::all_of(players_.begin(), players_.end(), [](const auto& p) { return p.second.open.empty(); });
+  }
+  void cancel() {
+    for (auto& [name, player] : players_)
+      for (const auto& [id, line] : player.open) player.client->cancel(id);
+  }
+
+ private:
+  void event(const std::string& by, const std::string& line, const nlohmann::json* outcome) {
+    if (options_.json) {
+      nlohmann::json object{{"at", now()}, {"by", by}, {"do", line}};
+      if (outcome) object["outcome"] = outcome->value("json", nlohmann::json::object());
+      std::printf("%s\n", object.dump().c_str());
+    } else if (!outcome) {
+      std::printf("%7.1f %s> %s\n", now(), by.c_str(), line.c_str());
+    } else {
+      const std::string text = outcome->value("text", std::string()) + outcome->value("error", std::string());
+      for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
+        std::printf("%7.1f %s  %s\n", now(), by.c_str(), text.substr(at, end - at).c_str());
+    }
+    std::fflush(stdout);
+  }
+
+  Options options_;
+  std::map<std::string, Player> players_{};
+  std::chrono::steady_clock::time_point started_;
+};
+
+}  // namespace
+
+Result<std::vector<ScriptLine>> read_script(const std::string& path) {
+  auto root = config::load(path);
+  if (!root) return root.error();
+  std::vector<ScriptLine> script;
+  (void)root->entries();  // the rest of a scenario is the rehearsal's
+  for (const config::Node& node : root->list("script")) {
+    ScriptLine line{node.number("at", config::within(0.0, 1e6)), node.text("by"), node.text("do")};
+    if (node.has("by") && !valid_name(line.by))
+      node.fail(Reason::bad_argument, "by: an operator's name was expected");
+    if (node.has("do"))
+      if (auto request = parse(line.line); !request) node.fail(request.error().reason, request.error().text);
+    script.push_back(std::move(line));
+  }
+  if (auto good = root->finish(); !good) return good.error();
+  std::stable_sort(script.begin(), script.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+  return script;
+}
+
+int play(const Options& options, const std::vector<ScriptLine>& script, bool all_operators) {
+  std::vector<ScriptLine> mine;
+  std::set<std::string> names;
+  for (const ScriptLine& line : script) {
+    if (!all_operators && line.by != options.name) continue;
+    mine.push_back(line);
+    names.insert(line.by);
+  }
+  if (mine.empty()) {
+    std::fprintf(stderr, "the script has no lines by %s; all operators' are played with --all\n",
+                 options.name.c_str());
+    return exit_done;
+  }
+  Play play(options);
+  for (const std::string& name : names)
+    if (auto added = play.add(name); !added) return fail(options, exit_refused, added.error());
+  play.begin();
+  std::size_t next = 0;
+  while (next < mine.size() || !play.idle()) {
+    while (next < mine.size() && mine[next].at <= play.now()) play.execute(mine[next++]);
+    if (!play.wait()) return fail(options, exit_no_answer, {Reason::no_answer, "a station went away"});
+    if (interrupted()) {
+      play.cancel();
+      for (int i = 0; i < 40 && !play.idle(); ++i) play.wait();
+      return 130;
+    }
+  }
+  return exit_done;
+}
+
+}  // namespace adit::station::cli

@@ -1,0 +1,54 @@
+#include "basestation/cli/stop.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <optional>
+
+#include "basestation/cli/client.hpp"
+#include "basestation/cli/process/launch.hpp"
+#include "basestation/cli/process/live_station.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// The outcome when the station took the stop in time.
+std::optional<nlohmann::json> ask_station(const Options& options, const std::string& line) {
+  auto path = socket_path(options);
+  if (!path) return std::nullopt;
+  auto socket = LineSocket::connect(*path);
+  if (!socket) return std::nullopt;
+  Client client(std::move(*socket));
+  bool begun = false;
+  std::optional<nlohmann::json> outcome;
+  client.on_begun = [&](std::int64_t) { begun = true; };
+  client.on_outcome = [&](std::int64_t, const nlohmann::json& object) { outcome = object; };
+  client.execute(line);
+  const auto started = Clock::now();
+  while (!outcome) {
+    const Duration limit = begun ? Duration(20s) : Duration(300ms);
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(limit - (Clock::now() - started));
+    if (left <= 0ms || !client.wait(static_cast<int>(left.count()))) break;
+  }
+  return outcome;
+}
+
+}  // namespace
+
+int stop(const Options& options, const std::string& line) {
+  if (const auto outcome = ask_station(options, line)) return print_outcome(options, *outcome);
+  std::fprintf(stderr, "no answer from the station of %s: the stop goes out by itself\n",
+               options.name.c_str());
+  // Announced often: robots have to know this participant before they believe who it is.
+  auto live = LiveStation::open(options, {.presence = 100ms});
+  if (!live) return fail(options, exit_no_answer, live.error());
+  const Outcome outcome = (*live)->execute(line, 20s);
+  return print_outcome(options, {{"exit", outcome.exit_code},
+                                 {"text", outcome.text},
+                                 {"error", outcome.error},
+                                 {"json", outcome.json}});
+}
+
+}  // namespace adit::station::cli

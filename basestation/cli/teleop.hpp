@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "basestation/cli/client.hpp"
+
+namespace adit::station::cli {
+
+/// Drives a robot by keyboard or game controller until Esc, Ctrl-C or a refusal. The exit code.
+int teleop(Client& client, const Options& options, const std::string& robot);
+
+}  // namespace adit::station::cli

@@ -1,0 +1,231 @@
+#include "basestation/cli/watch/watch.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+
+#include "basestation/cli/interrupt.hpp"
+#include "basestation/cli/terminal/key_stick.hpp"
+#include "basestation/cli/terminal/keys.hpp"
+#include "basestation/cli/terminal/terminal.hpp"
+#include "basestation/cli/watch/render.hpp"
+
+namespace adit::station::cli {
+namespace {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+class Dashboard {
+ public:
+  Dashboard(Client& client, Terminal& terminal) : client_(client), terminal_(terminal) {
+    client_.on_snapshot = [this](const json& snapshot) {
+      snapshot_ = snapshot;
+      heard_ = Clock::now();
+      dirty_ = true;
+      const auto names = robots_of(snapshot_);
+      if (std::find(names.begin(), names.end(), state_.selected) == names.end())
+        state_.selected = names.empty() ? "" : names.front();
+    };
+    client_.on_outcome = [this](std::int64_t id, const json& outcome) { ended(id, outcome); };
+    client_.watch();
+  }
+
+  /// False when the station is gone.
+  bool run() {
+    while (!leaving_) {
+      for (const int key : decode_keys(terminal_.read())) press(key);
+      if (interrupted()) leaving_ = true;
+      if (resized()) dirty_ = redraw_ = true;
+      const auto now = Clock::now();
+      const bool silent = now - heard_ > 2s;
+      dirty_ = dirty_ || silent != state_.silent;
+      state_.silent = silent;
+      if (state_.driving && now >= next_stick_) {
+        const auto v = stick_.velocity(now);
+        client_.stick(drive_, v[0], v[1], v[2]);
+        next_stick_ = now + 50ms;
+        state_.driving_text = number(v[0]) + " m/s " + number(v[2]) + " rad/s";
+        dirty_ = true;
+      }
+      if (dirty_) draw();
+      if (!client_.wait(state_.driving ? 50 : 200, STDIN_FILENO)) return false;
+    }
+    if (state_.driving) client_.cancel(drive_);
+    return true;
+  }
+
+ private:
+  static std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f", value);
+    return text;
+  }
+
+  void draw() {
+    dirty_ = false;
+    const auto lines = render(snapshot_, state_, terminal_.rows(), terminal_.columns(), true);
+    std::string out = redraw_ ? "\x1b[2J" : "";
+    redraw_ = false;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      out += "\x1b[" + std::to_string(i + 1) + ";1H" + lines[i] + "\x1b[K";
+    terminal_.write(out);
+  }
+
+  void say(const std::string& text, bool refused) {
+    state_.message = text;
+    state_.refused = refused;
+    dirty_ = true;
+  }
+
+  void execute(const std::string& line) {
+    asked_[client_.execute(line)] = line;
+    say(line + " ...", false);
+  }
+
+  void ended(std::int64_t id, const json& outcome) {
+    std::string text = outcome.value("error", std::string()) + outcome.value("text", std::string());
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    if (id == drive_ && state_.driving) {
+      state_.driving = false;
+      return say(text, outcome.value("exit", 1) != 0);
+    }
+    const auto found = asked_.find(id);
+    if (found == asked_.end()) return;
+    say(found->second + " -> " + text, outcome.value("exit", 1) != 0);
+    asked_.erase(found);
+  }
+
+  const json* robot() const {
+    const auto list = snapshot_.find("robots");
+    if (list == snapshot_.end()) return nullptr;
+    for (const json& row : *list)
+      if (row.value("robot", std::string()) == state_.selected) return &row;
+    return nullptr;
+  }
+
+  void select(int step) {
+    const auto names = robots_of(snapshot_);
+    const auto at = std::find(names.begin(), names.end(), state_.selected);
+    if (names.empty()) return;
+    const auto last = static_cast<std::ptrdiff_t>(names.size()) - 1;
+    const auto next = std::clamp<std::ptrdiff_t>(at == names.end() ? 0 : at - names.begin() + step, 0, last);
+    state_.selected = names[static_cast<std::size_t>(next)];
+  }
+
+  void press(int key) {
+    dirty_ = true;
+    if (key == key_interrupt) {
+      leaving_ = true;
+    } else if (state_.typing) {
+      type(key);
+    } else if (state_.driving) {
+      if (key == key_escape || key == 'm') {
+        client_.cancel(drive_);
+      } else if (key == 'S' || key == 'x') {
+        execute(key == 'S' ? "stop all" : "stop " + state_.selected);
+      } else {
+        stick_.press(key, Clock::now());
+      }
+    } else if (key == 'q' || key == 'Q') {
+      leaving_ = true;
+    } else if (key == '?' || key == key_escape) {
+      state_.help = key == '?' && !state_.help;
+    } else if (key == ':') {
+      state_.typing = true;
+    } else if (key == 'S') {
+      execute("stop all");
+    } else if (key == key_up || key == key_down) {
+      select(key == key_up ? -1 : 1);
+    } else if (key >= '1' && key <= '9') {
+      const auto names = robots_of(snapshot_);
+      const auto index = static_cast<std::size_t>(key - '1');
+      if (index < names.size()) state_.selected = names[index];
+    } else if (!state_.selected.empty()) {
+      command(key);
+    }
+  }
+
+  void command(int key) {
+    const std::string& name = state_.selected;
+    const json* view = robot();
+    switch (key) {
+      case 't':
+        return execute("take " + name);
+      case 'r':
+        return execute("release " + name);
+      case 'l':
+        return execute((view && view->value("locked", false) ? "unlock " : "lock ") + name);
+      case 's':
+        return execute("stop " + name);
+      case 'e':
+        return execute("reset " + name);
+      case 'E':
+        return execute("reset " + name + " --override");
+      case 'h':
+        return execute("mode " + name + " hold");
+      case 'w':
+        return execute("mode " + name + " waypoint");
+      case 'g':
+        state_.typing = true;
+        state_.line = "goto " + name + " ";
+        return;
+      case 'm':
+        if (view) stick_.set_limits(view->value("max_speed", 0.0), view->value("max_turn", 0.0));
+        drive_ = client_.teleop(name);
+        state_.driving = true;
+        return say("", false);
+      default:
+        return;
+    }
+  }
+
+  void type(int key) {
+    if (key == key_escape || (key == key_backspace && state_.line.empty())) {
+      state_.typing = false;
+      state_.line.clear();
+    } else if (key == key_enter) {
+      state_.typing = false;
+      if (!state_.line.empty()) execute(state_.line);
+      state_.line.clear();
+    } else if (key == key_backspace) {
+      state_.line.pop_back();
+    } else if (key < 127 && state_.line.size() < 200) {
+      state_.line += static_cast<char>(key);
+    }
+  }
+
+  Client& client_;
+  Terminal& terminal_;
+  json snapshot_ = json::object();
+  WatchState state_{};
+  KeyStick stick_{};
+  std::map<std::int64_t, std::string> asked_{};
+  std::int64_t drive_{};
+  Clock::time_point heard_{Clock::now()};
+  Clock::time_point next_stick_{};
+  bool dirty_{true};
+  bool redraw_{true};
+  bool leaving_{false};
+};
+
+}  // namespace
+
+int watch(Client& client, const Options& options) {
+  bool good = true;
+  {
+    Terminal terminal(true);
+    if (!terminal.usable())
+      return fail(options, exit_usage,
+                  {Reason::bad_argument, "watch wants a terminal; in a script use --json status"});
+    good = Dashboard(client, terminal).run();
+  }
+  if (good) return exit_done;
+  return fail(options, exit_no_answer, {Reason::no_answer, "the station went away"});
+}
+
+}  // namespace adit::station::cli
