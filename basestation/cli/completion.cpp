@@ -11,25 +11,25 @@
 namespace adit::station::cli {
 namespace {
 
-constexpr const char* bash_script = R"(_basestation() {
+constexpr const char* bash_script = R"sh(_basestation() {
   local IFS=$'\n'
   COMPREPLY=($(compgen -W "$(basestation completion words "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)" -- "${COMP_WORDS[COMP_CWORD]}"))
 }
 complete -o default -F _basestation basestation
-)";
+)sh";
 
-constexpr const char* zsh_script = R"(#compdef basestation
+constexpr const char* zsh_script = R"sh(#compdef basestation
 _basestation() {
   local -a found
   found=("${(@f)$(basestation completion words "${(@)words[2,CURRENT]}" 2>/dev/null)}")
   compadd -a found
 }
 compdef _basestation basestation
-)";
+)sh";
 
 constexpr const char* fish_script =
-    R"(complete -c basestation -f -a '(basestation completion words (commandline -opc)[2..-1] (commandline -ct) 2>/dev/null)'
-)";
+    R"sh(complete -c basestation -f -a '(basestation completion words (commandline -opc)[2..-1] (commandline -ct) 2>/dev/null)'
+)sh";
 
 /// The robots a running station knows; none when it does not say so at once.
 std::vector<std::string> known_robots(const Options& options) {
