@@ -49,7 +49,10 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
 
   const PathTree long_tree(params.tree), short_tree(small);
   auto library = std::make_shared<PlannerLibrary>();
-  library->options.push_back({long_tree, CorrespondenceGrid(long_tree, wide), false, 3});
+  // A narrow passage is seen from afar: the long tight library comes before the short ones, so that the robot
+  // lines up for the passage in time.
+  library->options.push_back({long_tree, CorrespondenceGrid(long_tree, wide), false, 5});
+  library->options.push_back({long_tree, CorrespondenceGrid(long_tree, tight), true, 5});
   library->options.push_back({short_tree, CorrespondenceGrid(short_tree, wide), false, 1});
   library->options.push_back({short_tree, CorrespondenceGrid(short_tree, tight), true, 1});
   library->rotation = RotationTable({half_length + kTurnMargin, half_width + kTurnMargin});

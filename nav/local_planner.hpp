@@ -18,7 +18,7 @@ struct LocalPlannerParams {
   double front_margin{0.20};  ///< kept free before and behind it, m, [0, 1]; never less than a turn needs
   double tight_margin{0.05};  ///< on the sides, where nothing else is left, m, [0.02, 0.5]
   double short_scale{0.5};    ///< of the second, shorter and more curved library, [0.2, 1]
-  double tight_speed{0.4};    ///< where only the tight margin is left, m/s, (0, 2]
+  double tight_speed{0.5};    ///< where only the tight margin is left, m/s, (0, 2]
   double tolerance{0.25};     ///< arrived within this distance of the goal, m, [0.02, 2]
   double goal_spread{95.0};   ///< paths may lead away from the goal's bearing by this, degrees, [10, 120]
   double stick_spread{45.0};  ///< the same for a direction, degrees, [10, 120]
@@ -44,7 +44,7 @@ struct PlannerLibrary {
   std::vector<Option> options{};
   RotationTable rotation{};
 
-  /// Builds it (about 40 ms, 5 MB).
+  /// Builds it (about 60 ms, 7 MB).
   static std::shared_ptr<const PlannerLibrary> build(const Platform& platform,
                                                      const LocalPlannerParams& params = {});
 };
