@@ -1,0 +1,28 @@
+#include "sim/rehearsal/agent_factory.hpp"
+
+#include "robot_agent/agent.hpp"
+
+namespace adit::sim {
+
+Result<AgentFactory> make_agent_factory(const std::string& defect) {
+  agent::Defects defects;
+  if (!defect.empty()) {
+    const auto known = agent::defect_from_name(defect);
+    if (!known) return Error{Reason::bad_argument, "no defect of that name: " + defect};
+    defects.active = *known;
+  }
+  return AgentFactory([defects](const AgentContext& context) -> Result<std::shared_ptr<void>> {
+    agent::AgentParams params;
+    params.name = context.spec.id;
+    params.platform = context.platform;
+    params.seed = context.seed;
+    params.start = context.spec.pose;
+    params.lock_lease = context.lock_lease;
+    params.defects = defects;
+    auto agent = std::make_shared<agent::Agent>(params, context.runtime, context.radio, context.robot);
+    if (auto started = agent->start(); !started) return started.error();
+    return std::shared_ptr<void>(std::move(agent));
+  });
+}
+
+}  // namespace adit::sim
