@@ -35,8 +35,7 @@ class Acknowledge : public Rule {
       broken("did not answer command " + std::to_string(p.command.seq) + " of " + p.command.station);
     }
     for (auto& [id, stream] : streams_) {
-      if (!stream.refused_since || robot.now() - *stream.refused_since <= stream_answer_period + answer_time)
-        continue;
+      if (!stream.refused_since || robot.now() - *stream.refused_since <= answer_time) continue;
       broken("refused a joystick in silence");
       stream.refused_since.reset();
     }
@@ -44,7 +43,7 @@ class Acknowledge : public Rule {
 
  private:
   struct Stream {
-    std::optional<Duration> refused_since{};  ///< the first refused sample since the last answer
+    std::optional<Duration> refused_since{};  ///< the first refused sample that an answer is due to
     std::optional<Duration> answered{};
   };
 
@@ -53,7 +52,8 @@ class Acknowledge : public Rule {
     // Only what is certain to be refused: the sender does not hold the robot.
     if (!robot.alive() || robot.refusal(sample) != "it was not sent by the holder") return;
     if (sample.id == robot.authority().holder_id) return;
-    if (!stream.refused_since) stream.refused_since = robot.now();
+    const bool answered = stream.answered && robot.now() - *stream.answered <= stream_answer_period;
+    if (!stream.refused_since && !answered) stream.refused_since = robot.now();
   }
 
   void see_stream_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
