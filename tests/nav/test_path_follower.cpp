@@ -1,0 +1,139 @@
+#include "nav/path_follower.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/nav/box_world.hpp"
+
+namespace adit::nav::test {
+namespace {
+
+constexpr double kDt = 0.02;
+
+/// A straight plan of `length` metres along `yaw` from the origin.
+Plan straight(double length, double yaw = 0.0, double speed = 10.0) {
+  Plan plan;
+  plan.length = length;
+  plan.max_speed = speed;
+  plan.pose_count = static_cast<std::uint32_t>(std::lround(length / 0.05)) + 1;
+  for (std::uint32_t i = 0; i < plan.pose_count; ++i)
+    plan.poses[i] = {0.05 * i * std::cos(yaw), 0.05 * i * std::sin(yaw), yaw};
+  return plan;
+}
+
+/// Follows until it stands or for `seconds`; checks the platform's limits on the way.
+Pose2 run(PathFollower& follower, const Platform& p, Pose2 pose, double seconds) {
+  for (double t = 0; t < seconds; t += kDt) {
+    const Twist2 before = follower.command();
+    const Twist2 v = follower.follow(pose, kDt);
+    EXPECT_LE(std::hypot(v.vx, v.vy), p.max_speed + 1e-9);
+    EXPECT_LE(std::fabs(v.wz), p.max_turn + 1e-9);
+    EXPECT_LE(std::hypot(v.vx - before.vx, v.vy - before.vy), p.max_acceleration * kDt + 1e-9);
+    EXPECT_LE(std::fabs(v.wz - before.wz), p.max_turn_acceleration * kDt + 1e-9);
+    if (p.drive == Drive::differential) {
+      EXPECT_EQ(v.vy, 0.0);
+    }
+    pose = pose * Pose2{v.vx * kDt, v.vy * kDt, v.wz * kDt};
+  }
+  return pose;
+}
+
+TEST(PathFollower, StopsAtTheEndOfAPath) {
+  for (const Platform& p : {wheeled(), tracked(), legged()}) {
+    PathFollower follower(p);
+    follower.set_plan(straight(3.0));
+    const Pose2 end = run(follower, p, {0, 0.1, 0.05}, 10);
+    EXPECT_NEAR(end.x, 3.0, 0.2) << p.name;
+    EXPECT_NEAR(end.y, 0.0, 0.08) << p.name;
+    EXPECT_TRUE(follower.command().zero());
+  }
+}
+
+TEST(PathFollower, TurnsOnTheSpotFirst) {
+  PathFollower follower(wheeled());
+  follower.set_plan(straight(2.0, 2.0));
+  const Pose2 turned = run(follower, wheeled(), {}, 1.2);
+  EXPECT_LT(turned.position().norm(), 0.05);
+  EXPECT_GT(turned.yaw, 0.8);
+  const Pose2 end = run(follower, wheeled(), turned, 8);
+  EXPECT_LT((end.position() - Eigen::Vector2d(2 * std::cos(2.0), 2 * std::sin(2.0))).norm(), 0.25);
+}
+
+TEST(PathFollower, TurnsToTheSideThatIsFree) {
+  PathFollower follower(wheeled());
+  Plan plan = straight(2.0, 2.5);
+  plan.turn = -1;  // the long way round
+  follower.set_plan(plan);
+  EXPECT_LT(run(follower, wheeled(), {}, 0.6).yaw, -0.2);
+}
+
+TEST(PathFollower, FollowsBackwards) {
+  PathFollower follower(tracked());
+  Plan plan = straight(2.0, M_PI);
+  plan.reverse = true;
+  for (auto& pose : plan.poses) pose.yaw = 0;
+  follower.set_plan(plan);
+  const Pose2 end = run(follower, tracked(), {0, 0.05, 0}, 8);
+  EXPECT_NEAR(end.x, -2.0, 0.2);
+  EXPECT_NEAR(end.yaw, 0.0, 0.2);
+}
+
+TEST(PathFollower, KeepsToThePlansSpeed) {
+  PathFollower follower(wheeled());
+  follower.set_plan(straight(3.0, 0.0, 0.4));
+  run(follower, wheeled(), {}, 1.0);
+  EXPECT_NEAR(follower.command().vx, 0.4, 1e-9);
+}
+
+TEST(PathFollower, AnEmptyPlanIsASmoothStopAndStopNowIsZeroAtOnce) {
+  PathFollower follower(wheeled());
+  follower.set_plan(straight(3.0));
+  Pose2 pose = run(follower, wheeled(), {}, 0.6);
+  ASSERT_GT(follower.command().vx, 0.5);
+  follower.set_plan(Plan{});
+  pose = run(follower, wheeled(), pose, 0.04);
+  EXPECT_GT(follower.command().vx, 0.3);
+  EXPECT_TRUE(follower.stop_now().zero());
+  EXPECT_TRUE(follower.follow(pose, kDt).zero());
+}
+
+TEST(PathFollower, BrakesBeforeWhatThePlanLeadsInto) {
+  for (const Platform& p : {wheeled(), tracked(), legged()}) {
+    PathFollower follower(p);
+    Plan plan = straight(3.0);
+    for (float y = -0.5f; y < 0.5f; y += 0.05f) plan.obstacles[plan.obstacle_count++] = {2.0f, y};
+    follower.set_plan(plan);
+    const Pose2 end = run(follower, p, {}, 10);
+    EXPECT_LT(end.x + p.length / 2, 2.0) << p.name;
+    EXPECT_GT(end.x + p.length / 2, 1.7) << p.name;
+    EXPECT_TRUE(follower.held());
+  }
+}
+
+TEST(BrakingCheck, LooksAsFarAsBrakingTakes) {
+  BrakingCheck check(wheeled());  // 2 m/s, 1.5 m/s2: 1.33 m, and 0.3 m in the reaction time
+  const std::vector<Eigen::Vector2f> ahead{{1.5f, 0.0f}};
+  check.look(ahead, {});
+  EXPECT_FALSE(check.safe({2.0, 0, 0}));
+  EXPECT_TRUE(check.safe({1.0, 0, 0}));
+  EXPECT_TRUE(check.safe({-2.0, 0, 0}));
+  EXPECT_TRUE(check.safe({}));
+}
+
+TEST(BrakingCheck, SeesWhatATurnSweeps) {
+  BrakingCheck check(tracked());
+  const std::vector<Eigen::Vector2f> corner{{0.36f, 0.325f}};
+  check.look(corner, {});
+  EXPECT_FALSE(check.safe({0, 0, 1.0}));
+  EXPECT_TRUE(check.safe({0, 0, -0.5}));
+}
+
+TEST(BrakingCheck, LetsARobotOutOfWhatItTouches) {
+  BrakingCheck check(wheeled());
+  const std::vector<Eigen::Vector2f> touching{{0.305f, 0.0f}};
+  check.look(touching, {});
+  EXPECT_FALSE(check.safe({0.3, 0, 0}));
+  EXPECT_TRUE(check.safe({-0.3, 0, 0}));
+}
+
+}  // namespace
+}  // namespace adit::nav::test
