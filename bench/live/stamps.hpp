@@ -1,0 +1,35 @@
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <ctime>
+
+namespace adit::bench {
+
+/// Nanoseconds on the machine's monotonic clock, the same in every process of it.
+inline std::int64_t monotonic_ns() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
+}
+
+/// When sample k passed each place; shared by the processes of the benchmark. Zero: not seen.
+struct Stamps {
+  static constexpr std::size_t kSamples = 600;
+  using Column = std::array<std::atomic<std::int64_t>, kSamples>;
+  Column stick_written;   ///< before the station's write of the joystick
+  Column cmd_written;     ///< after the agent's write of rt/cmd_vel returned
+  Column driver_called;   ///< in the driver's callback
+  Column bare_written;    ///< before a bare Fast DDS write of a payload of the same size
+  Column bare_called;     ///< in the bare reader's callback, in the agent's process
+  Column second_written;  ///< the same from there to the driver's process
+  Column second_called;
+  std::atomic<bool> agent_ready, driver_ready, stop;
+
+  static void note(Column& column, std::size_t k) {
+    std::int64_t none = 0;
+    if (k < kSamples) column[k].compare_exchange_strong(none, monotonic_ns());
+  }
+};
+
+}  // namespace adit::bench

@@ -1,0 +1,57 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/wire/wire.hpp"
+
+namespace adit::bench {
+
+/// Passes everything on to another wire and calls `before` and `after` around each write of one topic.
+class TappedWire final : public wire::Wire {
+ public:
+  using Tap = std::function<void(std::span<const std::uint8_t>)>;
+  TappedWire(wire::Wire& inner, std::string topic, Tap before, Tap after)
+      : inner_(inner), topic_(std::move(topic)), before_(std::move(before)), after_(std::move(after)) {}
+
+  wire::ParticipantId id() const override { return inner_.id(); }
+  Result<std::unique_ptr<wire::RawWriter>> make_writer(const wire::TopicInfo& topic,
+                                                       const std::string& partition) override {
+    auto made = inner_.make_writer(topic, partition);
+    if (!made || topic_ != topic.name) return made;
+    return std::unique_ptr<wire::RawWriter>(new TappedWriter(std::move(*made), *this));
+  }
+  Result<std::unique_ptr<wire::RawReader>> make_reader(const wire::TopicInfo& topic,
+                                                       const std::string& partition, Executor& strand,
+                                                       wire::RawHandler handler) override {
+    return inner_.make_reader(topic, partition, strand, std::move(handler));
+  }
+  void on_participant(Executor& strand, std::function<void(const wire::ParticipantEvent&)> handler) override {
+    inner_.on_participant(strand, std::move(handler));
+  }
+  wire::WireCounters counters() const override { return inner_.counters(); }
+
+ private:
+  class TappedWriter final : public wire::RawWriter {
+   public:
+    TappedWriter(std::unique_ptr<wire::RawWriter> inner, TappedWire& owner)
+        : inner_(std::move(inner)), owner_(owner) {}
+    Result<void> write(std::span<const std::uint8_t> cdr) override {
+      if (owner_.before_) owner_.before_(cdr);
+      auto result = inner_->write(cdr);
+      if (owner_.after_) owner_.after_(cdr);
+      return result;
+    }
+    std::size_t matched() const override { return inner_->matched(); }
+
+   private:
+    std::unique_ptr<wire::RawWriter> inner_;
+    TappedWire& owner_;
+  };
+
+  wire::Wire& inner_;
+  std::string topic_;
+  Tap before_, after_;
+};
+
+}  // namespace adit::bench
