@@ -112,7 +112,7 @@ int driver_process(Stamps& stamps, unsigned radio) {
                                   [&](const geometry_msgs::msg::Twist& twist, const wire::SampleInfo&) {
                                     Stamps::note(stamps.driver_called, number(twist.linear().x()));
                                   });
-  BareDds bare(radio + 2, "nothing", "second", [&](std::span<const std::uint8_t> bytes) {
+  BareDds bare(radio + 2, "third", "second", [&](std::span<const std::uint8_t> bytes) {
     Stamps::note(stamps.second_called, number(bytes));
   });
   if (!odom || !reader) return 1;
@@ -147,7 +147,7 @@ void station_process(Stamps& stamps, unsigned radio) {
                       if (wire::decode(cdr, sample)) Stamps::note(stamps.stick_written, number(sample.vx()));
                     },
                     {});
-  BareDds bare(radio + 2, "first", "nowhere", [](std::span<const std::uint8_t>) {});
+  BareDds bare(radio + 2, "first", "third", [](std::span<const std::uint8_t>) {});
   LiveRuntime runtime;
   auto strand = runtime.strand("station");
   station::StationParams params;
