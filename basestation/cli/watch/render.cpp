@@ -105,7 +105,8 @@ Cell goal_cell(const json& robot, std::size_t width) {
   if (state == "none" || state.empty()) return {padded("-", width), dim};
   const std::string where = fixed(number(robot, "goal", 0), 1) + "," + fixed(number(robot, "goal", 1), 1);
   const char* colour = state == "blocked" ? red : state == "reached" ? green : "";
-  return {padded(state + " " + where, width), colour};
+  const std::string shown = state == "active" ? "to" : state == "reached" ? "at" : state;
+  return {padded(shown + " " + where, width), colour};
 }
 
 Cell age_cell(const json& robot) {
@@ -115,11 +116,11 @@ Cell age_cell(const json& robot) {
 }
 
 void robots(Page& page, const json& snapshot, const WatchState& state) {
-  const std::size_t spare = page.columns() > 79 ? std::min<std::size_t>(page.columns() - 79, 26) : 0;
-  const std::size_t mode_width = 12 + std::min<std::size_t>(spare, 8);
+  const std::size_t spare = page.columns() > 80 ? std::min<std::size_t>(page.columns() - 80, 32) : 0;
+  const std::size_t mode_width = 9 + std::min<std::size_t>(spare, 8);
   const std::size_t name_width = 6 + (spare > 8 ? std::min<std::size_t>(spare - 8, 8) : 0);
   const std::size_t holder_width = 6 + (spare > 16 ? std::min<std::size_t>(spare - 16, 8) : 0);
-  const std::size_t goal_width = 15;
+  const std::size_t goal_width = 14 + (spare > 24 ? spare - 24 : 0);
   page.line({{padded("  ", 3) + padded("ROBOT", name_width) + padded("KIND", 7) + padded("MODE", mode_width) +
               padded("HOLDER", holder_width) + padded("X", 6, true) + padded("Y", 6, true) +
               padded("YAW", 4, true) + padded("M/S", 4, true) + padded("GOAL", goal_width) +
@@ -261,8 +262,7 @@ std::vector<std::string> render(const json& snapshot, const WatchState& state, i
     page.line({{" DRIVING " + state.selected + "  " + state.driving_text + "  space zero  Esc lets go"}},
               "30;43");
   else
-    page.line({{" t take r release l lock s stop S all e reset h hold w go g goto m drive ? help q quit"}},
-              reverse);
+    page.line({{" t take r release l lock s stop S all e reset h hold w go g goto m drive ? q"}}, reverse);
   return page.take();
 }
 

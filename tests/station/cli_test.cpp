@@ -1,0 +1,195 @@
+// The real program, where no robot is present.
+#include <gmock/gmock.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "basestation/command/grammar.hpp"
+#include "tests/live/process.hpp"
+
+namespace adit::station {
+namespace {
+
+using live::Finished;
+using live::Seconds;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Cli : public testing::Test {
+ protected:
+  ~Cli() override {
+    for (const char* name : {"op1", "op2"}) run({"--name", name, "down"});
+  }
+  Finished run(std::vector<std::string> words) {
+    words.insert(words.begin(), {"basestation", "--domain", std::to_string(live::domain())});
+    return live::run(words, folder_.environment(), Seconds(20));
+  }
+  std::string path(const std::string& name) const {
+    const auto environment = folder_.environment();
+    return environment.at("XDG_RUNTIME_DIR") + "/adit/" + name;
+  }
+  /// What the station answers to raw bytes, until it says nothing more for a while.
+  std::string talk(const std::string& bytes) {
+    const int fd = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, path("op1.sock").c_str(), sizeof address.sun_path - 1);
+    timeval limit{0, 400000};
+    ::setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    std::string out;
+    if (::connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+      for (std::size_t at = 0; at < bytes.size();) {
+        const ssize_t sent = ::send(fd, bytes.data() + at, bytes.size() - at, MSG_NOSIGNAL);
+        if (sent <= 0) break;
+        at += static_cast<std::size_t>(sent);
+      }
+      char buffer[4096];
+      for (ssize_t size; (size = ::recv(fd, buffer, sizeof buffer, 0)) > 0;)
+        out.append(buffer, static_cast<std::size_t>(size));
+    }
+    ::close(fd);
+    return out;
+  }
+
+  live::Folder folder_{};
+};
+
+TEST_F(Cli, HelpOfTheProgramAndOfEachCommand) {
+  const Finished all = run({"--help"});
+  EXPECT_EQ(all.exit_code, 0);
+  for (const CommandInfo& command : commands()) {
+    EXPECT_THAT(all.out, HasSubstr("  " + std::string(command.name)));
+    const Finished one = run({std::string(command.name), "--help"});
+    EXPECT_EQ(one.exit_code, 0);
+    EXPECT_THAT(one.out, HasSubstr("example: basestation " + std::string(command.example)));
+  }
+  EXPECT_THAT(all.out, HasSubstr("Examples:"));
+  for (const char* later : {"yield", "convoy", "peeloff", "policy", "camera"})
+    EXPECT_EQ(all.out.find(later), std::string::npos) << later;
+}
+
+TEST_F(Cli, WrongUsageIsOneLineAndExitTwo) {
+  const std::vector<std::vector<std::string>> wrong{
+      {"tkae", "r1"},         {"goto", "r1", "north", "1"}, {"--domain", "999", "list"},
+      {"--nmae", "x"},        {"--name", "a/b", "list"},    {"run", "/no/such/file.yaml"},
+      {"completion", "tcsh"}, {"camera", "r1", "on"}};
+  for (const auto& words : wrong) {
+    const Finished end = run(words);
+    EXPECT_EQ(end.exit_code, 2) << words[0];
+    EXPECT_EQ(std::count(end.err.begin(), end.err.end(), '\n'), 1) << end.err;
+  }
+}
+
+TEST_F(Cli, CompletionScriptsAndWords) {
+  EXPECT_THAT(run({"completion", "bash"}).out, HasSubstr("complete -o default -F"));
+  EXPECT_THAT(run({"completion", "zsh"}).out, HasSubstr("#compdef basestation"));
+  EXPECT_THAT(run({"completion", "fish"}).out, HasSubstr("complete -c basestation"));
+  EXPECT_THAT(run({"completion", "words", "mode", "r1", ""}).out, HasSubstr("smart_joystick"));
+  EXPECT_THAT(run({"completion", "words", "stop", ""}).out, HasSubstr("all"));
+}
+
+TEST_F(Cli, ACommandStartsAStationAndSaysSo) {
+  const Finished first = run({"--json", "list"});
+  EXPECT_EQ(first.exit_code, 0);
+  EXPECT_THAT(first.err, HasSubstr("started one"));
+  EXPECT_EQ(json::parse(first.out)["stations"][0]["station"], "op1");
+  EXPECT_TRUE(run({"list"}).err.empty());
+  struct stat status {};
+  ASSERT_EQ(::stat(path("op1.sock").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0600U);
+  ASSERT_EQ(::stat(path("").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0700U);
+  EXPECT_THAT(run({"down"}).out, HasSubstr("is down"));
+  EXPECT_TRUE(live::eventually([&] { return ::access(path("op1.sock").c_str(), F_OK) != 0; }));
+}
+
+TEST_F(Cli, UnknownRobotIsExitOneAndNobodyThereIsExitThree) {
+  const Finished take = run({"take", "r9"});
+  EXPECT_EQ(take.exit_code, 1);
+  EXPECT_THAT(take.err, HasSubstr("known robots: none"));
+  EXPECT_EQ(run({"stop", "all"}).exit_code, 3);
+}
+
+TEST_F(Cli, OneStationPerName) {
+  EXPECT_EQ(run({"up"}).exit_code, 0);
+  const Finished second = run({"--serve", "-1"});
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_THAT(second.err, HasSubstr("running already"));
+  EXPECT_EQ(run({"--name", "op2", "up"}).exit_code, 0) << "another name is another station";
+}
+
+TEST_F(Cli, AKilledStationIsReplacedAndKeepsItsIdentity) {
+  run({"up"});
+  const std::string identity_path = folder_.environment().at("XDG_STATE_HOME") + "/adit/op1.id";
+  std::string before, after;
+  std::ifstream(identity_path) >> before;
+  EXPECT_EQ(before.size(), 32U);
+  const json hello = json::parse(talk("{\"hello\":true}\n"));
+  ASSERT_EQ(::kill(hello["hello"]["pid"].get<int>(), SIGKILL), 0);
+  EXPECT_EQ(::access(path("op1.sock").c_str(), F_OK), 0) << "its socket is left behind";
+  EXPECT_TRUE(live::eventually([&] { return talk("{\"hello\":true}\n").empty(); }));
+  const Finished next = run({"list"});
+  EXPECT_EQ(next.exit_code, 0);
+  EXPECT_THAT(next.err, HasSubstr("started one"));
+  std::ifstream(identity_path) >> after;
+  EXPECT_EQ(before, after);
+}
+
+TEST_F(Cli, ADamagedIdentityIsToldAndNotReplaced) {
+  run({"up"});
+  run({"down"});
+  std::ofstream(folder_.environment().at("XDG_STATE_HOME") + "/adit/op1.id") << "no identity\n";
+  const Finished up = run({"up"});
+  EXPECT_EQ(up.exit_code, 1);
+  EXPECT_THAT(up.err, HasSubstr("is damaged; remove it"));
+}
+
+TEST_F(Cli, TheSocketSurvivesGarbage) {
+  run({"up"});
+  EXPECT_THAT(talk("garbage\n[1,2]\n{\"id\":\"x\"}\n{\"id\":1}\n"), HasSubstr("wrong"));
+  EXPECT_THAT(talk("{\"id\":1,\"stick\":[1,2]}\n"), HasSubstr("three numbers"));
+  EXPECT_THAT(talk("{\"id\":1,\"do\":5}\n{\"cancel\":\"x\"}\n"), HasSubstr("wrong"));
+  EXPECT_THAT(talk(std::string("\0\xff\xfe{}\n", 6)), HasSubstr("wrong"));
+  EXPECT_THAT(talk("{\"id\":7,\"teleop\":\"a b\"}\n"), HasSubstr("robot's name"));
+  talk(std::string(1 << 20, 'x'));  // an endless line
+  talk("{\"id\":1,\"do\":\"" + std::string(100000, '[') + "\"}\n");
+  talk(std::string(100000, '[') + "\n");
+  EXPECT_THAT(talk("{\"id\":3,\"do\":\"list\"}\n"), HasSubstr("\"outcome\""));
+  EXPECT_EQ(run({"list"}).exit_code, 0);
+}
+
+TEST_F(Cli, AStopWithoutAStationGoesOutByItself) {
+  const Finished end = run({"stop", "r1"});
+  EXPECT_THAT(end.err, HasSubstr("goes out by itself"));
+  EXPECT_NE(end.exit_code, 0);
+}
+
+TEST_F(Cli, TerminalCommandsSayThatTheyWantATerminal) {
+  EXPECT_EQ(run({"watch"}).exit_code, 2);
+  EXPECT_EQ(run({"teleop", "r1"}).exit_code, 2);
+}
+
+TEST_F(Cli, AScriptPlaysTheOperatorsLines) {
+  const std::string file = folder_.write("s.yaml",
+                                         "duration: 3\n"
+                                         "script:\n"
+                                         "  - {at: 0.2, by: op1, do: list}\n"
+                                         "  - {at: 0.1, by: op2, do: list}\n");
+  const Finished end = run({"run", file});
+  EXPECT_EQ(end.exit_code, 0);
+  EXPECT_THAT(end.out, HasSubstr("op1> list"));
+  EXPECT_EQ(end.out.find("op2>"), std::string::npos);
+  const std::string bad = folder_.write("bad.yaml", "script:\n  - {at: 1, by: op1, do: tkae r1}\n");
+  const Finished refused = run({"run", bad});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("bad.yaml:2"));
+  EXPECT_THAT(refused.err, HasSubstr("did you mean take?"));
+}
+
+}  // namespace
+}  // namespace adit::station

@@ -1,0 +1,98 @@
+#include "basestation/cli/watch/render.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+namespace adit::station::cli {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+
+json fleet(int robots) {
+  json list = json::array();
+  for (int i = 1; i <= robots; ++i)
+    list.push_back({{"robot", "r" + std::to_string(i)},
+                    {"kind", "wheeled"},
+                    {"mode", i == 2 ? "smart_joystick" : "waypoint"},
+                    {"holder", "op1"},
+                    {"mine", true},
+                    {"locked", i == 1},
+                    {"pose", {1.25, -200.5, 0.0, 1.57}},
+                    {"velocity", {0.5, 0.0, 0.1}},
+                    {"goal_state", "active"},
+                    {"goal", {12.0, 0.5, nullptr}},
+                    {"moving_allowed", true},
+                    {"reason", "none"},
+                    {"age", 0.1},
+                    {"lost", i == 3}});
+  json notices = json::array();
+  for (int i = 0; i < 30; ++i)
+    notices.push_back({{"age", 100.0 - i},
+                       {"robot", "r1"},
+                       {"level", "warning"},
+                       {"mine", true},
+                       {"code", "taken"},
+                       {"text", "notice " + std::to_string(i)}});
+  return {{"station", "op1"}, {"link", "wifi"}, {"robots", list}, {"notices", notices}};
+}
+
+std::string text(const std::vector<std::string>& lines) {
+  std::string out;
+  for (const std::string& line : lines) out += line + "\n";
+  return out;
+}
+
+TEST(Render, FillsEveryWindowAndNeverMore) {
+  for (const int rows : {4, 10, 24, 50})
+    for (const int columns : {20, 80, 132, 200})
+      for (const int robots : {0, 3, 40})
+        for (const bool help : {false, true}) {
+          const auto lines = render(fleet(robots), {.selected = "r3", .help = help}, rows, columns, false);
+          EXPECT_LE(lines.size(), static_cast<std::size_t>(rows));
+          EXPECT_EQ(lines.size() == static_cast<std::size_t>(rows), true) << rows << " " << robots;
+          for (const std::string& line : lines)
+            EXPECT_LE(line.size(), static_cast<std::size_t>(columns)) << line;
+        }
+}
+
+TEST(Render, ColoursTakeNoCells) {
+  auto strip = [](std::string line) {
+    for (std::size_t at; (at = line.find('\x1b')) != std::string::npos;)
+      line.erase(at, line.find('m', at) - at + 1);
+    return line;
+  };
+  const auto plain = render(fleet(3), {.selected = "r1"}, 24, 80, false);
+  const auto coloured = render(fleet(3), {.selected = "r1"}, 24, 80, true);
+  ASSERT_EQ(plain.size(), coloured.size());
+  for (std::size_t i = 0; i < plain.size(); ++i) EXPECT_EQ(strip(coloured[i]), plain[i]);
+}
+
+TEST(Render, ShowsRobotsNewestNoticesAndKeys) {
+  const std::string page = text(render(fleet(3), {.selected = "r2"}, 24, 80, false));
+  EXPECT_THAT(page, HasSubstr("> 2 r2"));
+  EXPECT_THAT(page, HasSubstr("op1#"));
+  EXPECT_THAT(page, HasSubstr("LOST"));
+  EXPECT_THAT(page, HasSubstr("to 12.0,0.5"));
+  EXPECT_THAT(page, HasSubstr("-200.5"));
+  EXPECT_THAT(page, HasSubstr("notice 29"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("notice 0\n")));
+  EXPECT_THAT(page, HasSubstr("m drive ? q"));
+}
+
+TEST(Render, TheSelectedRobotStaysInView) {
+  EXPECT_THAT(text(render(fleet(40), {.selected = "r40"}, 24, 80, false)), HasSubstr("> "));
+  EXPECT_THAT(text(render(fleet(40), {.selected = "r40"}, 24, 80, false)), HasSubstr("r40"));
+}
+
+TEST(Render, SnapshotsWithHolesDoNoHarm) {
+  EXPECT_THAT(text(render(json::object(), {}, 24, 80, false)), HasSubstr("no robot has been heard"));
+  const json odd{{"robots", {json::object(), {{"robot", 5}, {"pose", "x"}, {"stops", {1, 2}}}}},
+                 {"notices", {json::object()}}};
+  EXPECT_EQ(render(odd, {.selected = ""}, 24, 80, true).size(), 24U);
+}
+
+}  // namespace
+}  // namespace adit::station::cli
