@@ -10,7 +10,7 @@ namespace {
 constexpr Duration parent_notices{20ms};
 constexpr Duration zero_period{50ms};
 constexpr Duration restart_after{500ms};
-constexpr std::uint32_t first_robot_domain = 100;
+constexpr std::uint32_t first_robot_domain = 101;
 
 }  // namespace
 

@@ -1,0 +1,160 @@
+#include "sim/live/live_world.hpp"
+
+#include <algorithm>
+
+#include "basestation/command/parse.hpp"
+#include "core/wire/fastdds/fastdds_wire.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr Duration longest_lag{200ms};  // beyond it the world goes slow instead of jumping
+
+// What truth answers: places to be reached before the end, contacts, distances.
+Scenario judged_by_truth(const Scenario& scenario) {
+  Scenario out = scenario;
+  out.expectations.clear();
+  for (Expectation e : scenario.expectations) {
+    const auto* least = std::get_if<AtLeast>(&e.what);
+    const bool counted = least && (least->what == "distance" || least->what == "moving");
+    const bool near = std::holds_alternative<NearExpectation>(e.what) && e.when == Expectation::When::by;
+    if (!counted && !near && !std::holds_alternative<NoCollision>(e.what)) continue;
+    // The script is started by somebody else, later: its times are not ours.
+    if (near) e.time = Duration::max();
+    out.expectations.push_back(std::move(e));
+  }
+  return out;
+}
+
+std::vector<Goal> goals_of(const Scenario& scenario) {
+  std::vector<Goal> out;
+  for (const ScriptLine& line : scenario.script) {
+    const auto request = station::parse(line.command);
+    if (!request || request->verb != station::Verb::go_to || request->robots.empty()) continue;
+    out.push_back({request->robots.front(), {request->numbers[0], request->numbers[1]}});
+  }
+  return out;
+}
+
+LiveParams live_params() {
+  LiveParams params;
+  params.compute_threads = 2;
+  return params;
+}
+
+}  // namespace
+
+LiveWorld::LiveWorld(const Scenario& scenario, Simulation simulation, const LiveWorldParams& params)
+    : judged_(judged_by_truth(scenario)),
+      params_(params),
+      simulation_(std::move(simulation)),
+      expectations_(judged_),
+      runtime_(live_params()),
+      strand_(runtime_.strand("world")) {}
+
+LiveWorld::~LiveWorld() {
+  on_strand([this] {
+    step_.cancel();
+    observe_.cancel();
+    drivers_.clear();
+  });
+  strand_.reset();
+}
+
+Result<std::unique_ptr<LiveWorld>> LiveWorld::open(const Scenario& scenario,
+                                                   std::shared_ptr<const World> world,
+                                                   const LiveWorldParams& params) {
+  auto starts = make_starts(scenario);
+  if (!starts) return starts.error();
+  auto simulation =
+      Simulation::create(std::move(world), std::move(*starts), make_simulation_params(scenario, params.seed));
+  if (!simulation) return simulation.error();
+  std::unique_ptr<LiveWorld> out(new LiveWorld(scenario, std::move(*simulation), params));
+  for (std::size_t i = 0; i < out->simulation_.size(); ++i) {
+    wire::FastDdsParams dds;
+    dds.domain = params.domain_base + 1 + static_cast<std::uint32_t>(i);
+    dds.name = out->simulation_.id(i) + " driver";
+    dds.shared_memory = true;
+    auto opened = wire::open_fastdds(dds);
+    if (!opened) return opened.error();
+    out->wires_.push_back(std::move(*opened));
+  }
+  return out;
+}
+
+void LiveWorld::on_strand(const Task& task) {
+  std::promise<void> done;
+  strand_->post([&] {
+    task();
+    done.set_value();
+  });
+  done.get_future().wait();
+}
+
+Result<void> LiveWorld::start() {
+  Result<void> result;
+  on_strand([&] {
+    started_ = strand_->now();
+    for (std::size_t i = 0; i < wires_.size() && result; ++i) {
+      DriverParams params;
+      params.first_scan = 100ms + 30ms * static_cast<int>(i);
+      drivers_.push_back(std::make_unique<RobotDriver>(simulation_, i, *strand_, *wires_[i], params));
+      result = drivers_.back()->start();
+    }
+    step_ = strand_->every(simulation_.params().step, [this] { step(); });
+    observe_ = strand_->every(Trail::period, [this] { observe(); });
+  });
+  return result;
+}
+
+// A late timer is made up for, so that the world keeps pace with the clock of the agents.
+void LiveWorld::step() {
+  const Duration due = strand_->now() - started_;
+  if (due - simulation_.now() > longest_lag) started_ += due - simulation_.now() - longest_lag;
+  while (simulation_.now() + simulation_.params().step <= strand_->now() - started_) simulation_.step();
+}
+
+void LiveWorld::observe() {
+  for (std::size_t i = 0; i < simulation_.size(); ++i)
+    trails_[simulation_.id(i)].poses.push_back(simulation_.truth(i).pose.planar());
+  expectations_.judge(simulation_.now(), evidence());
+}
+
+Evidence LiveWorld::evidence() const {
+  const auto truth = [this](const std::string& robot) -> const Truth& {
+    return simulation_.truth(simulation_.find(robot).value());
+  };
+  Evidence out;
+  out.pose = [truth](const std::string& robot) { return truth(robot).pose.planar(); };
+  out.collisions = [truth](const std::string& robot) { return static_cast<int>(truth(robot).collisions); };
+  return out;
+}
+
+RunOutcome LiveWorld::finish() {
+  RunOutcome out;
+  on_strand([&] {
+    step_.cancel();
+    observe_.cancel();
+    drivers_.clear();
+    RunReport& report = out.report;
+    report.scenario = judged_.file.string();
+    report.seed = params_.seed;
+    report.virtual_s = seconds(simulation_.now());
+    report.wall_s = seconds(strand_->now() - started_);
+    for (std::size_t i = 0; i < simulation_.size(); ++i) {
+      const Truth& truth = simulation_.truth(i);
+      report.robots[simulation_.id(i)] = {truth.distance,
+                                          static_cast<int>(truth.collisions),
+                                          truth.min_clearance,
+                                          seconds(truth.moving) / std::max(report.virtual_s, 1e-3),
+                                          {}};
+    }
+    report.expectations = expectations_.finish(evidence(), report);
+    out.trails = std::move(trails_);
+    out.goals = goals_of(judged_);
+    out.collisions = simulation_.collisions();
+  });
+  return out;
+}
+
+}  // namespace adit::sim

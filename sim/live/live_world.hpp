@@ -1,0 +1,54 @@
+#pragma once
+#include <future>
+#include <memory>
+#include <vector>
+
+#include "core/exec/live_runtime.hpp"
+#include "core/wire/wire.hpp"
+#include "sim/driver/robot_driver.hpp"
+#include "sim/rehearsal/expectations.hpp"
+#include "sim/rehearsal/rehearsal.hpp"
+
+namespace adit::sim {
+
+struct LiveWorldParams {
+  std::uint64_t seed{1};
+  std::uint32_t domain_base{100};  ///< robot k (from 1) is on DDS domain domain_base + k, [0, 200]
+};
+
+/// A scenario's world and robots in real time, speaking each robot's domain over Fast DDS on loopback. The
+/// script, the faults and what is said on the radio are not its business: it is what the robots' drivers
+/// would be.
+class LiveWorld {
+ public:
+  /// `scenario` outlives it. Errors: as make_starts and Simulation::create, and wire_failed.
+  static Result<std::unique_ptr<LiveWorld>> open(const Scenario& scenario, std::shared_ptr<const World> world,
+                                                 const LiveWorldParams& params);
+  ~LiveWorld();
+  Result<void> start();
+  /// Ends it and gives the truth of the run: ways, contacts, and which of the scenario's places were reached.
+  /// Expectations of what robots say are left out: nothing here listens to them.
+  RunOutcome finish();
+
+ private:
+  LiveWorld(const Scenario& scenario, Simulation simulation, const LiveWorldParams& params);
+  void step();
+  void observe();
+  Evidence evidence() const;
+  /// Runs the task on the world's strand and waits for it.
+  void on_strand(const Task& task);
+
+  Scenario judged_;  ///< the scenario with the expectations that truth alone answers
+  LiveWorldParams params_;
+  Simulation simulation_;
+  Expectations expectations_;
+  std::vector<std::unique_ptr<wire::Wire>> wires_{};
+  LiveRuntime runtime_;
+  std::shared_ptr<Executor> strand_;
+  std::vector<std::unique_ptr<RobotDriver>> drivers_{};
+  Timer step_{}, observe_{};
+  Time started_{};
+  std::map<std::string, Trail> trails_{};
+};
+
+}  // namespace adit::sim

@@ -1,0 +1,102 @@
+// simulate: a scenario's world in real time, on the robots' DDS domains.
+#include <csignal>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+
+#include "sim/live/live_world.hpp"
+#include "sim/rehearsal/run_picture.hpp"
+#include "sim/rehearsal/scenario_file.hpp"
+
+namespace {
+
+using namespace adit;
+using namespace adit::sim;
+
+constexpr int exit_failed = 1;
+constexpr int exit_unreadable = 2;
+
+constexpr const char* examples =
+    "Examples:\n"
+    "  simulate config/scenarios/demo.yaml\n"
+    "  simulate config/scenarios/demo.yaml --for 130 --report demo.json --picture demo.png\n"
+    "Robot k of the scenario is on DDS domain BASE + k: start its agent with robot_agent --robot-domain.\n"
+    "Ends by Ctrl-C, SIGTERM or --for. Exit status: 0 every place was reached and nothing was touched, 1 not "
+    "so,\n"
+    "2 the scenario cannot be read or the world not be opened.";
+
+int complain(const Error& error) {
+  std::fprintf(stderr, "simulate: %s\n", error.text.c_str());
+  return exit_unreadable;
+}
+
+void wait_for_the_end(const sigset_t& signals, double length) {
+  if (length <= 0.0) {
+    int got = 0;
+    sigwait(&signals, &got);
+    return;
+  }
+  timespec left{};
+  left.tv_sec = static_cast<std::time_t>(length);
+  left.tv_nsec = static_cast<long>((length - static_cast<double>(left.tv_sec)) * 1e9);
+  sigtimedwait(&signals, nullptr, &left);
+}
+
+int judge(const Scenario& scenario, const World& world, const RunOutcome& outcome,
+          const std::string& report_file, const std::string& picture_file) {
+  for (const auto& [id, robot] : outcome.report.robots)
+    std::printf("%s: %.1f m, %d collisions, clearance %.2f m\n", id.c_str(), robot.distance, robot.collisions,
+                robot.min_clearance);
+  for (const std::string& line : outcome.report.complaints()) std::fprintf(stderr, "%s\n", line.c_str());
+  if (!report_file.empty())
+    if (auto written = write_json(outcome.report, report_file); !written) return complain(written.error());
+  if (!picture_file.empty())
+    if (auto drawn = draw_run(scenario, world, outcome, picture_file); !drawn) return complain(drawn.error());
+  return outcome.report.ok() ? 0 : exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "A scenario's world in real time: bodies, lidars and odometry on the robots' DDS domains (loopback)."};
+  app.footer(examples);
+  std::string file, report_file, picture_file;
+  LiveWorldParams params;
+  double length = 0.0;
+  app.add_option("scenario", file, "the scenario, SCENARIO.yaml")->required();
+  app.add_option("--domain-base", params.domain_base, "robot k is on domain BASE + k")
+      ->check(CLI::Range(0, 200))
+      ->capture_default_str();
+  app.add_option("--seed", params.seed, "of the sensors' noise")->capture_default_str();
+  app.add_option("--for", length, "s; without it until Ctrl-C")->check(CLI::Range(0.1, 86400.0));
+  app.add_option("--report", report_file, "write what was true as JSON");
+  app.add_option("--picture", picture_file, "write a picture (PNG)");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : exit_unreadable;
+  }
+  // Before any thread exists, so that the signals come to this one.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  auto scenario = load_scenario(file);
+  if (!scenario) return complain(scenario.error());
+  auto world = make_world(scenario->world);
+  if (!world) return complain(world.error());
+  auto live = LiveWorld::open(*scenario, *world, params);
+  if (!live) return complain(live.error());
+  if (auto started = (*live)->start(); !started) return complain(started.error());
+  for (std::size_t i = 0; i < scenario->robots.size(); ++i)
+    std::printf("%s on domain %u\n", scenario->robots[i].id.c_str(),
+                params.domain_base + 1 + static_cast<unsigned>(i));
+  std::printf("simulate: ready\n");
+  std::fflush(stdout);
+  wait_for_the_end(signals, length);
+  return judge(*scenario, **world, (*live)->finish(), report_file, picture_file);
+}
