@@ -92,7 +92,7 @@ class Wire {
   virtual Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
                                                          Executor& strand, RawHandler handler) = 0;
   /// Calls `handler` on `strand` for every other participant that comes or goes; those present already
-  /// are reported at once. One handler per wire.
+  /// are reported at once. One handler per wire; an empty one ends it, and `strand` may go.
   virtual void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) = 0;
   virtual WireCounters counters() const = 0;
 };

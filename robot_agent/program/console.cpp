@@ -125,8 +125,10 @@ struct Console::Server {
     }
   }
   void serve(int client) const {
+    const std::string line = read_line(client);
+    if (line.empty()) return;  // somebody looked whether we are here
     const auto waiting = std::make_shared<Waiting>();
-    handler(read_line(client), [waiting](const std::string& text) {
+    handler(line, [waiting](const std::string& text) {
       const std::lock_guard lock(waiting->mutex);
       waiting->text = text;
       waiting->come.notify_one();
@@ -146,7 +148,8 @@ Result<std::unique_ptr<Console>> Console::open(const std::string& robot, Console
   const auto address = address_of(*path);
   if (!address) return address.error();
   if (connected(*address))
-    return Error{Reason::in_use, "a robot_agent named " + robot + " runs on this machine already"};
+    return Error{Reason::in_use, "a robot_agent named " + robot +
+                                     " runs on this machine already; stop it, or choose another --name"};
   ::unlink(path->c_str());  // what an agent that was killed left behind
 
   std::unique_ptr<Console> console(new Console);

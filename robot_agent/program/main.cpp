@@ -128,7 +128,7 @@ int run_agent(const RobotConfig& config, bool reports) {
 
 int run_parent(const RobotConfig& config, int argc, char** argv) {
   ParentParams params{};
-  params.command.push_back("/proc/self/exe");
+  params.command.push_back("robot_agent");
   for (int i = 1; i < argc; ++i)
     if (std::string(argv[i]) != "--supervised") params.command.push_back(argv[i]);
   params.command.push_back("--reports");

@@ -48,16 +48,22 @@ bool Parent::spawn() {
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);
   posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);  // the caller's is not the child's
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   posix_spawn_file_actions_adddup2(&actions, pipe[1], kReportFd);
   // The sockets of our participant are not the child's.
   posix_spawn_file_actions_addclosefrom_np(&actions, kReportFd + 1);
-  const int failed = ::posix_spawn(&child_, argv[0], &actions, &attributes, argv.data(), environ);
+  const int failed =
+      ::posix_spawn(&child_, params_.program.c_str(), &actions, &attributes, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   ::close(pipe[1]);
   report_ = pipe[0];
   if (failed != 0) {
-    std::fprintf(stderr, "robot_agent: cannot start %s: %s\n", argv[0], std::strerror(failed));
+    std::fprintf(stderr, "robot_agent: cannot start %s: %s\n", params_.program.c_str(),
+                 std::strerror(failed));
     close_fd(report_);
     child_ = -1;
     return false;

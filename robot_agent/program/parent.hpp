@@ -8,9 +8,10 @@
 namespace adit::agent {
 
 struct ParentParams {
-  std::vector<std::string> command{};  ///< the child's arguments, its program first
-  Duration zero_period{50ms};          ///< of the zeros while no agent lives
-  Duration first_restart{500ms};       ///< pause before a restart; doubles up to the longest
+  std::string program{"/proc/self/exe"};  ///< the executable of the child
+  std::vector<std::string> command{};     ///< its arguments, its name first
+  Duration zero_period{50ms};             ///< of the zeros while no agent lives
+  Duration first_restart{500ms};          ///< pause before a restart; doubles up to the longest
   Duration longest_restart{10s};
   Duration good_run{30s};  ///< a child that lived so long starts the pauses anew
   Duration patience{5s};   ///< from SIGTERM to SIGKILL

@@ -105,7 +105,10 @@ Result<void> RadioEdge::listen(Parts parts) {
   return {};
 }
 
-void RadioEdge::close() { endpoints_->readers.clear(); }
+void RadioEdge::close() {
+  endpoints_->wire.on_participant(endpoints_->strand, {});
+  endpoints_->readers.clear();
+}
 
 void RadioEdge::send(const Notice& notice) {
   endpoints_->send(endpoints_->notification, to_radio(notice, endpoints_->robot));

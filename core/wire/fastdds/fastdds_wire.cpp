@@ -31,6 +31,8 @@ class Presence final : public dds::DomainParticipantListener {
   void watch(Executor& strand, std::function<void(const ParticipantEvent&)> handler) {
     const std::lock_guard lock(mutex_);
     if (target_) target_->close();
+    target_.reset();
+    if (!handler) return;
     target_ = std::make_shared<Target>();
     target_->handler = std::move(handler);
     strand_ = &strand;

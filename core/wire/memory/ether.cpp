@@ -66,7 +66,8 @@ class MemoryWire final : public Wire {
   }
 
   void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) override {
-    participant_->event_strand = &strand;
+    participant_->event_strand = handler ? &strand : nullptr;
+    if (!handler) return participant_->event_handler.reset();
     participant_->event_handler =
         std::make_shared<std::function<void(const ParticipantEvent&)>>(std::move(handler));
     for (const auto& [peer, state] : participant_->peers) participant_->tell(peer, true);

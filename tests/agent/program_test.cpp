@@ -1,0 +1,129 @@
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+
+#include "robot_agent/program/console.hpp"
+#include "robot_agent/program/parent.hpp"
+#include "robot_agent/program/robot_config.hpp"
+#include "tests/live/process.hpp"
+
+namespace adit::agent {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(RobotConfig, TheShippedOnesLoad) {
+  for (const char* name : {"r1", "r2", "r3"}) {
+    const auto config = load_robot_config(std::string(ADIT_SOURCE_DIR) + "/config/robots/" + name + ".yaml");
+    ASSERT_TRUE(config) << config.error().text;
+    EXPECT_EQ(config->name, name);
+    EXPECT_TRUE(config->radio.interfaces.empty());
+    EXPECT_EQ(config->lock_lease, 300s);
+  }
+}
+
+struct BadFile {
+  const char* name;
+  const char* text;
+  const char* message;
+};
+class BadRobotFile : public testing::TestWithParam<BadFile> {};
+
+TEST_P(BadRobotFile, IsOneLineWithPlace) {
+  const live::Folder folder;
+  const auto config = load_robot_config(folder.write("r.yaml", GetParam().text));
+  ASSERT_FALSE(config);
+  EXPECT_THAT(config.error().text, HasSubstr(GetParam().message));
+  EXPECT_THAT(config.error().text, testing::Not(HasSubstr("\n")));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Config, BadRobotFile,
+    testing::Values(BadFile{"unknown_key", "name: r1\nplatform: wheeled\ncolour: red\n", "r.yaml:3"},
+                    BadFile{"missing_name", "platform: wheeled\n", "name"},
+                    BadFile{"bad_name", "name: r 1\nplatform: wheeled\n", "r.yaml:1"},
+                    BadFile{"short_pose", "name: r1\nplatform: wheeled\npose: [1, 2]\n", "r.yaml:3"},
+                    BadFile{"unknown_platform", "name: r1\nplatform: hovercraft\n", "hovercraft"},
+                    BadFile{"radio_key", "name: r1\nplatform: wheeled\nradio: {domian: 3}\n", "domian"},
+                    BadFile{"domain_range", "name: r1\nplatform: wheeled\nrobot_domain: 500\n", "r.yaml:3"},
+                    BadFile{"lease", "name: r1\nplatform: wheeled\nlock_lease: -1\n", "r.yaml:3"},
+                    BadFile{"log", "name: r1\nplatform: wheeled\nlog: loud\n", "r.yaml:3"}),
+    [](const auto& each) { return each.param.name; });
+
+class ConsoleTest : public testing::Test {
+ protected:
+  ConsoleTest() { ::setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1); }
+  live::Folder folder{};
+};
+
+TEST_F(ConsoleTest, LineInAnswerOut) {
+  auto console =
+      Console::open("r1", [](const std::string& line, auto answer) { answer("got " + line + "\n"); });
+  ASSERT_TRUE(console) << console.error().text;
+  const auto answer = ask_console("r1", "unlock");
+  ASSERT_TRUE(answer) << answer.error().text;
+  EXPECT_EQ(*answer, "got unlock\n");
+}
+
+TEST_F(ConsoleTest, OneAgentPerName) {
+  const auto first = Console::open("r1", [](const auto&, auto) {});
+  ASSERT_TRUE(first);
+  EXPECT_EQ(Console::open("r1", [](const auto&, auto) {}).reason(), Reason::in_use);
+  EXPECT_TRUE(Console::open("r2", [](const auto&, auto) {}));
+}
+
+TEST_F(ConsoleTest, NobodyThereAndOpenFoldersAreErrors) {
+  EXPECT_EQ(ask_console("r9", "status").reason(), Reason::no_answer);
+  ::chmod((folder.path() + "/adit").c_str(), 0755);
+  EXPECT_EQ(ask_console("r9", "status").reason(), Reason::cannot_write);
+}
+
+class ParentTest : public testing::Test {
+ protected:
+  ParentTest() {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGTERM);
+    sigaddset(&set, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  }
+  ParentParams shell(const std::string& script) {
+    ParentParams params{};
+    params.program = "/bin/sh";
+    params.command = {"sh", "-c", script};
+    params.first_restart = 150ms;
+    return params;
+  }
+  live::Folder folder{};
+  int zeros{}, prepared{};
+};
+
+TEST_F(ParentTest, SendsZeroWhileNoChildCommandsAndRestarts) {
+  // The first child dies; the second reports that it commands, and ends by itself.
+  const std::string mark = folder.path() + "/mark";
+  Parent parent(
+      shell("if [ -e " + mark + " ]; then echo -n 1 >&3; exit 0; else touch " + mark +
+            "; echo -n 1 >&3; exit 7; fi"),
+      [&] { ++prepared; }, [&] { ++zeros; });
+  EXPECT_EQ(parent.run(), 0);
+  EXPECT_EQ(prepared, 1);
+  EXPECT_GE(zeros, 3);  // at the death, and every 50 ms of the pause
+}
+
+TEST_F(ParentTest, WrongUsageIsNotRestarted) {
+  Parent parent(
+      shell("exit 2"), [] {}, [&] { ++zeros; });
+  EXPECT_EQ(parent.run(), 2);
+  EXPECT_GE(zeros, 1);
+}
+
+TEST_F(ParentTest, SignalIsPassedOn) {
+  Parent parent(
+      shell("kill -TERM $PPID; exec tail -f /dev/null"), [] {}, [&] { ++zeros; });
+  EXPECT_EQ(parent.run(), 0);
+}
+
+}  // namespace
+}  // namespace adit::agent
