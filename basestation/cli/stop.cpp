@@ -42,9 +42,11 @@ int stop(const Options& options, const std::string& line) {
   std::fprintf(stderr, "no answer from the station of %s: the stop goes out by itself\n",
                options.name.c_str());
   // Announced often: robots have to know this participant before they believe who it is.
-  auto live = LiveStation::open(options, {.presence = 100ms});
+  // A robot that was named is waited for as long as a stop is repeated; `all` are those heard by then.
+  const bool all = line.find("'all'") != std::string::npos;
+  auto live = LiveStation::open(options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s});
   if (!live) return fail(options, exit_no_answer, live.error());
-  const Outcome outcome = (*live)->execute(line, 20s);
+  const Outcome outcome = (*live)->execute(line, 25s);
   return print_outcome(options, {{"exit", outcome.exit_code},
                                  {"text", outcome.text},
                                  {"error", outcome.error},

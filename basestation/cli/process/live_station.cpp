@@ -26,7 +26,8 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
                        .software = ADIT_VERSION,
                        .link = link->name,
                        .bandwidth = link->bandwidth,
-                       .presence = hooks.presence};
+                       .presence = hooks.presence,
+                       .discovery_grace = hooks.discovery_grace};
   for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
   Result<void> started;
   live->on_strand([&] {

@@ -14,6 +14,7 @@ class LiveStation {
   struct Hooks {
     std::function<void(Station&)> ready{};  ///< called on the strand before the station starts
     Duration presence{std::chrono::seconds(1)};
+    Duration discovery_grace{std::chrono::seconds(5)};
   };
   /// Errors: as of station_id(), load_link(), open_fastdds() and Station::start().
   static Result<std::unique_ptr<LiveStation>> open(const Options& options, const Hooks& hooks);
