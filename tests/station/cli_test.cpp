@@ -156,6 +156,7 @@ TEST_F(Cli, TheSocketSurvivesGarbage) {
   EXPECT_THAT(talk("{\"id\":1,\"do\":5}\n{\"cancel\":\"x\"}\n"), HasSubstr("wrong"));
   EXPECT_THAT(talk(std::string("\0\xff\xfe{}\n", 6)), HasSubstr("wrong"));
   EXPECT_THAT(talk("{\"id\":7,\"teleop\":\"a b\"}\n"), HasSubstr("robot's name"));
+  EXPECT_THAT(talk("{\"id\":8,\"teleop\":\"r1\",\"do\":5}\n"), HasSubstr("begun"));
   talk(std::string(1 << 20, 'x'));  // an endless line
   talk("{\"id\":1,\"do\":\"" + std::string(100000, '[') + "\"}\n");
   talk(std::string(100000, '[') + "\n");

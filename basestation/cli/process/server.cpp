@@ -114,8 +114,12 @@ void Server::drop(std::uint64_t number) {
 void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const json& request) {
   const auto handle = std::make_shared<std::uint64_t>(0);
   client.open[id] = handle;
-  const std::string line = request.value("do", std::string());
-  const std::string robot = request.value("teleop", std::string());
+  const auto text = [&](const char* key) {
+    const auto found = request.find(key);
+    return found != request.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  const std::string line = text("do");
+  const std::string robot = text("teleop");
   strand_->post([this, number, id, line, robot, handle] {
     const auto done = [this, number, id](const Outcome& outcome) {
       reply(number, outcome_json(id, outcome));
