@@ -73,8 +73,9 @@ void Behaviour::enter(const ModeRow& row, Time now) {
 }
 
 void Behaviour::stop_changed(bool stopped, Time now) {
+  const BehaviourView before = view();
   stopped_ = stopped;
-  tick(now);
+  update(before, now);
 }
 
 void Behaviour::holder_changed(Time now) {
@@ -106,10 +107,11 @@ void Behaviour::resume_goal(Time now) {
   tick(now);
 }
 
-void Behaviour::tick(Time now) {
+void Behaviour::tick(Time now) { update(view(), now); }
+
+void Behaviour::update(const BehaviourView& before, Time now) {
   if (!begun_) idle_since_ = free_since_ = now;
   begun_ = true;
-  const BehaviourView before = view();
   decision_ = decider_->decide(requested_->name, facts(now), now);
   if (decision_.mode != requested_) fall(decision_);
   mux_.enable(decision_.runs ? decision_.mode->name : std::string_view{}, now);

@@ -1,0 +1,119 @@
+// Rehearsals as tests: that a run repeats itself, and what it reports.
+#include "sim/rehearsal/rehearsal.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "sim/rehearsal/scenario_file.hpp"
+
+namespace adit::sim {
+namespace {
+
+Scenario load(const std::string& name) {
+  auto scenario = load_scenario(std::string(ADIT_SOURCE_DIR) + "/config/scenarios/" + name);
+  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
+  return *scenario;
+}
+
+RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2) {
+  RunParams params;
+  params.seed = seed;
+  params.workers = workers;
+  params.make_agent = *make_agent_factory();
+  auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
+  return std::move(*outcome);
+}
+
+TEST(Rehearse, SameSeedSameDigestWhateverTheWorkers) {
+  const Scenario scenario = load("handover.yaml");
+  const std::string digest = run(scenario, 3).report.digest;
+  EXPECT_EQ(run(scenario, 3).report.digest, digest);
+  EXPECT_EQ(run(scenario, 3, 1).report.digest, digest);
+}
+
+TEST(Rehearse, AnotherSeedAnotherDigest) {
+  const Scenario scenario = load("handover.yaml");
+  EXPECT_NE(run(scenario, 3).report.digest, run(scenario, 4).report.digest);
+}
+
+TEST(Rehearse, SameSeedSameDigestThroughACrash) {
+  const Scenario scenario = load("agent_crash.yaml");
+  EXPECT_EQ(run(scenario, 1).report.digest, run(scenario, 1).report.digest);
+}
+
+TEST(Rehearse, FailedExpectationsFailTheRun) {
+  Scenario scenario = load("locked.yaml");
+  scenario.expectations.push_back(
+      {Expectation::When::at, 10s, StateExpectation{"r1", "waypoint", {}, {}, {}}, 99, "x"});
+  const RunReport report = run(scenario, 1).report;
+  EXPECT_FALSE(report.ok());
+  ASSERT_EQ(report.complaints().size(), 1U);
+  EXPECT_EQ(report.complaints()[0], "expectation in line 99 x: mode is hold");
+}
+
+TEST(Rehearse, RobotsThatOverlapAreAnError) {
+  Scenario scenario = load("locked.yaml");
+  scenario.robots.push_back({"r2", "wheeled", {0.2, 0.0, 0.0}});
+  RunParams params;
+  params.make_agent = *make_agent_factory();
+  const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  ASSERT_FALSE(outcome.ok());
+  EXPECT_EQ(outcome.error().reason, Reason::bad_argument);
+  EXPECT_NE(outcome.error().text.find("r2"), std::string::npos) << outcome.error().text;
+}
+
+TEST(Rehearse, ReportHasEveryField) {
+  const RunOutcome outcome = run(load("handover.yaml"), 1);
+  const auto json = nlohmann::json::parse(to_json(outcome.report));
+  for (const char* key : {"digest", "seed", "ok", "virtual_s", "wall_s", "speedup", "expectations", "rules",
+                          "robots", "topics", "commands"})
+    EXPECT_TRUE(json.contains(key)) << key;
+  EXPECT_EQ(json["rules"].size(), 7U);
+  for (const char* key : {"distance", "collisions", "min_clearance", "modes"})
+    EXPECT_TRUE(json["robots"]["r1"].contains(key)) << key;
+  EXPECT_EQ(json["commands"]["sent"],
+            json["commands"]["accepted"].get<int>() + json["commands"]["refused"].get<int>());
+  EXPECT_GT(json["topics"]["adit/robot_state"]["samples"], 250);
+  EXPECT_FALSE(outcome.trails.at("r1").poses.empty());
+  EXPECT_EQ(outcome.goals.size(), 1U);
+}
+
+/// Every scenario that is short enough; the demo has its own test.
+class Scenarios : public testing::TestWithParam<const char*> {};
+
+TEST_P(Scenarios, EverythingHolds) {
+  const Scenario scenario = load(std::string(GetParam()) + ".yaml");
+  for (std::uint64_t seed : {1, 2, 3}) {
+    const RunReport report = run(scenario, seed).report;
+    for (const std::string& line : report.complaints()) ADD_FAILURE() << "seed " << seed << ": " << line;
+    if (scenario.lidar == LidarKind::full) break;  // one seed of those that take seconds
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
+                         testing::Values("handover", "locked", "grant", "stop_by_other", "joystick_loss",
+                                         "smart_joystick_wall", "waypoint_corridor", "dead_end",
+                                         "agent_crash", "cut_link", "two_robots_passing", "station_restart",
+                                         "foreign_writer", "thin_link", "floor_plan", "demo"),
+                         [](const auto& which) { return std::string(which.param); });
+
+/// Random commands of three operators over 20 % loss.
+class Storm : public testing::TestWithParam<int> {};
+
+TEST_P(Storm, EveryRuleHolds) {
+  const Scenario scenario = load("authority_storm.yaml");
+  for (int i = 0; i < 5; ++i) {
+    const RunReport report = run(scenario, static_cast<std::uint64_t>(GetParam() + i), 1).report;
+    for (const std::string& line : report.complaints())
+      ADD_FAILURE() << "seed " << GetParam() + i << ": " << line;
+    EXPECT_GE(report.commands.sent, 100U);
+    EXPECT_GE(report.commands.refused, 20U);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Storm, testing::Values(1, 6, 11, 16));
+
+}  // namespace
+}  // namespace adit::sim
