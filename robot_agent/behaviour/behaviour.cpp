@@ -117,7 +117,10 @@ void Behaviour::update(const BehaviourView& before, Time now) {
   mux_.enable(decision_.runs ? decision_.mode->name : std::string_view{}, now);
   feed_waypoint(now);
   watch(now);
-  if (view() != before) outputs_.changed();
+  if (const BehaviourView is = view(); is != told_) {
+    told_ = is;
+    outputs_.changed();
+  }
 }
 
 void Behaviour::fall(const Decision& decision) {

@@ -112,6 +112,7 @@ class Behaviour : public Requests {
   Stick stick_{};
   Goal goal_{};
   Progress progress_{};
+  BehaviourView told_{};  ///< when changed() was called last
   Time idle_since_{}, free_since_{};
   bool idle_told_{}, blocked_told_{}, begun_{};
 };

@@ -261,6 +261,10 @@ TEST_F(BehaviourTest, ChangesAreTold) {
   EXPECT_EQ(changes, before);
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
   EXPECT_EQ(changes, before + 1);
+  behaviour.stop_changed(true, now);
+  EXPECT_EQ(changes, before + 2);
+  behaviour.stop_changed(false, now);
+  EXPECT_EQ(changes, before + 3);
 }
 
 }  // namespace
