@@ -73,9 +73,8 @@ void Behaviour::enter(const ModeRow& row, Time now) {
 }
 
 void Behaviour::stop_changed(bool stopped, Time now) {
-  const BehaviourView before = view();
   stopped_ = stopped;
-  update(before, now);
+  tick(now);
 }
 
 void Behaviour::holder_changed(Time now) {
@@ -107,9 +106,7 @@ void Behaviour::resume_goal(Time now) {
   tick(now);
 }
 
-void Behaviour::tick(Time now) { update(view(), now); }
-
-void Behaviour::update(const BehaviourView& before, Time now) {
+void Behaviour::tick(Time now) {
   if (!begun_) idle_since_ = free_since_ = now;
   begun_ = true;
   decision_ = decider_->decide(requested_->name, facts(now), now);

@@ -85,7 +85,6 @@ class Behaviour : public Requests {
   Result<void> refuse(Reason reason, std::string_view mode) const;
   void enter(const ModeRow& row, Time now);
   /// `before`: what the others were last told.
-  void update(const BehaviourView& before, Time now);
   void fall(const Decision& decision);
   void feed_waypoint(Time now);
   void watch(Time now);
