@@ -84,7 +84,6 @@ class Behaviour : public Requests {
   Facts facts(Time now) const;
   Result<void> refuse(Reason reason, std::string_view mode) const;
   void enter(const ModeRow& row, Time now);
-  /// `before`: what the others were last told.
   void fall(const Decision& decision);
   void feed_waypoint(Time now);
   void watch(Time now);

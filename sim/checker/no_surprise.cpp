@@ -9,7 +9,9 @@ class NoSurprise : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
     if (std::get_if<AgentStarted>(&event)) revoke("a start of its agent");
-    if (const auto* command = std::get_if<CommandHeard>(&event); command && command->verb == Verb::stop)
+    // A late repeat of a stop that was answered, and reset since, has no second effect.
+    if (const auto* command = std::get_if<CommandHeard>(&event);
+        command && command->verb == Verb::stop && !robot.first_answer(RobotModel::key(*command)))
       revoke("a stop");
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
     if (const auto* behaviour = std::get_if<BehaviourSent>(&event))
