@@ -70,7 +70,7 @@ void ObstacleMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3&
   }
   ground_.grow(body.position.x(), body.position.y(), body.position.z());
 
-  const auto step = static_cast<float>(platform_.step);
+  const auto step = static_cast<float>(platform_.step + params_.step_margin);
   const auto top =
       static_cast<float>(std::max(platform_.height, platform_.lidar_height) + params_.height_margin);
   const auto drop = static_cast<float>(-std::max(params_.drop, 2.0 * platform_.step));

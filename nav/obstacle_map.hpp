@@ -14,6 +14,8 @@ namespace adit::nav {
 struct ObstacleMapParams {
   double range{4.5};           ///< obstacles are kept this far around the robot, m, [1, 6]
   double height_margin{0.15};  ///< what hangs this much above body and lidar is passed under, m, [0, 1]
+  double step_margin{0.025};   ///< more than the step's height by this is an obstacle, m: a kerb of exactly
+                               ///< the step, measured with noise, must not be one, [0, 0.1]
   double drop{
       0.20};  ///< ground lower than expected by this is a hole (at least twice the step), m, [0.05, 2]
   double memory{4.0};  ///< an obstacle that is hidden is forgotten after, s, (0, 60]

@@ -44,7 +44,7 @@ struct Truth {
   double distance{0.0};       ///< driven, m
   Duration moving{};          ///< time with more than 0.05 m/s or 0.1 rad/s
   std::size_t collisions{0};  ///< contacts it was part of
-  double min_clearance{0.0};  ///< smallest distance ever to the world or a robot, m
+  double min_clearance{0.0};  ///< smallest distance ever to the world or a robot, m; infinite: nothing there
 };
 
 /// The true world: bodies that drive, touch and see. Moves only when step() is called; the same seed and the

@@ -82,11 +82,14 @@ void StandingMap::measure() {
     for (int i = 0; i < nx_; ++i)
       targets[static_cast<std::size_t>(j + rim) * width + i + rim] = blocked_[index(i, j)];
   const std::vector<float> cells = distance_transform(targets, width, height);
-  distance_.resize(floor_.size());
+  distance_.assign(floor_.size(), std::numeric_limits<float>::infinity());
+  if (std::find(targets.begin(), targets.end(), 1) == targets.end()) return;
   for (int j = 0; j < ny_; ++j)
-    for (int i = 0; i < nx_; ++i)
+    for (int i = 0; i < nx_; ++i) {
       distance_[index(i, j)] =
           static_cast<float>(cells[static_cast<std::size_t>(j + rim) * width + i + rim] * resolution_);
+      if (blocked_[index(i, j)]) bounds_.extend(middle(i, j));
+    }
 }
 
 bool StandingMap::blocked_at(int i, int j) const {
@@ -116,9 +119,12 @@ double StandingMap::distance(double x, double y) const {
   const int i = column(x, 0), j = column(y, 1);
   const int a = std::clamp(i, 0, nx_ - 1), b = std::clamp(j, 0, ny_ - 1);
   if (a == i && b == j) return distance_[index(i, j)];
-  // Beside an open world: what the nearest column of the map knows, less the way there.
-  return open_sides_ ? std::max<double>(0.0, distance_[index(a, b)] - resolution_ * std::hypot(i - a, j - b))
-                     : 0.0;
+  // Beside an open world: at least the way to the rectangle that holds all there is, and what the nearest
+  // column of the map knows, less the way there.
+  if (!open_sides_) return 0.0;
+  if (bounds_.isEmpty()) return std::numeric_limits<double>::infinity();
+  return std::max(bounds_.exteriorDistance(Eigen::Vector2d(x, y)),
+                  distance_[index(a, b)] - resolution_ * std::hypot(i - a, j - b));
 }
 
 bool StandingMap::touches(const Rectangle& footprint) const {
@@ -129,7 +135,7 @@ bool StandingMap::touches(const Rectangle& footprint) const {
     for (int i = column(footprint.pose.x - radius, 0); i <= column(footprint.pose.x + radius, 0); ++i) {
       if (!blocked_at(i, j)) continue;
       Rectangle target = cell;
-      target.pose = {origin_.x() + (i + 0.5) * resolution_, origin_.y() + (j + 0.5) * resolution_, 0.0};
+      target.pose = {middle(i, j).x(), middle(i, j).y(), 0.0};
       if (overlap(footprint, target)) return true;
     }
   return false;

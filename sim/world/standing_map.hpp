@@ -1,4 +1,5 @@
 #pragma once
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "sim/world/rectangle.hpp"
@@ -23,11 +24,12 @@ class StandingMap {
   /// Whether a footprint touches a blocked column.
   bool touches(const Rectangle& footprint) const;
   /// Distance from the footprint's border to the nearest blocked column, m, within half a column; 0 when it
-  /// touches. At most what lies inside the map is known of.
+  /// touches; infinite in a world where nothing is blocked. Beside an open map it is a lower bound, never
+  /// less than the distance to the rectangle that holds all blocked columns.
   double clearance(const Rectangle& footprint) const;
   /// Whether the column that holds (x, y) is blocked.
   bool blocked(double x, double y) const { return blocked_at(column(x, 0), column(y, 1)); }
-  /// Distance from (x, y) to the middle of the nearest blocked column, m.
+  /// Distance from (x, y) to the middle of the nearest blocked column, m; see clearance.
   double distance(double x, double y) const;
 
  private:
@@ -35,6 +37,9 @@ class StandingMap {
     return static_cast<int>(std::floor((v - origin_[axis]) / resolution_));
   }
   bool blocked_at(int i, int j) const;
+  Eigen::Vector2d middle(int i, int j) const {
+    return origin_ + resolution_ * Eigen::Vector2d(i + 0.5, j + 0.5);
+  }
   std::size_t index(int i, int j) const { return static_cast<std::size_t>(j) * nx_ + i; }
   void block(const World& world, double height, double step);
   void smooth();
@@ -48,6 +53,7 @@ class StandingMap {
   std::vector<float> floor_{};   ///< m, NaN: none
   std::vector<float> ground_{};  ///< averaged, m, NaN: none near
   std::vector<std::uint8_t> blocked_{};
+  Eigen::AlignedBox2d bounds_{};   ///< of the middles of all blocked columns
   std::vector<float> distance_{};  ///< from a column's middle to that of the nearest blocked one, m
 };
 

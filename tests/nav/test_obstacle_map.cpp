@@ -57,6 +57,18 @@ TEST(ObstacleMap, OnlyWhatIsHigherThanTheStepCounts) {
   }
 }
 
+TEST(ObstacleMap, AKerbAsHighAsTheStepIsFreeHoweverNoisy) {
+  // As in an OctoMap of 8 cm cells: a single one of its points taken for an obstacle would be remembered in
+  // the blind spot and stop the robot before nothing.
+  Looker robot;
+  robot.noise = 0.02;
+  robot.world.boxes = {{1.2, 8.0, -3, 3, 0.0, 0.08}, {9, 9.2, -5, 5}};
+  for (int i = 0; i < 20; ++i, robot.pose.x += 0.02) {
+    robot.look(3);
+    ASSERT_EQ(robot.count(-5, 5, -5, 5), 0) << robot.pose.x;
+  }
+}
+
 TEST(ObstacleMap, PassesUnderWhatHangsHigh) {
   for (const double low : {0.4, 0.9}) {
     Looker robot;

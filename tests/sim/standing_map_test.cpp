@@ -95,5 +95,21 @@ TEST(StandingMap, clearance_is_the_way_to_the_wall) {
   EXPECT_EQ(map.clearance({{5.9, 0, 0.3}, 0.6, 0.5}), 0.0);
 }
 
+TEST(StandingMap, clearance_reaches_beyond_the_columns_of_an_open_world) {
+  const std::array<Box, 1> wall{Box{6, 6.3, -8, 8, 0, 2}};
+  const StandingMap map(*make_box_world(wall, 0, 3), 0.5, 0.08);
+  for (const double x : {-40.0, 0.0, 3.9, 4.2, 5.0})
+    EXPECT_NEAR(map.clearance({{x, 0, 0}, 0.6, 0.5}), 6.0 - 0.3 - x, 0.03) << x;
+  EXPECT_NEAR(map.clearance({{6.15, 20, 0}, 0.6, 0.5}), 20.0 - 8.0 - 0.25, 0.03) << "at its side";
+}
+
+TEST(StandingMap, nothing_is_at_no_distance) {
+  const std::array<Box, 1> kerb{Box{1, 2, 0, 1, 0, 0.05}};
+  const StandingMap empty(*make_box_world({}, 0, 3), 0.5, 0.08), low(*make_box_world(kerb, 0, 3), 0.5, 0.08);
+  for (const double x : {0.0, 1.5, 30.0})
+    for (const StandingMap* map : {&empty, &low})
+      EXPECT_TRUE(std::isinf(map->clearance({{x, 0, 0}, 0.6, 0.5}))) << x;
+}
+
 }  // namespace
 }  // namespace adit::sim
