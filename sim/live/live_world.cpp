@@ -95,6 +95,7 @@ Result<void> LiveWorld::start() {
   Result<void> result;
   on_strand([&] {
     started_ = strand_->now();
+    if (!params_.await_script) script_began_ = Duration{0};
     for (std::size_t i = 0; i < wires_.size() && result; ++i) {
       DriverParams params;
       params.first_scan = 100ms + 30ms * static_cast<int>(i);
@@ -107,6 +108,10 @@ Result<void> LiveWorld::start() {
   return result;
 }
 
+void LiveWorld::begin_script() {
+  on_strand([this] { script_began_ = simulation_.now(); });
+}
+
 // A late timer is made up for, so that the world keeps pace with the clock of the agents.
 void LiveWorld::step() {
   const Duration due = strand_->now() - started_;
@@ -117,7 +122,7 @@ void LiveWorld::step() {
 void LiveWorld::observe() {
   for (std::size_t i = 0; i < simulation_.size(); ++i)
     trails_[simulation_.id(i)].poses.push_back(simulation_.truth(i).pose.planar());
-  expectations_.judge(simulation_.now(), evidence());
+  if (script_began_) expectations_.judge(simulation_.now() - *script_began_, evidence());
 }
 
 Evidence LiveWorld::evidence() const {

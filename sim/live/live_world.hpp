@@ -1,6 +1,7 @@
 #pragma once
 #include <future>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/exec/live_runtime.hpp"
@@ -14,6 +15,7 @@ namespace adit::sim {
 struct LiveWorldParams {
   std::uint64_t seed{1};
   std::uint32_t domain_base{100};  ///< robot k (from 1) is on DDS domain domain_base + k, [0, 200]
+  bool await_script{false};        ///< the scenario's time begins with begin_script(), not with start()
 };
 
 /// A scenario's world and robots in real time, speaking each robot's domain over Fast DDS on loopback. The
@@ -26,6 +28,8 @@ class LiveWorld {
                                                  const LiveWorldParams& params);
   ~LiveWorld();
   Result<void> start();
+  /// The script begins now: times of expectations count from here. From any thread but the world's.
+  void begin_script();
   /// Ends it and gives the truth of the run: ways, contacts, and which of the scenario's places were reached.
   /// Expectations of what robots say are left out: nothing here listens to them.
   RunOutcome finish();
@@ -48,6 +52,7 @@ class LiveWorld {
   std::vector<std::unique_ptr<RobotDriver>> drivers_{};
   Timer step_{}, observe_{};
   Time started_{};
+  std::optional<Duration> script_began_{};  // on the simulation's clock
   std::map<std::string, Trail> trails_{};
 };
 

@@ -2,6 +2,7 @@
 #include <csignal>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <ctime>
 
@@ -31,16 +32,25 @@ int complain(const Error& error) {
   return exit_unreadable;
 }
 
-void wait_for_the_end(const sigset_t& signals, double length) {
-  if (length <= 0.0) {
+/// Until Ctrl-C, SIGTERM or the time is up; SIGUSR1 begins the script.
+void wait_for_the_end(const sigset_t& signals, double length, LiveWorld& world) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(length);
+  for (;;) {
     int got = 0;
-    sigwait(&signals, &got);
-    return;
+    if (length <= 0.0) {
+      sigwait(&signals, &got);
+    } else {
+      const double left = std::chrono::duration<double>(end - Clock::now()).count();
+      if (left <= 0.0) return;
+      timespec wait{};
+      wait.tv_sec = static_cast<std::time_t>(left);
+      wait.tv_nsec = static_cast<long>((left - static_cast<double>(wait.tv_sec)) * 1e9);
+      got = sigtimedwait(&signals, nullptr, &wait);
+    }
+    if (got != SIGUSR1) return;
+    world.begin_script();
   }
-  timespec left{};
-  left.tv_sec = static_cast<std::time_t>(length);
-  left.tv_nsec = static_cast<long>((length - static_cast<double>(left.tv_sec)) * 1e9);
-  sigtimedwait(&signals, nullptr, &left);
 }
 
 int judge(const Scenario& scenario, const World& world, const RunOutcome& outcome,
@@ -71,6 +81,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--seed", params.seed, "of the sensors' noise")->capture_default_str();
   app.add_option("--for", length, "s; without it until Ctrl-C")->check(CLI::Range(0.1, 86400.0));
+  app.add_flag("--await-script", params.await_script,
+               "times of expectations count from SIGUSR1: the one who plays the script sends it");
   app.add_option("--report", report_file, "write what was true as JSON");
   app.add_option("--picture", picture_file, "write a picture (PNG)");
   try {
@@ -83,6 +95,7 @@ int main(int argc, char** argv) {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGUSR1);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   auto scenario = load_scenario(file);
@@ -97,6 +110,6 @@ int main(int argc, char** argv) {
                 params.domain_base + 1 + static_cast<unsigned>(i));
   std::printf("simulate: ready\n");
   std::fflush(stdout);
-  wait_for_the_end(signals, length);
+  wait_for_the_end(signals, length, **live);
   return judge(*scenario, **world, (*live)->finish(), report_file, picture_file);
 }

@@ -1,0 +1,124 @@
+#!/bin/bash
+# The demo: a real building, three robots, two operators, each in a process of its own, over Fast DDS on loopback.
+# Called by ./run demo; see --help there. Exit status 0 only if every goal was reached, nobody collided and each robot
+# drove at least 15 m.
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+bin="$root/build/release/bin"
+scenario="$root/config/scenarios/demo.yaml"
+out="$root/build/demo"
+watch=no
+for argument in "$@"; do
+  case "$argument" in
+    --watch) watch=yes ;;
+    -h|--help) echo "usage: ./run demo [--watch]     --watch: the operator's dashboard instead of the narration"; exit 0 ;;
+    *) echo "demo: unknown option '$argument'; usage: ./run demo [--watch]" >&2; exit 2 ;;
+  esac
+done
+
+say() { printf '\033[1m%s\033[0m\n' "$*"; }
+
+# Identities, sockets and logs of this run only, so that it meets no station of the user's.
+home="$(mktemp -d "${TMPDIR:-/tmp}/adit-demo-XXXXXX")"
+export XDG_RUNTIME_DIR="$home" XDG_STATE_HOME="$home"
+mkdir -p "$out"
+# A radio domain of its own; the robots' domains follow it.
+domain="${ADIT_DEMO_DOMAIN:-$((40 + $$ % 10 * 5))}"
+pids=()
+
+finish() {
+  trap - EXIT INT TERM
+  for name in op1 op2; do
+    "$bin/basestation" --name "$name" --domain "$domain" down >/dev/null 2>&1 || true
+  done
+  for pid in "${pids[@]}"; do kill -TERM "$pid" 2>/dev/null || true; done
+  for pid in "${pids[@]}"; do wait "$pid" 2>/dev/null || true; done
+  cp "$home"/*.log "$out"/ 2>/dev/null || true
+  rm -rf "$home"
+}
+trap finish EXIT
+trap 'echo; echo "demo: interrupted" >&2; exit 130' INT TERM
+
+wait_for() {  # FILE TEXT SECONDS WHAT
+  local tries=$(( $3 * 10 ))
+  until grep -q "$2" "$1" 2>/dev/null; do
+    tries=$((tries - 1))
+    if [ "$tries" -le 0 ]; then
+      echo "demo: $4 did not come up; its log:" >&2
+      tail -5 "$1" >&2
+      exit 1
+    fi
+    sleep 0.1
+  done
+}
+
+length="$(sed -n 's/^duration: *\([0-9]*\).*/\1/p' "$scenario")"
+say "Adit: three robots in the corridor of a real building, two operators, about $((length + 10)) s"
+echo "  the building   geb079 (OctoMap's example data, University of Freiburg)"
+echo "  on the air     Fast DDS on loopback, radio domain $domain"
+
+"$bin/simulate" "$scenario" --domain-base "$domain" --await-script --report "$out/report.json" --picture "$out/demo.png" \
+  > "$home/simulate.log" 2>&1 &
+simulator=$!
+pids+=("$simulator")
+wait_for "$home/simulate.log" "simulate: ready" 30 "the simulator"
+
+number=0
+while read -r name platform x y yaw; do
+  number=$((number + 1))
+  printf '  %-14s %s, at %s %s\n' "robot $name" "$platform" "$x" "$y"
+  printf 'name: %s\nplatform: %s\npose: [%s, %s, %s]\nradio: {domain: %s}\nrobot_domain: %s\ntree: trees/robot.xml\n' \
+    "$name" "$platform" "$x" "$y" "$yaw" "$domain" "$((domain + number))" > "$home/$name.yaml"
+  "$bin/robot_agent" --supervised --config "$home/$name.yaml" > "$home/$name.log" 2>&1 &
+  pids+=("$!")
+done < <(sed -n 's/^ *- {id: \([a-z0-9]*\), platform: \([a-z]*\), pose: \[\([^,]*\), *\([^,]*\), *\([^]]*\)\]}.*/\1 \2 \3 \4 \5/p' "$scenario")
+
+for name in op1 op2; do
+  "$bin/basestation" --name "$name" --domain "$domain" up > "$home/$name.log" 2>&1 ||
+    { cat "$home/$name.log" >&2; exit 1; }
+  printf '  %-14s station on the air\n' "operator $name"
+done
+# Each operator sees all three before the first order.
+for name in op1 op2; do
+  for robot in r1 r2 r3; do
+    tries=100
+    until "$bin/basestation" --name "$name" --domain "$domain" status "$robot" >/dev/null 2>&1; do
+      tries=$((tries - 1))
+      [ "$tries" -gt 0 ] || { echo "demo: operator $name does not see robot $robot; logs are in $out" >&2; exit 1; }
+      sleep 0.1
+    done
+  done
+done
+echo
+
+play=0
+kill -USR1 "$simulator"  # the scenario's time begins
+if [ "$watch" = yes ]; then
+  "$bin/basestation" --name op1 --domain "$domain" run "$scenario" --all > "$out/narration.log" 2>&1 &
+  player=$!
+  pids+=("$player")
+  # The dashboard ends with the play, or by q.
+  (while kill -0 "$player" 2>/dev/null; do sleep 0.5; done; pkill -TERM -P $$ -f "$bin/basestation .* watch" || true) &
+  pids+=("$!")
+  "$bin/basestation" --name op1 --domain "$domain" watch || true
+  if kill -0 "$player" 2>/dev/null; then kill -INT "$player"; fi
+  wait "$player" || play=$?
+else
+  "$bin/basestation" --name op1 --domain "$domain" run "$scenario" --all | tee "$out/narration.log" || play=$?
+fi
+
+kill -INT "$simulator"
+verdict=0
+wait "$simulator" || verdict=$?
+echo
+say "What was true in the simulated building"
+grep -v -e "simulate: ready" -e "on domain" "$home/simulate.log" | sed 's/^/  /'
+echo "  picture        ${out#"$root"/}/demo.png"
+echo "  report         ${out#"$root"/}/report.json"
+if [ "$verdict" = 0 ]; then
+  say "Every goal was reached, nothing was touched, each robot drove at least 15 m."
+else
+  say "The demo FAILED: see above; logs are in ${out#"$root"/}."
+fi
+[ "$play" -le 1 ] || { echo "demo: the operators' play ended with status $play" >&2; exit 1; }
+exit "$verdict"
