@@ -3,7 +3,8 @@
 # and the two files of this IDL are copied to their place.
 file(REMOVE_RECURSE ${SCRATCH})
 file(MAKE_DIRECTORY ${SCRATCH})
-set(options -replace -cs -I ${ROOT} -d ${SCRATCH})  # the same -I twice makes it spin for ever
+# The same -I twice makes it spin for ever. Without -t it preprocesses in /tmp, where two builds meet.
+set(options -replace -cs -I ${ROOT} -d ${SCRATCH} -t ${SCRATCH})
 if(ROS2)
   list(APPEND options -typeros2)
 endif()
