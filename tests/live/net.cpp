@@ -1,0 +1,93 @@
+#include "tests/live/net.hpp"
+
+#include <future>
+#include <map>
+
+#include "core/exec/live_runtime.hpp"
+#include "core/exec/virtual_runtime.hpp"
+#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/memory/ether.hpp"
+#include "tests/live/process.hpp"
+
+namespace adit::live {
+namespace {
+
+constexpr std::uint32_t radio_domain = 77, robot_domain = 100;
+
+class RehearsalNet : public Net {
+ public:
+  explicit RehearsalNet(const wire::LinkProfile& link) : ether_(scheduler_, {.link = link}) {}
+
+  Runtime& machine(const std::string& name) override {
+    auto& machine = machines_[name];
+    // Clocks of different machines are not synchronised.
+    if (!machine) machine = scheduler_.machine(name, std::chrono::seconds(1000 * machines_.size()));
+    return *machine;
+  }
+  std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override {
+    return ether_.join(radio_domain, machine);
+  }
+  std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override {
+    return ether_.join(robot_domain, machine);
+  }
+  void crash(const std::string& machine, std::unique_ptr<wire::Wire>) override { ether_.crash(machine); }
+  void on(Executor&, const std::function<void()>& work) override { work(); }
+  bool until(const std::function<bool()>& condition, Duration limit) override {
+    const Duration end = scheduler_.elapsed() + limit;
+    while (!condition()) {
+      if (scheduler_.elapsed() >= end) return false;
+      scheduler_.run_until(scheduler_.elapsed() + std::chrono::milliseconds(1));
+    }
+    return true;
+  }
+
+ private:
+  VirtualScheduler scheduler_{1};
+  wire::Ether ether_;
+  std::map<std::string, std::unique_ptr<Runtime>> machines_{};
+};
+
+class LiveNet : public Net {
+ public:
+  Runtime& machine(const std::string& name) override {
+    auto& machine = machines_[name];
+    if (!machine) machine = std::make_unique<LiveRuntime>();
+    return *machine;
+  }
+  std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override { return join(0, machine); }
+  std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override { return join(1, machine); }
+  // A participant that says nothing more, but did not say goodbye either.
+  void crash(const std::string&, std::unique_ptr<wire::Wire> radio) override {
+    silent_.push_back(std::move(radio));
+  }
+  void on(Executor& strand, const std::function<void()>& work) override {
+    std::promise<void> done;
+    strand.post([&] {
+      work();
+      done.set_value();
+    });
+    done.get_future().wait();
+  }
+  bool until(const std::function<bool()>& condition, Duration limit) override {
+    return eventually(condition, Seconds(limit));
+  }
+
+ private:
+  static std::unique_ptr<wire::Wire> join(unsigned index, const std::string& name) {
+    auto wire = wire::open_fastdds({.domain = domain(index), .name = name});
+    if (!wire) throw std::runtime_error(wire.error().text);
+    return std::move(*wire);
+  }
+
+  std::map<std::string, std::unique_ptr<LiveRuntime>> machines_{};
+  std::vector<std::unique_ptr<wire::Wire>> silent_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link) {
+  return std::make_unique<RehearsalNet>(link);
+}
+std::unique_ptr<Net> make_live_net() { return std::make_unique<LiveNet>(); }
+
+}  // namespace adit::live

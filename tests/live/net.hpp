@@ -1,0 +1,58 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/exec/executor.hpp"
+#include "core/wire/link.hpp"
+#include "core/wire/wire.hpp"
+
+namespace adit::live {
+
+/// A few machines with their radio and inner networks, in rehearsal or live in this process over Fast DDS,
+/// so that the same test body runs on both.
+class Net {
+ public:
+  virtual ~Net() = default;
+  /// Lives as long as the net.
+  virtual Runtime& machine(const std::string& name) = 0;
+  virtual std::unique_ptr<wire::Wire> join_radio(const std::string& machine) = 0;
+  /// The inner network of one robot.
+  virtual std::unique_ptr<wire::Wire> join_robot(const std::string& machine) = 0;
+  /// The machine's radio falls silent without a goodbye. Whoever used the wire is gone already.
+  virtual void crash(const std::string& machine, std::unique_ptr<wire::Wire> radio) = 0;
+  /// Runs the work on that strand and waits for its end.
+  virtual void on(Executor& strand, const std::function<void()>& work) = 0;
+  /// Lets time pass until the condition holds; false when it does not within `limit`.
+  virtual bool until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(10)) = 0;
+  void pass(Duration time) {
+    until([] { return false; }, time);
+  }
+};
+
+/// `link`: between all machines, on the radio.
+std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link = {.latency = 0.0001});
+std::unique_ptr<Net> make_live_net();
+
+/// A value that strands write and the test reads.
+template <class T>
+class Shared {
+ public:
+  template <class F>
+  auto use(F&& function) {
+    const std::lock_guard lock(mutex_);
+    return function(value_);
+  }
+  T get() const {
+    const std::lock_guard lock(mutex_);
+    return value_;
+  }
+
+ private:
+  mutable std::mutex mutex_{};
+  T value_{};
+};
+
+}  // namespace adit::live
