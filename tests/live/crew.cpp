@@ -47,12 +47,13 @@ void Operator::start() {
 
 void Operator::end() {
   if (station_) net_.on(*strand_, [&] { station_.reset(); });
-  strand_.reset();
 }
 
 void Operator::kill() {
+  net_.silence(params_.name);
   end();
-  net_.crash(params_.name, std::move(radio_));
+  silent_strands_.push_back(std::move(strand_));
+  silent_radios_.push_back(std::move(radio_));
 }
 
 void Operator::type(const std::string& line) {

@@ -51,6 +51,9 @@ class Operator {
 
   Net& net_;
   station::StationParams params_{};
+  /// Those of killed processes: a participant that says nothing more, but did not say goodbye either.
+  std::vector<std::shared_ptr<Executor>> silent_strands_{};
+  std::vector<std::unique_ptr<wire::Wire>> silent_radios_{};
   std::shared_ptr<Executor> strand_{};
   std::unique_ptr<wire::Wire> radio_{};
   std::unique_ptr<station::Station> station_{};

@@ -30,7 +30,7 @@ class RehearsalNet : public Net {
   std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override {
     return ether_.join(robot_domain, machine);
   }
-  void crash(const std::string& machine, std::unique_ptr<wire::Wire>) override { ether_.crash(machine); }
+  void silence(const std::string& machine) override { ether_.crash(machine); }
   void on(Executor&, const std::function<void()>& work) override { work(); }
   bool until(const std::function<bool()>& condition, Duration limit) override {
     const Duration end = scheduler_.elapsed() + limit;
@@ -56,10 +56,7 @@ class LiveNet : public Net {
   }
   std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override { return join(0, machine); }
   std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override { return join(1, machine); }
-  // A participant that says nothing more, but did not say goodbye either.
-  void crash(const std::string&, std::unique_ptr<wire::Wire> radio) override {
-    silent_.push_back(std::move(radio));
-  }
+  void silence(const std::string&) override {}
   void on(Executor& strand, const std::function<void()>& work) override {
     std::promise<void> done;
     strand.post([&] {
@@ -80,7 +77,6 @@ class LiveNet : public Net {
   }
 
   std::map<std::string, std::unique_ptr<LiveRuntime>> machines_{};
-  std::vector<std::unique_ptr<wire::Wire>> silent_{};
 };
 
 }  // namespace

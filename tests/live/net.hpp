@@ -21,8 +21,8 @@ class Net {
   virtual std::unique_ptr<wire::Wire> join_radio(const std::string& machine) = 0;
   /// The inner network of one robot.
   virtual std::unique_ptr<wire::Wire> join_robot(const std::string& machine) = 0;
-  /// The machine's radio falls silent without a goodbye. Whoever used the wire is gone already.
-  virtual void crash(const std::string& machine, std::unique_ptr<wire::Wire> radio) = 0;
+  /// The machine's radio participants fall silent without a goodbye; live they do when nobody uses them.
+  virtual void silence(const std::string& machine) = 0;
   /// Runs the work on that strand and waits for its end.
   virtual void on(Executor& strand, const std::function<void()>& work) = 0;
   /// Lets time pass until the condition holds; false when it does not within `limit`.
