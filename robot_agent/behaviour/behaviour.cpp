@@ -91,6 +91,8 @@ void Behaviour::holder_changed(Time now) {
 
 Result<void> Behaviour::stick(const Twist2& twist, Time now) {
   stick_.update(twist, now);
+  if (params_.defects.has(Defect::two_sources) && !decision_.mode->manual())
+    manual_.write(Velocity{twist}, now);
   if (!decision_.mode->manual())
     return twist.zero() ? Result<void>{} : refuse(Reason::wrong_mode, decision_.mode->name);
   if (decision_.mode->name == "manual")

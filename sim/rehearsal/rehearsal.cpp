@@ -119,7 +119,9 @@ class Run {
                     [this, worse] { ether_.degrade(worse->a, worse->b, std::nullopt); });
     } else if (const auto* forge = std::get_if<Forge>(&fault.what)) {
       forgers_.push_back(std::make_unique<Forger>(stage_, *forge, stations_.at(forge->as)->id()));
-      forger_health_ = forgers_.back()->start();
+      fault_health_ = forgers_.back()->start();
+    } else if (const auto* stuck = std::get_if<StuckStick>(&fault.what)) {
+      fault_health_ = stations_.at(stuck->by)->stick_hangs(stuck->robot, stuck->duration);
     }
   }
 
@@ -171,7 +173,7 @@ class Run {
       if (!robot->health()) return robot->health();
     for (const auto& [id, station] : stations_)
       if (!station->health()) return station->health();
-    return forger_health_;
+    return fault_health_;
   }
 
   RunReport report(double wall) {
@@ -216,7 +218,7 @@ class Run {
   std::map<std::string, std::unique_ptr<RobotMachine>> robots_{};
   std::map<std::string, std::unique_ptr<StationMachine>> stations_{};
   std::vector<std::unique_ptr<Forger>> forgers_{};
-  Result<void> forger_health_{};
+  Result<void> fault_health_{};
   std::map<std::string, Trail> trails_{};
   std::map<std::string, std::map<std::string, double>> mode_seconds_{};
   Duration observed_{};

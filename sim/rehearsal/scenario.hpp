@@ -72,9 +72,14 @@ struct Forge {
   std::string as{}, robot{};
   Duration duration{};
 };
+/// `by`'s joystick hangs: his own participant streams a pushed stick to `robot`, whatever the mode.
+struct StuckStick {
+  std::string by{}, robot{};
+  Duration duration{};
+};
 struct Fault {
   Duration at{};
-  std::variant<Crash, CutLink, DegradeLink, Forge> what{};
+  std::variant<Crash, CutLink, DegradeLink, Forge, StuckStick> what{};
 };
 
 /// What a robot says of itself.

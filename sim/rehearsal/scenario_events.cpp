@@ -48,9 +48,9 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
   fault.at = read_time(node, "at", scenario);
   const auto length = [&] { return from_seconds(node.number("for", config::above(0.0, 86400.0))); };
   const int kinds = static_cast<int>(node.has("crash")) + node.has("hang") + node.has("cut") +
-                    node.has("degrade") + node.has("forge");
+                    node.has("degrade") + node.has("forge") + node.has("stuck");
   if (kinds != 1) {
-    node.fail(Reason::missing_key, "expected one of crash, hang, cut, degrade and forge");
+    node.fail(Reason::missing_key, "expected one of crash, hang, cut, degrade, forge and stuck");
   } else if (node.has("crash")) {
     fault.what = Crash{read_victim(node, "crash", scenario)};
   } else if (node.has("hang")) {
@@ -65,11 +65,14 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
     const auto [a, b] = read_pair(node, "degrade", scenario);
     fault.what = DegradeLink{a, b, node.number("loss", config::within(0.0, 1.0)), length()};
   } else {
-    const std::vector<std::string> names = node.texts("forge");
+    const char* key = node.has("forge") ? "forge" : "stuck";
+    const std::vector<std::string> names = node.texts(key);
     if (names.size() != 2 || !scenario.station(names[0]) || !scenario.robot(names[1]))
-      node.child("forge").fail(Reason::bad_argument, "expected [BASESTATION, ROBOT] for forge");
-    else
+      node.child(key).fail(Reason::bad_argument, "expected [BASESTATION, ROBOT] for " + std::string(key));
+    else if (node.has("forge"))
       fault.what = Forge{names[0], names[1], length()};
+    else
+      fault.what = StuckStick{names[0], names[1], length()};
   }
   return fault;
 }

@@ -1,5 +1,7 @@
 #include "sim/rehearsal/station_machine.hpp"
 
+#include "sim/rehearsal/stick_stream.hpp"
+
 namespace adit::sim {
 namespace {
 
@@ -12,6 +14,7 @@ struct StationMachine::Process {
   std::shared_ptr<Executor> strand{};
   std::unique_ptr<wire::Wire> radio{};
   std::unique_ptr<station::Station> station{};
+  std::unique_ptr<StickStream> stuck{};
 };
 
 StationMachine::StationMachine(Stage& stage, const StationSpec& spec, Random random)
@@ -56,10 +59,21 @@ void StationMachine::type(const std::string& line) {
   });
 }
 
+Result<void> StationMachine::stick_hangs(const std::string& robot, Duration duration) {
+  if (!process_) return {};
+  auto& stuck = process_->stuck;
+  stuck = std::make_unique<StickStream>(*process_->radio, process_->strand, robot, id_);
+  stage_.scheduler.at(stage_.scheduler.elapsed() + duration, [this] {
+    if (process_) process_->stuck.reset();
+  });
+  return stuck->start();
+}
+
 void StationMachine::crash() {
   if (!process_) return;
   answer_before_crash_ = last_answer();
   stage_.ether.crash(spec_.id);
+  process_->stuck.reset();
   process_->station.reset();
   process_.reset();
   stage_.scheduler.at(stage_.scheduler.elapsed() + restart_after, [this] { health_ = start_process(); });

@@ -18,6 +18,8 @@ class StationMachine {
   void type(const std::string& line);
   /// The station's process dies in this instant and is started again after 0.5 s.
   void crash();
+  /// His joystick hangs, pushed, on that robot for so long.
+  Result<void> stick_hangs(const std::string& robot, Duration duration);
   const Result<void>& health() const { return health_; }
   /// Of the newest answer this operator got, from a robot or from his station.
   std::optional<Reason> last_answer() const;

@@ -29,7 +29,8 @@ struct Broken {
 };
 
 RunReport run(const Broken& broken, const std::string& defect) {
-  auto scenario = parse_scenario(std::string(head) + broken.script + broken.rest, "defect.yaml");
+  auto scenario = parse_scenario(std::string(head) + broken.script + broken.rest,
+                                 "defect.yaml");
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   auto factory = make_agent_factory(defect);
   EXPECT_TRUE(factory.ok());
@@ -81,10 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
                "  - {at: 4, by: op1, do: goto r1 9 0}\n  - {at: 6, by: op2, do: stop r1}\n", ""},
         Broken{"joystick_clears_stop", 4,
                "  - {at: 4, by: op1, do: drive r1 0.6 0 0 --for 8}\n  - {at: 6, by: op2, do: stop r1}\n", ""},
-        Broken{"two_sources", 5,
-               "  - {at: 4, by: op1, do: goto r1 9 0}\n  - {at: 6, by: op1, do: mode r1 hold}\n"
-               "  - {at: 7, by: op1, do: drive r1 0.6 0 0 --for 2}\n",
-               ""},
+        Broken{"two_sources", 5, "", "faults:\n  - {at: 4, stuck: [op1, r1], for: 6}\n"},
         Broken{"change_without_zero", 5,
                "  - {at: 4, by: op1, do: drive r1 0.8 0 0 --for 6}\n  - {at: 6, by: op1, do: goto r1 9 0}\n",
                ""},
@@ -95,10 +93,8 @@ INSTANTIATE_TEST_SUITE_P(
                ""},
         Broken{"manual_survives_handover", 7,
                "  - {at: 4, by: op1, do: drive r1 0.6 0 0 --for 8}\n  - {at: 6, by: op2, do: take r1}\n", ""},
-        Broken{"enter_off_centre", 7,
-               "  - {at: 4, by: op1, do: drive r1 0.6 0 0 --for 6}\n  - {at: 5, by: op1, do: mode r1 hold}\n"
-               "  - {at: 6, by: op1, do: mode r1 manual}\n",
-               ""}),
+        Broken{"enter_off_centre", 7, "  - {at: 6, by: op1, do: mode r1 manual}\n",
+               "faults:\n  - {at: 4, stuck: [op1, r1], for: 6}\n"}),
     [](const auto& which) { return std::string(which.param.defect); });
 
 TEST(Defects, UnknownNameIsRefused) {
