@@ -24,7 +24,8 @@ struct Forger::Endpoints {
   Timer timer{};
 };
 
-Forger::Forger(Stage& stage, const Forge& forge, const StationId& id) : stage_(stage), forge_(forge), id_(id) {}
+Forger::Forger(Stage& stage, const Forge& forge, const StationId& id)
+    : stage_(stage), forge_(forge), id_(id) {}
 
 Forger::~Forger() = default;
 

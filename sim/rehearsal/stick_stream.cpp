@@ -24,7 +24,8 @@ struct StickStream::Endpoints {
   Timer timer{};
 };
 
-StickStream::StickStream(wire::Wire& wire, std::shared_ptr<Executor> strand, std::string robot, const StationId& id)
+StickStream::StickStream(wire::Wire& wire, std::shared_ptr<Executor> strand, std::string robot,
+                         const StationId& id)
     : wire_(wire), strand_(std::move(strand)), robot_(std::move(robot)), id_(id) {}
 
 StickStream::~StickStream() = default;
@@ -40,15 +41,17 @@ Result<void> StickStream::start() {
   if (!joystick) return joystick.error();
   endpoints_->joystick = std::move(*joystick);
   auto authority = wire::make_reader<radio::AuthorityStatus>(
-      wire_, wire::topics::authority, *strand_, [this](const radio::AuthorityStatus& s, const wire::SampleInfo&) {
+      wire_, wire::topics::authority, *strand_,
+      [this](const radio::AuthorityStatus& s, const wire::SampleInfo&) {
         if (s.robot() == robot_) endpoints_->epoch = s.epoch();
       });
   if (!authority) return authority.error();
   endpoints_->authority = std::move(*authority);
-  auto state = wire::make_reader<radio::RobotState>(
-      wire_, wire::topics::robot_state, *strand_, [this](const radio::RobotState& s, const wire::SampleInfo&) {
-        if (s.robot() == robot_) endpoints_->echo = s.stamp();
-      });
+  auto state =
+      wire::make_reader<radio::RobotState>(wire_, wire::topics::robot_state, *strand_,
+                                           [this](const radio::RobotState& s, const wire::SampleInfo&) {
+                                             if (s.robot() == robot_) endpoints_->echo = s.stamp();
+                                           });
   if (!state) return state.error();
   endpoints_->state = std::move(*state);
   endpoints_->timer = strand_->every(period, [this] { write(); });

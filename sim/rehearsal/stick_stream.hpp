@@ -8,8 +8,8 @@
 
 namespace adit::sim {
 
-/// Streams a pushed stick to a robot at the joystick's rate, with the epoch in force and a fresh echo, whatever
-/// the robot answers: what no well-behaved station does. Used by faults.
+/// Streams a pushed stick to a robot at the joystick's rate, with the epoch in force and a fresh echo,
+/// whatever the robot answers: what no well-behaved station does. Used by faults.
 class StickStream {
  public:
   /// `wire` outlives it; `id` is the station id it claims.

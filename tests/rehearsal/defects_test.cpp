@@ -29,8 +29,7 @@ struct Broken {
 };
 
 RunReport run(const Broken& broken, const std::string& defect) {
-  auto scenario = parse_scenario(std::string(head) + broken.script + broken.rest,
-                                 "defect.yaml");
+  auto scenario = parse_scenario(std::string(head) + broken.script + broken.rest, "defect.yaml");
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   auto factory = make_agent_factory(defect);
   EXPECT_TRUE(factory.ok());
