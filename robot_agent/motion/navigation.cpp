@@ -9,6 +9,8 @@ namespace {
 constexpr double kTurnLooksAhead = 0.6;  // s: how far a stick's turn rate shifts the direction asked for
 constexpr double kTurningSpeed = 0.05;   // m/s: of a stick that only turns
 constexpr Duration kCycleLost = 2s;
+constexpr Duration kFreeAgain = 500ms;  // without a cut velocity: no longer held
+constexpr double kHeldWithin = 0.3;     // m: who came further is not held, only slow
 
 }  // namespace
 
@@ -36,6 +38,7 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
   const bool other_kind = motion.index() != motion_.index();
   if (std::holds_alternative<GoTo>(motion)) ++goal_generation_;
   motion_ = motion;
+  held_since_.reset();
   if (other_kind) {
     has_plan_ = false;
     follower_.stop_now();
@@ -60,7 +63,20 @@ Twist2 Navigation::along_plan(Time now) {
   const bool centred = guidance && guidance->stick.zero();
   if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !localisation_.alive(now))
     return follower_.stop_now();
-  return follower_.follow(localisation_.odom().planar(), seconds(params_.period));
+  const Twist2 velocity = follower_.follow(localisation_.odom().planar(), seconds(params_.period));
+  watch_held(now);
+  return velocity;
+}
+
+void Navigation::watch_held(Time now) {
+  const Eigen::Vector2d at = localisation_.odom().planar().position();
+  if (held_since_ && (now - held_last_ > kFreeAgain || (at - held_at_).norm() > kHeldWithin))
+    held_since_.reset();
+  if (!follower_.held()) return;
+  held_last_ = now;
+  if (held_since_) return;
+  held_since_ = now;
+  held_at_ = at;
 }
 
 nav::Target Navigation::target() const {
@@ -130,7 +146,8 @@ void Navigation::planned(const Job& job) {
     follower_.set_plan(job.plan);
     has_plan_ = true;
     plan_made_ = job.made;
-    if (for_goal) outputs_.progress({job.plan.arrived, job.plan.blocked});
+    const bool held = held_since_ && now() - *held_since_ >= params_.held_after;
+    if (for_goal) outputs_.progress({job.plan.arrived, job.plan.blocked || held});
   }
   if (waiting_) plan(std::exchange(waiting_, nullptr), now());
 }

@@ -15,10 +15,11 @@ namespace adit::agent {
 
 struct NavigationParams {
   Platform platform{};
-  Duration period{50ms};     ///< of step(): the driver's rate, [20 ms, 50 ms]
-  Duration plan_age{500ms};  ///< an older plan moves nothing
-  Duration scan_age{500ms};  ///< older points: the terrain is not known
-  Duration planning{20ms};   ///< what a planning cycle takes in rehearsal
+  Duration period{50ms};        ///< of step(): the driver's rate, [20 ms, 50 ms]
+  Duration plan_age{500ms};     ///< an older plan moves nothing
+  Duration scan_age{500ms};     ///< older points: the terrain is not known
+  Duration planning{20ms};      ///< what a planning cycle takes in rehearsal
+  Duration held_after{1500ms};  ///< a robot that its braking check keeps on the spot this long is blocked
 };
 
 /// A scan: points in the frame of base_link, m, and where base_link was.
@@ -53,6 +54,7 @@ class Navigation : public Component, public NavigationInput {
   struct Job;
   nav::Target target() const;
   Twist2 along_plan(Time now);
+  void watch_held(Time now);
   Twist2 limited(const Twist2& wanted) const;
   void emit(const Twist2& velocity);
   void plan(std::shared_ptr<Scan> scan, Time now);
@@ -68,8 +70,11 @@ class Navigation : public Component, public NavigationInput {
   std::uint64_t goal_generation_{};  // rises with every other goal, so that late plans report no progress
   bool has_plan_{};
   Time plan_made_{};
-  std::optional<Time> planning_{};   // since when a cycle is under way
-  std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning
+  std::optional<Time> held_since_{};  // the braking check cuts velocities, with no more than short breaks
+  Time held_last_{};
+  Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
+  std::optional<Time> planning_{};     // since when a cycle is under way
+  std::shared_ptr<Scan> waiting_{};    // the newest scan that came while planning
   std::optional<Time> scanned_{};
   std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // odometry frame
 };

@@ -1,0 +1,100 @@
+#include "robot_agent/motion/navigation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/exec/virtual_runtime.hpp"
+#include "robot_agent/motion/mux.hpp"
+
+namespace adit::agent {
+namespace {
+
+/// Navigation on a virtual strand: a scan every 100 ms, a step every 50 ms, with odometry and points given by
+/// the test.
+class NavigationTest : public testing::Test {
+ protected:
+  NavigationTest() {
+    EXPECT_TRUE(navigation.start());
+    mux.enable("goal", strand->now());
+    run(100ms);  // through zero
+    mux.step(strand->now());
+    go({6, 0});
+  }
+  void go(const Eigen::Vector2d& goal) {
+    goal_writer.write(GoTo{goal}, strand->now());
+    run(100ms);
+  }
+  void run(Duration time) {
+    elapsed += time;
+    scheduler.run_until(elapsed);
+  }
+  void odometry(const Pose2& pose) { localisation.update(Pose3::level(pose, 0), {}, ++stamp, strand->now()); }
+
+  /// One tenth of a second in which the scan and the plan are made at `seen`, and the robot is at `stands`
+  /// when it follows.
+  void cycle(const Pose2& seen, const Pose2& stands) {
+    odometry(seen);
+    auto scan = std::make_shared<Scan>();
+    scan->body = Pose3::level(seen, 0);
+    for (float y = -0.5f; y <= 0.3f; y += 0.03f)
+      for (float z = 0.1f; z < 0.8f; z += 0.1f)
+        scan->points.emplace_back(2.0f - static_cast<float>(seen.x), y, z);
+    navigation.add_scan(scan, strand->now());
+    run(40ms);
+    odometry(stands);
+    for (int i = 0; i < 2; ++i) {
+      navigation.step(strand->now());
+      run(30ms);
+    }
+  }
+
+  // The plan leads round the post, but by the odometry of the moment the robot stands right before it.
+  const Pose2 planned{1, 0, 0}, actual{1.71, 0.2, 0};
+
+  VirtualScheduler scheduler{1};
+  Duration elapsed{};
+  std::unique_ptr<Runtime> machine{scheduler.machine("robot", 1h)};
+  std::shared_ptr<Executor> strand{machine->strand("command")};
+  Localisation localisation{Pose2{}};
+  std::uint64_t stamp{};
+  Twist2 velocity{};
+  Progress progress{};
+  Navigation navigation{
+      NavigationParams{},
+      *strand,
+      {},
+      localisation,
+      {[this](const Twist2& v) { velocity = v; }, [this](const Progress& p) { progress = p; }}};
+  Mux mux{navigation};
+  Mux::Output goal_writer{mux.connect("goal", 10s)};
+};
+
+TEST_F(NavigationTest, DrivesRoundWhatStandsInItsWay) {
+  for (int i = 0; i < 30; ++i) {
+    cycle({}, {});
+    EXPECT_FALSE(progress.blocked);
+  }
+  EXPECT_GT(velocity.vx, 0.3);
+}
+
+TEST_F(NavigationTest, WhoIsHeldByTheBrakingCheckIsBlockedAndSaysSo) {
+  for (int i = 0; i < 12; ++i) cycle(planned, actual);
+  EXPECT_TRUE(velocity.zero());
+  EXPECT_FALSE(progress.blocked) << "not yet: it may be over in a moment";
+  for (int i = 0; i < 10; ++i) cycle(planned, actual);
+  EXPECT_TRUE(progress.blocked);
+
+  for (int i = 0; i < 10; ++i) cycle(planned, planned);
+  EXPECT_FALSE(progress.blocked) << "it goes on";
+  EXPECT_FALSE(velocity.zero());
+}
+
+TEST_F(NavigationTest, AnotherGoalBeginsUnheld) {
+  for (int i = 0; i < 25; ++i) cycle(planned, actual);
+  ASSERT_TRUE(progress.blocked);
+  go({6, 0.5});
+  cycle(planned, actual);
+  EXPECT_FALSE(progress.blocked);
+}
+
+}  // namespace
+}  // namespace adit::agent
