@@ -9,6 +9,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double far_away = 1000.0;  // m
+
 std::string at_text(Duration at) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2f s", seconds(at));
@@ -32,12 +34,16 @@ ordered_json rules_json(const RunReport& report) {
 
 ordered_json robots_json(const RunReport& report) {
   ordered_json out = ordered_json::object();
-  for (const auto& [id, robot] : report.robots)
+  for (const auto& [id, robot] : report.robots) {
+    // Far from everything: how far is not known, and of no interest.
+    const ordered_json clearance =
+        robot.min_clearance < far_away ? ordered_json(robot.min_clearance) : ordered_json();
     out[id] = {{"distance", robot.distance},
                {"collisions", robot.collisions},
-               {"min_clearance", robot.min_clearance},
+               {"min_clearance", clearance},
                {"moving", robot.moving},
                {"modes", robot.mode_seconds}};
+  }
   return out;
 }
 
