@@ -34,6 +34,11 @@ class Play {
     if (!socket) return socket.error();
     Player& player = players_[name];
     player.client = std::make_unique<Client>(std::move(*socket));
+    player.client->on_notice = [this, name](const nlohmann::json& notice) {
+      if (!options_.json && notice.value("mine", false) && players_.contains(name))
+        std::printf("%7.1f %s* %s\n", now(), name.c_str(), notice.value("text", std::string()).c_str());
+    };
+    player.client->notices();
     player.client->on_outcome = [this, name](std::int64_t id, const nlohmann::json& outcome) {
       Player& owner = players_[name];
       const auto found = owner.open.find(id);
@@ -49,6 +54,7 @@ class Play {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   }
   void execute(const ScriptLine& next) {
+    if (!next.say.empty() && !options_.json) std::printf("\n          %s\n", next.say.c_str());
     event(next.by, next.line, nullptr);
     Player& player = players_[next.by];
     player.open[player.client->execute(next.line)] = next.line;
@@ -96,7 +102,8 @@ Result<std::vector<ScriptLine>> read_script(const std::string& path) {
   std::vector<ScriptLine> script;
   (void)root->entries();  // the rest of a scenario is the rehearsal's
   for (const config::Node& node : root->list("script")) {
-    ScriptLine line{node.number("at", config::within(0.0, 1e6)), node.text("by"), node.text("do")};
+    ScriptLine line{node.number("at", config::within(0.0, 1e6)), node.text("by"), node.text("do"),
+                    node.text("say", "")};
     if (node.has("by") && !valid_name(line.by))
       node.fail(Reason::bad_argument, "by: an operator's name was expected");
     if (node.has("do"))

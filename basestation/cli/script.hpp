@@ -12,6 +12,7 @@ struct ScriptLine {
   double at{};  ///< s from the start
   std::string by{};
   std::string line{};
+  std::string say{};  ///< told to whoever looks on, before the line is run
 };
 
 /// The `script:` of a scenario, in the order of time. Errors: cannot_read, syntax, and whatever is wrong with

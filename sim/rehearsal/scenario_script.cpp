@@ -53,6 +53,7 @@ std::vector<ScriptLine> read_script(const Node& root, const Scenario& scenario) 
   for (const Node& line : root.list_if("script")) {
     ScriptLine entry{read_time(line, "at", scenario), read_station(line, "by", scenario), line.text("do")};
     check_command(line, entry.command, scenario);
+    (void)line.text("say", "");  // for those who look on when the script is played live
     out.push_back(std::move(entry));
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
