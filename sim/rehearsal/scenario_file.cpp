@@ -153,6 +153,10 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
 }  // namespace
 
 Result<Scenario> load_scenario(const std::string& file) {
+  std::error_code unknown;  // then reading it tells
+  if (!std::filesystem::is_regular_file(file, unknown))
+    return Error{Reason::cannot_read,
+                 file + ": no such scenario; those that come along are in config/scenarios/"};
   auto text = read_file(file);
   if (!text) return text.error();
   return parse_scenario(*text, file);
