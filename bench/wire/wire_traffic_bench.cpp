@@ -4,83 +4,12 @@
 #include <cstdlib>
 #include <map>
 
-#include "tests/wire/nets.hpp"
-#include "tests/wire/samples.hpp"
+#include "bench/wire/idle.hpp"
 
 namespace adit::bench {
 namespace {
 
-using wire::Example;
 using wire::WireCounters;
-
-/// Writes what an idle robot or station writes, and reads what it reads.
-struct Idle {
-  Idle(std::unique_ptr<wire::Wire> w, std::shared_ptr<Executor> s)
-      : wire(std::move(w)), strand(std::move(s)) {}
-
-  void write(const wire::TopicInfo& topic, const std::string& partition, Duration period) {
-    auto writer = std::shared_ptr<wire::RawWriter>(std::move(wire->make_writer(topic, partition)).value());
-    (topic.qos == wire::QosClass::urgent && !partition.empty() ? commands : writers).push_back(writer);
-    for (const Example& e : wire::examples()) {
-      if (std::string(e.topic.name) != topic.name || period == 0ms) continue;
-      (void)writer->write(e.bytes);
-      strand->post([this, writer, bytes = e.bytes, period] {
-        timers.push_back(strand->every(period, [writer, bytes] { (void)writer->write(bytes); }));
-      });
-    }
-  }
-  void read(const wire::TopicInfo& topic, const std::string& partition) {
-    readers.push_back(
-        std::move(wire->make_reader(topic, partition, *strand, [](auto, const wire::SampleInfo&) {
-          return true;
-        })).value());
-  }
-
-  std::unique_ptr<wire::Wire> wire;
-  std::shared_ptr<Executor> strand;
-  std::vector<std::shared_ptr<wire::RawWriter>> writers{}, commands{};
-  std::vector<std::unique_ptr<wire::RawReader>> readers{};
-  std::vector<Timer> timers{};
-};
-
-template <class Net>
-std::unique_ptr<Idle> robot(Net& net, const std::string& name) {
-  using namespace wire;
-  auto idle = std::make_unique<Idle>(net.join(name), net.strand(name));
-  idle->write(topics::capabilities, "", 1h);
-  idle->write(topics::robot_state, "", 100ms);
-  idle->write(topics::authority, "", 1s);
-  idle->write(topics::behaviour, "", 1s);
-  idle->write(topics::health, "", 5s);
-  idle->write(topics::link_report, "", 2s);
-  idle->write(topics::notification, "", 1h);
-  idle->write(topics::acknowledgement, "", 0ms);
-  idle->read(topics::command, name);
-  idle->read(topics::joystick, name);
-  idle->read(topics::presence, "");
-  idle->read(topics::capabilities, "");
-  return idle;
-}
-
-template <class Net>
-std::unique_ptr<Idle> station(Net& net, const std::string& name, int robots) {
-  using namespace wire;
-  auto idle = std::make_unique<Idle>(net.join(name), net.strand(name));
-  idle->write(topics::capabilities, "", 1h);
-  idle->write(topics::presence, "", 1s);
-  idle->write(topics::link_report, "", 2s);
-  for (int i = 0; i < robots; ++i) {
-    idle->write(topics::command, "r" + std::to_string(i), 0ms);
-    idle->write(topics::joystick, "r" + std::to_string(i), 0ms);
-  }
-  for (const TopicInfo& topic :
-       {TopicInfo(topics::capabilities), TopicInfo(topics::robot_state), TopicInfo(topics::authority),
-        TopicInfo(topics::behaviour), TopicInfo(topics::health), TopicInfo(topics::link_report),
-        TopicInfo(topics::notification), TopicInfo(topics::acknowledgement)}) {
-    idle->read(topic, "");
-  }
-  return idle;
-}
 
 template <class Net>
 void measure(Net& net, const char* where, int pairs, Duration time) {

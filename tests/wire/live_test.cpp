@@ -150,6 +150,7 @@ TEST(LiveWire, LargeScansPassThroughSharedMemory) {
 TEST(LiveWire, WrongParametersAreErrors) {
   EXPECT_EQ(open_fastdds({.domain = 233}).reason(), Reason::bad_argument);
   EXPECT_EQ(open_fastdds({.interfaces = {"eth0"}}).reason(), Reason::bad_argument);
+  EXPECT_EQ(open_fastdds({.interfaces = {"192.0.2.1"}}).reason(), Reason::bad_argument);
   EXPECT_EQ(open_fastdds({.peers = {"127.0.0.1:x"}}).reason(), Reason::bad_argument);
   EXPECT_EQ(open_fastdds({.peers = {"robot"}}).reason(), Reason::bad_argument);
 }

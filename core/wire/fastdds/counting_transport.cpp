@@ -57,6 +57,7 @@ void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterf
   traffic_->total_in.fetch_add(bytes, std::memory_order_relaxed);
   if (is_discovery(rtps::IPLocator::getPhysicalPort(local_locator))) {
     traffic_->discovery_in.fetch_add(bytes, std::memory_order_relaxed);
+    traffic_->ready.wait();
   }
   next_receiver->OnDataReceived(receive_buffer, receive_buffer_size, local_locator, remote_locator);
 }

@@ -3,14 +3,42 @@
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 
 namespace adit::wire {
+
+/// Closed until the participant is whole. Until then Fast DDS 2.9 drops what it hears of others: an answer to
+/// its first announcement that came back before would be lost, and the next comes with the other's
+/// announcement period.
+class Gate {
+ public:
+  void open() {
+    {
+      const std::lock_guard lock(mutex_);
+      open_ = true;
+    }
+    opened_.notify_all();
+  }
+  /// At most a second: a participant that cannot be made waits for its receiving threads.
+  void wait() {
+    if (open_.load(std::memory_order_acquire)) return;
+    std::unique_lock lock(mutex_);
+    opened_.wait_for(lock, std::chrono::seconds(1), [this] { return open_.load(); });
+  }
+
+ private:
+  std::atomic<bool> open_{false};
+  std::mutex mutex_{};
+  std::condition_variable opened_{};
+};
 
 /// Bytes that went through a participant's sockets, UDP and IP headers included.
 struct Traffic {
   std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
+  Gate ready{};  ///< discovery datagrams wait here
 };
 
 /// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them.

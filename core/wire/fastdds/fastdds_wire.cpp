@@ -99,6 +99,7 @@ class FastDdsWire final : public Wire {
     if (!qos) return qos.error();
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
         params.domain, *qos, &presence_, dds::StatusMask::none());
+    traffic_->ready.open();
     if (participant_ == nullptr) {
       return Error{Reason::wire_failed,
                    "no DDS participant on domain " + std::to_string(params.domain) +

@@ -1,10 +1,14 @@
 #include "core/wire/fastdds/participant_qos.hpp"
 
+#include <arpa/inet.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 
 #include <charconv>
+#include <set>
 
 #include "core/wire/cost.hpp"
 #include "core/wire/fastdds/counting_transport.hpp"
@@ -47,6 +51,22 @@ Result<rtps::Locator_t> locator(const std::string& text) {
   return result;
 }
 
+/// IPv4 addresses of the interfaces of this machine that are up, as the library counts them.
+std::set<std::string> own_addresses() {
+  std::set<std::string> result;
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return result;
+  for (const ifaddrs* at = first; at != nullptr; at = at->ifa_next) {
+    if ((at->ifa_flags & IFF_RUNNING) == 0) continue;
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
+    char text[INET_ADDRSTRLEN]{};
+    const auto* address = reinterpret_cast<const sockaddr_in*>(at->ifa_addr);
+    if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) != nullptr) result.insert(text);
+  }
+  freeifaddrs(first);
+  return result;
+}
+
 }  // namespace
 
 Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params,
@@ -61,10 +81,16 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   qos.transport().use_builtin_transports = false;
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = params.interfaces;
+  const std::set<std::string> own = own_addresses();
   for (const std::string& address : params.interfaces) {
     if (!rtps::IPLocator::isIPv4(address)) {
       return Error{Reason::bad_argument,
                    "interface " + address + ": expected an IPv4 address of this machine"};
+    }
+    // The library would go on without a word, and neither send nor hear anything.
+    if (!own.contains(address)) {
+      return Error{Reason::bad_argument,
+                   "interface " + address + ": no interface of this machine that is up has this address"};
     }
   }
   if (udp->interfaceWhiteList.empty()) udp->interfaceWhiteList.push_back("127.0.0.1");
