@@ -95,11 +95,12 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
   Choice choice;
   const bool found = choose(goal, choice);
   if (found && !retreating_) free_stamp_ = stamp_s;
-  if (!found) {
+  const bool tired = target.kind == Target::Kind::goal && given_up(found && !retreating_, stamp_s);
+  if (!found || tired) {
     plan.blocked = true;
     plan.reason = Reason::blocked;
     last_turn_ = 0;
-    if (target.kind == Target::Kind::goal) consider_retreat(pose, stamp_s);
+    if (target.kind == Target::Kind::goal && !tired) consider_retreat(pose, stamp_s);
     return plan;
   }
   write_path(choice, goal, pose, plan);
@@ -120,6 +121,23 @@ void LocalPlanner::watch_progress(const Target& target, double distance) {
     nearest_ = distance;
     retreats_left_ = params_.retreats;
   }
+  constexpr double kCloser = 0.1;  // m
+  if (other || distance < closest_ - kCloser) {
+    closest_ = distance;
+    effort_ = 0;
+    rest_until_ = -std::numeric_limits<double>::infinity();
+  }
+}
+
+bool LocalPlanner::given_up(bool drives, double stamp_s) {
+  constexpr double kLongest = 0.5;  // s: what is longer was a break
+  if (drives) effort_ += std::clamp(stamp_s - last_stamp_, 0.0, kLongest);
+  last_stamp_ = stamp_s;
+  if (effort_ > (closest_ < params_.effort_range ? params_.effort_near : params_.effort)) {
+    effort_ = 0;
+    rest_until_ = stamp_s + params_.rest;
+  }
+  return stamp_s < rest_until_;
 }
 
 LocalPlanner::Goal LocalPlanner::retreat_goal(const Pose2& pose) {

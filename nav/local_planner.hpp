@@ -27,7 +27,11 @@ struct LocalPlannerParams {
   double patience{3.0};  ///< stands blocked this long before it backs away, s, [0, 60]
   double retreat{1.2};   ///< backs away this far to look for another way, m, [0.5, 3]
   int retreats{2};       ///< as often, until it came nearer to the goal again; then it stays blocked, [0, 10]
-  double caution{0.3};   ///< speed with an obstacle at the footprint, m/s, (0, 2]
+  double effort{20.0};  ///< drives this long without coming nearer to a goal, then it is blocked, s, [1, 600]
+  double effort_near{6.0};   ///< the same within effort_range of it, where there is no way round, s, [1, 600]
+  double effort_range{1.0};  ///< m, [0, 10]
+  double rest{30.0};         ///< and stays blocked this long before it tries again, s, [0, 3600]
+  double caution{0.3};       ///< speed with an obstacle at the footprint, m/s, (0, 2]
   double caution_gain{2.4};  ///< more speed for each metre of clearance, 1/s, [0, 10]
 };
 
@@ -61,6 +65,8 @@ struct PlannerLibrary {
 ///   on, and stops at a wall; turning with each detour it would follow the wall;
 /// - on the way to a goal, a robot that stood blocked backs away a little and tries again, a few times: in a
 ///   passage it cannot turn, and so cannot take the way beside the one that it tried;
+/// - a robot that drives to and fro without coming nearer to its goal (it stands in something, or behind it)
+///   gives up for a while and says so;
 /// - shorter paths and tighter margins are further libraries of the true footprint: scaling the obstacle
 ///   points, as Falco does, would scale the robot as well.
 class LocalPlanner {
@@ -115,6 +121,7 @@ class LocalPlanner {
   Goal retreat_goal(const Pose2& pose);
   void consider_retreat(const Pose2& pose, double stamp_s);
   void watch_progress(const Target& target, double distance);
+  bool given_up(bool drives, double stamp_s);
   void write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const;
   double speed_limit(const Target& target, bool tight, double clearance) const;
 
@@ -126,8 +133,12 @@ class LocalPlanner {
   double course_{0};        ///< of a stick held ahead or back, odometry frame, rad
   double course_stick_{0};  ///< the stick's direction that set it
   bool on_course_{false};
-  Eigen::Vector2d goal_{0, 0};  ///< that the following three are about
-  double nearest_{0};           ///< to it so far, m
+  Eigen::Vector2d goal_{0, 0};  ///< that the following are about
+  double nearest_{0};           ///< to it so far, m, in steps of half a metre
+  double closest_{0};           ///< the same in finer steps
+  double effort_{0};            ///< driven since it came closer, s
+  double last_stamp_{0};        ///< of the plan before, s
+  double rest_until_{0};        ///< given up until then, s
   double free_stamp_{0};        ///< when a way was last free or it began to be blocked, s; or infinite
   int retreats_left_{0};
   bool retreating_{false};

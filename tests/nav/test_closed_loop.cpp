@@ -82,6 +82,20 @@ TEST_P(EveryPlatform, StopsInADeadEndAndSaysSo) {
   EXPECT_GT(run.least_clearance, 0.03);
 }
 
+TEST_P(EveryPlatform, GivesUpAGoalThatItCannotComeNearTo) {
+  // The goal is too close to a wall: nothing ahead is blocked, the robot could drive to and fro for ever.
+  BoxWorld world = corridor(-2, 12);
+  ClosedLoop run(GetParam(), world, {0, 0, 0});
+  EXPECT_FALSE(run.drive(Target::to({5, 0.95}), 30));
+  EXPECT_TRUE(run.last.blocked);
+  EXPECT_TRUE(run.follower.command().zero());
+  EXPECT_GT(run.least_clearance, 0.03);
+  const double driven = run.driven;
+  run.drive(Target::to({5, 0.95}), 5);
+  EXPECT_EQ(run.driven, driven) << "and stands";
+  EXPECT_TRUE(run.drive(Target::to({8, 0}), 30)) << "another goal is another matter";
+}
+
 TEST_P(EveryPlatform, SmartJoystickStopsBeforeAWall) {
   BoxWorld world{{{5, 5.2, -20, 20}}};
   ClosedLoop run(GetParam(), world, {0, 0, 0});
@@ -156,7 +170,7 @@ TEST(ClosedLoopWithoutCorrespondences, HitsTheHeldCheckInsteadOfPlanningAround) 
   for (auto& option : emptied->options) option.grid = {};
   without.navigator = Navigator(wheeled(), {}, {}, emptied);
   EXPECT_TRUE(with.drive(Target::to({8, 0}), 25));
-  EXPECT_FALSE(without.drive(Target::to({8, 0}), 25));
+  EXPECT_FALSE(without.drive(Target::to({8, 0}), 15));
   EXPECT_EQ(without.blocked_cycles, 0);
   EXPECT_GT(without.held_steps, 0);
   EXPECT_GT(without.least_clearance, 0.0);
