@@ -44,6 +44,7 @@ struct Sender::Pending {
   Time first_sent{};
   Timer timer{};
   bool overtaken{};  ///< a stop went out after it, with a higher number
+  bool blind{};      ///< sent before this station knew the authority in force
   bool resting{};    ///< refused for a cause that passes: sent anew at the next repeat
   Answer refusal{};  ///< that refusal
   bool is_stop() const { return order.kind == Kind::stop; }
@@ -130,6 +131,7 @@ void Sender::renumber(Lane& to, Pending& pending) {
   if (const RobotView* robot = fleet_.robot(pending.order.robot)) {
     message.epoch().start(robot->epoch.start);
     message.epoch().counter(robot->epoch.counter);
+    pending.blind = !robot->owned;
   }
   message.seq(to.next_seq++);
   message.kind(static_cast<radio::CommandKind>(pending.order.kind));
@@ -165,6 +167,8 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
 bool Sender::worth_another(const Pending& pending, Reason reason) const {
   // The robot never saw it: a stop overtook it, or a later command a stop that was lost on its way.
   if (reason == Reason::stale_sequence && (pending.overtaken || pending.is_stop())) return true;
+  // A station that has just been started again did not know the epoch yet; the refusal told it.
+  if (reason == Reason::stale_epoch && pending.blind) return true;
   // The robot has not heard this participant's presence yet.
   const bool unknown = reason == Reason::identity_mismatch || reason == Reason::unknown_station;
   return unknown && (pending.is_stop() || pending.first_sent - started_ < 5s);
