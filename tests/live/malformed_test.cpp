@@ -1,0 +1,71 @@
+// Samples that are none, on every topic, to a robot_agent and a basestation that run.
+#include "tests/live/programs.hpp"
+#include "tests/wire/samples.hpp"
+
+namespace adit::live {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// What a broken or hostile writer makes of a good sample.
+std::vector<std::vector<std::uint8_t>> damaged(const wire::Example& example) {
+  std::vector<std::vector<std::uint8_t>> all;
+  auto truncated = example.bytes;
+  while (truncated.size() > 8 && (truncated.size() % 4 != 0 || example.decodes(truncated)))
+    truncated.pop_back();
+  all.push_back(truncated);
+  auto encapsulation = example.bytes;
+  encapsulation[1] = 0x42;
+  all.push_back(encapsulation);
+  // Lengths beyond the data, and bools of 255: wherever they are.
+  for (std::size_t at = 4; at < example.bytes.size(); at += 4) {
+    auto long_one = example.bytes;
+    for (std::size_t i = at; i < std::min(at + 4, long_one.size()); ++i) long_one[i] = 0xff;
+    if (!example.decodes(long_one)) all.push_back(std::move(long_one));
+  }
+  return all;
+}
+
+int malformed_of(const nlohmann::json& net, const std::string& agent) {
+  if (net.is_object())
+    for (const auto& row : net.value("agents", nlohmann::json::array()))
+      if (row.value("agent", "") == agent) return row.value("malformed", 0);
+  return -1;
+}
+
+TEST_F(Programs, MalformedSamplesOnEveryTopicAreSurvivedAndCounted) {
+  PlainDriver driver(*net_);
+  Process robot = agent();
+  ASSERT_EQ(op("op1", {"take", "r1"}).exit_code, 0);
+  const auto radio = net_->join_radio("vandal"), inner = net_->join_robot("vandal");
+  int topics = 0;
+  for (const auto& example : wire::examples()) {
+    SCOPED_TRACE(example.topic.name);
+    const std::string topic = example.topic.name;
+    if (topic == "rt/cmd_vel") continue;  // a driver reads it, neither of the two
+    const bool addressed = topic == "adit/command" || topic == "adit/joystick";
+    auto& on = topic.starts_with("rt/") ? *inner : *radio;
+    const auto writer = std::move(on.make_writer(example.topic, addressed ? "r1" : "")).value();
+    ASSERT_TRUE(net_->until([&] { return writer->matched() > 0; }));
+    for (const auto& bytes : damaged(example)) {
+      (void)writer->write(bytes);  // some are refused by our own wire already
+      net_->pass(2ms);
+    }
+    net_->pass(50ms);
+    ++topics;
+  }
+  EXPECT_EQ(topics, 14);
+  EXPECT_TRUE(robot.running()) << robot.err();
+  EXPECT_EQ(op("op1", {"goto", "r1", "1", "0"}).exit_code, 0);
+  EXPECT_EQ(op("op1", {"stop", "r1"}).exit_code, 0);
+  EXPECT_TRUE(eventually(
+      [&] {
+        const auto net = json("op1", {"net"});
+        return malformed_of(net, "r1") >= 4 && malformed_of(net, "op1") >= 8;
+      },
+      Seconds(8)))
+      << json("op1", {"net"}).dump();
+}
+
+}  // namespace
+}  // namespace adit::live
