@@ -18,6 +18,7 @@ class Robot {
   Robot(Net& net, agent::AgentParams params);
   /// A new process of the same robot: other epoch, nothing remembered.
   void restart();
+  wire::Wire& radio() { return *radio_; }
   wire::Wire& inner() { return *robot_; }
 
  private:
@@ -45,6 +46,7 @@ class Operator {
   const station::Id& id() const { return params_.id; }
   station::Station& station() { return *station_; }
   Executor& strand() { return *strand_; }
+  wire::Wire& radio() { return *radio_; }
 
  private:
   void end();

@@ -1,0 +1,115 @@
+// Wrong input to every program: one line that tells what to do, and a non-zero exit.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "tests/live/process.hpp"
+
+namespace adit::live {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct Wrong {
+  const char* name{};
+  const char* file{};  ///< written to the folder first
+  const char* text{};
+  std::vector<std::string> command{};   ///< FILE is that file
+  std::vector<const char*> expected{};  ///< on stderr
+};
+
+class WrongInput : public testing::TestWithParam<Wrong> {};
+
+TEST_P(WrongInput, IsOneLineAndNonZeroExit) {
+  const Folder folder;
+  const auto& wrong = GetParam();
+  const std::string file = *wrong.file != 0 ? folder.write(wrong.file, wrong.text) : "";
+  auto command = wrong.command;
+  for (auto& word : command)
+    if (word == "FILE") word = file;
+  const auto ended = run(command, folder.environment());
+  EXPECT_GT(ended.exit_code, 0);
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  for (const char* text : wrong.expected) EXPECT_THAT(ended.err, HasSubstr(text));
+}
+
+const char* const scenario =
+    "world: {boxes: [[5, 6, -1, 1, 0, 1]], floor: 0}\nduration: 5\nlink: lan\n"
+    "robots:\n  - {id: r1, platform: wheeled, pose: [0, 0, 0]}\nbasestations:\n  - {id: op1, pose: [0, 0]}\n";
+const std::string with_colour = std::string(scenario) + "colour: red\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    Programs, WrongInput,
+    testing::Values(
+        Wrong{"robot_key",
+              "r.yaml",
+              "name: r1\nplatform: wheeled\ncolour: red\n",
+              {"robot_agent", "--config", "FILE"},
+              {"r.yaml:3", "colour"}},
+        Wrong{"robot_platform",
+              "r.yaml",
+              "name: r1\nplatform: hovercraft\n",
+              {"robot_agent", "--config", "FILE"},
+              {"hovercraft"}},
+        Wrong{"link_key",
+              "l.yaml",
+              "name: l\nbandwidth: 1e6\nlatency: 0.1\nloss: 0\ncolour: red\n",
+              {"basestation", "--link", "FILE", "list"},
+              {"l.yaml:5", "colour"}},
+        Wrong{"scenario_key", "s.yaml", with_colour.c_str(), {"rehearse", "FILE"}, {"s.yaml:8", "colour"}},
+        Wrong{
+            "scenario_key_live", "s.yaml", with_colour.c_str(), {"simulate", "FILE"}, {"s.yaml:8", "colour"}},
+        Wrong{
+            "scenario_map",
+            "s.yaml",
+            "world: {map: nowhere.bt}\nduration: 5\nlink: lan\nrobots:\n"
+            "  - {id: r1, platform: wheeled, pose: [0, 0, 0]}\nbasestations:\n  - {id: op1, pose: [0, 0]}\n",
+            {"rehearse", "FILE"},
+            {"nowhere.bt"}},
+        Wrong{"tree_broken",
+              "t.xml",
+              "<root BTCPP_format=\"4\">\n  <BehaviorTree ID=\"A\">\n    <Sequence>\n",
+              {"tree", "check", "FILE"},
+              {"t.xml"}},
+        Wrong{"agent_tree",
+              "r.yaml",
+              "name: r1\nplatform: wheeled\ntree: nowhere.xml\n",
+              {"robot_agent", "--config", "FILE", "--domain", "91", "--robot-domain", "92"},
+              {"nowhere.xml"}},
+        Wrong{"interface",
+              "r.yaml",
+              "name: r1\nplatform: wheeled\nradio: {interfaces: [10.255.255.1]}\n",
+              {"robot_agent", "--config", "FILE"},
+              {"10.255.255.1"}},
+        Wrong{"operator_name", "", "", {"basestation", "--name", "a/b", "list"}, {"--name"}}),
+    [](const auto& each) { return std::string(each.param.name); });
+
+TEST(WrongInputToStations, UnknownRobot) {
+  const Folder folder;
+  const std::vector<std::string> station{"basestation", "--domain", std::to_string(domain())};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), station.begin(), station.end());
+    return run(words, folder.environment());
+  };
+  (void)with({"up"});
+  const auto ended = with({"take", "r9"});
+  EXPECT_EQ(ended.exit_code, 1);
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("r9"), HasSubstr("known robots")));
+  (void)with({"down"});
+}
+
+TEST(WrongInputToStations, NameInUse) {
+  const Folder folder;
+  const std::vector<std::string> serve{"basestation", "--domain", std::to_string(domain()), "--serve=-1"};
+  Process first(serve, folder.environment());
+  ASSERT_TRUE(eventually([&] {
+    const auto second = run(serve, folder.environment(), Seconds(0.5));
+    return second.exit_code > 0 && second.err.find("op1") != std::string::npos;
+  }));
+  EXPECT_TRUE(first.running());
+}
+
+}  // namespace
+}  // namespace adit::live
