@@ -94,10 +94,12 @@ Result<void> Agent::Core::on_start() {
   send_status();
   send_health();
   timers_.push_back(every(kBeat, [this] { beat(); }));
-  timers_.push_back(every(kStatePeriod, [this] { send_state(); }));
+  timers_.push_back(every(kStatePeriod, [this] {
+    send_state();
+    directory_.tick(now());
+  }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
-    directory_.tick(now());
     send_status();
   }));
   timers_.push_back(every(kLinkPeriod, [this] { radio_->send_link_report(now()); }));

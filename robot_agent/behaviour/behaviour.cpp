@@ -89,6 +89,12 @@ void Behaviour::holder_changed(Time now) {
   tick(now);
 }
 
+void Behaviour::holder_restarted(Time now) {
+  // A stick that is held pushed across the restart must not go on by itself: manual modes fall to hold.
+  stick_.forget();
+  tick(now);
+}
+
 Result<void> Behaviour::stick(const Twist2& twist, Time now) {
   stick_.update(twist, now);
   if (params_.defects.has(Defect::two_sources) && !decision_.mode->manual())

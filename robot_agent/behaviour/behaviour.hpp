@@ -69,6 +69,7 @@ class Behaviour : public Requests {
   Result<void> request_goal(const Eigen::Vector3d& goal, Time now) override;
   void stop_changed(bool stopped, Time now) override;
   void holder_changed(Time now) override;
+  void holder_restarted(Time now) override;
   Result<void> stick(const Twist2& twist, Time now) override;
   void resume_goal(Time now) override;
 

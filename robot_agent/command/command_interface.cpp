@@ -55,7 +55,9 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
   if (const Outcome identity = identify(c.from, StationTable::Sign::command, now);
       identity.reason != Reason::none) {
     if (identity.reason == Reason::identity_mismatch) report_intruder(c.from, now);
-    return identity;
+    // A stop needs no authority: that this participant is the station it says is not asked for it (rule 4).
+    const Station* known = stations_.find(c.from.name);
+    if (c.kind != CommandKind::stop || !known || known->id != c.from.id) return identity;
   }
   if (c.seq == 0) return {Reason::bad_argument, "command numbers start at 1"};
   if (memory_.too_old(c.from.participant, c.seq, steers(c.kind) && c.kind != CommandKind::stop) &&
@@ -74,10 +76,13 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
 
 CommandInterface::Outcome CommandInterface::identify(const Sender& from, StationTable::Sign sign, Time now) {
   const bool holds = authority_.held_by(from.name, from.id);
+  const Station* bound = stations_.find(from.name);
+  const bool another = holds && bound && bound->id == from.id && bound->participant != from.participant;
   const auto verdict = stations_.hear(from, sign, holds, now);
   if (verdict.contested) report_intruder(from, now);
   if (verdict.reason == Reason::none) {
     if (holds) authority_.hear(now);
+    if (another) requests_.holder_restarted(now);
     return {};
   }
   // Whoever uses the holder's name without being him is more than a clash of names.
@@ -129,6 +134,7 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
 
 CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
   if (authority_.held_by(c.from.name, c.from.id)) return {};
+  tick(now);  // a lock that lapsed since the last second
   const std::string former = authority_.holder_name();
   if (authority_.locked() && !params_.defects.has(Defect::ignore_lock)) {
     tell(former, Severity::info, "asked", Reason::locked, c.from.name + " asked for " + params_.robot);
@@ -243,6 +249,7 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
     requests_.resume_goal(now);
     outputs_.changed();
   }
+  identify({holder->name, holder->id, s.participant}, StationTable::Sign::command, now);  // a sign of life
   const Result<void> taken = requests_.stick(s.twist, now);
   return taken ? Outcome{} : Outcome{taken.reason(), taken.error().text};
 }

@@ -20,6 +20,8 @@ class Requests {
   virtual void stop_changed(bool stopped, Time now) = 0;
   /// Also when the holder let go.
   virtual void holder_changed(Time now) = 0;
+  /// The holder's station was started again: what its stick said is forgotten.
+  virtual void holder_restarted(Time now) = 0;
   /// A fresh sample of the holder's stick. Refused with wrong_mode when it is pushed and the mode does not
   /// take it.
   virtual Result<void> stick(const Twist2& twist, Time now) = 0;

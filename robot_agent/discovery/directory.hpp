@@ -29,7 +29,8 @@ using AgentList = std::vector<AgentRecord>;  ///< sorted by name
 class Directory {
  public:
   static constexpr std::size_t kCapacity = 128;
-  static constexpr Duration kSilence = 3s;
+  /// Two lost signs of life are forgiven; the list tells within 3 s.
+  static constexpr Duration kSilence = 2800ms;
 
   explicit Directory(Executor& owner) : list_(owner) {}
 
@@ -37,7 +38,7 @@ class Directory {
   /// A station's sign of life.
   void presence(const std::string& name, const wire::ParticipantId& participant, Time now);
   void participant(const wire::ParticipantEvent& event, Time now);
-  /// Stations that fell silent. Twice a second is often enough.
+  /// Stations that fell silent. Ten times a second is often enough.
   void tick(Time now);
 
   /// Published on every change.

@@ -3,6 +3,17 @@
 namespace adit::agent {
 namespace {
 
+// What others made long must not make our message too large for its topic: it would not be sent at all, and
+// a refusal would be silent. A whole acknowledgement stays below 512 bytes, a notification below 1 kB.
+constexpr std::size_t kAnswerText = 200;
+constexpr std::size_t kNoticeText = 500;
+constexpr std::size_t kHealthText = 200;
+constexpr std::size_t kName = 64;  // names that count have 32
+
+std::string clipped(const std::string& text, std::size_t most) {
+  return text.size() <= most ? text : text.substr(0, most - 3) + "...";
+}
+
 // A number that this version does not know is no reason to stop reading.
 CommandKind from_radio(radio::CommandKind kind) {
   switch (kind) {
@@ -102,12 +113,12 @@ AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId&
 radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot) {
   radio::Acknowledgement out;
   out.robot(robot);
-  out.station(answer.station);
+  out.station(clipped(answer.station, kName));
   out.station_id(answer.station_id);
   out.seq(answer.seq);
   out.accepted(answer.accepted());
   out.reason(static_cast<std::uint16_t>(answer.reason));
-  out.text(answer.text);
+  out.text(clipped(answer.text, kAnswerText));
   out.holder(answer.holder);
   out.epoch(to_radio(answer.epoch));
   return out;
@@ -120,7 +131,7 @@ radio::Notification to_radio(const Notice& notice, const std::string& robot) {
   out.severity(to_radio(notice.severity));
   out.code(notice.code);
   out.reason(static_cast<std::uint16_t>(notice.reason));
-  out.text(notice.text);
+  out.text(clipped(notice.text, kNoticeText));
   return out;
 }
 
@@ -173,7 +184,7 @@ radio::Health to_radio(const std::vector<ComponentHealth>& components, const std
     part.name(c.name);
     part.healthy(c.healthy);
     part.silent_for(static_cast<float>(seconds(c.beat_age)));
-    part.text(c.last_failure);
+    part.text(clipped(c.last_failure, kHealthText));
     out.components().push_back(part);
   }
   return out;

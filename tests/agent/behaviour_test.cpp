@@ -69,6 +69,19 @@ TEST_F(BehaviourTest, ManualPassesTheStickAtOnce) {
   EXPECT_EQ(nav.last, (Motion{Velocity{{0.4, 0, 0.1}}}));
 }
 
+TEST_F(BehaviourTest, RestartOfTheHoldersStationEndsManual) {
+  enter_manual();
+  value = {0.4, 0, 0};
+  run(500ms);
+  behaviour.holder_restarted(now);
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_THAT(codes(), testing::ElementsAre("joystick_lost"));
+  run(500ms);  // the stick is still pushed
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+}
+
 TEST_F(BehaviourTest, ManualNeedsAFreshCentredStick) {
   EXPECT_EQ(behaviour.request_mode("manual", now).reason(), Reason::joystick_stale);
   streaming = true;

@@ -170,6 +170,53 @@ TEST(CommandInterface, TwoThatClaimOneIdentityAreFoundOut) {
   EXPECT_TRUE(bench.say("op1", "lock").accepted());
 }
 
+TEST(CommandInterface, StopOfAStationThatCameBackNeedsNoPresence) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  // His station was killed; the next one's first word is a stop, before the robot knows its participant.
+  const Answer answer = bench.say("forger:op1", "stop");
+  EXPECT_TRUE(answer.accepted());
+  EXPECT_TRUE(bench.requests.stopped);
+  EXPECT_EQ(bench.say("forger:op1", "mode hold").reason, Reason::identity_mismatch);
+}
+
+TEST(CommandInterface, RestartOfTheHoldersStationIsToldToTheRobot) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.requests.calls.clear();
+  bench.wait(2s);
+  bench.start("op2");
+  EXPECT_TRUE(bench.requests.calls.empty());
+  bench.start("op1");
+  EXPECT_EQ(bench.requests.calls, std::vector<std::string>{"restarted"});
+}
+
+TEST(CommandInterface, LockThatLapsedDoesNotWaitForTheNextTick) {
+  CommandParams params{};
+  params.lock_lease = 10s;
+  CommandBench bench(params);
+  bench.say("op1", "take");
+  bench.say("op1", "lock");
+  bench.now += 9900ms;
+  EXPECT_EQ(bench.say("op2", "take").reason, Reason::locked);
+  bench.now += 100ms;
+  EXPECT_TRUE(bench.say("op2", "take").accepted());
+}
+
+TEST(CommandInterface, JoystickIsASignOfLife) {
+  CommandParams params{};
+  params.lock_lease = 10s;
+  CommandBench bench(params);
+  bench.say("op1", "take");
+  bench.say("op1", "lock");
+  for (int i = 0; i < 12; ++i) {
+    bench.now += 1s;
+    EXPECT_FALSE(bench.interface().handle(bench.stick("op1"), bench.now));
+  }
+  EXPECT_EQ(bench.say("op2", "take").reason, Reason::locked);
+  EXPECT_EQ(bench.say("impostor:op1", "take").reason, Reason::identity_mismatch);
+}
+
 TEST(CommandInterface, HolderGetsHisNameBack) {
   CommandBench bench;
   bench.say("op1", "take");

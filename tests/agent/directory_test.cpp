@@ -54,9 +54,9 @@ TEST_F(DirectoryTest, SortedByName) {
 TEST_F(DirectoryTest, SilentStationIsGoneAfterThreeSecondsAndBackWithItsPresence) {
   directory.capabilities(record("op1", 1, true), now);
   directory.presence("op1", id(1), now + 1s);
-  directory.tick(now + 3s);
+  directory.tick(now + 3700ms);
   EXPECT_TRUE(last[0].present);
-  directory.tick(now + 4s);
+  directory.tick(now + 3800ms);
   EXPECT_FALSE(last[0].present);
   directory.presence("op1", id(2), now + 5s);
   EXPECT_TRUE(last[0].present);

@@ -22,6 +22,7 @@ struct FakeRequests : Requests {
     calls.push_back(on ? "stopped" : "reset");
   }
   void holder_changed(Time) override { calls.push_back("holder"); }
+  void holder_restarted(Time) override { calls.push_back("restarted"); }
   Result<void> stick(const Twist2& twist, Time) override {
     if (!takes_stick && !twist.zero()) return {Reason::wrong_mode, {}};
     sticks.push_back(twist);

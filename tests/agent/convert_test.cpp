@@ -1,0 +1,49 @@
+#include "robot_agent/radio/convert.hpp"
+
+#include <gmock/gmock.h>
+
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+
+namespace adit::agent {
+namespace {
+
+template <class T>
+std::size_t encoded(const T& sample) {
+  std::vector<std::uint8_t> bytes;
+  wire::encode(sample, bytes);
+  return bytes.size();
+}
+
+// Whatever its sender made of a text, the answer fits its topic: else it would never be sent.
+TEST(Convert, LongTextsFitTheirTopics) {
+  const std::string name(32, 'n');
+  Answer answer{};
+  answer.station = std::string(400, 's');
+  answer.text = std::string(10'000, 'x');
+  answer.holder = name;
+  const auto ack = to_radio(answer, name);
+  EXPECT_LE(encoded(ack), wire::topics::acknowledgement.max_bytes);
+  EXPECT_THAT(ack.text(), testing::EndsWith("..."));
+
+  const Notice notice{name, Severity::warning, "mode_refused", Reason::mode_unknown,
+                      std::string(10'000, 'x')};
+  EXPECT_LE(encoded(to_radio(notice, name)), wire::topics::notification.max_bytes);
+
+  ComponentHealth part{};
+  part.name = name;
+  part.last_failure = std::string(10'000, 'x');
+  EXPECT_LE(encoded(to_radio(std::vector<ComponentHealth>(8, part), name)), wire::topics::health.max_bytes);
+}
+
+TEST(Convert, ShortTextsStay) {
+  Answer answer{};
+  answer.station = "op1";
+  answer.text = "locked by op2";
+  const auto ack = to_radio(answer, "r1");
+  EXPECT_EQ(ack.station(), "op1");
+  EXPECT_EQ(ack.text(), "locked by op2");
+}
+
+}  // namespace
+}  // namespace adit::agent
