@@ -95,6 +95,11 @@ Node Node::child(std::string_view key) const {
 }
 
 bool Node::has(std::string_view key) const { return is_mapping() && find(key, false) != nullptr; }
+bool Node::has_null(std::string_view key) const {
+  if (!is_mapping() || has(key)) return false;
+  return std::any_of(value_->entries.begin(), value_->entries.end(),
+                     [&](const auto& entry) { return entry.key == key; });
+}
 bool Node::is_mapping() const { return value_ && value_->kind == Value::Kind::mapping; }
 bool Node::is_list() const { return value_ && value_->kind == Value::Kind::list; }
 bool Node::is_scalar() const { return value_ && value_->kind == Value::Kind::scalar; }

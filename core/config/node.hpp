@@ -39,6 +39,9 @@ class Node {
 
   // --- keys of a mapping: without a fallback they must be there ---
   bool has(std::string_view key) const;
+  /// The key is there and its value is null (`key: null`, `key: ~`, `key:`), which otherwise counts as
+  /// missing.
+  bool has_null(std::string_view key) const;
   double number(std::string_view key, Range range = {}) const;
   double number(std::string_view key, Range range, double fallback) const;
   std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max) const;

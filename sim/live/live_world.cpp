@@ -15,6 +15,9 @@ Scenario judged_by_truth(const Scenario& scenario) {
   Scenario out = scenario;
   out.expectations.clear();
   for (Expectation e : scenario.expectations) {
+    // Of what is expected together, the place is truth.
+    if (const auto* state = std::get_if<StateExpectation>(&e.what); state && state->near)
+      e.what = NearExpectation(*state->near);
     const auto* least = std::get_if<AtLeast>(&e.what);
     const bool counted = least && (least->what == "distance" || least->what == "moving");
     const bool near = std::holds_alternative<NearExpectation>(e.what) && e.when == Expectation::When::by;

@@ -12,6 +12,15 @@ using When = Expectation::When;
 std::string quoted(const std::string& text) { return text.empty() ? "nobody" : text; }
 
 // Each overload gives what is there instead; empty: as expected.
+std::string mismatch(const NearExpectation& e, const Evidence& evidence) {
+  const Pose2 pose = evidence.pose(e.robot);
+  const double off = std::hypot(pose.x - e.x, pose.y - e.y);
+  if (off <= e.tolerance) return {};
+  char text[96];
+  std::snprintf(text, sizeof text, "at %.2f %.2f, %.2f m away", pose.x, pose.y, off);
+  return text;
+}
+
 std::string mismatch(const StateExpectation& e, const Evidence& evidence) {
   const RobotWord& word = evidence.word(e.robot);
   std::string out;
@@ -21,16 +30,9 @@ std::string mismatch(const StateExpectation& e, const Evidence& evidence) {
   if (e.locked && word.authority.locked != *e.locked)
     say(word.authority.locked ? "it is locked" : "it is not locked");
   if (e.stopped && word.stopped != *e.stopped) say(word.stopped ? "it is stopped" : "it is not stopped");
+  if (e.near)
+    if (const std::string where = mismatch(*e.near, evidence); !where.empty()) say(where);
   return out;
-}
-
-std::string mismatch(const NearExpectation& e, const Evidence& evidence) {
-  const Pose2 pose = evidence.pose(e.robot);
-  const double off = std::hypot(pose.x - e.x, pose.y - e.y);
-  if (off <= e.tolerance) return {};
-  char text[96];
-  std::snprintf(text, sizeof text, "at %.2f %.2f, %.2f m away", pose.x, pose.y, off);
-  return text;
 }
 
 std::string mismatch(const AnswerExpectation& e, const Evidence& evidence) {

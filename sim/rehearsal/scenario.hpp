@@ -82,17 +82,18 @@ struct Fault {
   std::variant<Crash, CutLink, DegradeLink, Forge, StuckStick> what{};
 };
 
-/// What a robot says of itself.
+struct NearExpectation {
+  std::string robot{};
+  double x{}, y{}, tolerance{};  ///< true position in the world, m
+};
+/// What a robot says of itself, all at once.
 struct StateExpectation {
   std::string robot{};
   std::optional<std::string> mode{};
   std::optional<std::string> holder{};  ///< empty: nobody
   std::optional<bool> locked{};
   std::optional<bool> stopped{};
-};
-struct NearExpectation {
-  std::string robot{};
-  double x{}, y{}, tolerance{};  ///< true position in the world, m
+  std::optional<NearExpectation> near{};  ///< and there, when both are expected
 };
 struct AnswerExpectation {
   std::string by{};

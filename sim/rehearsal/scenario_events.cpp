@@ -79,27 +79,32 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
 
 void read_robot_expectation(const Node& node, const Scenario& scenario, Expectation& out) {
   const std::string robot = read_robot(node, "robot", scenario);
+  StateExpectation state{robot, {}, {}, {}, {}, {}};
   if (node.has("near")) {
     const std::vector<double> near = node.numbers("near", 3, 3, config::within(-1e5, 1e5));
-    if (near.size() == 3) out.what = NearExpectation{robot, near[0], near[1], near[2]};
+    if (near.size() == 3) state.near = NearExpectation{robot, near[0], near[1], near[2]};
     if (near.size() == 3 && near[2] <= 0.0)
       node.child("near").fail(Reason::out_of_range, "expected a tolerance above 0");
-    return;
   }
-  StateExpectation state{robot, {}, {}, {}, {}};
   if (node.has("mode")) state.mode = mode_names[node.choice("mode", mode_names)];
   if (node.has("holder")) {
     state.holder = node.text("holder");
     if (*state.holder == "nobody" || *state.holder == "none")
       state.holder->clear();
-    else
+    else if (!state.holder->empty())
       read_station(node, "holder", scenario);
+  } else if (node.has_null("holder")) {
+    state.holder.emplace();
   }
   if (node.has("locked")) state.locked = node.flag("locked");
   if (node.has("stopped")) state.stopped = node.flag("stopped");
-  if (!state.mode && !state.holder && !state.locked && !state.stopped)
+  const bool says = state.mode || state.holder || state.locked || state.stopped;
+  if (!says && !node.has("near"))
     node.fail(Reason::missing_key, "expected near, mode, holder, locked or stopped");
-  out.what = state;
+  if (!says && state.near)
+    out.what = *state.near;
+  else
+    out.what = state;
 }
 
 Expectation read_expectation(const Node& node, const Scenario& scenario) {

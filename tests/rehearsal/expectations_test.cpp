@@ -56,6 +56,19 @@ TEST(Expectations, ByHoldsWhenItWasSoOnceBefore) {
   EXPECT_TRUE(c.finish().ok);
 }
 
+TEST(Expectations, PlaceAndStateMustHoldTogether) {
+  const StateExpectation both{"r1", "waypoint", {}, {}, {}, NearExpectation{"r1", 3.0, 4.0, 0.5}};
+  Case c({When::by, 10s, both, 1, ""});
+  c.pose = {3.0, 4.0, 0.0};
+  c.word.mode = "hold";
+  c.expectations->judge(5s, c.evidence);
+  c.pose = {};
+  c.word.mode = "waypoint";
+  c.expectations->judge(10s, c.evidence);
+  EXPECT_FALSE(c.finish().ok);
+  EXPECT_EQ(c.finish().found, "at 0.00 0.00, 5.00 m away");
+}
+
 TEST(Expectations, ByFailsWhenItComesLater) {
   Case c({When::by, 10s, NearExpectation{"r1", 3.0, 4.0, 0.5}, 1, ""});
   c.expectations->judge(5s, c.evidence);

@@ -58,6 +58,23 @@ TEST(Scenario, ReadsEveryKey) {
   EXPECT_EQ(s->expectations[1].line, 21);
 }
 
+TEST(Scenario, PlaceAndStateInOneExpectation) {
+  const auto s = parse_scenario(with("near: [12, 0.5, 0.5]", "near: [12, 0.5, 0.5], mode: hold"), "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  const auto& state = std::get<StateExpectation>(s->expectations[2].what);
+  EXPECT_EQ(state.mode, "hold");
+  ASSERT_TRUE(state.near.has_value());
+  EXPECT_DOUBLE_EQ(state.near->x, 12.0);
+}
+
+TEST(Scenario, NobodyMayBeWrittenInManyWays) {
+  for (const char* nobody : {"nobody", "none", "\"\"", "null", "~"}) {
+    const auto s = parse_scenario(with("holder: op1", std::string("holder: ") + nobody), "b.yaml");
+    ASSERT_TRUE(s.ok()) << s.error().text;
+    EXPECT_EQ(std::get<StateExpectation>(s->expectations[0].what).holder, "") << nobody;
+  }
+}
+
 TEST(Scenario, RandomScriptAndOwnLink) {
   std::string text = with("link: mesh_500k", "link: {bandwidth: 1e6, latency: 0.02, loss: 0.2}");
   text += "random_script: {commands: 120, from: 5, to: 55, verbs: [take, stop]}\n";
