@@ -1,10 +1,12 @@
-// Round trips over our wire beside bare Fast DDS, in one process and in two: bench_wire_latency [ROUNDS].
+// Round trips over our wire beside bare Fast DDS, in one process and in two: bench_wire_latency [ROUNDS
+// [PACE]]. One is under way at a time; the next starts at once, or PACE milliseconds later, as commands do.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <semaphore>
+#include <thread>
 
 #include "bench/wire/echo.hpp"
 #include "tests/live/process.hpp"
@@ -48,7 +50,8 @@ struct Client {
   std::unique_ptr<BareDds> bare{};
 };
 
-void measure(const char* where, unsigned domain, int rounds, std::size_t size) {
+void measure(const char* where, unsigned domain, int rounds, std::chrono::milliseconds pace,
+             std::size_t size) {
   Client client(domain);
   if (!live::eventually([&] { return client.matched(); })) {
     std::printf("%s: not matched\n", where);
@@ -63,6 +66,7 @@ void measure(const char* where, unsigned domain, int rounds, std::size_t size) {
                   {"wire, urgent", [&](auto bytes) { (void)client.urgent->write(bytes); }, {}}};
   for (int round = 0; round < rounds; ++round) {
     for (Path& path : paths) {  // in turns: whatever disturbs the machine disturbs all
+      if (pace.count() > 0) std::this_thread::sleep_for(pace);
       const auto start = SteadyClock::now();
       path.send(payload);
       if (!client.back.try_acquire_for(std::chrono::seconds(1))) continue;
@@ -84,12 +88,13 @@ void measure(const char* where, unsigned domain, int rounds, std::size_t size) {
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 3000;
+  const std::chrono::milliseconds pace(argc > 2 ? std::atoi(argv[2]) : 0);
   const unsigned domain = adit::live::domain(0), other = adit::live::domain(1);
   {
     const adit::bench::Echo echo(domain);
-    adit::bench::measure("one process", domain, rounds, 96);
+    adit::bench::measure("one process", domain, rounds, pace, 96);
   }
   adit::live::Process process({"wire_echo", std::to_string(other)});
   if (!process.wait_for_output("ready", adit::live::Seconds(10))) return 1;
-  adit::bench::measure("two processes", other, rounds, 96);
+  adit::bench::measure("two processes", other, rounds, pace, 96);
 }

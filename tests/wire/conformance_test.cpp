@@ -148,9 +148,11 @@ TYPED_TEST(Conformance, CommandsAreNotReplayed) {
 }
 
 TYPED_TEST(Conformance, ParticipantsComeAndGo) {
-  Seen<std::pair<ParticipantId, bool>> events;
-  this->station->on_participant(*this->strand, [&](const ParticipantEvent& e) {
-    events.add({e.id, e.present});
+  // Shared: the station outlives this body when an assertion ends it.
+  const auto shared = std::make_shared<Seen<std::pair<ParticipantId, bool>>>();
+  const auto& events = *shared;
+  this->station->on_participant(*this->strand, [shared](const ParticipantEvent& e) {
+    shared->add({e.id, e.present});
   });
   ASSERT_TRUE(this->net.until([&] { return events.size() == 1; }));
   const ParticipantId first = this->robot->id();
@@ -162,7 +164,6 @@ TYPED_TEST(Conformance, ParticipantsComeAndGo) {
   EXPECT_NE(this->robot->id(), first);
   ASSERT_TRUE(this->net.until([&] { return events.size() == 3; }, 3s));
   EXPECT_EQ(events.all()[2], std::pair(this->robot->id(), true));
-  this->station.reset();  // its handler writes to `events`
 }
 
 TYPED_TEST(Conformance, MalformedSamplesAreCountedBySenderAndSurvived) {
