@@ -111,5 +111,6 @@ int main(int argc, char** argv) {
   std::printf("simulate: ready\n");
   std::fflush(stdout);
   wait_for_the_end(signals, length, **live);
+  scenario->link.name = "Fast DDS, live";  // the scenario's link is the rehearsal's
   return judge(*scenario, **world, (*live)->finish(), report_file, picture_file);
 }
