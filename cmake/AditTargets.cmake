@@ -69,6 +69,11 @@ function(adit_test name)
   adit_test_headers(test_${name})
   target_compile_definitions(test_${name} PRIVATE
     ADIT_SOURCE_DIR="${PROJECT_SOURCE_DIR}" ADIT_BIN_DIR="${CMAKE_RUNTIME_OUTPUT_DIRECTORY}")
+  # What a sanitizer's build needs: the tests and what they start, nothing else.
+  if(NOT TARGET adit_tests)
+    add_custom_target(adit_tests)
+  endif()
+  add_dependencies(adit_tests test_${name})
   set(serial "")
   if(arg_SERIAL)
     set(serial RUN_SERIAL TRUE)
