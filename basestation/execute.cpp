@@ -357,7 +357,7 @@ void Station::Impl::end_flows(const std::string& robot, Reason reason) {
 
 void Station::Impl::cancel(std::uint64_t handle) {
   const auto [first, last] = flows_.equal_range(handle);
-  for (const auto& [same, flow] : std::multimap(first, last)) flow->cancel(Reason::cancelled, "cancelled");
+  for (const auto& [same, flow] : std::multimap(first, last)) flow->cancel(Reason::cancelled, "");
   for (auto it = waiting_.begin(); it != waiting_.end(); ++it) {
     if (it->handle != handle) continue;
     const Waiting dropped = std::move(*it);

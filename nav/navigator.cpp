@@ -9,7 +9,6 @@ Navigator::Navigator(const Platform& platform, const ObstacleMapParams& map,
 void Navigator::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   map_.add_scan(points, body, stamp_s);
   has_scan_ = true;
-  scan_stamp_ = stamp_s;
 }
 
 Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {

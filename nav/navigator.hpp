@@ -18,9 +18,6 @@ class Navigator {
   /// the plan is blocked with Reason::terrain_stale.
   Plan plan(const Target& target, const Pose2& pose, double stamp_s);
 
-  /// Whether a scan has come, and the stamp of the newest one (s).
-  bool has_scan() const { return has_scan_; }
-  double scan_stamp() const { return scan_stamp_; }
   const ObstacleMap& obstacles() const { return map_; }
   /// Forgets what was seen, as after a jump of the odometry.
   void clear();
@@ -29,7 +26,6 @@ class Navigator {
   ObstacleMap map_;
   LocalPlanner planner_;
   bool has_scan_{false};
-  double scan_stamp_{0};
 };
 
 }  // namespace adit::nav

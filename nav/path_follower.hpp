@@ -29,8 +29,6 @@ class PathFollower {
   Twist2 follow(const Pose2& odom, double dt);
   /// Zero, at once, and no plan.
   Twist2 stop_now();
-  /// The robot moves like this without our doing: the next command starts from there.
-  void start_from(const Twist2& current) { last_ = current; }
 
   const Twist2& command() const { return last_; }
   /// The last command was cut because it would have led into an obstacle.

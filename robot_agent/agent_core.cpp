@@ -82,6 +82,7 @@ void Agent::Core::close() {
 }
 
 Result<void> Agent::Core::on_start() {
+  started_ = now();
   const auto failed = [this](const ComponentFailure& f) {
     tell({{}, Severity::error, "component_failed", Reason::internal, f.component + ": " + f.text});
   };
@@ -154,7 +155,7 @@ void Agent::Core::send_health() {
   ComponentHealth driver{};
   driver.name = "driver";
   driver.running = driver.healthy = localisation_.alive(now());
-  driver.beat_age = localisation_.silence(now());
+  driver.beat_age = localisation_.silence(now(), started_);
   if (!driver.healthy) driver.last_failure = "no odometry";
   parts.push_back(driver);
   radio_->send_health(parts);

@@ -58,6 +58,7 @@ class Agent::Core : public Component {
   std::unique_ptr<Driver> driver_{};
   float battery_{-1.0f};
   bool driver_was_alive_{};
+  Time started_{};
   std::vector<Timer> timers_{};
 };
 

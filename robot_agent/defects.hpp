@@ -6,8 +6,8 @@
 
 namespace adit::agent {
 
-/// Rules of DESIGN 4 that an agent can be told to break, so that tests see the rule checker fire. They
-/// exist in the library built with ADIT_DEFECTS alone (adit::agent_defects); in the product `has` is a
+/// Rules of docs/architecture.md that an agent can be told to break, so that tests see the rule checker fire.
+/// They exist in the library built with ADIT_DEFECTS alone (adit::agent_defects); in the product `has` is a
 /// constant false and the compiler drops every branch.
 enum class Defect {
   none,

@@ -9,7 +9,7 @@
 namespace adit::authority_cases {
 
 /// A command line given by an operator to the robot R, or an event:
-///   by "op1"           a line as in FORMATS: take, release, lock, unlock, grant OP, stop, reset
+///   by "op1"           a line as operators type it: take, release, lock, unlock, grant OP, stop, reset
 ///   [--override],
 ///                      mode M, goto X Y
 ///   by "impostor:op1"  the same from a foreign participant with op1's name and another station id

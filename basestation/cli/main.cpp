@@ -74,9 +74,13 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
     return play(options, *script, request->all_operators);
   }
   auto socket = connect_or_launch(options);
-  if (!socket)
-    return fail(options, socket.reason() == Reason::no_answer ? exit_no_answer : exit_refused,
-                socket.error());
+  if (!socket) {
+    const Reason why = socket.reason();
+    const int code = why == Reason::no_answer      ? exit_no_answer
+                     : why == Reason::bad_argument ? exit_usage
+                                                   : exit_refused;
+    return fail(options, code, socket.error());
+  }
   Client client(std::move(*socket));
   if (request->verb == Verb::watch) return watch(client, options);
   if (request->verb == Verb::teleop) return teleop(client, options, request->robots.front());
@@ -98,7 +102,7 @@ int main(int argc, char** argv) {
   app.add_option("--name", options.name, "Operator name; one station runs per name");
   app.add_option("--link", options.link, "Link profile (config/links), for a station that is started");
   app.add_flag("--json", options.json, "One JSON object instead of text");
-  app.add_option("--domain", options.domain, "Radio domain")->check(CLI::Range(0, 232));
+  CLI::Option* domain = app.add_option("--domain", options.domain, "Radio domain")->check(CLI::Range(0, 232));
   app.add_option("--interface", options.interfaces,
                  "Address of a network interface to use; loopback when none is named");
   app.add_option("--peer", options.peers, "ADDRESS[:PORT] of an agent, for networks without multicast");
@@ -113,6 +117,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return fail(options, exit_usage, {Reason::bad_argument, std::string(error.what()) + "; try --help"});
   }
+  options.domain_given = domain->count() > 0;
   if (!valid_name(options.name))
     return fail(options, exit_usage,
                 {Reason::bad_argument,

@@ -11,6 +11,7 @@ struct Options {
   std::string link{"lan"};  ///< profile of config/links, or a .yaml file
   bool json{false};
   std::uint32_t domain{77};               ///< radio domain, [0, 232]
+  bool domain_given{false};               ///< a station that runs must be on `domain`
   std::vector<std::string> interfaces{};  ///< addresses; none: loopback
   std::vector<std::string> peers{};       ///< for networks without multicast
   std::string program{};                  ///< path of this program, to start a station with

@@ -79,7 +79,10 @@ class Prompt {
   void listen() {
     client_->on_notice = [this](const json& notice) {
       if (!notice.value("mine", false)) return;
-      std::printf("\r\x1b[K* %s\n", notice.value("text", std::string()).c_str());
+      const std::string robot = notice.value("robot", std::string());
+      const std::string text = notice.value("text", std::string());
+      const bool named = robot.empty() || text.find(robot) != std::string::npos;
+      std::printf("\r\x1b[K* %s%s\n", named ? "" : (robot + ": ").c_str(), text.c_str());
       printed_ = true;
     };
     client_->on_snapshot = [this](const json& snapshot) {

@@ -59,7 +59,10 @@ void Arrival::poll() {
   }
 }
 
-void Arrival::cancel(Reason reason, const std::string& text) { end(reason, text); }
+void Arrival::cancel(Reason reason, const std::string& text) {
+  const bool goes_on = text.empty() && outcome_.accepted;
+  end(reason, goes_on ? "not waited for any longer; the robot goes on to its goal" : text);
+}
 
 void Arrival::end(Reason reason, const std::string& text) {
   timer_.cancel();

@@ -225,17 +225,4 @@ bool Sender::idle(const std::string& robot) const {
   return found == lanes_.end() || (!found->second->current && !found->second->stop);
 }
 
-void Sender::cancel_all() {
-  for (auto& [robot, to] : lanes_) {
-    std::deque<std::shared_ptr<Pending>> all = std::exchange(to->queue, {});
-    for (auto& running : {std::exchange(to->stop, nullptr), std::exchange(to->current, nullptr)})
-      if (running) all.push_front(running);
-    for (auto& pending : all) {
-      pending->timer.cancel();
-      for (const Done& done : pending->done)
-        done({.robot = robot, .command = to_string(pending->order.kind), .reason = Reason::cancelled});
-    }
-  }
-}
-
 }  // namespace adit::station

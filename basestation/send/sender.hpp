@@ -37,8 +37,6 @@ class Sender {
   void hear(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
   /// True when nothing waits for that robot.
   bool idle(const std::string& robot) const;
-  /// Ends all that waits with `cancelled`.
-  void cancel_all();
 
   const Counts& counts() const { return counts_; }
   /// Each command as it first goes out.

@@ -27,7 +27,7 @@ Result<Platform> load_platform_file(const std::string& path) {
 }
 
 Result<Platform> load_platform(const std::string& name, const std::string& beside) {
-  const auto path = find_file(name.ends_with(".yaml") ? name : "platforms/" + name + ".yaml", beside);
+  const auto path = find_named("platforms", name, beside);
   if (!path) return path.error();
   return load_platform_file(*path);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 namespace adit::config {
@@ -53,6 +54,22 @@ Result<std::string> find_file(const std::string& name, const std::string& beside
     places += (places.empty() ? "" : ", ") + folder;
   }
   return Error{Reason::cannot_read, name + ": no such file in " + (places.empty() ? "any folder" : places)};
+}
+
+Result<std::string> find_named(const std::string& folder, const std::string& name,
+                               const std::string& beside) {
+  if (name.ends_with(".yaml")) return find_file(name, beside);
+  if (auto found = find_file(folder + "/" + name + ".yaml", beside)) return found;
+  std::set<std::string> known;
+  std::error_code error;
+  for (const std::string& place : search_path(beside))
+    for (const auto& entry : fs::directory_iterator(fs::path(place) / folder, error))
+      if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
+  if (known.empty()) return find_file(folder + "/" + name + ".yaml", beside);
+  std::string names;
+  for (const std::string& each : known) names += (names.empty() ? "" : ", ") + each;
+  return Error{Reason::cannot_read,
+               "no '" + name + "' in config/" + folder + "; there are: " + names + " (or a file, NAME.yaml)"};
 }
 
 }  // namespace adit::config

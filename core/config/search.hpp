@@ -15,4 +15,9 @@ std::vector<std::string> search_path(const std::string& beside = "");
 /// taken as it is. Error cannot_read names all places where it was looked for.
 Result<std::string> find_file(const std::string& name, const std::string& beside = "");
 
+/// The file that `name` stands for in `folder` ("platforms", "links"): "wheeled" is platforms/wheeled.yaml, a
+/// name that ends in .yaml a file. Error cannot_read names those that there are.
+Result<std::string> find_named(const std::string& folder, const std::string& name,
+                               const std::string& beside = "");
+
 }  // namespace adit::config

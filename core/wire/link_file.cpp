@@ -21,7 +21,7 @@ Result<LinkProfile> load_link_file(const std::string& path) {
 }
 
 Result<LinkProfile> load_link(const std::string& name, const std::string& beside) {
-  const auto path = config::find_file(name.ends_with(".yaml") ? name : "links/" + name + ".yaml", beside);
+  const auto path = config::find_named("links", name, beside);
   if (!path) return path.error();
   return load_link_file(*path);
 }

@@ -45,7 +45,7 @@ struct ModeRow {
   bool manual() const { return accepts == Accepts::stick; }
 };
 
-/// The mode table (DESIGN 5): the tree's leaves, the command interface, BehaviourState and, through it, every
+/// The mode table: the tree's leaves, the command interface, BehaviourState and, through it, every
 /// console read it. Reading order is the order in which conditions are told.
 std::span<const ModeRow> mode_table();
 /// The row of that name, null when this robot has no module for it.

@@ -26,8 +26,8 @@ class Localisation {
 
   bool initialised() const { return heard_.has_value(); }
   bool alive(Time now) const { return heard_ && now - *heard_ < kAlive; }
-  /// Since the last odometry; since ever when there was none.
-  Duration silence(Time now) const { return heard_ ? now - *heard_ : now.time_since_epoch(); }
+  /// Since the last odometry; since `start` when there was none.
+  Duration silence(Time now, Time start) const { return now - heard_.value_or(start); }
   const Pose3& odom() const { return odom_; }
   const Twist2& twist() const { return twist_; }
   /// Map frame.

@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "core/config/search.hpp"
+#include "core/config/usage.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/program/console.hpp"
@@ -24,9 +25,9 @@ using namespace adit::agent;
 
 constexpr const char* kExamples = R"(
 Examples:
-  robot_agent --config robots/r1.yaml                    the robot of that file
-  robot_agent --config robots/r1.yaml --supervised       restarted when it dies; zero is sent meanwhile
-  robot_agent --config robots/r1.yaml --name r7 --pose 4 2 1.57 --robot-domain 7
+  robot_agent --config config/robots/r1.yaml             the robot of that file
+  robot_agent --config config/robots/r1.yaml --supervised  restarted when it dies; zero is sent meanwhile
+  robot_agent --config config/robots/r1.yaml --name r7 --pose 4 2 1.57 --robot-domain 7
   robot_agent console status --name r1                   at the robot itself
   robot_agent console unlock --name r1                   end the lock of an operator who is gone
 
@@ -45,7 +46,7 @@ int fail(const Error& error, int code) {
 }
 
 Result<RobotConfig> load(const Options& options) {
-  const auto file = config::find_file(options.config);
+  const auto file = config::find_file(options.config, "./");  // as typed, then where all configuration is
   if (!file) return file.error();
   auto config = load_robot_config(*file);
   if (!config) return config;
@@ -175,7 +176,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return config::end_usage(app, error);
   }
   if (*console) return ask(robot, verb);
   if (options.config.empty()) return fail({Reason::bad_argument, "--config FILE is missing; see --help"}, 2);

@@ -1,7 +1,10 @@
 #include "robot_agent/program/robot_config.hpp"
 
+#include <filesystem>
+
 #include "core/config/node.hpp"
 #include "core/config/platform_file.hpp"
+#include "core/config/search.hpp"
 #include "robot_agent/command/types.hpp"
 
 namespace adit::agent {
@@ -31,6 +34,12 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.shared_memory = root->flag("shared_memory", c.shared_memory);
   c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));
   c.tree = root->text("tree", c.tree);
+  if (auto tree = config::find_file(c.tree, file))
+    c.tree = std::filesystem::absolute(*tree).string();
+  else if (root->has("tree"))
+    root->child("tree").fail(tree.error().reason, tree.error().text);
+  else
+    return tree.error();
   if (!level_from_name(root->text("log", "info"), c.log))
     root->child("log").fail(Reason::out_of_range, "expected trace, debug, info, warn, error or off");
   if (const auto read = root->finish(); !read) return read.error();

@@ -51,7 +51,6 @@ void RobotModel::take_in_event(const CommandHeard& e) {
   // A command is a sign of life of its station, but it does not show a new participant to be the station.
   const Heard* known = heard(e.station);
   if (!known || (known->id == e.id && known->participant == e.from)) hear(e.station, e.id, e.from);
-  if (e.verb == Verb::stop && !repeat) stops_changed_ = now_;
 }
 
 const RobotModel::Heard* RobotModel::heard(const std::string& station) const {
@@ -129,7 +128,6 @@ void RobotModel::apply(const CommandHeard& command, const AckSent& ack) {
         latches_.clear();
       else
         std::erase(latches_, Latch{command.station, command.id});
-      stops_changed_ = now_;
       break;
     default:
       break;

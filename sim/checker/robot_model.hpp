@@ -49,8 +49,6 @@ class RobotModel {
 
   const Authority& authority() const { return authority_; }
   const std::vector<Latch>& latches() const { return latches_; }
-  /// When the last stop was received, or the last latch cleared.
-  Duration stops_changed() const { return stops_changed_; }
   Duration holder_changed() const { return holder_changed_; }
   bool knows(const wire::ParticipantId& participant) const { return participants_.contains(participant); }
   const Heard* heard(const std::string& station) const;
@@ -67,7 +65,6 @@ class RobotModel {
 
   /// As published; empty before the first BehaviourState.
   const std::string& mode() const { return mode_; }
-  const std::string& mode_before() const { return mode_before_; }
   Duration mode_changed() const { return mode_changed_; }
   /// The published mode, or the one that it replaced in this very instant, is that.
   bool in_mode(const std::string& mode) const {
@@ -104,7 +101,7 @@ class RobotModel {
   void apply(const CommandHeard& command, const AckSent& ack);
 
   RobotFacts facts_;
-  Duration now_{}, started_{}, died_{}, stops_changed_{}, holder_changed_{}, mode_changed_{}, velocity_at_{};
+  Duration now_{}, started_{}, died_{}, holder_changed_{}, mode_changed_{}, velocity_at_{};
   bool alive_{};
   Authority authority_{};
   std::vector<Latch> latches_{};

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "core/config/usage.hpp"
 #include "sim/live/live_world.hpp"
 #include "sim/rehearsal/run_picture.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
@@ -56,8 +57,8 @@ void wait_for_the_end(const sigset_t& signals, double length, LiveWorld& world) 
 int judge(const Scenario& scenario, const World& world, const RunOutcome& outcome,
           const std::string& report_file, const std::string& picture_file) {
   for (const auto& [id, robot] : outcome.report.robots)
-    std::printf("%s: %.1f m, %d collisions, clearance %.2f m\n", id.c_str(), robot.distance, robot.collisions,
-                robot.min_clearance);
+    std::printf("%s: %.1f m, %d collisions, %s\n", id.c_str(), robot.distance, robot.collisions,
+                robot.clearance().c_str());
   for (const std::string& line : outcome.report.complaints()) std::fprintf(stderr, "%s\n", line.c_str());
   if (!report_file.empty())
     if (auto written = write_json(outcome.report, report_file); !written) return complain(written.error());
@@ -70,7 +71,8 @@ int judge(const Scenario& scenario, const World& world, const RunOutcome& outcom
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "A scenario's world in real time: bodies, lidars and odometry on the robots' DDS domains (loopback)."};
+      "A scenario's world in real time: bodies, lidars and odometry on the robots' DDS domains (loopback).",
+      "simulate"};
   app.footer(examples);
   std::string file, report_file, picture_file;
   LiveWorldParams params;
@@ -88,7 +90,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : exit_unreadable;
+    return config::end_usage(app, error);
   }
   // Before any thread exists, so that the signals come to this one.
   sigset_t signals;

@@ -1,5 +1,6 @@
 #include "sim/rehearsal/report.hpp"
 
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -48,6 +49,13 @@ ordered_json robots_json(const RunReport& report) {
 }
 
 }  // namespace
+
+std::string RobotResult::clearance() const {
+  if (min_clearance >= far_away) return "nothing near";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "clearance %.2f m", min_clearance);
+  return text.data();
+}
 
 bool RunReport::ok() const { return complaints().empty(); }
 

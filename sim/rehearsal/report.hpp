@@ -30,6 +30,9 @@ struct RobotResult {
   double min_clearance{};  ///< m; to anything, over the run
   double moving{};         ///< part of the time in motion, 0..1
   std::map<std::string, double> mode_seconds{};
+
+  /// "clearance 0.20 m", or that nothing was near.
+  std::string clearance() const;
 };
 
 struct TopicResult {

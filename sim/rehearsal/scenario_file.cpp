@@ -4,6 +4,7 @@
 #include <set>
 
 #include "core/config/node.hpp"
+#include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
 #include "sim/world/read_file.hpp"
@@ -25,7 +26,8 @@ std::filesystem::path find_map(const Node& world, const std::string& key, const 
         std::filesystem::path("/usr/share/doc/liboctomap-dev/examples/data") / name;
     std::error_code ignored;  // not there: the error below tells
     if (std::filesystem::exists(package, ignored)) return package;
-    world.child(key).fail(found.error().reason, found.error().text);
+    world.child(key).fail(found.error().reason,
+                          found.error().text + "; put it there (./run setup fetches geb079.bt)");
     return {};
   }
   return *found;
@@ -58,13 +60,14 @@ WorldSpec read_world(const Node& world, const std::string& file) {
 }
 
 void read_robots(const Node& root, Scenario& out) {
-  static const std::vector<std::string> platforms{"wheeled", "tracked", "legged"};
   std::set<std::string> names;
   for (const Node& robot : root.list("robots")) {
     RobotSpec spec;
     spec.id = read_name(robot, "id");
-    const std::string platform = robot.text("platform");
-    spec.platform = platform;
+    spec.platform = robot.text("platform");
+    if (!spec.platform.empty())
+      if (auto known = config::load_platform(spec.platform, out.file.string()); !known)
+        robot.child("platform").fail(known.error().reason, known.error().text);
     const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));
     if (pose.size() == 3) spec.pose = {pose[0], pose[1], wrap_angle(pose[2])};
     if (!names.insert(spec.id).second)

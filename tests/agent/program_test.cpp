@@ -24,6 +24,15 @@ TEST(RobotConfig, TheShippedOnesLoad) {
   }
 }
 
+TEST(RobotConfig, ATreeBesideTheFileComesFirst) {
+  const live::Folder folder;
+  const std::string tree = folder.write("oak.xml", "<root/>");
+  const auto config =
+      load_robot_config(folder.write("r.yaml", "name: r1\nplatform: wheeled\ntree: oak.xml\n"));
+  ASSERT_TRUE(config) << config.error().text;
+  EXPECT_EQ(config->tree, tree);
+}
+
 struct BadFile {
   const char* name;
   const char* text;
@@ -45,7 +54,9 @@ INSTANTIATE_TEST_SUITE_P(
                     BadFile{"missing_name", "platform: wheeled\n", "name"},
                     BadFile{"bad_name", "name: r 1\nplatform: wheeled\n", "r.yaml:1"},
                     BadFile{"short_pose", "name: r1\nplatform: wheeled\npose: [1, 2]\n", "r.yaml:3"},
-                    BadFile{"unknown_platform", "name: r1\nplatform: hovercraft\n", "hovercraft"},
+                    BadFile{"unknown_platform", "name: r1\nplatform: hovercraft\n",
+                            "no 'hovercraft' in config/platforms; there are: legged, tracked, wheeled"},
+                    BadFile{"missing_tree", "name: r1\nplatform: wheeled\ntree: oak.xml\n", "r.yaml:3"},
                     BadFile{"radio_key", "name: r1\nplatform: wheeled\nradio: {domian: 3}\n", "domian"},
                     BadFile{"domain_range", "name: r1\nplatform: wheeled\nrobot_domain: 500\n", "r.yaml:3"},
                     BadFile{"lease", "name: r1\nplatform: wheeled\nlock_lease: -1\n", "r.yaml:3"},

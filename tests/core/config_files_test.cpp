@@ -105,8 +105,8 @@ TEST(Search, looks_beside_the_file_first_and_tells_where_it_looked) {
   const auto none = config::load_platform("flying", beside);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().reason, Reason::cannot_read);
-  EXPECT_THAT(none.error().text, HasSubstr("platforms/flying.yaml: no such file in "));
-  EXPECT_THAT(none.error().text, HasSubstr(folder.path.string()));
+  EXPECT_THAT(none.error().text, HasSubstr("no 'flying' in config/platforms; there are: "));
+  EXPECT_THAT(none.error().text, HasSubstr("legged, "));
 }
 
 TEST(Search, the_environment_comes_before_the_source_tree) {

@@ -124,6 +124,8 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"box_inside_out", "[0, 1, 5, 6, 0, 2]", "[1, 0, 5, 6, 0, 2]", 1, "smaller"},
         Bad{"ceiling_below_floor", "ceiling: 3", "ceiling: -1", 1, "above the floor"},
         Bad{"unknown_link", "link: mesh_500k", "link: string_and_tins", 3, "string_and_tins"},
+        Bad{"unknown_platform", "platform: wheeled", "platform: winged", 6,
+            "there are: legged, tracked, wheeled"},
         Bad{"unknown_lidar", "lidar: planar", "lidar: round", 4, "planar"},
         Bad{"robot_without_pose", ", pose: [1, 0, 0]", "", 6, "pose"},
         Bad{"robot_twice", "id: r2", "id: r1", 7, "taken"},

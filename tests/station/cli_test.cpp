@@ -123,6 +123,21 @@ TEST_F(Cli, OneStationPerName) {
   EXPECT_EQ(run({"--name", "op2", "up"}).exit_code, 0) << "another name is another station";
 }
 
+TEST_F(Cli, AStationOnAnotherDomainIsNotAskedByMistake) {
+  ASSERT_EQ(run({"up"}).status, 0);
+  const std::string other = std::to_string(live::domain() + 1);
+  const auto asked =
+      live::run({"basestation", "--domain", other, "list"}, folder_.environment(), Seconds(20));
+  EXPECT_EQ(asked.exit_code, 2);
+  EXPECT_THAT(asked.err, HasSubstr("runs on domain " + std::to_string(live::domain())));
+}
+
+TEST_F(Cli, AnUnknownLinkIsWrongUsageAndNamesTheKnownOnes) {
+  const auto asked = run({"--link", "warp", "list"});
+  EXPECT_EQ(asked.exit_code, 2);
+  EXPECT_THAT(asked.err, HasSubstr("there are: lan, loopback, mesh_100k, mesh_500k, wifi"));
+}
+
 TEST_F(Cli, AKilledStationIsReplacedAndKeepsItsIdentity) {
   run({"up"});
   const std::string identity_path = folder_.environment().at("XDG_STATE_HOME") + "/adit/op1.id";

@@ -45,6 +45,14 @@ std::string text(const std::vector<std::string>& lines) {
   return out;
 }
 
+TEST(Render, TheTypedLineAndTheKeysStayInViewInASmallWindow) {
+  const auto lines =
+      render(fleet(3), {.selected = "r1", .help = true, .typing = true, .line = "goto"}, 6, 40, false);
+  ASSERT_EQ(lines.size(), 6u);
+  EXPECT_THAT(lines[4], HasSubstr(":goto_"));
+  EXPECT_THAT(lines[5], HasSubstr("t take"));
+}
+
 TEST(Render, FillsEveryWindowAndNeverMore) {
   for (const int rows : {4, 10, 24, 50})
     for (const int columns : {20, 80, 132, 200})

@@ -10,12 +10,14 @@
 #include <cstring>
 
 #include "basestation/cli/process/paths.hpp"
+#include "core/wire/link_file.hpp"
 
 namespace adit::station::cli {
 namespace {
 
 constexpr int ready_fd = 3;
 constexpr int start_limit_ms = 10000;
+constexpr int hello_limit_ms = 1000;
 
 std::vector<std::string> arguments(const Options& options) {
   std::vector<std::string> words{options.program,
@@ -51,6 +53,23 @@ std::vector<std::string> arguments(const Options& options) {
   static constexpr char failed[] = "this program cannot be started again\n";
   (void)!::write(ready_fd, failed, sizeof failed - 1);
   ::_exit(127);
+}
+
+/// A station on another domain would take the command to other robots than those that were meant. One that
+/// does not answer is told by the command itself.
+Result<void> check_domain(LineSocket& socket, const Options& options) {
+  if (!socket.send({{"hello", true}})) return {};
+  pollfd readable{socket.fd(), POLLIN, 0};
+  if (::poll(&readable, 1, hello_limit_ms) <= 0 || !socket.pump()) return {};
+  const auto line = socket.line();
+  const auto answer = nlohmann::json::parse(line.value_or(""), nullptr, false);
+  if (!answer.is_object() || !answer.contains("hello")) return {};
+  const auto domain = answer["hello"].value("domain", options.domain);
+  if (domain == options.domain) return {};
+  return {Reason::bad_argument,
+          "the station of " + options.name + " runs on domain " + std::to_string(domain) +
+              "; leave --domain out, choose another --name, or end it: basestation --name " + options.name +
+              " down"};
 }
 
 }  // namespace
@@ -104,7 +123,11 @@ Result<LineSocket> connect_or_launch(const Options& options) {
   auto path = socket_path(options);
   if (!path) return path.error();
   auto socket = LineSocket::connect(*path);
+  if (socket && options.domain_given)
+    if (const auto same = check_domain(*socket, options); !same) return same.error();
   if (socket || socket.reason() != Reason::no_station) return socket;
+  if (const auto link = wire::load_link(options.link); !link)
+    return Error{Reason::bad_argument, "--link: " + link.error().text};
   if (auto started = launch(options); !started) {
     socket = LineSocket::connect(*path);  // another process may have started it at the same time
     if (socket) return socket;

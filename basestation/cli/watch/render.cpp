@@ -45,6 +45,8 @@ class Page {
     if (colour_ && *whole != 0) out += "\x1b[0m";
     lines_.push_back(out);
   }
+  /// So many lines more from here on.
+  void allow(std::size_t more) { rows_ += more; }
   std::size_t left() const { return rows_ - lines_.size(); }
   std::size_t columns() const { return columns_; }
   std::vector<std::string> take() { return std::move(lines_); }
@@ -129,7 +131,7 @@ void robots(Page& page, const json& snapshot, const WatchState& state) {
   const json list = snapshot.value("robots", json::array());
   const json traffic = snapshot.value("traffic", json::object());
   // The selected robot stays in view.
-  const std::size_t room = page.left() > 10 ? page.left() - 10 : 1;
+  const std::size_t room = page.left() > 8 ? page.left() - 8 : 1;
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < list.size(); ++i)
     if (text(list[i], "robot") == state.selected) chosen = i;
@@ -213,8 +215,8 @@ void notices(Page& page, const json& snapshot, std::size_t room) {
 void help(Page& page) {
   static const std::vector<const char*> rows{
       "up down 1-9  select a robot           t  take     r  release   l  lock, unlock",
-      "s  stop it      S  stop all           e  reset your stop       E  reset all stops",
-      "h  hold         w  waypoint, go on    g  goto X Y              :  any command line",
+      "s  stop it      S  stop all           e  reset your stop  E  reset every stop",
+      "h  hold         w  waypoint, go on    g  goto X Y         :  any command line",
       "m  drive it: arrows or wasd, q e sideways, space zero, + - speed, Esc lets go",
       "?  this help                          Q or q  leave the dashboard",
   };
@@ -232,7 +234,8 @@ std::vector<std::string> robots_of(const json& snapshot) {
 
 std::vector<std::string> render(const json& snapshot, const WatchState& state, int rows, int columns,
                                 bool colour) {
-  Page page(rows, columns, colour);
+  const int footer = std::min(rows, 2);  // always in view: what was typed and answered, and the keys
+  Page page(rows - footer, columns, colour);
   const json counts = snapshot.value("commands", json::object());
   std::string title = " ADIT  " + text(snapshot, "station") + "  link " + text(snapshot, "link") +
                       "  commands " + fixed(number(counts, "accepted"), 0) + " done " +
@@ -251,9 +254,9 @@ std::vector<std::string> render(const json& snapshot, const WatchState& state, i
   detail(page, snapshot, state);
   page.line({});
   if (state.help) help(page);
-  const std::size_t footer = 2;
-  if (page.left() > footer + 1) notices(page, snapshot, page.left() - footer);
-  while (page.left() > footer) page.line({});
+  if (page.left() > 1) notices(page, snapshot, page.left());
+  while (page.left() > 0) page.line({});
+  page.allow(static_cast<std::size_t>(footer));
   if (state.typing)
     page.line({{":" + state.line + "_", bold}});
   else

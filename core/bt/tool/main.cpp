@@ -5,19 +5,19 @@
 #include "core/bt/draw.hpp"
 #include "core/bt/tool/leaves.hpp"
 #include "core/bt/tool/run.hpp"
+#include "core/config/usage.hpp"
 
 namespace {
 
 using namespace adit::bt;
 
 constexpr int kBadInput = 1;
-constexpr int kBadUsage = 2;
 
 constexpr const char* kFooter = R"(Examples:
-  tree check config/trees/agent.xml
-  tree draw config/trees/agent.xml
-  tree draw config/trees/agent.xml --dot | dot -Tpng -o agent.png
-  tree run agent.xml --leaves leaves.yaml --ticks 20 --json
+  tree check config/trees/robot.xml
+  tree draw config/trees/robot.xml
+  tree draw config/trees/robot.xml --dot | dot -Tpng -o robot.png
+  tree run config/trees/robot.xml --leaves leaves.yaml --ticks 20 --json
 
 leaves.yaml scripts the results of leaves, by name or ID; one entry is used per visit, the last repeated:
   IsReady: [FAILURE, SUCCESS]
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadUsage;
+    return adit::config::end_usage(app, error);
   }
   if (check_command->parsed()) return check(file);
   if (draw_command->parsed()) return draw(file, id, dot);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/config/usage.hpp"
 #include "sim/rehearsal/program/options.hpp"
 #include "sim/rehearsal/run_picture.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
@@ -52,8 +53,8 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
               static_cast<unsigned long long>(report.seed), report.ok() ? "ok" : "FAILED", report.virtual_s,
               report.wall_s, report.virtual_s / report.wall_s, report.digest.c_str());
   for (const auto& [id, robot] : report.robots)
-    std::printf("  %s: %.1f m, moving %.0f %% of the time, %d collisions, clearance %.2f m\n", id.c_str(),
-                robot.distance, 100.0 * robot.moving, robot.collisions, robot.min_clearance);
+    std::printf("  %s: %.1f m, moving %.0f %% of the time, %d collisions, %s\n", id.c_str(), robot.distance,
+                100.0 * robot.moving, robot.collisions, robot.clearance().c_str());
   std::printf("  commands: %llu sent, %llu accepted, %llu refused\n",
               static_cast<unsigned long long>(report.commands.sent),
               static_cast<unsigned long long>(report.commands.accepted),
@@ -119,7 +120,8 @@ int run_many(const Scenario& scenario, const std::shared_ptr<const World>& world
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Runs a scenario on virtual time and judges it: its expectations, and the rules that always hold."};
+      "Runs a scenario on virtual time and judges it: its expectations, and the rules that always hold.",
+      "rehearse"};
   app.footer(examples);
   std::string file, seeds_text, report_file, picture_file;
   std::uint64_t seed = 1;
@@ -133,8 +135,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : exit_unreadable;
+    return config::end_usage(app, error);
   }
   auto scenario = load_scenario(file);
   if (!scenario) return complain(scenario.error());
