@@ -35,7 +35,7 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));
   c.tree = root->text("tree", c.tree);
   if (auto tree = config::find_file(c.tree, file))
-    c.tree = std::filesystem::absolute(*tree).string();
+    c.tree = std::filesystem::absolute(*tree).lexically_normal().string();
   else if (root->has("tree"))
     root->child("tree").fail(tree.error().reason, tree.error().text);
   else

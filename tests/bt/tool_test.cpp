@@ -153,5 +153,5 @@ TEST_F(Tool, WrongUsageIsTwoAndHelpHasExamples) {
   EXPECT_EQ(tree("fell t.xml").status, 2);
   const auto help = tree("--help");
   EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("tree run agent.xml --leaves leaves.yaml"), std::string::npos);
+  EXPECT_NE(help.out.find("tree run config/trees/robot.xml --leaves leaves.yaml"), std::string::npos);
 }
