@@ -90,6 +90,7 @@ void Behaviour::holder_changed(Time now) {
 }
 
 void Behaviour::holder_restarted(Time now) {
+  if (params_.defects.has(Defect::manual_survives_handover)) return;
   // A stick that is held pushed across the restart must not go on by itself: manual modes fall to hold.
   stick_.forget();
   tick(now);

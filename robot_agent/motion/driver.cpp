@@ -20,10 +20,11 @@ std::uint64_t stamp_of(const std_msgs::msg::Header& header) {
   return static_cast<std::uint64_t>(header.stamp().sec()) * 1'000'000'000u + header.stamp().nanosec();
 }
 
-bool finite(const Pose3& pose, const Twist2& twist) {
-  return pose.position.allFinite() && pose.orientation.coeffs().allFinite() &&
-         pose.orientation.norm() > 1e-6 && std::isfinite(twist.vx) && std::isfinite(twist.vy) &&
-         std::isfinite(twist.wz);
+// Maps count their cells in 32 bits: no robot's odometry comes as far as 1000 km.
+bool usable(const Pose3& pose, const Twist2& twist) {
+  const double turn = pose.orientation.norm();
+  return pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() < 1e6 && turn > 1e-6 &&
+         turn < 1e6 && std::isfinite(twist.vx) && std::isfinite(twist.vy) && std::isfinite(twist.wz);
 }
 
 }  // namespace
@@ -86,7 +87,7 @@ Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command
                           Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
                           const auto& v = o.twist().twist();
                           const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z()};
-                          if (!finite(pose, twist))
+                          if (!usable(pose, twist))
                             return;  // as good as silence: the robot stops when it goes on
                           pose.orientation.normalize();
                           h->odometry(pose, twist, stamp_of(o.header()));

@@ -13,6 +13,7 @@ class NoSurprise : public Rule {
     if (const auto* command = std::get_if<CommandHeard>(&event);
         command && command->verb == Verb::stop && !robot.first_answer(RobotModel::key(*command)))
       revoke("a stop");
+    if (const auto* presence = std::get_if<PresenceHeard>(&event)) see_presence(robot, *presence);
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
     if (const auto* behaviour = std::get_if<BehaviourSent>(&event))
       if (behaviour->mode == "hold" && granted_at_ != robot.now()) revoke("a fall to hold");
@@ -20,10 +21,10 @@ class NoSurprise : public Rule {
   }
 
   void settle(const RobotModel& robot, const Report& broken) override {
-    // The holder changed: a manual mode that was on falls to hold.
+    // The holder changed, or his station came back: a manual mode that was on falls to hold.
     const bool overdue =
         manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > reaction;
-    if (overdue) broken("stayed in " + robot.mode() + " when its holder changed");
+    if (overdue) broken("stayed in " + robot.mode() + " when its holder changed or was started again");
     if (overdue || !robot.in_manual_mode()) manual_must_end_.reset();
   }
 
@@ -31,6 +32,18 @@ class NoSurprise : public Rule {
   void revoke(const char* why) {
     allowed_ = false;
     why_not_ = why;
+  }
+
+  // The holder speaks as a participant that was never heard before: his station was started again, and a
+  // stick that is still pushed must not go on.
+  void see_presence(const RobotModel& robot, const PresenceHeard& presence) {
+    const Authority& held = robot.authority();
+    const bool holder = presence.station == held.holder && presence.id == held.holder_id;
+    const RobotModel::Heard* before = robot.heard(presence.station);
+    if (!holder || !before || before->id != presence.id || robot.knows(presence.from)) return;
+    if (!robot.in_manual_mode()) return;
+    manual_must_end_ = robot.now();
+    revoke("a restart of its holder's station");
   }
 
   void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {

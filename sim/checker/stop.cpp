@@ -6,8 +6,9 @@
 namespace adit::sim {
 namespace {
 
-constexpr double resting_speed = 0.02;  // m/s
-constexpr double resting_turn = 0.02;   // rad/s
+constexpr double resting_speed = 0.02;    // m/s
+constexpr double resting_turn = 0.02;     // rad/s
+constexpr std::size_t most_latches = 16;  // of AuthorityStatus
 
 /// Rule 4: a stop needs no authority and is a latch: while one is set the driver gets zero, and the robot
 /// comes to rest in the time its brakes need.
@@ -59,8 +60,13 @@ class Stop : public Rule {
   }
 
   void see_status(const RobotModel& robot, const AuthoritySent& status, const Report& broken) {
-    if (robot.latches().empty() == status.stops.empty()) return;
-    broken(status.stops.empty() ? "published no stop while one was set" : "published a stop that nobody set");
+    const auto& set = robot.latches();
+    if (set.empty() != status.stops.empty())
+      return broken(set.empty() ? "published a stop that nobody set" : "published no stop while one was set");
+    // Beyond the room for latches the last one stands for several stoppers.
+    if (set.size() >= most_latches) return;
+    if (!std::is_permutation(set.begin(), set.end(), status.stops.begin(), status.stops.end()))
+      broken("published other stoppers than those who stopped it");
   }
 
   void see_truth(const RobotModel& robot, const Motion& truth, const Report& broken) {

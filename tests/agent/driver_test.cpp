@@ -5,6 +5,11 @@
 #include <cstring>
 #include <limits>
 
+#include "core/exec/virtual_runtime.hpp"
+#include "core/wire/memory/ether.hpp"
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "nav_msgs/msg/Odometry.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 
 namespace adit::agent {
@@ -67,6 +72,51 @@ TEST(PointCloud2, LayoutsThatDoNotFitAreRefused) {
   c.is_bigendian(true);
   EXPECT_EQ(to_points(c).reason(), Reason::malformed);
   EXPECT_TRUE(to_points(cloud({}))->empty());
+}
+
+/// A driver that publishes odometry, and an agent's side of the robot domain that counts what it believes.
+class OdometryTest : public testing::Test {
+ protected:
+  OdometryTest() {
+    Driver::Handlers handlers{};
+    handlers.odometry = [this](const Pose3& pose, const Twist2&, std::uint64_t) { seen.push_back(pose); };
+    handlers.points = [](auto, auto) {};
+    handlers.battery = [](float) {};
+    driver = Driver::open(*agent, *strand, *strand, std::move(handlers)).value();
+    writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::odom).value();
+    run(3s);
+  }
+  void run(Duration time) { scheduler.run_until(elapsed += time); }
+  /// How many of these were believed.
+  std::size_t publish(double x, double qw, double vx) {
+    nav_msgs::msg::Odometry sample;
+    sample.pose().pose().position().x(x);
+    sample.pose().pose().orientation().w(qw);
+    sample.twist().twist().linear().x(vx);
+    seen.clear();
+    EXPECT_TRUE(writer.write(sample));
+    run(100ms);
+    return seen.size();
+  }
+
+  VirtualScheduler scheduler{1};
+  Duration elapsed{};
+  wire::Ether ether{scheduler, {}};
+  std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
+  std::shared_ptr<Executor> strand{machine->strand("command")};
+  std::unique_ptr<wire::Wire> agent{ether.join(101, "r1")}, body{ether.join(101, "r1/driver")};
+  std::unique_ptr<Driver> driver{};
+  wire::Writer<nav_msgs::msg::Odometry> writer{};
+  std::vector<Pose3> seen{};
+};
+
+TEST_F(OdometryTest, WhatNoBodyCanHaveIsAsGoodAsSilence) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(publish(1.0, 1.0, 0.5), 1u);
+  EXPECT_EQ(publish(999e3, 2.0, -0.5), 1u);
+  for (const double x : {nan, inf, -inf, 1e300, -1e9}) EXPECT_EQ(publish(x, 1.0, 0.5), 0u) << x;
+  for (const double w : {nan, inf, 0.0, 1e300}) EXPECT_EQ(publish(1.0, w, 0.5), 0u) << w;
+  for (const double v : {nan, inf}) EXPECT_EQ(publish(1.0, 1.0, v), 0u) << v;
 }
 
 }  // namespace

@@ -64,6 +64,19 @@ TEST(CheckerMotion, VelocityWhileStopped) {
   EXPECT_THAT(r.broken(), testing::Contains(4)) << r.texts();
 }
 
+TEST(CheckerMotion, StopOfOneStationForgottenWhileAnotherLasts) {
+  Record r;
+  drive(r);
+  stop(r, 1);
+  stop(r, 2);
+  r.pass(1s);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+  r.stops.pop_back();
+  r.publish();
+  r.pass(100ms);
+  EXPECT_THAT(r.broken(), ElementsAre(4)) << r.texts();
+}
+
 TEST(CheckerMotion, BodyThatDoesNotComeToRest) {
   Record r;
   drive(r);
@@ -187,6 +200,23 @@ TEST(CheckerMotion, ManualModeUnderTheNextHolder) {
   r.take(2);
   r.pass(300ms);
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, ManualModeGoesOnWhenTheHoldersStationRestarts) {
+  Record r;
+  drive(r);
+  r.see(PresenceHeard{participant(11), "op1", station_id(1)});
+  r.pass(200ms, still, &still);
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, HoldWhenTheHoldersStationRestartsBreaksNothing) {
+  Record r;
+  drive(r);
+  r.see(PresenceHeard{participant(11), "op1", station_id(1)});
+  r.behave("hold");
+  r.pass(500ms);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
 }
 
 TEST(CheckerMotion, ManualModeEnteredWithAPushedStick) {
