@@ -69,6 +69,7 @@ void Arrival::end(Reason reason, const std::string& text) {
   outcome_.accepted = reason == Reason::none;
   outcome_.reason = reason;
   outcome_.text = text;
+  if (const RobotView* robot_now = view()) outcome_.holder = robot_now->holder;
   tell(outcome_);
 }
 

@@ -168,6 +168,7 @@ void Steer::end(Reason reason, const std::string& text) {
   outcome_.accepted = reason == Reason::none;
   outcome_.reason = reason;
   outcome_.text = text;
+  if (const RobotView* robot_now = view()) outcome_.holder = robot_now->holder;
   if (reason != Reason::none) keep_after_ = keep_after_ && reason == Reason::cancelled;
   const bool streaming = parts_.stick.streaming(robot());
   enter_phase(Phase::settling);

@@ -149,7 +149,7 @@ std::string answer_text(const Answer& answer, const std::string& done) {
   if (answer.accepted) return answer.robot + ": " + done + "\n";
   std::string why = answer.text.empty() ? std::string(describe(answer.reason)) : answer.text;
   const bool named = answer.holder.empty() || answer.reason == Reason::cancelled ||
-                     answer.reason == Reason::nobody_holds || why.find(answer.holder) != std::string::npos;
+                     why.find(answer.holder) != std::string::npos;
   if (!named) why += " (holder: " + answer.holder + ")";
   if (answer.reason == Reason::cancelled) return answer.robot + ": ended: " + why + " [cancelled]\n";
   const bool refused = answer.answered || answer.reason != Reason::no_answer;

@@ -13,6 +13,7 @@
 #include "core/config/usage.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "robot_agent/agent.hpp"
+#include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/program/console.hpp"
 #include "robot_agent/program/parent.hpp"
 #include "robot_agent/program/robot_config.hpp"
@@ -59,6 +60,9 @@ Result<RobotConfig> load(const Options& options) {
   if (options.robot_domain >= 0) config->robot_domain = static_cast<std::uint32_t>(options.robot_domain);
   if (!options.log.empty() && !level_from_name(options.log, config->log))
     return Error{Reason::bad_argument, "--log is trace, debug, info, warn, error or off"};
+  // Here, and not in the agent alone: a parent would start it again and again.
+  if (const auto tree = Decider::load(config->tree); !tree)
+    return Error{tree.error().reason, tree.error().text + " (tree: " + config->tree + ")"};
   return config;
 }
 
