@@ -77,6 +77,11 @@ INSTANTIATE_TEST_SUITE_P(
               "name: r1\nplatform: wheeled\ntree: nowhere.xml\n",
               {"robot_agent", "--config", "FILE", "--domain", "91", "--robot-domain", "92"},
               {"nowhere.xml"}},
+        Wrong{"supervised_tree",  // told once, and not started again and again
+              "r.yaml",
+              "name: r1\nplatform: wheeled\ntree: r.yaml\n",
+              {"robot_agent", "--supervised", "--config", "FILE", "--domain", "91", "--robot-domain", "92"},
+              {"r.yaml:1", "XML"}},
         Wrong{"interface",
               "r.yaml",
               "name: r1\nplatform: wheeled\nradio: {interfaces: [10.255.255.1]}\n",
