@@ -97,6 +97,7 @@ int main(int argc, char** argv) {
 
   CLI::App app{"The operator's side of a team of robots: one station per operator name."};
   app.set_help_flag("-h,--help", "This help");
+  app.set_version_flag("--version", ADIT_VERSION, "The version");
   app.option_defaults()->always_capture_default();
   int ready_fd = -1;
   app.add_option("--name", options.name, "Operator name; one station runs per name");
@@ -113,6 +114,9 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     std::printf("%s\n", app.help().c_str());
+    return exit_done;
+  } catch (const CLI::CallForVersion&) {
+    std::printf("%s\n", ADIT_VERSION);
     return exit_done;
   } catch (const CLI::ParseError& error) {
     return fail(options, exit_usage, {Reason::bad_argument, std::string(error.what()) + "; try --help"});
