@@ -39,7 +39,9 @@ class Lock : public Rule {
     const bool by_holder = take.station == before.holder && take.id == before.holder_id;
     const bool held_by_other = !before.holder.empty() && !by_holder;
     if (held_by_other && before.locked) {
-      if (ack.accepted) return broken(take.station + " took it although " + before.holder + " had locked it");
+      if (ack.accepted && !lapsed(robot))
+        return broken(take.station + " took it although " + before.holder + " had locked it");
+      if (ack.accepted) return owed_codes_.push_back({"taken", before.holder, robot.now()});
       if (ack.reason != Reason::locked) return;
       if (ack.holder != before.holder) broken("refused a take without the holder's name");
       owed_codes_.push_back({"asked", before.holder, robot.now()});
@@ -56,11 +58,19 @@ class Lock : public Rule {
         known.locked == status.authority.locked)
       return;
     if (!known.locked) return broken("published a lock that nobody set");
-    const RobotModel::Heard* holder = robot.heard(known.holder);
-    const double silent = holder ? seconds(robot.now() - holder->last) : 0.0;
+    if (!lapsed(robot))
+      broken("a lock ended after " + std::to_string(silence(robot)) + " s of its holder's silence");
+  }
+
+  /// Of the holder, s.
+  static double silence(const RobotModel& robot) {
+    const RobotModel::Heard* holder = robot.heard(robot.authority().holder);
+    return holder ? seconds(robot.now() - holder->last) : 0.0;
+  }
+  /// The lock's lease ran out.
+  static bool lapsed(const RobotModel& robot) {
     const double lease = robot.facts().lock_lease;
-    if (lease <= 0.0 || silent < lease - 0.05)
-      broken("a lock ended after " + std::to_string(silent) + " s of its holder's silence");
+    return lease > 0.0 && silence(robot) >= lease - 0.05;
   }
 
   std::deque<Owed> owed_codes_{};

@@ -40,7 +40,9 @@ class NoSurprise : public Rule {
     const Authority& held = robot.authority();
     const bool holder = presence.station == held.holder && presence.id == held.holder_id;
     const RobotModel::Heard* before = robot.heard(presence.station);
-    if (!holder || !before || before->id != presence.id || robot.knows(presence.from)) return;
+    if (!holder || !before || before->id != presence.id || before->participant == presence.from ||
+        robot.knows(presence.from))
+      return;
     if (!robot.in_manual_mode()) return;
     manual_must_end_ = robot.now();
     revoke("a restart of its holder's station");

@@ -122,6 +122,16 @@ TEST(CheckerAuthority, LockLapsesWhenItsHolderIsSilentForTheLease) {
   EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
 }
 
+TEST(CheckerAuthority, TakenInTheInstantInWhichTheLockLapses) {
+  Record r;
+  r.take(1);
+  r.lock(1);
+  r.stations = false;
+  r.pass(20s);
+  r.take(2);  // its unlocked state and the new holder are published at once
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
 TEST(CheckerAuthority, LockLapsesTooEarly) {
   Record r;
   r.take(1);

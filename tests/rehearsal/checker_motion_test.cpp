@@ -210,6 +210,17 @@ TEST(CheckerMotion, ManualModeGoesOnWhenTheHoldersStationRestarts) {
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
 
+TEST(CheckerMotion, FirstPresenceAfterCommandsIsNoRestart) {
+  Record r;
+  r.stations = false;
+  r.see(AgentStarted{participant(101)});  // it has heard nobody yet; op1's presences are lost
+  r.publish();
+  drive(r);
+  r.hear_stations();
+  r.pass(200ms, still, &still);
+  EXPECT_EQ(r.texts().find("started again"), std::string::npos) << r.texts();
+}
+
 TEST(CheckerMotion, HoldWhenTheHoldersStationRestartsBreaksNothing) {
   Record r;
   drive(r);
