@@ -44,7 +44,7 @@ endfunction()
 # Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow.
 # SERIAL: its cases never run beside other tests (live timing).
 # Under sanitizers only some are built: address takes those labelled unit; thread takes those in tests/core, tests/wire
-# and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
+# (live ones over Fast DDS too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
 function(adit_test name)
   if(NOT ADIT_TESTS)
     return()
