@@ -8,6 +8,7 @@
 /// The fleet model for scripts and dashboards. Units as in the views: m, rad, m/s, s, bytes a second.
 namespace adit::station {
 
+/// One object each; what is not known is left out or null.
 nlohmann::json robot_json(const Fleet& fleet, const RobotView& robot, Time now);
 nlohmann::json notice_json(const Notice& notice, Time now);
 nlohmann::json answer_json(const Answer& answer);

@@ -8,11 +8,15 @@
 /// The fleet model for people: lines that end in \n.
 namespace adit::station {
 
+/// A row for each robot, then the stations; `*` marks what this station holds.
 std::string list_text(const Fleet& fleet, Time now);
+/// All that is known of one robot.
 std::string status_text(const Fleet& fleet, const RobotView& robot, Time now);
 /// Bytes a second by agent and topic; `bandwidth` (bit/s, 0: not known) sets the total against the link.
 std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth);
+/// A row for each component.
 std::string health_text(const RobotView& robot);
+/// A row for each command: whether it is valid now, and why not.
 std::string actions_text(const std::vector<Action>& actions);
 /// "r1: taken" or "r1: refused: ... [locked]".
 std::string answer_text(const Answer& answer, const std::string& done);
@@ -21,6 +25,7 @@ std::string answer_text(const Answer& answer, const std::string& done);
 std::string mode_text(const RobotView& robot);
 /// "12.0 3.5 90d": m, m, degrees; "-" before the first RobotState.
 std::string pose_text(const RobotView& robot);
+/// "active 12.0 0.5", or "-".
 std::string goal_text(const RobotView& robot);
 /// "none", or who stopped it.
 std::string stops_text(const RobotView& robot);

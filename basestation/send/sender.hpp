@@ -11,6 +11,7 @@
 
 namespace adit::station {
 
+/// How often and how long a command is repeated.
 struct SenderParams {
   std::string name{};  ///< the operator's
   Id id{};

@@ -20,6 +20,8 @@ struct Port {
 };
 using Ports = std::vector<Port>;
 
+/// One port of a manifest, by direction. An input may be left out in the XML, or then be its `fallback`; a
+/// required one may not.
 inline Port input(std::string name, PortType type = PortType::any) {
   return {std::move(name), Direction::input, type, false, std::nullopt};
 }
