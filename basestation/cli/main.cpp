@@ -74,13 +74,7 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
     return play(options, *script, request->all_operators);
   }
   auto socket = connect_or_launch(options);
-  if (!socket) {
-    const Reason why = socket.reason();
-    const int code = why == Reason::no_answer      ? exit_no_answer
-                     : why == Reason::bad_argument ? exit_usage
-                                                   : exit_refused;
-    return fail(options, code, socket.error());
-  }
+  if (!socket) return fail(options, exit_without_station(socket.error()), socket.error());
   Client client(std::move(*socket));
   if (request->verb == Verb::watch) return watch(client, options);
   if (request->verb == Verb::teleop) return teleop(client, options, request->robots.front());
@@ -104,9 +98,12 @@ int main(int argc, char** argv) {
   app.add_option("--link", options.link, "Link profile (config/links), for a station that is started");
   app.add_flag("--json", options.json, "One JSON object instead of text");
   CLI::Option* domain = app.add_option("--domain", options.domain, "Radio domain")->check(CLI::Range(0, 232));
+  // One value each, or they would swallow the command.
   app.add_option("--interface", options.interfaces,
-                 "Address of a network interface to use; loopback when none is named");
-  app.add_option("--peer", options.peers, "ADDRESS[:PORT] of an agent, for networks without multicast");
+                 "Address of a network interface to use, may be repeated; loopback when none is named")
+      ->allow_extra_args(false);
+  app.add_option("--peer", options.peers, "ADDRESS[:PORT] of an agent, for networks without multicast")
+      ->allow_extra_args(false);
   CLI::Option* served = app.add_option("--serve", ready_fd, "Run the station in this process")->group("");
   app.prefix_command();
   app.footer(footer());

@@ -102,10 +102,11 @@ class Prompt {
       return play(options_, *script, request.all_operators);
     }
     if (!client_ || !client_->connected())
-      if (auto connected = connect(); !connected) return fail(options_, exit_refused, connected.error());
+      if (auto connected = connect(); !connected)
+        return fail(options_, exit_without_station(connected.error()), connected.error());
     if (request.verb == Verb::watch || request.verb == Verb::teleop) {
       auto socket = connect_or_launch(options_);
-      if (!socket) return fail(options_, exit_refused, socket.error());
+      if (!socket) return fail(options_, exit_without_station(socket.error()), socket.error());
       Client own(std::move(*socket));
       return request.verb == Verb::watch ? watch(own, options_)
                                          : teleop(own, options_, request.robots.front());
@@ -192,7 +193,8 @@ int read_terminal(Prompt& prompt, const Options& options) {
 
 int prompt(const Options& options) {
   Prompt prompt(options);
-  if (auto connected = prompt.connect(); !connected) return fail(options, exit_refused, connected.error());
+  if (auto connected = prompt.connect(); !connected)
+    return fail(options, exit_without_station(connected.error()), connected.error());
   if (::isatty(STDIN_FILENO) != 0 && ::isatty(STDOUT_FILENO) != 0) return read_terminal(prompt, options);
   std::string line;
   while (!interrupted() && std::getline(std::cin, line))

@@ -130,7 +130,8 @@ int play(const Options& options, const std::vector<ScriptLine>& script, bool all
   }
   Play play(options);
   for (const std::string& name : names)
-    if (auto added = play.add(name); !added) return fail(options, exit_refused, added.error());
+    if (auto added = play.add(name); !added)
+      return fail(options, exit_without_station(added.error()), added.error());
   play.begin();
   std::size_t next = 0;
   while (next < mine.size() || !play.idle()) {

@@ -132,6 +132,13 @@ TEST_F(Cli, AStationOnAnotherDomainIsNotAskedByMistake) {
   EXPECT_THAT(asked.err, HasSubstr("runs on domain " + std::to_string(live::domain())));
 }
 
+TEST_F(Cli, AnAddressDoesNotSwallowTheCommand) {
+  const auto asked =
+      run({"--interface", "127.0.0.1", "--peer", "127.0.0.1", "--peer", "127.0.0.1:7", "status"});
+  EXPECT_EQ(asked.exit_code, 0) << asked.err;
+  EXPECT_THAT(asked.out, HasSubstr("station op1"));
+}
+
 TEST_F(Cli, AnUnknownLinkIsWrongUsageAndNamesTheKnownOnes) {
   const auto asked = run({"--link", "warp", "list"});
   EXPECT_EQ(asked.exit_code, 2);

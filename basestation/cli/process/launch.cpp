@@ -119,6 +119,11 @@ Result<void> launch(const Options& options) {
   return {Reason::no_station, text.empty() ? "the station ended while it started; see " + log_path : text};
 }
 
+int exit_without_station(const Error& error) {
+  if (error.reason == Reason::no_answer) return exit_no_answer;
+  return error.reason == Reason::bad_argument ? exit_usage : exit_refused;
+}
+
 Result<LineSocket> connect_or_launch(const Options& options) {
   auto path = socket_path(options);
   if (!path) return path.error();
