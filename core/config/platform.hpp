@@ -9,17 +9,17 @@ enum class Drive { differential, holonomic };
 /// What a robot's body is and can do; read from config/platforms/NAME.yaml. Footprint: a rectangle
 /// centred on base_link, x forward.
 struct Platform {
-  std::string name{};            ///< wheeled, tracked, legged, ...
+  std::string name{};  ///< wheeled, tracked, legged, ...
   Drive drive{Drive::differential};
-  double length{0.6};            ///< footprint along x, m, (0, 5]
-  double width{0.5};             ///< footprint along y, m, (0, 5]
-  double height{0.5};            ///< of the body above the ground, m, (0, 5]
-  double max_speed{1.0};         ///< m/s, (0, 10]
-  double max_turn{1.0};          ///< rad/s, (0, 10]
-  double max_acceleration{1.0};  ///< m/s2, (0, 20]
+  double length{0.6};                 ///< footprint along x, m, (0, 5]
+  double width{0.5};                  ///< footprint along y, m, (0, 5]
+  double height{0.5};                 ///< of the body above the ground, m, (0, 5]
+  double max_speed{1.0};              ///< m/s, (0, 10]
+  double max_turn{1.0};               ///< rad/s, (0, 10]
+  double max_acceleration{1.0};       ///< m/s2, (0, 20]
   double max_turn_acceleration{3.0};  ///< rad/s2, (0, 50]
-  double step{0.08};             ///< highest step it climbs, m, [0, 1]
-  double lidar_height{0.5};      ///< above the ground, m, (0, 5]
+  double step{0.08};                  ///< highest step it climbs, m, [0, 1]
+  double lidar_height{0.5};           ///< above the ground, m, (0, 5]
   bool stairs{false};
 };
 
