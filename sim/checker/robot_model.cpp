@@ -48,9 +48,11 @@ void RobotModel::take_in_event(const CommandHeard& e) {
   const bool repeat = commands_.contains(key(e));
   commands_.try_emplace(key(e));
   pending_.push_back({e, now_, repeat});
-  // A command is a sign of life of its station, but it does not show a new participant to be the station.
+  // A command is a sign of life of its station, but it does not show a new participant to be the holder's.
   const Heard* known = heard(e.station);
-  if (!known || (known->id == e.id && known->participant == e.from)) hear(e.station, e.id, e.from);
+  const bool holders = e.station == authority_.holder && e.id == authority_.holder_id;
+  if (!known || (known->id == e.id && (known->participant == e.from || !holders)))
+    hear(e.station, e.id, e.from);
 }
 
 const RobotModel::Heard* RobotModel::heard(const std::string& station) const {

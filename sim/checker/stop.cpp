@@ -17,7 +17,9 @@ class Stop : public Rule {
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
     if (std::get_if<AgentStarted>(&event)) stopped_since_.reset();
     if (const auto* command = std::get_if<CommandHeard>(&event); command && command->verb == Verb::stop) {
-      if (robot.alive() && !stopped_since_) begin(robot);
+      // A late repeat of a stop that was answered, and reset since, has no second effect.
+      const bool repeat = robot.first_answer(RobotModel::key(*command)) != nullptr;
+      if (robot.alive() && !stopped_since_ && !repeat) begin(robot);
     }
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
     if (const auto* status = std::get_if<AuthoritySent>(&event)) see_status(robot, *status, broken);

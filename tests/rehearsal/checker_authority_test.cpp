@@ -70,6 +70,46 @@ TEST(CheckerAuthority, RestartedStationOfTheSameIdIsTheHolder) {
   EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
 }
 
+TEST(CheckerAuthority, TakeOfARestartedStationShowsItsParticipant) {
+  Record r;
+  r.stations = false;
+  // op1 came back as participant 11; nothing but his commands got through.
+  CommandHeard c{participant(11), "op1", station_id(1), 9, r.epoch, 1, Verb::take, {}, false, {}};
+  r.see(c);
+  r.authority.holder = "op1";
+  r.authority.holder_id = station_id(1);
+  ++r.epoch;
+  r.answer(c);
+  r.publish();
+  r.pass(100ms);
+  c.seq = 2;
+  c.counter = r.epoch;
+  c.verb = Verb::lock;
+  r.see(c);
+  r.authority.locked = true;
+  r.answer(c);
+  r.publish();
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerAuthority, StreamsOfTwoParticipantsUnderOneIdAreToldEach) {
+  Record r;
+  r.take(2);
+  for (int from : {1, 11}) {
+    const Duration stamp = r.now / 100ms * 100ms;
+    r.see(JoystickHeard{participant(from),
+                        station_id(1),
+                        9,
+                        r.epoch,
+                        ++r.sequence,
+                        static_cast<std::uint64_t>(stamp.count()),
+                        {}});
+    r.see(AckSent{"op1", station_id(1), 0, false, Reason::not_holder, "no", "op2", 9, r.epoch});
+    r.pass(300ms);
+  }
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
 TEST(CheckerAuthority, RepeatWithAnotherAnswer) {
   Record r;
   r.take(1);

@@ -77,6 +77,30 @@ TEST(CheckerMotion, StopOfOneStationForgottenWhileAnotherLasts) {
   EXPECT_THAT(r.broken(), ElementsAre(4)) << r.texts();
 }
 
+TEST(CheckerMotion, LateRepeatOfAStopThatWasResetBreaksNothing) {
+  Record r;
+  drive(r);
+  r.pass(300ms, still, &still);
+  CommandHeard c = r.ask(1, Verb::stop);
+  r.stops.push_back({c.station, c.id});
+  r.answer(c);
+  r.behave("hold", true);
+  r.publish();
+  r.pass(100ms, still, &still);
+  const CommandHeard clear = r.ask(1, Verb::reset);
+  r.stops.clear();
+  r.answer(clear);
+  r.publish();
+  r.behave("hold");
+  r.pass(100ms, still, &still);
+  r.enter("manual");
+  r.pass(100ms, forward, &forward);
+  r.see(c);
+  r.answer(c);
+  r.pass(100ms, forward, &forward);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
 TEST(CheckerMotion, BodyThatDoesNotComeToRest) {
   Record r;
   drive(r);

@@ -113,6 +113,16 @@ TEST_P(Storm, EveryRuleHolds) {
   }
 }
 
+// The same with crashes, cuts, a hanging stick and a forger.
+TEST_P(Storm, EveryRuleHoldsUnderFaults) {
+  const Scenario scenario = load("fault_storm.yaml");
+  for (int i = 0; i < 5; ++i) {
+    const RunReport report = run(scenario, static_cast<std::uint64_t>(GetParam() + i), 1).report;
+    for (const std::string& line : report.complaints())
+      ADD_FAILURE() << "seed " << GetParam() + i << ": " << line;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, Storm, testing::Values(1, 6, 11, 16));
 
 }  // namespace

@@ -126,7 +126,8 @@ int main(int argc, char** argv) {
   std::string file, seeds_text, report_file, picture_file;
   std::uint64_t seed = 1;
   app.add_option("scenario", file, "the scenario, SCENARIO.yaml")->required();
-  auto* seed_option = app.add_option("--seed", seed, "of everything that is random (default 1)");
+  auto* seed_option = app.add_option("--seed", seed, "of everything that is random (default 1)")
+                          ->check(CLI::NonNegativeNumber);
   auto* seeds_option =
       app.add_option("--seeds", seeds_text, "A..B: one run for each, in parallel, and a table");
   auto* report_option = app.add_option("--report", report_file, "write the report as JSON");
