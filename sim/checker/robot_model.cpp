@@ -48,11 +48,12 @@ void RobotModel::take_in_event(const CommandHeard& e) {
   const bool repeat = commands_.contains(key(e));
   commands_.try_emplace(key(e));
   pending_.push_back({e, now_, repeat});
-  // A command is a sign of life of its station, but it does not show a new participant to be the holder's.
+  // A command is a sign of life of its station, but while the holder is heard as another participant it does
+  // not show a new one to be his.
   const Heard* known = heard(e.station);
-  const bool holders = e.station == authority_.holder && e.id == authority_.holder_id;
-  if (!known || (known->id == e.id && (known->participant == e.from || !holders)))
-    hear(e.station, e.id, e.from);
+  const bool contested = known && known->participant != e.from && e.station == authority_.holder &&
+                         now_ - known->last < hearing;
+  if (!known || (known->id == e.id && !contested)) hear(e.station, e.id, e.from);
 }
 
 const RobotModel::Heard* RobotModel::heard(const std::string& station) const {
