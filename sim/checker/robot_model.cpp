@@ -51,8 +51,8 @@ void RobotModel::take_in_event(const CommandHeard& e) {
   // A command is a sign of life of its station, but while the holder is heard as another participant it does
   // not show a new one to be his.
   const Heard* known = heard(e.station);
-  const bool contested = known && known->participant != e.from && e.station == authority_.holder &&
-                         now_ - known->last < hearing;
+  const bool contested =
+      known && known->participant != e.from && e.station == authority_.holder && now_ - known->last < hearing;
   if (!known || (known->id == e.id && !contested)) hear(e.station, e.id, e.from);
 }
 
