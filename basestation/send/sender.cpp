@@ -164,11 +164,16 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
   transmit(to, *pending);
 }
 
-bool Sender::worth_another(const Pending& pending, Reason reason) const {
+bool Sender::worth_another(const Pending& pending, const radio::Acknowledgement& sample) const {
+  const auto reason = static_cast<Reason>(sample.reason());
   // The robot never saw it: a stop overtook it, or a later command a stop that was lost on its way.
   if (reason == Reason::stale_sequence && (pending.overtaken || pending.is_stop())) return true;
   // A station that has just been started again did not know the epoch yet; the refusal told it.
   if (reason == Reason::stale_epoch && pending.blind) return true;
+  // The robot's agent was started again while this was under way, and we are its holder still.
+  if (reason == Reason::stale_epoch && sample.holder() == params_.name &&
+      sample.epoch().start() != pending.message.epoch().start())
+    return true;
   // The robot has not heard this participant's presence yet.
   const bool unknown = reason == Reason::identity_mismatch || reason == Reason::unknown_station;
   return unknown && (pending.is_stop() || pending.first_sent - started_ < 5s);
@@ -191,7 +196,7 @@ void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&)
                 .text = clean(sample.text(), 240),
                 .holder = clean(sample.holder(), 32),
                 .latency = strand_.now() - pending->first_sent};
-  if (!sample.accepted() && worth_another(*pending, reason)) {
+  if (!sample.accepted() && worth_another(*pending, sample)) {
     pending->resting = true;
     pending->refusal = std::move(answer);
     return;

@@ -52,7 +52,8 @@ class Sender {
   void renumber(Lane& lane, Pending& pending);
   void tick(const std::string& robot, const std::shared_ptr<Pending>& pending);
   void finish(Lane& lane, const std::shared_ptr<Pending>& pending, Answer answer);
-  bool worth_another(const Pending& pending, Reason reason) const;
+  /// A refusal for a cause that passes.
+  bool worth_another(const Pending& pending, const radio::Acknowledgement& sample) const;
 
   SenderParams params_;
   Executor& strand_;

@@ -48,7 +48,7 @@ void FakeRobot::publish() {
   if (!alive) return;
   radio::AuthorityStatus authority;
   authority.robot(name_);
-  authority.epoch().start(99);
+  authority.epoch().start(epoch_start);
   authority.epoch().counter(epoch);
   authority.holder(holder);
   authority.holder_id(holder_id);
@@ -63,7 +63,7 @@ void FakeRobot::refuse_stream(const std::string& station, Id id, Reason reason) 
   sample.station_id(id);
   sample.reason(static_cast<std::uint16_t>(reason));
   sample.holder(holder);
-  sample.epoch().start(99);
+  sample.epoch().start(epoch_start);
   sample.epoch().counter(epoch);
   (void)answers_.write(sample);
 }
@@ -101,7 +101,7 @@ void FakeRobot::answer(const radio::Command& command) {
   sample.accepted(*reason == Reason::none);
   sample.reason(static_cast<std::uint16_t>(*reason));
   sample.holder(holder);
-  sample.epoch().start(99);
+  sample.epoch().start(epoch_start);
   sample.epoch().counter(epoch);
   answered_[command.seq()] = sample;
   (void)answers_.write(sample);

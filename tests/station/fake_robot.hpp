@@ -39,6 +39,7 @@ class FakeRobot {
   bool alive{true};
   std::string holder{};
   Id holder_id{};
+  std::uint64_t epoch_start{99};
   std::uint32_t epoch{1};
   radio::BehaviourState behaviour{};
   Answering answering{};

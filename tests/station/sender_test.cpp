@@ -52,6 +52,35 @@ TEST_F(SenderTest, RepeatsEachHundredMillisecondsAndGivesUpAfterThreeSeconds) {
   EXPECT_EQ(op_->counts().repeats, 29U);
 }
 
+TEST_F(SenderTest, WhatARestartOfTheRobotMadeStaleIsSentAnewOnce) {
+  EXPECT_EQ(execute("take r1").exit_code, 0);
+  // The agent came back: another start, the holder kept; what was given under the former one is stale.
+  r1().epoch_start = 100;
+  r1().answering = [](const radio::Command& command) -> std::optional<Reason> {
+    return command.epoch().start() == 100 ? Reason::none : Reason::stale_epoch;
+  };
+  EXPECT_EQ(execute("goto r1 4 5").exit_code, 0);
+  EXPECT_THAT(r1().numbers(), ElementsAre(1, 2, 3));
+  EXPECT_EQ(op_->counts().accepted, 2U);
+  EXPECT_EQ(op_->counts().refused, 0U);
+}
+
+TEST_F(SenderTest, AStaleEpochOfTheSameStartIsARefusal) {
+  EXPECT_EQ(execute("take r1").exit_code, 0);
+  r1().answering = [](const radio::Command&) { return Reason::stale_epoch; };
+  EXPECT_EQ(execute("goto r1 4 5").exit_code, 1);
+  EXPECT_THAT(r1().numbers(), ElementsAre(1, 2));
+}
+
+TEST_F(SenderTest, WhatARestartMadeStaleIsNotSentAnewByAFormerHolder) {
+  EXPECT_EQ(execute("take r1").exit_code, 0);
+  r1().epoch_start = 100;
+  r1().holder = "op2";
+  r1().answering = [](const radio::Command&) { return Reason::stale_epoch; };
+  EXPECT_EQ(execute("goto r1 4 5").exit_code, 1);
+  EXPECT_THAT(r1().numbers(), ElementsAre(1, 2));
+}
+
 TEST_F(SenderTest, AStopRepeatsEachFiftyMillisecondsForTenSeconds) {
   r1().answering = [](const radio::Command&) { return std::nullopt; };
   const Duration before = scheduler_.elapsed();
