@@ -3,6 +3,19 @@
 #include "robot_agent/agent.hpp"
 
 namespace adit::sim {
+namespace {
+
+class ProductAgent final : public RehearsedAgent {
+ public:
+  ProductAgent(agent::AgentParams params, const AgentContext& context)
+      : agent_(std::move(params), context.runtime, context.radio, context.robot) {}
+  Result<void> start() { return agent_.start(); }
+
+ private:
+  agent::Agent agent_;
+};
+
+}  // namespace
 
 Result<AgentFactory> make_agent_factory(const std::string& defect) {
   agent::Defects defects;
@@ -11,7 +24,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     if (!known) return Error{Reason::bad_argument, "no defect of that name: " + defect};
     defects.active = *known;
   }
-  return AgentFactory([defects](const AgentContext& context) -> Result<std::shared_ptr<void>> {
+  return AgentFactory([defects](const AgentContext& context) -> Result<std::unique_ptr<RehearsedAgent>> {
     agent::AgentParams params;
     params.name = context.spec.id;
     params.platform = context.platform;
@@ -19,9 +32,9 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     params.start = context.spec.pose;
     params.lock_lease = context.lock_lease;
     params.defects = defects;
-    auto agent = std::make_shared<agent::Agent>(params, context.runtime, context.radio, context.robot);
+    auto agent = std::make_unique<ProductAgent>(std::move(params), context);
     if (auto started = agent->start(); !started) return started.error();
-    return std::shared_ptr<void>(std::move(agent));
+    return std::unique_ptr<RehearsedAgent>(std::move(agent));
   });
 }
 

@@ -2,12 +2,30 @@
 #include <functional>
 #include <memory>
 
+#include "core/component/fault.hpp"
 #include "core/config/platform.hpp"
 #include "core/exec/executor.hpp"
 #include "core/wire/wire.hpp"
 #include "sim/rehearsal/scenario.hpp"
 
+namespace adit::store {
+class Disk;
+}
+
 namespace adit::sim {
+
+/// An agent that runs in a rehearsal, as its faults see it; it stops when it is destroyed.
+class RehearsedAgent {
+ public:
+  virtual ~RehearsedAgent() = default;
+  RehearsedAgent() = default;
+  RehearsedAgent(const RehearsedAgent&) = delete;
+  RehearsedAgent& operator=(const RehearsedAgent&) = delete;
+
+  /// Makes a callback of that component throw, or never return, from its own strand.
+  /// Errors: bad_argument (no such component), not_supported.
+  virtual Result<void> inject(const std::string& component, ComponentFault fault);
+};
 
 /// What an agent is made of in a rehearsal.
 struct AgentContext {
@@ -18,11 +36,13 @@ struct AgentContext {
   Runtime& runtime;
   wire::Wire& radio;
   wire::Wire& robot;
+  std::shared_ptr<store::Disk> disk{};                ///< the robot's; it outlives the agent. Null: none
+  std::function<void(const std::string& why)> end{};  ///< the agent's process ends itself, to be started again
 };
 
-/// Makes and starts an agent; it stops when the pointer is dropped. The rehearsal knows nothing more of
-/// it, so tests put agents with deliberate defects in its place.
-using AgentFactory = std::function<Result<std::shared_ptr<void>>(const AgentContext&)>;
+/// Makes and starts an agent. The rehearsal knows nothing more of it, so tests put agents with deliberate
+/// defects in its place.
+using AgentFactory = std::function<Result<std::unique_ptr<RehearsedAgent>>(const AgentContext&)>;
 
 /// The product's agent. `defect`: one of robot_agent/defects.hpp, in the library adit::rehearsal_defects
 /// only; there the empty name means none. Reason::bad_argument for a name it does not know.

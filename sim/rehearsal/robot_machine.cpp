@@ -5,6 +5,11 @@
 #include "geometry_msgs/msg/Twist.h"
 
 namespace adit::sim {
+
+Result<void> RehearsedAgent::inject(const std::string& component, ComponentFault) {
+  return {Reason::not_supported, "this agent takes no faults in its component " + component};
+}
+
 namespace {
 
 constexpr Duration parent_notices{20ms};
@@ -28,7 +33,7 @@ struct RobotMachine::Parent {
 struct RobotMachine::Agent {
   std::unique_ptr<Runtime> runtime{};
   std::unique_ptr<wire::Wire> radio{}, robot{};
-  std::shared_ptr<void> program{};
+  std::unique_ptr<RehearsedAgent> program{};
 };
 
 RobotMachine::RobotMachine(Stage& stage, std::size_t index, const RobotSpec& spec, Random random)
@@ -71,7 +76,11 @@ Result<void> RobotMachine::start_agent() {
   stage_.witness.agent_started(spec_.id, stage_.scheduler.elapsed(), agent->radio->id());
   auto program =
       stage_.make_agent({spec_, stage_.simulation.platform(index_), random_.next(),
-                         stage_.scenario.lock_lease, *agent->runtime, *agent->radio, *agent->robot});
+                         stage_.scenario.lock_lease, *agent->runtime, *agent->radio, *agent->robot, disk_,
+                         [this](const std::string&) {
+                           // Not on the agent's own strand: that goes with it.
+                           stage_.scheduler.at(stage_.scheduler.elapsed(), [this] { crash(); });
+                         }});
   if (!program) return program.error();
   agent->program = std::move(*program);
   agent_ = std::move(agent);

@@ -45,6 +45,7 @@ class RobotMachine {
   Random random_;
   Duration clock_offset_;
   std::uint32_t domain_;
+  std::shared_ptr<store::Disk> disk_{};  ///< of the agent's computer; it outlives crashes
   // In the order they are needed: a wire before what speaks on it.
   std::unique_ptr<Runtime> driver_runtime_{};
   std::shared_ptr<Executor> driver_strand_{};
