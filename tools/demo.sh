@@ -22,8 +22,14 @@ say() { printf '\033[1m%s\033[0m\n' "$*"; }
 home="$(mktemp -d "${TMPDIR:-/tmp}/adit-demo-XXXXXX")"
 export XDG_RUNTIME_DIR="$home" XDG_STATE_HOME="$home"
 mkdir -p "$out"
-# A radio domain of its own; the robots' domains follow it.
-domain="${ADIT_DEMO_DOMAIN:-$((40 + $$ % 10 * 5))}"
+# A radio domain of its own; the robots' domains follow it. The lock is the tests' as well (tests/live/process.hpp).
+domain="${ADIT_DEMO_DOMAIN:-}"
+for group in 40 45 50 55 60 65 70 80 85 90 95; do
+  [ -z "$domain" ] || break
+  { exec {domain_lock}>"${TMPDIR:-/tmp}/adit-domains-$group.lock"; } 2>/dev/null || continue
+  if flock -n "$domain_lock"; then domain=$group; else exec {domain_lock}>&-; fi
+done
+[ -n "$domain" ] || { echo "demo: all DDS domains are taken; name one with ADIT_DEMO_DOMAIN" >&2; exit 1; }
 pids=()
 
 finish() {

@@ -86,7 +86,7 @@ void at_rest(benchmark::State& state, bool lidar) {
 
 void radio_at_rest(benchmark::State& state) {
   const Folder folder;
-  const unsigned base = adit::live::domain(4);
+  const unsigned base = adit::live::domain();
   std::vector<std::unique_ptr<Process>> robots;
   for (unsigned i = 1; i <= 4; ++i) robots.push_back(agent(folder, i, base));
   for (auto _ : state) {

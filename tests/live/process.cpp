@@ -5,10 +5,12 @@
 #include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
+#include <sys/file.h>
 #include <sys/timerfd.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -188,9 +190,39 @@ std::map<std::string, std::string> Folder::environment() const {
   return {{"XDG_RUNTIME_DIR", path_}, {"XDG_STATE_HOME", path_}, {"HOME", path_}};
 }
 
+Domains::Domains() {
+  // Below 100, so that DDS ports stay under the range from which the kernel draws ephemeral ones; without the
+  // radio's default domain.
+  std::vector<unsigned> groups;
+  for (unsigned first = 10; first < 100; first += kCount)
+    if (first != 75) groups.push_back(first);
+  const auto offset = static_cast<std::size_t>(getpid()) % groups.size();
+  std::rotate(groups.begin(), groups.begin() + static_cast<long>(offset), groups.end());
+  const auto take = [&] {
+    for (const unsigned first : groups) {
+      const std::string name = "adit-domains-" + std::to_string(first) + ".lock";
+      const auto path = std::filesystem::temp_directory_path() / name;
+      const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+      if (file < 0) continue;  // another user's
+      if (flock(file, LOCK_EX | LOCK_NB) == 0) {
+        first_ = first;
+        lock_ = file;
+        return true;
+      }
+      close(file);
+    }
+    return false;
+  };
+  if (!eventually(take, Seconds(300))) throw std::runtime_error("all DDS domains for tests are taken");
+}
+
+Domains::~Domains() { close(lock_); }
+
 unsigned domain(unsigned index) {
-  // Below 100, so that DDS ports stay under the range from which the kernel draws ephemeral ones.
-  return 10 + static_cast<unsigned>(getpid()) % 9 * 10 + index % 10;
+  static const Domains domains;
+  if (index >= Domains::kCount)
+    throw std::out_of_range("a process has " + std::to_string(Domains::kCount) + " domains");
+  return domains.first() + index;
 }
 
 }  // namespace adit::live

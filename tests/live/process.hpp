@@ -72,8 +72,24 @@ class Folder {
   std::string path_;
 };
 
-/// A radio domain that no other test of this machine uses at the same time; `index` tells several apart, [0,
-/// 9].
+/// Five DDS domains in a row that no other process of this machine uses at the same time, as long as it takes
+/// them here, too (the demo does): a lock in the temporary folder, which ends with the process.
+class Domains {
+ public:
+  static constexpr unsigned kCount = 5;
+  /// Waits while all are taken.
+  Domains();
+  ~Domains();
+  Domains(const Domains&) = delete;
+  Domains& operator=(const Domains&) = delete;
+  unsigned first() const { return first_; }
+
+ private:
+  unsigned first_{};
+  int lock_{-1};
+};
+
+/// One of this process's own domains; `index` tells several apart, [0, 4].
 unsigned domain(unsigned index = 0);
 
 }  // namespace adit::live

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "tests/live/process.hpp"
 
@@ -15,7 +16,7 @@ struct Wrong {
   const char* name{};
   const char* file{};  ///< written to the folder first
   const char* text{};
-  std::vector<std::string> command{};   ///< FILE is that file
+  std::vector<std::string> command{};   ///< FILE is that file, RADIO and INNER are domains
   std::vector<const char*> expected{};  ///< on stderr
 };
 
@@ -26,8 +27,11 @@ TEST_P(WrongInput, IsOneLineAndNonZeroExit) {
   const auto& wrong = GetParam();
   const std::string file = *wrong.file != 0 ? folder.write(wrong.file, wrong.text) : "";
   auto command = wrong.command;
-  for (auto& word : command)
+  for (auto& word : command) {
     if (word == "FILE") word = file;
+    if (word == "RADIO") word = std::to_string(domain());
+    if (word == "INNER") word = std::to_string(domain(1));
+  }
   const auto ended = run(command, folder.environment());
   EXPECT_GT(ended.exit_code, 0);
   EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
@@ -75,12 +79,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"agent_tree",
               "r.yaml",
               "name: r1\nplatform: wheeled\ntree: nowhere.xml\n",
-              {"robot_agent", "--config", "FILE", "--domain", "91", "--robot-domain", "92"},
+              {"robot_agent", "--config", "FILE", "--domain", "RADIO", "--robot-domain", "INNER"},
               {"nowhere.xml"}},
         Wrong{"supervised_tree",  // told once, and not started again and again
               "r.yaml",
               "name: r1\nplatform: wheeled\ntree: r.yaml\n",
-              {"robot_agent", "--supervised", "--config", "FILE", "--domain", "91", "--robot-domain", "92"},
+              {"robot_agent", "--supervised", "--config", "FILE", "--domain", "RADIO", "--robot-domain",
+               "INNER"},
               {"r.yaml:1", "XML"}},
         Wrong{"interface",
               "r.yaml",
@@ -109,10 +114,13 @@ TEST(WrongInputToStations, NameInUse) {
   const Folder folder;
   const std::vector<std::string> serve{"basestation", "--domain", std::to_string(domain()), "--serve=-1"};
   Process first(serve, folder.environment());
-  ASSERT_TRUE(eventually([&] {
-    const auto second = run(serve, folder.environment(), Seconds(0.5));
-    return second.exit_code > 0 && second.err.find("op1") != std::string::npos;
-  }));
+  // Nobody else comes before it has its name.
+  const std::string socket = folder.environment().at("XDG_RUNTIME_DIR") + "/adit/op1.sock";
+  ASSERT_TRUE(eventually([&] { return std::filesystem::exists(socket); })) << first.err();
+  const auto second = run(serve, folder.environment(), Seconds(10));
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_EQ(std::count(second.err.begin(), second.err.end(), '\n'), 1) << second.err;
+  EXPECT_THAT(second.err, AllOf(HasSubstr("op1"), HasSubstr("running already")));
   EXPECT_TRUE(first.running());
 }
 

@@ -125,7 +125,7 @@ TEST_F(Cli, OneStationPerName) {
 
 TEST_F(Cli, AStationOnAnotherDomainIsNotAskedByMistake) {
   ASSERT_EQ(run({"up"}).exit_code, 0);
-  const std::string other = std::to_string(live::domain() + 1);
+  const std::string other = std::to_string(live::domain(1));
   const auto asked =
       live::run({"basestation", "--domain", other, "list"}, folder_.environment(), Seconds(20));
   EXPECT_EQ(asked.exit_code, 2);
