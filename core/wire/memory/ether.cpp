@@ -119,6 +119,7 @@ void Ether::Core::show(Frame::Kind kind, const Participant& from, const Particip
   if (to != nullptr) frame.to = to->id, frame.to_name = to->machine;
   frame.domain = from.domain;
   frame.topic = topic.name;
+  frame.type = topic.type;
   frame.partition = topic.partition;
   frame.bytes = *bytes;
   tap(frame);

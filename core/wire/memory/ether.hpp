@@ -32,7 +32,7 @@ struct Frame {
   ParticipantId from{}, to{};
   std::string_view from_name{}, to_name{};  ///< as given to join()
   std::uint32_t domain{};
-  std::string_view topic{}, partition{};
+  std::string_view topic{}, type{}, partition{};
   std::span<const std::uint8_t> bytes{};  ///< serialised sample with its encapsulation header
 };
 
