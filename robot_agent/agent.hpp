@@ -8,6 +8,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/log/log.hpp"
 #include "core/result/result.hpp"
+#include "core/store/disk.hpp"
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/defects.hpp"
@@ -25,6 +26,7 @@ struct AgentParams {
   Duration planning{20ms};              ///< what a planning cycle takes in rehearsal
   Defects defects{};                    ///< effective in adit::agent_defects only
   std::shared_ptr<LogSink> log{};
+  std::shared_ptr<store::Disk> disk{};  ///< what outlives the agent; null: nothing is kept
 };
 
 /// One robot's agent: discovery, command interface, behaviours, mux, navigation, driver, telemetry, composed.

@@ -1,0 +1,144 @@
+#include "core/store/file_disk.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+namespace adit::store {
+namespace {
+
+/// A file descriptor that is closed with its owner.
+class Fd {
+ public:
+  explicit Fd(int fd) : fd_(fd) {}
+  ~Fd() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Fd(const Fd&) = delete;
+  Fd& operator=(const Fd&) = delete;
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+bool write_all(int fd, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::write(fd, bytes.data(), bytes.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(done));
+  }
+  return true;
+}
+
+bool make_folders(const std::filesystem::path& folder) {
+  std::filesystem::path made;
+  for (const auto& part : folder) {
+    made /= part;
+    if (::mkdir(made.c_str(), 0700) != 0 && errno != EEXIST && errno != EISDIR && errno != EROFS)
+      return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Error FileDisk::failed(Reason reason, const std::string& doing, const std::string& name) const {
+  return {reason, "cannot " + doing + " " + folder_ + "/" + name + ": " + std::strerror(errno)};
+}
+
+Result<std::shared_ptr<FileDisk>> FileDisk::open(const std::string& folder) {
+  const auto error = [&folder](const char* doing) {
+    return Error{Reason::cannot_write,
+                 "cannot " + std::string(doing) + " the folder " + folder + ": " + std::strerror(errno)};
+  };
+  if (!make_folders(folder)) return error("make");
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return error("open");
+  std::shared_ptr<FileDisk> disk(new FileDisk(folder, fd));
+  if (::faccessat(fd, ".", W_OK | X_OK, AT_EACCESS) != 0) return error("write to");
+  std::error_code ignored;  // what cannot be listed here cannot be listed later: list() tells
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (const std::string name = entry.path().filename(); is_temporary(name)) (void)disk->remove_file(name);
+  return disk;
+}
+
+FileDisk::~FileDisk() { ::close(fd_); }
+
+Result<std::vector<std::string>> FileDisk::list() const {
+  std::error_code error;
+  std::vector<std::string> names;
+  for (std::filesystem::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error))
+    if (it->symlink_status(error).type() == std::filesystem::file_type::regular &&
+        valid_file_name(it->path().filename().string()))
+      names.push_back(it->path().filename().string());
+  if (error) return {Reason::cannot_read, "cannot list " + folder_ + ": " + error.message()};
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::uint64_t FileDisk::free() const {
+  struct statvfs status {};
+  return ::fstatvfs(fd_, &status) == 0 ? std::uint64_t{status.f_bavail} * status.f_frsize : 0;
+}
+
+Result<std::optional<Bytes>> FileDisk::read_file(const std::string& name, std::size_t most) const {
+  // Not blocking: a pipe of that name must not hold the caller.
+  const Fd file(::openat(fd_, name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (!file && errno == ENOENT) return std::optional<Bytes>{};
+  if (!file) return failed(Reason::cannot_read, "open", name);
+  struct stat status {};
+  if (::fstat(file.get(), &status) != 0) return failed(Reason::cannot_read, "look at", name);
+  if (!S_ISREG(status.st_mode)) return {Reason::cannot_read, folder_ + "/" + name + " is no file"};
+  Bytes bytes;
+  std::uint8_t block[65536];
+  for (;;) {
+    const ssize_t got = ::read(file.get(), block, sizeof block);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return failed(Reason::cannot_read, "read", name);
+    if (got == 0) return std::optional<Bytes>{std::move(bytes)};
+    bytes.insert(bytes.end(), block, block + got);
+    if (bytes.size() > most)
+      return {Reason::cannot_read,
+              folder_ + "/" + name + " is longer than " + std::to_string(most) + " bytes"};
+  }
+}
+
+Result<void> FileDisk::write_file(const std::string& name, std::span<const std::uint8_t> bytes, bool append) {
+  const int how = O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | (append ? O_APPEND : O_TRUNC);
+  const Fd file(::openat(fd_, name.c_str(), how, 0600));
+  if (!file || !write_all(file.get(), bytes)) return failed(Reason::cannot_write, "write", name);
+  return {};
+}
+
+Result<void> FileDisk::sync_file(const std::string& name) {
+  const Fd file(::openat(fd_, name.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
+  if (!file || ::fsync(file.get()) != 0) return failed(Reason::cannot_write, "sync", name);
+  return {};
+}
+
+Result<void> FileDisk::rename_file(const std::string& from, const std::string& to) {
+  if (::renameat(fd_, from.c_str(), fd_, to.c_str()) != 0) return failed(Reason::cannot_write, "rename", to);
+  return {};
+}
+
+Result<void> FileDisk::remove_file(const std::string& name) {
+  if (::unlinkat(fd_, name.c_str(), 0) != 0 && errno != ENOENT)
+    return failed(Reason::cannot_write, "remove", name);
+  return {};
+}
+
+Result<void> FileDisk::sync_folder() {
+  if (::fsync(fd_) != 0) return failed(Reason::cannot_write, "sync", "");
+  return {};
+}
+
+}  // namespace adit::store

@@ -1,0 +1,35 @@
+#pragma once
+#include <memory>
+
+#include "core/store/disk.hpp"
+
+namespace adit::store {
+
+/// A folder of a real file system. Files are their owner's alone (0600), the folder is made (0700).
+class FileDisk final : public Disk {
+ public:
+  /// Makes the folder with its parents, and removes what a crash left of unfinished writes. Errors:
+  /// cannot_write when it cannot be made or used.
+  static Result<std::shared_ptr<FileDisk>> open(const std::string& folder);
+  ~FileDisk() override;
+
+  Result<std::vector<std::string>> list() const override;
+  std::uint64_t free() const override;
+  std::string where() const override { return folder_; }
+
+ protected:
+  Result<std::optional<Bytes>> read_file(const std::string& name, std::size_t most) const override;
+  Result<void> write_file(const std::string& name, std::span<const std::uint8_t> bytes, bool append) override;
+  Result<void> sync_file(const std::string& name) override;
+  Result<void> rename_file(const std::string& from, const std::string& to) override;
+  Result<void> remove_file(const std::string& name) override;
+  Result<void> sync_folder() override;
+
+ private:
+  FileDisk(std::string folder, int fd) : folder_(std::move(folder)), fd_(fd) {}
+  Error failed(Reason reason, const std::string& doing, const std::string& name) const;
+  std::string folder_;
+  int fd_;  ///< of the folder: everything is done relative to it, whatever becomes of its path
+};
+
+}  // namespace adit::store
