@@ -36,8 +36,9 @@ struct AgentContext {
   Runtime& runtime;
   wire::Wire& radio;
   wire::Wire& robot;
-  std::shared_ptr<store::Disk> disk{};                ///< the robot's; it outlives the agent. Null: none
-  std::function<void(const std::string& why)> end{};  ///< the agent's process ends itself, to be started again
+  std::shared_ptr<store::Disk> disk{};  ///< the robot's; it outlives the agent. Null: none
+  std::function<void(const std::string& why)>
+      end{};  ///< the agent's process ends itself, to be started again
 };
 
 /// Makes and starts an agent. The rehearsal knows nothing more of it, so tests put agents with deliberate

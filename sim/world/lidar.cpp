@@ -56,6 +56,7 @@ LidarParams LidarParams::planar() {
   LidarParams params;
   params.rings = 1;
   params.columns = 360;
+  params.profile = true;
   return params;
 }
 

@@ -19,7 +19,11 @@ struct LidarParams {
   double max_range{30.0};    ///< farther hits are lost, m, (0, 1000]
   double range_noise{0.02};  ///< standard deviation of a range, m, [0, 1]
 
-  /// One level ring of 360: for many seeds.
+  /// A level ring sees whatever the robot's body would touch, between its step and its height, as if that
+  /// stood in the ring's plane: one ring then shows low things and hanging ones, too.
+  bool profile{false};
+
+  /// One level ring of 360 that sees the profile: for many seeds.
   static LidarParams planar();
 };
 

@@ -39,10 +39,16 @@ Result<void> Simulation::add(const RobotStart& start) {
       std::abs(start.pose.x) > 1e5 || std::abs(start.pose.y) > 1e5)
     return {Reason::bad_argument, start.id + ": the start pose is outside the world"};
   std::shared_ptr<const StandingMap> ground;
+  std::shared_ptr<const World> seen = world_;
   for (const Robot& robot : robots_)
-    if (robot.body.platform().height == platform.height && robot.body.platform().step == platform.step)
+    if (robot.body.platform().height == platform.height && robot.body.platform().step == platform.step) {
       ground = robot.ground;
-  if (!ground) ground = std::make_shared<const StandingMap>(*world_, platform.height, platform.step);
+      seen = robot.seen;
+    }
+  if (!ground) {
+    ground = std::make_shared<const StandingMap>(*world_, platform.height, platform.step);
+    if (params_.lidar.profile) seen = std::make_shared<const World>(world_->name(), ground->profile());
+  }
   const Rectangle body = footprint(platform, start.pose);
   if (ground->touches(body) || std::isnan(ground->ground(start.pose.x, start.pose.y)))
     return {Reason::bad_argument, where() + " is in a wall or has no ground; choose a free place"};
@@ -51,7 +57,7 @@ Result<void> Simulation::add(const RobotStart& start) {
       return {Reason::bad_argument, where() + " overlaps " + robot.id};
   const std::uint64_t seed = derive_seed(params_.seed, 2 * robots_.size() + 1);
   robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(params_.odometry, seed),
-                     std::move(ground)});
+                     std::move(ground), std::move(seen)});
   Robot& robot = robots_.back();
   robot.truth.pose = Pose3::level(start.pose, robot.ground->ground(start.pose.x, start.pose.y));
   return {};
@@ -133,12 +139,16 @@ void Simulation::step() {
 }
 
 Simulation::ScanJob Simulation::scan(std::size_t index) const {
-  ScanJob job{world_, lidar_, {}, robots_[index].truth.pose, robots_[index].body.platform().lidar_height, 0};
+  const double height = robots_[index].body.platform().lidar_height;
+  ScanJob job{robots_[index].seen, lidar_, {}, robots_[index].truth.pose, height, 0};
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     if (n == index) continue;
     const Platform& platform = robots_[n].body.platform();
-    job.others.push_back({robots_[n].body.pose(), robots_[n].truth.pose.position.z(), platform.length,
-                          platform.width, platform.height});
+    BodyBox box{robots_[n].body.pose(), robots_[n].truth.pose.position.z(), platform.length, platform.width,
+                platform.height};
+    // In the ring's plane, however low it is.
+    if (params_.lidar.profile) box = {box.pose, job.base.position.z(), box.length, box.width, 2.0 * height};
+    job.others.push_back(box);
   }
   job.seed = derive_seed(params_.seed ^ (steps_ << 8), 2 * index + 2);
   return job;

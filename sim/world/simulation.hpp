@@ -96,6 +96,7 @@ class Simulation {
     Body body;
     Odometry odometry;
     std::shared_ptr<const StandingMap> ground;
+    std::shared_ptr<const World> seen;  ///< by its lidar
     Truth truth{};
     std::optional<std::size_t> partner{};  ///< of the contact that lasts; size() for the world
     Pose2 contact{};                       ///< where it began

@@ -99,6 +99,14 @@ INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
                                          "foreign_writer", "thin_link", "floor_plan", "stuck_stick", "demo"),
                          [](const auto& which) { return std::string(which.param); });
 
+TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {
+  Scenario scenario = load("demo.yaml");
+  scenario.lidar = LidarKind::planar;
+  for (std::uint64_t seed : {1, 2, 3, 4})
+    for (const std::string& line : run(scenario, seed).report.complaints())
+      ADD_FAILURE() << "seed " << seed << ": " << line;
+}
+
 /// Random commands of three operators over 20 % loss.
 class Storm : public testing::TestWithParam<int> {};
 

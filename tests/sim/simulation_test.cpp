@@ -41,6 +41,31 @@ void drive(Simulation& simulation, std::size_t robot, const Twist2& wanted, doub
   }
 }
 
+/// Ranges that the ring of a robot at the origin shows straight ahead, m.
+double ahead(const Box& box, std::vector<RobotStart> others = {}) {
+  SimulationParams params;
+  params.lidar = LidarParams::planar();
+  params.lidar.range_noise = 0.0;
+  others.insert(others.begin(), {"r1", wheeled(), {0, 0, 0}});
+  const auto world = std::make_shared<const World>(*make_box_world(std::array<Box, 1>{box}, 0, 3));
+  const auto simulation = Simulation::create(world, std::move(others), params);
+  EXPECT_TRUE(simulation) << simulation.error().text;
+  for (const Eigen::Vector3f& p : simulation->scan(0).compute())
+    if (std::abs(p.y()) < 1e-3 && p.x() > 0) return p.x();
+  return 0.0;
+}
+
+TEST(Simulation, a_planar_lidar_sees_what_the_body_would_touch) {
+  EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0, 3}), 2.0, 1e-3) << "a wall";
+  EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0, 0.2}), 2.0, 1e-3) << "lower than the ring, higher than the step";
+  EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0.3, 0.35}), 2.0, 1e-3) << "between the two";
+  EXPECT_EQ(ahead({2, 2.5, -1, 1, 0, 0.05}), 0.0) << "a step that it climbs";
+  EXPECT_EQ(ahead({2, 2.5, -1, 1, 2, 2.5}), 0.0) << "higher than the body";
+  Platform low = wheeled();
+  low.height = 0.2;
+  EXPECT_NEAR(ahead({9, 9.5, -1, 1, 0, 3}, {{"r2", low, {4, 0, 0}}}), 3.7, 1e-3) << "a low robot";
+}
+
 TEST(Simulation, drives_and_keeps_the_books) {
   Simulation s = make({{"r1", wheeled(), {-4, 0, 0}}});
   drive(s, 0, {1, 0, 0}, 3.0);
