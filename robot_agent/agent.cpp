@@ -1,6 +1,9 @@
 #include "robot_agent/agent.hpp"
 
+#include <stdexcept>
+
 #include "core/config/search.hpp"
+#include "core/exec/hang.hpp"
 #include "core/time/random.hpp"
 #include "robot_agent/agent_core.hpp"
 
@@ -56,6 +59,18 @@ Result<void> Agent::start() {
 
 void Agent::at_console(const std::string& line, std::function<void(const std::string&)> answer) {
   command_->post([core = core_.get(), line, answer = std::move(answer)] { answer(core->at_console(line)); });
+}
+
+Result<void> Agent::inject(const std::string& component, ComponentFault fault) {
+  Executor* strand = component == "command"   ? command_.get()
+                     : component == "sensors" ? sensors_.get()
+                                              : nullptr;
+  if (!strand) return {Reason::bad_argument, "no component is named " + component};
+  strand->post([strand, fault] {
+    if (fault == ComponentFault::hang) hang(*strand);
+    throw std::runtime_error("a crash on request");
+  });
+  return {};
 }
 
 }  // namespace adit::agent

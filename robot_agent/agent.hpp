@@ -29,6 +29,12 @@ struct AgentParams {
   std::shared_ptr<store::Disk> disk{};  ///< what outlives the agent; null: nothing is kept
 };
 
+/// What can be done to a component for tests and rehearsals.
+enum class ComponentFault {
+  crash,  ///< an exception leaves one of its callbacks
+  hang    ///< one of its callbacks never returns
+};
+
 /// One robot's agent: discovery, command interface, behaviours, mux, navigation, driver, telemetry, composed.
 /// The same object live and in rehearsal. Made, started and destroyed outside its strands; runtime and
 /// wires must outlive it.
@@ -45,6 +51,10 @@ class Agent {
   /// The robot's own console: "status" or "unlock". Runs on the command strand, and so does `answer`. From
   /// any thread, after start().
   void at_console(const std::string& line, std::function<void(const std::string&)> answer);
+
+  /// Posts a callback on the strand of that component which throws or never returns. Components: command,
+  /// planner, sensors. Errors: bad_argument for another name. From any thread live, after start().
+  Result<void> inject(const std::string& component, ComponentFault fault);
 
  private:
   class Core;

@@ -36,6 +36,9 @@ class [[nodiscard]] Timer {
   std::shared_ptr<std::atomic<bool>> alive_{};
 };
 
+class Executor;
+[[noreturn]] void hang(Executor& strand);  // core/exec/hang.hpp
+
 /// One strand: runs its tasks one at a time, in the order posted, timers when due. Everything that a
 /// component owns is touched from its strand only, so components hold no locks.
 class Executor {
@@ -60,6 +63,15 @@ class Executor {
   /// long the work takes; live, when the work is done. Work that throws is reported as a failure of the
   /// strand, and `done` does not run.
   virtual void compute(Duration modelled, Task work, Task done) = 0;
+  /// Leaves the strand behind together with the task that it runs now, which may never return: what waits
+  /// never runs, new work is ignored, dropping the strand waits for nothing. What that task refers to must
+  /// be kept until it has returned. Called on another strand or thread.
+  virtual void abandon() = 0;
+
+ private:
+  friend void hang(Executor& strand);
+  /// Never returns to the task that called it.
+  virtual void block() = 0;
 };
 
 /// Makes the strands of one machine (an agent, a station, the simulated world).
@@ -71,6 +83,9 @@ class Runtime {
   Runtime& operator=(const Runtime&) = delete;
   /// A new strand; it lives until the pointer is dropped, which must not happen on the strand itself.
   virtual std::shared_ptr<Executor> strand(const std::string& name) = 0;
+  /// A strand for heavy work: live its `compute` runs on its own thread, of low priority, so that work that
+  /// does not return holds up nobody else and its own timers show it. In rehearsal as any other.
+  virtual std::shared_ptr<Executor> worker(const std::string& name) { return strand(name); }
 };
 
 }  // namespace adit

@@ -12,7 +12,7 @@ using FailureHandler = std::function<void(const std::string& strand, const std::
 /// The default handler: one line on stderr, so that nothing is lost when nobody asked to be told.
 void report_on_stderr(const std::string& strand, const std::string& what);
 
-/// The text of the exception being handled; call it inside a catch block.
+/// The text of the exception being handled; call it inside a catch block. HangReleased passes through.
 std::string current_exception_text();
 
 }  // namespace adit

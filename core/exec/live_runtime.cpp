@@ -38,6 +38,11 @@ void WakeWord::wake() {
     syscall(SYS_futex, &word_, FUTEX_WAKE_PRIVATE, INT_MAX, nullptr, nullptr, 0);
 }
 
+void lower_priority(int nice) {
+  // Linux keeps a nice value per thread.
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), nice);
+}
+
 ComputePool::ComputePool(int threads, std::size_t capacity, int nice) : capacity_(capacity) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this, nice] { loop(nice); });
 }
@@ -68,8 +73,7 @@ void ComputePool::stop() {
 
 void ComputePool::loop(int nice) {
   pthread_setname_np(pthread_self(), "compute");
-  // Linux keeps a nice value per thread. It can only be raised, which never needs a right.
-  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), nice);
+  lower_priority(nice);
   std::unique_lock lock(mutex_);
   for (;;) {
     added_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
@@ -89,10 +93,17 @@ LiveRuntime::LiveRuntime(LiveParams params)
 LiveRuntime::~LiveRuntime() { shared_->pool.stop(); }
 
 std::shared_ptr<Executor> LiveRuntime::strand(const std::string& name) {
-  return make_live_strand(shared_, name);
+  return make_live_strand(shared_, name, false);
+}
+
+std::shared_ptr<Executor> LiveRuntime::worker(const std::string& name) {
+  return make_live_strand(shared_, name, true);
 }
 
 std::uint64_t LiveRuntime::failures() const { return shared_->failures.load(std::memory_order_acquire); }
 std::uint64_t LiveRuntime::dropped() const { return shared_->dropped.load(std::memory_order_relaxed); }
+std::uint64_t LiveRuntime::left_behind() const {
+  return shared_->left_behind.load(std::memory_order_relaxed);
+}
 
 }  // namespace adit

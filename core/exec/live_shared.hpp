@@ -63,10 +63,13 @@ struct LiveRuntime::Shared {
   LiveParams params;
   std::atomic<std::uint64_t> failures{0};
   std::atomic<std::uint64_t> dropped{0};
+  std::atomic<std::uint64_t> left_behind{0};
   ComputePool pool;
 };
 
 std::shared_ptr<Executor> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared,
-                                           const std::string& name);
+                                           const std::string& name, bool heavy);
+/// Of the calling thread. It can only be lowered, which never needs a right.
+void lower_priority(int nice);
 
 }  // namespace adit

@@ -51,6 +51,7 @@ class Loop {
     std::vector<Alarm> dead;  // dies after the lock
     {
       const std::lock_guard lock(mutex_);
+      if (stopping_) return Timer(std::move(alive));
       alarms_.push_back({steady_ns() + std::max<std::int64_t>(0, delay.count()), order_++, period.count(),
                          std::move(task), alive});
       std::push_heap(alarms_.begin(), alarms_.end(), Later{});
@@ -186,11 +187,15 @@ class Loop {
 
 class LiveStrand final : public Executor {
  public:
-  LiveStrand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name)
-      : loop_(std::make_shared<Loop>(std::move(shared), name)), thread_([loop = loop_] { loop->run(); }) {}
+  LiveStrand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name, bool heavy)
+      : loop_(std::make_shared<Loop>(std::move(shared), name)), heavy_(heavy), thread_([loop = loop_, heavy] {
+          if (heavy) lower_priority(loop->shared().params.compute_nice);
+          loop->run();
+        }) {}
 
   ~LiveStrand() override {
     loop_->stop();
+    if (!thread_.joinable()) return;
     if (loop_->on_own_thread()) {
       // Against the contract of Runtime::strand; the thread ends after the task that runs now.
       loop_->shared().fail(loop_->name(), "strand dropped on itself");
@@ -223,20 +228,34 @@ class LiveStrand final : public Executor {
       if (!failure.empty()) return loop->shared().fail(loop->name(), "compute: " + failure);
       loop->post(std::move(done), true);  // bounded by the compute queue
     };
-    if (!loop_->shared().pool.add(std::move(job)))
+    if (heavy_)
+      loop_->post(std::move(job), false);
+    else if (!loop_->shared().pool.add(std::move(job)))
       loop_->shared().drop(loop_->name(), "compute queue full, work dropped");
   }
 
+  void abandon() override {
+    loop_->stop();
+    if (!thread_.joinable()) return;
+    thread_.detach();
+    loop_->shared().left_behind.fetch_add(1, std::memory_order_relaxed);
+  }
+
  private:
+  void block() override {
+    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+  }
+
   std::shared_ptr<Loop> loop_;
+  bool heavy_;
   std::thread thread_;
 };
 
 }  // namespace
 
 std::shared_ptr<Executor> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared,
-                                           const std::string& name) {
-  return std::make_shared<LiveStrand>(std::move(shared), name);
+                                           const std::string& name, bool heavy) {
+  return std::make_shared<LiveStrand>(std::move(shared), name, heavy);
 }
 
 }  // namespace adit

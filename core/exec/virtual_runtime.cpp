@@ -7,7 +7,9 @@
 #include <thread>
 #include <vector>
 
+#include "core/exec/hang.hpp"
 #include "core/exec/job_pool.hpp"
+#include "core/exec/loop_threads.hpp"
 #include "core/time/random.hpp"
 
 namespace adit {
@@ -115,9 +117,12 @@ struct VirtualScheduler::Core {
 
   bool step(std::int64_t limit);
   void run(std::uint32_t slot);
+  void run_until(std::int64_t limit);
+  [[noreturn]] void hang(VirtualStrand& strand);
 
   VirtualParams params;
   JobPool pool;
+  LoopThreads loops{};
   std::thread::id thread{std::this_thread::get_id()};
   std::vector<Event> events{};
   std::vector<Due> heap{};
@@ -179,14 +184,27 @@ class VirtualStrand final : public Executor {
     const std::int64_t due = core_->now + std::max<std::int64_t>(0, modelled.count());
     auto job = std::make_shared<Job>(std::move(work), due, core_->jobs++);
     core_->add(this, machine_, due, std::move(done), nullptr, 0, job);
-    core_->pool.add(std::move(job));
+    if (!over_) core_->pool.add(std::move(job));
   }
+
+  void abandon() override {
+    core_->check_thread();
+    end();
+  }
+  void block() override { core_->hang(*this); }
+  /// Nothing runs on it any more.
+  void end() {
+    over_ = true;
+    core_->remove_if([this](const Event& event) { return event.strand == this; });
+  }
+  bool over() const { return over_; }
 
  private:
   std::shared_ptr<Core> core_;
   std::uint64_t machine_;
   Duration offset_;
   std::string name_;
+  bool over_{false};
 };
 
 class VirtualMachine final : public Runtime {
@@ -209,7 +227,7 @@ class VirtualMachine final : public Runtime {
 
 void VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task,
                                  Alive alive, std::int64_t period, std::shared_ptr<Job> job) {
-  if (closed) return;  // the scheduler is gone; nothing will run any more
+  if (closed || strand->over()) return;  // nothing will run any more
   const std::uint32_t slot = take_slot();
   Event& event = events[slot];
   event.strand = strand;
@@ -221,7 +239,6 @@ void VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, s
 }
 
 bool VirtualScheduler::Core::step(std::int64_t limit) {
-  if (in_task) throw std::logic_error("a task of a rehearsal cannot run the scheduler");
   while (!heap.empty() && heap.front().when <= limit) {
     const Due due = heap.front();
     std::pop_heap(heap.begin(), heap.end(), Later{});
@@ -265,6 +282,8 @@ void VirtualScheduler::Core::run(std::uint32_t slot) {
   in_task = true;
   try {
     task();
+  } catch (const HangReleased&) {
+    throw;  // the end of the scheduler: strand and machine may be gone
   } catch (...) {
     fail(running ? strand_name : "(dropped)", current_exception_text());
   }
@@ -273,6 +292,38 @@ void VirtualScheduler::Core::run(std::uint32_t slot) {
   running = nullptr;
   if (period > 0 && !dropped && alive->load(std::memory_order_relaxed))
     add(strand, strand->machine(), now + period, std::move(task), std::move(alive), period, nullptr);
+}
+
+void VirtualScheduler::Core::run_until(std::int64_t limit) {
+  const std::function<void()> loop = [this, limit] {
+    thread = std::this_thread::get_id();
+    while (step(limit)) {
+    }
+  };
+  if (in_task) throw std::logic_error("a task of a rehearsal cannot run the scheduler");
+  const auto caller = std::this_thread::get_id();
+  try {
+    while (!loops.run(loop)) {  // a task hangs: its thread is lost, the loop goes on on the next
+      in_task = false;
+      running = nullptr;
+    }
+  } catch (...) {
+    thread = caller;
+    throw;
+  }
+  thread = caller;
+}
+
+void VirtualScheduler::Core::hang(VirtualStrand& strand) {
+  check_thread();
+  if (running != &strand) throw std::logic_error("only the task that runs can hang, on its own strand");
+  strand.end();
+  try {
+    loops.hang();
+  } catch (...) {
+    thread = std::this_thread::get_id();  // the frames below may post while they are unwound
+    throw;
+  }
 }
 
 VirtualScheduler::VirtualScheduler(VirtualParams params)
@@ -284,6 +335,8 @@ VirtualScheduler::VirtualScheduler(std::uint64_t seed) : VirtualScheduler(Virtua
 
 VirtualScheduler::~VirtualScheduler() {
   core_->closed = true;
+  core_->loops.release();
+  core_->thread = std::this_thread::get_id();
   core_->remove_if([](const Event&) { return true; });
 }
 
@@ -299,20 +352,14 @@ void VirtualScheduler::at(Duration when, Task task) {
 }
 
 void VirtualScheduler::run_until(Duration when) {
-  core_->thread = std::this_thread::get_id();
-  while (core_->step(when.count())) {
-  }
+  core_->run_until(when.count());
   if (core_->now < when.count()) core_->at_this_instant = 0;
   core_->now = std::max(core_->now, when.count());
-}
-
-bool VirtualScheduler::step() {
-  core_->thread = std::this_thread::get_id();
-  return core_->step(std::numeric_limits<std::int64_t>::max());
 }
 
 Duration VirtualScheduler::elapsed() const { return Duration(core_->now); }
 std::uint64_t VirtualScheduler::tasks_run() const { return core_->tasks; }
 std::uint64_t VirtualScheduler::failures() const { return core_->failures; }
+std::size_t VirtualScheduler::hung() const { return core_->loops.hung(); }
 
 }  // namespace adit

@@ -15,11 +15,12 @@ struct VirtualParams {
   FailureHandler on_failure{report_on_stderr};
 };
 
-/// One seeded discrete-event scheduler for all machines of a rehearsal. A single thread runs every task, in
-/// the order of virtual time; tasks of one machine at the same instant run in the order in which they were
-/// posted, machines with work at the same instant in an order drawn from the seed. A task takes no
-/// virtual time. `compute` work runs in parallel, but completes at its modelled time, so the same seed
-/// gives the same run whatever the machine. Everything is called on the thread that runs it.
+/// One seeded discrete-event scheduler for all machines of a rehearsal. A single thread, while the caller of
+/// run_until waits, runs every task in the order of virtual time; tasks of one machine at the same instant
+/// run in the order in which they were posted, machines with work at the same instant in an order drawn from
+/// the seed. A task takes no virtual time. `compute` work runs in parallel, but completes at its modelled
+/// time, so the same seed gives the same run whatever the machine. Between runs everything is called on the
+/// caller's thread.
 ///
 /// Posting to a strand from inside `compute` work is an error (std::logic_error, reported as a failure
 /// of that work). When work throws, this is reported at its completion time and `done` does not run.
@@ -41,14 +42,14 @@ class VirtualScheduler {
   /// Runs everything due up to and including `when`; afterwards elapsed() == when. Throws
   /// std::runtime_error when tasks post each other for ever without time going on.
   void run_until(Duration when);
-  /// Runs the next task, advancing time to it; false when there is none.
-  bool step();
   /// Virtual time since construction.
   Duration elapsed() const;
   /// Tasks run so far.
   std::uint64_t tasks_run() const;
   /// Exceptions that left a task or work so far; each was reported to on_failure.
   std::uint64_t failures() const;
+  /// Tasks that hang, each on a thread of its own (core/exec/hang.hpp). They end with the scheduler.
+  std::size_t hung() const;
 
   struct Core;  // shared with the strands, private to virtual_runtime.cpp
 

@@ -1,0 +1,12 @@
+#include "core/exec/hang.hpp"
+
+#include <exception>
+
+namespace adit {
+
+void hang(Executor& strand) {
+  strand.block();
+  std::terminate();
+}
+
+}  // namespace adit
