@@ -1,0 +1,107 @@
+#pragma once
+#include <array>
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/store/disk.hpp"
+
+namespace adit::store {
+
+/// Puts values one behind the other, little endian, without padding.
+class Packer {
+ public:
+  template <std::unsigned_integral T>
+  Packer& put(T value) {
+    for (std::size_t i = 0; i < sizeof(T); ++i)
+      bytes_.push_back(static_cast<std::uint8_t>(std::uint64_t{value} >> (8 * i)));
+    return *this;
+  }
+  Packer& put(bool value) = delete;  // flag()
+  Packer& flag(bool value) { return put(static_cast<std::uint8_t>(value ? 1 : 0)); }
+  Packer& put(double value) { return put(std::bit_cast<std::uint64_t>(value)); }
+  /// At most 65535 bytes of it.
+  Packer& text(std::string_view value) {
+    value = value.substr(0, 0xffff);
+    put(static_cast<std::uint16_t>(value.size()));
+    bytes_.insert(bytes_.end(), value.begin(), value.end());
+    return *this;
+  }
+  template <std::size_t N>
+  Packer& put(const std::array<std::uint8_t, N>& value) {
+    bytes_.insert(bytes_.end(), value.begin(), value.end());
+    return *this;
+  }
+  Packer& raw(std::span<const std::uint8_t> value) {
+    bytes_.insert(bytes_.end(), value.begin(), value.end());
+    return *this;
+  }
+  const Bytes& bytes() const { return bytes_; }
+
+ private:
+  Bytes bytes_{};
+};
+
+/// Takes them out again. After the first thing that does not fit everything fails: ask good() at the end.
+class Unpacker {
+ public:
+  explicit Unpacker(std::span<const std::uint8_t> bytes) : left_(bytes) {}
+
+  template <std::unsigned_integral T>
+  T get() {
+    const auto part = take(sizeof(T));
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < part.size(); ++i) value |= std::uint64_t{part[i]} << (8 * i);
+    return static_cast<T>(value);
+  }
+  /// Neither 0 nor 1: fails.
+  bool flag() {
+    const auto value = get<std::uint8_t>();
+    if (value > 1) good_ = false;
+    return value == 1;
+  }
+  double number() { return std::bit_cast<double>(get<std::uint64_t>()); }
+  /// Longer than `most`: fails.
+  std::string text(std::size_t most) {
+    const auto size = get<std::uint16_t>();
+    if (size > most) good_ = false;
+    const auto part = take(size);
+    return {part.begin(), part.end()};
+  }
+  template <std::size_t N>
+  std::array<std::uint8_t, N> array() {
+    std::array<std::uint8_t, N> value{};
+    const auto part = take(N);
+    for (std::size_t i = 0; i < part.size(); ++i) value[i] = part[i];
+    return value;
+  }
+  /// A number of things to come; more than `most`: fails, and 0.
+  std::size_t count(std::size_t most) {
+    const auto value = get<std::uint16_t>();
+    if (value > most) good_ = false;
+    return good_ ? value : 0;
+  }
+  bool good() const { return good_; }
+  /// Good, and nothing is left.
+  bool done() const { return good_ && left_.empty(); }
+  std::span<const std::uint8_t> rest() const { return left_; }
+
+ private:
+  /// Nothing when so much is not left.
+  std::span<const std::uint8_t> take(std::size_t size) {
+    if (!good_ || size > left_.size()) {
+      good_ = false;
+      return {};
+    }
+    const auto part = left_.first(size);
+    left_ = left_.subspan(size);
+    return part;
+  }
+  std::span<const std::uint8_t> left_;
+  bool good_{true};
+};
+
+}  // namespace adit::store

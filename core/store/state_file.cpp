@@ -1,0 +1,106 @@
+#include "core/store/state_file.hpp"
+
+#include <algorithm>
+
+#include "core/store/crc32c.hpp"
+#include "core/store/pack.hpp"
+
+namespace adit::store {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kMagic{'A', 'D', 'I', 'T'};
+constexpr std::size_t kHeader = 24, kChecksum = 4;
+
+std::array<std::uint8_t, 4> octets(const std::array<char, 4>& kind) {
+  std::array<std::uint8_t, 4> out{};
+  std::transform(kind.begin(), kind.end(), out.begin(), [](char c) { return static_cast<std::uint8_t>(c); });
+  return out;
+}
+
+State flawed(Found found, std::string text) { return {found, std::move(text), 0, {}}; }
+
+/// Ours from the first byte on, as far as it goes; zeros behind are a write that did not get far.
+bool begun(std::span<const std::uint8_t> bytes, const std::array<std::uint8_t, 4>& kind) {
+  Bytes start(kMagic.begin(), kMagic.end());
+  start.insert(start.end(), kind.begin(), kind.end());
+  start.resize(std::min(start.size(), bytes.size()));
+  const auto differs = std::mismatch(start.begin(), start.end(), bytes.begin());
+  return differs.first == start.end() ||
+         std::all_of(differs.second, bytes.end(), [](std::uint8_t b) { return b == 0; });
+}
+
+}  // namespace
+
+std::string_view name(Found found) {
+  switch (found) {
+    case Found::good:
+      return "good";
+    case Found::nothing:
+      return "nothing";
+    case Found::foreign:
+      return "foreign";
+    case Found::torn:
+      return "torn";
+    case Found::corrupt:
+      return "corrupt";
+    case Found::older:
+      return "older";
+    case Found::newer:
+      return "newer";
+    case Found::unreadable:
+      return "unreadable";
+  }
+  return "unknown";
+}
+
+Bytes seal(const StateFormat& format, std::uint64_t generation, std::span<const std::uint8_t> payload) {
+  Packer out;
+  out.put(kMagic).put(octets(format.kind)).put(format.version).put(std::uint16_t{0});
+  out.put(static_cast<std::uint32_t>(payload.size())).put(generation).raw(payload);
+  const std::uint32_t checksum = crc32c(out.bytes());
+  out.put(checksum);
+  return out.bytes();
+}
+
+State unseal(const StateFormat& format, std::span<const std::uint8_t> bytes) {
+  const auto kind = octets(format.kind);
+  if (!begun(bytes, kind)) return flawed(Found::foreign, "it is no file of this kind");
+  if (bytes.size() < kHeader + kChecksum || bytes[7] != kind[3])
+    return flawed(Found::torn, "it ends after " + std::to_string(bytes.size()) + " bytes");
+  Unpacker in(bytes);
+  (void)in.array<8>();
+  const auto version = in.get<std::uint16_t>();
+  const auto zero = in.get<std::uint16_t>();
+  const std::size_t size = in.get<std::uint32_t>();
+  const auto generation = in.get<std::uint64_t>();
+  const std::size_t whole = kHeader + size + kChecksum;
+  if (bytes.size() < whole)
+    return flawed(Found::torn, "it ends after " + std::to_string(bytes.size()) + " of " +
+                                   std::to_string(whole) + " bytes");
+  const auto payload = bytes.subspan(kHeader, size);
+  const auto checksum = Unpacker(bytes.subspan(kHeader + size)).get<std::uint32_t>();
+  if (bytes.size() > whole || zero != 0 || checksum != crc32c(bytes.first(kHeader + size)))
+    return flawed(Found::corrupt, "its checksum does not match");
+  if (version != format.version)
+    return flawed(version < format.version ? Found::older : Found::newer,
+                  "it is of version " + std::to_string(version) + ", this program speaks version " +
+                      std::to_string(format.version));
+  if (size > format.most) return flawed(Found::corrupt, "it is longer than it can be");
+  return {Found::good, {}, generation, {payload.begin(), payload.end()}};
+}
+
+State StateFile::load() const {
+  const auto bytes = disk_->read(file_, kHeader + format_.most + kChecksum);
+  if (!bytes) return flawed(Found::unreadable, bytes.error().text);
+  if (!*bytes) return {};
+  return unseal(format_, **bytes);
+}
+
+Result<void> StateFile::save(std::uint64_t generation, std::span<const std::uint8_t> payload) const {
+  if (payload.size() > format_.most)
+    return {Reason::out_of_range, file_ + " would be " + std::to_string(payload.size()) + " bytes long, " +
+                                      std::to_string(format_.most) + " are allowed"};
+  return disk_->replace(file_, seal(format_, generation, payload));
+}
+
+}  // namespace adit::store
