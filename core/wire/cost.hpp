@@ -10,7 +10,7 @@ namespace adit::wire {
 /// Bytes that a message costs on the network, RTPS, UDP and IP headers included; as Fast DDS sends them
 /// (docs/wire.md has the measurement).
 struct WireCost {
-  static constexpr std::uint32_t frame = 1400;           ///< longer samples go out in fragments of this
+  static constexpr std::uint32_t frame = 1400;           ///< largest one, where no link says otherwise
   static constexpr std::uint32_t headers = 20 + 20 + 8;  ///< RTPS, IP, UDP: once per frame
   static constexpr std::uint32_t data = headers + 16 + 12 + 24;  ///< + INFO_DST, INFO_TS, DATA
   static constexpr std::uint32_t key = 24;                       ///< key hash as inline QoS
@@ -24,14 +24,14 @@ struct WireCost {
   static constexpr int discovery_priority = 1;  ///< after urgent samples
   static constexpr Duration response = 5ms;     ///< to heartbeats and to acknacks
 
-  /// Frames of a sample of that many serialised bytes.
-  static constexpr std::uint16_t frames(std::size_t payload) {
-    constexpr std::size_t room = frame - data;
+  /// Frames of a sample of that many serialised bytes, each of at most `largest` bytes.
+  static constexpr std::uint16_t frames(std::size_t payload, std::uint32_t largest = frame) {
+    const std::size_t room = std::max(largest, data + 64) - data;
     return static_cast<std::uint16_t>(std::clamp<std::size_t>((payload + room - 1) / room, 1, 65535));
   }
   /// Bytes of that sample to one reader.
-  static constexpr std::uint32_t sample(std::size_t payload, bool keyed) {
-    return static_cast<std::uint32_t>(payload) + frames(payload) * (data + (keyed ? key : 0U));
+  static constexpr std::uint32_t sample(std::size_t payload, bool keyed, std::uint32_t largest = frame) {
+    return static_cast<std::uint32_t>(payload) + frames(payload, largest) * (data + (keyed ? key : 0U));
   }
 };
 

@@ -40,11 +40,7 @@ wire::LinkProfile read_link(const Node& node, const std::string& file) {
     return link ? *link : out;
   }
   out.name = node.text("name", "custom");
-  out.bandwidth = node.number("bandwidth", config::above(0.0, 1e10), out.bandwidth);
-  out.latency = node.number("latency", config::within(0.0, 10.0), out.latency);
-  out.loss = node.number("loss", config::within(0.0, 1.0), out.loss);
-  out.range = node.number("range", config::within(0.0, 1e6), out.range);
-  out.queue = node.number("queue", config::above(0.0, 10.0), out.queue);
+  wire::read_link_keys(node, out);
   return out;
 }
 

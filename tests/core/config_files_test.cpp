@@ -92,6 +92,27 @@ TEST(Links, wrong_files_are_errors) {
       wire::load_link_file(folder.write("l.yaml", "name: l\nbandwidth: 1e6\nlatency: 0.1\nloss: 5\n"));
   ASSERT_FALSE(link);
   EXPECT_THAT(link.error().text, HasSubstr("l.yaml:4: loss: expected a number in [0, 1], got '5'"));
+  const std::string good = "name: l\nbandwidth: 1e6\nlatency: 0.1\nloss: 0\n";
+  ASSERT_TRUE(wire::load_link_file(folder.write("good.yaml", good)));
+  for (const char* bad : {"jitter: -1", "burst: 0.5", "window: 11", "frame: 100", "frame: 1.5",
+                          "frame: 70000", "fading: 11", "path_loss: -1", "shadowing: 41", "power: 61",
+                          "noise: 1", "queue: 0", "range: far", "burst: [1]", "bursts: 2", "jitter: .nan"}) {
+    const auto wrong = wire::load_link_file(folder.write("bad.yaml", good + bad + "\n"));
+    ASSERT_FALSE(wrong) << bad;
+    EXPECT_THAT(wrong.error().text, HasSubstr("bad.yaml:5: ")) << bad;
+  }
+  for (const char* missing :
+       {"name: l\nlatency: 0\nloss: 0\n", "name: l\nbandwidth: 1\nloss: 0\n", "name: l\n"})
+    EXPECT_FALSE(wire::load_link_file(folder.write("less.yaml", missing))) << missing;
+}
+
+TEST(Links, a_mines_radio_has_the_public_simulators_numbers) {
+  const auto link = wire::load_link("subt");
+  ASSERT_TRUE(link) << link.error().text;
+  EXPECT_EQ(link->window, 1.0);
+  EXPECT_EQ(link->frame_bytes(), 1500U);
+  EXPECT_EQ(link->fading, 2.5);
+  EXPECT_EQ(link->range, 50.0);
 }
 
 TEST(Search, looks_beside_the_file_first_and_tells_where_it_looked) {

@@ -156,12 +156,37 @@ void Ether::crash(const std::string& machine) {
 void Ether::set_link(const std::string& a, const std::string& b, const LinkProfile& profile) {
   core_->radio->set_link(a, b, profile);
 }
-void Ether::cut(const std::string& a, const std::string& b, bool is_cut) { core_->radio->cut(a, b, is_cut); }
-void Ether::degrade(const std::string& a, const std::string& b, std::optional<double> loss) {
-  core_->radio->degrade(a, b, loss);
+DisturbanceId Ether::disturb(Disturbance disturbance) {
+  return core_->radio->disturbances().add(std::move(disturbance));
 }
+void Ether::end_disturbance(DisturbanceId id) { core_->radio->disturbances().end(id); }
+
+void Ether::cut(const std::string& a, const std::string& b, bool is_cut) {
+  const auto key = std::minmax(a, b);
+  const auto old = cuts_.find(key);
+  if (old != cuts_.end()) {
+    end_disturbance(old->second);
+    cuts_.erase(old);
+  }
+  if (is_cut) cuts_[key] = disturb({.from = {a}, .to = {b}, .cut = true});
+}
+
+void Ether::degrade(const std::string& a, const std::string& b, std::optional<double> loss) {
+  const auto key = std::minmax(a, b);
+  const auto old = degraded_.find(key);
+  if (old != degraded_.end()) {
+    end_disturbance(old->second);
+    degraded_.erase(old);
+  }
+  if (loss) degraded_[key] = disturb({.from = {a}, .to = {b}, .loss = loss});
+}
+
 void Ether::set_position(const std::string& machine, double x, double y, double z) {
-  core_->radio->set_position(machine, x, y, z);
+  core_->radio->set_position(machine, {x, y, z});
+}
+void Ether::set_attenuation(Attenuation walls) { core_->radio->set_attenuation(std::move(walls)); }
+std::optional<double> Ether::signal(const std::string& from, const std::string& to) const {
+  return core_->radio->signal(from, to);
 }
 void Ether::set_tap(std::function<void(const Frame&)> tap) { core_->tap = std::move(tap); }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +10,7 @@
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/link.hpp"
+#include "core/wire/memory/disturbance.hpp"
 #include "core/wire/wire.hpp"
 
 namespace adit::wire {
@@ -39,8 +41,9 @@ struct Frame {
 /// The radio and the inner networks of a rehearsal: wires with the topics and QoS classes of the real one, on
 /// virtual time. What the real one costs is charged to the radio model: RTPS, UDP and IP headers,
 /// participant announcements, endpoint discovery of each pair, heartbeats, acknowledgements, repairs. A
-/// sender's datagrams leave one after another at the link's bandwidth, by priority of their class; frames of
-/// 1400 bytes are lost one by one. All calls on the scheduler's thread. Same seed, same run.
+/// sender's datagrams leave frame by frame at the link's bandwidth, by priority of their class and within its
+/// budget; frames are lost one by one (core/wire/link/). All calls on the scheduler's thread. Same seed, same
+/// run.
 ///
 /// Machines are known by name. Their positions and links outlive their participants.
 class Ether {
@@ -58,12 +61,22 @@ class Ether {
 
   /// Both directions between two machines.
   void set_link(const std::string& a, const std::string& b, const LinkProfile& profile);
-  /// While cut nothing passes between the two.
+  /// A fault of the radio from now on, until end_disturbance() of the returned number. Faults overlap: each
+  /// `for:` of a script ends only its own.
+  DisturbanceId disturb(Disturbance disturbance);
+  void end_disturbance(DisturbanceId id);
+  /// A cut both ways between two machines, as a switch: it does not count how often it was set.
   void cut(const std::string& a, const std::string& b, bool is_cut);
-  /// Another chance of loss than the link's, [0, 1]; nullopt: the link's own again.
+  /// Another chance of loss than the link's both ways, [0, 1], as a switch; nullopt: the link's own again.
   void degrade(const std::string& a, const std::string& b, std::optional<double> loss);
-  /// World coordinates, m; for links with a range.
+  /// World coordinates, m; for links with a range or that fade.
   void set_position(const std::string& machine, double x, double y, double z = 0.0);
+  /// Attenuation by what stands between two positions, dB, >= 0; counts on links that fade. Asked for every
+  /// frame on such a link: keep it cheap. An empty one: no walls.
+  void set_attenuation(Attenuation walls);
+  /// Mean received power between two machines, dBm; nothing where the link does not fade or a position is
+  /// not known.
+  std::optional<double> signal(const std::string& from, const std::string& to) const;
 
   /// Called for every sample sent, delivered and lost; the views are valid during the call only.
   void set_tap(std::function<void(const Frame&)> tap);
@@ -72,6 +85,7 @@ class Ether {
 
  private:
   std::shared_ptr<Core> core_;
+  std::map<std::pair<std::string, std::string>, DisturbanceId> cuts_{}, degraded_{};  // the switches
 };
 
 }  // namespace adit::wire

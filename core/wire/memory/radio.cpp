@@ -1,7 +1,6 @@
 #include "core/wire/memory/radio.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace adit::wire {
 
@@ -14,25 +13,35 @@ int Radio::add(std::string machine, bool inner) {
 }
 
 void Radio::set_link(const std::string& a, const std::string& b, const LinkProfile& profile) {
-  link(a, b).profile = profile;
+  links_[std::minmax(a, b)] = profile;
 }
 
-void Radio::cut(const std::string& a, const std::string& b, bool is_cut) { link(a, b).cut = is_cut; }
-
-void Radio::degrade(const std::string& a, const std::string& b, std::optional<double> loss) {
-  link(a, b).loss = loss;
+const LinkProfile& Radio::profile(const std::string& a, const std::string& b) const {
+  if (links_.empty()) return standard_;
+  const auto found = links_.find(std::minmax(a, b));
+  return found == links_.end() ? standard_ : found->second;
 }
 
-const Radio::Link* Radio::find(int from, int to) const {
-  const std::string& a = machine(from);
-  const std::string& b = machine(to);
-  const auto found = links_.find(a < b ? std::pair(a, b) : std::pair(b, a));
-  return found == links_.end() ? nullptr : &found->second;
+std::uint32_t Radio::frame_bytes(int node) const {
+  std::uint32_t smallest = standard_.frame_bytes();
+  for (const auto& [pair, link] : links_) {
+    if (pair.first == machine(node) || pair.second == machine(node))
+      smallest = std::min(smallest, link.frame_bytes());
+  }
+  return smallest;
 }
 
-const LinkProfile& Radio::profile(int from, int to) const {
-  const Link* own = find(from, to);
-  return own != nullptr && own->profile ? *own->profile : standard_;
+Path Radio::path(const std::string& from, const std::string& to) const {
+  const auto a = positions_.find(from), b = positions_.find(to);
+  if (a == positions_.end() || b == positions_.end()) return {};
+  Path result;
+  result.distance = distance(a->second, b->second);
+  if (walls_ && profile(from, to).fading > 0.0) result.walls = walls_(a->second, b->second);
+  return result;
+}
+
+std::optional<double> Radio::signal(const std::string& from, const std::string& to) const {
+  return received_power(profile(from, to), path(from, to));
 }
 
 void Radio::after(Duration delay, Task task) {
@@ -56,87 +65,97 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
     });
     return;
   }
-  auto& queue = node.queues[static_cast<std::size_t>(std::clamp(shared->priority, 0, 6))];
-  if (shared->supersedes != 0) {
-    for (Waiting& waiting : queue) {
-      if (waiting.datagram->supersedes != shared->supersedes || waiting.to != to) continue;
-      if (waiting.datagram->lost) {
-        for (const int node_to : to) waiting.datagram->lost(node_to);
-      }
-      waiting.datagram = std::move(shared);
-      waiting.since = scheduler_.elapsed();
-      return;
-    }
+  double patience = 0.0;
+  for (const int node_to : to) patience = std::max(patience, profile(from, node_to).queue);
+  auto packet = std::make_shared<Packet>();
+  packet->through.resize(to.size());
+  packet->to = std::move(to);
+  packet->datagram = shared;
+  std::uint64_t number = shared->supersedes;
+  if (number != 0) number ^= (static_cast<std::uint64_t>(packet->to.front()) + 1) * 0x9e3779b97f4a7c15ULL;
+  const auto replaced = node.queue.push({.item = std::move(packet),
+                                         .frames = shared->frames,
+                                         .priority = shared->priority,
+                                         .supersedes = number,
+                                         .since = scheduler_.elapsed(),
+                                         .patience = from_seconds(patience)});
+  if (replaced && (*replaced)->datagram->lost) {
+    for (const int node_to : (*replaced)->to) (*replaced)->datagram->lost(node_to);
   }
-  queue.push_back({std::move(shared), std::move(to), scheduler_.elapsed()});
   if (!node.busy) pump(from);
 }
 
 void Radio::pump(int index) {
   Node& node = nodes_[static_cast<std::size_t>(index)];
   node.busy = false;
-  if (!node.on) {
-    for (auto& queue : node.queues) queue.clear();
-    return;
-  }
-  for (auto& queue : node.queues) {
-    while (!queue.empty()) {
-      const Waiting item = std::move(queue.front());
-      queue.pop_front();
-      // Multicast goes out at the rate of the slowest of those it is meant for.
-      double bandwidth = profile(index, item.to.front()).bandwidth, patience = 0.0;
-      for (const int to : item.to) {
-        bandwidth = std::min(bandwidth, profile(index, to).bandwidth);
-        patience = std::max(patience, profile(index, to).queue);
-      }
-      if (seconds(scheduler_.elapsed() - item.since) > patience) {
-        if (item.datagram->lost) {
-          for (const int to : item.to) item.datagram->lost(to);
-        }
-        continue;
-      }
-      const Duration airtime = from_seconds(item.datagram->bytes * 8.0 / bandwidth);
-      node.busy = true;
-      transmit(index, item, airtime);
-      after(airtime, [self = this, index] { self->pump(index); });
-      return;
+  ++node.asked;
+  if (!node.on) return node.queue.clear();
+  const auto airtime = [this, index](const std::shared_ptr<Packet>& packet) {
+    // Multicast goes out at the rate of the slowest of those it is meant for.
+    double slowest = 1e12;
+    for (const int to : packet->to) {
+      const double slower = disturbances_.none() ? 1.0 : disturbances_.on(machine(index), machine(to)).slower;
+      const LinkProfile& link = profile(index, to);
+      slowest = std::min(slowest, (link.window > 0.0 ? 1e12 : link.bandwidth) / slower);
     }
-  }
-}
-
-void Radio::transmit(int from, const Waiting& item, Duration airtime) {
-  if (item.datagram->sent) item.datagram->sent();
-  for (const int to : item.to) {
-    const std::uint16_t through = frames_through(from, to, item.datagram->frames);
-    const Duration delay = airtime + from_seconds(profile(from, to).latency);
-    after(delay, [self = this, datagram = item.datagram, from, to, through] {
-      if (through > 0 && self->is_on(to) && self->is_on(from)) {
-        datagram->arrived(to, through);
-      } else if (datagram->lost) {
-        datagram->lost(to);
-      }
+    return from_seconds(packet->datagram->bytes * 8.0 / packet->datagram->frames / slowest);
+  };
+  const auto drop = [](const std::shared_ptr<Packet>& packet) {
+    if (!packet->datagram->lost) return;
+    for (const int to : packet->to) packet->datagram->lost(to);
+  };
+  const auto next = node.queue.next(scheduler_.elapsed(), airtime, drop);
+  if (next) {
+    node.busy = true;
+    put_on_air(index, next->message.item, next->last, next->airtime);
+    after(next->airtime, [self = this, index] { self->pump(index); });
+  } else if (const auto at = node.queue.ready(scheduler_.elapsed())) {
+    after(*at - scheduler_.elapsed(), [self = this, index, asked = node.asked] {
+      const Node& waiting = self->nodes_[static_cast<std::size_t>(index)];
+      if (!waiting.busy && waiting.asked == asked) self->pump(index);
     });
   }
 }
 
-std::uint16_t Radio::frames_through(int from, int to, std::uint16_t frames) {
-  const Link* own = find(from, to);
-  const LinkProfile& link_profile = profile(from, to);
-  if (own != nullptr && own->cut) return 0;
-  if (link_profile.range > 0.0) {
-    const auto a = positions_.find(machine(from)), b = positions_.find(machine(to));
-    if (a != positions_.end() && b != positions_.end()) {
-      const double distance =
-          std::hypot(a->second[0] - b->second[0], a->second[1] - b->second[1], a->second[2] - b->second[2]);
-      if (distance > link_profile.range) return 0;
+void Radio::put_on_air(int from, const std::shared_ptr<Packet>& packet, bool last, Duration airtime) {
+  Datagram& datagram = *packet->datagram;
+  if (last && datagram.sent) datagram.sent();
+  const std::uint32_t bytes = datagram.bytes / datagram.frames;
+  Node& node = nodes_[static_cast<std::size_t>(from)];
+  for (std::size_t i = 0; i < packet->to.size(); ++i) {
+    const int to = packet->to[i];
+    const LinkProfile& link = profile(from, to);
+    const Disturbances::Effect effect =
+        disturbances_.none() ? Disturbances::Effect{} : disturbances_.on(machine(from), machine(to));
+    const bool admitted = link.window <= 0.0 || i > 0 || node.window.admit(link, bytes, scheduler_.elapsed());
+    if (admitted && !lost(from, to, bytes, effect)) ++packet->through[i];
+    if (!last) continue;
+    const std::uint16_t through = packet->through[i];
+    Duration delay = airtime + transit(link, random_) + effect.delay;
+    if (effect.reorder > 0.0 && random_.chance(effect.reorder))
+      delay += from_seconds(random_.uniform() * seconds(effect.reorder_by));
+    arrive(from, to, packet->datagram, through, delay);
+    if (effect.duplicate > 0.0 && through == datagram.frames && random_.chance(effect.duplicate))
+      arrive(from, to, packet->datagram, through, delay + from_seconds(random_.uniform(0.0, 0.05)));
+  }
+}
+
+void Radio::arrive(int from, int to, const std::shared_ptr<Datagram>& datagram, std::uint16_t through,
+                   Duration delay) {
+  after(delay, [self = this, datagram, from, to, through] {
+    if (through > 0 && self->is_on(to) && self->is_on(from)) {
+      datagram->arrived(to, through);
+    } else if (datagram->lost) {
+      datagram->lost(to);
     }
-  }
-  const double loss = own != nullptr && own->loss ? *own->loss : link_profile.loss;
-  std::uint16_t through = 0;
-  for (std::uint16_t i = 0; i < frames; ++i) {
-    if (!random_.chance(loss)) ++through;
-  }
-  return through;
+  });
+}
+
+bool Radio::lost(int from, int to, std::uint32_t bytes, const Disturbances::Effect& effect) {
+  if (effect.cut) return true;
+  const LinkProfile& link = profile(from, to);
+  const Path between = link.range > 0.0 || link.fading > 0.0 ? path(machine(from), machine(to)) : Path{};
+  return channels_[{from, to}].lost(link, between, bytes, effect.loss, random_);
 }
 
 }  // namespace adit::wire

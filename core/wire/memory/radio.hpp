@@ -10,7 +10,9 @@
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/time/random.hpp"
-#include "core/wire/link.hpp"
+#include "core/wire/link/model.hpp"
+#include "core/wire/link/transmitter.hpp"
+#include "core/wire/memory/disturbance.hpp"
 
 namespace adit::wire {
 
@@ -18,15 +20,15 @@ namespace adit::wire {
 struct Datagram {
   std::uint32_t bytes{};  ///< headers included, all frames together
   std::uint16_t frames{1};
-  int priority{};                ///< 0 goes first, up to 6
+  int priority{};                ///< core/wire/link/budget.hpp
   std::uint64_t supersedes{};    ///< not 0: replaces a waiting datagram of this number to the same node
   std::function<void()> sent{};  ///< it went on the air
   std::function<void(int to, std::uint16_t frames)> arrived{};  ///< so many of its frames, at least one
   std::function<void(int to)> lost{};  ///< none of its frames, or dropped at the sender
 };
 
-/// The radio model: one transmitter per node that sends one datagram after another, by priority; latency,
-/// loss per frame, range and cuts per pair of machines. Inner nodes have a perfect network.
+/// The rehearsal's radio on the link model: one transmitter per node, latency and loss per pair of machines
+/// and direction, faults on top. Inner nodes have a perfect network.
 class Radio : public std::enable_shared_from_this<Radio> {
  public:
   Radio(VirtualScheduler& scheduler, std::uint64_t seed, LinkProfile standard, Duration inner_latency)
@@ -41,43 +43,49 @@ class Radio : public std::enable_shared_from_this<Radio> {
   bool is_on(int node) const { return nodes_[static_cast<std::size_t>(node)].on; }
   const std::string& machine(int node) const { return nodes_[static_cast<std::size_t>(node)].machine; }
   bool inner(int node) const { return nodes_[static_cast<std::size_t>(node)].inner; }
+  /// Largest frame that the node may send to anybody.
+  std::uint32_t frame_bytes(int node) const;
+  /// The longest that anything has waited there to be sent.
+  Duration waiting(int node) const {
+    return nodes_[static_cast<std::size_t>(node)].queue.oldest(scheduler_.elapsed());
+  }
 
   void send(int from, int to, Datagram datagram) { multicast(from, {to}, std::move(datagram)); }
   /// One transmission, heard by all of `to`.
   void multicast(int from, std::vector<int> to, Datagram datagram);
 
   void set_link(const std::string& a, const std::string& b, const LinkProfile& profile);
-  void cut(const std::string& a, const std::string& b, bool is_cut);
-  void degrade(const std::string& a, const std::string& b, std::optional<double> loss);
-  void set_position(const std::string& machine, double x, double y, double z) {
-    positions_[machine] = {x, y, z};
-  }
+  void set_position(const std::string& machine, Position position) { positions_[machine] = position; }
+  void set_attenuation(Attenuation walls) { walls_ = std::move(walls); }
+  /// Mean received power, dBm, where the link fades and both positions are known.
+  std::optional<double> signal(const std::string& from, const std::string& to) const;
+  Disturbances& disturbances() { return disturbances_; }
 
  private:
-  struct Waiting {
+  struct Packet {
     std::shared_ptr<Datagram> datagram{};
     std::vector<int> to{};
-    Duration since{};
+    std::vector<std::uint16_t> through{};  // frames that arrived, by receiver
   };
   struct Node {
     std::string machine{};
     bool inner{};
     bool on{true};
     bool busy{};
-    std::array<std::deque<Waiting>, 7> queues{};
+    std::uint64_t asked{};  // the latest wake-up counts, earlier ones are void
+    Transmitter<std::shared_ptr<Packet>> queue{};
+    Window window{};
   };
-  struct Link {
-    std::optional<LinkProfile> profile{};
-    std::optional<double> loss{};
-    bool cut{};
-  };
+  using Pair = std::pair<std::string, std::string>;
 
-  Link& link(const std::string& a, const std::string& b) { return a < b ? links_[{a, b}] : links_[{b, a}]; }
-  const Link* find(int from, int to) const;
-  const LinkProfile& profile(int from, int to) const;
+  const LinkProfile& profile(const std::string& a, const std::string& b) const;
+  const LinkProfile& profile(int from, int to) const { return profile(machine(from), machine(to)); }
+  Path path(const std::string& from, const std::string& to) const;
   void pump(int node);
-  void transmit(int node, const Waiting& item, Duration airtime);
-  std::uint16_t frames_through(int from, int to, std::uint16_t frames);
+  void put_on_air(int node, const std::shared_ptr<Packet>& packet, bool last, Duration airtime);
+  void arrive(int from, int to, const std::shared_ptr<Datagram>& datagram, std::uint16_t through,
+              Duration delay);
+  bool lost(int from, int to, std::uint32_t bytes, const Disturbances::Effect& effect);
   void after(Duration delay, Task task);
 
   VirtualScheduler& scheduler_;
@@ -85,8 +93,11 @@ class Radio : public std::enable_shared_from_this<Radio> {
   LinkProfile standard_;
   Duration inner_latency_;
   std::deque<Node> nodes_{};
-  std::map<std::pair<std::string, std::string>, Link> links_{};
-  std::map<std::string, std::array<double, 3>> positions_{};
+  std::map<Pair, LinkProfile> links_{};
+  std::map<std::pair<int, int>, Channel> channels_{};  // by sender, receiver
+  std::map<std::string, Position> positions_{};
+  Attenuation walls_{};
+  Disturbances disturbances_{};
   bool closed_{};
 };
 

@@ -36,8 +36,9 @@ Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
   }
   ++out.samples_out;
   sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(cdr.begin(), cdr.end());
-  sample.frames = WireCost::frames(cdr.size());
-  sample.wire_bytes = WireCost::sample(cdr.size(), topic.keyed);
+  const std::uint32_t largest = owner->core->radio->frame_bytes(owner->node);
+  sample.frames = WireCost::frames(cdr.size(), largest);
+  sample.wire_bytes = WireCost::sample(cdr.size(), topic.keyed, largest);
   if (!owner->stopped) owner->core->show(Frame::Kind::sent, *owner, nullptr, topic, sample.bytes);
   add(std::move(sample));
   return {};

@@ -1,0 +1,123 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/time/time.hpp"
+#include "core/wire/link/budget.hpp"
+
+namespace adit::wire {
+
+/// The sender's side of a link: what waits for the air, by priority, each class within its share of the
+/// airtime. Frame by frame, so that an urgent message waits for one frame at most. Pure: the caller has the
+/// clock and the air. `Item` is what it carries.
+template <class Item>
+class Transmitter {
+ public:
+  struct Waiting {
+    Item item{};
+    std::uint16_t frames{1};  ///< of the message
+    std::uint16_t sent{};     ///< of them already
+    int priority{};
+    std::uint64_t supersedes{};  ///< not 0: replaces a waiting one of this number
+    Duration since{};
+    Duration patience{};  ///< dropped when it waited longer
+  };
+
+  explicit Transmitter(Budget budget = {}) : budget_(budget) {}
+
+  /// Returns what it replaced: a waiting message of the same number of which nothing was sent yet.
+  std::optional<Item> push(Waiting waiting) {
+    waiting.priority = std::clamp(waiting.priority, 0, static_cast<int>(priorities) - 1);
+    auto& queue = queues_[static_cast<std::size_t>(waiting.priority)];
+    if (waiting.supersedes != 0) {
+      for (Waiting& old : queue) {
+        if (old.supersedes != waiting.supersedes || old.sent > 0) continue;
+        std::swap(old, waiting);
+        return std::move(waiting.item);
+      }
+    }
+    queue.push_back(std::move(waiting));
+    return std::nullopt;
+  }
+
+  /// The message whose next frame goes now: its frame number and whether it is the last one. Nothing: none
+  /// waits, or see ready(). `airtime(item)` is that of one frame of it; what waited too long goes to `drop`.
+  struct Next {
+    Waiting message{};
+    Duration airtime{};
+    bool last{};
+  };
+  template <class Airtime, class Drop>
+  std::optional<Next> next(Duration now, Airtime airtime, Drop drop) {
+    for (std::size_t p = 0; p < priorities; ++p) {
+      auto& queue = queues_[p];
+      while (!queue.empty() && queue.front().sent == 0 &&
+             now - queue.front().since > queue.front().patience) {
+        Waiting stale = std::move(queue.front());
+        queue.pop_front();
+        drop(std::move(stale.item));
+      }
+      if (queue.empty() || saved(p, now) < 0.0) continue;
+      Waiting& head = queue.front();
+      const Duration cost = airtime(head.item);
+      if (budget_.share[p] < 1.0) saved_[p] -= seconds(cost);
+      ++head.sent;
+      if (head.sent < head.frames) return Next{head, cost, false};
+      Next result{std::move(head), cost, true};
+      queue.pop_front();
+      return result;
+    }
+    return std::nullopt;
+  }
+
+  /// When next() should be asked again although it had nothing: a class that waits for its share. Nothing
+  /// when nothing waits.
+  std::optional<Duration> ready(Duration now) {
+    std::optional<Duration> soonest;
+    for (std::size_t p = 0; p < priorities; ++p) {
+      if (queues_[p].empty()) continue;
+      const double debt = std::max(0.0, -saved(p, now));
+      const Duration at = now + from_seconds(debt / budget_.share[p]) + 1us;
+      if (!soonest || at < *soonest) soonest = at;
+    }
+    return soonest;
+  }
+
+  std::size_t size() const {
+    std::size_t n = 0;
+    for (const auto& queue : queues_) n += queue.size();
+    return n;
+  }
+  /// The longest that anything has waited.
+  Duration oldest(Duration now) const {
+    Duration longest{};
+    for (const auto& queue : queues_) {
+      if (!queue.empty()) longest = std::max(longest, now - queue.front().since);
+    }
+    return longest;
+  }
+  void clear() {
+    for (auto& queue : queues_) queue.clear();
+  }
+
+ private:
+  double saved(std::size_t p, Duration now) {
+    const double share = budget_.share[p];
+    saved_[p] = std::min(share * budget_.memory, saved_[p] + share * seconds(now - counted_[p]));
+    counted_[p] = now;
+    return saved_[p];
+  }
+
+  Budget budget_;
+  std::array<std::deque<Waiting>, priorities> queues_{};
+  std::array<double, priorities> saved_{};      // airtime, s; below zero: over its share
+  std::array<Duration, priorities> counted_{};  // when it was last brought up to date
+};
+
+}  // namespace adit::wire

@@ -1,0 +1,115 @@
+#include "core/wire/link/transmitter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace adit::wire {
+namespace {
+
+using Queue = Transmitter<std::string>;
+
+/// Sends what waits for `time`, 10 ms a frame; "a" or "a.1" for frame 1 of a message of several.
+struct Line {
+  Queue queue{};
+  Duration now{};
+  std::vector<std::string> sent{}, dropped{};
+
+  void push(const std::string& name, int priority, std::uint64_t number = 0, std::uint16_t frames = 1) {
+    const auto replaced = queue.push({.item = name,
+                                      .frames = frames,
+                                      .priority = priority,
+                                      .supersedes = number,
+                                      .since = now,
+                                      .patience = 250ms});
+    if (replaced) dropped.push_back(*replaced);
+  }
+  void run(Duration time) {
+    const Duration end = now + time;
+    while (now < end) {
+      const auto next = queue.next(
+          now, [](const std::string&) { return 10ms; },
+          [this](std::string item) { dropped.push_back(std::move(item)); });
+      if (next) {
+        sent.push_back(next->message.frames == 1
+                           ? next->message.item
+                           : next->message.item + "." + std::to_string(next->message.sent));
+        now += next->airtime;
+      } else if (const auto at = queue.ready(now)) {
+        now = std::min(*at, end);
+      } else {
+        now = end;
+      }
+    }
+  }
+};
+
+using Names = std::vector<std::string>;
+
+TEST(Transmitter, SendsByPriorityThenInOrder) {
+  Line line;
+  line.now = 10s;
+  line.push("map", 5), line.push("state", 3), line.push("stop", 0), line.push("take", 0);
+  line.run(100ms);
+  EXPECT_EQ(line.sent, (Names{"stop", "take", "state", "map"}));
+  EXPECT_EQ(line.queue.size(), 0U);
+}
+
+TEST(Transmitter, AnUrgentMessageWaitsForOneFrameAtMost) {
+  Line line;
+  line.now = 10s;
+  line.push("map", 5, 0, 3);
+  line.run(10ms);
+  line.push("stop", 0);
+  line.run(100ms);
+  EXPECT_EQ(line.sent, (Names{"map.1", "stop", "map.2", "map.3"}));
+}
+
+TEST(Transmitter, TheNewestReplacesWhatWaitsButNotWhatIsHalfSent) {
+  Line line;
+  line.now = 10s;
+  line.push("old", 3, 7), line.push("other", 3, 8), line.push("new", 3, 7);
+  EXPECT_EQ(line.dropped, (Names{"old"}));
+  line.run(100ms);
+  EXPECT_EQ(line.sent, (Names{"new", "other"}));
+  line.push("picture", 6, 9, 2);
+  line.run(10ms);
+  line.push("next", 6, 9, 2);
+  line.run(500ms);
+  EXPECT_EQ(Names(line.sent.begin() + 2, line.sent.end()),
+            (Names{"picture.1", "picture.2", "next.1", "next.2"}));
+}
+
+TEST(Transmitter, DropsWhatWaitedTooLong) {
+  Line line;
+  for (int i = 0; i < 40; ++i) line.push("stop", 0);
+  line.run(1s);
+  EXPECT_EQ(line.sent.size(), 26U);  // at 0, 10, ... 250 ms
+  EXPECT_EQ(line.dropped.size(), 14U);
+  line.push("late", 5);
+  EXPECT_EQ(line.queue.oldest(line.now + 30ms), 30ms);
+}
+
+TEST(Transmitter, AClassStaysWithinItsShareWhileOthersUseTheRest) {
+  Line line;
+  line.now = 10s;
+  int bulk = 0, video = 0;
+  for (int i = 1; i <= 400; ++i) {
+    line.push("bulk", 5), line.push("video", 6);
+    line.run(10s + i * 25ms - line.now);
+  }
+  for (const std::string& name : line.sent) (name == "bulk" ? bulk : video)++;
+  EXPECT_NEAR(bulk, 400, 40);   // wanted and within 60 % of 1000 frames
+  EXPECT_NEAR(video, 315, 30);  // 30 %, and what was saved up at the start
+}
+
+TEST(Transmitter, UrgentMessagesAreNotLimited) {
+  Line line;
+  for (int i = 0; i < 20; ++i) line.push("stop", 0);
+  line.run(200ms);
+  EXPECT_EQ(line.sent.size(), 20U);
+  EXPECT_FALSE(line.queue.ready(line.now));
+}
+
+}  // namespace
+}  // namespace adit::wire
