@@ -1,0 +1,56 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "core/record/bytes.hpp"
+
+/// The MCAP container format, version 0 (mcap.dev/spec), as far as recordings use it.
+namespace adit::record {
+
+inline constexpr std::array<std::uint8_t, 8> mcap_magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+
+enum class Opcode : std::uint8_t {
+  header = 0x01,
+  footer = 0x02,
+  schema = 0x03,
+  channel = 0x04,
+  message = 0x05,
+  chunk = 0x06,
+  message_index = 0x07,
+  chunk_index = 0x08,
+  attachment = 0x09,
+  attachment_index = 0x0A,
+  statistics = 0x0B,
+  metadata = 0x0C,
+  metadata_index = 0x0D,
+  summary_offset = 0x0E,
+  data_end = 0x0F,
+};
+
+/// Opcode and length stand in front of every record.
+inline constexpr std::size_t record_head = 9;
+
+struct Schema {
+  std::uint16_t id{};      ///< never 0 in a file
+  std::string name{};      ///< of the message's type, "adit::radio::Command"
+  std::string encoding{};  ///< "omgidl"
+  std::string text{};      ///< the type and all that it needs
+};
+
+struct Channel {
+  std::uint16_t id{};
+  std::uint16_t schema{};  ///< 0: none
+  std::string topic{};
+  std::string encoding{};  ///< of the messages: "cdr"
+  Text metadata{};
+};
+
+struct Message {
+  std::uint16_t channel{};
+  std::uint32_t sequence{};  ///< within the channel
+  std::uint64_t time{};      ///< ns, when it was recorded
+  Bytes data{};              ///< valid while the reader calls
+};
+
+}  // namespace adit::record

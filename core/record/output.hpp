@@ -1,0 +1,32 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/record/bytes.hpp"
+#include "core/result/result.hpp"
+
+namespace adit::record {
+
+/// Where the bytes of a recording go, one after the other.
+class Output {
+ public:
+  virtual ~Output() = default;
+  /// Error cannot_write: the disk is full, or gone. What was appended before stays.
+  virtual Result<void> append(Bytes data) = 0;
+};
+
+/// Into memory, for tests and short recordings.
+class MemoryOutput final : public Output {
+ public:
+  Result<void> append(Bytes data) override {
+    bytes.insert(bytes.end(), data.begin(), data.end());
+    return {};
+  }
+  std::vector<std::uint8_t> bytes{};
+};
+
+/// A new file, mode 0600. Errors: cannot_write; in_use when `may_exist` is false and there is one.
+Result<std::unique_ptr<Output>> open_file(const std::string& path, bool may_exist);
+
+}  // namespace adit::record

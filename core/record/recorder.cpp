@@ -1,0 +1,170 @@
+#include "core/record/recorder.hpp"
+
+#include <pthread.h>
+
+#include <chrono>
+
+#include "core/record/channels.hpp"
+
+namespace adit::record {
+namespace {
+
+constexpr std::size_t most_channels = 4096;
+constexpr std::uint64_t retry_after = 5'000'000'000;  // ns
+// Of an entry in the queue: channel, time, size.
+constexpr std::size_t entry_head = 4 + 8 + 4;
+
+std::uint64_t system_time() {
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        std::chrono::system_clock::now().time_since_epoch())
+                                        .count());
+}
+
+RecorderParams checked(RecorderParams params) {
+  if (!params.clock) params.clock = system_time;
+  if (!params.complain) params.complain = [](const std::string&) {};
+  return params;
+}
+
+}  // namespace
+
+/// One segment that is being written.
+struct Recorder::File {
+  File(std::unique_ptr<Output> opened, const RecorderParams& params)
+      : output(std::move(opened)), writer(*output, {256 << 10, params.compress, params.library}) {}
+  std::unique_ptr<Output> output;
+  McapWriter writer;
+  Channels channels{writer};
+};
+
+Recorder::Recorder(RecorderParams params) : params_(checked(std::move(params))), ring_(params_.ring) {
+  queue_.reserve(params_.queue_bytes);
+  thread_ = std::thread([this] { run(); });
+}
+
+Recorder::~Recorder() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+ChannelId Recorder::channel(const ChannelInfo& info) {
+  const std::lock_guard lock(mutex_);
+  if (const auto it = ids_.find(info); it != ids_.end()) return it->second;
+  if (known_.size() >= most_channels) {
+    ChannelInfo others{"others", "", {{malformed_key, "too many channels"}}};
+    if (const auto it = ids_.find(others); it != ids_.end()) return it->second;
+    known_.push_back(std::make_unique<Known>(Known{others, 0, false}));
+    return ids_[others] = static_cast<ChannelId>(known_.size() - 1);
+  }
+  known_.push_back(std::make_unique<Known>(Known{info, 0, false}));
+  return ids_[info] = static_cast<ChannelId>(known_.size() - 1);
+}
+
+void Recorder::record(ChannelId channel, Bytes cdr) {
+  const std::uint64_t now = params_.clock();
+  const std::lock_guard lock(mutex_);
+  Known& known = *known_.at(channel);
+  if (cdr.size() > params_.large && params_.large_period > 0ns) {
+    const auto period = static_cast<std::uint64_t>(params_.large_period.count());
+    if (known.had_large && now - known.last_large < period) {
+      ++counters_.thinned;
+      return;
+    }
+    known.had_large = true;
+    known.last_large = now;
+  }
+  if (queue_.size() + entry_head + cdr.size() > params_.queue_bytes) {
+    ++counters_.dropped;
+    return;
+  }
+  Packer pack(queue_);
+  pack.put(channel);
+  pack.put(now);
+  pack.put(static_cast<std::uint32_t>(cdr.size()));
+  pack.bytes(cdr);
+}
+
+RecorderCounters Recorder::counters() const {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+void Recorder::run() {
+  ::pthread_setname_np(::pthread_self(), "recorder");
+  std::vector<std::uint8_t> batch;
+  batch.reserve(params_.queue_bytes);
+  for (bool ending = false; !ending;) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, params_.flush, [this] { return ending_; });
+      ending = ending_;
+      std::swap(batch, queue_);
+    }
+    written_ = 0;
+    const bool kept = batch.empty() || write(batch);
+    std::uint64_t all = 0;
+    for (Unpacker entries(batch); entries.left() > 0; ++all) {
+      entries.take(entry_head - 4);
+      entries.take(entries.get<std::uint32_t>());
+    }
+    batch.clear();
+    const std::lock_guard lock(mutex_);
+    counters_.recorded += kept ? all : written_;
+    counters_.dropped += kept ? 0 : all - written_;
+  }
+  if (file_) (void)file_->writer.close();  // an error costs the summary: the file reads without it
+}
+
+/// False when the disk did not take it all; `written_` messages went before.
+bool Recorder::write(const std::vector<std::uint8_t>& batch) {
+  Unpacker entries(batch);
+  while (entries.left() > 0) {
+    if (!file_ && !open()) return false;
+    const auto id = entries.get<ChannelId>();
+    const auto time = entries.get<std::uint64_t>();
+    const Bytes cdr = entries.take(entries.get<std::uint32_t>());
+    const ChannelInfo* info = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      info = &known_[id]->info;  // never changed, and kept at its address
+    }
+    const auto done = file_->writer.write(file_->channels.get(id, *info), time, cdr);
+    if (!done) return lost(done.error());
+    ++written_;
+    if (file_->writer.size() < ring_.params().segment_bytes) continue;
+    if (const auto closed = file_->writer.close(); !closed) return lost(closed.error());
+    file_.reset();
+  }
+  if (!file_) return true;
+  if (const auto flushed = file_->writer.flush(); !flushed) return lost(flushed.error());
+  return true;
+}
+
+bool Recorder::open() {
+  const std::uint64_t now = params_.clock();
+  if (troubled_ && now < retry_at_) return false;
+  auto output = ring_.next();
+  if (!output) return lost(output.error());
+  file_ = std::make_unique<File>(std::move(*output), params_);
+  if (const auto told = file_->writer.add_metadata("adit", params_.about); !told) return lost(told.error());
+  troubled_ = false;
+  const std::lock_guard lock(mutex_);
+  ++counters_.files;
+  return true;
+}
+
+bool Recorder::lost(const Error& error) {
+  if (!troubled_) params_.complain("recording is interrupted: " + error.text);
+  troubled_ = true;
+  retry_at_ = params_.clock() + retry_after;
+  file_.reset();
+  const std::lock_guard lock(mutex_);
+  ++counters_.failed_files;
+  return false;
+}
+
+}  // namespace adit::record

@@ -1,0 +1,67 @@
+#include "core/record/recording_log.hpp"
+
+#include <algorithm>
+
+namespace adit::record {
+namespace {
+
+constexpr std::size_t longest_text = 4096;
+
+std::int32_t foxglove_level(LogLevel level) {
+  switch (level) {
+    case LogLevel::trace:
+    case LogLevel::debug:
+      return 1;
+    case LogLevel::info:
+      return 2;
+    case LogLevel::warn:
+      return 3;
+    case LogLevel::error:
+      return 4;
+    case LogLevel::off:
+      break;
+  }
+  return 0;
+}
+
+/// CDR: aligned to four behind the encapsulation header, which is what every member here needs.
+class Cdr {
+ public:
+  Cdr() { Packer(out).bytes(std::array<std::uint8_t, 4>{0, 1, 0, 0}); }
+  template <class Integer>
+  void put(Integer value) {
+    Packer(out).put(value);
+  }
+  void text(std::string_view value) {
+    Packer pack(out);
+    pack.put(static_cast<std::uint32_t>(value.size() + 1));
+    pack.bytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
+    do out.push_back(0);  // the end of the string, and up to the next member
+    while (out.size() % 4 != 0);
+  }
+  std::vector<std::uint8_t> out{};
+};
+
+}  // namespace
+
+RecordingLog::RecordingLog(std::shared_ptr<LogSink> inner, Tape& tape)
+    : LogSink(inner->level()),
+      inner_(std::move(inner)),
+      tape_(tape),
+      channel_(tape.channel({"log", log_type, {{"direction", "own"}}})) {}
+
+void RecordingLog::write(const LogLine& line) {
+  inner_->write(line);
+  const auto ns = line.has_time ? line.time.time_since_epoch().count() : 0;
+  Cdr cdr;
+  cdr.put(static_cast<std::uint32_t>(ns / 1'000'000'000));
+  cdr.put(static_cast<std::uint32_t>(ns % 1'000'000'000));
+  cdr.put(foxglove_level(line.level));
+  cdr.text(line.text.substr(0, longest_text));
+  cdr.text(line.component.substr(0, longest_text));
+  cdr.text("");
+  cdr.put(std::uint32_t{0});
+  tape_.record(channel_, cdr.out);
+}
+
+}  // namespace adit::record

@@ -1,0 +1,97 @@
+#include "core/record/recording_wire.hpp"
+
+#include <exception>
+#include <map>
+
+namespace adit::record {
+namespace {
+
+constexpr std::size_t most_senders = 256;  // of one reader; those beyond share a channel
+
+class RecordingWriter final : public wire::RawWriter {
+ public:
+  RecordingWriter(std::unique_ptr<wire::RawWriter> inner, Tape& tape, ChannelId channel)
+      : inner_(std::move(inner)), tape_(tape), channel_(channel) {}
+  Result<void> write(std::span<const std::uint8_t> cdr) override {
+    auto sent = inner_->write(cdr);
+    if (sent) tape_.record(channel_, cdr);
+    return sent;
+  }
+  std::size_t matched() const override { return inner_->matched(); }
+
+ private:
+  std::unique_ptr<wire::RawWriter> inner_;
+  Tape& tape_;
+  ChannelId channel_;
+};
+
+/// What a reader received goes on the tape; called on the reader's strand.
+class Heard {
+ public:
+  Heard(Tape& tape, ChannelInfo info) : tape_(tape), info_(std::move(info)) {}
+  void record(std::span<const std::uint8_t> cdr, const wire::ParticipantId& sender) {
+    auto it = channels_.find(sender);
+    if (it == channels_.end()) {
+      const bool full = channels_.size() >= most_senders;
+      it = channels_.try_emplace(full ? wire::ParticipantId{} : sender).first;
+      ChannelInfo info = info_;
+      info.metadata["from"] = full ? "others" : wire::to_string(sender);
+      it->second = tape_.channel(info);
+    }
+    tape_.record(it->second, cdr);
+  }
+  void record_malformed(std::span<const std::uint8_t> cdr, const wire::ParticipantId& sender) {
+    ChannelInfo info{info_.topic + "/malformed", info_.dds_type, info_.metadata};
+    info.metadata[malformed_key] = "could not be decoded";
+    info.metadata["from"] = wire::to_string(sender);
+    tape_.record(tape_.channel(info), cdr);
+  }
+
+ private:
+  Tape& tape_;
+  ChannelInfo info_;
+  std::map<wire::ParticipantId, ChannelId> channels_{};
+};
+
+}  // namespace
+
+RecordingWire::RecordingWire(wire::Wire& inner, Tape& tape, std::string net)
+    : inner_(inner), tape_(tape), net_(std::move(net)) {}
+
+Result<std::unique_ptr<wire::RawWriter>> RecordingWire::make_writer(const wire::TopicInfo& topic,
+                                                                    const std::string& partition) {
+  auto made = inner_.make_writer(topic, partition);
+  if (!made) return made;
+  ChannelInfo info{std::string("out/") + topic.name,
+                   topic.type,
+                   {{"net", net_}, {"from", wire::to_string(inner_.id())}, {"direction", "out"}}};
+  if (!partition.empty()) info.metadata["partition"] = partition;
+  return std::unique_ptr<wire::RawWriter>(
+      std::make_unique<RecordingWriter>(std::move(*made), tape_, tape_.channel(info)));
+}
+
+Result<std::unique_ptr<wire::RawReader>> RecordingWire::make_reader(const wire::TopicInfo& topic,
+                                                                    const std::string& partition,
+                                                                    Executor& strand,
+                                                                    wire::RawHandler handler) {
+  ChannelInfo info{std::string("in/") + topic.name,
+                   topic.type,
+                   {{"net", net_}, {"to", wire::to_string(inner_.id())}, {"direction", "in"}}};
+  if (!partition.empty()) info.metadata["partition"] = partition;
+  const auto heard = std::make_shared<Heard>(tape_, std::move(info));
+  return inner_.make_reader(
+      topic, partition, strand,
+      [heard, handler = std::move(handler)](std::span<const std::uint8_t> cdr,
+                                            const wire::SampleInfo& about) {
+        try {
+          const bool decoded = handler(cdr, about);
+          decoded ? heard->record(cdr, about.sender) : heard->record_malformed(cdr, about.sender);
+          return decoded;
+        } catch (...) {
+          heard->record(cdr, about.sender);  // above all the one that broke its receiver
+          throw;
+        }
+      });
+}
+
+}  // namespace adit::record

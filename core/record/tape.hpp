@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "core/record/bytes.hpp"
+
+namespace adit::record {
+
+/// One row of a recording: messages of one type, of one direction, with one peer.
+struct ChannelInfo {
+  std::string topic{};     ///< as people look for it: "out/adit/command"
+  std::string dds_type{};  ///< looked up in idl/; a type that is not there is kept without a schema
+  Text metadata{};         ///< who to whom
+  auto operator<=>(const ChannelInfo&) const = default;
+};
+
+using ChannelId = std::uint32_t;
+
+/// Takes messages and never blocks: what does not fit is dropped and counted. From any thread.
+class Tape {
+ public:
+  virtual ~Tape() = default;
+  /// The same info gives the same id.
+  virtual ChannelId channel(const ChannelInfo& info) = 0;
+  /// A serialised sample with its encapsulation header, as of now.
+  virtual void record(ChannelId channel, Bytes cdr) = 0;
+};
+
+/// DDS type of log lines: Foxglove's, so that its log panel shows them.
+inline constexpr const char* log_type = "foxglove::Log";
+
+/// The message encoding for bytes that are no sample of their topic's type.
+inline constexpr const char* malformed_key = "malformed";
+
+}  // namespace adit::record
