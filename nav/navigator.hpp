@@ -5,7 +5,7 @@
 namespace adit::nav {
 
 /// The heavy half of navigation, a scan in and a plan out: obstacle map and local planner. Has no thread and
-/// no clock; calls must not overlap. The light half, PathFollower, shares nothing with it but the plan.
+/// no clock; calls must not overlap. The light half, a Controller, shares nothing with it but the plan.
 class Navigator {
  public:
   explicit Navigator(const Platform& platform, const ObstacleMapParams& map = {},

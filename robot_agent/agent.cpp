@@ -5,6 +5,7 @@
 #include "core/config/search.hpp"
 #include "core/exec/hang.hpp"
 #include "core/time/random.hpp"
+#include "nav/control/controller.hpp"
 #include "robot_agent/agent_core.hpp"
 
 namespace adit::agent {
@@ -41,6 +42,8 @@ Result<void> Agent::start() {
   if (core_) return {Reason::in_use, "the agent runs already"};
   if (!valid_name(params_.name))
     return {Reason::bad_argument, "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + params_.name + "'"};
+  if (const auto known = nav::make_controller(params_.platform.controller, params_.platform); !known)
+    return {known.error().reason, "platform " + params_.platform.name + ": " + known.error().text};
   const auto tree = config::find_file(params_.tree);
   if (!tree) return tree.error();
   auto decider = Decider::load(*tree);

@@ -21,6 +21,8 @@ struct Platform {
   double step{0.08};                  ///< highest step it climbs, m, [0, 1]
   double lidar_height{0.5};           ///< above the ground, m, (0, 5]
   bool stairs{false};
+  std::string controller{
+      "pure_pursuit"};  ///< that tracks the local planner's paths: nav/control/controller.hpp
 };
 
 }  // namespace adit

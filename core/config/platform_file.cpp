@@ -22,6 +22,7 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.step = root.number("step", within(0, 1));
   p.lidar_height = root.number("lidar_height", above(0, 5));
   p.stairs = root.flag("stairs", false);
+  p.controller = root.text("controller", p.controller);
   if (auto done = root.finish(); !done) return done.error();
   return p;
 }

@@ -31,7 +31,7 @@ Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const
       localisation_(localisation),
       outputs_(std::move(outputs)),
       navigator_(std::make_shared<nav::Navigator>(params_.platform)),
-      follower_(params_.platform) {}
+      controller_(nav::make_controller(params_.platform.controller, params_.platform).value()) {}
 
 void Navigation::accept(MuxKey, const Motion& motion, Time) {
   if (motion == motion_) return;
@@ -41,7 +41,7 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
   held_since_.reset();
   if (other_kind) {
     has_plan_ = false;
-    follower_.stop_now();
+    controller_->stop_now();
   }
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
     emit(limited(velocity->twist));
@@ -62,8 +62,8 @@ Twist2 Navigation::along_plan(Time now) {
   const auto* guidance = std::get_if<Guidance>(&motion_);
   const bool centred = guidance && guidance->stick.zero();
   if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !localisation_.alive(now))
-    return follower_.stop_now();
-  const Twist2 velocity = follower_.follow(localisation_.odom().planar(), seconds(params_.period));
+    return controller_->stop_now();
+  const Twist2 velocity = controller_->follow(localisation_.odom().planar(), seconds(params_.period));
   watch_held(now);
   return velocity;
 }
@@ -72,7 +72,7 @@ void Navigation::watch_held(Time now) {
   const Eigen::Vector2d at = localisation_.odom().planar().position();
   if (held_since_ && (now - held_last_ > kFreeAgain || (at - held_at_).norm() > kHeldWithin))
     held_since_.reset();
-  if (!follower_.held()) return;
+  if (!controller_->held()) return;
   held_last_ = now;
   if (held_since_) return;
   held_since_ = now;
@@ -143,7 +143,7 @@ void Navigation::planned(const Job& job) {
   const bool for_stick =
       job.target.kind == nav::Target::Kind::direction && std::holds_alternative<Guidance>(motion_);
   if ((for_goal && job.generation == goal_generation_) || for_stick) {
-    follower_.set_plan(job.plan);
+    controller_->set_plan(job.plan);
     has_plan_ = true;
     plan_made_ = job.made;
     const bool held = held_since_ && now() - *held_since_ >= params_.held_after;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/component/component.hpp"
+#include "nav/control/controller.hpp"
 #include "nav/navigator.hpp"
-#include "nav/path_follower.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/motion.hpp"
@@ -64,7 +64,7 @@ class Navigation : public Component, public NavigationInput {
   const Localisation& localisation_;
   Outputs outputs_;
   std::shared_ptr<nav::Navigator> navigator_;
-  nav::PathFollower follower_;
+  std::unique_ptr<nav::Controller> controller_;
 
   Motion motion_{Stand{}};
   std::uint64_t goal_generation_{};  // rises with every other goal, so that late plans report no progress

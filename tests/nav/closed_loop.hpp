@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "nav/control/controller.hpp"
 #include "nav/navigator.hpp"
-#include "nav/path_follower.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {
@@ -17,7 +17,8 @@ struct ClosedLoop {
   int rings{16}, columns{360};
   std::mt19937 random{7};
   Navigator navigator{platform};
-  PathFollower follower{platform};
+  std::unique_ptr<Controller> controller;
+  Controller& follower;
 
   Plan last{};
   double time{0};
@@ -25,8 +26,13 @@ struct ClosedLoop {
   double driven{0}, fastest{0}, steepest{0};  ///< m, m/s, m/s2
   int blocked_cycles{0}, held_steps{0};
 
-  ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start)
-      : world(std::move(w)), platform(p), truth(start), navigator(p), follower(p) {}
+  ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start, const std::string& tracks = "pure_pursuit")
+      : world(std::move(w)),
+        platform(p),
+        truth(start),
+        navigator(p),
+        controller(make_controller(tracks, p).value()),
+        follower(*controller) {}
 
   Pose2 odometry() const { return {truth.x + bias.x, truth.y + bias.y, truth.yaw}; }
 

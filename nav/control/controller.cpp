@@ -1,0 +1,104 @@
+#include "nav/control/controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nav/control/ilqr_controller.hpp"
+#include "nav/control/pure_pursuit.hpp"
+
+namespace adit::nav {
+namespace {
+
+constexpr double kStanding = 0.12;  ///< m/s: slow enough to begin to turn on the spot
+
+double stepped(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
+
+}  // namespace
+
+Controller::Controller(const Platform& platform, const ControllerParams& params)
+    : platform_(platform), params_(params), check_(platform, params.check) {}
+
+Twist2 Controller::stop_now() {
+  plan_ = {};
+  turning_ = held_ = false;
+  rest();
+  return last_ = {};
+}
+
+Twist2 Controller::follow(const Pose2& odom, double dt) {
+  const Twist2 candidate = towards(desired(odom, dt), dt);
+  check_.look(plan_.near(), odom);
+  held_ = !check_.safe(candidate);
+  last_ = held_ ? braked(dt) : candidate;
+  return last_;
+}
+
+Twist2 Controller::desired(const Pose2& odom, double dt) {
+  const auto path = plan_.path();
+  if (path.size() < 2) {
+    turning_ = false;
+    rest();
+    return {};
+  }
+  Place place{};
+  double best = 1e30;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const double d = (path[i].position() - odom.position()).squaredNorm();
+    if (d < best) {
+      best = d;
+      place.nearest = i;
+    }
+  }
+  const double spacing = plan_.length / static_cast<double>(path.size() - 1);
+  place.remaining = spacing * static_cast<double>(path.size() - 1 - place.nearest);
+
+  double error = wrap_angle(path[place.nearest].yaw - odom.yaw);
+  const double off = std::fabs(error);
+  turning_ = off > (turning_ ? params_.turn_until : params_.turn_from);
+  if (turning_) {
+    rest();
+    // The planner may have found that only the long way round is free.
+    if (plan_.turn != 0 && error * plan_.turn < 0 && off > M_PI / 3) error += plan_.turn * 2 * M_PI;
+    return turn_on_spot(error);
+  }
+  return track(odom, place, dt);
+}
+
+Twist2 Controller::turn_on_spot(double error) const {
+  if (std::hypot(last_.vx, last_.vy) > kStanding) return {};
+  const double rate =
+      std::sqrt(2 * params_.braking_share * platform_.max_turn_acceleration * std::fabs(error));
+  return {0, 0, std::copysign(std::min(platform_.max_turn, rate), error)};
+}
+
+Twist2 Controller::towards(const Twist2& wanted, double dt) const {
+  const Eigen::Vector2d from(last_.vx, last_.vy);
+  Eigen::Vector2d change = Eigen::Vector2d(wanted.vx, wanted.vy) - from;
+  const double most = platform_.max_acceleration * dt;
+  if (change.norm() > most) change *= most / change.norm();
+  const Eigen::Vector2d v = from + change;
+  return {v.x(), v.y(), stepped(last_.wz, wanted.wz, platform_.max_turn_acceleration * dt)};
+}
+
+Twist2 Controller::braked(double dt) const {
+  // Down along the curve that the robot is on, which the check of the command before found free.
+  const double speed = std::hypot(last_.vx, last_.vy);
+  double keep = 0.0;
+  if (speed > 0.0) keep = std::max(keep, 1.0 - platform_.max_acceleration * dt / speed);
+  if (last_.wz != 0.0)
+    keep = std::max(keep, 1.0 - platform_.max_turn_acceleration * dt / std::fabs(last_.wz));
+  return {keep * last_.vx, keep * last_.vy, keep * last_.wz};
+}
+
+const std::vector<std::string>& controller_names() {
+  static const std::vector<std::string> names{"ilqr", "pure_pursuit"};
+  return names;
+}
+
+Result<std::unique_ptr<Controller>> make_controller(const std::string& name, const Platform& platform) {
+  if (name == "ilqr") return std::unique_ptr<Controller>(make_ilqr_controller(platform));
+  if (name == "pure_pursuit") return std::unique_ptr<Controller>(std::make_unique<PurePursuit>(platform));
+  return {Reason::bad_argument, "no controller '" + name + "': ilqr or pure_pursuit"};
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,75 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "core/result/result.hpp"
+#include "nav/braking_check.hpp"
+#include "nav/plan.hpp"
+
+namespace adit::nav {
+
+struct ControllerParams {
+  double turn_from{0.45};     ///< turns on the spot when the path starts off by more, rad, [0.1, 3]
+  double turn_until{0.12};    ///< and until it is off by less, rad, [0.02, turn_from]
+  double braking_share{0.7};  ///< share of the platform's acceleration that is planned with, (0, 1]
+  BrakingCheckParams check{};
+};
+
+/// Turns a plan into velocities. What all controllers share is here: turning on the spot where the path
+/// starts to the side, the platform's limits of acceleration, and a BrakingCheck of each command against the
+/// plan's obstacles. How the path is tracked is each one's own.
+class Controller {
+ public:
+  Controller(const Platform& platform, const ControllerParams& params);
+  virtual ~Controller() = default;
+
+  /// The plan to follow from now on (copied). An empty one brings the robot to a smooth stop.
+  void set_plan(const Plan& plan) { plan_ = plan; }
+  /// The velocity for the next `dt` seconds, (0, 0.5], of a robot that is at `odom` (odometry frame).
+  Twist2 follow(const Pose2& odom, double dt);
+  /// Zero, at once, and no plan.
+  Twist2 stop_now();
+
+  const Twist2& command() const { return last_; }
+  /// The last command was cut because it would have led into an obstacle.
+  bool held() const { return held_; }
+
+ protected:
+  /// Where the robot is on the path.
+  struct Place {
+    std::size_t nearest{};  ///< index of the path's pose
+    double remaining{};     ///< of the path from there, m
+  };
+  /// The velocity wanted next along plan().path(), which has two poses at least; limits of acceleration are
+  /// applied afterwards.
+  virtual Twist2 track(const Pose2& odom, const Place& place, double dt) = 0;
+  /// The robot stands, or turns on the spot: what was tracked is over.
+  virtual void rest() {}
+
+  const Platform& platform() const { return platform_; }
+  const ControllerParams& params() const { return params_; }
+  const Plan& plan() const { return plan_; }
+
+ private:
+  Twist2 desired(const Pose2& odom, double dt);
+  Twist2 turn_on_spot(double error) const;
+  Twist2 towards(const Twist2& wanted, double dt) const;
+  Twist2 braked(double dt) const;
+
+  Platform platform_;
+  ControllerParams params_;
+  BrakingCheck check_;
+  Plan plan_{};
+  Twist2 last_{};
+  bool turning_{false};
+  bool held_{false};
+};
+
+/// Every controller there is, for configuration files and help.
+const std::vector<std::string>& controller_names();
+/// The controller of that name for a platform. Errors: bad_argument, naming those there are.
+Result<std::unique_ptr<Controller>> make_controller(const std::string& name, const Platform& platform);
+
+}  // namespace adit::nav

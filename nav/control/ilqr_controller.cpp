@@ -1,0 +1,145 @@
+#include "nav/control/ilqr_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kStep = 0.05;      ///< s, of the look ahead
+constexpr double kShortest = 0.05;  ///< m: what is left of the path when it is over
+constexpr double kCreep = 0.02;     ///< m/s: slower would not reach the path's end
+
+/// Walks along a plan's path.
+class Walk {
+ public:
+  Walk(const Plan& plan, std::size_t nearest, const Pose2& odom) : plan_(plan), path_(plan.path()) {
+    spacing_ = std::max(1e-6, plan.length / static_cast<double>(path_.size() - 1));
+    // From the nearest pose on or back to abreast of the robot.
+    const Pose2& p = path_[nearest];
+    const double side = plan.reverse ? -1.0 : 1.0;
+    const double along = side * (std::cos(p.yaw) * (odom.x - p.x) + std::sin(p.yaw) * (odom.y - p.y));
+    at_ = spacing_ * static_cast<double>(nearest) + std::clamp(along, -spacing_, spacing_);
+    at_ = std::clamp(at_, 0.0, plan.length);
+  }
+
+  double remaining() const { return plan_.length - at_; }
+  void advance(double distance) { at_ = std::min(plan_.length, at_ + distance); }
+  Pose2 pose() const {
+    const double exact = at_ / spacing_;
+    const std::size_t i = std::min(static_cast<std::size_t>(exact), path_.size() - 2);
+    const double part = std::clamp(exact - static_cast<double>(i), 0.0, 1.0);
+    const Pose2 &a = path_[i], &b = path_[i + 1];
+    return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y),
+            wrap_angle(a.yaw + part * wrap_angle(b.yaw - a.yaw))};
+  }
+  /// Turn per metre here, rad/m.
+  double curvature() const {
+    return bend(std::min(static_cast<std::size_t>(at_ / spacing_), path_.size() - 2));
+  }
+  /// The value of a table over the path's poses here.
+  double at(const std::array<double, Plan::kMaxPath>& table) const {
+    const double exact = at_ / spacing_;
+    const std::size_t i = std::min(static_cast<std::size_t>(exact), path_.size() - 2);
+    const double part = std::clamp(exact - static_cast<double>(i), 0.0, 1.0);
+    return table[i] + part * (table[i + 1] - table[i]);
+  }
+  /// How fast the path may be driven at each of its poses: its bends within `max_turn` (rad/s), its end, and
+  /// braking in time for both with `braking` (m/s2).
+  void speeds(double cruise, double max_turn, double braking, std::array<double, Plan::kMaxPath>& top) const {
+    double next = 0.0;  // squared
+    for (std::size_t i = path_.size(); i-- > 0;) {
+      const double bent = i + 1 < path_.size() ? std::fabs(bend(i)) : 0.0;
+      double own = bent * cruise > max_turn ? max_turn / bent : cruise;
+      if (i + 1 == path_.size()) own = 0.0;
+      const double squared = std::min(own * own, next + 2 * braking * spacing_);
+      top[i] = std::sqrt(squared);
+      next = squared;
+    }
+  }
+
+ private:
+  double bend(std::size_t i) const { return wrap_angle(path_[i + 1].yaw - path_[i].yaw) / spacing_; }
+
+  const Plan& plan_;
+  std::span<const Pose2> path_;
+  double spacing_{};
+  double at_{};
+};
+
+template <class Model>
+class IlqrController final : public Controller {
+  using Solver = Ilqr<Model>;
+
+ public:
+  IlqrController(const Platform& platform, Model model, const typename Solver::Limits& limits,
+                 const IlqrControllerParams& params)
+      : Controller(platform, params.common),
+        params_(params),
+        model_(model),
+        solver_(model, limits, params.solver, kStep) {}
+
+ protected:
+  Twist2 track(const Pose2& odom, const Place& place, double dt) override {
+    if (place.remaining < kShortest) {
+      rest();
+      return {};
+    }
+    refer(odom, place);
+    typename Solver::X start;
+    start.template head<3>() << odom.x, odom.y, odom.yaw;
+    start.template tail<Model::kVelocities>() = model_.inverse(command());
+    solver_.solve(start, references_);
+    const typename Solver::V first =
+        start.template tail<Model::kVelocities>() + dt * solver_.controls().front();
+    const Eigen::Vector3d twist = model_.twist(first);
+    const double speed = std::hypot(twist[0], twist[1]);
+    const double keep = speed > platform().max_speed ? platform().max_speed / speed : 1.0;
+    return {keep * twist[0], keep * twist[1],
+            std::clamp(twist[2], -platform().max_turn, platform().max_turn)};
+  }
+
+  void rest() override { solver_.reset(); }
+
+ private:
+  /// Where the robot shall be, and how fast, at each step: along the path no faster than the plan, its
+  /// curvature, its end and the platform's acceleration allow.
+  void refer(const Pose2& odom, const Place& place) {
+    Walk walk(plan(), place.nearest, odom);
+    const double sign = plan().reverse ? -1.0 : 1.0;
+    const double cruise = std::min(plan().max_speed, platform().max_speed);
+    walk.speeds(cruise, params_.turn_share * platform().max_turn,
+                params().braking_share * platform().max_acceleration, top_);
+    double speed = std::min(cruise, std::hypot(command().vx, command().vy));
+    for (Reference& r : references_) {
+      speed = std::min(walk.at(top_), speed + platform().max_acceleration * kStep);
+      speed = std::max(speed, kCreep);
+      walk.advance(speed * kStep);
+      r.pose = walk.pose();
+      const double turn = walk.curvature() * speed;
+      r.twist = walk.remaining() > 0 ? Twist2{sign * speed, 0, turn} : Twist2{};
+    }
+  }
+
+  IlqrControllerParams params_;
+  Model model_;
+  Solver solver_;
+  std::array<Reference, Solver::kHorizon> references_{};
+  std::array<double, Plan::kMaxPath> top_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Controller> make_ilqr_controller(const Platform& p, const IlqrControllerParams& params) {
+  if (p.drive == Drive::holonomic) {
+    const Ilqr<model::Holonomic>::Limits limits{
+        {p.max_speed, p.max_speed, p.max_turn},
+        {p.max_acceleration, p.max_acceleration, p.max_turn_acceleration}};
+    return std::make_unique<IlqrController<model::Holonomic>>(p, model::Holonomic{}, limits, params);
+  }
+  const Ilqr<model::Unicycle>::Limits limits{{p.max_speed, p.max_turn},
+                                             {p.max_acceleration, p.max_turn_acceleration}};
+  return std::make_unique<IlqrController<model::Unicycle>>(p, model::Unicycle{}, limits, params);
+}
+
+}  // namespace adit::nav

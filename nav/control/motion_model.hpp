@@ -1,0 +1,63 @@
+#pragma once
+#include <Eigen/Core>
+#include <cmath>
+
+#include "core/geometry/pose.hpp"
+
+/// How platforms move, for controllers that look ahead. Every model has `kVelocities` velocity states, whose
+/// rates are its controls: state = (x, y, yaw, velocity states), odometry frame, m, rad.
+///
+/// twist(): the body's velocity (vx, vy, wz) for given velocity states; jacobian(): its derivative by them;
+/// inverse(): the velocity states nearest to a twist.
+namespace adit::nav::model {
+
+/// Velocity states (v, w): speed ahead, m/s, and turn rate, rad/s.
+struct Unicycle {
+  static constexpr int kVelocities = 2;
+  using V = Eigen::Vector2d;
+  Eigen::Vector3d twist(const V& v) const { return {v[0], 0.0, v[1]}; }
+  Eigen::Matrix<double, 3, 2> jacobian(const V&) const {
+    return (Eigen::Matrix<double, 3, 2>() << 1, 0, 0, 0, 0, 1).finished();
+  }
+  V inverse(const Twist2& t) const { return {t.vx, t.wz}; }
+};
+
+/// Velocity states (left, right): speeds of the two tracks or wheel rows, m/s.
+struct Differential {
+  double track{0.4};  ///< between the two, m, (0, 5]
+  static constexpr int kVelocities = 2;
+  using V = Eigen::Vector2d;
+  Eigen::Vector3d twist(const V& v) const { return {0.5 * (v[0] + v[1]), 0.0, (v[1] - v[0]) / track}; }
+  Eigen::Matrix<double, 3, 2> jacobian(const V&) const {
+    return (Eigen::Matrix<double, 3, 2>() << 0.5, 0.5, 0, 0, -1 / track, 1 / track).finished();
+  }
+  V inverse(const Twist2& t) const { return {t.vx - 0.5 * track * t.wz, t.vx + 0.5 * track * t.wz}; }
+};
+
+/// Velocity states (v, steer): speed of the rear axle, m/s, and the front wheels' angle, rad. base_link lies
+/// over the rear axle.
+struct Car {
+  double wheelbase{0.5};  ///< m, (0, 5]
+  static constexpr int kVelocities = 2;
+  using V = Eigen::Vector2d;
+  Eigen::Vector3d twist(const V& v) const { return {v[0], 0.0, v[0] * std::tan(v[1]) / wheelbase}; }
+  Eigen::Matrix<double, 3, 2> jacobian(const V& v) const {
+    const double t = std::tan(v[1]);
+    return (Eigen::Matrix<double, 3, 2>() << 1, 0, 0, 0, t / wheelbase, v[0] * (1 + t * t) / wheelbase)
+        .finished();
+  }
+  V inverse(const Twist2& t) const {
+    return {t.vx, std::fabs(t.vx) < 1e-3 ? 0.0 : std::atan(wheelbase * t.wz / t.vx)};
+  }
+};
+
+/// Velocity states (vx, vy, wz): the body's own.
+struct Holonomic {
+  static constexpr int kVelocities = 3;
+  using V = Eigen::Vector3d;
+  Eigen::Vector3d twist(const V& v) const { return v; }
+  Eigen::Matrix3d jacobian(const V&) const { return Eigen::Matrix3d::Identity(); }
+  V inverse(const Twist2& t) const { return {t.vx, t.vy, t.wz}; }
+};
+
+}  // namespace adit::nav::model

@@ -1,0 +1,40 @@
+#include "nav/control/pure_pursuit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kShortest = 0.12;  ///< m: a nearer point says little about the direction
+
+}  // namespace
+
+Twist2 PurePursuit::track(const Pose2& odom, const Place& place, double) {
+  const auto path = plan().path();
+  const double now = std::hypot(command().vx, command().vy);
+  const double ahead = params_.lookahead + params_.lookahead_time * now;
+  std::size_t aim = place.nearest;
+  while (aim + 1 < path.size() && (path[aim].position() - odom.position()).norm() < ahead) ++aim;
+  Eigen::Vector2d to = odom.inverse() * path[aim].position();
+  if (plan().reverse) to = -to;  // as seen by a robot whose front is its back
+  const double distance = to.norm();
+  const double share = params().braking_share * platform().max_acceleration;
+  double speed = std::min({plan().max_speed, platform().max_speed, std::sqrt(2 * share * place.remaining)});
+  if (distance < kShortest && place.remaining < kShortest) return {};
+
+  if (platform().drive == Drive::holonomic) {
+    const double yaw_error = wrap_angle(path[(place.nearest + aim) / 2].yaw - odom.yaw);
+    const double turn = std::clamp(params_.yaw_gain * yaw_error, -platform().max_turn, platform().max_turn);
+    speed *= std::max(0.3, std::cos(std::min(M_PI / 2, 1.5 * std::fabs(yaw_error))));
+    const Eigen::Vector2d v = to * (speed / std::max(distance, kShortest)) * (plan().reverse ? -1.0 : 1.0);
+    return {v.x(), v.y(), turn};
+  }
+  const double curvature = 2 * to.y() / std::max(distance * distance, kShortest * kShortest);
+  if (to.x() <= 0) return {};
+  if (std::fabs(curvature) * speed > 0.8 * platform().max_turn)
+    speed = 0.8 * platform().max_turn / std::fabs(curvature);
+  return {plan().reverse ? -speed : speed, 0, speed * curvature};
+}
+
+}  // namespace adit::nav
