@@ -122,6 +122,7 @@ void Station::Impl::announce() {
   if (closed_) return;
   radio::Presence presence;
   presence.name(params_.name);
+  presence.kind(radio::AGENT_STATION);
   presence.id(params_.id);
   presence.protocol(protocol);
   presence.seq(++presence_seq_);

@@ -22,7 +22,7 @@ struct StationParams {
   std::string software{};                             ///< version, for the others to see
   std::string link{"lan"};                            ///< name of the link profile, for `net`
   double bandwidth{0.0};                              ///< of that link, bit/s; 0: not known
-  Duration presence{std::chrono::seconds(1)};         ///< between signs of life, [0.1 s, 2 s]
+  Duration presence{std::chrono::seconds(1)};         ///< between signs of life, [0.1 s, 1 s]
   Duration discovery_grace{std::chrono::seconds(5)};  ///< after the start: how long a robot may stay unknown
   Duration settle{std::chrono::seconds(1)};           ///< after the start: queries wait this long
 };

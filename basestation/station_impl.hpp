@@ -89,7 +89,7 @@ class Station::Impl {
   Random random_;
   TrafficMeter meter_{};
   std::uint64_t next_handle_{1};
-  std::uint64_t presence_seq_{};
+  std::uint32_t presence_seq_{};
   std::uint64_t report_seq_{};
   std::multimap<std::uint64_t, std::shared_ptr<Flow>> flows_{};
   std::deque<Waiting> waiting_{};

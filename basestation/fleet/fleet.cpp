@@ -78,6 +78,7 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
   if (sample.kind() == radio::AGENT_STATION) {
     radio::Presence presence;
     presence.name(sample.name());
+    presence.kind(radio::AGENT_STATION);
     presence.id(sample.id());
     return hear(presence, info);
   }
@@ -95,6 +96,7 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
 }
 
 void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
+  if (sample.kind() != radio::AGENT_STATION) return;  // a robot's state says more, and more often
   if (sample.name() == own_name_ && sample.id() != own_id_) {
     // Robots will refuse one of the two: its operator has to choose another name.
     if (!clashed_ || info.received - last_clash_ > forget_after)

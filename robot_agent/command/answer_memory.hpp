@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <map>
 #include <optional>
 #include <vector>
@@ -7,6 +8,10 @@
 #include "robot_agent/command/types.hpp"
 
 namespace adit::agent {
+
+/// Commands that must not be overtaken by what was sent before them: what moves the robot among itself, and
+/// what says who may.
+enum class Line : std::uint8_t { none, steering, authority };
 
 /// The last answers per participant, so that a repeated command gets its first answer again and no second
 /// effect (rule 1). Bounded.
@@ -17,16 +22,15 @@ class AnswerMemory {
 
   /// The answer given to that number, null when there is none.
   const Answer* find(const wire::ParticipantId& from, std::uint64_t seq) const;
-  /// The number is older than everything remembered, or than a newer command that steers: what moves the
-  /// robot must not be overtaken by what was sent before it.
-  bool too_old(const wire::ParticipantId& from, std::uint64_t seq, bool steers) const;
-  void remember(const wire::ParticipantId& from, const Answer& answer, bool steers, Time now);
+  /// The number is older than everything remembered, or than a newer command of its line.
+  bool too_old(const wire::ParticipantId& from, std::uint64_t seq, Line line) const;
+  void remember(const wire::ParticipantId& from, const Answer& answer, Line line, Time now);
 
  private:
   struct Entry {
     std::vector<Answer> answers{};  ///< slot seq % kAnswers; seq 0: empty
     std::uint64_t newest{};
-    std::uint64_t newest_steering{};
+    std::array<std::uint64_t, 3> newest_of{};  ///< by Line
     Time used{};
   };
   std::map<wire::ParticipantId, Entry> entries_{};

@@ -5,9 +5,24 @@
 namespace adit::agent {
 namespace {
 
-bool steers(CommandKind kind) {
-  return kind == CommandKind::stop || kind == CommandKind::reset || kind == CommandKind::mode ||
-         kind == CommandKind::go_to;
+Line line_of(CommandKind kind) {
+  switch (kind) {
+    case CommandKind::stop:
+    case CommandKind::reset:
+    case CommandKind::mode:
+    case CommandKind::go_to:
+      return Line::steering;
+    case CommandKind::take:
+    case CommandKind::release:
+    case CommandKind::grant:
+    case CommandKind::lock:
+    case CommandKind::unlock:
+      return Line::authority;
+    case CommandKind::query:
+    case CommandKind::unknown:
+      break;
+  }
+  return Line::none;
 }
 /// Take, stop and query need neither holder nor epoch.
 bool open_to_all(CommandKind kind) {
@@ -44,7 +59,7 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   }
   const Outcome outcome = judge(c, now);
   const Answer result = answer(c, outcome);
-  if (c.seq != 0) memory_.remember(c.from.participant, result, steers(c.kind), now);
+  if (c.seq != 0) memory_.remember(c.from.participant, result, line_of(c.kind), now);
   if (params_.defects.has(Defect::silent_refusal) && !result.accepted()) return std::nullopt;
   return result;
 }
@@ -54,13 +69,16 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
   if (!valid_name(c.from.name)) return {Reason::bad_argument, "a station's name is 1 to 32 of [A-Za-z0-9_-]"};
   if (const Outcome identity = identify(c.from, StationTable::Sign::command, now);
       identity.reason != Reason::none) {
-    if (identity.reason == Reason::identity_mismatch) report_intruder(c.from, now);
-    // A stop needs no authority: that this participant is the station it says is not asked for it (rule 4).
+    if (identity.reason == Reason::identity_mismatch && !may_be_back(c.from))
+      report_intruder(c.from.name, c.from.participant, now);
+    // A stop needs no authority: neither that this participant is the station it says, nor a place in the
+    // table is asked for it (rule 4).
     const Station* known = stations_.find(c.from.name);
-    if (c.kind != CommandKind::stop || !known || known->id != c.from.id) return identity;
+    if (c.kind != CommandKind::stop || (known && known->id != c.from.id)) return identity;
   }
   if (c.seq == 0) return {Reason::bad_argument, "command numbers start at 1"};
-  if (memory_.too_old(c.from.participant, c.seq, steers(c.kind) && c.kind != CommandKind::stop) &&
+  if (memory_.too_old(c.from.participant, c.seq,
+                      c.kind == CommandKind::stop ? Line::none : line_of(c.kind)) &&
       !params_.defects.has(Defect::repeat_done_twice))
     return {Reason::stale_sequence};
   const Station* station = stations_.find(c.from.name);
@@ -76,13 +94,12 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
 
 CommandInterface::Outcome CommandInterface::identify(const Sender& from, StationTable::Sign sign, Time now) {
   const bool holds = authority_.held_by(from.name, from.id);
-  const Station* bound = stations_.find(from.name);
-  const bool another = holds && bound && bound->id == from.id && bound->participant != from.participant;
   const auto verdict = stations_.hear(from, sign, holds, now);
-  if (verdict.contested) report_intruder(from, now);
+  if (verdict.found_out) report_intruder(from.name, *verdict.found_out, now);
+  // Already when it claims to be back: a manual mode does not go on meanwhile.
+  if (holds && verdict.restarted) requests_.holder_restarted(now);
   if (verdict.reason == Reason::none) {
     if (holds) authority_.hear(now);
-    if (another) requests_.holder_restarted(now);
     return {};
   }
   // Whoever uses the holder's name without being him is more than a clash of names.
@@ -230,11 +247,12 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
   const auto& holder = authority_.holder();
   if (!holder) return {Reason::nobody_holds};
   const Station* bound = stations_.find(holder->name);
-  const bool right_one = bound && bound->id == holder->id && bound->participant == s.participant;
+  const bool right_one = bound && bound->id == holder->id && bound->binding.participant() == s.participant;
   if (!right_one && !params_.defects.has(Defect::obey_stranger)) {
     if (s.station_id != holder->id)
       return {Reason::not_holder, "held by " + holder->name + "; take it first"};
-    report_intruder({holder->name, s.station_id, s.participant}, now);
+    if (!may_be_back({holder->name, s.station_id, s.participant}))
+      report_intruder(holder->name, s.participant, now);
     return {Reason::identity_mismatch};
   }
   if (s.station_id != holder->id && !params_.defects.has(Defect::obey_stranger))
@@ -279,10 +297,16 @@ Answer CommandInterface::answer(const Command& c, const Outcome& outcome) const 
           authority_.epoch()};
 }
 
-void CommandInterface::report_intruder(const Sender& from, Time now) {
-  if (!authority_.holder() || !intruders_.pass(from.participant, now)) return;
+bool CommandInterface::may_be_back(const Sender& from) const {
+  const Station* known = stations_.find(from.name);
+  return known && known->id == from.id && known->binding.claimed_by(from.participant);
+}
+
+void CommandInterface::report_intruder(const std::string& name, const wire::ParticipantId& participant,
+                                       Time now) {
+  if (!authority_.holder() || !intruders_.pass(participant, now)) return;
   tell(authority_.holder_name(), Severity::error, "intruder", Reason::identity_mismatch,
-       "participant " + hex(from.participant) + " claims to be " + from.name + " on " + params_.robot);
+       "participant " + hex(participant) + " claims to be " + name + " on " + params_.robot);
 }
 
 void CommandInterface::tell(const std::string& to, Severity severity, const char* code, Reason reason,

@@ -35,6 +35,8 @@ class CommandInterface {
 
   /// A station's sign of life; `protocol` is what it announced.
   void hear(const Sender& from, std::uint16_t protocol, Time now);
+  /// A participant left, or its lease ran out.
+  void departed(const wire::ParticipantId& participant) { stations_.leave(participant); }
   /// Does what is asked, or not, and answers. No answer (a defect) is the only exception.
   std::optional<Answer> handle(const Command& command, Time now);
   /// The answer to a refused sample; nothing when it was taken, or when that sender was told within a second.
@@ -68,7 +70,8 @@ class CommandInterface {
   Outcome request(const Command& c, Time now);
   Outcome judge(const StickSample& s, Time now);
   Answer answer(const Command& c, const Outcome& outcome) const;
-  void report_intruder(const Sender& from, Time now);
+  bool may_be_back(const Sender& from) const;
+  void report_intruder(const std::string& name, const wire::ParticipantId& participant, Time now);
   void tell(const std::string& to, Severity severity, const char* code, Reason reason,
             std::string text) const;
 

@@ -1,9 +1,11 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/topic/topic.hpp"
 #include "robot_agent/command/types.hpp"
+#include "robot_agent/discovery/binding.hpp"
 
 namespace adit::agent {
 
@@ -24,32 +26,44 @@ struct AgentRecord {
 };
 using AgentList = std::vector<AgentRecord>;  ///< sorted by name
 
-/// Who is there: one published list that every component may follow (DESIGN 6). An agent that comes back as
-/// another participant, under whatever address, is the same entry. Bounded.
+/// Who is there: one published list that every component may follow. An agent that comes back as another
+/// participant, under whatever address, is the same entry; a name belongs to its id, and a name and id to the
+/// participant that Binding says, so that nobody takes the place of one that is there. Bounded.
 class Directory {
  public:
   static constexpr std::size_t kCapacity = 128;
   /// Two lost signs of life are forgiven; the list tells within 3 s.
-  static constexpr Duration kSilence = 2800ms;
+  static constexpr Duration kSilence = 2500ms;
 
   explicit Directory(Executor& owner) : list_(owner) {}
 
   void capabilities(const AgentRecord& record, Time now);
-  /// A station's sign of life.
-  void presence(const std::string& name, const wire::ParticipantId& participant, Time now);
-  void participant(const wire::ParticipantEvent& event, Time now);
-  /// Stations that fell silent. Ten times a second is often enough.
+  /// A sign of life of a robot or a station.
+  void presence(const std::string& name, const Id& id, const wire::ParticipantId& participant, Time now);
+  void participant(const wire::ParticipantEvent& event);
+  /// Those that fell silent, and those that may take their places. Ten times a second is often enough.
   void tick(Time now);
 
   /// Published on every change.
   Topic<AgentList>& list() { return list_; }
-  const AgentList& agents() const { return agents_; }
+  AgentList agents() const;
 
  private:
-  AgentRecord* find(const std::string& name);
-  void publish() { list_.publish(agents_); }
+  struct Entry {
+    AgentRecord record{};
+    Binding binding;
+    std::optional<AgentRecord> waiting{};  ///< what a newcomer says that may not have the place yet
+    std::optional<AgentRecord> former{};   ///< what was there before a newcomer got the place
+  };
 
-  AgentList agents_{};
+  Entry* find(const std::string& name);
+  bool add(const AgentRecord& record, Time now);
+  /// True when the list changed.
+  bool hear(Entry& entry, const AgentRecord& record, Time now);
+  static bool adopt(Entry& entry, AgentRecord record, Time now);
+  void publish() { list_.publish(agents()); }
+
+  std::vector<Entry> entries_{};  ///< sorted by name
   Topic<AgentList> list_;
 };
 

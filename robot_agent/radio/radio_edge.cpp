@@ -24,6 +24,8 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::Health> health{};
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> link{};
+  wire::Writer<radio::Presence> presence{};
+  radio::Presence presence_sample{};
   radio::RobotState state_sample{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
 
@@ -40,6 +42,10 @@ struct RadioEdge::Endpoints {
     if (!reader) return reader.error();
     readers.push_back(std::move(*reader));
     return {};
+  }
+  void say_present() {
+    presence_sample.seq(presence_sample.seq() + 1);
+    (void)presence.write(presence_sample);
   }
   // A failed write is counted by the wire, and the link report shows it.
   template <class T>
@@ -59,27 +65,37 @@ Result<std::unique_ptr<RadioEdge>> RadioEdge::open(wire::Wire& wire, Executor& s
        {e->open(e->acknowledgement, topics::acknowledgement), e->open(e->notification, topics::notification),
         e->open(e->authority, topics::authority), e->open(e->behaviour, topics::behaviour),
         e->open(e->state, topics::robot_state), e->open(e->health, topics::health),
-        e->open(e->capabilities, topics::capabilities), e->open(e->link, topics::link_report)})
+        e->open(e->capabilities, topics::capabilities), e->open(e->link, topics::link_report),
+        e->open(e->presence, topics::presence)})
     if (!made) return made.error();
   return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
 }
 
-Result<void> RadioEdge::listen(Parts parts) {
+Result<void> RadioEdge::listen(Parts parts, const Id& id, std::uint16_t protocol) {
   Endpoints& e = *endpoints_;
+  e.presence_sample.name(e.robot);
+  e.presence_sample.kind(radio::AGENT_ROBOT);
+  e.presence_sample.id(id);
+  e.presence_sample.protocol(protocol);
   CommandInterface& commands = parts.commands;
   Directory& directory = parts.directory;
   const auto answer = [&e](const std::optional<Answer>& a) {
     if (a) (void)e.acknowledgement.write(to_radio(*a, e.robot));
   };
-  e.wire.on_participant(e.strand, [&e, &directory](const wire::ParticipantEvent& event) {
-    directory.participant(event, e.strand.now());
+  e.wire.on_participant(e.strand, [&e, &commands, &directory](const wire::ParticipantEvent& event) {
+    directory.participant(event);
+    if (event.present)
+      e.say_present();  // it need not wait for the next second
+    else
+      commands.departed(event.id);
   });
   for (const auto& made : {
            e.read(topics::presence,
                   [&e, &commands, &directory](const radio::Presence&p, const wire::SampleInfo&info) {
                     const Time now = e.strand.now();
-                    commands.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
-                    directory.presence(p.name(), info.sender, now);
+                    if (p.kind() == radio::AGENT_STATION)
+                      commands.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
+                    if (p.name() != e.robot) directory.presence(p.name(), p.id(), info.sender, now);
                   }),
            e.read(topics::capabilities,
                   [&e, &commands, &directory](const radio::Capabilities&c, const wire::SampleInfo&info) {
@@ -144,6 +160,8 @@ void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
 void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol) {
   (void)endpoints_->capabilities.write(to_radio(platform, endpoints_->robot, id, protocol));
 }
+
+void RadioEdge::send_presence() { endpoints_->say_present(); }
 
 void RadioEdge::send_link_report(Time now) {
   Endpoints& e = *endpoints_;

@@ -80,7 +80,7 @@ Decoded joystick(std::span<const std::uint8_t> cdr, const wire::ParticipantId& f
 Decoded station(std::span<const std::uint8_t> cdr, const wire::ParticipantId& from, bool presence) {
   if (presence) {
     const auto p = read<radio::Presence>(cdr);
-    if (!p) return std::nullopt;
+    if (!p || p->kind() != radio::AGENT_STATION) return std::nullopt;
     return DecodedSample{{}, PresenceHeard{from, p->name(), p->id()}};
   }
   const auto c = read<radio::Capabilities>(cdr);

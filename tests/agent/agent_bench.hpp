@@ -181,6 +181,7 @@ class AgentBench {
     const auto announce = [o] {
       if (!o->up) return;
       radio::Presence p;
+      p.kind(radio::AGENT_STATION);
       p.name(o->name);
       p.id(o->id);
       p.protocol(1);

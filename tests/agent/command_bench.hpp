@@ -24,8 +24,10 @@ class CommandBench {
     for (const char* op : {"op1", "op2", "op3"}) start(op);
   }
 
-  /// A station starts: same id as ever, a new participant, presence first.
+  /// A station starts: same id as ever, a new participant, presence first. The former process has been
+  /// silent for a moment.
   void start(const std::string& op) {
+    if (stations_.contains(op)) now += Binding::kQuiet;
     Station& s = stations_[op];
     s = {{op, id_of(op), next_participant()}, 0, true};
     interface_.hear(s.sender, 1, now);

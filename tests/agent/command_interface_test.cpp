@@ -165,9 +165,82 @@ TEST(CommandInterface, TwoThatClaimOneIdentityAreFoundOut) {
   bench.wait(2s);
   ASSERT_FALSE(bench.notices.empty());
   EXPECT_EQ(bench.notices.front().code, "intruder");
+  const std::string first_bytes = "participant 04";  // the forger's: three stations came before it
+  EXPECT_THAT(bench.notices.front().text, testing::HasSubstr(first_bytes));
   bench.interface().hear(forger, 1, bench.now);
   EXPECT_EQ(bench.say("forger:op1", "release").reason, Reason::identity_mismatch);
   EXPECT_TRUE(bench.say("op1", "lock").accepted());
+}
+
+TEST(CommandInterface, AForgerWhoAnnouncesTheHolderMovesNothingWhileHeLives) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.requests.calls.clear();
+  const Sender forger = bench.station("forger:op1").sender;
+  int reported = 0;
+  for (int i = 0; i < 40; ++i) {  // the holder's presence comes each second, the forger's ten times
+    bench.now += 100ms;
+    if (i % 10 == 9) bench.interface().hear(bench.station("op1").sender, 1, bench.now);
+    bench.interface().hear(forger, 1, bench.now);
+    for (const char* line : {"release", "mode waypoint", "goto 1 0", "reset", "lock", "grant op2", "take"})
+      EXPECT_EQ(bench.say("forger:op1", line).reason, Reason::identity_mismatch) << line << " at " << i;
+    (void)bench.interface().handle(bench.stick("forger:op1", {1.0, 0.0, 0.0}), bench.now);
+  }
+  for (const Notice& notice : bench.notices) reported += notice.code == "intruder";
+  EXPECT_GE(reported, 1);
+  EXPECT_EQ(bench.interface().authority().holder_name(), "op1");
+  EXPECT_EQ(bench.requests.calls, std::vector<std::string>{"restarted"}) << "a manual mode ends, no more";
+  EXPECT_TRUE(bench.say("op1", "lock").accepted());
+}
+
+TEST(CommandInterface, AKilledStationIsBackWhenItsLastWordIsASignOfLifeOld) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.wait(1s);
+  bench.kill("op1");
+  bench.notices.clear();
+  // The new process announces itself a moment after the kill; its commands are repeated until they count.
+  const Sender again = bench.station("forger:op1").sender;
+  bench.now += 300ms;
+  bench.interface().hear(again, 1, bench.now);
+  EXPECT_EQ(bench.say("forger:op1", "mode hold").reason, Reason::identity_mismatch);
+  bench.now += 1s;
+  EXPECT_TRUE(bench.say("forger:op1", "mode hold").accepted());
+  EXPECT_TRUE(bench.notices.empty()) << "nobody is an intruder";
+}
+
+TEST(CommandInterface, AStationThatLeftIsBackAtOnce) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.interface().departed(bench.station("op1").sender.participant);
+  const Sender again = bench.station("forger:op1").sender;
+  bench.interface().hear(again, 1, bench.now);
+  EXPECT_TRUE(bench.say("forger:op1", "mode hold").accepted());
+}
+
+TEST(CommandInterface, NobodyTakesARobotInTheNameOfAGuestWhoIsThere) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  EXPECT_EQ(bench.say("forger:op2", "take").reason, Reason::identity_mismatch);
+  EXPECT_EQ(bench.interface().authority().holder_name(), "op1");
+  EXPECT_TRUE(bench.say("op2", "take").accepted());
+}
+
+TEST(CommandInterface, WhatIsOlderAboutAuthorityDoesNotUndoWhatIsNewer) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  const Command lock = bench.command("op1", "lock"), unlock = bench.command("op1", "unlock");
+  EXPECT_TRUE(bench.send(unlock).accepted());
+  EXPECT_EQ(bench.send(lock).reason, Reason::stale_sequence) << "it was under way for long";
+  EXPECT_FALSE(bench.interface().authority().locked());
+  const Command take = bench.command("op1", "take");
+  EXPECT_TRUE(bench.say("op1", "release").accepted());
+  EXPECT_EQ(bench.send(take).reason, Reason::stale_sequence);
+  EXPECT_FALSE(bench.interface().authority().holder());
+  // A stop and what concerns authority do not wait for each other.
+  const Command late = bench.command("op1", "take");
+  EXPECT_TRUE(bench.say("op1", "stop").accepted());
+  EXPECT_TRUE(bench.send(late).accepted());
 }
 
 TEST(CommandInterface, StopOfAStationThatCameBackNeedsNoPresence) {
@@ -231,7 +304,8 @@ TEST(CommandInterface, HolderGetsHisNameBack) {
 TEST(CommandInterface, TableOfStationsIsBounded) {
   CommandBench bench;
   for (int i = 0; i < 61; ++i) EXPECT_TRUE(bench.say("s" + std::to_string(i), "stop").accepted());
-  EXPECT_EQ(bench.say("one_more", "stop").reason, Reason::unknown_station);
+  EXPECT_EQ(bench.say("one_more", "take").reason, Reason::unknown_station);
+  EXPECT_TRUE(bench.say("one_more", "stop").accepted()) << "a stop needs no place in the table";
   EXPECT_EQ(bench.interface().stations().size(), StationTable::kCapacity);
 }
 

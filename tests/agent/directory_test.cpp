@@ -18,9 +18,15 @@ class DirectoryTest : public testing::Test {
   AgentRecord record(const std::string& name, std::uint8_t participant, bool station = false) {
     AgentRecord r{};
     r.name = name;
+    r.id = of(name);
     r.participant[0] = participant;
     r.station = station;
     return r;
+  }
+  Id of(const std::string& name) {
+    Id id{};
+    std::copy_n(name.begin(), std::min<std::size_t>(name.size(), 16), id.begin());
+    return id;
   }
   wire::ParticipantId id(std::uint8_t participant) { return record("", participant).participant; }
 
@@ -51,33 +57,93 @@ TEST_F(DirectoryTest, SortedByName) {
   EXPECT_EQ(last[2].name, "r3");
 }
 
-TEST_F(DirectoryTest, SilentStationIsGoneAfterThreeSecondsAndBackWithItsPresence) {
-  directory.capabilities(record("op1", 1, true), now);
-  directory.presence("op1", id(1), now + 1s);
-  directory.tick(now + 3700ms);
-  EXPECT_TRUE(last[0].present);
-  directory.tick(now + 3800ms);
-  EXPECT_FALSE(last[0].present);
-  directory.presence("op1", id(2), now + 5s);
-  EXPECT_TRUE(last[0].present);
-  EXPECT_EQ(last[0].participant, id(2));
+TEST_F(DirectoryTest, WhoFallsSilentIsGoneWithinThreeSecondsAndBackWithItsPresence) {
+  for (const bool station : {false, true}) {
+    const std::string name = station ? "op1" : "r2";
+    directory.capabilities(record(name, 1, station), now);
+    directory.presence(name, of(name), id(1), now + 1s);
+    directory.tick(now + 3400ms);
+    EXPECT_TRUE(last.back().present || station);
+    directory.tick(now + 3500ms);
+    const auto& listed = station ? last.front() : last.back();
+    EXPECT_EQ(listed.name, name);
+    EXPECT_FALSE(listed.present);
+    directory.presence(name, of(name), id(2), now + 5s);
+    const auto& again = station ? last.front() : last.back();
+    EXPECT_TRUE(again.present);
+    EXPECT_EQ(again.participant, id(2));
+  }
 }
 
-TEST_F(DirectoryTest, RobotIsGoneWithItsParticipant) {
+TEST_F(DirectoryTest, GoneWithItsParticipant) {
   directory.capabilities(record("r2", 1), now);
-  directory.tick(now + 100s);
-  EXPECT_TRUE(last[0].present);
-  directory.participant({id(1), false}, now + 100s);
+  directory.participant({id(1), false});
   EXPECT_FALSE(last[0].present);
 }
 
 TEST_F(DirectoryTest, ReturnUnderAnotherAddressIsTheSameEntry) {
   directory.capabilities(record("r2", 1), now);
-  directory.capabilities(record("r2", 2), now + 1s);
-  directory.participant({id(1), false}, now + 2s);
+  directory.presence("r2", of("r2"), id(1), now + 1s);
+  // Killed, and started again at once; what it can do now is told once only.
+  AgentRecord back = record("r2", 2);
+  back.modes = {"explore"};
+  directory.capabilities(back, now + 1500ms);
+  EXPECT_EQ(last[0].participant, id(1)) << "it may be a forger's";
+  directory.tick(now + 2300ms);
   ASSERT_EQ(last.size(), 1u);
   EXPECT_TRUE(last[0].present);
   EXPECT_EQ(last[0].participant, id(2));
+  EXPECT_THAT(last[0].modes, testing::ElementsAre("explore"));
+  directory.participant({id(1), false});
+  EXPECT_TRUE(last[0].present);
+}
+
+TEST_F(DirectoryTest, ReturnAfterAGoodbyeIsAtOnce) {
+  directory.capabilities(record("r2", 1), now);
+  directory.participant({id(1), false});
+  directory.capabilities(record("r2", 2), now + 100ms);
+  EXPECT_TRUE(last[0].present);
+  EXPECT_EQ(last[0].participant, id(2));
+}
+
+TEST_F(DirectoryTest, NobodyTakesThePlaceOfOneThatIsThere) {
+  AgentRecord real = record("r2", 1), forged = record("r2", 2), other = record("r2", 3);
+  real.modes = {"hold"};
+  other.id = of("other");
+  directory.capabilities(real, now);
+  for (int i = 1; i <= 50; ++i) {
+    if (i % 10 == 0) directory.presence("r2", of("r2"), id(1), now + i * 100ms);
+    directory.capabilities(forged, now + i * 100ms);
+    directory.capabilities(other, now + i * 100ms);
+    directory.tick(now + i * 100ms);
+    ASSERT_EQ(directory.agents().size(), 1u);
+    EXPECT_EQ(directory.agents()[0].participant, id(1));
+    EXPECT_THAT(directory.agents()[0].modes, testing::ElementsAre("hold"));
+  }
+}
+
+TEST_F(DirectoryTest, TheRealOneHasItsPlaceBackAfterAGapOfTheRadio) {
+  AgentRecord real = record("r2", 1);
+  real.modes = {"hold"};
+  directory.capabilities(real, now);
+  directory.capabilities(record("r2", 2), now + 2s);
+  EXPECT_EQ(last[0].participant, id(2)) << "the first was not heard";
+  directory.presence("r2", of("r2"), id(1), now + 4s);
+  EXPECT_EQ(last[0].participant, id(1));
+  EXPECT_THAT(last[0].modes, testing::ElementsAre("hold"));
+  directory.presence("r2", of("r2"), id(2), now + 4500ms);
+  EXPECT_EQ(last[0].participant, id(1));
+}
+
+TEST_F(DirectoryTest, ANameWithAnotherIdIsFreeAfterSilence) {
+  directory.capabilities(record("r2", 1), now);
+  AgentRecord other = record("r2", 2);
+  other.id = of("other");
+  directory.capabilities(other, now + 1s);
+  EXPECT_EQ(last[0].participant, id(1));
+  directory.tick(now + 2500ms);
+  EXPECT_EQ(last[0].participant, id(2));
+  EXPECT_TRUE(last[0].present);
 }
 
 TEST_F(DirectoryTest, BoundedAndPicky) {

@@ -98,6 +98,7 @@ TEST(Fleet, NamesAndNumbersAreBounded) {
   EXPECT_EQ(fleet.ignored(), 2 + 100 - Fleet::max_robots);
   for (int i = 0; i < 100; ++i) {
     radio::Presence presence;
+  presence.kind(radio::AGENT_STATION);
     presence.name("op" + std::to_string(i + 10));
     fleet.hear(presence, at(0s));
   }
@@ -134,6 +135,7 @@ TEST(Fleet, TextFromTheRadioIsMadeSafe) {
 TEST(Fleet, AnotherStationWithOurNameIsReportedOnceAMinute) {
   Fleet fleet("op1", own_id);
   radio::Presence presence;
+  presence.kind(radio::AGENT_STATION);
   presence.name("op1");
   presence.id({3});
   for (int i = 0; i < 10; ++i) fleet.hear(presence, at(std::chrono::seconds(i)));
@@ -146,6 +148,7 @@ TEST(Fleet, AnotherStationWithOurNameIsReportedOnceAMinute) {
 TEST(Fleet, SilentStationsAreForgotten) {
   Fleet fleet("op1", own_id);
   radio::Presence presence;
+  presence.kind(radio::AGENT_STATION);
   presence.name("op2");
   fleet.hear(presence, at(0s));
   fleet.check(Time(59s));

@@ -48,7 +48,7 @@ TEST(Codec, AnotherEncapsulationIsRefusedAndBigEndianIsRead) {
   }
   radio::Presence presence, read;
   presence.name("op1");
-  presence.seq(0x0102030405060708ULL);
+  presence.seq(0x01020304U);
   std::vector<std::uint8_t> big(4 + radio::Presence::getCdrSerializedSize(presence));
   eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(big.data()), big.size());
   eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::BIG_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR);
