@@ -40,7 +40,6 @@ NavigationParams navigation_params(const AgentParams& params) {
 constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
-constexpr Duration kPresencePeriod = 1s;
 constexpr Duration kLinkPeriod = 2s;
 constexpr Duration kHealthPeriod = 5s;
 
@@ -74,7 +73,7 @@ Result<void> Agent::Core::open(wire::Wire& robot, Executor& sensors) {
   auto driver = Driver::open(robot, executor(), sensors, std::move(handlers));
   if (!driver) return driver.error();
   driver_ = std::move(*driver);
-  return radio_->listen({commands_, directory_}, params_.id, kProtocolVersion);
+  return radio_->listen({commands_, directory_});
 }
 
 void Agent::Core::close() {
@@ -104,7 +103,6 @@ Result<void> Agent::Core::on_start() {
     commands_.tick(now());
     send_status();
   }));
-  timers_.push_back(every(kPresencePeriod, [this] { radio_->send_presence(); }));
   timers_.push_back(every(kLinkPeriod, [this] { radio_->send_link_report(now()); }));
   timers_.push_back(every(kHealthPeriod, [this] { send_health(); }));
   return {};

@@ -9,6 +9,8 @@ namespace adit::agent {
 
 namespace topics = wire::topics;
 
+constexpr Duration kPresencePeriod = 1s;
+
 struct RadioEdge::Endpoints {
   wire::Wire& wire;
   Executor& strand;
@@ -26,6 +28,7 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
   radio::Presence presence_sample{};
+  Timer presence_timer{};
   radio::RobotState state_sample{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
 
@@ -44,6 +47,7 @@ struct RadioEdge::Endpoints {
     return {};
   }
   void say_present() {
+    if (presence_sample.name().empty()) return;  // not started yet
     presence_sample.seq(presence_sample.seq() + 1);
     (void)presence.write(presence_sample);
   }
@@ -71,12 +75,8 @@ Result<std::unique_ptr<RadioEdge>> RadioEdge::open(wire::Wire& wire, Executor& s
   return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
 }
 
-Result<void> RadioEdge::listen(Parts parts, const Id& id, std::uint16_t protocol) {
+Result<void> RadioEdge::listen(Parts parts) {
   Endpoints& e = *endpoints_;
-  e.presence_sample.name(e.robot);
-  e.presence_sample.kind(radio::AGENT_ROBOT);
-  e.presence_sample.id(id);
-  e.presence_sample.protocol(protocol);
   CommandInterface& commands = parts.commands;
   Directory& directory = parts.directory;
   const auto answer = [&e](const std::optional<Answer>& a) {
@@ -123,6 +123,7 @@ Result<void> RadioEdge::listen(Parts parts, const Id& id, std::uint16_t protocol
 
 void RadioEdge::close() {
   endpoints_->wire.on_participant(endpoints_->strand, {});
+  endpoints_->presence_timer.cancel();
   endpoints_->readers.clear();
 }
 
@@ -158,10 +159,15 @@ void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
 }
 
 void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol) {
-  (void)endpoints_->capabilities.write(to_radio(platform, endpoints_->robot, id, protocol));
+  Endpoints& e = *endpoints_;
+  (void)e.capabilities.write(to_radio(platform, e.robot, id, protocol));
+  e.presence_sample.name(e.robot);
+  e.presence_sample.kind(radio::AGENT_ROBOT);
+  e.presence_sample.id(id);
+  e.presence_sample.protocol(protocol);
+  e.say_present();
+  e.presence_timer = e.strand.every(kPresencePeriod, [&e] { e.say_present(); });
 }
-
-void RadioEdge::send_presence() { endpoints_->say_present(); }
 
 void RadioEdge::send_link_report(Time now) {
   Endpoints& e = *endpoints_;

@@ -34,9 +34,8 @@ class RadioEdge {
   RadioEdge(const RadioEdge&) = delete;
   RadioEdge& operator=(const RadioEdge&) = delete;
 
-  /// From now on the parts hear what arrives; they must outlive this. `id` and `protocol` are announced.
-  /// Errors of the wire.
-  Result<void> listen(Parts parts, const Id& id, std::uint16_t protocol);
+  /// From now on the parts hear what arrives; they must outlive this. Errors of the wire.
+  Result<void> listen(Parts parts);
 
   /// Nothing is heard any more. From any thread.
   void close();
@@ -46,9 +45,8 @@ class RadioEdge {
   void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
   void send_state(const RobotReport& report, std::uint64_t stamp);
   void send_health(const std::vector<ComponentHealth>& components);
+  /// And from now on a sign of life once a second, and when somebody appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
-  /// Our sign of life: due once a second.
-  void send_presence();
   /// What passed on the wire since the last call.
   void send_link_report(Time now);
 
