@@ -146,8 +146,9 @@ using Core = VirtualScheduler::Core;
 
 class VirtualStrand final : public Executor {
  public:
-  VirtualStrand(std::shared_ptr<Core> core, std::uint64_t machine, Duration offset, std::string name)
-      : core_(std::move(core)), machine_(machine), offset_(offset), name_(std::move(name)) {}
+  VirtualStrand(std::shared_ptr<Core> core, std::uint64_t machine, std::shared_ptr<const Duration> offset,
+                std::string name)
+      : core_(std::move(core)), machine_(machine), offset_(std::move(offset)), name_(std::move(name)) {}
 
   ~VirtualStrand() override {
     if (core_->running == this) core_->running = nullptr;
@@ -156,7 +157,7 @@ class VirtualStrand final : public Executor {
 
   const std::string& name() const override { return name_; }
   std::uint64_t machine() const { return machine_; }
-  Time now() const override { return Time(offset_ + Duration(core_->now)); }
+  Time now() const override { return Time(*offset_ + Duration(core_->now)); }
 
   void post(Task task) override {
     core_->check_thread();
@@ -202,7 +203,7 @@ class VirtualStrand final : public Executor {
  private:
   std::shared_ptr<Core> core_;
   std::uint64_t machine_;
-  Duration offset_;
+  std::shared_ptr<const Duration> offset_;
   std::string name_;
   bool over_{false};
 };
@@ -210,7 +211,12 @@ class VirtualStrand final : public Executor {
 class VirtualMachine final : public Runtime {
  public:
   VirtualMachine(std::shared_ptr<Core> core, std::uint64_t machine, Duration offset, std::string name)
-      : core_(std::move(core)), machine_(machine), offset_(offset), name_(std::move(name)) {}
+      : core_(std::move(core)),
+        machine_(machine),
+        offset_(std::make_shared<Duration>(offset)),
+        name_(std::move(name)) {}
+
+  void jump(Duration by) { *offset_ += by; }
 
   std::shared_ptr<Executor> strand(const std::string& name) override {
     return std::make_shared<VirtualStrand>(core_, machine_, offset_, name_ + "/" + name);
@@ -219,7 +225,7 @@ class VirtualMachine final : public Runtime {
  private:
   std::shared_ptr<Core> core_;
   std::uint64_t machine_;
-  Duration offset_;
+  std::shared_ptr<Duration> offset_;  ///< shared with its strands
   std::string name_;
 };
 
@@ -342,6 +348,12 @@ VirtualScheduler::~VirtualScheduler() {
 
 std::unique_ptr<Runtime> VirtualScheduler::machine(std::string name, Duration clock_offset) {
   return std::make_unique<VirtualMachine>(core_, core_->machines++, clock_offset, std::move(name));
+}
+
+void VirtualScheduler::jump_clock(Runtime& machine, Duration by) {
+  auto* own = dynamic_cast<VirtualMachine*>(&machine);
+  if (own == nullptr) throw std::logic_error("only the clock of a rehearsal's machine jumps");
+  own->jump(by);
 }
 
 void VirtualScheduler::at(Duration when, Task task) {

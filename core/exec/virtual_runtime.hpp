@@ -35,6 +35,9 @@ class VirtualScheduler {
   /// A machine whose clock shows virtual time plus `clock_offset`. The machine and its strands may
   /// outlive the scheduler; nothing runs on them then.
   std::unique_ptr<Runtime> machine(std::string name, Duration clock_offset);
+  /// A machine's clock goes on by `by` at once, also on the strands it has. Its timers run when they would
+  /// have run: they wait for time that passes. Throws std::logic_error for another kind of machine.
+  void jump_clock(Runtime& machine, Duration by);
   /// Runs the task once virtual time has reached `when` (at once when that is past), on a strand of the
   /// world itself: faults, scripts, measurements.
   void at(Duration when, Task task);

@@ -65,7 +65,7 @@ class Lock : public Rule {
   /// Of the holder, s.
   static double silence(const RobotModel& robot) {
     const RobotModel::Heard* holder = robot.heard(robot.authority().holder);
-    return holder ? seconds(robot.now() - holder->last) : 0.0;
+    return holder ? seconds(robot.age(holder->last)) : 0.0;
   }
   /// The lock's lease ran out.
   static bool lapsed(const RobotModel& robot) {

@@ -108,8 +108,14 @@ struct Motion {
   Twist2 velocity{};  ///< body frame
 };
 
-using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
-                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion>;
+/// The robot's clock went on by so much at once.
+struct ClockJumped {
+  Duration by{};
+};
+
+using Event =
+    std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent, AuthoritySent,
+                 BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion, ClockJumped>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

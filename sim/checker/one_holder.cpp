@@ -40,7 +40,7 @@ class OneHolder : public Rule {
                describe_epoch(robot.authority().counter));
     }
     const RobotModel::Heard* known = robot.heard(command.station);
-    if (command.verb == Verb::take && known && known->id != command.id && robot.now() - known->last < hearing)
+    if (command.verb == Verb::take && known && known->id != command.id && robot.age(known->last) < hearing)
       broken("was taken under the name " + command.station + " by another station than the one heard");
     see_transition(robot, command, ack, broken);
   }

@@ -12,6 +12,7 @@ void RobotModel::take_in_event(const AgentStarted&) {
   // A new process remembers nothing: neither holder nor stops nor whom it heard.
   const RobotFacts facts = facts_;
   const Motion truth = truth_;
+  const auto jumps = jumps_;
   const Duration now = now_, died = died_, velocity_at = velocity_at_;
   const std::optional<VelocitySent> velocity = velocity_;
   *this = RobotModel(facts);
@@ -20,7 +21,15 @@ void RobotModel::take_in_event(const AgentStarted&) {
   velocity_ = velocity;
   velocity_at_ = velocity_at;
   truth_ = truth;
+  jumps_ = jumps;
   alive_ = true;
+}
+
+Duration RobotModel::age(Duration then) const {
+  Duration out = now_ - then;
+  for (const auto& [at, by] : jumps_)
+    if (at >= then) out += by;
+  return out;
 }
 
 void RobotModel::take_in_event(const AgentDied&) {
@@ -33,7 +42,7 @@ void RobotModel::hear(const std::string& station, const StationId& id, const wir
   auto [it, fresh] = stations_.try_emplace(station, Heard{id, from, now_});
   Heard& heard = it->second;
   // Another id may use the name only when the first was silent.
-  if (!fresh && heard.id != id && now_ - heard.last < hearing) return;
+  if (!fresh && heard.id != id && age(heard.last) < hearing) return;
   heard = {id, from, now_};
 }
 
@@ -52,7 +61,7 @@ void RobotModel::take_in_event(const CommandHeard& e) {
   // not show a new one to be his.
   const Heard* known = heard(e.station);
   const bool contested =
-      known && known->participant != e.from && e.station == authority_.holder && now_ - known->last < hearing;
+      known && known->participant != e.from && e.station == authority_.holder && age(known->last) < hearing;
   if (!known || (known->id == e.id && !contested)) hear(e.station, e.id, e.from);
 }
 
@@ -174,7 +183,7 @@ std::string RobotModel::refusal(const JoystickHeard& sample) const {
   const auto echoed =
       std::find_if(stamps_.begin(), stamps_.end(), [&](const auto& s) { return s.first == sample.echo; });
   if (echoed == stamps_.end()) return "it echoes no recent stamp of the robot";
-  if (now_ - echoed->second > oldest_echo) return "its echo was older than 600 ms";
+  if (age(echoed->second) > oldest_echo) return "its echo was older than 600 ms";
   return {};
 }
 

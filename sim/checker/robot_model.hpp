@@ -44,6 +44,8 @@ class RobotModel {
   const RobotFacts& facts() const { return facts_; }
   Duration now() const { return now_; }
   bool alive() const { return alive_; }
+  /// How long ago that was by the robot's clock, which jumps.
+  Duration age(Duration then) const;
   Duration started() const { return started_; }
   Duration died() const { return died_; }
 
@@ -97,6 +99,7 @@ class RobotModel {
   void take_in_event(const NotificationSent&) {}
   void take_in_event(const VelocitySent& e);
   void take_in_event(const Motion& e) { truth_ = e; }
+  void take_in_event(const ClockJumped& e) { jumps_.emplace_back(now_, e.by); }
   void hear(const std::string& station, const StationId& id, const wire::ParticipantId& from);
   void apply(const CommandHeard& command, const AckSent& ack);
 
@@ -115,6 +118,7 @@ class RobotModel {
   std::optional<Stick> stick_{}, pushed_stick_{};
   std::optional<std::pair<std::string, Duration>> forbidden_stick_{};
   Motion truth_{};
+  std::vector<std::pair<Duration, Duration>> jumps_{};  ///< when, by how much
 };
 
 }  // namespace adit::sim

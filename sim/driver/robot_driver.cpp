@@ -96,8 +96,13 @@ Result<void> RobotDriver::start() {
   return {};
 }
 
+void RobotDriver::silence(Sensor sensor, bool silent) {
+  (sensor == Sensor::lidar ? lidar_silent_ : odometry_silent_) += silent ? 1 : -1;
+}
+
 // A failed write is counted by the wire and shown with its counters; the next sample replaces it.
 void RobotDriver::send_odom() {
+  if (odometry_silent_ > 0) return;
   const Odometry& measured = simulation_.odometry(robot_);
   nav_msgs::msg::Odometry odom;
   odom.header(header(strand_.now(), "odom"));
@@ -125,6 +130,7 @@ void RobotDriver::send_battery() {
 }
 
 void RobotDriver::send_points() {
+  if (lidar_silent_ > 0) return;
   auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
   auto bytes = std::make_shared<std::vector<std::uint8_t>>();
   auto stamp = header(strand_.now(), "base_link");

@@ -5,6 +5,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/wire/wire.hpp"
+#include "sim/driver/sensor.hpp"
 #include "sim/world/simulation.hpp"
 
 namespace adit::sim {
@@ -28,6 +29,8 @@ class RobotDriver {
   ~RobotDriver();
   /// Makes the endpoints and begins to send. Errors of the wire.
   Result<void> start();
+  /// A sensor is silent as long as it was silenced more often than not.
+  void silence(Sensor sensor, bool silent);
 
  private:
   struct Endpoints;
@@ -42,6 +45,7 @@ class RobotDriver {
   DriverParams params_;
   std::shared_ptr<Endpoints> endpoints_;  // shared with scans under way
   Time started_{};
+  int lidar_silent_{}, odometry_silent_{};
   Timer odom_{}, battery_{}, first_points_{}, points_{};
 };
 

@@ -5,12 +5,9 @@
 #include "core/component/fault.hpp"
 #include "core/config/platform.hpp"
 #include "core/exec/executor.hpp"
+#include "core/store/disk.hpp"
 #include "core/wire/wire.hpp"
 #include "sim/rehearsal/scenario.hpp"
-
-namespace adit::store {
-class Disk;
-}
 
 namespace adit::sim {
 

@@ -58,6 +58,7 @@ std::string shortfall(const AtLeast& e, const RunReport& report) {
   };
   if (e.what == "commands") return below(static_cast<double>(report.commands.sent), "");
   if (e.what == "refusals") return below(static_cast<double>(report.commands.refused), "");
+  if (e.what == "faults") return below(static_cast<double>(report.fault_count()), "");
   for (const auto& [id, robot] : report.robots) {
     const double is = e.what == "moving" ? robot.moving : robot.distance;
     if (const std::string text = below(is, id + ": "); !text.empty()) return text;

@@ -57,7 +57,9 @@ std::vector<ScriptLine> draw_script(const RandomScript& spec, const Scenario& sc
   std::vector<ScriptLine> lines;
   std::string robot = pick(spec.robots, random);
   for (int i = 0; i < spec.commands; ++i) {
-    const Duration at = from_seconds(random.uniform(seconds(spec.from), seconds(spec.to)));
+    // In whole milliseconds: as a scenario file can say it.
+    const Duration at = std::chrono::round<std::chrono::milliseconds>(
+        from_seconds(random.uniform(seconds(spec.from), seconds(spec.to))));
     const std::string by = pick(spec.by, random);
     if (!random.chance(0.25)) robot = pick(spec.robots, random);
     lines.push_back({at, by, draw_command(spec, scenario, by, robot, random)});

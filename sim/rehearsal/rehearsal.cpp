@@ -5,9 +5,9 @@
 
 #include "core/config/platform_file.hpp"
 #include "sim/rehearsal/expectations.hpp"
-#include "sim/rehearsal/forger.hpp"
+#include "sim/rehearsal/fault_player.hpp"
+#include "sim/rehearsal/random_faults.hpp"
 #include "sim/rehearsal/random_script.hpp"
-#include "sim/rehearsal/station_machine.hpp"
 
 namespace adit::sim {
 namespace {
@@ -95,34 +95,16 @@ class Run {
       if (auto started = stations_[spec.id]->start(); !started) return started;
     }
     schedule(scenario_.script);
-    if (scenario_.random) schedule(draw_script(*scenario_.random, scenario_, random_.fork(7)));
-    for (const Fault& fault : scenario_.faults) scheduler_.at(fault.at, [this, &fault] { happen(fault); });
+    const Draws drawn = draw(scenario_, params_.seed);
+    schedule(drawn.script);
+    for (const std::vector<Fault>* faults : {&scenario_.faults, &drawn.faults})
+      for (const Fault& fault : *faults) faults_.schedule(fault);
     return {};
   }
 
   void schedule(const std::vector<ScriptLine>& lines) {
     for (const ScriptLine& line : lines)
       scheduler_.at(line.at, [this, line] { stations_.at(line.by)->type(line.command); });
-  }
-
-  void happen(const Fault& fault) {
-    const Duration now = scheduler_.elapsed();
-    if (const auto* crash = std::get_if<Crash>(&fault.what)) {
-      if (robots_.contains(crash->victim)) robots_[crash->victim]->crash();
-      if (stations_.contains(crash->victim)) stations_[crash->victim]->crash();
-    } else if (const auto* cut = std::get_if<CutLink>(&fault.what)) {
-      ether_.cut(cut->a, cut->b, true);
-      scheduler_.at(now + cut->duration, [this, cut] { ether_.cut(cut->a, cut->b, false); });
-    } else if (const auto* worse = std::get_if<DegradeLink>(&fault.what)) {
-      ether_.degrade(worse->a, worse->b, worse->loss);
-      scheduler_.at(now + worse->duration,
-                    [this, worse] { ether_.degrade(worse->a, worse->b, std::nullopt); });
-    } else if (const auto* forge = std::get_if<Forge>(&fault.what)) {
-      forgers_.push_back(std::make_unique<Forger>(stage_, *forge, stations_.at(forge->as)->id()));
-      fault_health_ = forgers_.back()->start();
-    } else if (const auto* stuck = std::get_if<StuckStick>(&fault.what)) {
-      fault_health_ = stations_.at(stuck->by)->stick_hangs(stuck->robot, stuck->duration);
-    }
   }
 
   // 50 Hz, and whenever an expectation wants to be judged.
@@ -173,7 +155,7 @@ class Run {
       if (!robot->health()) return robot->health();
     for (const auto& [id, station] : stations_)
       if (!station->health()) return station->health();
-    return fault_health_;
+    return faults_.health();
   }
 
   RunReport report(double wall) {
@@ -186,6 +168,7 @@ class Run {
     out.topics = witness_.topics();
     out.commands = witness_.commands();
     out.events = witness_.events();
+    out.faults = faults_.counts();
     out.failures = scheduler_.failures();
     for (int rule = 1; rule <= Checker::rules; ++rule) {
       RuleResult result{rule, Checker::title(rule), checker_.count(rule), {}};
@@ -215,16 +198,24 @@ class Run {
   std::unique_ptr<Runtime> world_runtime_{};
   std::shared_ptr<Executor> world_{};
   Timer step_{};
-  std::map<std::string, std::unique_ptr<RobotMachine>> robots_{};
-  std::map<std::string, std::unique_ptr<StationMachine>> stations_{};
-  std::vector<std::unique_ptr<Forger>> forgers_{};
-  Result<void> fault_health_{};
+  RobotMachines robots_{};
+  StationMachines stations_{};
+  FaultPlayer faults_{stage_, robots_, stations_};
   std::map<std::string, Trail> trails_{};
   std::map<std::string, std::map<std::string, double>> mode_seconds_{};
   Duration observed_{};
 };
 
 }  // namespace
+
+Draws draw(const Scenario& scenario, std::uint64_t seed) {
+  Random random(seed);
+  const Random script = random.fork(7), faults = random.fork(8);
+  Draws out;
+  if (scenario.random) out.script = draw_script(*scenario.random, scenario, script);
+  if (scenario.random_faults) out.faults = draw_faults(*scenario.random_faults, scenario, faults);
+  return out;
+}
 
 Result<std::shared_ptr<const World>> make_world(const WorldSpec& spec) {
   auto world = !spec.map.empty()          ? load_octomap(spec.map)

@@ -32,6 +32,13 @@ struct RunOutcome {
   std::vector<Collision> collisions{};
 };
 
+/// What a scenario leaves to its seed.
+struct Draws {
+  std::vector<ScriptLine> script{};
+  std::vector<Fault> faults{};
+};
+Draws draw(const Scenario& scenario, std::uint64_t seed);
+
 /// Builds a scenario's world; it may be shared by many runs. Errors name the file.
 Result<std::shared_ptr<const World>> make_world(const WorldSpec& spec);
 /// The robots as the simulation takes them, with their platforms. Errors of core/config.

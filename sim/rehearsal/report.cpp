@@ -57,6 +57,12 @@ std::string RobotResult::clearance() const {
   return text.data();
 }
 
+std::uint64_t RunReport::fault_count() const {
+  std::uint64_t sum = 0;
+  for (const auto& [kind, count] : faults) sum += count;
+  return sum;
+}
+
 bool RunReport::ok() const { return complaints().empty(); }
 
 std::vector<std::string> RunReport::complaints() const {
@@ -104,6 +110,7 @@ std::string to_json(const RunReport& report) {
         {"accepted", report.commands.accepted},
         {"refused", report.commands.refused},
         {"reasons", report.commands.reasons}}},
+      {"faults", report.faults},
       {"failures", report.failures},
       {"events", events},
   };

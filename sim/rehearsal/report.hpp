@@ -64,9 +64,11 @@ struct RunReport {
   std::map<std::string, RobotResult> robots{};
   std::map<std::string, TopicResult, std::less<>> topics{};
   CommandResult commands{};
+  std::map<std::string, std::uint64_t> faults{};  ///< those that happened, by kind
   std::vector<TimedEvent> events{};
   std::uint64_t failures{};  ///< exceptions that left a task
 
+  std::uint64_t fault_count() const;
   bool ok() const;
   /// One line for each thing that failed.
   std::vector<std::string> complaints() const;

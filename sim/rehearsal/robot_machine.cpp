@@ -42,7 +42,8 @@ RobotMachine::RobotMachine(Stage& stage, std::size_t index, const RobotSpec& spe
       spec_(spec),
       random_(random),
       clock_offset_(from_seconds(random_.uniform(10.0, 100000.0))),
-      domain_(first_robot_domain + static_cast<std::uint32_t>(index)) {}
+      domain_(first_robot_domain + static_cast<std::uint32_t>(index)),
+      disk_(std::make_shared<store::MemoryDisk>(random_.next())) {}
 
 RobotMachine::~RobotMachine() = default;
 
@@ -104,6 +105,24 @@ void RobotMachine::crash() {
     parent_->zero.cancel();
     health_ = start_agent();
   });
+}
+
+Result<void> RobotMachine::inject(const std::string& component, ComponentFault fault) {
+  if (!agent_) return {};
+  return agent_->program->inject(component, fault);
+}
+
+void RobotMachine::jump_clock(Duration by) {
+  clock_offset_ += by;
+  stage_.scheduler.jump_clock(*driver_runtime_, by);
+  stage_.scheduler.jump_clock(*parent_->runtime, by);
+  stage_.witness.clock_jumped(spec_.id, stage_.scheduler.elapsed(), by);
+  if (agent_) stage_.scheduler.jump_clock(*agent_->runtime, by);
+}
+
+void RobotMachine::fill_disk(bool full) {
+  disk_full_ += full ? 1 : -1;
+  disk_->set_full(disk_full_ > 0);
 }
 
 }  // namespace adit::sim

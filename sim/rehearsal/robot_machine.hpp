@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "core/exec/virtual_runtime.hpp"
+#include "core/store/memory_disk.hpp"
 #include "core/time/random.hpp"
 #include "core/wire/memory/ether.hpp"
 #include "sim/driver/robot_driver.hpp"
@@ -31,6 +32,13 @@ class RobotMachine {
   /// The agent's process dies in this instant: its parent sends zero 20 ms later and starts it again
   /// after 0.5 s. Nothing happens when it is dead already.
   void crash();
+  /// A component of the agent throws or hangs; nothing happens while the agent is dead.
+  Result<void> inject(const std::string& component, ComponentFault fault);
+  /// The computer's clock goes on by so much at once.
+  void jump_clock(Duration by);
+  void silence(Sensor sensor, bool silent) { driver_->silence(sensor, silent); }
+  /// The disk is full as long as it was filled more often than freed.
+  void fill_disk(bool full);
   /// Why the agent could not be started again, if so.
   const Result<void>& health() const { return health_; }
 
@@ -45,7 +53,8 @@ class RobotMachine {
   Random random_;
   Duration clock_offset_;
   std::uint32_t domain_;
-  std::shared_ptr<store::Disk> disk_{};  ///< of the agent's computer; it outlives crashes
+  std::shared_ptr<store::MemoryDisk> disk_;  ///< of the agent's computer; it outlives crashes
+  int disk_full_{};
   // In the order they are needed: a wire before what speaks on it.
   std::unique_ptr<Runtime> driver_runtime_{};
   std::shared_ptr<Executor> driver_strand_{};

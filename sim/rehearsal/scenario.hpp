@@ -11,6 +11,7 @@
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/link.hpp"
+#include "sim/rehearsal/fault.hpp"
 
 /// A rehearsal as its YAML file says it; docs/rehearsal.md is the reference.
 namespace adit::sim {
@@ -55,31 +56,11 @@ struct RandomScript {
   double reach{3.0};  ///< of a random goto from the robot's start, m
 };
 
-struct Crash {
-  std::string victim{};  ///< a robot or a basestation
-};
-struct CutLink {
-  std::string a{}, b{};
-  Duration duration{};
-};
-struct DegradeLink {
-  std::string a{}, b{};
-  double loss{};
-  Duration duration{};
-};
-/// A foreign participant writes well-formed commands and joystick samples to `robot` in `as`'s name.
-struct Forge {
-  std::string as{}, robot{};
-  Duration duration{};
-};
-/// `by`'s joystick hangs: his own participant streams a pushed stick to `robot`, whatever the mode.
-struct StuckStick {
-  std::string by{}, robot{};
-  Duration duration{};
-};
-struct Fault {
-  Duration at{};
-  std::variant<Crash, CutLink, DegradeLink, Forge, StuckStick> what{};
+/// Random faults: `faults` of them that begin between `from` and `to`, each of one of `kinds`.
+struct RandomFaults {
+  int faults{};
+  Duration from{}, to{};
+  std::vector<std::string> kinds{};  ///< names of fault_kinds()
 };
 
 struct NearExpectation {
@@ -102,7 +83,7 @@ struct AnswerExpectation {
 struct NoCollision {};
 /// Counted over the whole run.
 struct AtLeast {
-  std::string what{};  ///< commands, refusals, or distance (of every robot)
+  std::string what{};  ///< commands, refusals, faults, or distance and moving (of every robot)
   double amount{};
 };
 struct Expectation {
@@ -115,9 +96,11 @@ struct Expectation {
 
 struct Scenario {
   std::filesystem::path file{};
+  std::string text{};  ///< of the file
   std::string name{};
   WorldSpec world{};
   Duration duration{};
+  std::uint64_t seed{1};  ///< when the command line names none
   wire::LinkProfile link{};
   LidarKind lidar{LidarKind::full};
   Duration lock_lease{300s};  ///< 0: a lock never lapses
@@ -126,6 +109,7 @@ struct Scenario {
   std::vector<ScriptLine> script{};  ///< by time
   std::optional<RandomScript> random{};
   std::vector<Fault> faults{};  ///< by time
+  std::optional<RandomFaults> random_faults{};
   std::vector<Expectation> expectations{};
 
   const RobotSpec* robot(const std::string& id) const;

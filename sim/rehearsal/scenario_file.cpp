@@ -15,6 +15,7 @@ namespace {
 using config::Node;
 
 constexpr double longest = 86400.0;  // s
+constexpr std::int64_t most_seed = std::int64_t{1} << 53;
 
 std::filesystem::path find_map(const Node& world, const std::string& key, const std::string& file) {
   const std::string name = world.text(key);
@@ -134,11 +135,13 @@ std::string source_line(const std::string& text, int number) {
 Result<Scenario> read(const Node& root, const std::string& text, const std::string& file) {
   Scenario out;
   out.file = file;
+  out.text = text;
   out.name = std::filesystem::path(file).stem().string();
   // Missing: that is told, and not what it makes of every time in the file.
   out.duration =
       from_seconds(root.has("duration") ? root.number("duration", config::above(0.0, longest)) : longest);
   if (!root.has("duration")) root.number("duration", config::above(0.0, longest));
+  out.seed = static_cast<std::uint64_t>(root.integer("seed", 0, most_seed, 1));
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);
   out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;
@@ -147,6 +150,7 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.script = read_script(root, out);
   if (root.has("random_script")) out.random = read_random(root.child("random_script"), out);
   out.faults = read_faults(root, out);
+  if (root.has("random_faults")) out.random_faults = read_random_faults(root.child("random_faults"), out);
   out.expectations = read_expectations(root, out);
   for (Expectation& e : out.expectations) e.text = source_line(text, e.line);
   if (auto done = root.finish(); !done) return done.error();

@@ -20,6 +20,7 @@ wire::LinkProfile read_link(const config::Node& node, const std::string& file);
 std::vector<ScriptLine> read_script(const config::Node& root, const Scenario& scenario);
 RandomScript read_random(const config::Node& node, const Scenario& scenario);
 std::vector<Fault> read_faults(const config::Node& root, const Scenario& scenario);
+RandomFaults read_random_faults(const config::Node& node, const Scenario& scenario);
 std::vector<Expectation> read_expectations(const config::Node& root, const Scenario& scenario);
 
 }  // namespace adit::sim

@@ -79,6 +79,11 @@ void StationMachine::crash() {
   stage_.scheduler.at(stage_.scheduler.elapsed() + restart_after, [this] { health_ = start_process(); });
 }
 
+void StationMachine::jump_clock(Duration by) {
+  clock_offset_ += by;
+  if (process_) stage_.scheduler.jump_clock(*process_->runtime, by);
+}
+
 std::optional<Reason> StationMachine::last_answer() const {
   if (!process_ || !process_->station->last_answer()) return answer_before_crash_;
   return process_->station->last_answer()->reason;

@@ -18,6 +18,8 @@ class StationMachine {
   void type(const std::string& line);
   /// The station's process dies in this instant and is started again after 0.5 s.
   void crash();
+  /// The computer's clock goes on by so much at once.
+  void jump_clock(Duration by);
   /// His joystick hangs, pushed, on that robot for so long.
   Result<void> stick_hangs(const std::string& robot, Duration duration);
   const Result<void>& health() const { return health_; }

@@ -115,6 +115,10 @@ void Witness::agent_died(const std::string& robot, Duration at) {
   checker_.observe(robot, at, AgentDied{});
 }
 
+void Witness::clock_jumped(const std::string& robot, Duration at, Duration by) {
+  checker_.observe(robot, at, ClockJumped{by});
+}
+
 void Witness::truth(const std::string& robot, Duration at, const Motion& truth) {
   for (double value : {truth.pose.x, truth.pose.y, truth.pose.yaw}) digest_.add(value);
   checker_.observe(robot, at, truth);

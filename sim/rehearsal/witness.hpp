@@ -40,6 +40,9 @@ class Witness {
 
   void see(const wire::Frame& frame);
   void agent_started(const std::string& robot, Duration at, const wire::ParticipantId& participant);
+  /// A fault begins; `text` says what.
+  void fault(Duration at, std::string text) { note({}, at, std::move(text)); }
+  void clock_jumped(const std::string& robot, Duration at, Duration by);
   void agent_died(const std::string& robot, Duration at);
   void truth(const std::string& robot, Duration at, const Motion& truth);
 

@@ -93,7 +93,12 @@ void Simulation::record(std::size_t robot, std::size_t partner) {
 void Simulation::move(std::size_t index) {
   Robot& robot = robots_[index];
   const double dt = seconds(params_.step);
-  const Pose2 before = robot.body.pose(), after = robot.body.advance(dt);
+  const Pose2 before = robot.body.pose();
+  Pose2 after = robot.body.advance(dt);
+  if (robot.jams > 0) {
+    robot.body.halt();
+    after = before;
+  }
   if (after == before) {
     robot.odometry.move(before, before, dt);
     robot.truth.twist = robot.body.twist();

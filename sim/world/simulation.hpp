@@ -70,6 +70,8 @@ class Simulation {
 
   /// What a driver does with a cmd_vel.
   void command(std::size_t robot, const Twist2& wanted) { robots_[robot].body.command(wanted); }
+  /// The drive stands whatever it is told, as long as it was jammed more often than freed.
+  void jam(std::size_t robot, bool jammed) { robots_[robot].jams += jammed ? 1 : -1; }
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
   /// Pose in `odom` (which begins at the start pose) and measured velocity.
   const Odometry& odometry(std::size_t robot) const { return robots_[robot].odometry; }
@@ -100,6 +102,7 @@ class Simulation {
     Truth truth{};
     std::optional<std::size_t> partner{};  ///< of the contact that lasts; size() for the world
     Pose2 contact{};                       ///< where it began
+    int jams{};                            ///< of its drive, that last
   };
   Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
 

@@ -53,6 +53,24 @@ TEST(VirtualScheduler, gives_each_machine_its_own_clock) {
   EXPECT_EQ(sa->name(), "a/x");
 }
 
+TEST(VirtualScheduler, a_clock_that_jumps_moves_no_timer) {
+  VirtualScheduler scheduler(1);
+  const auto machine = scheduler.machine("a", 100s);
+  const auto other = scheduler.machine("b", 100s);
+  const auto before = machine->strand("before"), untouched = other->strand("x");
+  Time shown{};
+  const Timer timer = before->after(2s, [&] { shown = before->now(); });
+  scheduler.run_until(1s);
+  scheduler.jump_clock(*machine, 30s);
+  const auto later = machine->strand("after");
+  EXPECT_EQ(later->now().time_since_epoch(), 131s);
+  EXPECT_EQ(untouched->now().time_since_epoch(), 101s);
+  scheduler.run_until(1999ms);
+  EXPECT_EQ(shown, Time{});
+  scheduler.run_until(2s);
+  EXPECT_EQ(shown.time_since_epoch(), 132s);
+}
+
 TEST(VirtualScheduler, runs_timers_at_their_time_up_to_and_including_the_limit) {
   VirtualScheduler scheduler(1);
   const auto machine = scheduler.machine("r1", 0s);

@@ -85,6 +85,33 @@ TEST(Scenario, RandomScriptAndOwnLink) {
   EXPECT_EQ(s->random->robots, (std::vector<std::string>{"r1", "r2"}));
 }
 
+TEST(Scenario, EveryFaultIsWrittenAsItIsRead) {
+  const std::vector<std::string> faults{
+      "{at: 1.000, crash: r1}",
+      "{at: 1.500, crash: op1}",
+      "{at: 2.000, crash: r1/command}",
+      "{at: 3.000, hang: r2/planner}",
+      "{at: 4.000, cut: [op1, r1], for: 2.000}",
+      "{at: 5.000, cut: [r1, op1], one_way: true, for: 2.000}",
+      "{at: 6.000, degrade: [op1, r1], loss: 0.300, for: 2.000}",
+      "{at: 6.500, degrade: [op1, r1], loss: 0.300, delay: 0.250, for: 2.000}",
+      "{at: 7.000, partition: [[op1, r1], [r2]], for: 2.000}",
+      "{at: 8.000, reorder: [op1, r1], chance: 0.500, by: 0.400, for: 2.000}",
+      "{at: 9.000, duplicate: [op1, r1], chance: 0.500, for: 2.000}",
+      "{at: 10.000, clock_jump: {op1: 3.000, r1: 0.250}}",
+      "{at: 11.000, sensor_silent: r1, sensor: odometry, for: 2.000}",
+      "{at: 11.500, sensor_silent: r1, sensor: lidar, for: 2.000}",
+      "{at: 12.000, stuck: r1, for: 2.000}",
+      "{at: 13.000, stuck: [op1, r1], for: 2.000}",
+      "{at: 14.000, disk_full: r1, for: 2.000}",
+      "{at: 15.000, forge: [op1, r1], for: 2.000}"};
+  std::string all;
+  for (const std::string& fault : faults) all += "  - " + fault + "\n";
+  const auto s = parse_scenario(with("  - {at: 20, crash: r1}\n", all), "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  for (std::size_t i = 0; i < faults.size(); ++i) EXPECT_EQ(to_yaml(s->faults[i]), faults[i]);
+}
+
 struct Bad {
   const char* name;
   const char* what;
@@ -137,8 +164,32 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"script_after_the_end", "{at: 2,", "{at: 200,", 13, "120"},
         Bad{"fault_of_nothing", "crash: r1", "crash: r7", 15, "r7"},
         Bad{"fault_of_two_kinds", "crash: r1}", "crash: r1, hang: r2/nav}", 15, "one of"},
-        Bad{"fault_in_a_component", "crash: r1", "crash: r1/nav", 15, "crash: r1"},
-        Bad{"hang", "crash: r1", "hang: r1/nav", 15, "hang"},
+        Bad{"fault_in_no_component", "crash: r1", "crash: r1/horn", 15, "planner"},
+        Bad{"fault_in_a_stations_component", "crash: r1", "crash: op1/planner", 15, "op1/planner"},
+        Bad{"hang_of_a_whole_agent", "crash: r1", "hang: r1", 15, "ROBOT/COMPONENT"},
+        Bad{"cut_from_itself", "cut: [op1, r1]", "cut: [r1, r1]", 16, "[A, B]"},
+        Bad{"one_way_what", "cut: [op1, r1], for: 10", "cut: [op1, r1], one_way: 3, for: 10", 16, "true"},
+        Bad{"delay_negative", "loss: 0.3, for: 10", "loss: 0.3, delay: -1, for: 10", 17, "[0, 10]"},
+        Bad{"partition_of_one", "crash: r1", "partition: [[r1, op1]], for: 3", 15, "two groups"},
+        Bad{"partition_with_one_in_two", "crash: r1", "partition: [[r1], [op1, r1]], for: 3", 15, "in two"},
+        Bad{"partition_of_nobody", "crash: r1", "partition: [[], [op1]], for: 3", 15, "at least one"},
+        Bad{"partition_of_strangers", "crash: r1", "partition: [[r1], [r9]], for: 3", 15, "r9"},
+        Bad{"partition_for_ever", "crash: r1", "partition: [[r1], [op1]]", 15, "for"},
+        Bad{"reorder_without_a_chance", "crash: r1", "reorder: [op1, r1], for: 3", 15, "chance"},
+        Bad{"duplicate_above_one", "crash: r1", "duplicate: [op1, r1], chance: 2, for: 3", 15, "[0, 1]"},
+        Bad{"clock_back", "crash: r1", "clock_jump: {r1: -3}", 15, "(0, 86400]"},
+        Bad{"clock_of_nobody", "crash: r1", "clock_jump: {r9: 3}", 15, "r9"},
+        Bad{"clock_of_none", "crash: r1", "clock_jump: {}", 15, "NAME: SECONDS"},
+        Bad{"silent_nose", "crash: r1", "sensor_silent: r1, sensor: nose, for: 3", 15, "odometry"},
+        Bad{"silent_station", "crash: r1", "sensor_silent: op1, for: 3", 15, "op1"},
+        Bad{"stuck_station", "crash: r1", "stuck: op1, for: 3", 15, "op1"},
+        Bad{"stuck_three", "crash: r1", "stuck: [op1, r1, r2], for: 3", 15, "[BASESTATION, ROBOT]"},
+        Bad{"full_disk_of_a_station", "crash: r1", "disk_full: op1, for: 3", 15, "op1"},
+        Bad{"seed_negative", "duration: 120", "seed: -1\nduration: 120", 2, "0"},
+        Bad{"random_faults_unknown", "duration: 120",
+            "random_faults: {faults: 3, from: 0, to: 9, kinds: [rain]}\nduration: 120", 2, "clock_jump"},
+        Bad{"random_faults_backwards", "duration: 120",
+            "random_faults: {faults: 3, from: 9, to: 0}\nduration: 120", 2, "from before to"},
         Bad{"cut_of_one", "cut: [op1, r1]", "cut: [op1]", 16, "[A, B]"},
         Bad{"cut_for_ever", "cut: [op1, r1], for: 10", "cut: [op1, r1]", 16, "for"},
         Bad{"loss_above_one", "loss: 0.3", "loss: 1.3", 17, "[0, 1]"},

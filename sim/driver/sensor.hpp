@@ -1,0 +1,8 @@
+#pragma once
+
+namespace adit::sim {
+
+/// What a simulated driver gives.
+enum class Sensor { lidar, odometry };
+
+}  // namespace adit::sim

@@ -1,0 +1,70 @@
+#include "sim/rehearsal/ddmin.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace adit::sim {
+namespace {
+
+// Everything but the chunk from `begin` to `end`.
+Indices without(const Indices& all, std::size_t begin, std::size_t end) {
+  Indices out(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(begin));
+  out.insert(out.end(), all.begin() + static_cast<std::ptrdiff_t>(end), all.end());
+  return out;
+}
+
+}  // namespace
+
+Indices ddmin(std::size_t count, const Fails& fails) {
+  std::map<Indices, bool> asked;
+  const auto ask = [&](const Indices& kept) {
+    const auto [it, fresh] = asked.try_emplace(kept, false);
+    if (fresh) it->second = fails(kept);
+    return it->second;
+  };
+  Indices kept(count);
+  std::iota(kept.begin(), kept.end(), std::size_t{0});
+  if (count > 0 && ask({})) return {};
+  std::size_t parts = 2;
+  while (kept.size() >= 2) {
+    const std::size_t size = kept.size();
+    parts = std::min(parts, size);
+    bool smaller = false;
+    // A part alone, then all but a part.
+    for (int complement = parts == 2 ? 1 : 0; complement < 2 && !smaller; ++complement)
+      for (std::size_t part = 0; part < parts && !smaller; ++part) {
+        const std::size_t begin = part * size / parts, end = (part + 1) * size / parts;
+        const Indices rest = without(kept, begin, end);
+        const Indices tried = complement ? rest
+                                         : Indices(kept.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                   kept.begin() + static_cast<std::ptrdiff_t>(end));
+        if (tried.empty() || !ask(tried)) continue;
+        kept = tried;
+        parts = complement ? std::max<std::size_t>(2, parts - 1) : 2;
+        smaller = true;
+      }
+    if (smaller) continue;
+    if (parts >= size) break;
+    parts *= 2;
+  }
+  return kept;
+}
+
+std::vector<Indices> fewer(std::size_t count, std::size_t kept, std::size_t most, std::size_t tries,
+                           const Fails& fails) {
+  for (std::size_t size = 0; size <= std::min(most, count) && size < kept; ++size) {
+    std::vector<bool> chosen(count, false);
+    std::fill(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(size), true);
+    do {
+      if (tries-- == 0) return {};
+      Indices tried;
+      for (std::size_t i = 0; i < count; ++i)
+        if (chosen[i]) tried.push_back(i);
+      if (fails(tried)) return {tried};
+    } while (std::prev_permutation(chosen.begin(), chosen.end()));
+  }
+  return {};
+}
+
+}  // namespace adit::sim

@@ -1,0 +1,102 @@
+#include "sim/rehearsal/fault.hpp"
+
+#include <fmt/format.h>
+
+namespace adit::sim {
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+
+std::string list(const std::vector<std::string>& names) {
+  return fmt::format("[{}]", fmt::join(names, ", "));
+}
+std::string pair(const std::string& a, const std::string& b) { return list({a, b}); }
+
+std::string window(Duration duration) { return fmt::format(", for: {:.3f}", seconds(duration)); }
+
+std::string component_of(const std::string& robot, const std::string& component) {
+  return component.empty() ? robot : robot + "/" + component;
+}
+
+// Key and value, and what else there is.
+std::pair<const char*, std::string> parts(const Fault& fault) {
+  using Parts = std::pair<const char*, std::string>;
+  return std::visit(
+      Overloaded{
+          [](const Crash& f) {
+            return Parts{"crash", component_of(f.victim, f.component)};
+          },
+          [](const Hang& f) {
+            return Parts{"hang", component_of(f.robot, f.component)};
+          },
+          [](const CutLink& f) {
+            return Parts{"cut", pair(f.a, f.b) + (f.one_way ? ", one_way: true" : "") + window(f.duration)};
+          },
+          [](const DegradeLink& f) {
+            const std::string delay = f.delay > 0.0 ? fmt::format(", delay: {:.3f}", f.delay) : "";
+            return Parts{"degrade",
+                         pair(f.a, f.b) + fmt::format(", loss: {:.3f}", f.loss) + delay + window(f.duration)};
+          },
+          [](const Partition& f) {
+            std::vector<std::string> groups;
+            for (const auto& group : f.groups) groups.push_back(list(group));
+            return Parts{"partition", list(groups) + window(f.duration)};
+          },
+          [](const Reorder& f) {
+            return Parts{"reorder", pair(f.a, f.b) +
+                                        fmt::format(", chance: {:.3f}, by: {:.3f}", f.chance, f.by) +
+                                        window(f.duration)};
+          },
+          [](const Duplicate& f) {
+            return Parts{"duplicate",
+                         pair(f.a, f.b) + fmt::format(", chance: {:.3f}", f.chance) + window(f.duration)};
+          },
+          [](const ClockJump& f) {
+            std::vector<std::string> jumps;
+            for (const auto& [who, by] : f.by) jumps.push_back(fmt::format("{}: {:.3f}", who, seconds(by)));
+            return Parts{"clock_jump", fmt::format("{{{}}}", fmt::join(jumps, ", "))};
+          },
+          [](const SensorSilent& f) {
+            const char* sensor = f.sensor == Sensor::lidar ? "lidar" : "odometry";
+            return Parts{"sensor_silent", f.robot + ", sensor: " + sensor + window(f.duration)};
+          },
+          [](const StuckDrive& f) {
+            return Parts{"stuck", f.robot + window(f.duration)};
+          },
+          [](const DiskFull& f) {
+            return Parts{"disk_full", f.robot + window(f.duration)};
+          },
+          [](const Forge& f) {
+            return Parts{"forge", pair(f.as, f.robot) + window(f.duration)};
+          },
+          [](const StuckStick& f) {
+            return Parts{"stuck", pair(f.by, f.robot) + window(f.duration)};
+          },
+      },
+      fault.what);
+}
+
+}  // namespace
+
+std::string kind_of(const Fault& fault) { return parts(fault).first; }
+
+std::string to_yaml(const Fault& fault) {
+  const auto [key, value] = parts(fault);
+  return fmt::format("{{at: {:.3f}, {}: {}}}", seconds(fault.at), key, value);
+}
+
+Duration* duration_of(Fault& fault) {
+  return std::visit(
+      [](auto& f) -> Duration* {
+        if constexpr (requires { f.duration; })
+          return &f.duration;
+        else
+          return nullptr;
+      },
+      fault.what);
+}
+
+}  // namespace adit::sim

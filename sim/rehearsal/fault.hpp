@@ -1,0 +1,95 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/time/time.hpp"
+#include "sim/driver/sensor.hpp"
+
+/// What goes wrong in a rehearsal, as its YAML file says it; docs/rehearsal.md is the reference.
+namespace adit::sim {
+
+/// The process of a robot's agent or of a basestation dies and is started again; or a component of an agent
+/// throws.
+struct Crash {
+  std::string victim{};     ///< a robot or a basestation
+  std::string component{};  ///< of a robot's agent; empty: the whole process
+};
+/// A callback of a robot's component does not return.
+struct Hang {
+  std::string robot{}, component{};
+};
+struct CutLink {
+  std::string a{}, b{};
+  bool one_way{};  ///< only what a sends to b
+  Duration duration{};
+};
+struct DegradeLink {
+  std::string a{}, b{};
+  double loss{};   ///< chance, instead of the link's
+  double delay{};  ///< added to the latency, s
+  Duration duration{};
+};
+/// Nothing passes between the groups; who is in none of them is not concerned.
+struct Partition {
+  std::vector<std::vector<std::string>> groups{};
+  Duration duration{};
+};
+/// Messages between two are held back, and overtaken by later ones.
+struct Reorder {
+  std::string a{}, b{};
+  double chance{};
+  double by{};  ///< up to so long, s
+  Duration duration{};
+};
+struct Duplicate {
+  std::string a{}, b{};
+  double chance{};
+  Duration duration{};
+};
+/// The clock of a computer goes on by so much at once, as after a suspend.
+struct ClockJump {
+  std::map<std::string, Duration> by{};
+};
+struct SensorSilent {
+  std::string robot{};
+  Sensor sensor{Sensor::lidar};
+  Duration duration{};
+};
+/// The drive stands, whatever it is told.
+struct StuckDrive {
+  std::string robot{};
+  Duration duration{};
+};
+struct DiskFull {
+  std::string robot{};
+  Duration duration{};
+};
+/// A foreign participant writes well-formed commands and joystick samples to `robot` in `as`'s name.
+struct Forge {
+  std::string as{}, robot{};
+  Duration duration{};
+};
+/// `by`'s joystick hangs: his own participant streams a pushed stick to `robot`, whatever the mode.
+struct StuckStick {
+  std::string by{}, robot{};
+  Duration duration{};
+};
+
+struct Fault {
+  Duration at{};
+  std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
+               StuckDrive, DiskFull, Forge, StuckStick>
+      what{};
+};
+
+/// The key of a fault in a scenario file: crash, hang, cut, ...
+std::string kind_of(const Fault& fault);
+/// As it is written in a scenario file, a mapping in one line.
+std::string to_yaml(const Fault& fault);
+/// How long it lasts; null for what happens in an instant.
+Duration* duration_of(Fault& fault);
+
+}  // namespace adit::sim

@@ -1,0 +1,111 @@
+#include "sim/rehearsal/fault_player.hpp"
+
+namespace adit::sim {
+
+void FaultPlayer::schedule(const Fault& fault) {
+  stage_.scheduler.at(fault.at, [this, fault] { happen(fault); });
+}
+
+void FaultPlayer::happen(const Fault& fault) {
+  ++counts_[kind_of(fault)];
+  stage_.witness.fault(stage_.scheduler.elapsed(), to_yaml(fault));
+  std::visit([this](const auto& what) { play(what); }, fault.what);
+}
+
+void FaultPlayer::later(Duration duration, Task task) {
+  stage_.scheduler.at(stage_.scheduler.elapsed() + duration, std::move(task));
+}
+
+void FaultPlayer::note(Result<void> result) {
+  if (health_ && !result) health_ = std::move(result);
+}
+
+void FaultPlayer::disturb(wire::Disturbance disturbance, Duration duration) {
+  const wire::DisturbanceId id = stage_.ether.disturb(std::move(disturbance));
+  later(duration, [this, id] { stage_.ether.end_disturbance(id); });
+}
+
+void FaultPlayer::play(const Crash& fault) {
+  if (!fault.component.empty())
+    note(robots_.at(fault.victim)->inject(fault.component, ComponentFault::crash));
+  else if (const auto robot = robots_.find(fault.victim); robot != robots_.end())
+    robot->second->crash();
+  else
+    stations_.at(fault.victim)->crash();
+}
+
+void FaultPlayer::play(const Hang& fault) {
+  note(robots_.at(fault.robot)->inject(fault.component, ComponentFault::hang));
+}
+
+void FaultPlayer::play(const CutLink& fault) {
+  wire::Disturbance cut{.from = {fault.a}, .to = {fault.b}};
+  cut.both_ways = !fault.one_way;
+  cut.cut = true;
+  disturb(std::move(cut), fault.duration);
+}
+
+void FaultPlayer::play(const DegradeLink& fault) {
+  wire::Disturbance worse{.from = {fault.a}, .to = {fault.b}};
+  worse.loss = fault.loss;
+  worse.delay = from_seconds(fault.delay);
+  disturb(std::move(worse), fault.duration);
+}
+
+void FaultPlayer::play(const Partition& fault) {
+  wire::Disturbance apart;
+  apart.groups = fault.groups;
+  apart.cut = true;
+  disturb(std::move(apart), fault.duration);
+}
+
+void FaultPlayer::play(const Reorder& fault) {
+  wire::Disturbance mixed{.from = {fault.a}, .to = {fault.b}};
+  mixed.reorder = fault.chance;
+  mixed.reorder_by = from_seconds(fault.by);
+  disturb(std::move(mixed), fault.duration);
+}
+
+void FaultPlayer::play(const Duplicate& fault) {
+  wire::Disturbance twice{.from = {fault.a}, .to = {fault.b}};
+  twice.duplicate = fault.chance;
+  disturb(std::move(twice), fault.duration);
+}
+
+void FaultPlayer::play(const ClockJump& fault) {
+  for (const auto& [who, by] : fault.by) {
+    if (const auto robot = robots_.find(who); robot != robots_.end())
+      robot->second->jump_clock(by);
+    else
+      stations_.at(who)->jump_clock(by);
+  }
+}
+
+void FaultPlayer::play(const SensorSilent& fault) {
+  RobotMachine* robot = robots_.at(fault.robot).get();
+  robot->silence(fault.sensor, true);
+  later(fault.duration, [robot, sensor = fault.sensor] { robot->silence(sensor, false); });
+}
+
+void FaultPlayer::play(const StuckDrive& fault) {
+  const std::size_t robot = stage_.simulation.find(fault.robot).value();
+  stage_.simulation.jam(robot, true);
+  later(fault.duration, [this, robot] { stage_.simulation.jam(robot, false); });
+}
+
+void FaultPlayer::play(const DiskFull& fault) {
+  RobotMachine* robot = robots_.at(fault.robot).get();
+  robot->fill_disk(true);
+  later(fault.duration, [robot] { robot->fill_disk(false); });
+}
+
+void FaultPlayer::play(const Forge& fault) {
+  forgers_.push_back(std::make_unique<Forger>(stage_, fault, stations_.at(fault.as)->id()));
+  note(forgers_.back()->start());
+}
+
+void FaultPlayer::play(const StuckStick& fault) {
+  note(stations_.at(fault.by)->stick_hangs(fault.robot, fault.duration));
+}
+
+}  // namespace adit::sim
