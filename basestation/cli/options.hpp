@@ -8,7 +8,7 @@ namespace adit::station::cli {
 /// What stands before the command on the command line.
 struct Options {
   std::string name{"op1"};  ///< the operator's
-  std::string link{"lan"};  ///< profile of config/links, or a .yaml file
+  std::string link{};  ///< profile of config/links, or a .yaml file, that what is sent keeps to; empty: none
   bool json{false};
   std::uint32_t domain{77};               ///< radio domain, [0, 232]
   bool domain_given{false};               ///< a station that runs must be on `domain`

@@ -12,6 +12,7 @@
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
 #include "core/exec/live_runtime.hpp"
+#include "core/wire/link_file.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/program/console.hpp"
@@ -35,7 +36,7 @@ Examples:
 Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration.)";
 
 struct Options {
-  std::string config{}, name{}, log{};
+  std::string config{}, name{}, log{}, link{};
   std::vector<double> pose{};
   int domain{-1}, robot_domain{-1};
   bool supervised{}, reports{};
@@ -58,6 +59,11 @@ Result<RobotConfig> load(const Options& options) {
   if (!options.pose.empty()) config->start = {options.pose[0], options.pose[1], options.pose[2]};
   if (options.domain >= 0) config->radio.domain = static_cast<std::uint32_t>(options.domain);
   if (options.robot_domain >= 0) config->robot_domain = static_cast<std::uint32_t>(options.robot_domain);
+  if (!options.link.empty()) {
+    auto link = wire::load_link(options.link);
+    if (!link) return Error{Reason::bad_argument, "--link: " + link.error().text};
+    config->radio.link = std::move(*link);
+  }
   if (!options.log.empty() && !level_from_name(options.log, config->log))
     return Error{Reason::bad_argument, "--log is trace, debug, info, warn, error or off"};
   // Here, and not in the agent alone: a parent would start it again and again.
@@ -93,7 +99,9 @@ int run_agent(const RobotConfig& config, bool reports) {
   auto log = make_live_log({config.log});
   if (!log) return fail(log.error(), 1);
   LiveRuntime runtime;
-  auto radio = wire::open_fastdds(config.radio);
+  auto over = config.radio;
+  over.link_seed = drawn_seed();
+  auto radio = wire::open_fastdds(over);
   if (!radio) return fail(radio.error(), 1);
   auto robot = wire::open_fastdds(robot_wire(config));
   if (!robot) return fail(robot.error(), 1);
@@ -168,6 +176,9 @@ int main(int argc, char** argv) {
   app.add_option("--domain", options.domain, "DDS domain of the radio")->check(CLI::Range(0, 232));
   app.add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
       ->check(CLI::Range(0, 232));
+  app.add_option(
+      "--link", options.link,
+      "link profile (config/links) that all that is sent by radio keeps to: budgets, latency, loss");
   app.add_option("--log", options.log, "trace, debug, info, warn, error or off");
   app.add_flag("--supervised", options.supervised, "run under a parent that sends zero when the agent dies");
   app.add_flag("--reports", options.reports)->group("");  // set by the parent

@@ -5,16 +5,23 @@
 #include "core/config/node.hpp"
 #include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
+#include "core/wire/link_file.hpp"
 #include "robot_agent/command/types.hpp"
 
 namespace adit::agent {
 namespace {
 
-void read_radio(const config::Node& node, wire::FastDdsParams& radio) {
+void read_radio(const config::Node& node, const std::string& file, wire::FastDdsParams& radio) {
   radio.domain = static_cast<std::uint32_t>(node.integer("domain", 0, 232, radio.domain));
   radio.interfaces = node.texts("interfaces", {});
   radio.peers = node.texts("peers", {});
   radio.multicast = node.flag("multicast", radio.multicast);
+  if (!node.has("link")) return;
+  auto link = wire::load_link(node.text("link"), file);
+  if (link)
+    radio.link = std::move(*link);
+  else
+    node.child("link").fail(link.error().reason, link.error().text);
 }
 
 }  // namespace
@@ -29,7 +36,7 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   const std::string platform = root->text("platform");
   const std::vector<double> pose = root->numbers("pose", 3, 3, config::within(-1e6, 1e6), {0.0, 0.0, 0.0});
   c.start = {pose[0], pose[1], wrap_angle(pose[2])};
-  if (const auto radio = root->child_if("radio"); radio.present()) read_radio(radio, c.radio);
+  if (const auto radio = root->child_if("radio"); radio.present()) read_radio(radio, file, c.radio);
   c.robot_domain = static_cast<std::uint32_t>(root->integer("robot_domain", 0, 232, 0));
   c.shared_memory = root->flag("shared_memory", c.shared_memory);
   c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));

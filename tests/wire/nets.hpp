@@ -16,6 +16,8 @@ namespace adit::wire {
 /// One small network, by either adapter, so that the same test body runs over both.
 class MemoryNet {
  public:
+  explicit MemoryNet(const LinkProfile& link = {.latency = 0.0001}) : ether_(scheduler_, {.link = link}) {}
+  Duration elapsed() const { return scheduler_.elapsed(); }
   std::unique_ptr<Wire> join(const std::string& name) { return ether_.join(77, name); }
   std::shared_ptr<Executor> strand(const std::string& name) {
     machines_.push_back(scheduler_.machine(name, 0ms));
@@ -34,14 +36,18 @@ class MemoryNet {
 
  private:
   VirtualScheduler scheduler_{1};
-  Ether ether_{scheduler_, {.link = {.latency = 0.0001}}};
+  Ether ether_;
   std::vector<std::unique_ptr<Runtime>> machines_{};
 };
 
 class LiveNet {
  public:
+  explicit LiveNet(std::optional<LinkProfile> link = std::nullopt) : link_(std::move(link)) {}
+  Duration elapsed() const { return std::chrono::steady_clock::now() - start_; }
   std::unique_ptr<Wire> join(const std::string& name) {
-    return std::move(open_fastdds({.domain = live::domain(), .name = name})).value();
+    return std::move(
+               open_fastdds({.domain = live::domain(), .name = name, .link = link_, .link_seed = ++seed_}))
+        .value();
   }
   std::shared_ptr<Executor> strand(const std::string& name) { return runtime_.strand(name); }
   bool until(const std::function<bool()>& condition, Duration limit = 10s) {
@@ -52,6 +58,9 @@ class LiveNet {
   }
 
  private:
+  std::optional<LinkProfile> link_;
+  std::uint64_t seed_{};
+  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
   LiveRuntime runtime_{};
 };
 

@@ -20,13 +20,9 @@ constexpr int start_limit_ms = 10000;
 constexpr int hello_limit_ms = 1000;
 
 std::vector<std::string> arguments(const Options& options) {
-  std::vector<std::string> words{options.program,
-                                 "--name",
-                                 options.name,
-                                 "--link",
-                                 options.link,
-                                 "--domain",
+  std::vector<std::string> words{options.program, "--name", options.name, "--domain",
                                  std::to_string(options.domain)};
+  if (!options.link.empty()) words.insert(words.end(), {"--link", options.link});
   for (const std::string& address : options.interfaces) words.insert(words.end(), {"--interface", address});
   for (const std::string& peer : options.peers) words.insert(words.end(), {"--peer", peer});
   words.insert(words.end(), {"--serve", std::to_string(ready_fd)});
@@ -131,7 +127,7 @@ Result<LineSocket> connect_or_launch(const Options& options) {
   if (socket && options.domain_given)
     if (const auto same = check_domain(*socket, options); !same) return same.error();
   if (socket || socket.reason() != Reason::no_station) return socket;
-  if (const auto link = wire::load_link(options.link); !link)
+  if (const auto link = wire::load_link(options.link.empty() ? "lan" : options.link); !link)
     return Error{Reason::bad_argument, "--link: " + link.error().text};
   if (auto started = launch(options); !started) {
     socket = LineSocket::connect(*path);  // another process may have started it at the same time

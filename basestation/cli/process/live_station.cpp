@@ -1,6 +1,7 @@
 #include "basestation/cli/process/live_station.hpp"
 
 #include <future>
+#include <random>
 
 #include "basestation/cli/process/paths.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
@@ -11,13 +12,16 @@ namespace adit::station::cli {
 Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, const Hooks& hooks) {
   auto id = station_id(options.name);
   if (!id) return id.error();
-  auto link = wire::load_link(options.link);
+  auto link = wire::load_link(options.link.empty() ? "lan" : options.link);
   if (!link) return link.error();
   std::unique_ptr<LiveStation> live(new LiveStation);
-  auto opened = wire::open_fastdds({.domain = options.domain,
-                                    .name = options.name,
-                                    .interfaces = options.interfaces,
-                                    .peers = options.peers});
+  wire::FastDdsParams radio{.domain = options.domain,
+                            .name = options.name,
+                            .interfaces = options.interfaces,
+                            .peers = options.peers};
+  if (!options.link.empty()) radio.link = *link;
+  radio.link_seed = std::random_device{}();
+  auto opened = wire::open_fastdds(radio);
   if (!opened) return opened.error();
   live->wire_ = std::move(*opened);
   live->strand_ = live->runtime_.strand("station");

@@ -3,16 +3,17 @@
 #include <fastrtps/utils/IPLocator.h>
 #include <fastdds/rtps/common/LocatorList.hpp>
 
+#include <cstring>
+
+#include "core/wire/fastdds/live_link.hpp"
+#include "core/wire/fastdds/ports.hpp"
+
 namespace adit::wire {
 namespace rtps = eprosima::fastrtps::rtps;
 
 namespace {
 
 constexpr std::uint64_t udp_and_ip = 28;
-
-/// RTPS port numbers: 7400 + 250 * domain + {0: discovery by multicast, 1: data by multicast,
-/// 10 + 2 n: discovery, 11 + 2 n: data of participant n}.
-bool is_discovery(std::uint32_t port) { return port >= 7400 && (port - 7400) % 250 % 2 == 0; }
 
 }  // namespace
 
@@ -37,9 +38,16 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
        ++destination) {
     const rtps::Locator_t& locator = *destination;
     if (!IsLocatorSupported(locator)) continue;
+    if (traffic_->link) {
+      in_addr_t address{};
+      std::memcpy(&address, rtps::IPLocator::getIPv4(locator), sizeof address);
+      traffic_->link->send({send_buffer, send_buffer_size}, address,
+                           rtps::IPLocator::getPhysicalPort(locator));
+      continue;
+    }
     const std::uint64_t bytes = send_buffer_size + udp_and_ip;
     traffic_->total_out.fetch_add(bytes, std::memory_order_relaxed);
-    if (is_discovery(rtps::IPLocator::getPhysicalPort(locator))) {
+    if (is_discovery_port(rtps::IPLocator::getPhysicalPort(locator))) {
       traffic_->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
     }
     rtps::LocatorList_t one;
@@ -55,7 +63,7 @@ void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterf
                                 const rtps::Locator_t& local_locator, const rtps::Locator_t& remote_locator) {
   const std::uint64_t bytes = receive_buffer_size + udp_and_ip;
   traffic_->total_in.fetch_add(bytes, std::memory_order_relaxed);
-  if (is_discovery(rtps::IPLocator::getPhysicalPort(local_locator))) {
+  if (is_discovery_port(rtps::IPLocator::getPhysicalPort(local_locator))) {
     traffic_->discovery_in.fetch_add(bytes, std::memory_order_relaxed);
     traffic_->ready.wait();
   }

@@ -10,6 +10,8 @@
 
 namespace adit::wire {
 
+class LiveLink;
+
 /// Closed until the participant is whole. Until then Fast DDS 2.9 drops what it hears of others: an answer to
 /// its first announcement that came back before would be lost, and the next comes with the other's
 /// announcement period.
@@ -38,10 +40,12 @@ class Gate {
 /// Bytes that went through a participant's sockets, UDP and IP headers included.
 struct Traffic {
   std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
-  Gate ready{};  ///< discovery datagrams wait here
+  Gate ready{};                      ///< discovery datagrams wait here
+  std::shared_ptr<LiveLink> link{};  ///< what is sent goes through it, if there is one
 };
 
-/// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them.
+/// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them,
+/// and hands what is sent to the link model where one is named.
 class CountingTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
   CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,

@@ -34,7 +34,7 @@ void common(const TopicInfo& topic, const Qos& qos, int depth, EndpointQos& out)
 
 }  // namespace
 
-dds::DataWriterQos dds_writer_qos(const TopicInfo& topic) {
+dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link) {
   const Qos qos = writer_qos(topic);
   dds::DataWriterQos out;
   common(topic, qos, std::max<int>(1, topic.depth), out);
@@ -43,6 +43,9 @@ dds::DataWriterQos dds_writer_qos(const TopicInfo& topic) {
   // Written from the caller's thread: the shortest way. What may be large and can wait does not hold it up.
   const bool wait = topic.qos == QosClass::bulk || topic.qos == QosClass::video;
   out.publish_mode().kind = wait ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  if (on_link && wait) {
+    out.publish_mode().flow_controller_name = topic.qos == QosClass::bulk ? bulk_flow : video_flow;
+  }
   return out;
 }
 

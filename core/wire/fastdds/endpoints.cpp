@@ -8,6 +8,8 @@
 #include "core/wire/cdr_key.hpp"
 #include "core/wire/cost.hpp"
 #include "core/wire/fastdds/endpoint_qos.hpp"
+#include "core/wire/fastdds/live_link.hpp"
+#include "core/wire/qos.hpp"
 
 namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
@@ -23,13 +25,21 @@ std::vector<TopicCount> SharedCounts::all() const {
 
 Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher, dds::Topic& dds_topic,
                                                        const TopicInfo& topic,
-                                                       std::shared_ptr<SharedCounts> counts) {
+                                                       std::shared_ptr<SharedCounts> counts,
+                                                       std::shared_ptr<LiveLink> link) {
   std::unique_ptr<FastDdsWriter> writer(new FastDdsWriter(publisher, topic, std::move(counts)));
-  writer->writer_ = publisher.create_datawriter(&dds_topic, dds_writer_qos(topic), writer.get(),
-                                                dds::StatusMask::publication_matched());
+  writer->writer_ = publisher.create_datawriter(&dds_topic, dds_writer_qos(topic, link != nullptr),
+                                                writer.get(), dds::StatusMask::publication_matched());
   if (writer->writer_ == nullptr) {
     return Error{Reason::wire_failed,
                  std::string(topic.name) + ": Fast DDS refused the writer; its log says why"};
+  }
+  if (link) {
+    const Qos qos = writer_qos(topic);
+    const auto& id = writer->writer_->guid().entityId.value;
+    writer->entity_ = static_cast<std::uint32_t>(id[0]) << 24 | id[1] << 16 | id[2] << 8 | id[3];
+    link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable);
+    writer->link_ = std::move(link);
   }
   return std::unique_ptr<RawWriter>(std::move(writer));
 }
@@ -44,6 +54,7 @@ FastDdsWriter::FastDdsWriter(dds::Publisher& publisher, const TopicInfo& topic,
 
 FastDdsWriter::~FastDdsWriter() {
   if (writer_ != nullptr) publisher_.delete_datawriter(writer_);
+  if (link_) link_->remove_writer(entity_);
 }
 
 Result<void> FastDdsWriter::failed(Reason reason, const std::string& why) {

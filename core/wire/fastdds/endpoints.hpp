@@ -16,6 +16,8 @@
 
 namespace adit::wire {
 
+class LiveLink;
+
 /// Counts of a wire, touched by the application's strands and by Fast DDS's threads.
 class SharedCounts {
  public:
@@ -45,8 +47,8 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
  public:
   static Result<std::unique_ptr<RawWriter>> make(eprosima::fastdds::dds::Publisher& publisher,
                                                  eprosima::fastdds::dds::Topic& dds_topic,
-                                                 const TopicInfo& topic,
-                                                 std::shared_ptr<SharedCounts> counts);
+                                                 const TopicInfo& topic, std::shared_ptr<SharedCounts> counts,
+                                                 std::shared_ptr<LiveLink> link);
   ~FastDdsWriter() override;
   Result<void> write(std::span<const std::uint8_t> cdr) override;
   std::size_t matched() const override { return static_cast<std::size_t>(matched_.load()); }
@@ -64,6 +66,8 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
   bool keyed_;
   std::uint32_t max_bytes_;
   std::shared_ptr<SharedCounts> counts_;
+  std::shared_ptr<LiveLink> link_{};
+  std::uint32_t entity_{};
   std::atomic<int> matched_{0};
 };
 

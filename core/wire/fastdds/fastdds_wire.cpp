@@ -11,6 +11,7 @@
 
 #include "core/wire/fastdds/counting_transport.hpp"
 #include "core/wire/fastdds/endpoints.hpp"
+#include "core/wire/fastdds/live_link.hpp"
 #include "core/wire/fastdds/participant_qos.hpp"
 
 namespace adit::wire {
@@ -84,10 +85,12 @@ class FastDdsWire final : public Wire {
   FastDdsWire() = default;
   ~FastDdsWire() override {
     presence_.close();
-    if (participant_ == nullptr) return;
-    participant_->set_listener(nullptr);
-    participant_->delete_contained_entities();
-    dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+    if (participant_ != nullptr) {
+      participant_->set_listener(nullptr);
+      participant_->delete_contained_entities();
+      dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+    }
+    if (traffic_->link) traffic_->link->close();
   }
 
   Result<void> open(const FastDdsParams& params) {
@@ -97,6 +100,15 @@ class FastDdsWire final : public Wire {
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
     auto qos = dds_participant_qos(params, traffic_);
     if (!qos) return qos.error();
+    if (params.link) {
+      const std::vector<std::string> loopback{"127.0.0.1"};
+      traffic_->link = std::make_shared<LiveLink>(
+          *params.link, params.link_seed, params.interfaces.empty() ? loopback : params.interfaces,
+          [traffic = traffic_.get()](std::uint32_t bytes, bool discovery) {
+            traffic->total_out.fetch_add(bytes, std::memory_order_relaxed);
+            if (discovery) traffic->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
+          });
+    }
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
         params.domain, *qos, &presence_, dds::StatusMask::none());
     traffic_->ready.open();
@@ -123,7 +135,7 @@ class FastDdsWire final : public Wire {
       if (publisher == nullptr)
         return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
     }
-    return FastDdsWriter::make(*publisher, **dds_topic, topic, counts_);
+    return FastDdsWriter::make(*publisher, **dds_topic, topic, counts_, traffic_->link);
   }
 
   Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,

@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+
+#include "core/wire/link.hpp"
 #include "core/wire/wire.hpp"
 
 namespace adit::wire {
@@ -13,6 +16,10 @@ struct FastDdsParams {
   /// Robot domain: large sensor samples between processes of one machine through shared memory, and UDP
   /// datagrams of up to 65 kB; without it datagrams stay below 1400 bytes, as a radio wants them.
   bool shared_memory{false};
+  /// A link that all that is sent passes: its bandwidth, priorities and budgets, and, where it says so, its
+  /// latency and losses. Without one datagrams go straight to the sockets.
+  std::optional<LinkProfile> link{};
+  std::uint64_t link_seed{1};  ///< of losses and jitter
 };
 
 /// Opens the participant. Errors: wire_failed (with what to do), bad_argument.

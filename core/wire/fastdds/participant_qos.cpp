@@ -8,10 +8,13 @@
 #include <net/if.h>
 
 #include <charconv>
+#include <cmath>
 #include <set>
 
 #include "core/wire/cost.hpp"
 #include "core/wire/fastdds/counting_transport.hpp"
+#include "core/wire/fastdds/endpoint_qos.hpp"
+#include "core/wire/link/budget.hpp"
 #include "core/wire/qos.hpp"
 
 namespace adit::wire {
@@ -23,7 +26,8 @@ constexpr std::uint32_t loopback_datagram = 65000;
 constexpr std::uint32_t segment =
     8 << 20;  // the default of 512 kB makes samples of 1 MiB take 22 ms instead of 1 ms
 constexpr std::uint32_t participants_per_host = 16;  // ports tried at an address that is named without one
-constexpr const char* everybody = "239.255.0.1";     // RTPS multicast group
+constexpr std::uint32_t udp_and_ip = 28;
+constexpr const char* everybody = "239.255.0.1";  // RTPS multicast group
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
   return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
@@ -67,6 +71,17 @@ std::set<std::string> own_addresses() {
   return result;
 }
 
+/// Lets through one frame per period, so many of them a second that the class gets its share of the link.
+void add_flow(const char* name, double share, const LinkProfile& link, dds::DomainParticipantQos& qos) {
+  const double frames = std::max(1.0, share * link.bandwidth / 8.0 * 0.02 / link.frame_bytes());  // in 20 ms
+  const double bytes = std::floor(frames) * link.frame_bytes();
+  auto flow = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
+  flow->name = name;
+  flow->max_bytes_per_period = static_cast<std::int32_t>(bytes);
+  flow->period_ms = static_cast<std::uint64_t>(std::max(1.0, bytes * 8.0 / (share * link.bandwidth) * 1e3));
+  qos.flow_controllers().push_back(std::move(flow));
+}
+
 }  // namespace
 
 Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params,
@@ -76,6 +91,8 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   }
   dds::DomainParticipantQos qos;
   qos.name(params.name.c_str());
+  // Host, user and process would go out with every announcement: a third of it.
+  qos.properties().properties().clear();
 
   // Never the built-in transports: they use every interface of the machine.
   qos.transport().use_builtin_transports = false;
@@ -96,6 +113,13 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   if (udp->interfaceWhiteList.empty()) udp->interfaceWhiteList.push_back("127.0.0.1");
   udp->non_blocking_send = true;
   udp->maxMessageSize = params.shared_memory ? loopback_datagram : WireCost::frame;
+  if (params.link)
+    udp->maxMessageSize = std::min(udp->maxMessageSize, params.link->frame_bytes() - udp_and_ip);
+  if (params.link) {
+    const Budget budget;
+    add_flow(bulk_flow, budget.share[5], *params.link, qos);
+    add_flow(video_flow, budget.share[6], *params.link, qos);
+  }
   udp->maxInitialPeersRange = participants_per_host;
   qos.transport().user_transports.push_back(
       std::make_shared<CountingTransportDescriptor>(udp, std::move(traffic)));

@@ -65,8 +65,8 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
     });
     return;
   }
-  double patience = 0.0;
-  for (const int node_to : to) patience = std::max(patience, profile(from, node_to).queue);
+  Duration longest{};
+  for (const int node_to : to) longest = std::max(longest, patience(profile(from, node_to), shared->priority));
   auto packet = std::make_shared<Packet>();
   packet->through.resize(to.size());
   packet->to = std::move(to);
@@ -78,7 +78,7 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
                                          .priority = shared->priority,
                                          .supersedes = number,
                                          .since = scheduler_.elapsed(),
-                                         .patience = from_seconds(patience)});
+                                         .patience = longest});
   if (replaced && (*replaced)->datagram->lost) {
     for (const int node_to : (*replaced)->to) (*replaced)->datagram->lost(node_to);
   }

@@ -1,0 +1,163 @@
+#include "core/wire/fastdds/live_link.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "core/wire/cost.hpp"
+#include "core/wire/fastdds/ports.hpp"
+#include "core/wire/fastdds/rtps_peek.hpp"
+
+namespace adit::wire {
+namespace {
+
+constexpr std::size_t most_waiting = 4096;  // datagrams; the queue's age bounds them long before
+constexpr std::uint32_t udp_and_ip = 28;
+
+}  // namespace
+
+LiveLink::LiveLink(LinkProfile link, std::uint64_t seed, const std::vector<std::string>& interfaces,
+                   SentHandler sent)
+    : link_(std::move(link)), sent_(std::move(sent)), random_(seed) {
+  for (const std::string& address : interfaces) {
+    const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (fd < 0) continue;
+    in_addr interface {};
+    ::inet_pton(AF_INET, address.c_str(), &interface);
+    ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &interface, sizeof interface);
+    sockets_.push_back(fd);
+  }
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveLink::~LiveLink() {
+  close();
+  for (const int fd : sockets_) ::close(fd);
+}
+
+Duration LiveLink::now() { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+void LiveLink::add_writer(std::uint32_t entity, int priority, bool newest_wins) {
+  const std::lock_guard lock(mutex_);
+  writers_[entity] = {priority, newest_wins};
+}
+
+void LiveLink::remove_writer(std::uint32_t entity) {
+  const std::lock_guard lock(mutex_);
+  writers_.erase(entity);
+}
+
+void LiveLink::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
+  const RtpsPeek seen = peek(message);
+  {
+    const std::lock_guard lock(mutex_);
+    if (close_at_ != Duration::max() || queue_.size() >= most_waiting) {
+      ++dropped_;
+      return;
+    }
+    Class what{WireCost::discovery_priority, false};
+    if (seen.writer) {
+      const auto known = writers_.find(*seen.writer);
+      if (known != writers_.end()) what = known->second;
+    }
+    std::uint64_t number = 0;
+    if (what.newest_wins && seen.whole) {
+      number = (static_cast<std::uint64_t>(address) << 32 | *seen.writer) * 0x9e3779b97f4a7c15ULL + port;
+      number |= 1;
+    }
+    const auto replaced =
+        queue_.push({.item = Packet{{message.begin(), message.end()}, address, port, is_discovery_port(port)},
+                     .priority = what.priority,
+                     .supersedes = number,
+                     .since = now(),
+                     .patience = patience(link_, what.priority)});
+    if (replaced) ++dropped_;
+  }
+  wake_.notify_one();
+}
+
+Duration LiveLink::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return queue_.oldest(now());
+}
+
+void LiveLink::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (close_at_ == Duration::max()) close_at_ = now() + 1s;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveLink::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    const Duration at = now();
+    const Duration next = step(at);
+    const bool closing = close_at_ != Duration::max();
+    if (closing && (at >= close_at_ || (queue_.size() == 0 && in_air_.empty()))) return;
+    const auto until = std::chrono::steady_clock::time_point(std::min(next, close_at_));
+    if (next == Duration::max() && !closing) {
+      wake_.wait(lock);
+    } else {
+      wake_.wait_until(lock, until);
+    }
+  }
+}
+
+Duration LiveLink::step(Duration at) {
+  const auto airtime = [this](const Packet& packet) {
+    if (link_.window > 0.0) return Duration{};
+    return from_seconds(static_cast<double>(packet.bytes.size() + udp_and_ip) * 8.0 / link_.bandwidth);
+  };
+  const auto drop = [this](const Packet&) { ++dropped_; };
+  while (free_at_ <= at) {
+    auto next = queue_.next(at, airtime, drop);
+    if (!next) break;
+    // A thread that woke late has not lost the time: the air was free since then.
+    const Duration start = std::max(free_at_, at - 5ms);
+    free_at_ = start + next->airtime;
+    put_on_air(std::move(next->message.item), start, next->airtime);
+  }
+  while (!in_air_.empty() && in_air_.begin()->first <= at) {
+    deliver(in_air_.begin()->second);
+    in_air_.erase(in_air_.begin());
+  }
+  Duration soonest = in_air_.empty() ? Duration::max() : in_air_.begin()->first;
+  if (const auto ready = queue_.ready(at)) soonest = std::min(soonest, std::max(*ready, free_at_));
+  return soonest;
+}
+
+void LiveLink::put_on_air(Packet packet, Duration at, Duration airtime) {
+  const auto bytes = static_cast<std::uint32_t>(packet.bytes.size()) + udp_and_ip;
+  if (link_.window > 0.0 && !window_.admit(link_, bytes, at)) {
+    ++dropped_;
+    return;
+  }
+  sent_(bytes, packet.discovery);
+  // Multicast is one frame: all hear it or nobody does.
+  if (channels_[peer_of(packet)].lost(link_, {}, bytes, std::nullopt, random_)) return;
+  in_air_.emplace(at + airtime + transit(link_, random_), std::move(packet));
+}
+
+void LiveLink::deliver(const Packet& packet) const {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_addr.s_addr = packet.address;
+  to.sin_port = htons(packet.port);
+  const bool multicast = IN_MULTICAST(ntohl(packet.address));
+  for (const int fd : sockets_) {
+    // What the socket does not take is lost, as on the air.
+    (void)::sendto(fd, packet.bytes.data(), packet.bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
+                   sizeof to);
+    if (!multicast) return;
+  }
+}
+
+std::uint64_t LiveLink::peer_of(const Packet& packet) const {
+  // On one machine participants differ by port; the pair of discovery and data ports is one peer.
+  return static_cast<std::uint64_t>(packet.address) << 16 | participant_of_port(packet.port);
+}
+
+}  // namespace adit::wire

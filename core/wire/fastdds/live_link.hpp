@@ -1,0 +1,86 @@
+#pragma once
+#include <netinet/in.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/wire/link/model.hpp"
+#include "core/wire/link/transmitter.hpp"
+
+namespace adit::wire {
+
+/// The link model between a participant and its sockets: datagrams leave by priority, within their budget, at
+/// the link's bandwidth, and arrive late or not at all. One thread. It has a socket of its own, so that what
+/// is still in the air does not depend on the library's life.
+class LiveLink {
+ public:
+  using SentHandler = std::function<void(std::uint32_t bytes, bool discovery)>;
+
+  /// `interfaces`: addresses that multicast goes out on. `sent` is called for each datagram put on the air.
+  LiveLink(LinkProfile link, std::uint64_t seed, const std::vector<std::string>& interfaces,
+           SentHandler sent);
+  ~LiveLink();
+  LiveLink(const LiveLink&) = delete;
+  LiveLink& operator=(const LiveLink&) = delete;
+
+  /// What a writer's samples get: its priority, and whether the newest replaces what waits.
+  void add_writer(std::uint32_t entity, int priority, bool newest_wins);
+  void remove_writer(std::uint32_t entity);
+
+  /// A datagram to an IPv4 address (network order) and port. Never blocks.
+  void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
+
+  const LinkProfile& profile() const { return link_; }
+  /// Datagrams that were dropped before they went on the air, since the start.
+  std::uint64_t dropped() const { return dropped_; }
+  /// The longest that anything waits to be sent.
+  Duration waiting() const;
+  /// Sends what waits, which takes as long as it takes on the link but at most a second, and ends.
+  void close();
+
+ private:
+  struct Packet {
+    std::vector<std::uint8_t> bytes{};
+    in_addr_t address{};
+    std::uint16_t port{};
+    bool discovery{};
+  };
+  struct Class {
+    int priority{};
+    bool newest_wins{};
+  };
+
+  static Duration now();
+  void run();
+  /// Puts what is due on the air and into sockets; when to be asked again.
+  Duration step(Duration at);
+  void put_on_air(Packet packet, Duration at, Duration airtime);
+  void deliver(const Packet& packet) const;
+  std::uint64_t peer_of(const Packet& packet) const;
+
+  LinkProfile link_;
+  SentHandler sent_;
+  std::vector<int> sockets_{};  // one per interface; the first one for unicast
+  mutable std::mutex mutex_{};
+  std::condition_variable wake_{};
+  Random random_;
+  Transmitter<Packet> queue_{};
+  Window window_{};
+  std::map<std::uint64_t, Channel> channels_{};
+  std::multimap<Duration, Packet> in_air_{};
+  std::map<std::uint32_t, Class> writers_{};
+  Duration free_at_{};  // the air is ours again
+  Duration close_at_{Duration::max()};
+  std::atomic<std::uint64_t> dropped_{};
+  std::thread thread_{};
+};
+
+}  // namespace adit::wire

@@ -1,0 +1,12 @@
+#pragma once
+#include <cstdint>
+
+/// RTPS port numbers: 7400 + 250 * domain + {0: discovery by multicast, 1: data by multicast,
+/// 10 + 2 n: discovery, 11 + 2 n: data of participant n}.
+namespace adit::wire {
+
+inline bool is_discovery_port(std::uint32_t port) { return port >= 7400 && (port - 7400) % 250 % 2 == 0; }
+/// The same number for both ports of a participant.
+inline std::uint32_t participant_of_port(std::uint32_t port) { return port & ~1U; }
+
+}  // namespace adit::wire

@@ -1,0 +1,142 @@
+// The same link under both mounts: the rehearsal's radio and the live transport under Fast DDS.
+#include <gtest/gtest.h>
+
+#include "tests/wire/nets.hpp"
+
+namespace adit::wire {
+namespace {
+
+constexpr TopicInfo urgent{"adit/test_urgent", "Number", QosClass::urgent, 16, false, 1024};
+constexpr TopicInfo state{"adit/test_state", "Number", QosClass::state, 1, false, 4096};
+constexpr TopicInfo bulk{"adit/test_bulk", "Block", QosClass::bulk, 64, false, 4096};
+
+std::vector<std::uint8_t> sample(std::uint32_t number, std::size_t size = 8) {
+  std::vector<std::uint8_t> bytes(std::max<std::size_t>(size, 8));
+  bytes[1] = 1;
+  for (std::size_t i = 0; i < 4; ++i) bytes[4 + i] = static_cast<std::uint8_t>(number >> (8 * i));
+  return bytes;
+}
+
+struct Heard {
+  std::uint32_t number{};
+  Duration at{};
+};
+
+template <class Net>
+class LinkConformance : public testing::Test {
+ protected:
+  /// One writer and reader of each topic, matched.
+  void open(const LinkProfile& link) {
+    net = std::make_unique<Net>(link);
+    strand = net->strand("test");
+    a = net->join("a"), b = net->join("b");
+    for (const TopicInfo& topic : {urgent, state, bulk}) {
+      writers[topic.name] = std::move(a->make_writer(topic, "")).value();
+      readers.push_back(
+          std::move(b->make_reader(topic, "", *strand,
+                                   [this, &seen = heard[topic.name]](auto bytes, const SampleInfo&) {
+                                     std::uint32_t number = 0;
+                                     for (std::size_t i = 0; i < 4; ++i)
+                                       number |= static_cast<std::uint32_t>(bytes[4 + i]) << (8 * i);
+                                     seen.add({number, net->elapsed()});
+                                     return true;
+                                   }))
+              .value());
+    }
+    ASSERT_TRUE(net->until([&] {
+      return std::all_of(writers.begin(), writers.end(), [](auto& w) { return w.second->matched() == 1; });
+    }));
+    net->pass(500ms);  // what discovery still has to say
+  }
+  Duration write(const TopicInfo& topic, std::uint32_t number, std::size_t size = 8) {
+    EXPECT_TRUE(writers[topic.name]->write(sample(number, size)).ok());
+    return net->elapsed();
+  }
+
+  std::unique_ptr<Net> net{};
+  std::shared_ptr<Executor> strand{};
+  std::unique_ptr<Wire> a{}, b{};
+  std::map<std::string, Seen<Heard>> heard{};
+  std::map<std::string, std::unique_ptr<RawWriter>> writers{};
+  std::vector<std::unique_ptr<RawReader>> readers{};
+};
+
+struct Names {
+  template <class Net>
+  static std::string GetName(int) {
+    return std::is_same_v<Net, MemoryNet> ? "Memory" : "FastDds";
+  }
+};
+using Nets = testing::Types<MemoryNet, LiveNet>;
+TYPED_TEST_SUITE(LinkConformance, Nets, Names);
+
+TYPED_TEST(LinkConformance, LatencyIsTheLinksAndTheAirs) {
+  this->open({.bandwidth = 100e3, .latency = 0.1});
+  const Duration sent = this->write(urgent, 1);
+  auto& seen = this->heard[urgent.name];
+  ASSERT_TRUE(this->net->until([&] { return seen.size() == 1; }));
+  const Duration took = seen.all()[0].at - sent;
+  EXPECT_GE(took, 105ms);  // 100 B and more at 100 kbit/s
+  EXPECT_LT(took, 160ms);
+}
+
+TYPED_TEST(LinkConformance, BestEffortLosesItsShareReliableNothing) {
+  this->open({.bandwidth = 2e6, .latency = 0.01, .loss = 0.2});
+  for (std::uint32_t i = 1; i <= 200; ++i) {
+    this->write(state, i);
+    if (i % 20 == 0) this->write(urgent, i);
+    this->net->pass(10ms);
+  }
+  auto& urgents = this->heard[urgent.name];
+  EXPECT_TRUE(this->net->until([&] { return urgents.size() == 10; }));
+  EXPECT_NEAR(static_cast<double>(this->heard[state.name].size()), 160, 25);
+}
+
+TYPED_TEST(LinkConformance, ASaturatedLinkCarriesItsBandwidthAndUrgentGoesFirst) {
+  this->open({.bandwidth = 200e3, .latency = 0.02});
+  const WireCounters before = this->a->counters();
+  const Duration start = this->net->elapsed();
+  std::vector<Duration> sent;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    this->write(bulk, i, 1000);  // 800 kbit/s
+    if (i % 20 == 10) sent.push_back(this->write(urgent, i));
+    this->net->pass(10ms);
+  }
+  const double time = seconds(this->net->elapsed() - start);
+  const double bits = 8.0 * static_cast<double>(this->a->counters().total_out - before.total_out);
+  EXPECT_LT(bits / time, 205e3);
+  EXPECT_GT(bits / time, 90e3);  // bulk has its share, 60 %
+  auto& urgents = this->heard[urgent.name];
+  ASSERT_TRUE(this->net->until([&] { return urgents.size() == sent.size(); }));
+  std::vector<Duration> took;
+  for (std::size_t i = 0; i < sent.size(); ++i) took.push_back(urgents.all()[i].at - sent[i]);
+  std::sort(took.begin(), took.end());
+  EXPECT_LT(took[took.size() / 2], 60ms);  // 20 ms, its own 5 ms, and a frame of 500 B before it: 20 ms
+  EXPECT_LT(took.back(), 150ms);
+}
+
+TYPED_TEST(LinkConformance, LongSamplesOfEveryClassPassInSmallFrames) {
+  this->open({.bandwidth = 200e3, .latency = 0.01});
+  for (const TopicInfo& topic : {urgent, state, bulk}) {
+    this->write(topic, 7, 1000);
+    auto& seen = this->heard[topic.name];
+    EXPECT_TRUE(this->net->until([&] { return seen.size() == 1; })) << topic.name;
+  }
+}
+
+TYPED_TEST(LinkConformance, OfStatesTheNewestIsSent) {
+  this->open({.bandwidth = 50e3, .latency = 0.01});
+  this->net->pass(1s);
+  for (std::uint32_t i = 1; i <= 100; ++i) {
+    this->write(state, i);  // 100 a second, where 25 pass
+    this->net->pass(10ms);
+  }
+  auto& seen = this->heard[state.name];
+  ASSERT_TRUE(this->net->until([&] { return seen.size() > 0 && seen.all().back().number == 100; }));
+  const auto all = seen.all();
+  EXPECT_LT(all.size(), 60U);
+  EXPECT_LT(all.back().at - all[all.size() - 2].at, 300ms);
+}
+
+}  // namespace
+}  // namespace adit::wire

@@ -1,0 +1,131 @@
+#include "core/wire/fastdds/live_link.hpp"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "core/wire/fastdds/rtps_peek.hpp"
+
+namespace adit::wire {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// An RTPS message with one DATA (0x15) or DATA_FRAG (0x16) of that writer, `tag` at its end.
+Bytes rtps(std::uint8_t kind, std::uint32_t writer, std::uint8_t tag = 0) {
+  Bytes m(20);
+  m[0] = 'R', m[1] = 'T', m[2] = 'P', m[3] = 'S';
+  const Bytes stamp{0x09, 1, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+  m.insert(m.end(), stamp.begin(), stamp.end());
+  const auto id = [writer](int shift) { return static_cast<std::uint8_t>(writer >> shift); };
+  const Bytes data{kind,   1,     21,    0, 0, 0, 16, 0, 0, 0, 0, 0,  id(24),
+                   id(16), id(8), id(0), 0, 0, 0, 0,  1, 0, 0, 0, tag};
+  m.insert(m.end(), data.begin(), data.end());
+  return m;
+}
+
+TEST(RtpsPeek, FindsTheWriterBehindOtherSubmessages) {
+  const RtpsPeek seen = peek(rtps(0x15, 0x00000103));
+  EXPECT_EQ(seen.writer, 0x103U);
+  EXPECT_TRUE(seen.whole);
+  EXPECT_FALSE(peek(rtps(0x16, 0x00000103)).whole);
+  Bytes two = rtps(0x15, 0x103);
+  const Bytes second = rtps(0x15, 0x203);
+  two.insert(two.end(), second.begin() + 20, second.end());
+  EXPECT_EQ(peek(two).writer, 0x103U);
+  EXPECT_FALSE(peek(two).whole);
+}
+
+TEST(RtpsPeek, AnythingElseHasNoWriter) {
+  EXPECT_FALSE(peek({}).writer);
+  EXPECT_FALSE(peek(Bytes(60, 0xff)).writer);
+  Bytes whole = rtps(0x15, 0x103);
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    const auto seen = peek(std::span(whole).first(n));
+    EXPECT_EQ(seen.writer.has_value(), n >= 48) << n;
+  }
+  EXPECT_FALSE(peek(rtps(0x07, 0x103)).writer);  // a heartbeat
+}
+
+/// A socket that waits for what a link lets through.
+class Receiver {
+ public:
+  Receiver() : fd_(::socket(AF_INET, SOCK_DGRAM, 0)) {
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    EXPECT_EQ(::bind(fd_, reinterpret_cast<sockaddr*>(&at), sizeof at), 0);
+    socklen_t length = sizeof at;
+    ::getsockname(fd_, reinterpret_cast<sockaddr*>(&at), &length);
+    port = ntohs(at.sin_port);
+  }
+  ~Receiver() { ::close(fd_); }
+  /// The last byte of each datagram that arrives, until none does for `quiet`.
+  Bytes tags(int quiet_ms) {
+    Bytes result;
+    std::uint8_t buffer[2000];
+    pollfd wait{fd_, POLLIN, 0};
+    while (::poll(&wait, 1, quiet_ms) == 1) {
+      const auto n = ::recv(fd_, buffer, sizeof buffer, 0);
+      if (n > 0) result.push_back(buffer[n - 1]);
+    }
+    return result;
+  }
+  std::uint16_t port{};
+
+ private:
+  int fd_;
+};
+
+const in_addr_t loopback = htonl(INADDR_LOOPBACK);
+
+TEST(LiveLink, SendsByPriorityAndTheNewestOfAStream) {
+  Receiver receiver;
+  std::atomic<int> sent{0};
+  // 69 B and 28 of headers: 40 ms each.
+  LiveLink link({.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, {"127.0.0.1"},
+                [&](std::uint32_t, bool) { ++sent; });
+  link.add_writer(0x103, 0, false);
+  link.add_writer(0x203, 3, true);
+  for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x303, tag), loopback, receiver.port);
+  for (const std::uint8_t tag : {11, 12, 13}) link.send(rtps(0x15, 0x203, tag), loopback, receiver.port);
+  link.send(rtps(0x15, 0x103, 21), loopback, receiver.port);
+  const Bytes tags = receiver.tags(300);
+  ASSERT_EQ(tags.size(), 5U);
+  EXPECT_EQ(sent, 5);
+  EXPECT_EQ(link.dropped(), 2U);
+  // The first may have been on the air already.
+  const auto urgent = std::find(tags.begin(), tags.end(), 21) - tags.begin();
+  EXPECT_LE(urgent, 1);
+  EXPECT_EQ(std::count(tags.begin(), tags.end(), 13), 1);
+  EXPECT_EQ(std::count(tags.begin(), tags.end(), 12), 0);
+}
+
+TEST(LiveLink, LosesDropsAndCounts) {
+  Receiver receiver;
+  {
+    LiveLink all({.bandwidth = 1e6, .loss = 1.0}, 1, {"127.0.0.1"}, [](std::uint32_t, bool) {});
+    all.send(rtps(0x15, 1), loopback, receiver.port);
+    EXPECT_TRUE(receiver.tags(50).empty());
+  }
+  LiveLink slow({.bandwidth = 1e3, .queue = 0.01}, 1, {"127.0.0.1"}, [](std::uint32_t, bool) {});
+  for (int i = 0; i < 5; ++i) slow.send(rtps(0x15, 1), loopback, receiver.port);
+  slow.close();
+  slow.send(rtps(0x15, 1), loopback, receiver.port);
+  EXPECT_GE(slow.dropped(), 1U);  // after the end
+  EXPECT_LE(receiver.tags(50).size(), 2U);
+}
+
+TEST(LiveLink, WhatWaitsIsSentBeforeItEnds) {
+  Receiver receiver;
+  {
+    LiveLink link({.bandwidth = 1e6, .latency = 0.1}, 1, {"127.0.0.1"}, [](std::uint32_t, bool) {});
+    for (std::uint8_t i = 0; i < 10; ++i) link.send(rtps(0x15, 1, i), loopback, receiver.port);
+  }
+  EXPECT_EQ(receiver.tags(10).size(), 10U);
+}
+
+}  // namespace
+}  // namespace adit::wire
