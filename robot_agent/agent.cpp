@@ -34,6 +34,7 @@ Agent::~Agent() {
   // First nothing more arrives, then the strands end, then the parts go.
   if (core_) core_->close();
   sensors_.reset();
+  disk_.reset();
   command_.reset();
   if (core_) core_->stop();
 }
@@ -52,7 +53,9 @@ Result<void> Agent::start() {
   sensors_ = runtime_.strand("sensors");
   auto radio = RadioEdge::open(radio_, *command_, params_.name);
   if (!radio) return radio.error();
-  core_ = std::make_unique<Core>(params_, *command_, std::move(*decider), std::move(*radio));
+  if (params_.disk && !params_.disk->instant()) disk_ = runtime_.strand("disk");
+  params_.id = restore_identity(params_.disk, params_.id);
+  core_ = std::make_unique<Core>(params_, *command_, std::move(*decider), std::move(*radio), disk_);
   if (const auto opened = core_->open(robot_, *sensors_); !opened) return opened.error();
   command_->post([core = core_.get()] {
     if (const auto started = core->start(); !started) core->report(started.error());

@@ -27,6 +27,7 @@ struct AgentParams {
   Defects defects{};                    ///< effective in adit::agent_defects only
   std::shared_ptr<LogSink> log{};
   std::shared_ptr<store::Disk> disk{};  ///< what outlives the agent; null: nothing is kept
+  bool resume_after_restart{true};  ///< an autonomous mode goes on after a restart; false: hold, goal kept
 };
 
 /// What can be done to a component for tests and rehearsals.
@@ -62,7 +63,7 @@ class Agent {
   Runtime& runtime_;
   wire::Wire& radio_;
   wire::Wire& robot_;
-  std::shared_ptr<Executor> command_{}, sensors_{};
+  std::shared_ptr<Executor> command_{}, sensors_{}, disk_{};
   std::unique_ptr<Core> core_{};
 };
 

@@ -37,6 +37,12 @@ NavigationParams navigation_params(const AgentParams& params) {
   return n;
 }
 
+KeeperParams keeper_params(const AgentParams& params) {
+  KeeperParams k{};
+  if (params.defects.has(Defect::acknowledged_lost)) k.lazy = 5s;
+  return k;
+}
+
 constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
@@ -46,7 +52,7 @@ constexpr Duration kHealthPeriod = 5s;
 }  // namespace
 
 Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider,
-                  std::unique_ptr<RadioEdge> radio)
+                  std::unique_ptr<RadioEdge> radio, std::shared_ptr<Executor> disk_strand)
     : Component("command", command, Log(params.log, params.name)),
       params_(params),
       radio_(std::move(radio)),
@@ -55,7 +61,15 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       mux_(navigation_, mux_params(params)),
       behaviour_(behaviour_params(params), std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params), behaviour_, command_outputs()),
-      directory_(command) {}
+      directory_(command),
+      restored_(restore_state(params.disk)),
+      keeper_(keeper_params(params), params.disk, command, std::move(disk_strand), restored_.generation,
+              keeper_outputs()) {
+  if (!restored_.snapshot) return;
+  const Snapshot& s = *restored_.snapshot;
+  commands_.restore(s.authority, s.answers, command.now());
+  behaviour_.restore(s.behaviour, commands_.stops().any(), params.resume_after_restart);
+}
 
 Result<void> Agent::Core::open(wire::Wire& robot, Executor& sensors) {
   Driver::Handlers handlers{};
@@ -73,7 +87,10 @@ Result<void> Agent::Core::open(wire::Wire& robot, Executor& sensors) {
   auto driver = Driver::open(robot, executor(), sensors, std::move(handlers));
   if (!driver) return driver.error();
   driver_ = std::move(*driver);
-  return radio_->listen({commands_, directory_});
+  return radio_->listen({commands_, directory_, [this](Task task) {
+                           keep();
+                           keeper_.when_safe(std::move(task));
+                         }});
 }
 
 void Agent::Core::close() {
@@ -92,6 +109,8 @@ Result<void> Agent::Core::on_start() {
   driver_->write({});
   radio_->send_capabilities(params_.platform, params_.id, kProtocolVersion);
   behaviour_.tick(now());
+  tell_restored();
+  keep();
   send_status();
   send_health();
   timers_.push_back(every(kBeat, [this] { beat(); }));
@@ -119,6 +138,27 @@ void Agent::Core::beat() {
   behaviour_.tick(at);
   mux_.step(at);
   navigation_.step(at);
+  keep();
+  keeper_.tick();
+}
+
+void Agent::Core::keep() {
+  keeper_.save({commands_.kept(), behaviour_.kept(), 0, {}}, [this] { return commands_.kept_answers(); });
+}
+
+void Agent::Core::tell_restored() {
+  if (restored_.lost)
+    tell({{},
+          Severity::error,
+          "state_lost",
+          Reason::cannot_read,
+          params_.name + " started and holds: its state was lost (" + restored_.text + ")"});
+  else if (restored_.snapshot)
+    tell({{},
+          Severity::warning,
+          "restarted",
+          Reason::none,
+          params_.name + " was restarted: " + describe(*restored_.snapshot)});
 }
 
 void Agent::Core::watch_driver() {
@@ -158,6 +198,14 @@ void Agent::Core::send_health() {
   driver.beat_age = localisation_.silence(now(), started_);
   if (!driver.healthy) driver.last_failure = "no odometry";
   parts.push_back(driver);
+  if (params_.disk) {
+    ComponentHealth store{};
+    store.name = "store";
+    store.running = true;
+    store.healthy = !keeper_.failing();
+    if (!store.healthy) store.last_failure = "the disk does not keep the state";
+    parts.push_back(store);
+  }
   radio_->send_health(parts);
 }
 
@@ -183,7 +231,10 @@ Facts Agent::Core::sense(Time now) const {
 
 CommandInterface::Outputs Agent::Core::command_outputs() {
   return {[this](const Notice& notice) { tell(notice); },
-          [this] { radio_->send_authority(commands_, now()); }};
+          [this] {
+            keep();
+            keeper_.when_safe([this] { radio_->send_authority(commands_, now()); });
+          }};
 }
 
 Behaviour::Inputs Agent::Core::behaviour_inputs() {
@@ -198,6 +249,20 @@ Behaviour::Outputs Agent::Core::behaviour_outputs() {
 Navigation::Outputs Agent::Core::navigation_outputs() {
   return {[this](const Twist2& velocity) { driver_->write(velocity); },
           [this](const Progress& progress) { behaviour_.set_progress(progress); }};
+}
+
+StateKeeper::Outputs Agent::Core::keeper_outputs() {
+  return {[this](bool failing, const std::string& text) {
+    if (failing)
+      tell({{},
+            Severity::error,
+            "store_failing",
+            Reason::cannot_write,
+            params_.name + " cannot keep its state over a restart: " + text});
+    else
+      tell({{}, Severity::info, "store_works", Reason::none, params_.name + ": " + text});
+    send_health();
+  }};
 }
 
 std::string Agent::Core::at_console(const std::string& line) {

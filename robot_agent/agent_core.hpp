@@ -12,6 +12,8 @@
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
+#include "robot_agent/state/restored.hpp"
+#include "robot_agent/state/state_keeper.hpp"
 
 namespace adit::agent {
 
@@ -19,7 +21,7 @@ namespace adit::agent {
 class Agent::Core : public Component {
  public:
   Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider,
-       std::unique_ptr<RadioEdge> radio);
+       std::unique_ptr<RadioEdge> radio, std::shared_ptr<Executor> disk_strand);
 
   /// Opens the driver and begins to listen. The timers begin with Component::start().
   Result<void> open(wire::Wire& robot, Executor& sensors);
@@ -39,6 +41,8 @@ class Agent::Core : public Component {
   void send_behaviour();
   void send_health();
   void watch_driver();
+  void tell_restored();
+  void keep();
   void tell(Notice notice);
   void tell_holder(Notice notice);
   Facts sense(Time now) const;
@@ -46,6 +50,7 @@ class Agent::Core : public Component {
   Behaviour::Inputs behaviour_inputs();
   Behaviour::Outputs behaviour_outputs();
   Navigation::Outputs navigation_outputs();
+  StateKeeper::Outputs keeper_outputs();
 
   AgentParams params_;
   std::unique_ptr<RadioEdge> radio_;
@@ -55,6 +60,8 @@ class Agent::Core : public Component {
   Behaviour behaviour_;
   CommandInterface commands_;
   Directory directory_;
+  Restored restored_;
+  StateKeeper keeper_;
   std::unique_ptr<Driver> driver_{};
   float battery_{-1.0f};
   bool driver_was_alive_{};

@@ -115,6 +115,19 @@ void Behaviour::resume_goal(Time now) {
   tick(now);
 }
 
+KeptBehaviour Behaviour::kept() const {
+  return {std::string(requested_->name), fell_because_, goal_.known, goal_.reached, goal_.id, goal_.place};
+}
+
+void Behaviour::restore(const KeptBehaviour& kept, bool stopped, bool resume) {
+  const ModeRow* row = find_mode(kept.mode);
+  const bool autonomous = row && row->accepts == Accepts::goal && kept.goal_known;
+  goal_ = {kept.goal_known, kept.goal_reached, kept.goal_id, kept.goal};
+  requested_ = autonomous && resume ? row : &mode_table().front();
+  fell_because_ = kept.reason;
+  stopped_ = stopped;
+}
+
 void Behaviour::tick(Time now) {
   if (!begun_) idle_since_ = free_since_ = now;
   begun_ = true;

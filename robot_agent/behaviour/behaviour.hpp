@@ -8,6 +8,7 @@
 #include "robot_agent/command/requests.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/motion/mux.hpp"
+#include "robot_agent/state/snapshot.hpp"
 
 namespace adit::agent {
 
@@ -72,6 +73,12 @@ class Behaviour : public Requests {
   void holder_restarted(Time now) override;
   Result<void> stick(const Twist2& twist, Time now) override;
   void resume_goal(Time now) override;
+
+  /// What must survive a restart of the agent.
+  KeptBehaviour kept() const;
+  /// Comes back with it. `resume`: an autonomous mode is asked for again and waits until its conditions hold;
+  /// else, and always for manual ones, it is hold with the goal kept. Takes effect with the next tick.
+  void restore(const KeptBehaviour& kept, bool stopped, bool resume);
 
   /// At 20 Hz, and by the calls above.
   void tick(Time now);

@@ -14,9 +14,9 @@ const Answer* AnswerMemory::find(const wire::ParticipantId& from, std::uint64_t 
 bool AnswerMemory::too_old(const wire::ParticipantId& from, std::uint64_t seq, Line line) const {
   const auto entry = entries_.find(from);
   if (entry == entries_.end()) return false;
-  const std::uint64_t newest = entry->second.newest;
-  const bool overtaken = line != Line::none && seq < entry->second.newest_of[static_cast<std::size_t>(line)];
-  return (newest >= kAnswers && seq <= newest - kAnswers) || overtaken;
+  const Entry& e = entry->second;
+  const bool overtaken = line != Line::none && seq < e.newest_of[static_cast<std::size_t>(line)];
+  return (e.newest >= kAnswers && seq <= e.newest - kAnswers) || overtaken || seq < e.floor;
 }
 
 void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answer, Line line, Time now) {
@@ -33,6 +33,46 @@ void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answe
   entry.newest = std::max(entry.newest, answer.seq);
   std::uint64_t& newest = entry.newest_of[static_cast<std::size_t>(line)];
   newest = std::max(newest, answer.seq);
+}
+
+std::vector<KeptAnswers> AnswerMemory::kept() const {
+  std::vector<std::pair<Time, KeptAnswers>> all;
+  for (const auto& [participant, entry] : entries_) {
+    KeptAnswers k{participant, {}, {}, entry.newest, entry.newest_of, entry.floor, {}};
+    std::vector<const Answer*> answers;
+    for (const Answer& a : entry.answers)
+      if (a.seq != 0) answers.push_back(&a);
+    std::sort(answers.begin(), answers.end(),
+              [](const Answer* a, const Answer* b) { return a->seq < b->seq; });
+    if (answers.empty()) continue;
+    if (answers.size() > Snapshot::kAnswers) {
+      answers.erase(answers.begin(), answers.end() - Snapshot::kAnswers);
+      k.floor = std::max(k.floor, answers.front()->seq);
+    }
+    k.station = answers.back()->station;
+    k.station_id = answers.back()->station_id;
+    for (const Answer* a : answers)
+      k.answers.push_back({a->seq, a->reason, a->text.substr(0, Snapshot::kText)});
+    all.emplace_back(entry.used, std::move(k));
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<KeptAnswers> kept;
+  for (auto& [used, answers] : all)
+    if (kept.size() < Snapshot::kParticipants) kept.push_back(std::move(answers));
+  return kept;
+}
+
+void AnswerMemory::restore(const std::vector<KeptAnswers>& kept, Time now) {
+  for (const KeptAnswers& k : kept) {
+    Entry& entry = entries_[k.participant];
+    entry.answers.resize(kAnswers);
+    entry.newest = k.newest;
+    entry.newest_of = k.newest_of;
+    entry.floor = k.floor;
+    entry.used = now;
+    for (const KeptAnswer& a : k.answers)
+      entry.answers[a.seq % kAnswers] = {k.station, k.station_id, a.seq, a.reason, a.text, {}, {}};
+  }
 }
 
 }  // namespace adit::agent

@@ -6,6 +6,7 @@
 
 #include "core/time/time.hpp"
 #include "robot_agent/command/types.hpp"
+#include "robot_agent/state/snapshot.hpp"
 
 namespace adit::agent {
 
@@ -26,11 +27,16 @@ class AnswerMemory {
   bool too_old(const wire::ParticipantId& from, std::uint64_t seq, Line line) const;
   void remember(const wire::ParticipantId& from, const Answer& answer, Line line, Time now);
 
+  /// What a restart must not forget: the participants heard last, their newest answers.
+  std::vector<KeptAnswers> kept() const;
+  void restore(const std::vector<KeptAnswers>& kept, Time now);
+
  private:
   struct Entry {
     std::vector<Answer> answers{};  ///< slot seq % kAnswers; seq 0: empty
     std::uint64_t newest{};
     std::array<std::uint64_t, 3> newest_of{};  ///< by Line
+    std::uint64_t floor{};                     ///< lower numbers may have been answered before a restart
     Time used{};
   };
   std::map<wire::ParticipantId, Entry> entries_{};

@@ -40,6 +40,16 @@ class Authority {
   void lock() { locked_ = holder_.has_value(); }
   void unlock() { locked_ = false; }
 
+  /// After a restart: as it was, under the next epoch of this start; the lease starts anew.
+  void restore(std::optional<Party> holder, bool locked, std::uint32_t counter, Time now) {
+    holder_ = std::move(holder);
+    locked_ = locked && holder_;
+    heard_ = now;
+    epoch_.counter = counter + 1;
+  }
+  /// Only called in a build with defects (Defect::epoch_kept_at_restart).
+  void keep_epoch(const Epoch& epoch) { epoch_ = epoch; }
+
   /// The holder gave a sign of life.
   void hear(Time now) { heard_ = now; }
   /// Seconds until the lock lapses; negative when no lease runs.

@@ -45,6 +45,14 @@ CommandInterface::CommandInterface(CommandParams params, Requests& requests, Out
       outputs_(std::move(outputs)),
       authority_(params_.epoch_start, params_.lock_lease) {}
 
+void CommandInterface::restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now) {
+  const bool locked = kept.locked && !params_.defects.has(Defect::lock_forgotten);
+  authority_.restore(kept.holder, locked, kept.epoch.counter, now);
+  if (params_.defects.has(Defect::epoch_kept_at_restart)) authority_.keep_epoch(kept.epoch);
+  for (const Party& stopper : kept.stops) stops_.set(stopper);
+  memory_.restore(answers, now);
+}
+
 void CommandInterface::hear(const Sender& from, std::uint16_t protocol, Time now) {
   if (!valid_name(from.name)) return;
   if (identify(from, StationTable::Sign::presence, now).reason == Reason::none)
@@ -55,7 +63,12 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   if (const Answer* first = memory_.find(c.from.participant, c.seq);
       first && !params_.defects.has(Defect::repeat_done_twice)) {
     identify(c.from, StationTable::Sign::command, now);  // a repeat is a sign of life, too
-    return *first;
+    Answer again = *first;
+    if (again.epoch == Epoch{}) {  // given before a restart: what is in force is not what was
+      again.holder = authority_.holder_name();
+      again.epoch = authority_.epoch();
+    }
+    return again;
   }
   const Outcome outcome = judge(c, now);
   const Answer result = answer(c, outcome);

@@ -48,6 +48,15 @@ class CommandInterface {
   /// The robot's own console: it can always end a lock. False when there was none.
   bool unlock_at_console();
 
+  /// What must survive a restart of the agent.
+  KeptAuthority kept() const {
+    return {authority_.epoch(), authority_.holder(), authority_.locked(), stops_.all()};
+  }
+  std::vector<KeptAnswers> kept_answers() const { return memory_.kept(); }
+  /// Comes back with it, before anything was heard: holder, lock and stops as they were, under a new epoch.
+  /// Tells nobody.
+  void restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now);
+
   const Authority& authority() const { return authority_; }
   const StopLatches& stops() const { return stops_; }
   const StationTable& stations() const { return stations_; }

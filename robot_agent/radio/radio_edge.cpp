@@ -79,8 +79,10 @@ Result<void> RadioEdge::listen(Parts parts) {
   Endpoints& e = *endpoints_;
   CommandInterface& commands = parts.commands;
   Directory& directory = parts.directory;
-  const auto answer = [&e](const std::optional<Answer>& a) {
-    if (a) (void)e.acknowledgement.write(to_radio(*a, e.robot));
+  const auto answer = [&e, settle = parts.settle](const std::optional<Answer>& a) {
+    if (!a) return;
+    if (a->seq == 0) return (void)e.acknowledgement.write(to_radio(*a, e.robot));  // a stream changes nothing
+    settle([&e, a = *a] { (void)e.acknowledgement.write(to_radio(a, e.robot)); });
   };
   e.wire.on_participant(e.strand, [&e, &commands, &directory](const wire::ParticipantEvent& event) {
     directory.participant(event);

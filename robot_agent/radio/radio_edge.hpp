@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -25,6 +26,8 @@ class RadioEdge {
   struct Parts {
     CommandInterface& commands;
     Directory& directory;
+    /// Runs what gives an answer once all that it tells of is on disk.
+    std::function<void(Task)> settle{};
   };
 
   /// Errors of the wire.

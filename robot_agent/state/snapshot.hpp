@@ -1,0 +1,76 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/store/state_file.hpp"
+#include "robot_agent/command/authority.hpp"
+#include "robot_agent/command/types.hpp"
+
+namespace adit::agent {
+
+/// An answer that was given: enough to give it again.
+struct KeptAnswer {
+  std::uint64_t seq{};
+  Reason reason{Reason::none};
+  std::string text{};  ///< shortened to 64 bytes
+  bool operator==(const KeptAnswer&) const = default;
+};
+
+/// The last answers to one participant, its highest numbers.
+struct KeptAnswers {
+  wire::ParticipantId participant{};
+  std::string station{};
+  Id station_id{};
+  std::uint64_t newest{};                    ///< highest number seen
+  std::array<std::uint64_t, 3> newest_of{};  ///< of each line of commands that must not be overtaken
+  std::uint64_t floor{};                     ///< lower numbers that are not among the answers are too old
+  std::vector<KeptAnswer> answers{};
+  bool operator==(const KeptAnswers&) const = default;
+};
+
+/// Of the command interface.
+struct KeptAuthority {
+  Epoch epoch{};  ///< the counter goes on; the start is drawn anew
+  std::optional<Party> holder{};
+  bool locked{};
+  std::vector<Party> stops{};
+  bool operator==(const KeptAuthority&) const = default;
+};
+
+/// Of the behaviour: what was asked for, not what the tree made of it.
+struct KeptBehaviour {
+  std::string mode{"hold"};
+  Reason reason{Reason::none};  ///< why it fell to hold
+  bool goal_known{}, goal_reached{};
+  std::uint32_t goal_id{};
+  Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< map frame, m
+  bool operator==(const KeptBehaviour&) const = default;
+};
+
+/// The last known safe state (rule 7): what an agent comes back with.
+struct Snapshot {
+  static constexpr std::size_t kStops = 16, kParticipants = 8, kAnswers = 8, kText = 64;
+
+  KeptAuthority authority{};
+  KeptBehaviour behaviour{};
+  std::uint8_t battery{};  ///< threshold that was passed last: 0 none, 1 warning, 2 low, 3 last
+  std::vector<KeptAnswers> answers{};
+  /// Without the answers: what tells whether something changed that must survive.
+  bool same_state(const Snapshot& other) const {
+    return authority == other.authority && behaviour == other.behaviour && battery == other.battery;
+  }
+  bool operator==(const Snapshot&) const = default;
+};
+
+inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 1, 16 * 1024};
+
+/// At most 16 kB: what is beyond the bounds above is left out.
+store::Bytes encode(const Snapshot& snapshot);
+/// Nothing when the bytes are no snapshot that a robot could have written.
+std::optional<Snapshot> decode_snapshot(std::span<const std::uint8_t> bytes);
+
+}  // namespace adit::agent

@@ -1,0 +1,142 @@
+#include "robot_agent/state/state_keeper.hpp"
+
+#include "robot_agent/state/restored.hpp"
+
+namespace adit::agent {
+namespace {
+
+constexpr std::size_t kWaiting = 256;
+
+/// Off the command strand, one at a time. What cannot be written is removed: an old state that comes back
+/// would be a guess.
+Result<void> write(const std::shared_ptr<store::Disk>& disk, std::uint64_t generation,
+                   const store::Bytes& payload, bool mark) {
+  Result<void> done{};
+  if (mark) done = disk->replace(kMarkerFile, {});
+  if (done) done = store::StateFile(disk, kStateFile, kSnapshotFormat).save(generation, payload);
+  if (!done) (void)disk->remove(kStateFile);  // the first error is the one to tell
+  return done;
+}
+
+}  // namespace
+
+/// Shared with the writes under way, which outlive the keeper when its component ends.
+struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
+  KeeperParams params;
+  std::shared_ptr<store::Disk> disk;
+  Executor& command;
+  std::shared_ptr<Executor> strand;
+  Outputs outputs;
+
+  std::optional<Snapshot> state{};         ///< given last
+  std::optional<store::Bytes> next{};      ///< not being written yet
+  std::uint64_t asked{}, done{};           ///< generations: given, and settled one way or the other
+  std::optional<std::uint64_t> writing{};  ///< the one under way
+  Time since{};                            ///< of the write under way, or of the last one
+  bool marked{}, failed{}, stuck{};
+  std::optional<Time> retry{};
+  std::deque<std::pair<std::uint64_t, Task>> waiting{};
+  Timer modelled{};
+
+  Writer(KeeperParams p, std::shared_ptr<store::Disk> d, Executor& c, std::shared_ptr<Executor> s, Outputs o)
+      : params(p), disk(std::move(d)), command(c), strand(std::move(s)), outputs(std::move(o)) {}
+
+  void start() {
+    if (writing || !next) return;
+    writing = asked;
+    since = command.now();
+    retry.reset();
+    auto bytes = std::make_shared<store::Bytes>(std::move(*next));
+    next.reset();
+    const auto work = [disk = disk, bytes, generation = asked, mark = !marked] {
+      return write(disk, generation, *bytes, mark);
+    };
+    const std::weak_ptr<Writer> back = weak_from_this();
+    if (disk->instant() || !strand) {
+      modelled = command.after(params.write, [back, work, bytes] {
+        if (const auto self = back.lock()) self->finished(work(), *bytes);
+      });
+    } else {
+      strand->post([back, work, bytes, &to = command] {
+        auto result = std::make_shared<Result<void>>(work());
+        if (back.expired()) return;
+        to.post([back, result, bytes] {
+          if (const auto self = back.lock()) self->finished(*result, *bytes);
+        });
+      });
+    }
+  }
+
+  void finished(const Result<void>& result, const store::Bytes& bytes) {
+    done = writing.value_or(done);
+    writing.reset();
+    stuck = false;
+    if (result) {
+      marked = true;
+      set_failed(false, "the state is kept again");
+    } else {
+      if (!next) next = bytes;
+      retry = command.now() + params.retry;
+      set_failed(true, result.error().text);
+    }
+    release(done);
+    if (result && params.lazy == Duration{0}) start();
+  }
+
+  void set_failed(bool now_failing, const std::string& text) {
+    if (failed == now_failing) return;
+    failed = now_failing;
+    outputs.failing(failed, text);
+  }
+
+  void release(std::uint64_t up_to) {
+    while (!waiting.empty() && waiting.front().first <= up_to) {
+      const Task task = std::move(waiting.front().second);
+      waiting.pop_front();
+      task();
+    }
+  }
+
+  void tick() {
+    const Time now = command.now();
+    if (writing && !stuck && now - since >= params.patience) {
+      stuck = true;
+      set_failed(true, disk->where() + " does not answer");
+      release(asked);
+    }
+    if (retry && now >= *retry) start();
+    if (params.lazy > Duration{0} && now - since >= params.lazy) start();
+  }
+};
+
+StateKeeper::StateKeeper(KeeperParams params, std::shared_ptr<store::Disk> disk, Executor& command,
+                         std::shared_ptr<Executor> writer, std::uint64_t generation, Outputs outputs)
+    : writer_(
+          std::make_shared<Writer>(params, std::move(disk), command, std::move(writer), std::move(outputs))) {
+  writer_->asked = writer_->done = generation;
+  writer_->since = command.now();
+}
+
+StateKeeper::~StateKeeper() = default;
+
+void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers) {
+  Writer& w = *writer_;
+  if (!w.disk || (w.state && w.state->same_state(state))) return;
+  state.answers = answers();
+  w.next = encode(state);
+  w.state = std::move(state);
+  ++w.asked;
+  if (w.params.lazy == Duration{0}) w.start();
+}
+
+void StateKeeper::when_safe(Task task) {
+  Writer& w = *writer_;
+  if (w.done == w.asked || w.stuck || w.params.lazy > Duration{0}) return task();
+  if (w.waiting.size() >= kWaiting) w.waiting.pop_front();
+  w.waiting.emplace_back(w.asked, std::move(task));
+}
+
+void StateKeeper::tick() { writer_->tick(); }
+bool StateKeeper::failing() const { return writer_->failed; }
+
+}  // namespace adit::agent
