@@ -4,33 +4,11 @@
 
 #include <random>
 
+#include "tests/nav/ceres_problem.hpp"
+#include "tests/nav/wave.hpp"
+
 namespace adit::nav::test {
 namespace {
-
-constexpr double kDt = 0.05;
-
-template <class Model>
-struct Bench {
-  static Model model() { return {}; }
-  static typename Ilqr<Model>::Limits limits() {
-    typename Ilqr<Model>::Limits limits{};
-    limits.velocity.setConstant(1.5);
-    limits.rate.setConstant(1.5);
-    return limits;
-  }
-};
-template <>
-typename Ilqr<model::Car>::Limits Bench<model::Car>::limits() {
-  return {{1.5, 0.6}, {1.5, 1.5}};
-}
-
-/// A wave along x at about `speed`, and the twist of a body on it.
-Reference wave(double t, double speed) {
-  const double x = speed * t, slope = 0.9 * std::cos(1.5 * x);
-  const double v = speed * std::hypot(1.0, slope);
-  const double bend = -1.35 * std::sin(1.5 * x) / std::pow(1 + slope * slope, 1.5);
-  return {{x, 0.6 * std::sin(1.5 * x), std::atan(slope)}, {v, 0, bend * v}};
-}
 
 template <class Model>
 class IlqrTest : public testing::Test {
@@ -105,6 +83,23 @@ TYPED_TEST(IlqrTest, NoSmallChangeOfAnyControlIsBetter) {
         other[k][i] = std::clamp(other[k][i] + change, -limit, limit);
         EXPECT_GE(exact.cost(x, references, other), best - 1e-7) << "step " << k << " control " << i;
       }
+}
+
+TYPED_TEST(IlqrTest, CeresFindsNothingBetter) {
+  IlqrParams params;
+  params.iterations = 100;
+  params.tolerance = 1e-10;
+  for (const Pose2& pose : {Pose2{0, 0.1, 0.5}, Pose2{0, 0.4, 0.2}, Pose2{-0.3, -0.2, 1.0}}) {
+    const auto x = this->at(pose, {0.3, 0, 0});
+    const auto references = this->ahead(0);
+    const double ours = this->make(params).solve(x, references).cost;
+    const double theirs =
+        CeresProblem<TypeParam>({Bench<TypeParam>::model(), Bench<TypeParam>::limits(), params, kDt}, x,
+                                references)
+            .solve();
+    EXPECT_LE(ours, 1.001 * theirs);
+    EXPECT_GE(ours, 0.9 * theirs) << "Ceres ends a little early; more apart is another problem";
+  }
 }
 
 TYPED_TEST(IlqrTest, AJacobianIsTheDerivativeOfTheTwist) {
