@@ -27,6 +27,8 @@ struct AgentParams {
   Defects defects{};                    ///< effective in adit::agent_defects only
   std::shared_ptr<LogSink> log{};
   std::shared_ptr<store::Disk> disk{};  ///< what outlives the agent; null: nothing is kept
+  std::uint64_t
+      boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known
   bool resume_after_restart{true};  ///< an autonomous mode goes on after a restart; false: hold, goal kept
 };
 

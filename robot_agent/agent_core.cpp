@@ -68,7 +68,9 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
   if (!restored_.snapshot) return;
   const Snapshot& s = *restored_.snapshot;
   commands_.restore(s.authority, s.answers, command.now());
-  behaviour_.restore(s.behaviour, commands_.stops().any(), params.resume_after_restart);
+  // Where its driver's odometry began anew, the goal's place is no longer known for sure.
+  const bool resume = params.resume_after_restart && s.boot == params.boot;
+  behaviour_.restore(s.behaviour, commands_.stops().any(), resume);
 }
 
 Result<void> Agent::Core::open(wire::Wire& robot, Executor& sensors) {
@@ -143,7 +145,8 @@ void Agent::Core::beat() {
 }
 
 void Agent::Core::keep() {
-  keeper_.save({commands_.kept(), behaviour_.kept(), 0, {}}, [this] { return commands_.kept_answers(); });
+  keeper_.save({commands_.kept(), behaviour_.kept(), params_.boot, 0, {}},
+               [this] { return commands_.kept_answers(); });
 }
 
 void Agent::Core::tell_restored() {
@@ -158,7 +161,8 @@ void Agent::Core::tell_restored() {
           Severity::warning,
           "restarted",
           Reason::none,
-          params_.name + " was restarted: " + describe(*restored_.snapshot)});
+          params_.name + " was restarted: " + describe(*restored_.snapshot) +
+              (restored_.snapshot->boot == params_.boot ? "" : "; with its computer, so it holds")});
 }
 
 void Agent::Core::watch_driver() {

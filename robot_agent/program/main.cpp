@@ -7,11 +7,14 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cctype>
+#include <fstream>
 #include <iostream>
 
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
 #include "core/exec/live_runtime.hpp"
+#include "core/store/file_disk.hpp"
 #include "core/wire/link_file.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/decider.hpp"
@@ -36,7 +39,7 @@ Examples:
 Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration.)";
 
 struct Options {
-  std::string config{}, name{}, log{}, link{};
+  std::string config{}, name{}, state{}, log{}, link{};
   std::vector<double> pose{};
   int domain{-1}, robot_domain{-1};
   bool supervised{}, reports{};
@@ -64,6 +67,7 @@ Result<RobotConfig> load(const Options& options) {
     if (!link) return Error{Reason::bad_argument, "--link: " + link.error().text};
     config->radio.link = std::move(*link);
   }
+  if (!options.state.empty()) config->state = options.state;
   if (!options.log.empty() && !level_from_name(options.log, config->log))
     return Error{Reason::bad_argument, "--log is trace, debug, info, warn, error or off"};
   // Here, and not in the agent alone: a parent would start it again and again.
@@ -85,6 +89,18 @@ std::uint64_t drawn_seed() {
   while (::getrandom(&seed, sizeof seed, 0) != sizeof seed) {
   }
   return seed;
+}
+
+/// Another one after each start of this computer, whose odometry begins anew; 0: not known.
+std::uint64_t this_boot() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string text;
+  std::getline(file, text);
+  std::uint64_t value = 0;
+  for (const char c : text)
+    if (std::isxdigit(static_cast<unsigned char>(c)) != 0)
+      value = (value << 4 | value >> 60) ^ static_cast<std::uint64_t>(c);
+  return value;
 }
 
 sigset_t end_signals() {
@@ -114,6 +130,14 @@ int run_agent(const RobotConfig& config, bool reports) {
   params.lock_lease = config.lock_lease;
   params.tree = config.tree;
   params.log = *log;
+  params.resume_after_restart = config.resume_after_restart;
+  params.boot = this_boot();
+  if (const std::string folder = state_folder(config); !folder.empty()) {
+    auto disk = store::FileDisk::open(folder);
+    if (!disk)
+      return fail({disk.reason(), disk.error().text + " (state: FOLDER, or none to keep nothing)"}, 2);
+    params.disk = std::move(*disk);
+  }
   agent::Agent agent(params, runtime, **radio, **robot);
   // The console's socket is also what keeps two agents of one name apart.
   std::atomic<bool> up{false};
@@ -179,6 +203,7 @@ int main(int argc, char** argv) {
   app.add_option(
       "--link", options.link,
       "link profile (config/links) that all that is sent by radio keeps to: budgets, latency, loss");
+  app.add_option("--state", options.state, "folder of what survives a restart, or none");
   app.add_option("--log", options.log, "trace, debug, info, warn, error or off");
   app.add_flag("--supervised", options.supervised, "run under a parent that sends zero when the agent dies");
   app.add_flag("--reports", options.reports)->group("");  // set by the parent

@@ -1,5 +1,8 @@
 #include "robot_agent/program/robot_config.hpp"
 
+#include <unistd.h>
+
+#include <cstdlib>
 #include <filesystem>
 
 #include "core/config/node.hpp"
@@ -26,6 +29,18 @@ void read_radio(const config::Node& node, const std::string& file, wire::FastDds
 
 }  // namespace
 
+std::string state_folder(const RobotConfig& config) {
+  if (config.state == "none") return {};
+  if (!config.state.empty()) return config.state;
+  const auto below = [](const char* variable) {
+    const char* value = std::getenv(variable);
+    return std::string(value ? value : "");
+  };
+  std::string base = below("XDG_STATE_HOME");
+  if (base.empty()) base = ::geteuid() == 0 ? "/var/lib" : below("HOME") + "/.local/state";
+  return base + "/adit/robot-" + config.name;
+}
+
 Result<RobotConfig> load_robot_config(const std::string& file) {
   auto root = config::load(file);
   if (!root) return root.error();
@@ -47,6 +62,11 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
     root->child("tree").fail(tree.error().reason, tree.error().text);
   else
     return tree.error();
+  c.state = root->text("state", "");
+  const std::string after = root->text("after_restart", "resume");
+  c.resume_after_restart = after == "resume";
+  if (after != "resume" && after != "hold")
+    root->child("after_restart").fail(Reason::out_of_range, "expected resume or hold");
   if (!level_from_name(root->text("log", "info"), c.log))
     root->child("log").fail(Reason::out_of_range, "expected trace, debug, info, warn, error or off");
   if (const auto read = root->finish(); !read) return read.error();

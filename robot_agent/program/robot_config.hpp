@@ -19,8 +19,15 @@ struct RobotConfig {
   bool shared_memory{true};       ///< towards the driver, when it runs on the same machine
   Duration lock_lease{300s};      ///< 0: never
   std::string tree{"trees/robot.xml"};
+  std::string state{};              ///< folder of what survives a restart; empty: the usual one; "none"
+  bool resume_after_restart{true};  ///< `after_restart: resume`, else `hold`
   LogLevel log{LogLevel::info};
 };
+
+/// The folder of a robot's state: the one configured, nothing for "none", else
+/// $XDG_STATE_HOME/adit/robot-NAME; without that /var/lib/adit/robot-NAME for root,
+/// ~/.local/state/adit/robot-NAME for others.
+std::string state_folder(const RobotConfig& config);
 
 /// Reads it. Errors: one line with file, line and what was expected.
 Result<RobotConfig> load_robot_config(const std::string& file);

@@ -57,11 +57,13 @@ struct Snapshot {
 
   KeptAuthority authority{};
   KeptBehaviour behaviour{};
+  std::uint64_t boot{};    ///< of the computer when it was written; 0: not known
   std::uint8_t battery{};  ///< threshold that was passed last: 0 none, 1 warning, 2 low, 3 last
   std::vector<KeptAnswers> answers{};
   /// Without the answers: what tells whether something changed that must survive.
   bool same_state(const Snapshot& other) const {
-    return authority == other.authority && behaviour == other.behaviour && battery == other.battery;
+    return authority == other.authority && behaviour == other.behaviour && boot == other.boot &&
+           battery == other.battery;
   }
   bool operator==(const Snapshot&) const = default;
 };

@@ -33,6 +33,20 @@ TEST(RobotConfig, ATreeBesideTheFileComesFirst) {
   EXPECT_EQ(config->tree, tree);
 }
 
+TEST(RobotConfig, StateIsKeptWhereItSaysOrInTheUsualPlace) {
+  const live::Folder folder;
+  const auto state = [&](const std::string& line) {
+    return state_folder(
+        load_robot_config(folder.write("r.yaml", "name: r1\nplatform: wheeled\n" + line)).value());
+  };
+  EXPECT_EQ(state("state: /data/r1\n"), "/data/r1");
+  EXPECT_EQ(state("state: none\n"), "");
+  ::setenv("XDG_STATE_HOME", "/somewhere", 1);
+  EXPECT_EQ(state(""), "/somewhere/adit/robot-r1");
+  ::unsetenv("XDG_STATE_HOME");
+  EXPECT_THAT(state(""), HasSubstr("/adit/robot-r1"));
+}
+
 struct BadFile {
   const char* name;
   const char* text;
@@ -60,6 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadFile{"radio_key", "name: r1\nplatform: wheeled\nradio: {domian: 3}\n", "domian"},
                     BadFile{"domain_range", "name: r1\nplatform: wheeled\nrobot_domain: 500\n", "r.yaml:3"},
                     BadFile{"lease", "name: r1\nplatform: wheeled\nlock_lease: -1\n", "r.yaml:3"},
+                    BadFile{"after_restart", "name: r1\nplatform: wheeled\nafter_restart: go\n", "r.yaml:3"},
                     BadFile{"log", "name: r1\nplatform: wheeled\nlog: loud\n", "r.yaml:3"}),
     [](const auto& each) { return each.param.name; });
 

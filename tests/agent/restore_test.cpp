@@ -16,8 +16,9 @@ using testing::Not;
 class Restore : public testing::Test {
  protected:
   void SetUp() override { begin(true); }
-  void begin(bool resume) {
+  void begin(bool resume, std::uint64_t boot = 0) {
     AgentParams params;
+    params.boot = boot;
     params.disk = disk;
     params.resume_after_restart = resume;
     bench = std::make_unique<AgentBench>(params);
@@ -113,6 +114,18 @@ TEST_F(Restore, HoldAfterRestartKeepsTheGoal) {
   EXPECT_EQ(bench->ask(*op1, CMD_MODE, "waypoint"), Reason::none);
   bench->run(1s);
   EXPECT_GT(bench->command.vx, 0.1);
+}
+
+TEST_F(Restore, AfterARestartOfTheComputerItHolds) {
+  begin(true, 1);
+  take_lock_and_go();
+  begin(true, 2);
+  bench->commands.clear();
+  bench->run(2s);
+  EXPECT_EQ(op1->authority.holder(), "op1");
+  EXPECT_EQ(op1->behaviour.mode(), "hold") << "odometry began anew";
+  EXPECT_EQ(op1->behaviour.goal_state(), radio::GOAL_KEPT);
+  EXPECT_THAT(bench->commands, Each(Twist2{}));
 }
 
 TEST_F(Restore, AManualModeFallsToHold) {

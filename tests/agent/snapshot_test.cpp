@@ -23,6 +23,7 @@ Snapshot full() {
   Snapshot s;
   s.authority = {{77, 12}, Party{"op1", id_of('a')}, true, {{"op2", id_of('b')}, {"others", Id{}}}};
   s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}};
+  s.boot = 0x1122334455667788;
   s.battery = 2;
   KeptAnswers a;
   a.participant[3] = 4;
