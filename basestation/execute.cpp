@@ -106,9 +106,19 @@ bool Station::Impl::known(const Request& request) const {
                      [this](const std::string& robot) { return fleet_.robot(robot) != nullptr; });
 }
 
+bool Station::Impl::complete() const {
+  const auto& robots = fleet_.robots();
+  return !robots.empty() && std::all_of(robots.begin(), robots.end(), [](const auto& entry) {
+    const RobotView& robot = entry.second;
+    return robot.lost || (robot.described && robot.located && robot.owned && robot.behaviour_count > 0);
+  });
+}
+
 bool Station::Impl::must_wait(const Request& request) const {
   if (!known(request) && fresh(params_.discovery_grace)) return true;
-  return is_query(request.verb) && fresh(params_.settle);
+  if (!is_query(request.verb)) return false;
+  // The first answers: what is there at once is half of it, and nobody there cannot be told from late.
+  return fresh(params_.settle) || (fresh(2 * params_.settle) && !complete());
 }
 
 std::uint64_t Station::Impl::execute(const Request& request, Done done) {

@@ -24,7 +24,8 @@ struct StationParams {
   double bandwidth{0.0};                              ///< of that link, bit/s; 0: not known
   Duration presence{std::chrono::seconds(1)};         ///< between signs of life, [0.1 s, 1 s]
   Duration discovery_grace{std::chrono::seconds(5)};  ///< after the start: how long a robot may stay unknown
-  Duration settle{std::chrono::seconds(1)};           ///< after the start: queries wait this long
+  Duration settle{std::chrono::seconds(
+      1)};  ///< after the start: queries wait this long, and as long again for what is not heard yet
 };
 
 /// One operator's station: fleet model, command sender, joystick and the command lines. Everything happens on

@@ -68,6 +68,8 @@ class Station::Impl {
   // execute.cpp: what is asked
   bool must_wait(const Request& request) const;
   bool known(const Request& request) const;
+  /// Somebody was heard, and of each all that `list` shows.
+  bool complete() const;
   void run(std::uint64_t handle, const Request& request, Done done);
   void answer_query(const Request& request, const Done& done);
   void command_robots(std::uint64_t handle, const Request& request, Done done);

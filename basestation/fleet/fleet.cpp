@@ -90,6 +90,7 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
   robot->protocol = sample.protocol();
   robot->max_speed = sample.max_speed();
   robot->max_turn = sample.max_turn();
+  robot->holonomic = sample.holonomic();
   robot->modes = cleaned(sample.modes(), 32);
   robot->sensors = cleaned(sample.sensors(), 16);
   robot->services = cleaned(sample.services(), 32);
@@ -247,7 +248,7 @@ void Fleet::check(Time now) {
             .robot = name,
             .level = Level::warning,
             .code = "lost",
-            .text = name + " has not been heard for 3 s"});
+            .text = name + " has not been heard for 2.5 s"});
   }
   const auto silent = [now](const auto& entry) { return now - entry.second.last_heard > forget_after; };
   std::erase_if(stations_, silent);

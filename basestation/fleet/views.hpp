@@ -48,7 +48,7 @@ struct RobotView {
   wire::ParticipantId participant{};
   Time first_heard{};
   Time last_heard{};  ///< last RobotState, or the first sign of life before that
-  bool lost{false};   ///< no RobotState for 3 s
+  bool lost{false};   ///< no RobotState for 2.5 s
 
   bool described{false};  ///< capabilities were heard
   std::string platform{};
@@ -56,6 +56,7 @@ struct RobotView {
   std::uint16_t protocol{};
   float max_speed{};  ///< m/s
   float max_turn{};   ///< rad/s
+  bool holonomic{};   ///< moves sideways, too
   std::vector<std::string> modes{};
   std::vector<std::string> sensors{};
   std::vector<std::string> services{};

@@ -1,6 +1,10 @@
 #include "basestation/flow/steer.hpp"
 
+#include <cmath>
 #include <utility>
+
+#include "basestation/command/words.hpp"
+#include "basestation/report/table.hpp"
 
 namespace adit::station {
 
@@ -167,12 +171,25 @@ void Steer::end(Reason reason, const std::string& text) {
   if (phase_ == Phase::settling || phase_ == Phase::over) return;
   outcome_.accepted = reason == Reason::none;
   outcome_.reason = reason;
-  outcome_.text = text;
+  outcome_.text = reason == Reason::none ? clipped() : text;
   if (const RobotView* robot_now = view()) outcome_.holder = robot_now->holder;
   if (reason != Reason::none) keep_after_ = keep_after_ && reason == Reason::cancelled;
   const bool streaming = parts_.stick.streaming(robot());
   enter_phase(Phase::settling);
   if (!streaming || !parts_.stick.stream(robot(), centred)) settled();
+}
+
+std::string Steer::clipped() const {
+  const RobotView* robot_now = view();
+  if (params_.purpose != SteerParams::Purpose::drive || !robot_now || !robot_now->described) return {};
+  const auto& [vx, vy, wz] = params_.velocity;
+  std::vector<std::string> limits;
+  const bool sideways = vy != 0.0 && !robot_now->holonomic;
+  if (sideways) limits.push_back("it cannot move sideways");
+  if (std::hypot(vx, sideways ? 0.0 : vy) > robot_now->max_speed)
+    limits.push_back(fixed(robot_now->max_speed, 1) + " m/s");
+  if (std::abs(wz) > robot_now->max_turn) limits.push_back(fixed(robot_now->max_turn, 1) + " rad/s");
+  return limits.empty() ? "" : "clipped to what the robot can: " + joined(limits, "");
 }
 
 void Steer::settled() {

@@ -42,6 +42,8 @@ class Steer final : public Flow {
   void move();
   void end(Reason reason, const std::string& text);
   void settled();
+  /// What of the velocity asked for is beyond the robot; empty when nothing.
+  std::string clipped() const;
   bool left_mode(Reason& reason, std::string& text);
   void stream(const std::array<double, 3>& velocity);
 

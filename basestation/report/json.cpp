@@ -113,10 +113,12 @@ json list_json(const Fleet& fleet, Time now) {
   json robots = json::array();
   for (const auto& [robot_name, robot] : fleet.robots()) robots.push_back(robot_json(fleet, robot, now));
   json stations = json::array();
-  stations.push_back({{"station", fleet.own_name()}, {"self", true}, {"age", 0.0}});
+  stations.push_back({{"station", fleet.own_name()}, {"self", true}, {"age", 0.0}, {"lost", false}});
   for (const auto& [station_name, station] : fleet.stations())
-    stations.push_back(
-        {{"station", station_name}, {"self", false}, {"age", seconds(now - station.last_heard)}});
+    stations.push_back({{"station", station_name},
+                        {"self", false},
+                        {"age", seconds(now - station.last_heard)},
+                        {"lost", now - station.last_heard > Fleet::lost_after}});
   return {{"robots", robots}, {"stations", stations}};
 }
 

@@ -146,7 +146,8 @@ std::string actions_text(const std::vector<Action>& actions) {
 }
 
 std::string answer_text(const Answer& answer, const std::string& done) {
-  if (answer.accepted) return answer.robot + ": " + done + "\n";
+  if (answer.accepted)
+    return answer.robot + ": " + done + (answer.text.empty() ? "" : "; " + answer.text) + "\n";
   std::string why = answer.text.empty() ? std::string(describe(answer.reason)) : answer.text;
   const bool named = answer.holder.empty() || answer.reason == Reason::cancelled ||
                      why.find(answer.holder) != std::string::npos;

@@ -144,8 +144,11 @@ std::int64_t Node::as_integer(std::int64_t min, std::int64_t max) const {
 
 bool Node::as_flag() const {
   if (!value_) return false;
-  if (is_scalar() && !value_->quoted && value_->scalar == "true") return true;
-  if (is_scalar() && !value_->quoted && value_->scalar == "false") return false;
+  const auto says = [this](const char* word) {
+    return is_scalar() && !value_->quoted && value_->scalar == word;
+  };
+  if (says("true") || says("yes")) return true;
+  if (says("false") || says("no")) return false;
   return usable("true or false");
 }
 

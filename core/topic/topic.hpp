@@ -51,7 +51,6 @@ class Topic {
 
   void publish(T value) { publish(std::make_shared<const T>(std::move(value))); }
   void publish(Value value) {
-    latest_ = value;
     std::erase_if(subscribers_, [](const Entry& e) { return !e.alive->load(std::memory_order_relaxed); });
     // By index: a handler may subscribe.
     for (std::size_t i = 0; i < subscribers_.size(); ++i) {
@@ -66,9 +65,6 @@ class Topic {
     }
   }
 
-  /// The newest value, null before the first. Owner's strand only.
-  const Value& latest() const { return latest_; }
-
  private:
   struct Entry {
     Executor* strand;
@@ -76,7 +72,6 @@ class Topic {
     std::shared_ptr<std::atomic<bool>> alive;
   };
   Executor& owner_;
-  Value latest_{};
   std::vector<Entry> subscribers_{};
 };
 

@@ -148,9 +148,11 @@ void Behaviour::fall(const Decision& decision) {
       std::string(requested_->name) + " ended: " + std::string(describe(decision.reason));
   requested_ = decision.mode;
   if (decision.reason == Reason::stopped) return;  // who stopped it was told already
-  const bool lost = decision.reason == Reason::joystick_stale;
+  const bool stale = decision.reason == Reason::joystick_stale;
+  if (stale && stick_.centred())  // the last that was heard of it: it was let go, and nothing was moving
+    return outputs_.tell_holder({{}, Severity::info, "mode_changed", decision.reason, text});
   outputs_.tell_holder(
-      {{}, Severity::warning, lost ? "joystick_lost" : "mode_changed", decision.reason, text});
+      {{}, Severity::warning, stale ? "joystick_lost" : "mode_changed", decision.reason, text});
 }
 
 void Behaviour::feed_waypoint(Time now) {

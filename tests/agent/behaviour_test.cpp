@@ -99,6 +99,19 @@ TEST_F(BehaviourTest, PushedStickInHoldIsRefusedAndMovesNothing) {
   EXPECT_EQ(nav.last, Motion{Stand{}});
 }
 
+TEST_F(BehaviourTest, LettingGoOfACentredStickIsNoWarning) {
+  enter_manual();
+  value = {0.5, 0, 0};
+  run(200ms);
+  value = {};
+  run(300ms);
+  streaming = false;
+  run(1100ms);
+  EXPECT_EQ(mode(), "hold");
+  EXPECT_THAT(codes(), testing::ElementsAre("mode_changed"));
+  EXPECT_EQ(told.back().severity, Severity::info);
+}
+
 TEST_F(BehaviourTest, SilentStickIsZeroAfter300msAndHoldAfterOneSecond) {
   enter_manual();
   value = {0.5, 0, 0};

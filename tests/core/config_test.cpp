@@ -23,12 +23,14 @@ std::string error_of(const std::string& yaml, F read, Reason* reason = nullptr) 
 TEST(ConfigNode, reads_what_is_there_and_fallbacks) {
   auto root = parse(
       "speed: 2.5\ncount: -3\non: true\nname: r1\nquoted: \"7\"\npose: [1, 0, 0.5]\nwords: [a, b]\n"
-      "nested: {kind: b}\nlist:\n  - {x: 1}\n  - {x: 2}\n",
+      "words_of_yaml: {a: yes, b: no}\nnested: {kind: b}\nlist:\n  - {x: 1}\n  - {x: 2}\n",
       "f.yaml");
   ASSERT_TRUE(root);
   EXPECT_EQ(root->number("speed", above(0, 10)), 2.5);
   EXPECT_EQ(root->integer("count", -5, 5), -3);
   EXPECT_TRUE(root->flag("on"));
+  EXPECT_TRUE(root->child("words_of_yaml").flag("a"));
+  EXPECT_FALSE(root->child("words_of_yaml").flag("b"));
   EXPECT_EQ(root->text("name"), "r1");
   EXPECT_EQ(root->text("quoted"), "7");
   EXPECT_THAT(root->numbers("pose", 3, 3), ElementsAre(1, 0, 0.5));
@@ -124,7 +126,9 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"whole: 99999999999999999999",
               "f.yaml:1: whole: expected a whole number in [1, 9], got '99999999999999999999'",
               Reason::wrong_type},
-        Wrong{"flag: yes", "f.yaml:1: flag: expected true or false, got 'yes'", Reason::wrong_type},
+        Wrong{"flag: maybe", "f.yaml:1: flag: expected true or false, got 'maybe'", Reason::wrong_type},
+        Wrong{"flag: 'yes'", "f.yaml:1: flag: expected true or false, got the text \"yes\"",
+              Reason::wrong_type},
         Wrong{"text: {a: 1}", "f.yaml:1: text: expected a text, got a mapping", Reason::wrong_type},
         Wrong{"choice: wify", "f.yaml:1: choice: expected one of lan, wifi; got 'wify', did you mean 'wifi'?",
               Reason::out_of_range},

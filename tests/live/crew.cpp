@@ -87,6 +87,7 @@ Foreigner::Foreigner(Net& net, const std::string& machine, const std::string& ro
       radio_(net.join_radio(machine)) {
   command_ = wire::Writer<radio::Command>::make(*radio_, wire::topics::command, robot).value();
   joystick_ = wire::Writer<radio::Joystick>::make(*radio_, wire::topics::joystick, robot).value();
+  presence_ = wire::Writer<radio::Presence>::make(*radio_, wire::topics::presence).value();
   const auto keep = [&]<class T, class F>(const wire::Topic<T>& topic, F store) {
     readers_.push_back(
         wire::make_reader(*radio_, topic, *strand_, [this, store](const T& sample, const wire::SampleInfo&) {
@@ -138,6 +139,15 @@ void Foreigner::joystick(const station::Id& id, float vx) {
   sample.echo(state().stamp());
   sample.vx(vx);
   (void)joystick_.write(sample);
+}
+
+void Foreigner::announce(const std::string& name, const station::Id& id) {
+  radio::Presence presence;
+  presence.name(name);
+  presence.kind(radio::AGENT_STATION);
+  presence.id(id);
+  presence.protocol(agent::kProtocolVersion);
+  (void)presence_.write(presence);
 }
 
 void Foreigner::forget() {

@@ -3,6 +3,7 @@
 
 #include "adit/authority.h"
 #include "adit/command.h"
+#include "adit/discovery.h"
 #include "adit/robot.h"
 #include "basestation/station.hpp"
 #include "core/wire/typed.hpp"
@@ -69,13 +70,17 @@ class Foreigner {
   /// A command in somebody's name, under the epoch heard last; gives the answer, or nothing after 3 s.
   std::optional<radio::Acknowledgement> ask(radio::Command command);
   void joystick(const station::Id& id, float vx);
+  /// The presence of a station of that name and id.
+  void announce(const std::string& name, const station::Id& id);
   radio::AuthorityStatus authority() const { return heard_.authority.get(); }
   radio::RobotState state() const { return heard_.state.get(); }
   std::vector<radio::Acknowledgement> answers() const { return heard_.answers.get(); }
   std::vector<radio::Notification> notices() const { return heard_.notices.get(); }
   void forget();
   /// True when its commands reach the robot.
-  bool matched() const { return command_.matched() > 0 && joystick_.matched() > 0; }
+  bool matched() const {
+    return command_.matched() > 0 && joystick_.matched() > 0 && presence_.matched() > 0;
+  }
 
  private:
   struct Heard {
@@ -92,6 +97,7 @@ class Foreigner {
   std::unique_ptr<wire::Wire> radio_;
   wire::Writer<radio::Command> command_{};
   wire::Writer<radio::Joystick> joystick_{};
+  wire::Writer<radio::Presence> presence_{};
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::uint64_t seq_{}, stick_seq_{};
 };

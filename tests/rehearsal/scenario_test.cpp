@@ -67,6 +67,23 @@ TEST(Scenario, PlaceAndStateInOneExpectation) {
   EXPECT_DOUBLE_EQ(state.near->x, 12.0);
 }
 
+TEST(Scenario, EveryModeThereIsMayBeExpected) {
+  for (const char* mode :
+       {"hold", "manual", "smart_joystick", "waypoint", "explore", "convoy_follow", "get_out"}) {
+    const auto s = parse_scenario(with("mode: waypoint", std::string("mode: ") + mode), "b.yaml");
+    ASSERT_TRUE(s.ok()) << s.error().text;
+    EXPECT_EQ(std::get<StateExpectation>(s->expectations[0].what).mode, mode);
+  }
+}
+
+TEST(Scenario, YesAndNoAreTrueAndFalse) {
+  const auto s = parse_scenario(with("locked: false, stopped: false", "locked: yes, stopped: no"), "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  const auto& state = std::get<StateExpectation>(s->expectations[0].what);
+  EXPECT_EQ(state.locked, true);
+  EXPECT_EQ(state.stopped, false);
+}
+
 TEST(Scenario, NobodyMayBeWrittenInManyWays) {
   for (const char* nobody : {"nobody", "none", "\"\"", "null", "~"}) {
     const auto s = parse_scenario(with("holder: op1", std::string("holder: ") + nobody), "b.yaml");

@@ -42,6 +42,22 @@ TEST_F(DriveTest, ZerosThenModeThenTheValueThenZeros) {
   EXPECT_EQ(sticks.size(), count) << "it let go";
 }
 
+TEST_F(DriveTest, SaysWhatTheRobotClips) {
+  const auto drive = [this](const std::string& velocity) {
+    return execute("drive r1 " + velocity + " --for 0.2").text;
+  };
+  r1().describe(2.0F, 1.5F, false);
+  run_for(1s);
+  EXPECT_EQ(drive("2 0 -1.5"), "r1: drove for 0.2 s\n");
+  EXPECT_EQ(drive("5 0 0"), "r1: drove for 0.2 s; clipped to what the robot can: 2.0 m/s\n");
+  EXPECT_EQ(drive("0 0.5 -3"),
+            "r1: drove for 0.2 s; clipped to what the robot can: it cannot move sideways, 1.5 rad/s\n");
+  r1().describe(2.0F, 1.5F, true);
+  run_for(1s);
+  EXPECT_EQ(drive("0 1 0"), "r1: drove for 0.2 s\n");
+  EXPECT_THAT(drive("1.9 1.9 0"), HasSubstr("2.0 m/s"));
+}
+
 TEST_F(DriveTest, SamplesEchoTheRobotsLastStampAndRise) {
   execute("drive r1 0.5 0 0");
   std::uint64_t last = 0;

@@ -143,6 +143,20 @@ TEST_F(FreshStation, WaitsForARobotThatItHasNotDiscoveredYet) {
   EXPECT_NEAR(seconds(scheduler_.elapsed()), 5.0, 0.3);
 }
 
+TEST_F(FreshStation, ListWaitsForWhatIsOnItsWay) {
+  start();
+  scheduler_.at(1500ms, [this] {
+    add("r1");
+    robots_[0]->describe(2.0F, 1.5F, false);
+    robots_[0]->publish();
+  });
+  const Outcome list = execute("list");
+  ASSERT_EQ(list.json["robots"].size(), 1U);
+  EXPECT_EQ(list.json["robots"][0]["kind"], "wheeled");
+  EXPECT_EQ(list.json["robots"][0]["mode"], "hold");
+  EXPECT_LT(seconds(scheduler_.elapsed()), 2.2);
+}
+
 TEST_F(FreshStation, KeepsTheOrderOfWhatWaits) {
   start();
   begin("take r1");

@@ -56,6 +56,19 @@ void FakeRobot::publish() {
   (void)behaviour_.write(behaviour);
 }
 
+void FakeRobot::describe(float max_speed, float max_turn, bool holonomic) {
+  if (!capabilities_)
+    capabilities_ = wire::Writer<radio::Capabilities>::make(*wire_, wire::topics::capabilities).value();
+  radio::Capabilities sample;
+  sample.name(name_);
+  sample.kind(radio::AGENT_ROBOT);
+  sample.platform("wheeled");
+  sample.max_speed(max_speed);
+  sample.max_turn(max_turn);
+  sample.holonomic(holonomic);
+  (void)capabilities_.write(sample);
+}
+
 void FakeRobot::refuse_stream(const std::string& station, Id id, Reason reason) {
   radio::Acknowledgement sample;
   sample.robot(name_);

@@ -10,6 +10,7 @@
 
 #include "adit/authority.h"
 #include "adit/command.h"
+#include "adit/discovery.h"
 #include "adit/robot.h"
 #include "basestation/station.hpp"
 #include "core/exec/virtual_runtime.hpp"
@@ -46,6 +47,8 @@ class FakeRobot {
 
   /// Authority and behaviour as they are now.
   void publish();
+  /// Says what it can do: m/s, rad/s.
+  void describe(float max_speed, float max_turn, bool holonomic);
   /// A refused stream.
   void refuse_stream(const std::string& station, Id id, Reason reason);
   const std::vector<Heard>& commands() const { return commands_; }
@@ -66,6 +69,7 @@ class FakeRobot {
   wire::Writer<radio::AuthorityStatus> authority_{};
   wire::Writer<radio::BehaviourState> behaviour_{};
   wire::Writer<radio::Acknowledgement> answers_{};
+  wire::Writer<radio::Capabilities> capabilities_{};
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::vector<Timer> timers_{};
   std::vector<Heard> commands_{};

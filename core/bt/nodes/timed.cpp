@@ -5,10 +5,26 @@ namespace adit::bt {
 
 namespace {
 
-/// Answers RUNNING for a while, then ticks its child.
-class Delay : public Node {
+/// A decorator with a time that runs from its first tick until it completes or is halted.
+class Timed : public Node {
  public:
   using Node::Node;
+
+ protected:
+  void halt() override {
+    started_ = false;
+    runtime().timers.cancel(timer_);
+    Node::halt();
+  }
+
+  bool started_{false};
+  Timers::Id timer_{0};
+};
+
+/// Answers RUNNING for a while, then ticks its child.
+class Delay : public Timed {
+ public:
+  using Timed::Timed;
 
  protected:
   NodeStatus tick() override {
@@ -28,22 +44,14 @@ class Delay : public Node {
     return answer;
   }
 
-  void halt() override {
-    started_ = false;
-    runtime().timers.cancel(timer_);
-    Node::halt();
-  }
-
  private:
-  bool started_{false};
   bool over_{false};
-  Timers::Id timer_{0};
 };
 
 /// Halts the child when its time is over; the next tick answers FAILURE. 0 means no limit.
-class Timeout : public Node {
+class Timeout : public Timed {
  public:
-  using Node::Node;
+  using Timed::Timed;
 
  protected:
   NodeStatus tick() override {
@@ -67,21 +75,13 @@ class Timeout : public Node {
     return answer;
   }
 
-  void halt() override {
-    started_ = false;
-    runtime().timers.cancel(timer_);
-    Node::halt();
-  }
-
  private:
   void expire() {
     if (child().status() != NodeStatus::running) return;
     expired_ = true;
     reset_child();
   }
-  bool started_{false};
   bool expired_{false};
-  Timers::Id timer_{0};
 };
 
 class Sleep : public Leaf {
