@@ -104,6 +104,10 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--peer", options.peers, "ADDRESS[:PORT] of an agent, for networks without multicast")
       ->allow_extra_args(false);
+  app.add_option(
+         "--record", options.record,
+         "Folder for the recording of the last minutes, or none; below the state folder when not given")
+      ->allow_extra_args(false);
   CLI::Option* served = app.add_option("--serve", ready_fd, "Run the station in this process")->group("");
   app.prefix_command();
   app.footer(footer());

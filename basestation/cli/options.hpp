@@ -14,6 +14,7 @@ struct Options {
   bool domain_given{false};               ///< a station that runs must be on `domain`
   std::vector<std::string> interfaces{};  ///< addresses; none: loopback
   std::vector<std::string> peers{};       ///< for networks without multicast
+  std::string record{};                   ///< folder of recordings, "none"; empty: below the state folder
   std::string program{};                  ///< path of this program, to start a station with
 };
 

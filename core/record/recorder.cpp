@@ -51,23 +51,32 @@ Recorder::~Recorder() {
   thread_.join();
 }
 
-ChannelId Recorder::channel(const ChannelInfo& info) {
+ChannelId Recorder::channel(const ChannelInfo& wanted) {
   const std::lock_guard lock(mutex_);
-  if (const auto it = ids_.find(info); it != ids_.end()) return it->second;
-  if (known_.size() >= most_channels) {
-    ChannelInfo others{"others", "", {{malformed_key, "too many channels"}}};
-    if (const auto it = ids_.find(others); it != ids_.end()) return it->second;
-    known_.push_back(std::make_unique<Known>(Known{others, 0, false}));
-    return ids_[others] = static_cast<ChannelId>(known_.size() - 1);
-  }
-  known_.push_back(std::make_unique<Known>(Known{info, 0, false}));
-  return ids_[info] = static_cast<ChannelId>(known_.size() - 1);
+  const bool others = known_.size() >= most_channels && !ids_.contains(wanted);
+  const ChannelInfo info =
+      others ? ChannelInfo{"others", "", {{malformed_key, "too many channels"}}} : wanted;
+  const auto [it, fresh] = ids_.try_emplace(info, next_id_);
+  if (fresh) known_[next_id_++] = std::make_shared<Known>(Known{info, 0, false, 0});
+  ++known_.at(it->second)->users;
+  return it->second;
+}
+
+void Recorder::release(ChannelId channel) {
+  const std::lock_guard lock(mutex_);
+  const auto it = known_.find(channel);
+  if (it == known_.end() || --it->second->users > 0) return;
+  auto known = known_.extract(it);
+  ids_.erase(known.mapped()->info);
+  released_.insert(std::move(known));
 }
 
 void Recorder::record(ChannelId channel, Bytes cdr) {
   const std::uint64_t now = params_.clock();
   const std::lock_guard lock(mutex_);
-  Known& known = *known_.at(channel);
+  const auto found = known_.find(channel);
+  if (found == known_.end()) return;
+  Known& known = *found->second;
   if (cdr.size() > params_.large && params_.large_period > 0ns) {
     const auto period = static_cast<std::uint64_t>(params_.large_period.count());
     if (known.had_large && now - known.last_large < period) {
@@ -96,6 +105,7 @@ RecorderCounters Recorder::counters() const {
 void Recorder::run() {
   ::pthread_setname_np(::pthread_self(), "recorder");
   std::vector<std::uint8_t> batch;
+  std::map<ChannelId, std::shared_ptr<Known>> last_of;  // released before this batch was taken
   batch.reserve(params_.queue_bytes);
   for (bool ending = false; !ending;) {
     {
@@ -103,6 +113,7 @@ void Recorder::run() {
       wake_.wait_for(lock, params_.flush, [this] { return ending_; });
       ending = ending_;
       std::swap(batch, queue_);
+      last_of = released_;
     }
     written_ = 0;
     const bool kept = batch.empty() || write(batch);
@@ -113,10 +124,18 @@ void Recorder::run() {
     }
     batch.clear();
     const std::lock_guard lock(mutex_);
+    for (const auto& [id, known] : last_of) released_.erase(id);
     counters_.recorded += kept ? all : written_;
     counters_.dropped += kept ? 0 : all - written_;
   }
   if (file_) (void)file_->writer.close();  // an error costs the summary: the file reads without it
+}
+
+/// Never changed, and kept until the batch is written.
+const ChannelInfo& Recorder::info(ChannelId channel) {
+  const std::lock_guard lock(mutex_);
+  const auto known = known_.find(channel);
+  return known != known_.end() ? known->second->info : released_.at(channel)->info;
 }
 
 /// False when the disk did not take it all; `written_` messages went before.
@@ -127,12 +146,7 @@ bool Recorder::write(const std::vector<std::uint8_t>& batch) {
     const auto id = entries.get<ChannelId>();
     const auto time = entries.get<std::uint64_t>();
     const Bytes cdr = entries.take(entries.get<std::uint32_t>());
-    const ChannelInfo* info = nullptr;
-    {
-      const std::lock_guard lock(mutex_);
-      info = &known_[id]->info;  // never changed, and kept at its address
-    }
-    const auto done = file_->writer.write(file_->channels.get(id, *info), time, cdr);
+    const auto done = file_->writer.write(file_->channels.get(id, info(id)), time, cdr);
     if (!done) return lost(done.error());
     ++written_;
     if (file_->writer.size() < ring_.params().segment_bytes) continue;

@@ -2,6 +2,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -40,8 +41,9 @@ class Recorder final : public Tape {
  public:
   explicit Recorder(RecorderParams params);
   ~Recorder() override;
-  /// At most 4096 channels; those beyond share one.
+  /// At most 4096 channels at a time; those beyond share one.
   ChannelId channel(const ChannelInfo& info) override;
+  void release(ChannelId channel) override;
   void record(ChannelId channel, Bytes cdr) override;
   RecorderCounters counters() const;
 
@@ -50,10 +52,12 @@ class Recorder final : public Tape {
     ChannelInfo info{};
     std::uint64_t last_large{};
     bool had_large{};
+    int users{};
   };
   struct File;
 
   void run();
+  const ChannelInfo& info(ChannelId channel);
   bool write(const std::vector<std::uint8_t>& batch);
   bool open();
   bool lost(const Error& error);
@@ -68,7 +72,9 @@ class Recorder final : public Tape {
   std::condition_variable wake_{};
   std::vector<std::uint8_t> queue_{};
   std::map<ChannelInfo, ChannelId> ids_{};
-  std::vector<std::unique_ptr<Known>> known_{};
+  std::map<ChannelId, std::shared_ptr<Known>> known_{};
+  std::map<ChannelId, std::shared_ptr<Known>> released_{};  ///< until what waits for them is written
+  ChannelId next_id_{};
   RecorderCounters counters_{};
   bool ending_{};
   std::thread thread_{};

@@ -1,12 +1,13 @@
 #include "core/record/recording_wire.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <map>
 
 namespace adit::record {
 namespace {
 
-constexpr std::size_t most_senders = 256;  // of one reader; those beyond share a channel
+constexpr std::size_t most_senders = 32;  // of one reader: then the one that was silent longest is given up
 
 class RecordingWriter final : public wire::RawWriter {
  public:
@@ -29,28 +30,49 @@ class RecordingWriter final : public wire::RawWriter {
 class Heard {
  public:
   Heard(Tape& tape, ChannelInfo info) : tape_(tape), info_(std::move(info)) {}
+  ~Heard() {
+    for (const auto& [sender, own] : channels_) tape_.release(own.id);
+  }
+  Heard(const Heard&) = delete;
+  Heard& operator=(const Heard&) = delete;
+
   void record(std::span<const std::uint8_t> cdr, const wire::ParticipantId& sender) {
     auto it = channels_.find(sender);
     if (it == channels_.end()) {
-      const bool full = channels_.size() >= most_senders;
-      it = channels_.try_emplace(full ? wire::ParticipantId{} : sender).first;
+      if (channels_.size() >= most_senders) give_one_up();
       ChannelInfo info = info_;
-      info.metadata["from"] = full ? "others" : wire::to_string(sender);
-      it->second = tape_.channel(info);
+      info.metadata["from"] = wire::to_string(sender);
+      it = channels_.try_emplace(sender, Own{tape_.channel(info), 0}).first;
     }
-    tape_.record(it->second, cdr);
+    it->second.last = ++count_;
+    tape_.record(it->second.id, cdr);
   }
   void record_malformed(std::span<const std::uint8_t> cdr, const wire::ParticipantId& sender) {
     ChannelInfo info{info_.topic + "/malformed", info_.dds_type, info_.metadata};
     info.metadata[malformed_key] = "could not be decoded";
     info.metadata["from"] = wire::to_string(sender);
-    tape_.record(tape_.channel(info), cdr);
+    const ChannelId id = tape_.channel(info);
+    tape_.record(id, cdr);
+    tape_.release(id);
   }
 
  private:
+  struct Own {
+    ChannelId id{};
+    std::uint64_t last{};  ///< number of the sample heard last
+  };
+  void give_one_up() {
+    const auto oldest =
+        std::min_element(channels_.begin(), channels_.end(),
+                         [](const auto& a, const auto& b) { return a.second.last < b.second.last; });
+    tape_.release(oldest->second.id);
+    channels_.erase(oldest);
+  }
+
   Tape& tape_;
   ChannelInfo info_;
-  std::map<wire::ParticipantId, ChannelId> channels_{};
+  std::map<wire::ParticipantId, Own> channels_{};
+  std::uint64_t count_{};
 };
 
 }  // namespace

@@ -20,8 +20,10 @@ using ChannelId = std::uint32_t;
 class Tape {
  public:
   virtual ~Tape() = default;
-  /// The same info gives the same id.
+  /// The same info gives the same id; each call wants its own release().
   virtual ChannelId channel(const ChannelInfo& info) = 0;
+  /// Nothing more comes for this one; what waits for it is written yet.
+  virtual void release(ChannelId channel) = 0;
   /// A serialised sample with its encapsulation header, as of now.
   virtual void record(ChannelId channel, Bytes cdr) = 0;
 };

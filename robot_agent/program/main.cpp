@@ -14,6 +14,7 @@
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
 #include "core/exec/live_runtime.hpp"
+#include "core/record/keep.hpp"
 #include "core/store/file_disk.hpp"
 #include "core/wire/link_file.hpp"
 #include "robot_agent/agent.hpp"
@@ -39,7 +40,7 @@ Examples:
 Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration.)";
 
 struct Options {
-  std::string config{}, name{}, state{}, log{}, link{};
+  std::string config{}, name{}, state{}, log{}, link{}, record{};
   std::vector<double> pose{};
   int domain{-1}, robot_domain{-1};
   bool supervised{}, reports{};
@@ -70,6 +71,7 @@ Result<RobotConfig> load(const Options& options) {
   if (!options.state.empty()) config->state = options.state;
   if (!options.log.empty() && !level_from_name(options.log, config->log))
     return Error{Reason::bad_argument, "--log is trace, debug, info, warn, error or off"};
+  if (!options.record.empty()) config->record = options.record;
   // Here, and not in the agent alone: a parent would start it again and again.
   if (const auto tree = Decider::load(config->tree); !tree)
     return Error{tree.error().reason, tree.error().text + " (tree: " + config->tree + ")"};
@@ -121,6 +123,11 @@ int run_agent(const RobotConfig& config, bool reports) {
   if (!radio) return fail(radio.error(), 1);
   auto robot = wire::open_fastdds(robot_wire(config));
   if (!robot) return fail(robot.error(), 1);
+  record::Keeper keeper(
+      {.folder = config.record,
+       .name = config.name,
+       .about = {{"kind", "robot"}, {"software", ADIT_VERSION}},
+       .complain = [log = *log, name = config.name](const std::string& text) { Log(log, name).warn(text); }});
 
   AgentParams params{};
   params.name = config.name;
@@ -129,7 +136,7 @@ int run_agent(const RobotConfig& config, bool reports) {
   params.start = config.start;
   params.lock_lease = config.lock_lease;
   params.tree = config.tree;
-  params.log = *log;
+  params.log = keeper.tap(*log);
   params.resume_after_restart = config.resume_after_restart;
   params.boot = this_boot();
   if (const std::string folder = state_folder(config); !folder.empty()) {
@@ -138,7 +145,7 @@ int run_agent(const RobotConfig& config, bool reports) {
       return fail({disk.reason(), disk.error().text + " (state: FOLDER, or none to keep nothing)"}, 2);
     params.disk = std::move(*disk);
   }
-  agent::Agent agent(params, runtime, **radio, **robot);
+  agent::Agent agent(params, runtime, keeper.tap(**radio, "radio"), keeper.tap(**robot, "robot"));
   // The console's socket is also what keeps two agents of one name apart.
   std::atomic<bool> up{false};
   auto console = Console::open(config.name, [&agent, &up](const std::string& line, auto answer) {
@@ -153,7 +160,7 @@ int run_agent(const RobotConfig& config, bool reports) {
   if (reports)
     // The command strand answers after it sent its first zero.
     agent.at_console("status", [](const std::string&) { (void)!::write(kReportFd, "1", 1); });
-  Log(*log, config.name)
+  Log(params.log, config.name)
       .info("up on radio domain " + std::to_string(config.radio.domain) + ", robot domain " +
             std::to_string(config.robot_domain));
   const sigset_t set = end_signals();
@@ -205,6 +212,9 @@ int main(int argc, char** argv) {
       "link profile (config/links) that all that is sent by radio keeps to: budgets, latency, loss");
   app.add_option("--state", options.state, "folder of what survives a restart, or none");
   app.add_option("--log", options.log, "trace, debug, info, warn, error or off");
+  app.add_option(
+      "--record", options.record,
+      "folder for the recording of the last minutes, or none; below the state folder when not given");
   app.add_flag("--supervised", options.supervised, "run under a parent that sends zero when the agent dies");
   app.add_flag("--reports", options.reports)->group("");  // set by the parent
   auto* console = app.add_subcommand("console", "the robot's own console: status, unlock");

@@ -67,6 +67,7 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.resume_after_restart = after == "resume";
   if (after != "resume" && after != "hold")
     root->child("after_restart").fail(Reason::out_of_range, "expected resume or hold");
+  c.record = root->text("record", "");
   if (!level_from_name(root->text("log", "info"), c.log))
     root->child("log").fail(Reason::out_of_range, "expected trace, debug, info, warn, error or off");
   if (const auto read = root->finish(); !read) return read.error();

@@ -22,6 +22,7 @@ struct RobotConfig {
   std::string state{};              ///< folder of what survives a restart; empty: the usual one; "none"
   bool resume_after_restart{true};  ///< `after_restart: resume`, else `hold`
   LogLevel log{LogLevel::info};
+  std::string record{};  ///< folder of recordings, "none"; empty: below the state folder
 };
 
 /// The folder of a robot's state: the one configured, nothing for "none", else

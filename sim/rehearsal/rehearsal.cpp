@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/config/platform_file.hpp"
+#include "core/record/frame_recorder.hpp"
 #include "sim/rehearsal/expectations.hpp"
 #include "sim/rehearsal/fault_player.hpp"
 #include "sim/rehearsal/random_faults.hpp"
@@ -70,6 +71,8 @@ class Run {
     }
     RunOutcome out;
     if (auto healthy = health(); !healthy) return healthy.error();
+    if (recorder_)
+      if (auto recorded = recorder_->close(); !recorded) return recorded.error();
     out.report = report(seconds(std::chrono::steady_clock::now() - begin));
     out.trails = std::move(trails_);
     out.goals = witness_.goals();
@@ -79,7 +82,18 @@ class Run {
 
  private:
   Result<void> set_up() {
-    ether_.set_tap([this](const wire::Frame& frame) { witness_.see(frame); });
+    if (!params_.record.empty()) {
+      auto recorder = record::FrameRecorder::open(
+          {.file = params_.record,
+           .radio_domain = Witness::radio_domain,
+           .about = {{"scenario", scenario_.name}, {"seed", std::to_string(params_.seed)}}});
+      if (!recorder) return recorder.error();
+      recorder_ = std::move(*recorder);
+    }
+    ether_.set_tap([this](const wire::Frame& frame) {
+      witness_.see(frame);
+      if (recorder_) recorder_->see(frame);
+    });
     world_runtime_ = scheduler_.machine("world", 0ns);
     world_ = world_runtime_->strand("world");
     step_ = world_->every(simulation_.params().step, [this] { simulation_.step(); });
@@ -195,6 +209,7 @@ class Run {
   Witness witness_;
   Stage stage_;
   Expectations expectations_;
+  std::unique_ptr<record::FrameRecorder> recorder_{};
   std::unique_ptr<Runtime> world_runtime_{};
   std::shared_ptr<Executor> world_{};
   Timer step_{};

@@ -17,6 +17,7 @@ struct RunParams {
   int workers{2};  ///< threads for the heavy work of one run, [1, 64]
   AgentFactory make_agent{};
   std::function<void(Duration)> progress{};  ///< told the virtual time, every second of it
+  std::string record{};                      ///< an MCAP file that everything said goes into; empty: none
 };
 
 /// A robot's way, for the picture.

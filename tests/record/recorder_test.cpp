@@ -112,6 +112,22 @@ TEST_F(RecorderTest, FilesOfOthersAreLeftAlone) {
   EXPECT_LT(files().size(), 4U + 16U);
 }
 
+TEST_F(RecorderTest, WhatWaitsForAReleasedChannelIsWritten) {
+  {
+    Recorder recorder(params());
+    for (int i = 0; i < 5000; ++i) {
+      const auto id = recorder.channel({"in/x", "", {{"from", std::to_string(i)}}});
+      recorder.record(id, bytes_of(std::to_string(i)));
+      recorder.release(id);
+      recorder.record(id, bytes_of("too late"));
+    }
+  }
+  const Heard heard = heard_in(files().at(0));
+  EXPECT_EQ(heard.messages.size(), 5000U);
+  EXPECT_EQ(heard.channels.size(), 5000U);
+  EXPECT_THAT(heard.messages.back(), HasSubstr("4999"));
+}
+
 TEST_F(RecorderTest, LargeOnesAreThinned) {
   RecorderParams own = params();
   own.large = 100;

@@ -32,6 +32,8 @@ class MemoryTape final : public Tape {
     topics.push_back(channels.at(channel).topic);
     samples.emplace_back(cdr.begin(), cdr.end());
   }
+  void release(ChannelId) override { ++released; }
+  int released{};
   std::vector<ChannelInfo> channels{};
   std::vector<std::string> topics{};
   std::vector<std::vector<std::uint8_t>> samples{};
@@ -135,14 +137,15 @@ TEST_F(Air, EachSenderHasItsChannel) {
   const auto own = strand("r1");
   const auto reader = wire::make_reader(r1, wire::topics::presence, *own,
                                         [](const radio::Presence&, const wire::SampleInfo&) {});
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 34; ++i) {
     const auto other = ether_.join(77, "other" + std::to_string(i));
     auto writer = wire::Writer<radio::Presence>::make(*other, wire::topics::presence);
     pass(2s);
     ASSERT_TRUE(writer->write(radio::Presence{}));
     pass(1s);
   }
-  EXPECT_EQ(tape_.channels.size(), 3U);
+  EXPECT_EQ(tape_.channels.size(), 34U);
+  EXPECT_EQ(tape_.released, 2) << "32 are kept; of more, those that were silent longest are given up";
 }
 
 TEST_F(Air, ARehearsalIsOneFileWithWhoToWhom) {

@@ -1,5 +1,6 @@
 #include "basestation/cli/process/live_station.hpp"
 
+#include <cstdio>
 #include <future>
 #include <random>
 
@@ -24,6 +25,12 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
   auto opened = wire::open_fastdds(radio);
   if (!opened) return opened.error();
   live->wire_ = std::move(*opened);
+  live->keeper_ = std::make_unique<record::Keeper>(record::KeepParams{
+      .folder = hooks.record ? options.record : "none",
+      .name = options.name,
+      .about = {{"kind", "station"}, {"software", ADIT_VERSION}},
+      .complain = [](const std::string& text) { std::fprintf(stderr, "basestation: %s\n", text.c_str()); }});
+  wire::Wire& wire = live->keeper_->tap(*live->wire_, "radio");
   live->strand_ = live->runtime_.strand("station");
   StationParams params{.name = options.name,
                        .id = *id,
@@ -35,7 +42,7 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
   for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
   Result<void> started;
   live->on_strand([&] {
-    live->station_ = std::make_unique<Station>(std::move(params), *live->strand_, *live->wire_);
+    live->station_ = std::make_unique<Station>(std::move(params), *live->strand_, wire);
     if (hooks.ready) hooks.ready(*live->station_);
     started = live->station_->start();
   });

@@ -5,6 +5,7 @@
 #include "basestation/cli/options.hpp"
 #include "basestation/station.hpp"
 #include "core/exec/live_runtime.hpp"
+#include "core/record/keep.hpp"
 
 namespace adit::station::cli {
 
@@ -15,6 +16,7 @@ class LiveStation {
     std::function<void(Station&)> ready{};  ///< called on the strand before the station starts
     Duration presence{std::chrono::seconds(1)};
     Duration discovery_grace{std::chrono::seconds(5)};
+    bool record{false};  ///< the last minutes are kept where the options say
   };
   /// Errors: as of station_id(), load_link(), open_fastdds() and Station::start().
   static Result<std::unique_ptr<LiveStation>> open(const Options& options, const Hooks& hooks);
@@ -34,6 +36,7 @@ class LiveStation {
   LiveRuntime runtime_{};
   std::shared_ptr<Executor> strand_{};
   std::unique_ptr<wire::Wire> wire_{};
+  std::unique_ptr<record::Keeper> keeper_{};
   std::unique_ptr<Station> station_{};
 };
 

@@ -26,12 +26,14 @@ Result<void> run(const Options& options, int ready_fd, const File& signals) {
   if (!folder) return folder.error();
   auto server = Server::open(*folder, options.name);
   if (!server) return server.error();
-  auto live = LiveStation::open(options, {.ready = [&](Station& station) {
-                                  station.on_notice = [&](const Notice& notice) {
-                                    (*server)->tell(notice_json(notice, notice.at));
-                                  };
-                                  station.on_down = [&] { (*server)->end(); };
-                                }});
+  auto live = LiveStation::open(options, {.ready =
+                                              [&](Station& station) {
+                                                station.on_notice = [&](const Notice& notice) {
+                                                  (*server)->tell(notice_json(notice, notice.at));
+                                                };
+                                                station.on_down = [&] { (*server)->end(); };
+                                              },
+                                          .record = true});
   if (!live) return live.error();
   answer(ready_fd, "ready\n");
   const nlohmann::json hello{

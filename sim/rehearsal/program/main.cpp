@@ -24,6 +24,7 @@ constexpr const char* examples =
     "Examples:\n"
     "  rehearse config/scenarios/demo.yaml --picture demo.png\n"
     "  rehearse config/scenarios/handover.yaml --seed 7 --report handover.json\n"
+    "  rehearse config/scenarios/handover.yaml --record handover.mcap\n"
     "  rehearse config/scenarios/authority_storm.yaml --seeds 1..200\n"
     "Exit status: 0 every expectation and every rule holds, 1 one does not, 2 the scenario cannot be read.";
 
@@ -125,6 +126,7 @@ int main(int argc, char** argv) {
   app.footer(examples);
   std::string file, seeds_text, report_file, picture_file;
   std::uint64_t seed = 1;
+  RunParams params;
   app.add_option("scenario", file, "the scenario, SCENARIO.yaml")->required();
   auto* seed_option = app.add_option("--seed", seed, "of everything that is random (default 1)")
                           ->check(CLI::NonNegativeNumber);
@@ -132,7 +134,12 @@ int main(int argc, char** argv) {
       app.add_option("--seeds", seeds_text, "A..B: one run for each, in parallel, and a table");
   auto* report_option = app.add_option("--report", report_file, "write the report as JSON");
   auto* picture_option = app.add_option("--picture", picture_file, "write a picture (PNG)");
-  seeds_option->excludes(seed_option)->excludes(report_option)->excludes(picture_option);
+  auto* record_option =
+      app.add_option("--record", params.record, "write an MCAP recording of everything said");
+  seeds_option->excludes(seed_option)
+      ->excludes(report_option)
+      ->excludes(picture_option)
+      ->excludes(record_option);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -144,7 +151,6 @@ int main(int argc, char** argv) {
   if (!world) return complain(world.error());
   auto factory = make_agent_factory();
   if (!factory) return complain(factory.error());
-  RunParams params;
   params.seed = seed;
   params.make_agent = *factory;
   if (seeds_text.empty()) return run_one(*scenario, *world, params, report_file, picture_file);

@@ -1,0 +1,44 @@
+#pragma once
+#include <sys/types.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace adit::soak {
+
+/// What a process holds at one moment.
+struct Gauge {
+  double rss_mb{};
+  long threads{}, fds{};
+};
+/// Zeros for a process that is gone.
+Gauge gauge(pid_t pid);
+/// Direct children.
+std::vector<pid_t> children(pid_t pid);
+
+/// Files in /dev/shm.
+struct SharedMemory {
+  long files{};
+  double mb{};
+};
+SharedMemory shared_memory();
+
+/// The samples of one process, or of shared memory, over the run.
+struct Series {
+  std::vector<double> rss_mb{};
+  std::vector<double> threads{}, fds{};
+  void add(const Gauge& g) {
+    rss_mb.push_back(g.rss_mb);
+    threads.push_back(static_cast<double>(g.threads));
+    fds.push_back(static_cast<double>(g.fds));
+  }
+};
+
+/// Medians of the second fifth (the first is start-up) and of the last fifth of some samples.
+struct Trend {
+  double early{}, late{}, most{};
+};
+Trend trend(const std::vector<double>& samples);
+
+}  // namespace adit::soak

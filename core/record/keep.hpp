@@ -1,0 +1,38 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/log/log.hpp"
+#include "core/record/recorder.hpp"
+#include "core/wire/wire.hpp"
+
+namespace adit::record {
+
+/// Where a program keeps the last minutes when nothing is said: $XDG_STATE_HOME/adit/recordings,
+/// ~/.local/state/adit/recordings, or /var/lib/adit/recordings for a user without a home.
+std::string default_folder();
+
+struct KeepParams {
+  std::string folder{};  ///< "none": nothing is kept; empty: default_folder()
+  std::string name{};    ///< of the agent or station
+  Text about{};          ///< metadata of every file
+  std::function<void(const std::string& text)> complain{};  ///< once per trouble, on the writing thread
+};
+
+/// What a live program keeps of its last minutes: 8 files of 4 MB. Made after the wires and the log it taps,
+/// and gone before them.
+class Keeper {
+ public:
+  explicit Keeper(KeepParams params);
+  /// The wire to be used instead of that one; the same when nothing is kept.
+  wire::Wire& tap(wire::Wire& wire, const std::string& net);
+  std::shared_ptr<LogSink> tap(std::shared_ptr<LogSink> log);
+
+ private:
+  std::unique_ptr<Recorder> recorder_{};
+  std::vector<std::unique_ptr<wire::Wire>> wires_{};
+};
+
+}  // namespace adit::record

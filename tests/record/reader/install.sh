@@ -1,0 +1,15 @@
+#!/bin/bash
+# Fetches the independent reader into a build folder, once. usage: install.sh FOLDER
+# Exit status 77: it cannot be had here (no npm, no registry); tests that need it are skipped then.
+set -uo pipefail
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+folder="${1:?usage: install.sh FOLDER}"
+command -v node > /dev/null && command -v npm > /dev/null || { echo "node or npm is not installed: ./run setup"; exit 77; }
+mkdir -p "$folder" || exit 1
+exec 9> "$folder/lock"
+flock 9
+cp "$here/read.mjs" "$folder/read.mjs" || exit 1
+cmp -s "$here/package.json" "$folder/installed.json" && exit 0
+cp "$here/package.json" "$folder/package.json" || exit 1
+(cd "$folder" && timeout 120 npm install --no-audit --no-fund --no-package-lock --ignore-scripts --loglevel=error) || exit 77
+cp "$here/package.json" "$folder/installed.json"
