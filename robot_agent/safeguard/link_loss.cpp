@@ -1,0 +1,43 @@
+#include "robot_agent/safeguard/link_loss.hpp"
+
+namespace adit::agent {
+
+LinkLoss::Step LinkLoss::tick(const Inputs& in, Time now) {
+  Step step{};
+  step.silence = now - in.heard;
+  const bool lost = in.held && step.silence >= params_.after;
+  if (!lost) {
+    step.found = lost_;
+    lost_ = acted_ = false;
+    way_ = Way::none;
+    retry_.reset();
+    // Once a second he is heard: what was a moment ago is where he still was.
+    if (in.held && in.place && step.silence < 1500ms) linked_ = in.place;
+    return step;
+  }
+  step.lost = !lost_;
+  lost_ = true;
+  if (!in.autonomous || params_.action == OnLoss::go_on) return step;
+  if (retry_ && now < *retry_) return step;
+  const bool again = retry_.has_value();
+  retry_.reset();
+  if (params_.action == OnLoss::hold) {
+    step.hold = !acted_;
+    acted_ = true;
+    return step;
+  }
+  if (way_ == Way::none) {
+    way_ = linked_ ? Way::to_link : Way::to_start;
+    since_ = now;
+  } else if (way_ == Way::to_link && in.arrived) {
+    if (now - since_ < params_.after) return step;
+    way_ = Way::to_start;
+  } else if (!again) {
+    if (!in.arrived) since_ = now;  // the wait begins on arrival
+    return step;
+  }
+  step.go_to = way_ == Way::to_link ? *linked_ : params_.start;
+  return step;
+}
+
+}  // namespace adit::agent
