@@ -1,5 +1,7 @@
 #include "core/record/keep.hpp"
 
+#include <unistd.h>
+
 #include <cstdlib>
 
 #include "core/record/recording_log.hpp"
@@ -17,8 +19,9 @@ std::string variable(const char* name) {
 
 std::string default_folder() {
   if (const std::string state = variable("XDG_STATE_HOME"); !state.empty()) return state + "/adit/recordings";
-  if (const std::string home = variable("HOME"); !home.empty()) return home + "/.local/state/adit/recordings";
-  return "/var/lib/adit/recordings";
+  const std::string home = variable("HOME");
+  if (::geteuid() == 0 || home.empty()) return "/var/lib/adit/recordings";
+  return home + "/.local/state/adit/recordings";
 }
 
 Keeper::Keeper(KeepParams params) {

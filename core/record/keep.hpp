@@ -10,8 +10,8 @@
 
 namespace adit::record {
 
-/// Where a program keeps the last minutes when nothing is said: $XDG_STATE_HOME/adit/recordings,
-/// ~/.local/state/adit/recordings, or /var/lib/adit/recordings for a user without a home.
+/// Where a program keeps the last minutes when nothing is said: $XDG_STATE_HOME/adit/recordings, for root
+/// /var/lib/adit/recordings, else ~/.local/state/adit/recordings.
 std::string default_folder();
 
 struct KeepParams {
