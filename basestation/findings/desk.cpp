@@ -1,0 +1,51 @@
+#include "basestation/findings/desk.hpp"
+
+namespace adit::station {
+namespace {
+
+constexpr std::size_t kRobots = 64;
+
+}  // namespace
+
+FindingDesk::FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, Executor& home,
+                         Outputs outputs)
+    : outputs_(std::move(outputs)),
+      shelf_({.most = params.most}, std::move(disk), home, nullptr,
+             {[this](const findings::Key& key) { answers_[key.robot].insert(key.id); },
+              [this](bool failing, const std::string& text) {
+                outputs_.trouble(failing ? "store_failing" : "store_works", text);
+              }}) {}
+
+void FindingDesk::hear(findings::Finding finding, const Robot& robot) {
+  if (!findings::valid(finding)) return;
+  const findings::Key key = finding.key;
+  if (!robots_.contains(key.robot) && robots_.size() >= kRobots) return;
+  robots_[key.robot] = robot;
+  if (shelf_.kept(key)) {
+    answers_[key.robot].insert(key.id);  // our answer was lost
+    return;
+  }
+  if (shelf_.all().contains(key)) return;  // on its way to the disk
+  if (!shelf_.put(std::move(finding))) {
+    if (!told_full_)
+      outputs_.trouble("findings_full", "no room for more findings here; " + key.robot + " keeps its own");
+    told_full_ = true;
+    return;
+  }
+  outputs_.found(shelf_.all().at(key));
+}
+
+void FindingDesk::tick() {
+  for (auto& [robot, ids] : answers_) {
+    while (!ids.empty()) {
+      std::vector<std::uint64_t> some;
+      while (!ids.empty() && some.size() < kIds) {
+        some.push_back(*ids.begin());
+        ids.erase(ids.begin());
+      }
+      outputs_.acknowledge(robot, some);
+    }
+  }
+}
+
+}  // namespace adit::station

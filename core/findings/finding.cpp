@@ -1,0 +1,62 @@
+#include "core/findings/finding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/store/pack.hpp"
+#include "core/store/state_file.hpp"
+
+namespace adit::findings {
+namespace {
+
+constexpr store::StateFormat kFormat{{'F', 'I', 'N', 'D'}, 1, 1024};
+constexpr const char* kPrefix = "finding-";
+
+bool valid_robot(const std::string& name) {
+  return name.size() <= 32 && name.find('.') == std::string::npos && store::valid_file_name(name);
+}
+
+}  // namespace
+
+bool valid(const Finding& f) {
+  return valid_robot(f.key.robot) && f.key.id != 0 && !f.kind.empty() && f.kind.size() <= Finding::kKind &&
+         f.text.size() <= Finding::kText && f.data.size() <= Finding::kData &&
+         std::all_of(f.position.begin(), f.position.end(), [](double v) { return std::isfinite(v); });
+}
+
+store::Bytes to_file(const Finding& f) {
+  store::Packer out;
+  out.text(f.key.robot).put(f.key.id).text(f.kind).put(f.importance);
+  for (const double value : f.position) out.put(value);
+  out.put(f.stamp).text(f.text).put(static_cast<std::uint16_t>(f.data.size())).raw(f.data);
+  return store::seal(kFormat, 0, out.bytes());
+}
+
+std::optional<Finding> from_file(std::span<const std::uint8_t> bytes) {
+  const store::State state = store::unseal(kFormat, bytes);
+  if (state.found != store::Found::good) return std::nullopt;
+  store::Unpacker in(state.payload);
+  Finding f{};
+  f.key.robot = in.text(32);
+  f.key.id = in.get<std::uint64_t>();
+  f.kind = in.text(Finding::kKind);
+  f.importance = in.get<std::uint8_t>();
+  for (double& value : f.position) value = in.number();
+  f.stamp = in.get<std::uint64_t>();
+  f.text = in.text(Finding::kText);
+  const std::size_t size = in.count(Finding::kData);
+  if (!in.good() || in.rest().size() != size) return std::nullopt;
+  f.data.assign(in.rest().begin(), in.rest().end());
+  if (!valid(f)) return std::nullopt;
+  return f;
+}
+
+std::string file_name(const Key& key) {
+  std::string name = kPrefix + key.robot + "-";
+  for (int shift = 60; shift >= 0; shift -= 4) name += "0123456789abcdef"[key.id >> shift & 15];
+  return name;
+}
+
+bool is_finding_file(const std::string& name) { return name.starts_with(kPrefix); }
+
+}  // namespace adit::findings

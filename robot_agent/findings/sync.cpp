@@ -1,0 +1,145 @@
+#include "robot_agent/findings/sync.hpp"
+
+#include <algorithm>
+
+#include "core/store/pack.hpp"
+#include "core/store/state_file.hpp"
+
+namespace adit::agent {
+namespace {
+
+using findings::Finding;
+
+constexpr const char* kTracksFile = "findings-known";
+constexpr store::StateFormat kTracksFormat{{'F', 'A', 'C', 'K'}, 1, 512 * 1024};
+constexpr Duration kTracksPeriod = 5s;  // one that is lost is sent once more, nothing else
+
+}  // namespace
+
+FindingSync::FindingSync(SyncParams params, std::shared_ptr<store::Disk> disk, Executor& home,
+                         std::shared_ptr<Executor> writer, Outputs outputs)
+    : params_(std::move(params)),
+      disk_(disk),
+      home_(home),
+      writer_(writer),
+      outputs_(std::move(outputs)),
+      random_(params_.seed),
+      shelf_({.most = params_.most}, std::move(disk), home, std::move(writer),
+             {[](const findings::Key&) {}, outputs_.failing}) {}
+
+std::size_t FindingSync::load() {
+  const std::size_t damaged = shelf_.load();
+  if (!disk_) return damaged;
+  const store::State state = store::StateFile(disk_, kTracksFile, kTracksFormat).load();
+  store::Unpacker in(state.payload);  // empty when it is not good: then all is sent once more
+  for (std::size_t left = in.count(65535); left > 0 && in.good(); --left) {
+    const auto id = in.get<std::uint64_t>();
+    std::vector<StationId> has;
+    for (std::size_t stations = in.count(kStations); stations > 0 && in.good(); --stations)
+      has.push_back(in.array<16>());
+    if (in.good() && shelf_.all().contains({params_.robot, id})) track(id).has = std::move(has);
+  }
+  return damaged;
+}
+
+Result<std::uint64_t> FindingSync::report(Finding finding) {
+  finding.key.robot = params_.robot;
+  while (finding.key.id == 0) finding.key.id = random_.next();
+  if (!findings::valid(finding))
+    return {Reason::bad_argument, "a finding needs a kind, a place, and fits its bounds"};
+  const std::uint64_t id = finding.key.id;
+  if (shelf_.all().contains(finding.key)) return id;
+  if (shelf_.full() && !make_room(finding.importance))
+    return {Reason::queue_full, "no room for one more finding"};
+  (void)shelf_.put(std::move(finding));  // valid, and there is room
+  return id;
+}
+
+bool FindingSync::make_room(std::uint8_t importance) {
+  const Finding* least = nullptr;  // the one that matters least, those that somebody has before others
+  bool least_known = false;
+  for (const auto& [key, finding] : shelf_.all()) {
+    const auto found = tracks_.find(key.id);
+    const bool known = found != tracks_.end() && !found->second.has.empty();
+    if (least && (least_known != known ? least_known : least->importance <= finding.importance)) continue;
+    least = &finding;
+    least_known = known;
+  }
+  const bool give_up = least && (least_known || least->importance < importance);
+  if (!least_known) {
+    ++overflowed_;
+    if (!told_full_)
+      outputs_.full(std::to_string(params_.most) + " findings are kept, there is no room for more");
+    told_full_ = true;
+  }
+  if (!give_up) return false;
+  const findings::Key key = least->key;
+  tracks_.erase(key.id);
+  shelf_.drop(key);
+  return true;
+}
+
+void FindingSync::acknowledged(const StationId& station, std::span<const std::uint64_t> ids, Time now) {
+  for (const std::uint64_t id : ids) {
+    if (!shelf_.all().contains({params_.robot, id})) continue;
+    Track& t = track(id);
+    if (std::find(t.has.begin(), t.has.end(), station) != t.has.end()) continue;
+    if (t.has.size() >= kStations) t.has.erase(t.has.begin());
+    t.has.push_back(station);
+    tracks_changed_ = true;
+    told_full_ = false;
+  }
+  save_tracks(now);
+}
+
+std::vector<const Finding*> FindingSync::due(const std::vector<StationId>& heard, Time now) {
+  save_tracks(now);
+  std::vector<const Finding*> out;
+  if (heard.empty()) return out;
+  for (const auto& [key, finding] : shelf_.all()) {
+    const Track& t = track(key.id);
+    const bool wanted = std::any_of(heard.begin(), heard.end(), [&](const StationId& s) {
+      return std::find(t.has.begin(), t.has.end(), s) == t.has.end();
+    });
+    if (wanted && now >= t.next) out.push_back(&finding);
+  }
+  const auto before = [this](const Finding* a, const Finding* b) {
+    return a->importance != b->importance ? a->importance > b->importance
+                                          : tracks_[a->key.id].next < tracks_[b->key.id].next;
+  };
+  std::stable_sort(out.begin(), out.end(), before);
+  if (out.size() > params_.in_a_round) out.resize(params_.in_a_round);
+  for (const Finding* f : out) {
+    Track& t = track(f->key.id);
+    t.pause = t.pause == Duration{0} ? params_.repeat : std::min(2 * t.pause, params_.slowest);
+    t.next = now + t.pause;
+  }
+  return out;
+}
+
+void FindingSync::save_tracks(Time now) {
+  if (!disk_ || !tracks_changed_ || now - tracks_saved_ < kTracksPeriod) return;
+  tracks_changed_ = false;
+  tracks_saved_ = now;
+  store::Packer out;
+  std::uint16_t count = 0;
+  for (const auto& [id, t] : tracks_) count = static_cast<std::uint16_t>(count + (t.has.empty() ? 0 : 1));
+  out.put(count);
+  for (const auto& [id, t] : tracks_) {
+    if (t.has.empty()) continue;
+    out.put(id).put(static_cast<std::uint16_t>(t.has.size()));
+    for (const StationId& station : t.has) out.put(station);
+  }
+  // What is lost here is sent once more.
+  const auto save = [file = store::StateFile(disk_, kTracksFile, kTracksFormat), bytes = out.bytes()] {
+    (void)file.save(1, bytes);
+  };
+  if (disk_->instant())
+    timer_ = home_.after(3ms, save);
+  else if (writer_)
+    writer_->post(save);
+  else
+    home_.compute(3ms, save, [] {});
+}
+
+}  // namespace adit::agent

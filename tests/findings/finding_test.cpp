@@ -1,0 +1,72 @@
+#include "core/findings/finding.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "core/time/random.hpp"
+#include "tests/findings/some.hpp"
+
+namespace adit::findings {
+namespace {
+
+TEST(Finding, ComesBackFromItsFile) {
+  EXPECT_EQ(from_file(to_file(some(7))), some(7));
+  Finding largest = some(std::numeric_limits<std::uint64_t>::max());
+  largest.key.robot = std::string(32, 'r');
+  largest.kind = std::string(32, 'k');
+  largest.text = std::string(128, 't');
+  largest.data.assign(400, 9);
+  EXPECT_EQ(from_file(to_file(largest)), largest);
+  EXPECT_LE(to_file(largest).size(), 1024u);
+  EXPECT_TRUE(store::valid_file_name(file_name(largest.key))) << file_name(largest.key);
+  Finding smallest = some(1);
+  smallest.text.clear();
+  smallest.data.clear();
+  EXPECT_EQ(from_file(to_file(smallest)), smallest);
+}
+
+TEST(Finding, HasAFileOfItsOwn) {
+  EXPECT_EQ(file_name({"r1", 0x1f}), "finding-r1-000000000000001f");
+  EXPECT_NE(file_name({"r1", 1}), file_name({"r2", 1}));
+  EXPECT_TRUE(is_finding_file(file_name({"r1", 1})));
+  EXPECT_FALSE(is_finding_file("findings-known"));
+  EXPECT_FALSE(is_finding_file("state"));
+}
+
+TEST(Finding, ThatIsOutOfBoundsIsNone) {
+  EXPECT_TRUE(valid(some(1)));
+  EXPECT_FALSE(valid(some(0)));
+  EXPECT_FALSE(valid(some(1, 1, "")));
+  EXPECT_FALSE(valid(some(1, 1, "../r1")));
+  EXPECT_FALSE(valid(some(1, 1, std::string(33, 'r'))));
+  Finding f = some(1);
+  f.kind.clear();
+  EXPECT_FALSE(valid(f));
+  f = some(1);
+  f.text = std::string(129, 'x');
+  EXPECT_FALSE(valid(f));
+  f = some(1);
+  f.data.resize(401);
+  EXPECT_FALSE(valid(f));
+  f = some(1);
+  f.position[1] = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(valid(f));
+  EXPECT_FALSE(from_file(to_file(f))) << "not from a file either";
+}
+
+TEST(Finding, TakesAnyBytes) {
+  Random random(1);
+  const store::Bytes whole = to_file(some(7));
+  for (int i = 0; i < 3000; ++i) {
+    store::Bytes junk = whole;
+    for (std::uint64_t edits = 1 + random.below(3); edits > 0; --edits)
+      junk[random.below(junk.size())] = static_cast<std::uint8_t>(random.next());
+    if (random.chance(0.3)) junk.resize(random.below(junk.size()));
+    const auto back = from_file(junk);
+    EXPECT_TRUE(!back || *back == some(7));
+  }
+}
+
+}  // namespace
+}  // namespace adit::findings
