@@ -32,7 +32,7 @@ class RehearsalNet : public Net {
   }
   void silence(const std::string& machine) override { ether_.crash(machine); }
   void on(Executor&, const std::function<void()>& work) override { work(); }
-  bool until(const std::function<bool()>& condition, Duration limit) override {
+  bool wait(const std::function<bool()>& condition, Duration limit) override {
     const Duration end = scheduler_.elapsed() + limit;
     while (!condition()) {
       if (scheduler_.elapsed() >= end) return false;
@@ -65,7 +65,7 @@ class LiveNet : public Net {
     });
     done.get_future().wait();
   }
-  bool until(const std::function<bool()>& condition, Duration limit) override {
+  bool wait(const std::function<bool()>& condition, Duration limit) override {
     return eventually(condition, Seconds(limit));
   }
 

@@ -11,6 +11,13 @@
 
 namespace adit::live {
 
+/// How much longer than in the release build things may take.
+#if defined(__SANITIZE_THREAD__)
+inline constexpr int kSlack = 5;
+#else
+inline constexpr int kSlack = 1;
+#endif
+
 /// A few machines with their radio and inner networks, in rehearsal or live in this process over Fast DDS,
 /// so that the same test body runs on both.
 class Net {
@@ -25,11 +32,17 @@ class Net {
   virtual void silence(const std::string& machine) = 0;
   /// Runs the work on that strand and waits for its end.
   virtual void on(Executor& strand, const std::function<void()>& work) = 0;
-  /// Lets time pass until the condition holds; false when it does not within `limit`.
-  virtual bool until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(10)) = 0;
-  void pass(Duration time) {
-    until([] { return false; }, time);
+  /// Lets time pass until the condition holds; false when it does not within `limit`, which a sanitizer
+  /// stretches.
+  bool until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(10)) {
+    return wait(condition, limit * kSlack);
   }
+  void pass(Duration time) {
+    wait([] { return false; }, time);
+  }
+
+ protected:
+  virtual bool wait(const std::function<bool()>& condition, Duration limit) = 0;
 };
 
 /// `link`: between all machines, on the radio.
