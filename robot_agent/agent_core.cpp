@@ -124,7 +124,7 @@ Result<void> Agent::Core::on_start() {
     commands_.tick(now());
     send_status();
   }));
-  timers_.push_back(every(kLinkPeriod, [this] { radio_->send_link_report(now()); }));
+  timers_.push_back(every(kLinkPeriod, [this] { radio_->send_link_report(now(), driver_->malformed()); }));
   timers_.push_back(every(kHealthPeriod, [this] { send_health(); }));
   return {};
 }

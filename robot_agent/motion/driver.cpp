@@ -60,6 +60,7 @@ Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud) {
 }
 
 struct Driver::Endpoints {
+  const wire::Wire* wire{};
   wire::Writer<geometry_msgs::msg::Twist> cmd_vel{};
   geometry_msgs::msg::Twist twist{};
   std::unique_ptr<wire::RawReader> odom{}, points{}, battery{};
@@ -70,10 +71,17 @@ struct Driver::Endpoints {
 Driver::Driver() : endpoints_(std::make_unique<Endpoints>()) {}
 Driver::~Driver() = default;
 
+std::uint64_t Driver::malformed() const {
+  std::uint64_t sum = 0;
+  for (const wire::TopicCount& count : endpoints_->wire->counters().topics) sum += count.malformed;
+  return sum;
+}
+
 Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command, Executor& sensors,
                                              Handlers handlers) {
   std::unique_ptr<Driver> driver(new Driver);
   Endpoints& e = *driver->endpoints_;
+  e.wire = &wire;
   e.shared = std::make_shared<Handlers>(std::move(handlers));
   auto cmd_vel = wire::Writer<geometry_msgs::msg::Twist>::make(wire, wire::topics::cmd_vel);
   if (!cmd_vel) return cmd_vel.error();

@@ -34,6 +34,8 @@ class Driver {
   void close();
   /// Body frame. A failed write is counted by the wire; the next one follows within 50 ms.
   void write(const Twist2& velocity);
+  /// Samples of the driver, and of whoever else writes its topics, that were none; since the wire was opened.
+  std::uint64_t malformed() const;
 
  private:
   Driver();

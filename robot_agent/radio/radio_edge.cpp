@@ -171,9 +171,11 @@ void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::u
   e.presence_timer = e.strand.every(kPresencePeriod, [&e] { e.say_present(); });
 }
 
-void RadioEdge::send_link_report(Time now) {
+void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed) {
   Endpoints& e = *endpoints_;
-  e.send(e.link, e.meter.report(e.wire.counters(), e.robot, now));
+  radio::LinkReport report = e.meter.report(e.wire.counters(), e.robot, now);
+  report.malformed(report.malformed() + static_cast<std::uint32_t>(inner_malformed));
+  e.send(e.link, std::move(report));
 }
 
 }  // namespace adit::agent

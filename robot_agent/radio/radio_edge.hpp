@@ -50,8 +50,9 @@ class RadioEdge {
   void send_health(const std::vector<ComponentHealth>& components);
   /// And from now on a sign of life once a second, and when somebody appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
-  /// What passed on the wire since the last call.
-  void send_link_report(Time now);
+  /// What passed on the wire since the last call. `inner_malformed`: samples on the robot's inner network that
+  /// were none, since the start; operators see them with the radio's.
+  void send_link_report(Time now, std::uint64_t inner_malformed);
 
  private:
   struct Endpoints;

@@ -16,7 +16,8 @@ constexpr std::uint32_t radio_domain = 77, robot_domain = 100;
 
 class RehearsalNet : public Net {
  public:
-  explicit RehearsalNet(const wire::LinkProfile& link) : ether_(scheduler_, {.link = link}) {}
+  RehearsalNet(const wire::LinkProfile& link, Duration inner)
+      : ether_(scheduler_, {.link = link, .inner_latency = inner}) {}
 
   Runtime& machine(const std::string& name) override {
     auto& machine = machines_[name];
@@ -32,6 +33,7 @@ class RehearsalNet : public Net {
   }
   void silence(const std::string& machine) override { ether_.crash(machine); }
   void on(Executor&, const std::function<void()>& work) override { work(); }
+  Duration clock() const override { return scheduler_.elapsed(); }
   bool wait(const std::function<bool()>& condition, Duration limit) override {
     const Duration end = scheduler_.elapsed() + limit;
     while (!condition()) {
@@ -57,6 +59,7 @@ class LiveNet : public Net {
   std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override { return join(0, machine); }
   std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override { return join(1, machine); }
   void silence(const std::string&) override {}
+  Duration clock() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
   void on(Executor& strand, const std::function<void()>& work) override {
     std::promise<void> done;
     strand.post([&] {
@@ -81,8 +84,8 @@ class LiveNet : public Net {
 
 }  // namespace
 
-std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link) {
-  return std::make_unique<RehearsalNet>(link);
+std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link, Duration inner) {
+  return std::make_unique<RehearsalNet>(link, inner);
 }
 std::unique_ptr<Net> make_live_net() { return std::make_unique<LiveNet>(); }
 

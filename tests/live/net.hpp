@@ -37,6 +37,8 @@ class Net {
   bool until(const std::function<bool()>& condition, Duration limit = std::chrono::seconds(10)) {
     return wait(condition, limit * kSlack);
   }
+  /// One clock for all machines, which they do not have.
+  virtual Duration clock() const = 0;
   void pass(Duration time) {
     wait([] { return false; }, time);
   }
@@ -45,8 +47,9 @@ class Net {
   virtual bool wait(const std::function<bool()>& condition, Duration limit) = 0;
 };
 
-/// `link`: between all machines, on the radio.
-std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link = {.latency = 0.0001});
+/// `link`: between all machines, on the radio; `inner`: one way on the robots' inner networks.
+std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link = {.latency = 0.0001},
+                                        Duration inner = std::chrono::microseconds(100));
 std::unique_ptr<Net> make_live_net();
 
 /// A value that strands write and the test reads.
