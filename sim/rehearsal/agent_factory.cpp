@@ -10,6 +10,10 @@ class ProductAgent final : public RehearsedAgent {
   ProductAgent(agent::AgentParams params, const AgentContext& context)
       : agent_(std::move(params), context.runtime, context.radio, context.robot) {}
   Result<void> start() { return agent_.start(); }
+  Result<void> inject(const std::string& component, ComponentFault fault) override {
+    return agent_.inject(component, fault == ComponentFault::hang ? agent::ComponentFault::hang
+                                                                  : agent::ComponentFault::crash);
+  }
 
  private:
   agent::Agent agent_;

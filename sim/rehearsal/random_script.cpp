@@ -53,6 +53,8 @@ bool is_random_verb(const std::string& verb) {
   return std::find(verbs.begin(), verbs.end(), verb) != verbs.end();
 }
 
+std::vector<std::string> all_random_verbs() { return {verbs.begin(), verbs.end()}; }
+
 std::vector<ScriptLine> draw_script(const RandomScript& spec, const Scenario& scenario, Random random) {
   std::vector<ScriptLine> lines;
   std::string robot = pick(spec.robots, random);

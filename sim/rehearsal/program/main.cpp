@@ -2,13 +2,14 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
 #include <cstdio>
-#include <mutex>
-#include <thread>
 
+#include "core/config/search.hpp"
 #include "core/config/usage.hpp"
-#include "sim/rehearsal/program/options.hpp"
+#include "sim/rehearsal/program/interrupt.hpp"
+#include "sim/rehearsal/program/shrink_seeds.hpp"
+#include "sim/rehearsal/random_faults.hpp"
+#include "sim/rehearsal/random_script.hpp"
 #include "sim/rehearsal/run_picture.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 
@@ -19,6 +20,8 @@ using namespace adit::sim;
 
 constexpr int exit_failed = 1;
 constexpr int exit_unreadable = 2;
+constexpr int exit_interrupted = 130;
+constexpr const char* chaos_scenario = "scenarios/team_chaos.yaml";
 
 constexpr const char* examples =
     "Examples:\n"
@@ -26,7 +29,9 @@ constexpr const char* examples =
     "  rehearse config/scenarios/handover.yaml --seed 7 --report handover.json\n"
     "  rehearse config/scenarios/handover.yaml --record handover.mcap\n"
     "  rehearse config/scenarios/authority_storm.yaml --seeds 1..200\n"
-    "Exit status: 0 every expectation and every rule holds, 1 one does not, 2 the scenario cannot be read.";
+    "  rehearse --chaos --seeds 1..2000\n"
+    "Exit status: 0 every expectation and every rule holds, 1 one does not, 2 the scenario cannot be read, "
+    "130 Ctrl-C.";
 
 int complain(const Error& error) {
   std::fprintf(stderr, "rehearse: %s\n", error.text.c_str());
@@ -35,11 +40,6 @@ int complain(const Error& error) {
 
 void show_progress(Duration now, Duration all) {
   std::fprintf(stderr, "\r%5.0f of %.0f s ", seconds(now), seconds(all));
-}
-
-void tell_complaints(const RunReport& report) {
-  for (const std::string& line : report.complaints())
-    std::fprintf(stderr, "seed %llu: %s\n", static_cast<unsigned long long>(report.seed), line.c_str());
 }
 
 int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world, RunParams params,
@@ -69,52 +69,40 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
   return report.ok() ? 0 : exit_failed;
 }
 
+struct ManyOptions {
+  bool chaos{}, until_failure{};
+  std::string shrink_to{};
+};
+
 int run_many(const Scenario& scenario, const std::shared_ptr<const World>& world, const RunParams& params,
-             const SeedRange& seeds) {
-  std::atomic<std::uint64_t> next{seeds.first};
-  std::mutex printing;
-  std::uint64_t failed = 0, done = 0;
-  std::optional<Error> broken;
-  const std::uint64_t all = seeds.last - seeds.first + 1;
-  const bool tty = isatty(STDERR_FILENO) == 1;
-  std::printf("%8s %6s %9s %9s %9s %9s  %s\n", "seed", "ok", "commands", "accepted", "refused", "speed",
-              "digest");
-  const auto work = [&] {
-    for (std::uint64_t seed = next++; seed <= seeds.last; seed = next++) {
-      RunParams own = params;
-      own.seed = seed;
-      own.workers = 1;
-      auto outcome = rehearse(scenario, world, own);
-      const std::lock_guard lock(printing);
-      if (!outcome) {
-        broken = outcome.error();
-        next = seeds.last + 1;
-        return;
-      }
-      const RunReport& r = outcome->report;
-      std::printf("%8llu %6s %9llu %9llu %9llu %8.0fx  %s\n", static_cast<unsigned long long>(seed),
-                  r.ok() ? "yes" : "NO", static_cast<unsigned long long>(r.commands.sent),
-                  static_cast<unsigned long long>(r.commands.accepted),
-                  static_cast<unsigned long long>(r.commands.refused), r.virtual_s / r.wall_s,
-                  r.digest.c_str());
-      tell_complaints(r);
-      failed += r.ok() ? 0 : 1;
-      if (tty)
-        std::fprintf(stderr, "\r%llu of %llu ", static_cast<unsigned long long>(++done),
-                     static_cast<unsigned long long>(all));
-    }
-  };
-  {
-    const unsigned count =
-        std::max(1U, std::min<unsigned>(std::thread::hardware_concurrency(), static_cast<unsigned>(all)));
-    std::vector<std::jthread> threads;
-    for (unsigned i = 0; i < count; ++i) threads.emplace_back(work);
-  }
-  if (tty) std::fprintf(stderr, "\r                \r");
-  if (broken) return complain(*broken);
-  std::printf("%llu seeds, %llu failed\n", static_cast<unsigned long long>(all),
-              static_cast<unsigned long long>(failed));
-  return failed == 0 ? 0 : exit_failed;
+             const SeedRange& seeds, const ManyOptions& options) {
+  note_interrupts();
+  const SeedsOutcome out = run_seeds(scenario, world, params, seeds, options.until_failure);
+  if (out.broken) return complain(*out.broken);
+  std::printf("%llu of %llu seeds, %zu failed, %.0f s in %.1f s (%.0f times real time)\n",
+              static_cast<unsigned long long>(out.done), static_cast<unsigned long long>(out.wanted),
+              out.failed.size(), out.virtual_s, out.wall_s, out.virtual_s / out.wall_s);
+  if (out.done > 0)
+    std::printf(
+        "commands: %llu, at least %llu a seed; faults: %llu, at least %llu a seed\n",
+        static_cast<unsigned long long>(out.commands), static_cast<unsigned long long>(out.fewest_commands),
+        static_cast<unsigned long long>(out.faults), static_cast<unsigned long long>(out.fewest_faults));
+  if (options.chaos && !out.failed.empty())
+    if (auto done = shrink_seeds(scenario, world, params, out, options.shrink_to); !done)
+      return complain(done.error());
+  if (interrupted()) return exit_interrupted;
+  return out.failed.empty() ? 0 : exit_failed;
+}
+
+// Chaos needs something to draw: what a scenario does not say is as in team_chaos.yaml.
+void add_chaos(Scenario& scenario) {
+  const Duration from = scenario.duration / 20, to = scenario.duration * 19 / 20;
+  if (!scenario.random_faults) scenario.random_faults = RandomFaults{8, from, to, random_fault_kinds()};
+  if (scenario.random || !scenario.script.empty()) return;
+  RandomScript script{70, from, to, {}, {}, all_random_verbs(), 4.0};
+  for (const StationSpec& station : scenario.stations) script.by.push_back(station.id);
+  for (const RobotSpec& robot : scenario.robots) script.robots.push_back(robot.id);
+  if (!script.by.empty()) scenario.random = script;
 }
 
 }  // namespace
@@ -127,9 +115,12 @@ int main(int argc, char** argv) {
   std::string file, seeds_text, report_file, picture_file;
   std::uint64_t seed = 1;
   RunParams params;
-  app.add_option("scenario", file, "the scenario, SCENARIO.yaml")->required();
-  auto* seed_option = app.add_option("--seed", seed, "of everything that is random (default 1)")
-                          ->check(CLI::NonNegativeNumber);
+  bool chaos = false, until_failure = false;
+  std::string shrink_to, defect;
+  app.add_option("scenario", file, "the scenario, SCENARIO.yaml (with --chaos: scenarios/team_chaos.yaml)");
+  auto* seed_option =
+      app.add_option("--seed", seed, "of everything that is random (default: the scenario's, or 1)")
+          ->check(CLI::NonNegativeNumber);
   auto* seeds_option =
       app.add_option("--seeds", seeds_text, "A..B: one run for each, in parallel, and a table");
   auto* report_option = app.add_option("--report", report_file, "write the report as JSON");
@@ -140,21 +131,41 @@ int main(int argc, char** argv) {
       ->excludes(report_option)
       ->excludes(picture_option)
       ->excludes(record_option);
+  auto* chaos_option =
+      app.add_flag("--chaos", chaos,
+                   "faults (and commands) drawn from the seed; a seed that fails is shrunk to the "
+                   "fewest faults, and written as a scenario that fails by itself");
+  chaos_option->excludes(report_option)->excludes(picture_option)->excludes(record_option);
+  app.add_option("--shrink-to", shrink_to, "the file it is written to (default NAME-seedN-ruleM.yaml)")
+      ->needs(chaos_option);
+  app.add_flag("--until-failure", until_failure, "begin no further seed once one has failed");
+#ifdef ADIT_DEFECTS
+  app.add_option("--defect", defect, "a deliberate defect of the agents (robot_agent/defects.hpp)");
+#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return config::end_usage(app, error);
   }
+  if (file.empty() && !chaos)
+    return complain({Reason::bad_argument, "expected a scenario, SCENARIO.yaml, or --chaos"});
+  if (file.empty()) {
+    const auto found = config::find_file(chaos_scenario);
+    if (!found) return complain(found.error());
+    file = *found;
+  }
   auto scenario = load_scenario(file);
   if (!scenario) return complain(scenario.error());
   auto world = make_world(scenario->world);
   if (!world) return complain(world.error());
-  auto factory = make_agent_factory();
+  auto factory = make_agent_factory(defect);
   if (!factory) return complain(factory.error());
-  params.seed = seed;
+  if (chaos) add_chaos(*scenario);
+  params.seed = seed_option->count() > 0 ? seed : scenario->seed;
   params.make_agent = *factory;
-  if (seeds_text.empty()) return run_one(*scenario, *world, params, report_file, picture_file);
-  auto seeds = parse_seeds(seeds_text);
+  if (seeds_text.empty() && !chaos) return run_one(*scenario, *world, params, report_file, picture_file);
+  auto seeds =
+      seeds_text.empty() ? Result<SeedRange>(SeedRange{params.seed, params.seed}) : parse_seeds(seeds_text);
   if (!seeds) return complain(seeds.error());
-  return run_many(*scenario, *world, params, *seeds);
+  return run_many(*scenario, *world, params, *seeds, {chaos, until_failure, shrink_to});
 }

@@ -1,0 +1,28 @@
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "sim/rehearsal/program/options.hpp"
+#include "sim/rehearsal/rehearsal.hpp"
+
+namespace adit::sim {
+
+/// What many runs of one scenario gave.
+struct SeedsOutcome {
+  std::uint64_t done{}, wanted{};
+  std::map<std::uint64_t, RunReport> failed{};  ///< by seed
+  std::optional<Error> broken{};                ///< a run that could not be made
+  std::uint64_t fewest_commands{}, fewest_faults{}, commands{}, faults{};
+  double virtual_s{}, wall_s{};  ///< wall: of all together
+};
+
+/// One run for each seed, as many at a time as there are cores, and a line of a table for each. Ctrl-C ends
+/// it after the runs under way. `until_failure`: no new run begins once one has failed.
+SeedsOutcome run_seeds(const Scenario& scenario, const std::shared_ptr<const World>& world,
+                       const RunParams& params, const SeedRange& seeds, bool until_failure);
+
+/// One line on stderr for each thing that failed.
+void tell_complaints(const RunReport& report);
+
+}  // namespace adit::sim
