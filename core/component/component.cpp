@@ -1,5 +1,9 @@
 #include "core/component/component.hpp"
 
+#include <stdexcept>
+
+#include "core/exec/hang.hpp"
+
 namespace adit {
 
 Component::Component(std::string name, Executor& executor, Log log, VitalParams vital)
@@ -54,6 +58,13 @@ void Component::fail(const std::string& text) {
   log_.error("failed: " + text);
   ++failures_;
   if (failure_handler_) failure_handler_({name(), text, at, failures_});
+}
+
+void Component::inject(ComponentFault fault) {
+  post([this, fault] {
+    if (fault == ComponentFault::hang) hang(executor_);
+    throw std::runtime_error("a crash on purpose");
+  });
 }
 
 void Component::compute(Duration modelled, Task work, Task done) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/component/fault.hpp"
 #include "core/component/vital.hpp"
 #include "core/exec/executor.hpp"
 #include "core/exec/failure.hpp"
@@ -44,6 +45,8 @@ class Component {
   /// For watchers on other strands; lives on after the component.
   std::shared_ptr<const Vital> vital() const { return vital_; }
   ComponentHealth health() const { return vital_->health(executor_.now()); }
+  /// For tests and rehearsals of failures: a callback of this component throws, or never returns.
+  void inject(ComponentFault fault);
   /// Told of each failure, on the strand.
   void on_failure(std::function<void(const ComponentFailure&)> handler) {
     failure_handler_ = std::move(handler);
@@ -73,6 +76,11 @@ class Component {
         if (alive->owner) alive->owner->fail(text);
       }
     };
+  }
+  /// Calls it now, on the strand; an exception becomes a failure.
+  template <class F>
+  void protect(F callback) {
+    guard(std::move(callback))();
   }
   /// Guarded post, timers and compute. An exception of `work` is a failure of this component.
   template <class F>

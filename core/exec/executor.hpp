@@ -63,6 +63,9 @@ class Executor {
   /// long the work takes; live, when the work is done. Work that throws is reported as a failure of the
   /// strand, and `done` does not run.
   virtual void compute(Duration modelled, Task work, Task done) = 0;
+  /// Ends the strand: what waits never runs, new work is ignored. Live returns once the task that runs now
+  /// has returned. On another strand or thread.
+  virtual void end() = 0;
   /// Leaves the strand behind together with the task that it runs now, which may never return: what waits
   /// never runs, new work is ignored, dropping the strand waits for nothing. What that task refers to must
   /// be kept until it has returned. Called on another strand or thread.

@@ -193,7 +193,9 @@ class LiveStrand final : public Executor {
           loop->run();
         }) {}
 
-  ~LiveStrand() override {
+  ~LiveStrand() override { end(); }
+
+  void end() override {
     loop_->stop();
     if (!thread_.joinable()) return;
     if (loop_->on_own_thread()) {

@@ -193,8 +193,7 @@ class VirtualStrand final : public Executor {
     end();
   }
   void block() override { core_->hang(*this); }
-  /// Nothing runs on it any more.
-  void end() {
+  void end() override {
     over_ = true;
     core_->remove_if([this](const Event& event) { return event.strand == this; });
   }

@@ -1,0 +1,99 @@
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/component/component.hpp"
+#include "core/component/fault.hpp"
+#include "core/supervisor/overseer.hpp"
+
+namespace adit {
+
+/// Whether what an instance of a component says still counts. Any thread.
+class Lease {
+ public:
+  bool valid() const { return valid_.load(std::memory_order_acquire); }
+  void revoke() { valid_.store(false, std::memory_order_release); }
+
+ private:
+  std::atomic<bool> valid_{true};
+};
+
+/// A strand and what lives on it.
+struct Seat {
+  Seat() = default;
+  Seat(const Seat&) = delete;
+  Seat& operator=(const Seat&) = delete;
+  ~Seat();
+  std::shared_ptr<Executor> strand{};
+  std::unique_ptr<Component> component{};  ///< touched on the strand only, or after its end
+  std::shared_ptr<Lease> lease{};          ///< of `component`; likewise
+  std::shared_ptr<void> fittings{};        ///< what delivers to the strand; dropped before it
+};
+
+struct UnitParams {
+  std::string name{};
+  bool heavy{false};  ///< lives on a Runtime::worker
+  /// Makes an instance; on the strand. `lease`: its outputs count while that is valid.
+  std::function<Result<std::unique_ptr<Component>>(Executor& strand, std::shared_ptr<const Lease> lease)>
+      make{};
+  /// Made with each strand, before its first instance; nothing when null. Hold the seat weakly.
+  std::function<Result<std::shared_ptr<void>>(const std::shared_ptr<Seat>& seat)> fit{};
+};
+
+/// A component that can be made anew: on its strand when it failed, on another one when it hangs. What an
+/// instance hands to other strands counts only while its lease is valid. An exception that leaves a callback
+/// of the component ends that instance on the spot.
+///
+/// restart(), replace() and revoke() are the supervisor's, on its strand; the rest is for any thread.
+class Unit {
+ public:
+  Unit(Runtime& runtime, UnitParams params);
+  Unit(const Unit&) = delete;
+  Unit& operator=(const Unit&) = delete;
+
+  const std::string& name() const { return params_.name; }
+  /// Makes the first strand. Errors of `fit`.
+  Result<void> open();
+  /// Called from the strand when an instance came up or failed; set before the first restart().
+  void on_change(std::function<void()> changed) { changed_ = std::move(changed); }
+
+  void restart();
+  void replace();
+  void revoke();
+  /// Ends the strand: nothing of this component runs any more.
+  void end();
+
+  Pulse pulse() const;
+  /// The strand and what lives on it now; rises with each restart: instance().
+  std::shared_ptr<Seat> seat() const;
+  std::uint64_t instance() const { return instance_.load(std::memory_order_acquire); }
+  /// Has the component throw, or hang, in a callback of its own.
+  void inject(ComponentFault fault);
+
+ private:
+  /// What an instance reports to the supervisor.
+  struct Record {
+    std::mutex mutex{};
+    std::shared_ptr<const Vital> vital{};
+    bool failed{};
+    std::string text{};
+    std::shared_ptr<Lease> lease{std::make_shared<Lease>()};
+  };
+  void report_failure(Record& record, const std::string& text) const;
+  void begin(Seat& seat, const std::shared_ptr<Record>& record);
+
+  Runtime& runtime_;
+  UnitParams params_;
+  std::function<void()> changed_{};
+  std::atomic<std::uint64_t> instance_{0};
+  mutable std::mutex mutex_{};  // guards the two pointers
+  std::shared_ptr<Seat> seat_{};
+  std::shared_ptr<Record> record_{std::make_shared<Record>()};
+  std::vector<std::shared_ptr<Seat>> left_behind_{};  // bounded by SupervisionParams::hangs
+};
+
+}  // namespace adit
