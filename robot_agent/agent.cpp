@@ -1,12 +1,11 @@
 #include "robot_agent/agent.hpp"
 
-#include <stdexcept>
+#include <sstream>
 
 #include "core/config/search.hpp"
-#include "core/exec/hang.hpp"
 #include "core/time/random.hpp"
 #include "nav/control/controller.hpp"
-#include "robot_agent/agent_core.hpp"
+#include "robot_agent/agent_parts.hpp"
 
 namespace adit::agent {
 namespace {
@@ -30,52 +29,45 @@ Agent::Agent(AgentParams params, Runtime& runtime, wire::Wire& radio, wire::Wire
   if (params_.id == Id{}) params_.id = drawn(Random(params_.seed).fork(kIdentitySalt));
 }
 
-Agent::~Agent() {
-  // First nothing more arrives, then the strands end, then the parts go.
-  if (core_) core_->close();
-  sensors_.reset();
-  disk_.reset();
-  command_.reset();
-  if (core_) core_->stop();
-}
+Agent::~Agent() = default;
 
 Result<void> Agent::start() {
-  if (core_) return {Reason::in_use, "the agent runs already"};
+  if (parts_) return {Reason::in_use, "the agent runs already"};
   if (!valid_name(params_.name))
     return {Reason::bad_argument, "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + params_.name + "'"};
   if (const auto known = nav::make_controller(params_.platform.controller, params_.platform); !known)
     return {known.error().reason, "platform " + params_.platform.name + ": " + known.error().text};
   const auto tree = config::find_file(params_.tree);
   if (!tree) return tree.error();
-  auto decider = Decider::load(*tree);
-  if (!decider) return decider.error();
-  command_ = runtime_.strand("command");
-  sensors_ = runtime_.strand("sensors");
-  auto radio = RadioEdge::open(radio_, *command_, params_.name);
-  if (!radio) return radio.error();
-  if (params_.disk && !params_.disk->instant()) disk_ = runtime_.strand("disk");
+  // Here as well as in each instance of the command component: who starts an agent is told at once.
+  if (const auto decider = Decider::load(*tree); !decider) return decider.error();
   params_.id = restore_identity(params_.disk, params_.id);
-  core_ = std::make_unique<Core>(params_, *command_, std::move(*decider), std::move(*radio), disk_);
-  if (const auto opened = core_->open(robot_, *sensors_); !opened) return opened.error();
-  command_->post([core = core_.get()] {
-    if (const auto started = core->start(); !started) core->report(started.error());
-  });
+  auto parts = std::make_unique<Parts>(params_, *tree, runtime_);
+  if (const auto opened = parts->open(radio_, robot_); !opened) return opened.error();
+  parts_ = std::move(parts);
+  parts_->watch->start();
   return {};
 }
 
 void Agent::at_console(const std::string& line, std::function<void(const std::string&)> answer) {
-  command_->post([core = core_.get(), line, answer = std::move(answer)] { answer(core->at_console(line)); });
+  std::istringstream words(line);
+  std::string verb, component, policy;
+  words >> verb >> component >> policy;
+  if (verb == "health") return parts_->watch->describe(std::move(answer));
+  if (verb == "restart" || (verb == "policy" && (policy == "auto" || policy == "manual"))) {
+    const auto done = verb == "restart" ? parts_->watch->restart(component)
+                                        : parts_->watch->set_policy(component, policy == "auto");
+    return answer(done ? "done\n" : done.error().text + "\n");
+  }
+  parts_->command_strand().post([edges = parts_->edges.get(), line, answer = std::move(answer)] {
+    answer(edges->core ? edges->core->at_console(line) : "the command component is being restarted\n");
+  });
 }
 
 Result<void> Agent::inject(const std::string& component, ComponentFault fault) {
-  Executor* strand = component == "command"   ? command_.get()
-                     : component == "sensors" ? sensors_.get()
-                                              : nullptr;
-  if (!strand) return {Reason::bad_argument, "no component is named " + component};
-  strand->post([strand, fault] {
-    if (fault == ComponentFault::hang) hang(*strand);
-    throw std::runtime_error("a crash on request");
-  });
+  Unit* unit = parts_ ? parts_->find(component) : nullptr;
+  if (!unit) return {Reason::bad_argument, "no component is named " + component};
+  unit->inject(fault);
   return {};
 }
 

@@ -3,12 +3,14 @@
 #include <memory>
 #include <string>
 
+#include "core/component/fault.hpp"
 #include "core/config/platform.hpp"
 #include "core/exec/executor.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/log/log.hpp"
 #include "core/result/result.hpp"
 #include "core/store/disk.hpp"
+#include "core/supervisor/overseer.hpp"
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/defects.hpp"
@@ -30,17 +32,18 @@ struct AgentParams {
   std::uint64_t
       boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known
   bool resume_after_restart{true};  ///< an autonomous mode goes on after a restart; false: hold, goal kept
+  SupervisionParams supervision{};
+  /// The agent's process is to end and to be started anew: a component could not be brought back. Called
+  /// once, on a strand of the agent; empty: the agent stays as it is, with zero at the driver.
+  std::function<void(const std::string& why)> end{};
+  /// Called ten times a second while supervisor and command component live, on the supervisor's strand.
+  std::function<void()> alive{};
 };
 
-/// What can be done to a component for tests and rehearsals.
-enum class ComponentFault {
-  crash,  ///< an exception leaves one of its callbacks
-  hang    ///< one of its callbacks never returns
-};
-
-/// One robot's agent: discovery, command interface, behaviours, mux, navigation, driver, telemetry, composed.
-/// The same object live and in rehearsal. Made, started and destroyed outside its strands; runtime and
-/// wires must outlive it.
+/// One robot's agent: discovery, command interface, behaviours, mux, navigation, driver, telemetry, composed
+/// of components that a supervisor watches and makes anew, each alone: command, planner, sensors. The same
+/// object live and in rehearsal. Made, started and destroyed outside its strands; runtime and wires must
+/// outlive it.
 class Agent {
  public:
   Agent(AgentParams params, Runtime& runtime, wire::Wire& radio, wire::Wire& robot);
@@ -51,22 +54,25 @@ class Agent {
   /// Errors: bad_argument (name), those of the tree and of the wires.
   Result<void> start();
 
-  /// The robot's own console: "status" or "unlock". Runs on the command strand, and so does `answer`. From
-  /// any thread, after start().
+  /// The robot's own console: "status", "unlock", "health", "restart COMPONENT", "policy COMPONENT
+  /// auto|manual". `answer` runs on a strand of the agent, or never when that hangs. From any thread, after
+  /// start().
   void at_console(const std::string& line, std::function<void(const std::string&)> answer);
 
-  /// Posts a callback on the strand of that component which throws or never returns. Components: command,
-  /// planner, sensors. Errors: bad_argument for another name. From any thread live, after start().
+  /// For tests and rehearsals: a callback on the strand of that component throws or never returns.
+  /// Components: command, planner, sensors. Errors: bad_argument for another name. From any thread live,
+  /// after start().
   Result<void> inject(const std::string& component, ComponentFault fault);
 
  private:
   class Core;
+  struct Edges;
+  struct Parts;
   AgentParams params_;
   Runtime& runtime_;
   wire::Wire& radio_;
   wire::Wire& robot_;
-  std::shared_ptr<Executor> command_{}, sensors_{}, disk_{};
-  std::unique_ptr<Core> core_{};
+  std::unique_ptr<Parts> parts_{};
 };
 
 }  // namespace adit::agent

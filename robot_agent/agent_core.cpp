@@ -7,11 +7,14 @@
 namespace adit::agent {
 namespace {
 
-CommandParams command_params(const AgentParams& params) {
+CommandParams command_params(const AgentParams& params, std::uint32_t instance) {
   CommandParams c{};
   c.robot = params.name;
-  // Zero is what a message holds that nobody filled in: no epoch starts with it.
-  c.epoch_start = Random(params.seed).next() | 1u;
+  // Another one for each instance of the component. Zero is what a message holds that nobody filled in: no
+  // epoch starts with it.
+  Random starts(params.seed);
+  for (std::uint32_t i = 0; i < instance; ++i) (void)starts.next();
+  c.epoch_start = starts.next() | 1u;
   c.lock_lease = params.lock_lease;
   c.protocol = kProtocolVersion;
   c.defects = params.defects;
@@ -33,105 +36,94 @@ BehaviourParams behaviour_params(const AgentParams& params) {
 NavigationParams navigation_params(const AgentParams& params) {
   NavigationParams n{};
   n.platform = params.platform;
-  n.planning = params.planning;
   return n;
-}
-
-KeeperParams keeper_params(const AgentParams& params) {
-  KeeperParams k{};
-  if (params.defects.has(Defect::acknowledged_lost)) k.lazy = 5s;
-  return k;
 }
 
 constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
 constexpr Duration kLinkPeriod = 2s;
-constexpr Duration kHealthPeriod = 5s;
+constexpr Duration kPulse = 50ms;
 
 }  // namespace
 
 Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider,
-                  std::unique_ptr<RadioEdge> radio, std::shared_ptr<Executor> disk_strand)
-    : Component("command", command, Log(params.log, params.name)),
+                  Edges& edges, std::shared_ptr<const Lease> lease)
+    : Component("command", command, Log(params.log, params.name), {.beat = kPulse}),
       params_(params),
-      radio_(std::move(radio)),
+      edges_(edges),
+      lease_(std::move(lease)),
       localisation_(params.start),
-      navigation_(navigation_params(params), command, log(), localisation_, navigation_outputs()),
+      navigation_(navigation_params(params), command, log(), localisation_, *edges.planner,
+                  navigation_outputs()),
       mux_(navigation_, mux_params(params)),
       behaviour_(behaviour_params(params), std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
-      commands_(command_params(params), behaviour_, command_outputs()),
-      directory_(command),
-      restored_(restore_state(params.disk)),
-      keeper_(keeper_params(params), params.disk, command, std::move(disk_strand), restored_.generation,
-              keeper_outputs()) {
-  if (!restored_.snapshot) return;
-  const Snapshot& s = *restored_.snapshot;
-  commands_.restore(s.authority, s.answers, command.now());
-  // Where its driver's odometry began anew, the goal's place is no longer known for sure.
-  const bool resume = params.resume_after_restart && s.boot == params.boot;
-  behaviour_.restore(s.behaviour, commands_.stops().any(), resume);
+      commands_(command_params(params, edges.instances++), behaviour_, command_outputs()) {}
+
+void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
+  protect([&] { localisation_.update(odom, twist, stamp, now()); });
 }
 
-Result<void> Agent::Core::open(wire::Wire& robot, Executor& sensors) {
-  Driver::Handlers handlers{};
-  handlers.odometry = [this](const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
-    localisation_.update(odom, twist, stamp, now());
-  };
-  handlers.points = [this](std::shared_ptr<PointCloud> points, std::uint64_t stamp) {
-    if (!running() || !localisation_.initialised()) return;
+void Agent::Core::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp) {
+  protect([&] {
+    if (!localisation_.initialised()) return;
     auto scan = std::make_shared<Scan>();
     scan->points = std::move(*points);
     scan->body = localisation_.odom_at(stamp);
     navigation_.add_scan(std::move(scan), now());
-  };
-  handlers.battery = [this](float charge) { battery_ = std::isfinite(charge) ? charge : -1.0f; };
-  auto driver = Driver::open(robot, executor(), sensors, std::move(handlers));
-  if (!driver) return driver.error();
-  driver_ = std::move(*driver);
-  return radio_->listen({commands_, directory_, [this](Task task) {
-                           keep();
-                           keeper_.when_safe(std::move(task));
-                         }});
+  });
 }
 
-void Agent::Core::close() {
-  radio_->close();
-  if (driver_) driver_->close();
+void Agent::Core::battery(float charge) { battery_ = std::isfinite(charge) ? charge : -1.0f; }
+
+void Agent::Core::commands(const std::function<void(CommandInterface&)>& use) {
+  protect([&] { use(commands_); });
+}
+
+void Agent::Core::restore() {
+  // Made anew within this process it goes on from what it gave last, else from what is on the disk.
+  if (const auto& last = edges_.keeper->given())
+    edges_.restored = {decode_snapshot(encode(*last)), false, {}, 0};
+  if (!edges_.restored.snapshot) return;
+  const Snapshot& s = *edges_.restored.snapshot;
+  commands_.restore(s.authority, s.answers, now());
+  // Where its driver's odometry began anew, the goal's place is no longer known for sure.
+  const bool resume = params_.resume_after_restart && s.boot == params_.boot;
+  behaviour_.restore(s.behaviour, commands_.stops().any(), resume);
 }
 
 Result<void> Agent::Core::on_start() {
   started_ = now();
-  const auto failed = [this](const ComponentFailure& f) {
-    tell({{}, Severity::error, "component_failed", Reason::internal, f.component + ": " + f.text});
-  };
-  on_failure(failed);
-  navigation_.on_failure(failed);
+  restore();
+  navigation_.on_failure([this](const ComponentFailure& f) { fail(f.component + ": " + f.text); });
   if (const auto started = navigation_.start(); !started) return started;
-  driver_->write({});
-  radio_->send_capabilities(params_.platform, params_.id, kProtocolVersion);
+  edges_.core = this;
+  edges_.driver->write({});
+  if (edges_.instances == 1) edges_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion);
   behaviour_.tick(now());
   tell_restored();
   keep();
   send_status();
-  send_health();
+  note_driver();
   timers_.push_back(every(kBeat, [this] { beat(); }));
   timers_.push_back(every(kStatePeriod, [this] {
     send_state();
-    directory_.tick(now());
+    edges_.directory.tick(now());
   }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
     send_status();
   }));
-  timers_.push_back(every(kLinkPeriod, [this] { radio_->send_link_report(now(), driver_->malformed()); }));
-  timers_.push_back(every(kHealthPeriod, [this] { send_health(); }));
+  timers_.push_back(
+      every(kLinkPeriod, [this] { edges_.radio->send_link_report(now(), edges_.driver->malformed()); }));
   return {};
 }
 
 void Agent::Core::on_stop() {
+  edges_.core = nullptr;
   timers_.clear();
   navigation_.stop();
+  edges_.driver->write({});
 }
 
 void Agent::Core::beat() {
@@ -141,28 +133,28 @@ void Agent::Core::beat() {
   mux_.step(at);
   navigation_.step(at);
   keep();
-  keeper_.tick();
+  edges_.keeper->tick();
 }
 
 void Agent::Core::keep() {
-  keeper_.save({commands_.kept(), behaviour_.kept(), params_.boot, 0, {}},
-               [this] { return commands_.kept_answers(); });
+  edges_.keeper->save({commands_.kept(), behaviour_.kept(), params_.boot, 0, {}},
+                      [this] { return commands_.kept_answers(); });
 }
 
 void Agent::Core::tell_restored() {
-  if (restored_.lost)
+  if (edges_.restored.lost)
     tell({{},
           Severity::error,
           "state_lost",
           Reason::cannot_read,
-          params_.name + " started and holds: its state was lost (" + restored_.text + ")"});
-  else if (restored_.snapshot)
+          params_.name + " started and holds: its state was lost (" + edges_.restored.text + ")"});
+  else if (edges_.restored.snapshot)
     tell({{},
           Severity::warning,
           "restarted",
           Reason::none,
-          params_.name + " was restarted: " + describe(*restored_.snapshot) +
-              (restored_.snapshot->boot == params_.boot ? "" : "; with its computer, so it holds")});
+          params_.name + " was restarted: " + describe(*edges_.restored.snapshot) +
+              (edges_.restored.snapshot->boot == params_.boot ? "" : "; with its computer, so it holds")});
 }
 
 void Agent::Core::watch_driver() {
@@ -175,7 +167,7 @@ void Agent::Core::watch_driver() {
                  "the driver of " + params_.name + " is silent"});
   if (driver_was_alive_ != alive) {
     driver_was_alive_ = alive;
-    send_health();
+    note_driver();
   }
 }
 
@@ -183,41 +175,35 @@ void Agent::Core::send_state() {
   const std::uint64_t stamp = to_stamp(now());
   commands_.sent_stamp(stamp);
   const bool known = localisation_.initialised();
-  radio_->send_state(
+  edges_.radio->send_state(
       {localisation_.pose(), localisation_.z(), known ? localisation_.twist() : Twist2{}, battery_}, stamp);
 }
 
 void Agent::Core::send_status() {
-  radio_->send_authority(commands_, now());
+  edges_.radio->send_authority(commands_, now());
   send_behaviour();
 }
 
-void Agent::Core::send_behaviour() { radio_->send_behaviour(behaviour_.view(), behaviour_.options(now())); }
+void Agent::Core::send_behaviour() {
+  edges_.radio->send_behaviour(behaviour_.view(), behaviour_.options(now()));
+}
 
-void Agent::Core::send_health() {
-  std::vector<ComponentHealth> parts{health(), navigation_.health()};
-  ComponentHealth driver{};
+void Agent::Core::note_driver() {
+  const bool alive = localisation_.alive(now());
+  ComponentRow driver{};
   driver.name = "driver";
-  driver.running = driver.healthy = localisation_.alive(now());
-  driver.beat_age = localisation_.silence(now(), started_);
-  if (!driver.healthy) driver.last_failure = "no odometry";
-  parts.push_back(driver);
-  if (params_.disk) {
-    ComponentHealth store{};
-    store.name = "store";
-    store.running = true;
-    store.healthy = !keeper_.failing();
-    if (!store.healthy) store.last_failure = "the disk does not keep the state";
-    parts.push_back(store);
-  }
-  radio_->send_health(parts);
+  driver.state = alive ? PartState::up : PartState::failed;
+  driver.healthy = alive;
+  if (!alive) driver.heard = now() - localisation_.silence(now(), started_);
+  if (!alive) driver.text = "no odometry";
+  edges_.watch->note(driver);
 }
 
 void Agent::Core::tell(Notice notice) {
   if (log().on(LogLevel::info))
     log().info("tells " + (notice.operator_name.empty() ? "everybody" : notice.operator_name) + " " +
                notice.code + ": " + notice.text);
-  radio_->send(notice);
+  if (!edges_.notifier->send(notice)) log().warn("not told: " + notice.text);
 }
 
 void Agent::Core::tell_holder(Notice notice) {
@@ -237,7 +223,11 @@ CommandInterface::Outputs Agent::Core::command_outputs() {
   return {[this](const Notice& notice) { tell(notice); },
           [this] {
             keep();
-            keeper_.when_safe([this] { radio_->send_authority(commands_, now()); });
+            edges_.keeper->when_safe(guard([this] { edges_.radio->send_authority(commands_, now()); }));
+          },
+          [this](const std::string& component) { return edges_.watch->restart(component); },
+          [this](const std::string& component, bool automatic) {
+            return edges_.watch->set_policy(component, automatic);
           }};
 }
 
@@ -251,27 +241,17 @@ Behaviour::Outputs Agent::Core::behaviour_outputs() {
 }
 
 Navigation::Outputs Agent::Core::navigation_outputs() {
-  return {[this](const Twist2& velocity) { driver_->write(velocity); },
+  return {[this](const Twist2& velocity) {
+            if (lease_->valid()) edges_.driver->write(velocity);
+          },
           [this](const Progress& progress) { behaviour_.set_progress(progress); }};
-}
-
-StateKeeper::Outputs Agent::Core::keeper_outputs() {
-  return {[this](bool failing, const std::string& text) {
-    if (failing)
-      tell({{},
-            Severity::error,
-            "store_failing",
-            Reason::cannot_write,
-            params_.name + " cannot keep its state over a restart: " + text});
-    else
-      tell({{}, Severity::info, "store_works", Reason::none, params_.name + ": " + text});
-    send_health();
-  }};
 }
 
 std::string Agent::Core::at_console(const std::string& line) {
   if (line == "unlock") return commands_.unlock_at_console() ? "unlocked\n" : "there was no lock\n";
-  if (line != "status") return "unknown: " + line + " (status, unlock)\n";
+  if (line != "status")
+    return "unknown: " + line +
+           " (status, unlock, health, restart COMPONENT, policy COMPONENT auto|manual)\n";
   const Authority& authority = commands_.authority();
   const BehaviourView view = behaviour_.view();
   return params_.name + ": " +

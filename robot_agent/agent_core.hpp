@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/component/component.hpp"
+#include "core/supervisor/unit.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
@@ -11,38 +12,62 @@
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
+#include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/state/restored.hpp"
 #include "robot_agent/state/state_keeper.hpp"
+#include "robot_agent/supervisor/watch.hpp"
 
 namespace adit::agent {
 
-/// The command strand's component: owns what lives there and keeps its beat. Private to agent.cpp.
+/// What outlives the command component: the endpoints that other machines know, who is there, the last known
+/// safe state, and the way to the components beside it. Touched on the command strand, but for what says
+/// otherwise.
+struct Agent::Edges {
+  explicit Edges(Executor& command) : directory(command) {}
+
+  std::unique_ptr<Notifier> notifier{};  ///< from any thread
+  std::unique_ptr<RadioEdge> radio{};
+  std::unique_ptr<Driver> driver{};
+  Directory directory;
+  Restored restored{};  ///< what was there at the start, or when the component was made anew
+  std::unique_ptr<StateKeeper> keeper{};  ///< what the component gave last, here and on the disk
+  PlanService* planner{};                 ///< from any thread
+  Watch* watch{};                         ///< from any thread
+  Core* core{};                           ///< null while the command component is away
+  std::uint32_t instances{};              ///< of the command component so far
+};
+
+/// The command component: command interface, behaviour, mux, navigation's light half. Everything in it is
+/// made anew when it is restarted; what must survive that is put back in restore().
 class Agent::Core : public Component {
  public:
-  Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider,
-       std::unique_ptr<RadioEdge> radio, std::shared_ptr<Executor> disk_strand);
+  /// `lease`: what it sends to the driver counts while that is valid.
+  Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider, Edges& edges,
+       std::shared_ptr<const Lease> lease);
 
-  /// Opens the driver and begins to listen. The timers begin with Component::start().
-  Result<void> open(wire::Wire& robot, Executor& sensors);
-  /// Nothing arrives any more. From any thread.
-  void close();
+  void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp);
+  void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp);
+  void battery(float charge);
+  void commands(const std::function<void(CommandInterface&)>& use);
   std::string at_console(const std::string& line);
-  void report(const Error& error) { fail(error.text); }
+  /// What must survive, as it is now.
+  void keep();
 
  protected:
   Result<void> on_start() override;
   void on_stop() override;
 
  private:
+  /// The last known safe state, before anything is sent or heard.
+  void restore();
   void beat();
   void send_state();
   void send_status();
   void send_behaviour();
-  void send_health();
+  void note_driver();
   void watch_driver();
   void tell_restored();
-  void keep();
   void tell(Notice notice);
   void tell_holder(Notice notice);
   Facts sense(Time now) const;
@@ -50,19 +75,15 @@ class Agent::Core : public Component {
   Behaviour::Inputs behaviour_inputs();
   Behaviour::Outputs behaviour_outputs();
   Navigation::Outputs navigation_outputs();
-  StateKeeper::Outputs keeper_outputs();
 
   AgentParams params_;
-  std::unique_ptr<RadioEdge> radio_;
+  Edges& edges_;
+  std::shared_ptr<const Lease> lease_;
   Localisation localisation_;
   Navigation navigation_;
   Mux mux_;
   Behaviour behaviour_;
   CommandInterface commands_;
-  Directory directory_;
-  Restored restored_;
-  StateKeeper keeper_;
-  std::unique_ptr<Driver> driver_{};
   float battery_{-1.0f};
   bool driver_was_alive_{};
   Time started_{};

@@ -35,9 +35,10 @@ void Unit::restart() {
     record_ = record;
     seat = seat_;
   }
-  instance_.fetch_add(1, std::memory_order_acq_rel);
   // The seat outlives its strand's tasks.
   seat->strand->post([this, seat = seat.get(), record] { begin(*seat, record); });
+  // Now: what is posted by who sees the new number runs after begin().
+  instance_.fetch_add(1, std::memory_order_acq_rel);
 }
 
 void Unit::begin(Seat& seat, const std::shared_ptr<Record>& record) {

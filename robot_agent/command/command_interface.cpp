@@ -19,6 +19,8 @@ Line line_of(CommandKind kind) {
     case CommandKind::unlock:
       return Line::authority;
     case CommandKind::query:
+    case CommandKind::restart:
+    case CommandKind::policy:
     case CommandKind::unknown:
       break;
   }
@@ -156,6 +158,9 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       return {};
     case CommandKind::query:
       return {};
+    case CommandKind::restart:
+    case CommandKind::policy:
+      return supervise(c);
     case CommandKind::unknown:
       break;
   }
@@ -243,6 +248,13 @@ CommandInterface::Outcome CommandInterface::request(const Command& c, Time now) 
   if (result) return {};
   tell(c.from.name, Severity::warning, "mode_refused", result.reason(), result.error().text);
   return {result.reason(), result.error().text};
+}
+
+CommandInterface::Outcome CommandInterface::supervise(const Command& c) const {
+  if (!outputs_.restart || !outputs_.policy) return {Reason::not_supported};
+  const Result<void> result =
+      c.kind == CommandKind::restart ? outputs_.restart(c.text) : outputs_.policy(c.text, c.flag);
+  return result ? Outcome{} : Outcome{result.reason(), result.error().text};
 }
 
 std::optional<Answer> CommandInterface::handle(const StickSample& s, Time now) {

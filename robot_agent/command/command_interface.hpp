@@ -29,6 +29,9 @@ class CommandInterface {
   struct Outputs {
     std::function<void(const Notice&)> notify{};
     std::function<void()> changed{};  ///< authority or stops are not what they were
+    /// The supervisor is asked; an error refuses the command. Null: there is no supervisor.
+    std::function<Result<void>(const std::string& component)> restart{};
+    std::function<Result<void>(const std::string& component, bool automatic)> policy{};
   };
 
   CommandInterface(CommandParams params, Requests& requests, Outputs outputs);
@@ -77,6 +80,7 @@ class CommandInterface {
   Outcome stop(const Command& c, Time now);
   Outcome reset(const Command& c, Time now);
   Outcome request(const Command& c, Time now);
+  Outcome supervise(const Command& c) const;
   Outcome judge(const StickSample& s, Time now);
   Answer answer(const Command& c, const Outcome& outcome) const;
   bool may_be_back(const Sender& from) const;

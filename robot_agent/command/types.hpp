@@ -43,6 +43,8 @@ enum class CommandKind : std::uint8_t {
   mode,
   go_to,
   query,
+  restart,
+  policy,
   unknown
 };
 
@@ -52,9 +54,9 @@ struct Command {
   Epoch epoch{};
   std::uint64_t seq{};
   CommandKind kind{CommandKind::query};
-  std::string text{};                                 ///< mode: its name; grant: the operator's
+  std::string text{};  ///< mode: its name; grant: the operator's; restart, policy: the component
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  ///< goto: map frame, m; z may be NaN
-  bool flag{};                                        ///< reset: override
+  bool flag{};                                        ///< reset: override; policy: automatic
 };
 
 /// Exactly one per command and repeat.

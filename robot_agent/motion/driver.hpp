@@ -6,26 +6,19 @@
 #include "core/geometry/pose.hpp"
 #include "core/wire/wire.hpp"
 
-namespace sensor_msgs::msg {
-class PointCloud2;
-}
-
 namespace adit::agent {
 
-/// The robot domain: ROS 2 messages from and to the robot's driver.
+/// The robot domain: ROS 2 messages from and to the robot's driver, the lidar's clouds apart (scans.hpp).
 class Driver {
  public:
   /// Called on the command strand. Stamps are of the driver's clock, ns.
   struct Handlers {
     std::function<void(const Pose3& odom, const Twist2& twist, std::uint64_t stamp)> odometry{};
-    std::function<void(std::shared_ptr<PointCloud> points, std::uint64_t stamp)> points{};  ///< base_link, m
-    std::function<void(float charge)> battery{};                                            ///< 0..1
+    std::function<void(float charge)> battery{};  ///< 0..1
   };
 
-  /// Scans are unpacked on `sensors`, so that they never hold the command strand up. Both strands and the
-  /// wire must outlive the driver's last callback. Errors of the wire.
-  static Result<std::unique_ptr<Driver>> open(wire::Wire& wire, Executor& command, Executor& sensors,
-                                              Handlers handlers);
+  /// Strand and wire must outlive the driver's last callback. Errors of the wire.
+  static Result<std::unique_ptr<Driver>> open(wire::Wire& wire, Executor& command, Handlers handlers);
   ~Driver();
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
@@ -42,9 +35,5 @@ class Driver {
   struct Endpoints;
   std::unique_ptr<Endpoints> endpoints_;
 };
-
-/// The points of a cloud that has float32 x, y and z; not finite ones are left out. Reason::malformed when
-/// the layout does not fit the data.
-Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud);
 
 }  // namespace adit::agent

@@ -14,23 +14,13 @@ constexpr double kHeldWithin = 0.3;     // m: who came further is not held, only
 
 }  // namespace
 
-struct Navigation::Job {
-  std::shared_ptr<Scan> scan{};
-  nav::Target target{};
-  Pose2 pose{};
-  std::uint64_t generation{};
-  Time made{};
-  nav::Plan plan{};
-  std::vector<Eigen::Vector2f> obstacles{};
-};
-
 Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
-                       Outputs outputs)
+                       PlanService& planner, Outputs outputs)
     : Component("navigation", strand, std::move(log)),
       params_(std::move(params)),
       localisation_(localisation),
+      planner_(planner),
       outputs_(std::move(outputs)),
-      navigator_(std::make_shared<nav::Navigator>(params_.platform)),
       controller_(nav::make_controller(params_.platform.controller, params_.platform).value()) {}
 
 void Navigation::accept(MuxKey, const Motion& motion, Time) {
@@ -108,35 +98,31 @@ void Navigation::emit(const Twist2& velocity) { outputs_.velocity(velocity); }
 
 void Navigation::add_scan(std::shared_ptr<Scan> scan, Time now) {
   scanned_ = now;
-  // A cycle that failed never reports back.
-  if (planning_ && now - *planning_ < kCycleLost)
+  if (planning(now))
     waiting_ = std::move(scan);
   else
     plan(std::move(scan), now);
 }
 
+// A cycle of a planner that failed or hung never reports back.
+bool Navigation::planning(Time now) const {
+  return planning_ && planner_instance_ == planner_.instance() && now - *planning_ < kCycleLost;
+}
+
 void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
-  auto job = std::make_shared<Job>();
+  auto job = std::make_shared<PlanJob>();
   job->scan = std::move(scan);
   job->target = target();
   job->pose = localisation_.odom().planar();
   job->generation = goal_generation_;
   job->made = now;
   planning_ = now;
-  compute(
-      params_.planning,
-      [job, navigator = navigator_] {
-        const double stamp = seconds(job->made.time_since_epoch());
-        navigator->add_scan(job->scan->points, job->scan->body, stamp);
-        if (job->target.kind != nav::Target::Kind::none)
-          job->plan = navigator->plan(job->target, job->pose, stamp);
-        const auto cells = navigator->obstacles().cells();
-        job->obstacles.assign(cells.begin(), cells.end());
-      },
-      [this, job] { planned(*job); });
+  planner_instance_ = planner_.instance();
+  waiting_.reset();
+  planner_.plan(job, guard([this, job] { planned(*job); }));
 }
 
-void Navigation::planned(const Job& job) {
+void Navigation::planned(const PlanJob& job) {
   planning_.reset();
   obstacles_ = std::make_shared<const std::vector<Eigen::Vector2f>>(job.obstacles);
   const bool for_goal = job.target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_);

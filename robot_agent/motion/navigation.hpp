@@ -6,10 +6,10 @@
 
 #include "core/component/component.hpp"
 #include "nav/control/controller.hpp"
-#include "nav/navigator.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/motion.hpp"
+#include "robot_agent/motion/planner.hpp"
 
 namespace adit::agent {
 
@@ -18,18 +18,11 @@ struct NavigationParams {
   Duration period{50ms};        ///< of step(): the driver's rate, [20 ms, 50 ms]
   Duration plan_age{500ms};     ///< an older plan moves nothing
   Duration scan_age{500ms};     ///< older points: the terrain is not known
-  Duration planning{20ms};      ///< what a planning cycle takes in rehearsal
   Duration held_after{1500ms};  ///< a robot that its braking check keeps on the spot this long is blocked
 };
 
-/// A scan: points in the frame of base_link, m, and where base_link was.
-struct Scan {
-  PointCloud points{};
-  Pose3 body{};  ///< odometry frame
-};
-
 /// Turns what the mux passes into velocities within the platform's limits: as they are, or along the local
-/// planner's paths. Plans beside the strand, once per scan, follows on it.
+/// planner's paths. Has the planner plan once per scan, on another strand, and follows on its own.
 class Navigation : public Component, public NavigationInput {
  public:
   struct Outputs {
@@ -38,7 +31,7 @@ class Navigation : public Component, public NavigationInput {
   };
 
   Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
-             Outputs outputs);
+             PlanService& planner, Outputs outputs);
 
   /// Velocities and zero go to the driver within the call.
   void accept(MuxKey, const Motion& motion, Time now) override;
@@ -51,19 +44,19 @@ class Navigation : public Component, public NavigationInput {
   bool goal_free(const Eigen::Vector2d& place) const;
 
  private:
-  struct Job;
   nav::Target target() const;
   Twist2 along_plan(Time now);
   void watch_held(Time now);
   Twist2 limited(const Twist2& wanted) const;
   void emit(const Twist2& velocity);
   void plan(std::shared_ptr<Scan> scan, Time now);
-  void planned(const Job& job);
+  bool planning(Time now) const;
+  void planned(const PlanJob& job);
 
   NavigationParams params_;
   const Localisation& localisation_;
+  PlanService& planner_;
   Outputs outputs_;
-  std::shared_ptr<nav::Navigator> navigator_;
   std::unique_ptr<nav::Controller> controller_;
 
   Motion motion_{Stand{}};
@@ -74,6 +67,7 @@ class Navigation : public Component, public NavigationInput {
   Time held_last_{};
   Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
   std::optional<Time> planning_{};     // since when a cycle is under way
+  std::uint64_t planner_instance_{};   // of the planner that was asked
   std::shared_ptr<Scan> waiting_{};    // the newest scan that came while planning
   std::optional<Time> scanned_{};
   std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // odometry frame

@@ -37,6 +37,10 @@ CommandKind from_radio(radio::CommandKind kind) {
       return CommandKind::go_to;
     case radio::CMD_QUERY:
       return CommandKind::query;
+    case radio::CMD_RESTART:
+      return CommandKind::restart;
+    case radio::CMD_POLICY:
+      return CommandKind::policy;
   }
   return CommandKind::unknown;
 }
@@ -51,6 +55,22 @@ radio::Severity to_radio(Severity severity) {
       return radio::SEVERITY_ERROR;
   }
   return radio::SEVERITY_ERROR;
+}
+
+radio::ComponentState to_radio(PartState state) {
+  switch (state) {
+    case PartState::starting:
+      return radio::COMPONENT_STARTING;
+    case PartState::up:
+      return radio::COMPONENT_UP;
+    case PartState::waiting:
+      return radio::COMPONENT_WAITING;
+    case PartState::failed:
+      return radio::COMPONENT_FAILED;
+    case PartState::hung:
+      return radio::COMPONENT_HUNG;
+  }
+  return radio::COMPONENT_FAILED;
 }
 
 radio::GoalState to_radio(GoalState state) {
@@ -176,15 +196,19 @@ radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<Mode
   return out;
 }
 
-radio::Health to_radio(const std::vector<ComponentHealth>& components, const std::string& robot) {
+radio::Health to_radio(const std::vector<ComponentRow>& components, const std::string& robot) {
   radio::Health out;
   out.robot(robot);
-  for (const ComponentHealth& c : components) {
+  for (const ComponentRow& c : components) {
     radio::ComponentHealth part;
     part.name(c.name);
+    part.state(to_radio(c.state));
     part.healthy(c.healthy);
-    part.silent_for(static_cast<float>(seconds(c.beat_age)));
-    part.text(clipped(c.last_failure, kHealthText));
+    part.automatic(c.automatic);
+    part.silent_for(static_cast<float>(seconds(c.silent)));
+    part.restarts(c.restarts);
+    part.hung(c.hung);
+    part.text(clipped(c.text, kHealthText));
     out.components().push_back(part);
   }
   return out;

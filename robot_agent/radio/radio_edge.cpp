@@ -19,11 +19,9 @@ struct RadioEdge::Endpoints {
   std::uint64_t seq{};
 
   wire::Writer<radio::Acknowledgement> acknowledgement{};
-  wire::Writer<radio::Notification> notification{};
   wire::Writer<radio::AuthorityStatus> authority{};
   wire::Writer<radio::BehaviourState> behaviour{};
   wire::Writer<radio::RobotState> state{};
-  wire::Writer<radio::Health> health{};
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
@@ -66,9 +64,8 @@ Result<std::unique_ptr<RadioEdge>> RadioEdge::open(wire::Wire& wire, Executor& s
                                                    const std::string& robot) {
   std::unique_ptr<Endpoints> e(new Endpoints{wire, strand, robot});
   for (const auto& made :
-       {e->open(e->acknowledgement, topics::acknowledgement), e->open(e->notification, topics::notification),
-        e->open(e->authority, topics::authority), e->open(e->behaviour, topics::behaviour),
-        e->open(e->state, topics::robot_state), e->open(e->health, topics::health),
+       {e->open(e->acknowledgement, topics::acknowledgement), e->open(e->authority, topics::authority),
+        e->open(e->behaviour, topics::behaviour), e->open(e->state, topics::robot_state),
         e->open(e->capabilities, topics::capabilities), e->open(e->link, topics::link_report),
         e->open(e->presence, topics::presence)})
     if (!made) return made.error();
@@ -77,45 +74,53 @@ Result<std::unique_ptr<RadioEdge>> RadioEdge::open(wire::Wire& wire, Executor& s
 
 Result<void> RadioEdge::listen(Parts parts) {
   Endpoints& e = *endpoints_;
-  CommandInterface& commands = parts.commands;
   Directory& directory = parts.directory;
+  const auto& commands = parts.commands;
   const auto answer = [&e, settle = parts.settle](const std::optional<Answer>& a) {
     if (!a) return;
     if (a->seq == 0) return (void)e.acknowledgement.write(to_radio(*a, e.robot));  // a stream changes nothing
     settle([&e, a = *a] { (void)e.acknowledgement.write(to_radio(a, e.robot)); });
   };
-  e.wire.on_participant(e.strand, [&e, &commands, &directory](const wire::ParticipantEvent& event) {
+  e.wire.on_participant(e.strand, [&e, commands, &directory](const wire::ParticipantEvent& event) {
     directory.participant(event);
     if (event.present)
       e.say_present();  // it need not wait for the next second
     else
-      commands.departed(event.id);
+      commands([&](CommandInterface& interface) { interface.departed(event.id); });
   });
   for (const auto& made : {
            e.read(topics::presence,
-                  [&e, &commands, &directory](const radio::Presence&p, const wire::SampleInfo&info) {
+                  [&e, commands, &directory](const radio::Presence&p, const wire::SampleInfo&info) {
                     const Time now = e.strand.now();
                     if (p.kind() == radio::AGENT_STATION)
-                      commands.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
+                      commands([&](CommandInterface& interface) {
+                        interface.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
+                      });
                     if (p.name() != e.robot) directory.presence(p.name(), p.id(), info.sender, now);
                   }),
            e.read(topics::capabilities,
-                  [&e, &commands, &directory](const radio::Capabilities&c, const wire::SampleInfo&info) {
+                  [&e, commands, &directory](const radio::Capabilities&c, const wire::SampleInfo&info) {
                     const Time now = e.strand.now();
                     if (c.kind() == radio::AGENT_STATION)
-                      commands.hear({c.name(), c.id(), info.sender}, c.protocol(), now);
+                      commands([&](CommandInterface& interface) {
+                        interface.hear({c.name(), c.id(), info.sender}, c.protocol(), now);
+                      });
                     if (c.name() != e.robot) directory.capabilities(from_radio(c, info.sender), now);
                   }),
            e.read(
                topics::command,
-               [&e, &commands, answer](const radio::Command&c, const wire::SampleInfo&info) {
-                 answer(commands.handle(from_radio(c, info.sender), e.strand.now()));
+               [&e, commands, answer](const radio::Command&c, const wire::SampleInfo&info) {
+                 commands([&](CommandInterface& interface) {
+                   answer(interface.handle(from_radio(c, info.sender), e.strand.now()));
+                 });
                },
                e.robot),
            e.read(
                topics::joystick,
-               [&e, &commands, answer](const radio::Joystick&j, const wire::SampleInfo&info) {
-                 answer(commands.handle(from_radio(j, info.sender), e.strand.now()));
+               [&e, commands, answer](const radio::Joystick&j, const wire::SampleInfo&info) {
+                 commands([&](CommandInterface& interface) {
+                   answer(interface.handle(from_radio(j, info.sender), e.strand.now()));
+                 });
                },
                e.robot),
        })
@@ -129,20 +134,12 @@ void RadioEdge::close() {
   endpoints_->readers.clear();
 }
 
-void RadioEdge::send(const Notice& notice) {
-  endpoints_->send(endpoints_->notification, to_radio(notice, endpoints_->robot));
-}
-
 void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
   endpoints_->send(endpoints_->authority, to_radio(commands, endpoints_->robot, now));
 }
 
 void RadioEdge::send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options) {
   endpoints_->send(endpoints_->behaviour, to_radio(view, options, endpoints_->robot));
-}
-
-void RadioEdge::send_health(const std::vector<ComponentHealth>& components) {
-  endpoints_->send(endpoints_->health, to_radio(components, endpoints_->robot));
 }
 
 void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {

@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 
-#include "core/component/vital.hpp"
 #include "core/config/platform.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
@@ -24,8 +23,9 @@ struct RobotReport {
 class RadioEdge {
  public:
   struct Parts {
-    CommandInterface& commands;
     Directory& directory;
+    /// Runs it with the command interface; not at all while there is none.
+    std::function<void(const std::function<void(CommandInterface&)>&)> commands;
     /// Runs what gives an answer once all that it tells of is on disk.
     std::function<void(Task)> settle{};
   };
@@ -43,11 +43,9 @@ class RadioEdge {
   /// Nothing is heard any more. From any thread.
   void close();
 
-  void send(const Notice& notice);
   void send_authority(const CommandInterface& commands, Time now);
   void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
   void send_state(const RobotReport& report, std::uint64_t stamp);
-  void send_health(const std::vector<ComponentHealth>& components);
   /// And from now on a sign of life once a second, and when somebody appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
   /// What passed on the wire since the last call. `inner_malformed`: samples on the robot's inner network that

@@ -121,10 +121,11 @@ StateKeeper::~StateKeeper() = default;
 
 void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers) {
   Writer& w = *writer_;
-  if (!w.disk || (w.state && w.state->same_state(state))) return;
+  if (w.state && w.state->same_state(state)) return;
   state.answers = answers();
-  w.next = encode(state);
   w.state = std::move(state);
+  if (!w.disk) return;
+  w.next = encode(*w.state);
   ++w.asked;
   if (w.params.lazy == Duration{0}) w.start();
 }
@@ -138,5 +139,6 @@ void StateKeeper::when_safe(Task task) {
 
 void StateKeeper::tick() { writer_->tick(); }
 bool StateKeeper::failing() const { return writer_->failed; }
+const std::optional<Snapshot>& StateKeeper::given() const { return writer_->state; }
 
 }  // namespace adit::agent

@@ -28,7 +28,7 @@ class StateKeeper {
     std::function<void(bool failing, const std::string& text)> failing{};
   };
 
-  /// `disk` null: nothing is kept. `writer`: where a disk that takes time is written.
+  /// `disk` null: nothing is kept beyond this process. `writer`: where a disk that takes time is written.
   StateKeeper(KeeperParams params, std::shared_ptr<store::Disk> disk, Executor& command,
               std::shared_ptr<Executor> writer, std::uint64_t generation, Outputs outputs);
   ~StateKeeper();
@@ -44,6 +44,8 @@ class StateKeeper {
   void tick();
 
   bool failing() const;
+  /// The state given last, with or without a disk; nothing before the first.
+  const std::optional<Snapshot>& given() const;
 
  private:
   struct Writer;

@@ -30,10 +30,10 @@ TEST(Convert, LongTextsFitTheirTopics) {
                       std::string(10'000, 'x')};
   EXPECT_LE(encoded(to_radio(notice, name)), wire::topics::notification.max_bytes);
 
-  ComponentHealth part{};
+  ComponentRow part{};
   part.name = name;
-  part.last_failure = std::string(10'000, 'x');
-  EXPECT_LE(encoded(to_radio(std::vector<ComponentHealth>(8, part), name)), wire::topics::health.max_bytes);
+  part.text = std::string(10'000, 'x');
+  EXPECT_LE(encoded(to_radio(std::vector<ComponentRow>(8, part), name)), wire::topics::health.max_bytes);
 }
 
 TEST(Convert, ShortTextsStay) {

@@ -10,6 +10,7 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "nav_msgs/msg/Odometry.h"
+#include "robot_agent/motion/scans.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"
 
 namespace adit::agent {
@@ -80,9 +81,8 @@ class OdometryTest : public testing::Test {
   OdometryTest() {
     Driver::Handlers handlers{};
     handlers.odometry = [this](const Pose3& pose, const Twist2&, std::uint64_t) { seen.push_back(pose); };
-    handlers.points = [](auto, auto) {};
     handlers.battery = [](float) {};
-    driver = Driver::open(*agent, *strand, *strand, std::move(handlers)).value();
+    driver = Driver::open(*agent, *strand, std::move(handlers)).value();
     writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::odom).value();
     run(3s);
   }

@@ -8,6 +8,19 @@
 namespace adit::agent {
 namespace {
 
+/// A planner on the caller's strand.
+class NearPlanner final : public PlanService {
+ public:
+  explicit NearPlanner(Executor& strand) : planner_({}, strand, {}) { EXPECT_TRUE(planner_.start()); }
+  std::uint64_t instance() const override { return 1; }
+  void plan(std::shared_ptr<PlanJob> job, Task done) override {
+    planner_.plan(std::move(job), std::move(done));
+  }
+
+ private:
+  Planner planner_;
+};
+
 /// Navigation on a virtual strand: a scan every 100 ms, a step every 50 ms, with odometry and points given by
 /// the test.
 class NavigationTest : public testing::Test {
@@ -58,11 +71,13 @@ class NavigationTest : public testing::Test {
   std::uint64_t stamp{};
   Twist2 velocity{};
   Progress progress{};
+  NearPlanner planner{*strand};
   Navigation navigation{
       NavigationParams{},
       *strand,
       {},
       localisation,
+      planner,
       {[this](const Twist2& v) { velocity = v; }, [this](const Progress& p) { progress = p; }}};
   Mux mux{navigation};
   Mux::Output goal_writer{mux.connect("goal", 10s)};

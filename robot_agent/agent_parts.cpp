@@ -1,0 +1,174 @@
+#include "robot_agent/agent_parts.hpp"
+
+namespace adit::agent {
+namespace {
+
+KeeperParams keeper_params(const AgentParams& params) {
+  KeeperParams k{};
+  if (params.defects.has(Defect::acknowledged_lost)) k.lazy = 5s;
+  return k;
+}
+
+}  // namespace
+
+void PlannerUnit::plan(std::shared_ptr<PlanJob> job, Task done) {
+  const auto seat = unit_.seat();
+  // The seat outlives its strand's tasks.
+  seat->strand->post([seat = seat.get(), job = std::move(job), done = std::move(done), caller = &caller_] {
+    auto* planner = static_cast<Planner*>(seat->component.get());
+    if (!planner) return;
+    planner->plan(job, [lease = seat->lease, done, caller] {
+      caller->post([lease, done] {
+        if (lease->valid()) done();
+      });
+    });
+  });
+}
+
+Agent::Parts::Parts(const AgentParams& agent_params, std::string tree_file, Runtime& agent_runtime)
+    : params(agent_params),
+      runtime(agent_runtime),
+      tree(std::move(tree_file)),
+      command(agent_runtime, command_unit()),
+      planner(agent_runtime, planner_unit()),
+      sensors(agent_runtime, sensors_unit()),
+      watch_strand(agent_runtime.strand("supervisor")) {}
+
+Agent::Parts::~Parts() {
+  watch_strand->end();
+  for (Unit* unit : {&command, &sensors, &planner}) unit->end();
+  if (disk_strand) disk_strand->end();
+  if (watch) watch->stop();
+  if (edges && edges->radio) edges->radio->close();
+  if (edges && edges->driver) edges->driver->close();
+}
+
+UnitParams Agent::Parts::command_unit() {
+  UnitParams unit{};
+  unit.name = "command";
+  unit.make = [this](Executor& strand,
+                     std::shared_ptr<const Lease> lease) -> Result<std::unique_ptr<Component>> {
+    auto decider = Decider::load(tree);
+    if (!decider) return decider.error();
+    return std::unique_ptr<Component>(
+        std::make_unique<Core>(params, strand, std::move(*decider), *edges, std::move(lease)));
+  };
+  return unit;
+}
+
+UnitParams Agent::Parts::planner_unit() {
+  UnitParams unit{};
+  unit.name = "planner";
+  unit.heavy = true;
+  unit.make = [this](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(std::make_unique<Planner>(
+        PlannerParams{params.platform, params.planning}, strand, Log(params.log, params.name)));
+  };
+  return unit;
+}
+
+UnitParams Agent::Parts::sensors_unit() {
+  UnitParams unit{};
+  unit.name = "sensors";
+  unit.make = [this](Executor& strand,
+                     std::shared_ptr<const Lease> lease) -> Result<std::unique_ptr<Component>> {
+    Executor& to = command_strand();
+    auto output = [&to, lease, edges = edges.get()](std::shared_ptr<PointCloud> points, std::uint64_t stamp) {
+      to.post([lease, edges, points = std::move(points), stamp] {
+        if (lease->valid() && edges->core) edges->core->scan(points, stamp);
+      });
+    };
+    return std::unique_ptr<Component>(
+        std::make_unique<Scans>(strand, Log(params.log, params.name), std::move(output)));
+  };
+  unit.fit = [this](const std::shared_ptr<Seat>& seat) -> Result<std::shared_ptr<void>> {
+    auto reader = Scans::read(*robot_wire, *seat->strand, [seat = std::weak_ptr<Seat>(seat)] {
+      const auto taken = seat.lock();
+      return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
+    });
+    if (!reader) return reader.error();
+    return std::shared_ptr<void>(std::move(*reader));
+  };
+  return unit;
+}
+
+Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
+  robot_wire = &robot;
+  if (const auto opened = command.open(); !opened) return opened.error();
+  Executor& strand = command_strand();
+  edges = std::make_unique<Edges>(strand);
+  Edges& e = *edges;
+  auto notifier = Notifier::open(radio, params.name);
+  if (!notifier) return notifier.error();
+  e.notifier = std::move(*notifier);
+  auto radio_edge = RadioEdge::open(radio, strand, params.name);
+  if (!radio_edge) return radio_edge.error();
+  e.radio = std::move(*radio_edge);
+
+  e.restored = restore_state(params.disk);
+  if (params.disk && !params.disk->instant()) disk_strand = runtime.strand("disk");
+  e.keeper = std::make_unique<StateKeeper>(keeper_params(params), params.disk, strand, disk_strand,
+                                           e.restored.generation, keeper_outputs());
+
+  const auto with_core = [&e](const auto& use) {
+    if (e.core) use(*e.core);
+  };
+  Driver::Handlers handlers{};
+  handlers.odometry = [with_core](const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
+    with_core([&](Core& core) { core.odometry(odom, twist, stamp); });
+  };
+  handlers.battery = [with_core](float charge) { with_core([&](Core& core) { core.battery(charge); }); };
+  auto driver = Driver::open(robot, strand, std::move(handlers));
+  if (!driver) return driver.error();
+  e.driver = std::move(*driver);
+
+  for (Unit* unit : {&planner, &sensors})
+    if (const auto opened = unit->open(); !opened) return opened.error();
+  plans = std::make_unique<PlannerUnit>(planner, strand);
+  e.planner = plans.get();
+  auto opened =
+      Watch::open({params.name, params.supervision, Log(params.log, params.name), params.end, params.alive},
+                  *watch_strand, radio, robot, *e.notifier);
+  if (!opened) return opened.error();
+  watch = std::move(*opened);
+  e.watch = watch.get();
+  watch->watch(command, {.name = "command", .replaceable = false, .always = true});
+  watch->watch(planner, {.name = "planner"});
+  watch->watch(sensors, {.name = "sensors"});
+  if (params.disk) watch->note({.name = "store"});
+  return e.radio->listen({e.directory,
+                          [with_core](const std::function<void(CommandInterface&)>& use) {
+                            with_core([&](Core& core) { core.commands(use); });
+                          },
+                          [&e](Task task) {
+                            if (e.core) e.core->keep();
+                            e.keeper->when_safe(std::move(task));
+                          }});
+}
+
+StateKeeper::Outputs Agent::Parts::keeper_outputs() {
+  return {[this](bool failing, const std::string& text) {
+    if (failing)
+      edges->notifier->send({{},
+                             Severity::error,
+                             "store_failing",
+                             Reason::cannot_write,
+                             params.name + " cannot keep its state over a restart: " + text});
+    else
+      edges->notifier->send({{}, Severity::info, "store_works", Reason::none, params.name + ": " + text});
+    ComponentRow row{.name = "store", .healthy = !failing};
+    if (failing) {
+      row.state = PartState::failed;
+      row.text = "the disk does not keep the state";
+    }
+    watch->note(row);
+  }};
+}
+
+Unit* Agent::Parts::find(const std::string& component) {
+  for (Unit* unit : {&command, &planner, &sensors})
+    if (unit->name() == component) return unit;
+  return nullptr;
+}
+
+}  // namespace adit::agent

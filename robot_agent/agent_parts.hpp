@@ -1,0 +1,50 @@
+#pragma once
+#include "robot_agent/agent_core.hpp"
+#include "robot_agent/motion/scans.hpp"
+
+namespace adit::agent {
+
+/// Sends planning jobs to the planner there is, and plans back while it counts.
+class PlannerUnit final : public PlanService {
+ public:
+  PlannerUnit(Unit& unit, Executor& caller) : unit_(unit), caller_(caller) {}
+  std::uint64_t instance() const override { return unit_.instance(); }
+  void plan(std::shared_ptr<PlanJob> job, Task done) override;
+
+ private:
+  Unit& unit_;
+  Executor& caller_;
+};
+
+/// The parts of an agent, composed: three units on strands of their own, what they share, and who watches
+/// them. Private to agent.cpp.
+struct Agent::Parts {
+  Parts(const AgentParams& agent_params, std::string tree_file, Runtime& agent_runtime);
+  /// First nothing runs any more, then the parts go.
+  ~Parts();
+  Parts(const Parts&) = delete;
+  Parts& operator=(const Parts&) = delete;
+
+  Result<void> open(wire::Wire& radio, wire::Wire& robot);
+  Unit* find(const std::string& component);
+  Executor& command_strand() { return *command.seat()->strand; }
+
+  const AgentParams& params;
+  Runtime& runtime;
+  std::string tree;  ///< the file found
+  wire::Wire* robot_wire{};
+  std::unique_ptr<Edges> edges{};
+  Unit command, planner, sensors;
+  std::shared_ptr<Executor> watch_strand;
+  std::shared_ptr<Executor> disk_strand{};  ///< null: there is no disk, or one that takes no time
+  std::unique_ptr<PlannerUnit> plans{};
+  std::unique_ptr<Watch> watch{};
+
+ private:
+  StateKeeper::Outputs keeper_outputs();
+  UnitParams command_unit();
+  UnitParams planner_unit();
+  UnitParams sensors_unit();
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,55 @@
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "core/component/component.hpp"
+#include "nav/navigator.hpp"
+
+namespace adit::agent {
+
+/// A scan: points in the frame of base_link, m, and where base_link was.
+struct Scan {
+  PointCloud points{};
+  Pose3 body{};  ///< odometry frame
+};
+
+/// One planning cycle: what to plan, and the plan.
+struct PlanJob {
+  std::shared_ptr<Scan> scan{};
+  nav::Target target{};        ///< kind none: the scan enters the map, nothing is planned
+  Pose2 pose{};                ///< odometry frame
+  std::uint64_t generation{};  ///< of the goal, for whoever asked
+  Time made{};
+  nav::Plan plan{};
+  std::vector<Eigen::Vector2f> obstacles{};  ///< odometry frame
+};
+
+struct PlannerParams {
+  Platform platform{};
+  Duration planning{20ms};  ///< what a cycle takes in rehearsal
+};
+
+/// The planning work: obstacle map and local planner, on a strand of its own. When it is made anew its map
+/// is empty; the next scans fill it.
+class Planner : public Component {
+ public:
+  Planner(PlannerParams params, Executor& strand, Log log);
+  /// On its strand. `done` runs there when the job's plan is made.
+  void plan(std::shared_ptr<PlanJob> job, Task done);
+
+ private:
+  PlannerParams params_;
+  std::shared_ptr<nav::Navigator> navigator_;
+};
+
+/// The way to whatever planner there is.
+class PlanService {
+ public:
+  virtual ~PlanService() = default;
+  /// Rises when the planner is made anew: jobs from before are lost.
+  virtual std::uint64_t instance() const = 0;
+  /// `done` runs on the caller's strand; never when the planner fails or hangs.
+  virtual void plan(std::shared_ptr<PlanJob> job, Task done) = 0;
+};
+
+}  // namespace adit::agent

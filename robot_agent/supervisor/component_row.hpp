@@ -1,0 +1,23 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/supervisor/overseer.hpp"
+
+namespace adit::agent {
+
+/// One line of the robot's health: a component, or a part of the robot that has none (driver, disk).
+struct ComponentRow {
+  std::string name{};
+  PartState state{PartState::up};
+  bool healthy{true};
+  bool automatic{true};
+  std::optional<Time> heard{};  ///< last sign of life, when it is not one of the supervisor's components
+  Duration silent{};
+  std::uint32_t restarts{};
+  std::uint32_t hung{};  ///< threads that it left behind
+  std::string text{};
+};
+
+}  // namespace adit::agent

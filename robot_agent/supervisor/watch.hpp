@@ -1,0 +1,58 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/supervisor/supervisor.hpp"
+#include "robot_agent/radio/notifier.hpp"
+#include "robot_agent/supervisor/component_row.hpp"
+
+namespace adit::agent {
+
+struct WatchParams {
+  std::string robot{};
+  SupervisionParams supervision{};
+  Log log{};
+  /// The agent's process is to end and to be started anew. On the supervisor's strand.
+  std::function<void(const std::string& why)> end{};
+  /// Supervisor and command component both live: every second look, on the supervisor's strand.
+  std::function<void()> alive{};
+};
+
+/// The supervisor of an agent, on a strand of its own beside the command strand: tells operators of health
+/// and failures, sends zero to the driver while the command component is away or silent, has the agent
+/// restarted when nothing else helps. The first unit watched is the command component.
+class Watch {
+ public:
+  /// Errors of the wires.
+  static Result<std::unique_ptr<Watch>> open(WatchParams params, Executor& strand, wire::Wire& radio,
+                                             wire::Wire& robot, Notifier& notifier);
+  ~Watch();
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
+
+  /// Before start().
+  void watch(Unit& unit, PartSpec spec);
+  /// Starts the units, on the strand.
+  void start();
+  /// After the strand's end.
+  void stop();
+
+  // From any thread.
+
+  /// A line of the health report that is no component's; replaces the one of that name.
+  void note(ComponentRow row);
+  /// The operator's word. "agent" restarts the whole of it. Errors: bad_argument, not_supported.
+  Result<void> restart(const std::string& component);
+  Result<void> set_policy(const std::string& component, bool automatic);
+  /// Health as a table for the robot's console; called on the strand.
+  void describe(std::function<void(const std::string&)> answer);
+
+ private:
+  class Impl;
+  explicit Watch(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adit::agent
