@@ -12,7 +12,7 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kHealthPeriod = 5s;
-constexpr Duration kCommandSilent = 200ms;  // the supervisor sends zero when the command strand does not
+constexpr Duration kCommandSilent = 120ms;  // the supervisor sends zero when the command strand does not
 constexpr Duration kLastWords = 100ms;      // for the notification of what was escalated
 constexpr const char* kAgent = "agent";
 
