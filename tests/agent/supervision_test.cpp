@@ -114,17 +114,32 @@ TEST_F(SupervisionTest, AHungSensorsComponentIsReplacedAndScansComeAgain) {
   EXPECT_GT(bench.command.vx, 0.5);
 }
 
-TEST_F(SupervisionTest, ACrashedCommandComponentIsBackUnderAnotherEpochWithZeroUntilAskedAnew) {
-  const auto epoch = op->authority.epoch();
+TEST_F(SupervisionTest, ACrashedCommandComponentIsBackWithItsStateUnderAnotherEpoch) {
+  EXPECT_EQ(bench.ask(*op, radio::CMD_LOCK), Reason::none);
+  const auto before = op->authority;
   inject("command", ComponentFault::crash);
   bench.run(10ms);
   EXPECT_TRUE(bench.command.zero());
   bench.run(90ms);
-  EXPECT_THAT(op->told(), Contains("component_back"));
-  bench.run(500ms);
-  EXPECT_NE(op->authority.epoch().start(), epoch.start());
+  EXPECT_THAT(op->told(), testing::IsSupersetOf({"component_failed", "component_back", "restarted"}));
+  bench.run(1s);
+  EXPECT_NE(op->authority.epoch().start(), before.epoch().start());
+  EXPECT_EQ(op->authority.epoch().counter(), before.epoch().counter() + 1);
+  EXPECT_EQ(op->authority.holder(), "op1");
+  EXPECT_TRUE(op->authority.locked());
   EXPECT_EQ(health("command").restarts(), 1u);
-  EXPECT_EQ(bench.ask(*op, radio::CMD_TAKE), Reason::none);
+  EXPECT_EQ(op->behaviour.mode(), "waypoint");
+  EXPECT_GT(bench.command.vx, 0.5);  // to its goal, once the tree had checked the conditions
+}
+
+TEST_F(SupervisionTest, AStopSurvivesACrashOfTheCommandComponent) {
+  EXPECT_EQ(bench.ask(*op, radio::CMD_STOP), Reason::none);
+  const std::size_t commands = bench.commands.size();
+  inject("command", ComponentFault::crash);
+  bench.run(2s);
+  EXPECT_EQ(op->authority.stops().size(), 1u);
+  for (std::size_t i = commands; i < bench.commands.size(); ++i) EXPECT_TRUE(bench.commands[i].zero());
+  EXPECT_GT(bench.commands.size(), commands + 20);
 }
 
 TEST_F(SupervisionTest, AHungCommandStrandIsSeenFromOutsideAndEndsTheAgent) {
