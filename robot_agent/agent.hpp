@@ -36,7 +36,7 @@ struct AgentParams {
   /// The agent's process is to end and to be started anew: a component could not be brought back. Called
   /// once, on a strand of the agent; empty: the agent stays as it is, with zero at the driver.
   std::function<void(const std::string& why)> end{};
-  /// Called ten times a second while supervisor and command component live, on the supervisor's strand.
+  /// Called twenty times a second while supervisor and command component live, on the supervisor's strand.
   std::function<void()> alive{};
 };
 

@@ -3,13 +3,17 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/random.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cctype>
+#include <cstring>
 #include <fstream>
 #include <iostream>
+#include <sstream>
+#include <thread>
 
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
@@ -22,6 +26,7 @@
 #include "robot_agent/program/console.hpp"
 #include "robot_agent/program/parent.hpp"
 #include "robot_agent/program/robot_config.hpp"
+#include "robot_agent/program/service.hpp"
 #include "robot_agent/program/zero.hpp"
 
 namespace {
@@ -36,6 +41,7 @@ Examples:
   robot_agent --config config/robots/r1.yaml --name r7 --pose 4 2 1.57 --robot-domain 7
   robot_agent console status --name r1                   at the robot itself
   robot_agent console unlock --name r1                   end the lock of an operator who is gone
+  robot_agent console restart planner --name r1          make a component anew
 
 Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration.)";
 
@@ -43,7 +49,8 @@ struct Options {
   std::string config{}, name{}, state{}, log{}, link{}, record{};
   std::vector<double> pose{};
   int domain{-1}, robot_domain{-1};
-  bool supervised{}, reports{};
+  double memory_limit{-1.0}, good_run{10.0};
+  bool supervised{}, reports{}, allow_faults{};
 };
 
 int fail(const Error& error, int code) {
@@ -69,6 +76,7 @@ Result<RobotConfig> load(const Options& options) {
     config->radio.link = std::move(*link);
   }
   if (!options.state.empty()) config->state = options.state;
+  if (options.memory_limit >= 0.0) config->memory_limit = options.memory_limit;
   if (!options.log.empty() && !level_from_name(options.log, config->log))
     return Error{Reason::bad_argument, "--log is trace, debug, info, warn, error or off"};
   if (!options.record.empty()) config->record = options.record;
@@ -113,7 +121,35 @@ sigset_t end_signals() {
   return set;
 }
 
-int run_agent(const RobotConfig& config, bool reports) {
+/// What came of a line at the robot's console that only --allow-faults knows.
+std::string inject(agent::Agent& agent, const std::string& line) {
+  std::istringstream words(line);
+  std::string verb, fault, component;
+  words >> verb >> fault >> component;
+  if (fault != "crash" && fault != "hang") return "fault crash|hang COMPONENT\n";
+  const auto done = agent.inject(component, fault == "hang" ? ComponentFault::hang : ComponentFault::crash);
+  return done ? "done\n" : done.error().text + "\n";
+}
+
+/// Allocations beyond that fail; what then fails is restarted.
+void limit_memory(double megabytes) {
+  if (megabytes <= 0.0) return;
+  const auto bytes = static_cast<rlim_t>(megabytes * 1024.0 * 1024.0);
+  const rlimit limit{bytes, bytes};
+  if (::setrlimit(RLIMIT_DATA, &limit) != 0)
+    std::cerr << "robot_agent: the memory limit cannot be set: " << std::strerror(errno) << "\n";
+}
+
+/// A component that hangs must not hold up the end of the process.
+void end_soon() {
+  std::thread([] {
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    std::_Exit(0);
+  }).detach();
+}
+
+int run_agent(const RobotConfig& config, const Options& options) {
+  limit_memory(config.memory_limit);
   auto log = make_live_log({config.log});
   if (!log) return fail(log.error(), 1);
   LiveRuntime runtime;
@@ -145,33 +181,47 @@ int run_agent(const RobotConfig& config, bool reports) {
       return fail({disk.reason(), disk.error().text + " (state: FOLDER, or none to keep nothing)"}, 2);
     params.disk = std::move(*disk);
   }
+  params.end = [log = Log(params.log, config.name)](const std::string& why) {
+    log.error(why + "; ending to be started anew");
+    std::_Exit(kEscalatedExit);
+  };
+  const Service service = Service::from_environment();
+  params.alive = [service, reports = options.reports, ready = false, beats = 0]() mutable {
+    if (reports) (void)!::write(kReportFd, "1", 1);
+    if (!std::exchange(ready, true)) service.tell("READY=1");
+    if (beats++ % 10 == 0) service.tell("WATCHDOG=1");
+  };
   agent::Agent agent(params, runtime, keeper.tap(**radio, "radio"), keeper.tap(**robot, "robot"));
   // The console's socket is also what keeps two agents of one name apart.
   std::atomic<bool> up{false};
-  auto console = Console::open(config.name, [&agent, &up](const std::string& line, auto answer) {
-    if (up)
-      agent.at_console(line, std::move(answer));
-    else
+  const bool faults = options.allow_faults;
+  auto console = Console::open(config.name, [&agent, &up, faults](const std::string& line, auto answer) {
+    if (!up)
       answer("starting\n");
+    else if (faults && line.starts_with("fault "))
+      answer(inject(agent, line));
+    else
+      agent.at_console(line, std::move(answer));
   });
   if (!console) return fail(console.error(), 2);
   if (const auto started = agent.start(); !started) return fail(started.error(), 1);
   up = true;
-  if (reports)
-    // The command strand answers after it sent its first zero.
-    agent.at_console("status", [](const std::string&) { (void)!::write(kReportFd, "1", 1); });
   Log(params.log, config.name)
       .info("up on radio domain " + std::to_string(config.radio.domain) + ", robot domain " +
             std::to_string(config.robot_domain));
   const sigset_t set = end_signals();
   int number = 0;
   sigwait(&set, &number);
+  service.tell("STOPPING=1");
+  end_soon();
   console->reset();
+  if (runtime.left_behind() > 0) std::_Exit(0);  // threads that hang would meet objects that are gone
   return 0;
 }
 
-int run_parent(const RobotConfig& config, int argc, char** argv) {
+int run_parent(const RobotConfig& config, const Options& options, int argc, char** argv) {
   ParentParams params{};
+  params.good_run = from_seconds(options.good_run);
   params.command.push_back("robot_agent");
   for (int i = 1; i < argc; ++i)
     if (std::string(argv[i]) != "--supervised") params.command.push_back(argv[i]);
@@ -185,6 +235,12 @@ int run_parent(const RobotConfig& config, int argc, char** argv) {
       },
       [&] { zero.send(); });
   return parent.run();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += (line.empty() ? "" : " ") + word;
+  return line;
 }
 
 int ask(const std::string& name, const std::string& line) {
@@ -216,26 +272,34 @@ int main(int argc, char** argv) {
       "--record", options.record,
       "folder for the recording of the last minutes, or none; below the state folder when not given");
   app.add_flag("--supervised", options.supervised, "run under a parent that sends zero when the agent dies");
+  app.add_option("--memory-limit", options.memory_limit, "MB that the agent may allocate; 0: no limit")
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_flag("--allow-faults", options.allow_faults,
+               "let the robot's console make components fail: fault crash|hang COMPONENT");
   app.add_flag("--reports", options.reports)->group("");  // set by the parent
-  auto* console = app.add_subcommand("console", "the robot's own console: status, unlock");
-  std::string verb, robot;
-  console->add_option("verb", verb, "status or unlock")
-      ->required()
-      ->check(CLI::IsMember({"status", "unlock"}));
+  // For measurements that kill the agent again and again.
+  app.add_option("--good-run", options.good_run)->group("")->check(CLI::Range(0.0, 3600.0));
+  auto* console = app.add_subcommand("console", "the robot's own console: status, unlock, health, restart");
+  std::vector<std::string> words;
+  std::string robot;
+  console
+      ->add_option("command", words,
+                   "status | unlock | health | restart COMPONENT | policy COMPONENT auto|manual")
+      ->required();
   console->add_option("--name", robot, "the robot")->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return config::end_usage(app, error);
   }
-  if (*console) return ask(robot, verb);
+  if (*console) return ask(robot, joined(words));
   if (options.config.empty()) return fail({Reason::bad_argument, "--config FILE is missing; see --help"}, 2);
   const auto config = load(options);
   if (!config) return fail(config.error(), 2);
 
   const sigset_t set = end_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  if (options.supervised) return run_parent(*config, argc, argv);
+  if (options.supervised) return run_parent(*config, options, argc, argv);
   if (options.reports) prctl(PR_SET_PDEATHSIG, SIGTERM);
-  return run_agent(*config, options.reports);
+  return run_agent(*config, options);
 }

@@ -72,28 +72,34 @@ bool Parent::spawn() {
   return pidfd_ >= 0;
 }
 
+int Parent::reap() {
+  int status = 0;
+  ::waitpid(child_, &status, 0);
+  if (prepared_) send_zero_();  // before anything else
+  commands_ = false;
+  close_fd(pidfd_);
+  close_fd(report_);
+  child_ = -1;
+  return exit_code(status);
+}
+
+void Parent::hear() {
+  char bytes[64];
+  const ssize_t got = ::read(report_, bytes, sizeof bytes);
+  if (got <= 0) return close_fd(report_);
+  commands_ = true;
+  heard_ = Clock::now();
+}
+
 int Parent::wait_for_end() {
   auto killed_at = Clock::time_point::max();
+  heard_ = Clock::now();
   for (;;) {
     pollfd wait[3] = {{pidfd_, POLLIN, 0}, {signals_, POLLIN, 0}, {report_, POLLIN, 0}};
     const bool zero = prepared_ && !commands_;
-    const int patience = zero ? milliseconds(params_.zero_period) : ending_ ? 100 : -1;
-    ::poll(wait, 3, patience);
-    if (wait[0].revents != 0) {
-      int status = 0;
-      ::waitpid(child_, &status, 0);
-      if (prepared_) send_zero_();  // before anything else
-      commands_ = false;
-      close_fd(pidfd_);
-      close_fd(report_);
-      child_ = -1;
-      return exit_code(status);
-    }
-    if (wait[2].revents != 0) {
-      char byte{};
-      if (::read(report_, &byte, 1) == 1) commands_ = true;
-      close_fd(report_);
-    }
+    ::poll(wait, 3, milliseconds(zero ? params_.zero_period : Duration(100ms)));
+    if (wait[0].revents != 0) return reap();
+    if (wait[2].revents != 0) hear();
     if (wait[1].revents != 0) {
       signalfd_siginfo info{};
       (void)!::read(signals_, &info, sizeof info);
@@ -101,7 +107,14 @@ int Parent::wait_for_end() {
       ::kill(child_, SIGTERM);
       killed_at = Clock::now() + params_.patience;
     }
-    if (Clock::now() > killed_at) ::kill(child_, SIGKILL);
+    const auto now = Clock::now();
+    const bool silent = report_ >= 0 && now - heard_ > (commands_ ? params_.pulse : params_.start);
+    if (silent && !ending_) {
+      std::fprintf(stderr, "robot_agent: the agent hangs; ending it\n");
+      heard_ = now;  // once
+      ::kill(child_, SIGKILL);
+    }
+    if (now > killed_at) ::kill(child_, SIGKILL);
     if (zero) send_zero_();
   }
 }
@@ -132,11 +145,11 @@ int Parent::run() {
     const int code = wait_for_end();
     if (ending_ || code == 0 || code == 2) return ending_ ? 0 : code;
     if (Clock::now() - started > params_.good_run) pause = params_.first_restart;
-    std::fprintf(stderr, "robot_agent: the agent ended with %d; sending zero, starting it again in %.1f s\n",
+    std::fprintf(stderr, "robot_agent: the agent ended with %d; sending zero, starting it again in %.2f s\n",
                  code, seconds(pause));
     rest(pause);
     if (ending_) return 0;
-    pause = std::min(2 * pause, params_.longest_restart);
+    pause = std::min(4 * pause, params_.longest_restart);
   }
 }
 

@@ -55,6 +55,7 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.robot_domain = static_cast<std::uint32_t>(root->integer("robot_domain", 0, 232, 0));
   c.shared_memory = root->flag("shared_memory", c.shared_memory);
   c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));
+  c.memory_limit = root->number("memory_limit", config::within(0.0, 1e6), c.memory_limit);
   c.tree = root->text("tree", c.tree);
   if (auto tree = config::find_file(c.tree, file))
     c.tree = std::filesystem::absolute(*tree).lexically_normal().string();

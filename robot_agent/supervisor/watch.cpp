@@ -134,7 +134,7 @@ class Watch::Impl {
     const bool commands = command.state == PartState::up && command.silent <= kCommandSilent;
     const bool ends = supervisor_.escalated() || ending_.active();
     if (!commands || ends) (void)zero_.write({});
-    if (commands && !ends && params_.alive && ++looks_ % 2 == 0) params_.alive();
+    if (commands && !ends && params_.alive) params_.alive();
     if (!changed_ && now - sent_ < kHealthPeriod) return;
     changed_ = false;
     sent_ = now;
@@ -152,7 +152,6 @@ class Watch::Impl {
   std::vector<PartSpec> specs_{};  // as at the start: read from any thread
   std::vector<ComponentRow> notes_{};
   std::uint64_t seq_{};
-  std::uint64_t looks_{};
   bool changed_{true};
   Time sent_{};
   Timer ending_{};

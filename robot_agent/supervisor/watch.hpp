@@ -16,7 +16,7 @@ struct WatchParams {
   Log log{};
   /// The agent's process is to end and to be started anew. On the supervisor's strand.
   std::function<void(const std::string& why)> end{};
-  /// Supervisor and command component both live: every second look, on the supervisor's strand.
+  /// Supervisor and command component both live: at each look, on the supervisor's strand.
   std::function<void()> alive{};
 };
 

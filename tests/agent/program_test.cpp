@@ -1,12 +1,16 @@
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <cstdlib>
 
 #include "robot_agent/program/console.hpp"
 #include "robot_agent/program/parent.hpp"
 #include "robot_agent/program/robot_config.hpp"
+#include "robot_agent/program/service.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::agent {
@@ -75,6 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadFile{"domain_range", "name: r1\nplatform: wheeled\nrobot_domain: 500\n", "r.yaml:3"},
                     BadFile{"lease", "name: r1\nplatform: wheeled\nlock_lease: -1\n", "r.yaml:3"},
                     BadFile{"after_restart", "name: r1\nplatform: wheeled\nafter_restart: go\n", "r.yaml:3"},
+                    BadFile{"memory", "name: r1\nplatform: wheeled\nmemory_limit: -1\n", "r.yaml:3"},
                     BadFile{"log", "name: r1\nplatform: wheeled\nlog: loud\n", "r.yaml:3"}),
     [](const auto& each) { return each.param.name; });
 
@@ -125,6 +130,59 @@ class ParentTest : public testing::Test {
   live::Folder folder{};
   int zeros{}, prepared{};
 };
+
+TEST_F(ParentTest, KillsAChildThatFallsSilentAndRestartsIt) {
+  const std::string mark = folder.path() + "/mark";
+  ParentParams params =
+      shell("if [ -e " + mark + " ]; then exit 0; fi; touch " + mark + "; echo -n 1 >&3; exec sleep 60");
+  params.pulse = 300ms;
+  Parent parent(
+      params, [] {}, [&] { ++zeros; });
+  const auto started = std::chrono::steady_clock::now();
+  EXPECT_EQ(parent.run(), 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - started, 5s);
+  EXPECT_GE(zeros, 1);
+}
+
+TEST_F(ParentTest, KillsAChildThatNeverCommands) {
+  const std::string mark = folder.path() + "/mark";
+  ParentParams params = shell("if [ -e " + mark + " ]; then exit 0; fi; touch " + mark + "; exec sleep 60");
+  params.start = 300ms;
+  Parent parent(
+      params, [] {}, [&] { ++zeros; });
+  EXPECT_EQ(parent.run(), 0);
+  EXPECT_GE(zeros, 5);
+}
+
+TEST_F(ParentTest, AChildThatPulsesIsLeftAlone) {
+  ParentParams params = shell("for i in 1 2 3 4 5 6 7 8; do echo -n 1 >&3; sleep 0.1; done; exit 0");
+  params.pulse = 500ms;
+  Parent parent(
+      params, [] {}, [] {});
+  EXPECT_EQ(parent.run(), 0);
+}
+
+TEST(Service, TellsWhoListens) {
+  const live::Folder folder;
+  const std::string path = folder.path() + "/notify";
+  const int fd = ::socket(AF_UNIX, SOCK_DGRAM, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  EXPECT_TRUE(Service(path).tell("WATCHDOG=1"));
+  char got[32]{};
+  EXPECT_EQ(::recv(fd, got, sizeof got, MSG_DONTWAIT), 10);
+  EXPECT_STREQ(got, "WATCHDOG=1");
+  ::close(fd);
+}
+
+TEST(Service, NobodyListensIsNoError) {
+  EXPECT_FALSE(Service("").tell("READY=1"));
+  EXPECT_FALSE(Service("/nowhere/at/all").tell("READY=1"));
+  EXPECT_FALSE(Service("relative").tell("READY=1"));
+  EXPECT_FALSE(Service(std::string(200, '/')).tell("READY=1"));
+}
 
 TEST_F(ParentTest, SendsZeroWhileNoChildCommandsAndRestarts) {
   // The first child dies; the second reports that it commands, and ends by itself.
