@@ -19,13 +19,6 @@ long entries(const std::string& folder) {
   return count;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 }  // namespace
 
 Gauge gauge(pid_t pid) {
@@ -63,6 +56,17 @@ SharedMemory shared_memory() {
   return out;
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double most(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
 Trend trend(const std::vector<double>& samples) {
   const long n = static_cast<long>(samples.size()), fifth = std::max(n / 5, 1L);
   if (n == 0) return {};
@@ -70,7 +74,7 @@ Trend trend(const std::vector<double>& samples) {
     const long begin = std::clamp(from, 0L, n - 1), end = std::min(begin + fifth, n);
     return median({samples.begin() + begin, samples.begin() + end});
   };
-  return {part(fifth), part(n - fifth), *std::max_element(samples.begin(), samples.end())};
+  return {part(fifth), part(n - fifth), most(samples)};
 }
 
 }  // namespace adit::soak

@@ -40,5 +40,7 @@ struct Trend {
   double early{}, late{}, most{};
 };
 Trend trend(const std::vector<double>& samples);
+double median(std::vector<double> values);
+double most(const std::vector<double>& values);
 
 }  // namespace adit::soak
