@@ -11,8 +11,7 @@ class ProductAgent final : public RehearsedAgent {
       : agent_(std::move(params), context.runtime, context.radio, context.robot) {}
   Result<void> start() { return agent_.start(); }
   Result<void> inject(const std::string& component, ComponentFault fault) override {
-    return agent_.inject(component, fault == ComponentFault::hang ? agent::ComponentFault::hang
-                                                                  : agent::ComponentFault::crash);
+    return agent_.inject(component, fault);
   }
 
  private:
@@ -36,6 +35,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     params.start = context.spec.pose;
     params.lock_lease = context.lock_lease;
     params.defects = defects;
+    params.end = context.end;
     auto agent = std::make_unique<ProductAgent>(std::move(params), context);
     if (auto started = agent->start(); !started) return started.error();
     return std::unique_ptr<RehearsedAgent>(std::move(agent));
