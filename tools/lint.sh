@@ -43,7 +43,7 @@ check_includes() {
       if (to in part && !allowed(from, to, file))
         printf "%s:%d: %s may not include %s\n", FILENAME, FNR, from, file
       if (file ~ /^\.\.?\//) printf "%s:%d: includes are written from the root\n", FILENAME, FNR
-      if ((to == "fastdds" || to == "fastrtps" || to == "fastcdr") && !in_wire && from != "tests" && from != "bench")
+      if ((to == "fastdds" || to == "fastrtps" || to == "fastcdr") && !in_wire && from != "tests")
         printf "%s:%d: Fast DDS headers belong into core/wire/\n", FILENAME, FNR
       if ((to == "adit" || file ~ /^(builtin_interfaces|std_msgs|geometry_msgs|nav_msgs|sensor_msgs)\//) && !in_wire &&
           from !~ /^(robot_agent|basestation|sim|tests|bench)$/)

@@ -22,7 +22,7 @@
 #include "basestation/station.hpp"
 #include "bench/live/stamps.hpp"
 #include "bench/live/tapped_wire.hpp"
-#include "bench/wire/bare_dds.hpp"
+#include "core/wire/bench/bare_dds.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
 #include "core/wire/topics.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "bench/wire/bare_dds.hpp"
+#include "core/wire/bench/bare_dds.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
 

@@ -1,4 +1,4 @@
-#include "bench/wire/bare_dds.hpp"
+#include "core/wire/bench/bare_dds.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
