@@ -15,6 +15,7 @@
 
 namespace adit::station {
 
+/// What makes one station: who it is, and its rates.
 struct StationParams {
   std::string name{"op1"};                            ///< the operator's: 1 to 32 of [A-Za-z0-9_-]
   Id id{};                                            ///< 128 random bits kept on the station's disk

@@ -45,10 +45,12 @@ bool decode(std::span<const std::uint8_t> bytes, T& sample) {
   }
 }
 
+/// Writes one topic in its generated type; empty until made. One strand writes.
 template <class T>
 class Writer {
  public:
   Writer() = default;
+  /// `wire` must outlive the writer; `partition` empty: the default one. Errors are the wire's.
   static Result<Writer> make(Wire& wire, const Topic<T>& topic, const std::string& partition = {}) {
     auto raw = wire.make_writer(topic, partition);
     if (!raw) return raw.error();
@@ -56,6 +58,8 @@ class Writer {
     writer.raw_ = std::move(*raw);
     return writer;
   }
+  /// Serialises and queues; never blocks. An error says why it could not be queued, and is counted by the
+  /// wire.
   Result<void> write(const T& sample) {
     encode(sample, buffer_);
     return raw_->write(buffer_);

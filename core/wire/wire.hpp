@@ -34,9 +34,10 @@ struct TopicInfo {
 template <class T>
 struct Topic : TopicInfo {};
 
+/// What the wire knows of a sample beside its bytes, whatever they say.
 struct SampleInfo {
-  ParticipantId sender{};
-  Time received{};  ///< the receiver's clock
+  ParticipantId sender{};  ///< who really wrote it
+  Time received{};         ///< the receiver's clock
 };
 
 /// Writes one topic; never blocks. An error says why the sample could not be queued; it is counted, too.
@@ -78,6 +79,9 @@ struct WireCounters {
   std::uint64_t total_out{}, total_in{};          ///< bytes of everything
 };
 
+/// One participant on one domain: makes the writers and readers of its topics, tells who else is there, and
+/// counts. Goodbye is said when it is destroyed. Errors are bad_argument and wire_failed. Calls are safe from
+/// any thread.
 class Wire {
  public:
   virtual ~Wire() = default;
@@ -94,6 +98,7 @@ class Wire {
   /// Calls `handler` on `strand` for every other participant that comes or goes; those present already
   /// are reported at once. One handler per wire; an empty one ends it, and `strand` may go.
   virtual void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) = 0;
+  /// Since this participant was made.
   virtual WireCounters counters() const = 0;
 };
 

@@ -8,6 +8,7 @@
 
 #include "core/config/usage.hpp"
 #include "sim/live/live_world.hpp"
+#include "sim/rehearsal/program/complain.hpp"
 #include "sim/rehearsal/run_picture.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 
@@ -15,9 +16,6 @@ namespace {
 
 using namespace adit;
 using namespace adit::sim;
-
-constexpr int exit_failed = 1;
-constexpr int exit_unreadable = 2;
 
 constexpr const char* examples =
     "Examples:\n"
@@ -27,11 +25,6 @@ constexpr const char* examples =
     "Ends by Ctrl-C, SIGTERM or --for. Exit status: 0 every place was reached and nothing was touched, 1 not "
     "so,\n"
     "2 the scenario cannot be read or the world not be opened.";
-
-int complain(const Error& error) {
-  std::fprintf(stderr, "simulate: %s\n", error.text.c_str());
-  return exit_unreadable;
-}
 
 /// Until Ctrl-C, SIGTERM or the time is up; SIGUSR1 begins the script.
 void wait_for_the_end(const sigset_t& signals, double length, LiveWorld& world) {
@@ -61,9 +54,11 @@ int judge(const Scenario& scenario, const World& world, const RunOutcome& outcom
                 robot.clearance().c_str());
   for (const std::string& line : outcome.report.complaints()) std::fprintf(stderr, "%s\n", line.c_str());
   if (!report_file.empty())
-    if (auto written = write_json(outcome.report, report_file); !written) return complain(written.error());
+    if (auto written = write_json(outcome.report, report_file); !written)
+      return complain("simulate", written.error());
   if (!picture_file.empty())
-    if (auto drawn = draw_run(scenario, world, outcome, picture_file); !drawn) return complain(drawn.error());
+    if (auto drawn = draw_run(scenario, world, outcome, picture_file); !drawn)
+      return complain("simulate", drawn.error());
   return outcome.report.ok() ? 0 : exit_failed;
 }
 
@@ -101,12 +96,12 @@ int main(int argc, char** argv) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   auto scenario = load_scenario(file);
-  if (!scenario) return complain(scenario.error());
+  if (!scenario) return complain("simulate", scenario.error());
   auto world = make_world(scenario->world);
-  if (!world) return complain(world.error());
+  if (!world) return complain("simulate", world.error());
   auto live = LiveWorld::open(*scenario, *world, params);
-  if (!live) return complain(live.error());
-  if (auto started = (*live)->start(); !started) return complain(started.error());
+  if (!live) return complain("simulate", live.error());
+  if (auto started = (*live)->start(); !started) return complain("simulate", started.error());
   for (std::size_t i = 0; i < scenario->robots.size(); ++i)
     std::printf("%s on domain %u\n", scenario->robots[i].id.c_str(),
                 params.domain_base + 1 + static_cast<unsigned>(i));

@@ -17,6 +17,7 @@
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/agent.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"
+#include "tests/point_cloud.hpp"
 
 namespace adit::agent {
 
@@ -223,22 +224,8 @@ class AgentBench {
       const Eigen::Vector2d p = back * Eigen::Vector2d(o.x(), o.y());
       cloud.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), o.z()});
     }
-    sensor_msgs::msg::PointCloud2 c;
+    sensor_msgs::msg::PointCloud2 c = cloud_of({cloud.data()->data(), 3 * cloud.size()});
     stamp(c.header());
-    c.height(1);
-    c.width(static_cast<std::uint32_t>(cloud.size()));
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      sensor_msgs::msg::PointField f;
-      f.name(std::string(1, "xyz"[i]));
-      f.offset(4 * i);
-      f.datatype(7);
-      f.count(1);
-      c.fields().push_back(f);
-    }
-    c.point_step(12);
-    c.row_step(12 * c.width());
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(cloud.data());
-    c.data().assign(bytes, bytes + cloud.size() * 12);
     (void)points_.write(c);
   }
   void stamp(std_msgs::msg::Header& h) {

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cstring>
 #include <limits>
 
 #include "core/exec/virtual_runtime.hpp"
@@ -12,28 +11,16 @@
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/motion/scans.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"
+#include "tests/point_cloud.hpp"
 
 namespace adit::agent {
 namespace {
 
 sensor_msgs::msg::PointCloud2 cloud(const std::vector<std::array<float, 4>>& points,
                                     std::uint32_t step = 16) {
-  sensor_msgs::msg::PointCloud2 c;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    sensor_msgs::msg::PointField f;
-    f.name(std::string(1, "xyz"[i]));
-    f.offset(4 * i);
-    f.datatype(7);
-    f.count(1);
-    c.fields().push_back(f);
-  }
-  c.height(1);
-  c.width(static_cast<std::uint32_t>(points.size()));
-  c.point_step(step);
-  c.row_step(step * c.width());
-  c.data().resize(points.size() * step);
-  for (std::size_t i = 0; i < points.size(); ++i) std::memcpy(&c.data()[i * step], points[i].data(), step);
-  return c;
+  std::vector<float> numbers;
+  for (const auto& point : points) numbers.insert(numbers.end(), point.begin(), point.begin() + step / 4);
+  return cloud_of(numbers, step / 4);
 }
 
 TEST(PointCloud2, PointsOfBothUsualSteps) {

@@ -6,6 +6,7 @@
 #include "nav_msgs/msg/Odometry.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "tests/live/crew.hpp"
+#include "tests/point_cloud.hpp"
 
 namespace adit::live {
 
@@ -59,22 +60,8 @@ class PlainDriver {
         const float a = static_cast<float>(i) * 0.0174533F;
         ground.insert(ground.end(), {r * std::cos(a), r * std::sin(a), 0.0F});
       }
-    sensor_msgs::msg::PointCloud2 c;
+    sensor_msgs::msg::PointCloud2 c = cloud_of(ground);
     stamp(c.header());
-    c.height(1);
-    c.width(static_cast<std::uint32_t>(ground.size() / 3));
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      sensor_msgs::msg::PointField field;
-      field.name(std::string(1, "xyz"[i]));
-      field.offset(4 * i);
-      field.datatype(7);  // float32
-      field.count(1);
-      c.fields().push_back(field);
-    }
-    c.point_step(12);
-    c.row_step(12 * c.width());
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(ground.data());
-    c.data().assign(bytes, bytes + ground.size() * sizeof(float));
     (void)points_.write(c);
   }
   void stamp(std_msgs::msg::Header& header) {

@@ -10,19 +10,12 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "tests/wire/nets.hpp"
+#include "tests/wire/numbered_command.hpp"
 
 namespace adit::wire {
 namespace {
 
 using Seqs = std::vector<std::uint64_t>;
-
-radio::Command command(std::uint64_t seq) {
-  radio::Command c;
-  c.robot("r1");
-  c.station("op1");
-  c.seq(seq);
-  return c;
-}
 
 std::uint64_t total(const Wire& wire, std::uint64_t TopicCount::*field) {
   std::uint64_t sum = 0;
@@ -66,7 +59,7 @@ TYPED_TEST(Conformance, CommandsArriveInOrderInTheirPartitionOnly) {
   ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
   Seqs expected;
   for (std::uint64_t i = 1; i <= 50; ++i) {
-    ASSERT_TRUE(writer.write(command(i)).ok());
+    ASSERT_TRUE(writer.write(numbered_command(i)).ok());
     expected.push_back(i);
     ASSERT_TRUE(this->net.until([&] { return own.size() == i; }));
   }
@@ -82,9 +75,9 @@ TYPED_TEST(Conformance, TheSenderIsKnownWhateverTheSampleSays) {
   const auto intruder = this->net.join("intruder");
   auto honest = this->commands(*this->station, ""), forged = this->commands(*intruder, "");
   ASSERT_TRUE(this->net.until([&] { return honest.matched() == 1 && forged.matched() == 1; }));
-  ASSERT_TRUE(honest.write(command(1)).ok());
+  ASSERT_TRUE(honest.write(numbered_command(1)).ok());
   ASSERT_TRUE(this->net.until([&] { return senders.size() == 1; }));
-  ASSERT_TRUE(forged.write(command(1)).ok());
+  ASSERT_TRUE(forged.write(numbered_command(1)).ok());
   ASSERT_TRUE(this->net.until([&] { return senders.size() == 2; }));
   EXPECT_EQ(senders.all()[0], this->station->id());
   EXPECT_EQ(senders.all()[1], intruder->id());
@@ -137,12 +130,12 @@ TYPED_TEST(Conformance, NotificationsKeepTheLastEightForALateJoiner) {
 
 TYPED_TEST(Conformance, CommandsAreNotReplayed) {
   auto writer = this->commands(*this->station, "r1");
-  ASSERT_TRUE(writer.write(command(1)).ok());
+  ASSERT_TRUE(writer.write(numbered_command(1)).ok());
   Seen<std::uint64_t> seen;
   const auto reader = this->hear(*this->robot, "r1", seen);
   ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
   this->net.pass(500ms);
-  ASSERT_TRUE(writer.write(command(2)).ok());
+  ASSERT_TRUE(writer.write(numbered_command(2)).ok());
   ASSERT_TRUE(this->net.until([&] { return seen.size() > 0; }));
   EXPECT_EQ(seen.all(), Seqs{2});
 }
@@ -176,7 +169,7 @@ TYPED_TEST(Conformance, MalformedSamplesAreCountedBySenderAndSurvived) {
   const auto raw = std::move(this->station->make_writer(topics::command, "r1")).value();
   ASSERT_TRUE(this->net.until([&] { return raw->matched() == 1; }));
   std::vector<std::uint8_t> good;
-  encode(command(9), good);
+  encode(numbered_command(9), good);
   std::vector<std::uint8_t> truncated(good.begin(), good.begin() + 40), encapsulation = good;
   encapsulation[1] = 0x77;
   for (const auto& bad : {std::vector<std::uint8_t>{0, 1, 0, 0}, truncated, encapsulation,
@@ -213,10 +206,10 @@ TYPED_TEST(Conformance, ADroppedReaderIsNotCalledAgain) {
   auto reader = this->hear(*this->robot, "r1", seen);
   auto writer = this->commands(*this->station, "r1");
   ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
-  for (std::uint64_t i = 1; i <= 5; ++i) ASSERT_TRUE(writer.write(command(i)).ok());
+  for (std::uint64_t i = 1; i <= 5; ++i) ASSERT_TRUE(writer.write(numbered_command(i)).ok());
   reader.reset();
   const std::size_t before = seen.size();
-  for (std::uint64_t i = 6; i <= 10; ++i) ASSERT_TRUE(writer.write(command(i)).ok());
+  for (std::uint64_t i = 6; i <= 10; ++i) ASSERT_TRUE(writer.write(numbered_command(i)).ok());
   this->net.pass(200ms);
   EXPECT_EQ(seen.size(), before);
   EXPECT_TRUE(this->net.until([&] { return writer.matched() == 0; }));
@@ -229,11 +222,11 @@ TYPED_TEST(Conformance, BytesAndSamplesAreCounted) {
   ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
   const WireCounters before = this->station->counters();
   for (std::uint64_t i = 1; i <= 10; ++i) {
-    ASSERT_TRUE(writer.write(command(i)).ok());
+    ASSERT_TRUE(writer.write(numbered_command(i)).ok());
     ASSERT_TRUE(this->net.until([&] { return seen.size() == i; }));
   }
   std::vector<std::uint8_t> bytes;
-  encode(command(1), bytes);
+  encode(numbered_command(1), bytes);
   EXPECT_EQ(total(*this->station, &TopicCount::samples_out), 10U);
   EXPECT_EQ(total(*this->robot, &TopicCount::samples_in), 10U);
   const WireCounters after = this->station->counters();

@@ -10,6 +10,7 @@
 #include "adit/robot.h"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
+#include "tests/wire/numbered_command.hpp"
 
 namespace adit::wire {
 namespace {
@@ -53,14 +54,6 @@ LinkProfile profile(double bandwidth, double latency, double loss) {
   return link;
 }
 
-radio::Command command(std::uint64_t seq) {
-  radio::Command c;
-  c.robot("r1");
-  c.station("op1");
-  c.seq(seq);
-  return c;
-}
-
 std::vector<std::uint64_t> up_to(std::uint64_t n) {
   std::vector<std::uint64_t> v;
   for (std::uint64_t i = 1; i <= n; ++i) v.push_back(i);
@@ -75,7 +68,7 @@ TEST(Ether, CarriesASampleWithItsSenderAndTheReceiversClock) {
   auto writer = station.commands("r1");
   scheduler.run_until(2s);
   ASSERT_EQ(writer.matched(), 1U);
-  ASSERT_TRUE(writer.write(command(1)).ok());
+  ASSERT_TRUE(writer.write(numbered_command(1)).ok());
   scheduler.run_until(3s);
   ASSERT_EQ(robot.seen, up_to(1));
   EXPECT_EQ(robot.senders[0], station.wire->id());
@@ -92,7 +85,7 @@ TEST(Ether, RepairsReliableSamplesAfterLossAndKeepsTheirOrder) {
   auto writer = station.commands("r1");
   scheduler.run_until(10s);
   for (std::uint64_t i = 1; i <= 100; ++i) {
-    ASSERT_TRUE(writer.write(command(i)).ok());
+    ASSERT_TRUE(writer.write(numbered_command(i)).ok());
     scheduler.run_until(scheduler.elapsed() + 200ms);
   }
   scheduler.run_until(scheduler.elapsed() + 10s);
@@ -152,12 +145,12 @@ TEST(Ether, CommandsAreNotReplayedToLateJoiners) {
   Ether ether(scheduler, {});
   Machine station(scheduler, ether, "op1");
   auto writer = station.commands("r1");
-  ASSERT_TRUE(writer.write(command(1)).ok());
+  ASSERT_TRUE(writer.write(numbered_command(1)).ok());
   scheduler.run_until(1s);
   Machine robot(scheduler, ether, "r1");
   robot.hear_commands("r1");
   scheduler.run_until(10s);
-  ASSERT_TRUE(writer.write(command(2)).ok());
+  ASSERT_TRUE(writer.write(numbered_command(2)).ok());
   scheduler.run_until(20s);
   EXPECT_EQ(robot.seen, std::vector<std::uint64_t>{2});
 }
@@ -172,7 +165,7 @@ TEST(Ether, PartitionsAndDomainsKeepApart) {
   auto foreign_wire = ether.join(5, "r3");
   scheduler.run_until(3s);
   EXPECT_EQ(writer.matched(), 1U);
-  ASSERT_TRUE(writer.write(command(1)).ok());
+  ASSERT_TRUE(writer.write(numbered_command(1)).ok());
   scheduler.run_until(4s);
   EXPECT_EQ(r1.seen, up_to(1));
   EXPECT_TRUE(r2.seen.empty());
@@ -188,7 +181,7 @@ TEST(Ether, BandwidthIsSharedByAllThatASenderSends) {
   robot.hear_commands("r1");
   auto writer = station.commands("r1");
   scheduler.run_until(5s);
-  radio::Command big = command(1);
+  radio::Command big = numbered_command(1);
   big.text(std::string(380, 'x'));
   const std::uint64_t before = station.wire->counters().total_out;
   for (int i = 1; i <= 10; ++i) {
@@ -225,7 +218,7 @@ TEST(Ether, UrgentGoesFirstAndOfAStreamTheNewestWins) {
     stick.seq(i);
     (void)joystick.write(stick);
   }
-  (void)commands.write(command(1));
+  (void)commands.write(numbered_command(1));
   bool command_first = false;
   scheduler.run_until(20s + 200ms);
   command_first = robot.seen.size() == 1 && sticks.size() <= 1;
@@ -354,7 +347,7 @@ TEST(Ether, MalformedSamplesAreCountedBySenderAndSurvived) {
   scheduler.run_until(3s);
   ASSERT_TRUE(writer->write(std::vector<std::uint8_t>{0, 1, 0, 0, 255, 255, 255, 255}).ok());
   std::vector<std::uint8_t> good;
-  encode(command(7), good);
+  encode(numbered_command(7), good);
   ASSERT_TRUE(writer->write(good).ok());
   scheduler.run_until(4s);
   EXPECT_EQ(robot.seen, std::vector<std::uint64_t>{7});
@@ -384,7 +377,7 @@ std::uint64_t digest_of(std::uint64_t seed) {
     writers.push_back(machines.back()->commands("all"));
   }
   for (std::uint64_t i = 1; i <= 100; ++i) {
-    for (auto& writer : writers) (void)writer.write(command(i));
+    for (auto& writer : writers) (void)writer.write(numbered_command(i));
     scheduler.run_until(scheduler.elapsed() + 100ms);
   }
   return digest;
@@ -402,9 +395,9 @@ TEST(Ether, WiresMayOutliveIt) {
   robot.hear_commands("r1");
   auto writer = station.commands("r1");
   scheduler.run_until(2s);
-  (void)writer.write(command(1));
+  (void)writer.write(numbered_command(1));
   ether.reset();
-  (void)writer.write(command(2));
+  (void)writer.write(numbered_command(2));
   scheduler.run_until(60s);
   EXPECT_TRUE(robot.seen.empty());
 }

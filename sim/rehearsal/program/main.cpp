@@ -6,6 +6,7 @@
 
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
+#include "sim/rehearsal/program/complain.hpp"
 #include "sim/rehearsal/program/interrupt.hpp"
 #include "sim/rehearsal/program/shrink_seeds.hpp"
 #include "sim/rehearsal/random_faults.hpp"
@@ -18,8 +19,6 @@ namespace {
 using namespace adit;
 using namespace adit::sim;
 
-constexpr int exit_failed = 1;
-constexpr int exit_unreadable = 2;
 constexpr int exit_interrupted = 130;
 constexpr const char* chaos_scenario = "scenarios/team_chaos.yaml";
 
@@ -33,11 +32,6 @@ constexpr const char* examples =
     "Exit status: 0 every expectation and every rule holds, 1 one does not, 2 the scenario cannot be read, "
     "130 Ctrl-C.";
 
-int complain(const Error& error) {
-  std::fprintf(stderr, "rehearse: %s\n", error.text.c_str());
-  return exit_unreadable;
-}
-
 void show_progress(Duration now, Duration all) {
   std::fprintf(stderr, "\r%5.0f of %.0f s ", seconds(now), seconds(all));
 }
@@ -48,7 +42,7 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
   if (tty) params.progress = [&](Duration now) { show_progress(now, scenario.duration); };
   auto outcome = rehearse(scenario, world, params);
   if (tty) std::fprintf(stderr, "\r                      \r");
-  if (!outcome) return complain(outcome.error());
+  if (!outcome) return complain("rehearse", outcome.error());
   const RunReport& report = outcome->report;
   std::printf("%s seed %llu: %s, %.0f s in %.2f s (%.1f times real time), digest %s\n", scenario.name.c_str(),
               static_cast<unsigned long long>(report.seed), report.ok() ? "ok" : "FAILED", report.virtual_s,
@@ -62,10 +56,11 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
               static_cast<unsigned long long>(report.commands.refused));
   tell_complaints(report);
   if (!report_file.empty())
-    if (auto written = write_json(report, report_file); !written) return complain(written.error());
+    if (auto written = write_json(report, report_file); !written)
+      return complain("rehearse", written.error());
   if (!picture_file.empty())
     if (auto drawn = draw_run(scenario, *world, *outcome, picture_file); !drawn)
-      return complain(drawn.error());
+      return complain("rehearse", drawn.error());
   return report.ok() ? 0 : exit_failed;
 }
 
@@ -78,7 +73,7 @@ int run_many(const Scenario& scenario, const std::shared_ptr<const World>& world
              const SeedRange& seeds, const ManyOptions& options) {
   note_interrupts();
   const SeedsOutcome out = run_seeds(scenario, world, params, seeds, options.until_failure);
-  if (out.broken) return complain(*out.broken);
+  if (out.broken) return complain("rehearse", *out.broken);
   std::printf("%llu of %llu seeds, %zu failed, %.0f s in %.1f s (%.0f times real time)\n",
               static_cast<unsigned long long>(out.done), static_cast<unsigned long long>(out.wanted),
               out.failed.size(), out.virtual_s, out.wall_s, out.virtual_s / out.wall_s);
@@ -89,7 +84,7 @@ int run_many(const Scenario& scenario, const std::shared_ptr<const World>& world
         static_cast<unsigned long long>(out.faults), static_cast<unsigned long long>(out.fewest_faults));
   if (options.chaos && !out.failed.empty())
     if (auto done = shrink_seeds(scenario, world, params, out, options.shrink_to); !done)
-      return complain(done.error());
+      return complain("rehearse", done.error());
   if (interrupted()) return exit_interrupted;
   return out.failed.empty() ? 0 : exit_failed;
 }
@@ -148,24 +143,24 @@ int main(int argc, char** argv) {
     return config::end_usage(app, error);
   }
   if (file.empty() && !chaos)
-    return complain({Reason::bad_argument, "expected a scenario, SCENARIO.yaml, or --chaos"});
+    return complain("rehearse", {Reason::bad_argument, "expected a scenario, SCENARIO.yaml, or --chaos"});
   if (file.empty()) {
     const auto found = config::find_file(chaos_scenario);
-    if (!found) return complain(found.error());
+    if (!found) return complain("rehearse", found.error());
     file = *found;
   }
   auto scenario = load_scenario(file);
-  if (!scenario) return complain(scenario.error());
+  if (!scenario) return complain("rehearse", scenario.error());
   auto world = make_world(scenario->world);
-  if (!world) return complain(world.error());
+  if (!world) return complain("rehearse", world.error());
   auto factory = make_agent_factory(defect);
-  if (!factory) return complain(factory.error());
+  if (!factory) return complain("rehearse", factory.error());
   if (chaos) add_chaos(*scenario);
   params.seed = seed_option->count() > 0 ? seed : scenario->seed;
   params.make_agent = *factory;
   if (seeds_text.empty() && !chaos) return run_one(*scenario, *world, params, report_file, picture_file);
   auto seeds =
       seeds_text.empty() ? Result<SeedRange>(SeedRange{params.seed, params.seed}) : parse_seeds(seeds_text);
-  if (!seeds) return complain(seeds.error());
+  if (!seeds) return complain("rehearse", seeds.error());
   return run_many(*scenario, *world, params, *seeds, {chaos, until_failure, shrink_to});
 }
