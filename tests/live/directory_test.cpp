@@ -19,7 +19,9 @@ class Member {
       edge_ = agent::RadioEdge::open(*wire_, *strand_, name).value();
       seen_ = directory_.list().subscribe(
           *strand_, [this](const auto& list) { list_.use([&](agent::AgentList& copy) { copy = *list; }); });
-      if (!edge_->listen({commands_, directory_})) throw std::runtime_error("the radio cannot be heard");
+      agent::RadioEdge::Parts parts{directory_, [this](const auto& work) { work(commands_); },
+                                    [](const Task& task) { task(); }};
+      if (!edge_->listen(std::move(parts))) throw std::runtime_error("the radio cannot be heard");
       timer_ = strand_->every(100ms, [this] { directory_.tick(strand_->now()); });
     });
   }
