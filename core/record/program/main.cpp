@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "core/config/usage.hpp"
+#include "core/record/idl_value.hpp"
 #include "core/record/mcap_reader.hpp"
 #include "core/record/mcap_writer.hpp"
 
@@ -15,7 +16,7 @@ using namespace adit::record;
 
 constexpr const char* kFooter = R"(Examples:
   recording info r1-000012.mcap              what is in it, and how well it can be read
-  recording cat run.mcap --topic command     one line a message: time, topic, size
+  recording cat run.mcap --topic command     one line a message: time, topic, contents
   recording recover torn.mcap saved.mcap     all that can be read, as a whole file
   recording recover r1-0*.mcap minutes.mcap  several in their order, as one
 
@@ -80,14 +81,36 @@ int info(const std::string& file) {
   return judged(file, *report);
 }
 
-int cat(const std::string& file, const std::string& topic) {
+/// Contents of messages by the schemas in the file.
+class Contents {
+ public:
+  void add(const Schema& schema) {
+    if (schema.encoding != "omgidl") return;
+    const auto types = parse_idl(schema.text);
+    if (!types) return;  // shown by its size alone
+    if (const auto it = types->find(schema.name); it != types->end()) types_[schema.id] = it->second;
+  }
+  std::string text(const Channel& channel, Bytes data) const {
+    const auto type = types_.find(channel.schema);
+    if (channel.encoding != "cdr" || type == types_.end()) return std::to_string(data.size()) + " bytes";
+    const auto json = cdr_to_json(*type->second, data);
+    return json ? *json : std::to_string(data.size()) + " bytes: " + json.error().text;
+  }
+
+ private:
+  std::map<std::uint16_t, std::shared_ptr<const IdlType>> types_{};
+};
+
+int cat(const std::string& file, const std::string& topic, bool who) {
+  Contents contents;
   Visitor visitor;
+  visitor.schema = [&](const Schema& schema) { contents.add(schema); };
   visitor.message = [&](const Channel& channel, const Message& message) {
     if (channel.topic.find(topic) == std::string::npos) return;
-    std::printf("%.6f %s %zu bytes", in_seconds(message.time), channel.topic.c_str(), message.data.size());
+    std::printf("%.6f %s", in_seconds(message.time), channel.topic.c_str());
     for (const auto& [key, value] : channel.metadata)
-      if (!value.empty()) std::printf(" %s=%s", key.c_str(), value.c_str());
-    std::printf("\n");
+      if (who && !value.empty()) std::printf(" %s=%s", key.c_str(), value.c_str());
+    std::printf(" %s\n", contents.text(channel, message.data).c_str());
   };
   const auto report = read_file(file, visitor);
   return report ? judged(file, *report) : complain(report.error().text);
@@ -167,6 +190,8 @@ int main(int argc, char** argv) {
   auto* cat_command = app.add_subcommand("cat", "one line a message");
   cat_command->add_option("file", file, "the recording")->required();
   cat_command->add_option("--topic", topic, "only topics that contain this");
+  bool who = false;
+  cat_command->add_flag("--who", who, "who sent it to whom, as well");
   auto* recover_command = app.add_subcommand("recover", "all that can be read, into a new file");
   recover_command->add_option("files", files, "one or several recordings, then the new file")
       ->required()
@@ -177,7 +202,7 @@ int main(int argc, char** argv) {
     return config::end_usage(app, error);
   }
   if (*info_command) return info(file);
-  if (*cat_command) return cat(file, topic);
+  if (*cat_command) return cat(file, topic, who);
   for (std::size_t i = 0; i + 1 < files.size(); ++i)
     if (files[i] == files.back()) return complain("the new file must be another than those that are read");
   (void)recover_command;

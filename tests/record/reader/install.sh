@@ -10,6 +10,9 @@ exec 9> "$folder/lock"
 flock 9
 cp "$here/read.mjs" "$folder/read.mjs" || exit 1
 cmp -s "$here/package.json" "$folder/installed.json" && exit 0
+# Not tried again for each test when it has just failed.
+[ -z "$(find "$folder/failed" -mmin -10 2> /dev/null)" ] || { echo "npm could not fetch it a moment ago"; exit 77; }
 cp "$here/package.json" "$folder/package.json" || exit 1
-(cd "$folder" && timeout 120 npm install --no-audit --no-fund --no-package-lock --ignore-scripts --loglevel=error) || exit 77
+(cd "$folder" && timeout 100 npm install --no-audit --no-fund --no-package-lock --ignore-scripts --loglevel=error \
+  --fetch-retries=1 --fetch-timeout=20000) || { touch "$folder/failed"; exit 77; }
 cp "$here/package.json" "$folder/installed.json"
