@@ -40,6 +40,10 @@ Kind kind_of(Verb verb) {
       return Kind::stop;
     case Verb::reset:
       return Kind::reset;
+    case Verb::restart:
+      return Kind::restart;
+    case Verb::policy:
+      return Kind::policy;
     default:
       return Kind::query;
   }
@@ -71,6 +75,10 @@ std::string done_text(const Request& request) {
       return "stopped";
     case Verb::reset:
       return "reset";
+    case Verb::restart:
+      return request.word + " is made anew";
+    case Verb::policy:
+      return request.word + " is restarted " + (request.automatic ? "by the robot" : "when you say so");
     default:
       return "done";
   }
@@ -253,7 +261,7 @@ void Station::Impl::command_robot(std::uint64_t handle, const std::string& robot
                 .kind = kind_of(request.verb),
                 .text = request.word,
                 .position = request.numbers,
-                .flag = request.override_stop},
+                .flag = request.override_stop || request.automatic},
                ended);
 }
 

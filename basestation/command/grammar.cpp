@@ -39,6 +39,10 @@ constexpr std::array table{
                 "stop all", 1, 0},
     CommandInfo{Verb::reset, "reset", "R... [--override]",
                 "clear your stop, with --override those of others; moves nothing", "reset r1", 1, 0},
+    CommandInfo{Verb::restart, "restart", "R COMPONENT",
+                "make a component anew, or the whole agent (health lists them)", "restart r1 planner", 1, 1},
+    CommandInfo{Verb::policy, "policy", "R COMPONENT auto|manual",
+                "who restarts a component that failed: the robot, or you", "policy r1 planner manual", 1, 1},
 };
 
 }  // namespace

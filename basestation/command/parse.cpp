@@ -124,6 +124,21 @@ Result<void> take_numbers(const CommandInfo& command, std::vector<std::string>& 
   return {};
 }
 
+Result<void> take_component(const CommandInfo& command, std::vector<std::string>& words, Request& request) {
+  const bool policy = request.verb == Verb::policy;
+  if (words.size() != (policy ? 3u : 2u))
+    return wrong(command,
+                 policy ? "takes a robot, a component, and auto or manual" : "takes a robot and a component");
+  if (!valid_name(words[1]))
+    return wrong(command, "'" + clean(words[1], 40) + "' cannot be a component's name");
+  if (policy && words[2] != "auto" && words[2] != "manual")
+    return wrong(command, "'" + clean(words[2], 40) + "' is neither auto nor manual");
+  request.automatic = policy && words[2] == "auto";
+  request.word = words[1];
+  words.resize(1);
+  return {};
+}
+
 }  // namespace
 
 Result<Request> parse(const std::vector<std::string>& all_words) {
@@ -153,6 +168,10 @@ Result<Request> parse(const std::vector<std::string>& all_words) {
         return wrong(*command, "'" + clean(words[1], 40) + "' cannot be an operator's name");
       request.word = words[1];
       words.pop_back();
+      break;
+    case Verb::restart:
+    case Verb::policy:
+      if (auto done = take_component(*command, words, request); !done) return done.error();
       break;
     case Verb::run:
       if (words.size() != 1) return wrong(*command, "takes one file");

@@ -25,6 +25,7 @@ class Judge {
     add("teleop", steering(assisted));
     add("stop", Action{.valid = true});
     reset();
+    for (const char* command : {"restart", "policy"}) add(command, authority());
     return std::move(actions_);
   }
 

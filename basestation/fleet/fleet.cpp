@@ -196,8 +196,16 @@ void Fleet::hear(const radio::Health& sample, const wire::SampleInfo& info) {
   robot->components.clear();
   for (const auto& part : sample.components()) {
     if (robot->components.size() == 32) break;
-    robot->components.push_back({clean(part.name(), name_limit), part.healthy(), part.silent_for(),
-                                 part.restarts(), clean(part.text(), text_limit)});
+    const auto phase = static_cast<std::uint32_t>(part.state());
+    robot->components.push_back(
+        {.name = clean(part.name(), name_limit),
+         .phase = phase <= 4 ? static_cast<ComponentPhase>(phase) : ComponentPhase::failed,
+         .healthy = part.healthy(),
+         .automatic = part.automatic(),
+         .silent_for = part.silent_for(),
+         .restarts = part.restarts(),
+         .hung = part.hung(),
+         .text = clean(part.text(), text_limit)});
   }
 }
 

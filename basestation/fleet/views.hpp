@@ -33,11 +33,16 @@ struct ModeChoice {
 
 enum class GoalPhase : std::uint8_t { none, kept, active, blocked, reached };
 
+enum class ComponentPhase : std::uint8_t { starting, up, waiting, failed, hung };
+
 struct ComponentView {
   std::string name{};
+  ComponentPhase phase{ComponentPhase::starting};
   bool healthy{};
+  bool automatic{};    ///< restarted without being asked
   float silent_for{};  ///< s
   std::uint32_t restarts{};
+  std::uint32_t hung{};  ///< threads that it left behind
   std::string text{};
 };
 

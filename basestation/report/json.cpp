@@ -1,5 +1,7 @@
 #include "basestation/report/json.hpp"
 
+#include "basestation/report/text.hpp"
+
 namespace adit::station {
 
 using nlohmann::json;
@@ -11,6 +13,9 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
   for (const ModeChoice& choice : robot.choices)
     modes.push_back(
         {{"mode", choice.mode}, {"available", choice.available}, {"reason", name(choice.reason)}});
+  json troubles = json::array();
+  for (const ComponentView& part : robot.components)
+    if (!part.healthy) troubles.push_back(part.name + " " + word(part.phase));
   json out{{"robot", robot.name},
            {"age", seconds(now - robot.last_heard)},
            {"lost", robot.lost},
@@ -33,7 +38,8 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
            {"reason", name(robot.reason)},
            {"goal_state", to_string(robot.goal_phase)},
            {"goal_id", robot.goal_id},
-           {"modes", modes}};
+           {"modes", modes},
+           {"troubles", troubles}};
   if (robot.located) {
     out["pose"] = {robot.x, robot.y, robot.z, robot.yaw};
     out["velocity"] = {robot.vx, robot.vy, robot.wz};
@@ -102,9 +108,12 @@ json health_json(const RobotView& robot) {
   json parts = json::array();
   for (const ComponentView& part : robot.components)
     parts.push_back({{"component", part.name},
+                     {"state", word(part.phase)},
                      {"healthy", part.healthy},
+                     {"policy", part.automatic ? "auto" : "manual"},
                      {"silent_for", part.silent_for},
                      {"restarts", part.restarts},
+                     {"hung", part.hung},
                      {"text", part.text}});
   return {{"robot", robot.name}, {"components", parts}};
 }

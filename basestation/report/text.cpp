@@ -124,13 +124,30 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
   return out + "\n";
 }
 
+const char* word(ComponentPhase phase) {
+  switch (phase) {
+    case ComponentPhase::starting:
+      return "starting";
+    case ComponentPhase::up:
+      return "up";
+    case ComponentPhase::waiting:
+      return "waiting";
+    case ComponentPhase::failed:
+      return "FAILED";
+    case ComponentPhase::hung:
+      return "HUNG";
+  }
+  return "FAILED";
+}
+
 std::string health_text(const RobotView& robot) {
   if (robot.components.empty()) return robot.name + ": no health report has been heard\n";
   std::vector<std::vector<std::string>> rows{
-      {"ROBOT", "COMPONENT", "STATE", "SILENT S", "RESTARTS", "REMARK"}};
+      {"ROBOT", "COMPONENT", "STATE", "POLICY", "SILENT S", "RESTARTS", "HUNG", "REMARK"}};
   for (const ComponentView& part : robot.components)
-    rows.push_back({robot.name, part.name, part.healthy ? "ok" : "FAILED", fixed(part.silent_for, 1),
-                    std::to_string(part.restarts), part.text});
+    rows.push_back({robot.name, part.name, word(part.phase), part.automatic ? "auto" : "manual",
+                    fixed(part.silent_for, 1), std::to_string(part.restarts), std::to_string(part.hung),
+                    part.text});
   return table(rows);
 }
 

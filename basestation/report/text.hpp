@@ -14,6 +14,8 @@ std::string list_text(const Fleet& fleet, Time now);
 std::string status_text(const Fleet& fleet, const RobotView& robot, Time now);
 /// Bytes a second by agent and topic; `bandwidth` (bit/s, 0: not known) sets the total against the link.
 std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth);
+/// "up", "FAILED", ...
+const char* word(ComponentPhase phase);
 /// A row for each component.
 std::string health_text(const RobotView& robot);
 /// A row for each command: whether it is valid now, and why not.

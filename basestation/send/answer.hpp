@@ -10,15 +10,28 @@
 namespace adit::station {
 
 /// What goes to a robot as radio::Command; in the order of radio::CommandKind.
-enum class Kind : std::uint8_t { take, release, lock, unlock, grant, stop, reset, mode, go_to, query };
+enum class Kind : std::uint8_t {
+  take,
+  release,
+  lock,
+  unlock,
+  grant,
+  stop,
+  reset,
+  mode,
+  go_to,
+  query,
+  restart,
+  policy
+};
 const char* to_string(Kind kind);
 
 struct Order {
   std::string robot{};
   Kind kind{Kind::query};
-  std::string text{};  ///< mode: its name; grant: the operator
+  std::string text{};  ///< mode: its name; grant: the operator; restart, policy: the component
   std::array<double, 3> position{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};  ///< goto: map frame, m
-  bool flag{};                                                                         ///< reset: override
+  bool flag{};  ///< reset: override; policy: automatic
 };
 
 /// How an order ended: the robot's answer, or why none came.

@@ -33,6 +33,10 @@ const char* to_string(Kind kind) {
       return "goto";
     case Kind::query:
       return "query";
+    case Kind::restart:
+      return "restart";
+    case Kind::policy:
+      return "policy";
   }
   return "unknown";
 }

@@ -13,8 +13,12 @@ namespace adit::live {
 /// A robot's driver that obeys exactly, on an empty plain; counts what it is told.
 class PlainDriver {
  public:
-  explicit PlainDriver(Net& net)
-      : net_(net), strand_(net.machine("driver").strand("driver")), wire_(net.join_robot("driver")) {
+  /// `heard`: called for each velocity, m/s, on the driver's strand.
+  explicit PlainDriver(Net& net, std::function<void(double velocity, Time at)> heard = {})
+      : net_(net),
+        heard_(std::move(heard)),
+        strand_(net.machine("driver").strand("driver")),
+        wire_(net.join_robot("driver")) {
     odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*wire_, wire::topics::odom).value();
     points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*wire_, wire::topics::points).value();
     net_.on(*strand_, [this] {
@@ -22,13 +26,14 @@ class PlainDriver {
       timers_.push_back(strand_->every(std::chrono::milliseconds(100), [this] { scan(); }));
     });
     cmd_vel_ = wire::make_reader(*wire_, wire::topics::cmd_vel, *strand_,
-                                 [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
+                                 [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo& info) {
                                    velocity_ = t.linear().x();
                                    told_.use([this](Told& told) {
                                      ++told.count;
                                      if (velocity_ != 0.0) ++told.moving;
                                      told.last = velocity_;
                                    });
+                                   if (heard_) heard_(velocity_, info.received);
                                  })
                    .value();
   }
@@ -71,6 +76,7 @@ class PlainDriver {
   }
 
   Net& net_;
+  std::function<void(double, Time)> heard_;
   Shared<Told> told_{};
   std::shared_ptr<Executor> strand_;
   std::unique_ptr<wire::Wire> wire_;

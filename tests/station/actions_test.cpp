@@ -69,8 +69,8 @@ TEST_F(Actions, OfAFreeRobotOnlyTakeAndStopAreValid) {
   own("r1", "", {});
   EXPECT_TRUE(action("take").valid);
   EXPECT_TRUE(action("stop").valid);
-  for (const char* command :
-       {"release", "lock", "unlock", "grant", "mode hold", "drive", "goto", "teleop", "reset"})
+  for (const char* command : {"release", "lock", "unlock", "grant", "mode hold", "drive", "goto", "teleop",
+                              "reset", "restart", "policy"})
     EXPECT_EQ(action(command).reason, Reason::nobody_holds) << command;
 }
 

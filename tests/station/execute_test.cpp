@@ -97,6 +97,19 @@ TEST_F(ExecuteTest, QueriesShowTheFleet) {
   EXPECT_GT(net.json["agents"][0]["total_out"].get<float>(), 0.0F);
 }
 
+TEST_F(ExecuteTest, RestartAndPolicyNameTheComponent) {
+  EXPECT_EQ(execute("restart r1 planner").text, "r1: planner is made anew\n");
+  const auto& restart = robots_[0]->commands().back().command;
+  EXPECT_EQ(restart.kind(), radio::CMD_RESTART);
+  EXPECT_EQ(restart.text(), "planner");
+  EXPECT_EQ(execute("policy r1 sensors auto").exit_code, 0);
+  EXPECT_EQ(robots_[0]->commands().back().command.kind(), radio::CMD_POLICY);
+  EXPECT_TRUE(robots_[0]->commands().back().command.flag());
+  EXPECT_EQ(execute("policy r1 sensors manual").exit_code, 0);
+  EXPECT_FALSE(robots_[0]->commands().back().command.flag());
+  EXPECT_TRUE(robots_[1]->commands().empty());
+}
+
 TEST_F(ExecuteTest, DownReleasesWhatItHoldsAndFallsSilent) {
   execute("take r1");
   bool told = false;

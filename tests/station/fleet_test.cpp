@@ -7,6 +7,8 @@
 #include "adit/link.h"
 #include "adit/robot.h"
 #include "basestation/fleet/traffic.hpp"
+#include "basestation/report/json.hpp"
+#include "basestation/report/text.hpp"
 
 namespace adit::station {
 namespace {
@@ -30,6 +32,36 @@ std::vector<std::string> codes(const Fleet& fleet) {
   std::vector<std::string> out;
   for (const Notice& notice : fleet.notices()) out.push_back(notice.code);
   return out;
+}
+
+radio::ComponentHealth component(const std::string& name, radio::ComponentState state, bool healthy) {
+  radio::ComponentHealth part;
+  part.name(name);
+  part.state(state);
+  part.healthy(healthy);
+  part.restarts(3);
+  part.hung(1);
+  part.text("a crash");
+  return part;
+}
+
+TEST(Fleet, HealthNamesWhatIsNotUp) {
+  Fleet fleet("op1", own_id);
+  fleet.hear(state("r1"), at(0s));
+  radio::Health health;
+  health.robot("r1");
+  health.components({component("command", radio::COMPONENT_UP, true),
+                     component("planner", radio::COMPONENT_HUNG, false),
+                     component("odd", static_cast<radio::ComponentState>(77), false)});
+  fleet.hear(health, at(0s));
+  const RobotView& robot = *fleet.robot("r1");
+  ASSERT_EQ(robot.components.size(), 3u);
+  EXPECT_EQ(robot.components[1].phase, ComponentPhase::hung);
+  EXPECT_EQ(robot.components[1].hung, 1u);
+  EXPECT_EQ(robot.components[2].phase, ComponentPhase::failed) << "a state of a later version";
+  EXPECT_THAT(health_text(robot), testing::HasSubstr("HUNG"));
+  EXPECT_THAT(health_json(robot)["components"][0]["policy"], "manual");
+  EXPECT_THAT(robot_json(fleet, robot, Time{})["troubles"], testing::SizeIs(2));
 }
 
 TEST(Fleet, RobotIsLostWithinThreeSecondsAndBackAtTheNextState) {

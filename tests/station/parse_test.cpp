@@ -52,6 +52,9 @@ TEST(Parse, StopOfAllAndResetWithOverride) {
   EXPECT_TRUE(parse("stop all")->all);
   EXPECT_FALSE(parse("stop r1")->all);
   EXPECT_TRUE(parse("reset r1 --override")->override_stop);
+  EXPECT_EQ(parse("restart r1 planner")->word, "planner");
+  EXPECT_TRUE(parse("policy r1 planner auto")->automatic);
+  EXPECT_FALSE(parse("policy r1 planner manual")->automatic);
   EXPECT_EQ(parse("grant r1 op2")->word, "op2");
   EXPECT_TRUE(parse("run demo.yaml --all")->all_operators);
 }
@@ -79,8 +82,6 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"yield r1 on", Reason::unknown_command, "unknown command 'yield'"},
         Bad{"convoy start r1 r2", Reason::unknown_command, "unknown command 'convoy'"},
         Bad{"peeloff r1", Reason::unknown_command, "unknown command"},
-        Bad{"restart r1 mux", Reason::unknown_command, "unknown command"},
-        Bad{"policy r1 mux auto", Reason::unknown_command, "unknown command"},
         Bad{"plan r1 1 2", Reason::unknown_command, "unknown command"},
         Bad{"map save x", Reason::unknown_command, "unknown command"},
         Bad{"stairs", Reason::unknown_command, "unknown command"},
@@ -111,6 +112,11 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"drive r1 1 0 0 --for 99999", Reason::out_of_range, "at most 3600"},
         Bad{"grant r1", Reason::bad_argument, "a robot and an operator"},
         Bad{"grant r1 op!", Reason::bad_argument, "cannot be an operator's name"},
+        Bad{"restart r1", Reason::bad_argument, "a component"},
+        Bad{"restart r1 r2 planner", Reason::bad_argument, "a component"},
+        Bad{"restart r1 pl/anner", Reason::bad_argument, "component's name"},
+        Bad{"policy r1 planner", Reason::bad_argument, "auto or manual"},
+        Bad{"policy r1 planner never", Reason::bad_argument, "neither auto nor manual"},
         Bad{"reset r1 --force", Reason::bad_argument, "no option --force"},
         Bad{"run", Reason::bad_argument, "takes one file"}, Bad{"take \"r1", Reason::syntax, "not closed"}));
 

@@ -174,6 +174,10 @@ void detail(Page& page, const json& snapshot, const WatchState& state) {
         by += (by.empty() ? "" : ", ") + (stop.is_string() ? stop.get<std::string>() : "");
       cells.push_back({"stopped by " + by + "  ", red});
     }
+    std::string troubles;
+    for (const json& trouble : robot.value("troubles", json::array()))
+      if (trouble.is_string()) troubles += trouble.get<std::string>() + "  ";
+    if (!troubles.empty()) cells.push_back({troubles, red});
     const std::string reason = text(robot, "reason");
     if (reason != "none" && !reason.empty() && stops.empty())
       cells.push_back({"does not move: " + reason + "  ", yellow});

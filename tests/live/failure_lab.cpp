@@ -1,0 +1,164 @@
+#include "tests/live/failure_lab.hpp"
+
+#include <signal.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/wire/topics.hpp"
+#include "robot_agent/program/console.hpp"
+
+namespace adit::live {
+namespace {
+
+double ms(Duration d) { return seconds(d) * 1000.0; }
+
+}  // namespace
+
+FailureLab::FailureLab()
+    : driver_(*net_,
+              [this](double velocity, Time at) {
+                heard_.use([&](Heard& h) { h.velocities.emplace_back(at, velocity != 0.0); });
+              }),
+      ear_strand_(net_->machine("ear").strand("ear")),
+      ear_(net_->join_radio("ear")) {
+  readers_.push_back(wire::make_reader(*ear_, wire::topics::notification, *ear_strand_,
+                                       [this](const radio::Notification& n, const wire::SampleInfo& info) {
+                                         heard_.use([&](Heard& h) {
+                                           h.notices.emplace_back(info.received, n.code() + " " + n.text());
+                                         });
+                                       })
+                         .value());
+  readers_.push_back(wire::make_reader(*ear_, wire::topics::authority, *ear_strand_,
+                                       [this](const radio::AuthorityStatus& a, const wire::SampleInfo& info) {
+                                         heard_.use(
+                                             [&](Heard& h) { h.authorities.emplace_back(info.received, a); });
+                                       })
+                         .value());
+  op_ = std::make_unique<Operator>(*net_, "op1");
+  ::setenv("XDG_RUNTIME_DIR", folder_.environment().at("XDG_RUNTIME_DIR").c_str(), 1);  // of the console
+  parent_ = std::make_unique<Process>(
+      std::vector<std::string>{"robot_agent", "--supervised", "--allow-faults", "--good-run", "0.1",
+                               "--config", "robots/r1.yaml", "--log", "error", "--domain",
+                               std::to_string(domain()), "--robot-domain", std::to_string(domain(1))},
+      folder_.environment());
+}
+
+FailureLab::~FailureLab() { readers_.clear(); }
+
+Time FailureLab::now() const { return ear_strand_->now(); }
+
+pid_t FailureLab::agent() const {
+  const std::string id = std::to_string(parent_->pid());
+  std::ifstream file("/proc/" + id + "/task/" + id + "/children");
+  pid_t pid = 0;
+  file >> pid;
+  return pid;
+}
+
+bool FailureLab::ready() {
+  return eventually([&] { return op_->ask("take r1").exit_code == 0; }, Seconds(20));
+}
+
+bool FailureLab::calm() {
+  return eventually([&] { return op_->ask("mode r1 hold").exit_code == 0; }) &&
+         eventually([&] { return driver_.told().last == 0.0; });
+}
+
+bool FailureLab::enter(const std::string& mode) {
+  if (!calm()) return false;
+  if (mode == "hold") return true;
+  if (mode == "waypoint" && !eventually([&] { return op_->ask("goto r1 9000 0").exit_code == 0; }))
+    return false;
+  if (mode == "smart_joystick" &&
+      !eventually([&] { return op_->ask("mode r1 smart_joystick").exit_code == 0; }))
+    return false;
+  if (mode != "waypoint") op_->type("drive r1 0.4 0 0 --for 60");
+  return eventually([&] { return driver_.told().last > 0.1; });
+}
+
+radio::Epoch FailureLab::epoch() {
+  return heard_.use(
+      [](Heard& h) { return h.authorities.empty() ? radio::Epoch{} : h.authorities.back().second.epoch(); });
+}
+
+std::optional<Time> FailureLab::notice(const std::string& code, Time since) {
+  return heard_.use([&](Heard& h) -> std::optional<Time> {
+    for (const auto& [at, text] : h.notices)
+      if (at >= since && text.starts_with(code)) return at;
+    return std::nullopt;
+  });
+}
+
+std::optional<Time> FailureLab::new_authority(const radio::Epoch& before, Time since) {
+  return heard_.use([&](Heard& h) -> std::optional<Time> {
+    for (const auto& [at, status] : h.authorities)
+      if (at >= since && status.epoch().start() != before.start() && status.holder() == "op1") return at;
+    return std::nullopt;
+  });
+}
+
+FailureLab::Killed FailureLab::kill_agent() {
+  const radio::Epoch before = epoch();
+  const pid_t pid = agent();
+  Killed result{};
+  if (pid <= 0) return result;
+  const Time dead = now();
+  ::kill(pid, SIGKILL);
+  std::optional<Time> back;
+  eventually([&] { return (back = new_authority(before, dead)).has_value(); });
+  if (back) result.back = ms(*back - dead);
+  heard_.use([&](Heard& h) {
+    for (const auto& [at, moves] : h.velocities) {
+      if (at < dead || (back && at > *back)) continue;
+      if (!moves && !result.zero) result.zero = ms(at - dead);
+      if (moves && result.zero) ++result.moved;
+    }
+  });
+  return result;
+}
+
+std::string FailureLab::console(const std::string& line) {
+  const auto answer = agent::ask_console("r1", line);
+  return answer ? *answer : answer.error().text;
+}
+
+FailureLab::Failed FailureLab::fault(const std::string& kind, const std::string& component,
+                                     const char* told) {
+  const radio::Epoch before = epoch();
+  Failed result{};
+  const Time since = now();
+  if (console("fault " + kind + " " + component) != "done\n") return result;
+  std::optional<Time> at, back;
+  eventually([&] { return (at = notice(std::string(told) + " " + component, since)).has_value(); });
+  if (!at) return result;
+  result.told = ms(*at - since);
+  eventually([&] {
+    back = notice("component_back " + component, *at);
+    if (!back) back = new_authority(before, *at);
+    return back.has_value();
+  });
+  if (back) result.back = ms(*back - since);
+  return result;
+}
+
+FailureLab::Failed FailureLab::crash(const std::string& component) {
+  return fault("crash", component, "component_failed");
+}
+FailureLab::Failed FailureLab::hang(const std::string& component) {
+  return fault("hang", component, "component_hung");
+}
+
+bool FailureLab::fresh_agent() {
+  const radio::Epoch before = epoch();
+  const Time since = now();
+  if (op_->ask("restart r1 agent").exit_code != 0) return false;
+  return eventually([&] { return new_authority(before, since).has_value(); });
+}
+
+int FailureLab::end() {
+  parent_->signal(SIGTERM);
+  return parent_->wait(Seconds(10)).exit_code;
+}
+
+}  // namespace adit::live

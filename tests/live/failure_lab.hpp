@@ -1,0 +1,74 @@
+#pragma once
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/live/driver.hpp"
+#include "tests/live/process.hpp"
+
+namespace adit::live {
+
+/// robot_agent under its parent as processes, a driver, a holder, and somebody who writes down what is said
+/// and when: for measuring how a robot fails and comes back.
+class FailureLab {
+ public:
+  /// All times in ms from the failure; nothing when it did not come about.
+  struct Killed {
+    std::optional<double> zero{};  ///< the driver is told zero
+    std::optional<double> back{};  ///< a station hears the new agent's authority, with its holder
+    int moved{};                   ///< velocities that were not zero between the two
+  };
+  struct Failed {
+    std::optional<double> told{};  ///< component_failed or component_hung is heard
+    std::optional<double> back{};  ///< component_back, or the new agent's authority, is heard
+  };
+
+  FailureLab();
+  ~FailureLab();
+  /// The agent is there and held by op1.
+  bool ready();
+  /// hold, manual, smart_joystick or waypoint; all but the first are under way when it returns.
+  bool enter(const std::string& mode);
+  /// kill -9.
+  Killed kill_agent();
+  /// Through the robot's console.
+  Failed crash(const std::string& component);
+  Failed hang(const std::string& component);
+  /// Moves nothing, and is in hold.
+  bool calm();
+  /// A line at the robot's own console.
+  std::string console(const std::string& line);
+  /// A new process of the agent, with all threads.
+  bool fresh_agent();
+  /// SIGTERM to the parent; its exit code.
+  int end();
+  const std::string& err() const { return parent_->err(); }
+  const Folder& folder() const { return folder_; }
+  pid_t agent() const;
+
+ private:
+  struct Heard {
+    std::vector<std::pair<Time, std::string>> notices{};
+    std::vector<std::pair<Time, radio::AuthorityStatus>> authorities{};
+    std::vector<std::pair<Time, bool>> velocities{};  ///< when, and whether it moves
+  };
+  Time now() const;
+  std::optional<Time> notice(const std::string& code, Time since);
+  std::optional<Time> new_authority(const radio::Epoch& before, Time since);
+  radio::Epoch epoch();
+  Failed fault(const std::string& kind, const std::string& component, const char* told);
+
+  Folder folder_{};
+  std::unique_ptr<Net> net_{make_live_net()};
+  Shared<Heard> heard_{};
+  PlainDriver driver_;
+  std::shared_ptr<Executor> ear_strand_;
+  std::unique_ptr<wire::Wire> ear_;
+  std::vector<std::unique_ptr<wire::RawReader>> readers_{};
+  std::unique_ptr<Operator> op_{};
+  std::unique_ptr<Process> parent_{};
+};
+
+}  // namespace adit::live

@@ -1,0 +1,77 @@
+// An agent that is killed, and components that crash and hang, in the programs as they are shipped. How long
+// it takes, fifty times each: bench_failures.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <set>
+
+#include "tests/live/failure_lab.hpp"
+
+namespace adit::live {
+namespace {
+
+std::set<std::string> shared_memory() {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev/shm"))
+    names.insert(entry.path().filename().string());
+  return names;
+}
+
+class Killed : public testing::TestWithParam<const char*> {};
+
+TEST_P(Killed, ZeroAtTheDriverAtOnceAndBackWithItsHolder) {
+  FailureLab lab;
+  ASSERT_TRUE(lab.ready()) << lab.err();
+  ASSERT_TRUE(lab.enter(GetParam()));
+  const auto killed = lab.kill_agent();
+  ASSERT_TRUE(killed.zero) << lab.err();
+  EXPECT_LT(*killed.zero, 300.0);
+  ASSERT_TRUE(killed.back) << lab.err();
+  EXPECT_LT(*killed.back, 2000.0);
+  EXPECT_EQ(killed.moved, 0);
+}
+INSTANTIATE_TEST_SUITE_P(Modes, Killed, testing::Values("hold", "manual", "smart_joystick", "waypoint"));
+
+TEST(Components, ACrashIsBackSoonAndAHangIsFoundWithinASecond) {
+  FailureLab lab;
+  ASSERT_TRUE(lab.ready()) << lab.err();
+  for (const char* component : {"planner", "sensors", "command"}) {
+    const auto crashed = lab.crash(component);
+    ASSERT_TRUE(crashed.told && crashed.back) << component << ": " << lab.err();
+    EXPECT_LT(*crashed.back, 500.0) << component;
+  }
+  const pid_t before = lab.agent();
+  const auto hung = lab.hang("planner");
+  ASSERT_TRUE(hung.told && hung.back) << lab.err();
+  EXPECT_LT(*hung.told, 1500.0);
+  EXPECT_EQ(lab.agent(), before) << "the process goes on without that thread";
+  EXPECT_THAT(lab.console("health"), testing::HasSubstr("hung 1"));
+}
+
+TEST(Components, AHungCommandStrandEndsTheAgentWhichComesBack) {
+  FailureLab lab;
+  ASSERT_TRUE(lab.ready()) << lab.err();
+  ASSERT_TRUE(lab.enter("waypoint"));
+  const pid_t before = lab.agent();
+  const auto hung = lab.hang("command");
+  ASSERT_TRUE(hung.told && hung.back) << lab.err();
+  EXPECT_LT(*hung.told, 1500.0);
+  EXPECT_NE(lab.agent(), before);
+}
+
+TEST(Components, AHungAgentEndsWithItsParentAndLeavesNothing) {
+  const auto before = shared_memory();
+  {
+    FailureLab lab;
+    ASSERT_TRUE(lab.ready()) << lab.err();
+    ASSERT_TRUE(lab.hang("sensors").told);
+    ASSERT_TRUE(lab.kill_agent().back);
+    ASSERT_TRUE(lab.hang("planner").told);
+    EXPECT_EQ(lab.end(), 0);
+    EXPECT_TRUE(std::filesystem::is_empty(lab.folder().environment().at("XDG_RUNTIME_DIR") + "/adit"));
+  }
+  for (const auto& name : shared_memory()) EXPECT_TRUE(before.contains(name)) << "left behind: " << name;
+}
+
+}  // namespace
+}  // namespace adit::live
