@@ -62,7 +62,7 @@ UnitParams Agent::Parts::planner_unit() {
   unit.heavy = true;
   unit.make = [this](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
     return std::unique_ptr<Component>(std::make_unique<Planner>(
-        PlannerParams{params.platform, params.planning}, strand, Log(params.log, params.name)));
+        PlannerParams{params.platform, params.planning}, strand, Log(params.log, params.name), library()));
   };
   return unit;
 }
@@ -144,6 +144,16 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
                             if (e.core) e.core->keep();
                             e.keeper->when_safe(std::move(task));
                           }});
+}
+
+std::shared_ptr<const nav::PlannerLibrary> Agent::Parts::library() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (library_) return library_;
+  }
+  auto made = nav::PlannerLibrary::build(params.platform, {});
+  const std::lock_guard lock(mutex_);
+  return library_ = std::move(made);
 }
 
 StateKeeper::Outputs Agent::Parts::keeper_outputs() {

@@ -1,4 +1,6 @@
 #pragma once
+#include <mutex>
+
 #include "robot_agent/agent_core.hpp"
 #include "robot_agent/motion/scans.hpp"
 
@@ -41,7 +43,11 @@ struct Agent::Parts {
   std::unique_ptr<Watch> watch{};
 
  private:
+  std::mutex mutex_{};  // guards the next one: a planner that hangs may still be making it
+  std::shared_ptr<const nav::PlannerLibrary> library_{};
+
   StateKeeper::Outputs keeper_outputs();
+  std::shared_ptr<const nav::PlannerLibrary> library();
   UnitParams command_unit();
   UnitParams planner_unit();
   UnitParams sensors_unit();

@@ -45,7 +45,8 @@ void Overseer::watch(std::size_t part, const Pulse& pulse, Duration lived, Time 
   const bool beats = pulse.running && (status.state == PartState::starting || pulse.beats != course.beats);
   course.beats = pulse.beats;
   status.silent = beats ? Duration{} : status.silent + lived;
-  if (status.silent > params_.silence) return hung(part, verdict);
+  const Duration patience = status.state == PartState::starting ? params_.start : params_.silence;
+  if (status.silent > patience) return hung(part, verdict);
   if (!pulse.running || status.state == PartState::up) return;
   status.state = PartState::up;
   if (!course.was_down) return;

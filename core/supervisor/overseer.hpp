@@ -24,6 +24,7 @@ enum class PartState : std::uint8_t {
 struct SupervisionParams {
   Duration period{50ms};       ///< how often the hearts are looked at, [10 ms, 500 ms]
   Duration silence{700ms};     ///< without a beat for longer: hung, [200 ms, 60 s]
+  Duration start{5s};          ///< without a first beat for longer: hung, [silence, 60 s]
   Duration first_pause{10ms};  ///< before the first restart in a window; four times as long at each next
   Duration longest_pause{2s};
   int attempts{5};  ///< restarts of one component within the window, [1, 100]; then the agent is restarted

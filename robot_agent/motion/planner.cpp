@@ -2,10 +2,12 @@
 
 namespace adit::agent {
 
-Planner::Planner(PlannerParams params, Executor& strand, Log log)
+Planner::Planner(PlannerParams params, Executor& strand, Log log,
+                 std::shared_ptr<const nav::PlannerLibrary> library)
     : Component("planner", strand, std::move(log), {.beat = 100ms}),
       params_(std::move(params)),
-      navigator_(std::make_shared<nav::Navigator>(params_.platform)) {}
+      navigator_(std::make_shared<nav::Navigator>(params_.platform, nav::ObstacleMapParams{},
+                                                  nav::LocalPlannerParams{}, std::move(library))) {}
 
 void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
   if (!running()) return;

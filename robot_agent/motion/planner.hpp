@@ -33,7 +33,9 @@ struct PlannerParams {
 /// is empty; the next scans fill it.
 class Planner : public Component {
  public:
-  Planner(PlannerParams params, Executor& strand, Log log);
+  /// `library`: from the planner before this one, so that it need not be made again; null: it is made here.
+  Planner(PlannerParams params, Executor& strand, Log log,
+          std::shared_ptr<const nav::PlannerLibrary> library = nullptr);
   /// On its strand. `done` runs there when the job's plan is made.
   void plan(std::shared_ptr<PlanJob> job, Task done);
 

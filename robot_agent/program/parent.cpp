@@ -80,6 +80,7 @@ int Parent::reap() {
   close_fd(pidfd_);
   close_fd(report_);
   child_ = -1;
+  shared_memory_.clean();
   return exit_code(status);
 }
 
@@ -94,6 +95,7 @@ void Parent::hear() {
 int Parent::wait_for_end() {
   auto killed_at = Clock::time_point::max();
   heard_ = Clock::now();
+  looked_ = {};
   for (;;) {
     pollfd wait[3] = {{pidfd_, POLLIN, 0}, {signals_, POLLIN, 0}, {report_, POLLIN, 0}};
     const bool zero = prepared_ && !commands_;
@@ -108,6 +110,10 @@ int Parent::wait_for_end() {
       killed_at = Clock::now() + params_.patience;
     }
     const auto now = Clock::now();
+    if (commands_ && now - looked_ > params_.look) {
+      looked_ = now;
+      shared_memory_.watch(child_);
+    }
     const bool silent = report_ >= 0 && now - heard_ > (commands_ ? params_.pulse : params_.start);
     if (silent && !ending_) {
       std::fprintf(stderr, "robot_agent: the agent hangs; ending it\n");
