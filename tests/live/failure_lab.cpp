@@ -57,7 +57,10 @@ pid_t FailureLab::agent() const {
 }
 
 bool FailureLab::ready() {
-  return eventually([&] { return op_->ask("take r1").exit_code == 0; }, Seconds(20));
+  return eventually([&] { return op_->ask("take r1").exit_code == 0; }, Seconds(20)) && eventually([&] {
+           const std::string health = console("health");
+           return health.find("planner") != std::string::npos && health.find("starting") == std::string::npos;
+         });
 }
 
 bool FailureLab::calm() {
