@@ -1,8 +1,8 @@
 #pragma once
 #include <memory>
 
-#include "core/wire/bench/bare_dds.hpp"
 #include "core/exec/live_runtime.hpp"
+#include "core/wire/bench/bare_dds.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
 
 namespace adit::bench {

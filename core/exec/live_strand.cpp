@@ -1,6 +1,8 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <future>
 #include <limits>
 
 #include "core/exec/live_shared.hpp"
@@ -245,7 +247,9 @@ class LiveStrand final : public Executor {
 
  private:
   void block() override {
-    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    std::promise<void> never;
+    never.get_future().wait();
+    std::abort();  // nobody keeps that promise
   }
 
   std::shared_ptr<Loop> loop_;

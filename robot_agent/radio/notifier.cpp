@@ -1,7 +1,7 @@
 #include "robot_agent/radio/notifier.hpp"
 
+#include <chrono>
 #include <mutex>
-#include <thread>
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
@@ -11,7 +11,7 @@ namespace adit::agent {
 
 struct Notifier::Endpoint {
   std::string robot{};
-  std::mutex mutex{};  // guards what follows
+  std::timed_mutex mutex{};  // guards what follows
   wire::Writer<radio::Notification> writer{};
   std::uint64_t seq{};
 };
@@ -31,11 +31,8 @@ Result<std::unique_ptr<Notifier>> Notifier::open(wire::Wire& radio, const std::s
 bool Notifier::send(const Notice& notice) {
   Endpoint& e = *endpoint_;
   auto sample = to_radio(notice, e.robot);
-  std::unique_lock lock(e.mutex, std::defer_lock);
-  for (int tries = 0; !lock.try_lock(); ++tries) {
-    if (tries == 20) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  const std::unique_lock lock(e.mutex, std::chrono::milliseconds(20));
+  if (!lock) return false;
   sample.seq(++e.seq);
   (void)e.writer.write(sample);
   return true;

@@ -48,8 +48,8 @@ class RadioEdge {
   void send_state(const RobotReport& report, std::uint64_t stamp);
   /// And from now on a sign of life once a second, and when somebody appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
-  /// What passed on the wire since the last call. `inner_malformed`: samples on the robot's inner network that
-  /// were none, since the start; operators see them with the radio's.
+  /// What passed on the wire since the last call. `inner_malformed`: samples on the robot's inner network
+  /// that were none, since the start; operators see them with the radio's.
   void send_link_report(Time now, std::uint64_t inner_malformed);
 
  private:

@@ -66,7 +66,8 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
     return;
   }
   Duration longest{};
-  for (const int node_to : to) longest = std::max(longest, patience(profile(from, node_to), shared->priority));
+  for (const int node_to : to)
+    longest = std::max(longest, patience(profile(from, node_to), shared->priority));
   auto packet = std::make_shared<Packet>();
   packet->through.resize(to.size());
   packet->to = std::move(to);
