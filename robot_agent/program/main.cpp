@@ -141,7 +141,7 @@ void limit_memory(double megabytes) {
 
 /// A component that hangs must not hold up the end of the process.
 void end_soon() {
-  (void)std::signal(SIGALRM, [](int) { std::_Exit(0); });
+  (void)::signal(SIGALRM, [](int) { std::_Exit(0); });
   ::alarm(3);
 }
 
