@@ -15,6 +15,7 @@ struct WireCost {
   static constexpr std::uint32_t data = headers + 16 + 12 + 24;  ///< + INFO_DST, INFO_TS, DATA
   static constexpr std::uint32_t key = 24;                       ///< key hash as inline QoS
   static constexpr std::uint32_t heartbeat = headers + 16 + 32;
+  static constexpr std::uint32_t piggyback = 32;  ///< a heartbeat that goes with a sample
   static constexpr std::uint32_t acknack = headers + 16 + 32;
   static constexpr std::uint32_t gap = headers + 16 + 36;
   static constexpr std::uint32_t participant = 500;  ///< announcement

@@ -12,6 +12,7 @@ struct Qos {
   Duration heartbeat{};    ///< between heartbeats while something is not acknowledged
   int priority{};          ///< on a link that is full: 0 goes first
   bool newest_wins{};      ///< what waits to be sent is replaced by the next sample of the same key
+  bool paced{};            ///< handed on as the link takes it, by a flow controller
 };
 
 inline Qos qos_of(QosClass qos) {
@@ -27,7 +28,7 @@ inline Qos qos_of(QosClass qos) {
     case QosClass::sensor:
       return {false, false, 0ms, 3, true};
     case QosClass::bulk:
-      return {true, false, 1000ms, 5, false};
+      return {true, false, 1000ms, 5, false, true};
     case QosClass::video:
       return {false, false, 0ms, 6, true};
   }

@@ -31,17 +31,19 @@ namespace adit::wire::topics {
 inline constexpr bool keyed = true;
 inline constexpr bool unkeyed = false;
 
-/// Every topic of the radio domain. Nobody else writes a topic name or a QoS.
+/// Every topic of the radio domain. Commands and their answers keep the newest alone: a lost one is not
+/// repaired in its turn, which would hold up those behind it for a round trip and more, but repeated by
+/// whoever waits for an answer. Nobody else writes a topic name or a QoS.
 inline constexpr Topic<radio::Capabilities> capabilities{
     {"adit/capabilities", "adit::radio::Capabilities", QosClass::status, 1, keyed, 4096}};
 inline constexpr Topic<radio::Presence> presence{
     {"adit/presence", "adit::radio::Presence", QosClass::state, 1, keyed, 256}};
 inline constexpr Topic<radio::Command> command{
-    {"adit/command", "adit::radio::Command", QosClass::urgent, 16, unkeyed, 512}};
+    {"adit/command", "adit::radio::Command", QosClass::urgent, 1, unkeyed, 512}};
 inline constexpr Topic<radio::Joystick> joystick{
     {"adit/joystick", "adit::radio::Joystick", QosClass::stream, 1, unkeyed, 256}};
 inline constexpr Topic<radio::Acknowledgement> acknowledgement{
-    {"adit/acknowledgement", "adit::radio::Acknowledgement", QosClass::urgent, 16, unkeyed, 512}};
+    {"adit/acknowledgement", "adit::radio::Acknowledgement", QosClass::urgent, 1, unkeyed, 512}};
 inline constexpr Topic<radio::AuthorityStatus> authority{
     {"adit/authority", "adit::radio::AuthorityStatus", QosClass::status, 1, keyed, 2048}};
 inline constexpr Topic<radio::RobotState> robot_state{

@@ -42,6 +42,7 @@ class RehearsalNet : public Net {
     }
     return true;
   }
+  Duration elapsed() const override { return scheduler_.elapsed(); }
 
  private:
   VirtualScheduler scheduler_{1};
@@ -51,13 +52,18 @@ class RehearsalNet : public Net {
 
 class LiveNet : public Net {
  public:
+  explicit LiveNet(std::optional<wire::LinkProfile> link) : link_(std::move(link)) {}
   Runtime& machine(const std::string& name) override {
     auto& machine = machines_[name];
     if (!machine) machine = std::make_unique<LiveRuntime>();
     return *machine;
   }
-  std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override { return join(0, machine); }
-  std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override { return join(1, machine); }
+  std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override {
+    return join({.domain = domain(0), .name = machine, .link = link_, .link_seed = ++seed_});
+  }
+  std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override {
+    return join({.domain = domain(1), .name = machine});
+  }
   void silence(const std::string&) override {}
   Duration clock() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
   void on(Executor& strand, const std::function<void()>& work) override {
@@ -71,14 +77,18 @@ class LiveNet : public Net {
   bool wait(const std::function<bool()>& condition, Duration limit) override {
     return eventually(condition, Seconds(limit));
   }
+  Duration elapsed() const override { return std::chrono::steady_clock::now() - start_; }
 
  private:
-  static std::unique_ptr<wire::Wire> join(unsigned index, const std::string& name) {
-    auto wire = wire::open_fastdds({.domain = domain(index), .name = name});
+  static std::unique_ptr<wire::Wire> join(const wire::FastDdsParams& params) {
+    auto wire = wire::open_fastdds(params);
     if (!wire) throw std::runtime_error(wire.error().text);
     return std::move(*wire);
   }
 
+  std::optional<wire::LinkProfile> link_;
+  std::uint64_t seed_{};
+  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
   std::map<std::string, std::unique_ptr<LiveRuntime>> machines_{};
 };
 
@@ -87,6 +97,8 @@ class LiveNet : public Net {
 std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link, Duration inner) {
   return std::make_unique<RehearsalNet>(link, inner);
 }
-std::unique_ptr<Net> make_live_net() { return std::make_unique<LiveNet>(); }
+std::unique_ptr<Net> make_live_net(std::optional<wire::LinkProfile> link) {
+  return std::make_unique<LiveNet>(std::move(link));
+}
 
 }  // namespace adit::live

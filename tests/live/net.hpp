@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,7 +51,8 @@ class Net {
 /// `link`: between all machines, on the radio; `inner`: one way on the robots' inner networks.
 std::unique_ptr<Net> make_rehearsal_net(const wire::LinkProfile& link = {.latency = 0.0001},
                                         Duration inner = std::chrono::microseconds(100));
-std::unique_ptr<Net> make_live_net();
+/// `link`: what each machine sends by radio keeps to it; none: the sockets alone.
+std::unique_ptr<Net> make_live_net(std::optional<wire::LinkProfile> link = std::nullopt);
 
 /// A value that strands write and the test reads.
 template <class T>

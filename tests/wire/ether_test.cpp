@@ -77,19 +77,72 @@ TEST(Ether, CarriesASampleWithItsSenderAndTheReceiversClock) {
   EXPECT_LT(delay, 0.06);
 }
 
+/// Like the commands' topic, but with a history.
+constexpr Topic<radio::Command> kept{
+    {"adit/test_kept", "adit::radio::Command", QosClass::urgent, 16, false, 512}};
+
 TEST(Ether, RepairsReliableSamplesAfterLossAndKeepsTheirOrder) {
   VirtualScheduler scheduler(1);
   Ether ether(scheduler, {.link = profile(1e6, 0.02, 0.3)});
   Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1");
-  robot.hear_commands("r1");
-  auto writer = station.commands("r1");
+  std::vector<std::uint64_t> seen;
+  const auto reader =
+      make_reader(*robot.wire, kept, *robot.strand,
+                  [&](const radio::Command& c, const SampleInfo&) { seen.push_back(c.seq()); });
+  auto writer = std::move(Writer<radio::Command>::make(*station.wire, kept)).value();
   scheduler.run_until(10s);
   for (std::uint64_t i = 1; i <= 100; ++i) {
     ASSERT_TRUE(writer.write(numbered_command(i)).ok());
     scheduler.run_until(scheduler.elapsed() + 200ms);
   }
   scheduler.run_until(scheduler.elapsed() + 10s);
-  EXPECT_EQ(robot.seen, up_to(100));
+  EXPECT_EQ(seen, up_to(100));
+}
+
+TEST(Ether, ALostCommandDoesNotHoldUpTheNext) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {.link = profile(1e6, 0.2, 0.0)});
+  Machine station(scheduler, ether, "op1"), robot(scheduler, ether, "r1");
+  robot.hear_commands("r1");
+  auto writer = station.commands("r1");
+  scheduler.run_until(10s);
+  ASSERT_TRUE(writer.write(command(1)).ok());
+  scheduler.run_until(11s);
+  ether.degrade("op1", "r1", 1.0);
+  ASSERT_TRUE(writer.write(command(2)).ok());
+  scheduler.run_until(11050ms);
+  ether.degrade("op1", "r1", std::nullopt);
+  ASSERT_TRUE(writer.write(command(3)).ok());
+  scheduler.run_until(11300ms);  // one way, without a round trip of repair
+  EXPECT_EQ(robot.seen, (std::vector<std::uint64_t>{1, 3}));
+}
+
+TEST(Ether, WhatIsReplacedBeforeTheAirTookItIsNeverSent) {
+  VirtualScheduler scheduler(1);
+  Ether ether(scheduler, {.link = profile(100e3, 0.01, 0.0)});
+  Machine robot(scheduler, ether, "r1"), station(scheduler, ether, "op1");
+  constexpr TopicInfo pieces{"adit/test_pieces", "Piece", QosClass::bulk, 8, false, 1024};
+  std::vector<std::uint8_t> seen;
+  const auto reader =
+      station.wire->make_reader(pieces, "", *station.strand, [&](auto bytes, const SampleInfo&) {
+        seen.push_back(bytes[4]);
+        return true;
+      });
+  auto writer = std::move(robot.wire->make_writer(pieces, "")).value();
+  scheduler.run_until(5s);
+  std::vector<std::uint8_t> piece(340);
+  piece[1] = 1;
+  for (int i = 0; i < 100; ++i) {
+    ++piece[4];
+    ASSERT_TRUE(writer->write(piece).ok());  // all at once, a history of eight
+  }
+  scheduler.run_until(20s);
+  // Those that the radio had taken already, then the newest eight.
+  ASSERT_GE(seen.size(), 8U);
+  EXPECT_LE(seen.size(), 12U);
+  EXPECT_EQ(seen.back(), 100);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  EXPECT_LT(robot.wire->counters().total_out, 20000U);
 }
 
 TEST(Ether, LosesBestEffortSamplesAndCountsThem) {

@@ -43,6 +43,8 @@ dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link) {
   // Written from the caller's thread: the shortest way. What may be large and can wait does not hold it up.
   const bool wait = topic.qos == QosClass::bulk || topic.qos == QosClass::video;
   out.publish_mode().kind = wait ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+  // Its readers would acknowledge each piece.
+  if (topic.qos == QosClass::bulk) out.reliable_writer_qos().disable_heartbeat_piggyback = true;
   if (on_link && wait) {
     out.publish_mode().flow_controller_name = topic.qos == QosClass::bulk ? bulk_flow : video_flow;
   }

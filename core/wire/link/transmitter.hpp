@@ -94,6 +94,7 @@ class Transmitter {
     for (const auto& queue : queues_) n += queue.size();
     return n;
   }
+  std::size_t size(int priority) const { return queues_[static_cast<std::size_t>(priority)].size(); }
   /// The longest that anything has waited.
   Duration oldest(Duration now) const {
     Duration longest{};

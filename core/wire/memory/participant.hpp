@@ -58,10 +58,20 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   };
   static constexpr std::size_t max_samples = 1024;  ///< of a history, all keys together
 
+  /// What the flow controller holds back: for one reader (a repair) or for all.
+  struct Pending {
+    std::uint64_t sequence{};
+    std::uint16_t frames{};  ///< 0: all
+    EndpointId reader{-1, -1};
+  };
+
   Result<void> write(std::span<const std::uint8_t> cdr);
   void add(Sample sample);
   void match(EndpointId reader, bool reader_reliable);
   void send(EndpointId reader, const Sample& sample, std::uint16_t frames);
+  /// `bulk`: hands on what waits as the air takes it, so that what is replaced meanwhile is never sent.
+  void pump();
+  void repair(Pending entry);
   void arm_heartbeat();
   void heartbeat();
   void on_acknack(EndpointId reader, std::uint64_t base, const std::vector<Missing>& missing);
@@ -74,6 +84,9 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   std::deque<Sample> history{};
   std::map<EndpointId, Proxy> readers{};
   bool heartbeat_armed{};
+  std::deque<Pending> pending{};
+  std::uint64_t sent{};  ///< the newest one handed on
+  bool pump_armed{};
 };
 
 struct ReaderState : std::enable_shared_from_this<ReaderState> {

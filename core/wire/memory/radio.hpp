@@ -45,6 +45,10 @@ class Radio : public std::enable_shared_from_this<Radio> {
   bool inner(int node) const { return nodes_[static_cast<std::size_t>(node)].inner; }
   /// Largest frame that the node may send to anybody.
   std::uint32_t frame_bytes(int node) const;
+  /// Messages of that priority that wait there.
+  std::size_t backlog(int node, int priority) const {
+    return nodes_[static_cast<std::size_t>(node)].queue.size(priority);
+  }
   /// The longest that anything has waited there to be sent.
   Duration waiting(int node) const {
     return nodes_[static_cast<std::size_t>(node)].queue.oldest(scheduler_.elapsed());

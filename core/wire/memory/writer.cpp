@@ -57,8 +57,51 @@ void WriterState::add(Sample sample) {
     }
     history.push_back(sample);
   }
-  for (const auto& [reader, proxy] : readers) send(reader, sample, sample.frames);
+  if (topic.qos.paced && !owner->core->radio->inner(owner->node)) {
+    pending.push_back({sample.sequence});
+    pump();
+  } else {
+    for (const auto& [reader, proxy] : readers) send(reader, sample, sample.frames);
+  }
   arm_heartbeat();
+}
+
+void WriterState::pump() {
+  constexpr std::size_t ahead = 2;  // messages per reader handed to the radio before it took them
+  if (pump_armed) return;
+  while (!pending.empty() && owner->core->radio->backlog(owner->node, topic.qos.priority) <
+                                 ahead * std::max<std::size_t>(1, readers.size())) {
+    const Pending entry = pending.front();
+    pending.pop_front();
+    const auto sample = std::find_if(history.begin(), history.end(),
+                                     [&](const Sample& s) { return s.sequence == entry.sequence; });
+    if (sample == history.end()) continue;  // replaced meanwhile
+    const std::uint16_t frames = entry.frames == 0 ? sample->frames : entry.frames;
+    sent = std::max(sent, entry.sequence);
+    for (const auto& [reader, proxy] : readers) {
+      if (entry.reader.node < 0 || entry.reader == reader) send(reader, *sample, frames);
+    }
+  }
+  if (pending.empty()) return;
+  pump_armed = true;
+  owner->core->after(10ms, [weak = weak_from_this(), keep = std::weak_ptr(owner->shared_from_this())] {
+    const auto participant = keep.lock();
+    const auto self = weak.lock();
+    if (!self || !participant || participant->stopped) return;
+    self->pump_armed = false;
+    self->pump();
+  });
+}
+
+void WriterState::repair(Pending entry) {
+  const auto known = std::find_if(pending.begin(), pending.end(), [&entry](const Pending& p) {
+    return p.sequence == entry.sequence && (p.reader.node < 0 || p.reader == entry.reader);
+  });
+  if (known != pending.end()) return;
+  // Before what was never sent, in order among repairs.
+  const auto at = std::find_if(pending.begin(), pending.end(),
+                               [&entry](const Pending& p) { return p.sequence > entry.sequence; });
+  pending.insert(at, entry);
 }
 
 void WriterState::match(EndpointId reader, bool reader_reliable) {
@@ -78,6 +121,16 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
   Datagram datagram;
   datagram.frames = frames;
   datagram.bytes = sample.wire_bytes * frames / sample.frames;
+  const auto proxy = readers.find(reader);
+  const std::uint64_t start = proxy == readers.end() ? next : proxy->second.start;
+  // A full history tells with each sample from where it goes on, as in Fast DDS: nobody waits for what is
+  // gone.
+  const bool piggyback = topic.qos.reliable && !topic.qos.paced && !discovery && proxy != readers.end() &&
+                         proxy->second.reliable && !history.empty() && !topic.keyed &&
+                         proxy->second.acknowledged + topic.depth < next &&
+                         !owner->core->radio->inner(owner->node);
+  const std::uint64_t first = piggyback ? history.front().sequence : 0;
+  if (piggyback) datagram.bytes += WireCost::piggyback;
   datagram.priority = discovery ? WireCost::discovery_priority : topic.qos.priority;
   if (topic.qos.newest_wins && !topic.qos.reliable) {
     datagram.supersedes = number_of(sample.key, entity, reader.entity);
@@ -95,17 +148,18 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
       };
     }
   }
-  const auto proxy = readers.find(reader);
-  const std::uint64_t start = proxy == readers.end() ? next : proxy->second.start;
   const auto arrive = [self = shared_from_this(), from = EndpointId{owner->node, entity}, reader, start,
-                       sample, bytes = datagram.bytes, frames](Participant& there, std::uint16_t through) {
+                       first, sample, bytes = datagram.bytes,
+                       frames](Participant& there, std::uint16_t through) {
     if (self->discovery) {
       there.discovery_reader->on_data(from, start, sample, through);
       return;
     }
     there.count(self->topic.name, self->owner->id).bytes_in += bytes * through / frames;
     const auto found = there.readers.find(reader.entity);
-    if (found != there.readers.end()) found->second->on_data(from, start, sample, through);
+    if (found == there.readers.end()) return;
+    found->second->on_data(from, start, sample, through);
+    if (first > 0) found->second->on_heartbeat(from, start, first, sample.sequence);
   };
   owner->send(reader.node, std::move(datagram), arrive, discovery);
 }
@@ -128,9 +182,10 @@ void WriterState::arm_heartbeat() {
 
 void WriterState::heartbeat() {
   heartbeat_armed = false;
-  const std::uint64_t first = history.empty() ? next : history.front().sequence, last = next - 1;
+  const std::uint64_t first = history.empty() ? next : history.front().sequence;
+  const std::uint64_t last = topic.qos.paced ? sent : next - 1;
   for (const auto& [reader, proxy] : readers) {
-    if (!proxy.reliable || proxy.acknowledged + 1 >= next) continue;
+    if (!proxy.reliable || proxy.acknowledged >= last) continue;
     Datagram datagram;
     datagram.bytes = WireCost::heartbeat;
     datagram.priority = WireCost::discovery_priority;
@@ -162,10 +217,13 @@ void WriterState::on_acknack(EndpointId reader, std::uint64_t base, const std::v
                                            [&](const Sample& s) { return s.sequence == wanted.sequence; });
           if (sample == self->history.end()) {
             gone.push_back(wanted.sequence);
+          } else if (self->topic.qos.paced) {
+            self->repair({wanted.sequence, wanted.frames, reader});
           } else {
             self->send(reader, *sample, wanted.frames == 0 ? sample->frames : wanted.frames);
           }
         }
+        if (self->topic.qos.paced) self->pump();
         if (gone.empty()) return;
         Datagram datagram;
         datagram.bytes = WireCost::gap;
