@@ -126,6 +126,7 @@ void Station::Impl::announce() {
   presence.id(params_.id);
   presence.protocol(protocol);
   presence.seq(++presence_seq_);
+  fleet_.said_present(presence_seq_, strand_.now());
   (void)topics_->presence.write(presence);  // the next one is at most a second away
 }
 

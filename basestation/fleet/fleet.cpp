@@ -97,6 +97,8 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
 }
 
 void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
+  if (valid_name(sample.name()) && sample.name() != own_name_)
+    links_.heard(sample.name(), sample.seq(), info.received);
   if (sample.kind() != radio::AGENT_STATION) return;  // a robot's state says more, and more often
   if (sample.name() == own_name_ && sample.id() != own_id_) {
     // Robots will refuse one of the two: its operator has to choose another name.
@@ -226,6 +228,12 @@ void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) 
     if (view.topics.size() == 16) break;
     view.topics.push_back({clean(row.topic(), 64), row.bytes_out(), row.samples_out(), row.bytes_in(),
                            row.samples_in(), row.dropped()});
+  }
+  for (const auto& peer : sample.peers()) {
+    if (peer.peer() != own_name_) continue;
+    if (peer.held() >= 0.0F && peer.held() < 1e6F)  // false for what is no number, too
+      links_.echoed(view.agent, peer.number(), from_seconds(peer.held()), info.received);
+    if (peer.lost() >= 0.0F && peer.lost() <= 1.0F) view.lost_there = peer.lost();
   }
   traffic_[view.agent] = std::move(view);
 }

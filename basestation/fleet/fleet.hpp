@@ -7,6 +7,7 @@
 
 #include "basestation/fleet/views.hpp"
 #include "core/exec/executor.hpp"
+#include "core/wire/link/peer_meter.hpp"
 #include "core/wire/topics.hpp"
 
 namespace adit::station {
@@ -43,6 +44,10 @@ class Fleet {
   const std::map<std::string, RobotView>& robots() const { return robots_; }
   const std::map<std::string, StationView>& stations() const { return stations_; }
   const std::map<std::string, TrafficView>& traffic() const { return traffic_; }
+  /// What the link from each agent gives, by its signs of life.
+  const wire::PeerMeter& links() const { return links_; }
+  /// This station's own sign of life went out under that number.
+  void said_present(std::uint32_t number, Time now) { links_.sent(number, now); }
   /// Oldest first, the last 200.
   const std::deque<Notice>& notices() const { return notices_; }
   /// True when this very station (name and id) holds the robot.
@@ -65,6 +70,7 @@ class Fleet {
   std::map<std::string, RobotView> robots_{};
   std::map<std::string, StationView> stations_{};
   std::map<std::string, TrafficView> traffic_{};
+  wire::PeerMeter links_{};
   std::deque<Notice> notices_{};
   Time last_clash_{};
   bool clashed_{false};

@@ -127,6 +127,7 @@ struct TrafficView {
   float discovery_out{}, discovery_in{}, total_out{}, total_in{};  ///< bytes a second
   std::uint32_t malformed{};                                       ///< samples since its start
   std::vector<TopicRate> topics{};
+  float lost_there{-1.0F};  ///< share of our signs of life that the agent missed; negative: not known
 };
 
 const char* to_string(GoalPhase phase);

@@ -101,7 +101,17 @@ json net_json(const Fleet& fleet, Time now) {
                       {"malformed", traffic.malformed},
                       {"topics", topics}});
   }
-  return {{"agents", agents}};
+  json links = json::array();
+  for (const wire::PeerMeter::Peer& peer : fleet.links().peers(now)) {
+    const auto report = fleet.traffic().find(peer.name);
+    const bool known = report != fleet.traffic().end() && report->second.lost_there >= 0.0F;
+    links.push_back({{"agent", peer.name},
+                     {"age", seconds(peer.held)},
+                     {"lost_from", peer.lost},
+                     {"lost_to", known ? json(report->second.lost_there) : json(nullptr)},
+                     {"round_trip", peer.round_trip ? json(*peer.round_trip) : json(nullptr)}});
+  }
+  return {{"agents", agents}, {"links", links}};
 }
 
 json health_json(const RobotView& robot) {

@@ -95,6 +95,23 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   return out;
 }
 
+namespace {
+
+std::string links_text(const Fleet& fleet, Time now) {
+  std::vector<std::vector<std::string>> rows{
+      {"LINK TO", "HEARD S AGO", "LOST FROM %", "LOST TO %", "ROUND TRIP MS"}};
+  for (const wire::PeerMeter::Peer& peer : fleet.links().peers(now)) {
+    const auto report = fleet.traffic().find(peer.name);
+    const float there = report == fleet.traffic().end() ? -1.0F : report->second.lost_there;
+    rows.push_back({peer.name, fixed(seconds(peer.held), 1), fixed(peer.lost * 100.0, 0),
+                    there < 0.0F ? "-" : fixed(there * 100.0, 0),
+                    peer.round_trip ? fixed(*peer.round_trip * 1e3, 0) : "-"});
+  }
+  return table(rows);
+}
+
+}  // namespace
+
 std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth) {
   if (fleet.traffic().empty()) return "no link report has been heard yet; they come every 2 s\n";
   std::vector<std::vector<std::string>> rows{
@@ -121,7 +138,7 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
   if (bandwidth > 0.0)
     out += ": " + fixed(out_sum * 8.0 / bandwidth * 100.0, 1) + " % of " + link + " (" +
            fixed(bandwidth / 1000.0, 0) + " kbit/s)";
-  return out + "\n";
+  return out + "\n\n" + links_text(fleet, now);
 }
 
 const char* word(ComponentPhase phase) {

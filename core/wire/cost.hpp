@@ -18,7 +18,7 @@ struct WireCost {
   static constexpr std::uint32_t piggyback = 32;  ///< a heartbeat that goes with a sample
   static constexpr std::uint32_t acknack = headers + 16 + 32;
   static constexpr std::uint32_t gap = headers + 16 + 36;
-  static constexpr std::uint32_t participant = 500;  ///< announcement
+  static constexpr std::uint32_t participant = 340;  ///< announcement
   static constexpr std::uint32_t endpoint =
       950;  ///< one endpoint announced to one peer, with what acknowledges it
   static constexpr std::uint32_t goodbye = 150;

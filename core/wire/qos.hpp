@@ -54,8 +54,8 @@ inline Qos reader_qos(const TopicInfo& topic) {
 /// Discovery, equal everywhere: with leases of different lengths endpoints are not matched again after a
 /// gap between the two. Any message renews a lease, so announcements can be rare on a thin link.
 struct Discovery {
-  static constexpr Duration lease = 30s;             ///< a silent participant is dropped after it
-  static constexpr Duration announcement = 10s;      ///< period of participant announcements
+  static constexpr Duration lease = 60s;             ///< a silent participant is dropped after it
+  static constexpr Duration announcement = 25s;      ///< period of participant announcements
   static constexpr Duration initial_period = 250ms;  ///< period of the first ones
   static constexpr int initial_announcements = 8;    ///< their number
 };

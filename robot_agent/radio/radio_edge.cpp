@@ -1,5 +1,6 @@
 #include "robot_agent/radio/radio_edge.hpp"
 
+#include "core/wire/link/peer_meter.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "robot_agent/radio/convert.hpp"
@@ -26,6 +27,7 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
   radio::Presence presence_sample{};
+  wire::PeerMeter stations{};  // what the link from each of them gives
   Timer presence_timer{};
   radio::RobotState state_sample{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
@@ -92,6 +94,8 @@ Result<void> RadioEdge::listen(Parts parts) {
            e.read(topics::presence,
                   [&e, commands, &directory](const radio::Presence&p, const wire::SampleInfo&info) {
                     const Time now = e.strand.now();
+                    if (p.kind() == radio::AGENT_STATION && valid_name(p.name()))
+                      e.stations.heard(p.name(), p.seq(), now);
                     if (p.kind() == radio::AGENT_STATION)
                       commands([&](CommandInterface& interface) {
                         interface.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
@@ -172,6 +176,18 @@ void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed) {
   Endpoints& e = *endpoints_;
   radio::LinkReport report = e.meter.report(e.wire.counters(), e.robot, now);
   report.malformed(report.malformed() + static_cast<std::uint32_t>(inner_malformed));
+  constexpr std::size_t kPeers = 16;    // as many as the contract lets through
+  constexpr Duration kForgotten = 60s;  // a station that is gone is no link
+  for (const wire::PeerMeter::Peer& peer : e.stations.peers(now)) {
+    if (peer.held > kForgotten) e.stations.forget(peer.name);
+    if (peer.held > kForgotten || report.peers().size() == kPeers) continue;
+    radio::PeerLink link;
+    link.peer(peer.name);
+    link.number(peer.number);
+    link.held(static_cast<float>(seconds(peer.held)));
+    link.lost(peer.lost);
+    report.peers().push_back(link);
+  }
   e.send(e.link, std::move(report));
 }
 

@@ -42,7 +42,6 @@ class RehearsalNet : public Net {
     }
     return true;
   }
-  Duration elapsed() const override { return scheduler_.elapsed(); }
 
  private:
   VirtualScheduler scheduler_{1};
@@ -77,7 +76,6 @@ class LiveNet : public Net {
   bool wait(const std::function<bool()>& condition, Duration limit) override {
     return eventually(condition, Seconds(limit));
   }
-  Duration elapsed() const override { return std::chrono::steady_clock::now() - start_; }
 
  private:
   static std::unique_ptr<wire::Wire> join(const wire::FastDdsParams& params) {
@@ -88,7 +86,6 @@ class LiveNet : public Net {
 
   std::optional<wire::LinkProfile> link_;
   std::uint64_t seed_{};
-  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
   std::map<std::string, std::unique_ptr<LiveRuntime>> machines_{};
 };
 

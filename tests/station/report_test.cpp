@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
 #include "basestation/report/json.hpp"
@@ -58,6 +59,38 @@ TEST(Report, NetShowsDiscoveryApartAndTheShareOfTheLink) {
   EXPECT_THAT(text, HasSubstr("discovery"));
   EXPECT_THAT(text, HasSubstr("5.0 % of mesh_100k"));
   EXPECT_EQ(net_json(fleet, Time(2s))["agents"][0]["topics"][0]["topic"], "adit/robot_state");
+}
+
+TEST(Report, NetShowsWhatTheLinkToEachRobotGives) {
+  Fleet fleet("op1", {1});
+  radio::Presence robot;
+  robot.name("r1");
+  robot.kind(radio::AGENT_ROBOT);
+  for (const std::uint32_t seq : {1, 2, 4}) {
+    robot.seq(seq);
+    fleet.hear(robot, {.received = Time(seq * 1s)});
+  }
+  fleet.said_present(9, Time(3s));
+  radio::LinkReport report;
+  report.agent("r1");
+  radio::PeerLink peer;
+  peer.peer("op1");
+  peer.number(9);
+  peer.held(0.7F);
+  peer.lost(0.5F);
+  report.peers().push_back(peer);
+  fleet.hear(report, {.received = Time(4s)});
+  const auto link = net_json(fleet, Time(5s))["links"][0];
+  EXPECT_EQ(link["agent"], "r1");
+  EXPECT_NEAR(link["lost_from"].get<double>(), 0.25, 1e-6);
+  EXPECT_NEAR(link["lost_to"].get<double>(), 0.5, 1e-6);
+  EXPECT_NEAR(link["round_trip"].get<double>(), 0.3, 1e-6);
+  EXPECT_THAT(net_text(fleet, Time(5s), "lan", 0), HasSubstr("ROUND TRIP MS"));
+  peer.held(std::nanf(""));
+  peer.lost(std::nanf(""));
+  report.peers() = {peer};
+  fleet.hear(report, {.received = Time(5s)});
+  EXPECT_TRUE(net_json(fleet, Time(5s))["links"][0]["lost_to"].is_null());
 }
 
 TEST(Report, ARefusalNamesReasonAndHolder) {

@@ -1,0 +1,31 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/wire/wire.hpp"
+
+namespace adit::bench {
+
+/// A participant with Fast DDS's own defaults for discovery, liveliness and QoS, on loopback alone: what our
+/// wire is compared with. Its datagrams are counted as ours are.
+class DefaultDds {
+ public:
+  DefaultDds(unsigned domain, const std::string& name);
+  ~DefaultDds();
+  DefaultDds(const DefaultDds&) = delete;
+  DefaultDds& operator=(const DefaultDds&) = delete;
+
+  /// Opens a writer, and writes a sample of that many bytes of one key (the topic's first string).
+  void write(const wire::TopicInfo& topic, const std::string& partition,
+             std::span<const std::uint8_t> sample);
+  void read(const wire::TopicInfo& topic, const std::string& partition);
+  /// Totals alone; no topics.
+  wire::WireCounters counters() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace adit::bench
