@@ -203,7 +203,7 @@ void Agent::Core::tell(Notice notice) {
   if (log().on(LogLevel::info))
     log().info("tells " + (notice.operator_name.empty() ? "everybody" : notice.operator_name) + " " +
                notice.code + ": " + notice.text);
-  if (!edges_.notifier->send(notice)) log().warn("not told: " + notice.text);
+  edges_.notifier->send(notice);
 }
 
 void Agent::Core::tell_holder(Notice notice) {

@@ -1,7 +1,7 @@
 // How a robot fails and comes back, live: the agent's process killed in each mode, its components crashing
 // and hanging, so many times each; a table of median and worst in ms. Its radio and inner network are on
 // loopback.
-//   bench_failures [TIMES]     (50)
+//   bench_failures [TIMES [kill|crash|hang]]     (50, all)
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -59,7 +59,7 @@ void crashes(FailureLab& lab, const char* component, int times) {
   for (int i = 0; i < times; ++i) {
     back.add(lab.crash(component).back);
     lab.console(std::string("restart ") + component);  // attempts are counted anew
-    lab.calm();
+    lab.ready();
   }
   print(std::string("crash of ") + component + ": back", back, 100);
 }
@@ -72,7 +72,7 @@ void hangs(FailureLab& lab, const char* component, int times) {
     back.add(hung.back);
     lab.calm();
     if (std::string(component) != "command") lab.fresh_agent();  // the next hang would be its second
-    lab.calm();
+    lab.ready();
   }
   print(std::string("hang of ") + component + ": found", told, 1000);
   print(std::string("hang of ") + component + ": back", back, 0);
@@ -82,6 +82,8 @@ void hangs(FailureLab& lab, const char* component, int times) {
 
 int main(int argc, char** argv) {
   const int times = argc > 1 ? std::atoi(argv[1]) : 50;
+  const std::string only = argc > 2 ? argv[2] : "";
+  const auto asked = [&only](const char* what) { return only.empty() || only == what; };
   FailureLab lab;
   if (!lab.ready()) {
     std::fprintf(stderr, "no agent: %s\n", lab.err().c_str());
@@ -89,9 +91,12 @@ int main(int argc, char** argv) {
   }
   std::printf("| %d times each, ms | median | worst | goal | missing |\n| --- | --- | --- | --- | --- |\n",
               times);
-  for (const char* mode : {"hold", "manual", "smart_joystick", "waypoint"}) kills(lab, mode, times);
+  if (asked("kill"))
+    for (const char* mode : {"hold", "manual", "smart_joystick", "waypoint"}) kills(lab, mode, times);
   lab.calm();
-  for (const char* component : {"planner", "sensors", "command"}) crashes(lab, component, times);
-  for (const char* component : {"planner", "sensors", "command"}) hangs(lab, component, times);
+  if (asked("crash"))
+    for (const char* component : {"planner", "sensors", "command"}) crashes(lab, component, times);
+  if (asked("hang"))
+    for (const char* component : {"planner", "sensors", "command"}) hangs(lab, component, times);
   return lab.end();
 }

@@ -1,8 +1,7 @@
 #include <pthread.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <future>
 #include <limits>
 
 #include "core/exec/live_shared.hpp"
@@ -247,9 +246,7 @@ class LiveStrand final : public Executor {
 
  private:
   void block() override {
-    std::promise<void> never;
-    never.get_future().wait();
-    std::abort();  // nobody keeps that promise
+    for (;;) ::pause();
   }
 
   std::shared_ptr<Loop> loop_;

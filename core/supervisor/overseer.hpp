@@ -61,7 +61,7 @@ struct Order {
   enum class Kind : std::uint8_t {
     restart,  ///< make the component anew on its strand
     replace,  ///< leave its strand behind and make it anew on another
-    revoke,   ///< its outputs count no more, and it waits for the next order
+    revoke,   ///< its outputs count no more; nothing else
     escalate  ///< restart the agent
   };
   Kind kind{};

@@ -1,6 +1,5 @@
 #include "robot_agent/radio/notifier.hpp"
 
-#include <chrono>
 #include <mutex>
 
 #include "core/wire/topics.hpp"
@@ -11,9 +10,14 @@ namespace adit::agent {
 
 struct Notifier::Endpoint {
   std::string robot{};
-  std::timed_mutex mutex{};  // guards what follows
+  std::mutex mutex{};  // guards what follows
   wire::Writer<radio::Notification> writer{};
   std::uint64_t seq{};
+  void write(const Notice& notice) {
+    auto sample = to_radio(notice, robot);
+    sample.seq(++seq);
+    (void)writer.write(sample);
+  }
 };
 
 Notifier::Notifier() : endpoint_(std::make_unique<Endpoint>()) {}
@@ -28,13 +32,15 @@ Result<std::unique_ptr<Notifier>> Notifier::open(wire::Wire& radio, const std::s
   return notifier;
 }
 
-bool Notifier::send(const Notice& notice) {
-  Endpoint& e = *endpoint_;
-  auto sample = to_radio(notice, e.robot);
-  const std::unique_lock lock(e.mutex, std::chrono::milliseconds(20));
+void Notifier::send(const Notice& notice) {
+  const std::lock_guard lock(endpoint_->mutex);
+  endpoint_->write(notice);
+}
+
+bool Notifier::try_send(const Notice& notice) {
+  const std::unique_lock lock(endpoint_->mutex, std::try_to_lock);
   if (!lock) return false;
-  sample.seq(++e.seq);
-  (void)e.writer.write(sample);
+  endpoint_->write(notice);
   return true;
 }
 

@@ -8,8 +8,7 @@
 
 namespace adit::agent {
 
-/// Sends notifications, from any strand, and numbers them. Never waits for a strand that hangs: who finds
-/// the writer in use for long is told that nothing was sent.
+/// Sends notifications, from any strand, and numbers them. A failed write is counted by the wire.
 class Notifier {
  public:
   /// Errors of the wire.
@@ -18,8 +17,9 @@ class Notifier {
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;
 
-  /// False when another strand was writing for more than 20 ms. A failed write is counted by the wire.
-  bool send(const Notice& notice);
+  void send(const Notice& notice);
+  /// The same for who must not wait: false, and nothing sent, while another strand is sending. It may hang.
+  bool try_send(const Notice& notice);
 
  private:
   Notifier();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <deque>
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
@@ -109,6 +110,7 @@ class Watch::Impl {
 
  private:
   static constexpr std::size_t kNotes = 16;
+  static constexpr std::size_t kUnsaid = 32;
 
   void tell(const PartEvent& event, const std::string& part) {
     changed_ = true;
@@ -125,8 +127,12 @@ class Watch::Impl {
   }
   void say(Severity severity, const char* code, const std::string& text) {
     const Reason reason = severity == Severity::info ? Reason::none : Reason::internal;
-    if (!notifier_.send({{}, severity, code, reason, text}))
-      params_.log.warn("not told, another strand holds the writer: " + text);
+    if (unsaid_.size() < kUnsaid) unsaid_.push_back({{}, severity, code, reason, text});
+    say_all();
+  }
+  /// What could not be said because another strand was sending is said a little later.
+  void say_all() {
+    while (!unsaid_.empty() && notifier_.try_send(unsaid_.front())) unsaid_.pop_front();
   }
 
   void looked(Time now) {
@@ -135,6 +141,7 @@ class Watch::Impl {
     const bool ends = supervisor_.escalated() || ending_.active();
     if (!commands || ends) (void)zero_.write({});
     if (commands && !ends && params_.alive) params_.alive();
+    say_all();
     if (!changed_ && now - sent_ < kHealthPeriod) return;
     changed_ = false;
     sent_ = now;
@@ -151,6 +158,7 @@ class Watch::Impl {
   wire::Writer<geometry_msgs::msg::Twist> zero_{};
   std::vector<PartSpec> specs_{};  // as at the start: read from any thread
   std::vector<ComponentRow> notes_{};
+  std::deque<Notice> unsaid_{};
   std::uint64_t seq_{};
   bool changed_{true};
   Time sent_{};
