@@ -99,7 +99,7 @@ class Soak {
   }
 
   void restart_one() {
-    const std::size_t agent = restarts_++ % (parents_.size() - 1);
+    const std::size_t agent = turn_++ % (parents_.size() - 1);
     const std::string name = "r" + std::to_string(agent + 1);
     const pid_t before = child(agent);
     if (before <= 0) {
@@ -107,10 +107,11 @@ class Soak {
       return;
     }
     ::kill(before, SIGKILL);
+    ++restarts_;
     const auto killed = Clock::now();
     const bool back = eventually([&] { return command({"take", name}); }, Seconds(5));
     obeys_after_.push_back(since(killed));
-    const std::string x = restarts_ % 2 == 0 ? "3" : "0", y = std::to_string(3 * (agent + 1));
+    const std::string x = turn_ % 2 == 0 ? "3" : "0", y = std::to_string(3 * (agent + 1));
     const bool drives = eventually([&] { return command({"goto", name, x, y}); }, Seconds(5));
     drives_after_.push_back(since(killed));
     if (!back || !drives) ++missing_;
@@ -119,7 +120,7 @@ class Soak {
   int report() {
     bool flat = true;
     std::printf(
-        "%.0f s, %d agents, %zu restarts by SIGKILL, %d not back within 5 s\n"
+        "%.0f s, %d agents, %zu restarts by SIGKILL, %d times not there or not back within 5 s\n"
         "answers a take again after %.2f s (median), %.2f s (worst), a goto after %.2f s, %.2f s\n",
         options_.length, options_.agents, restarts_, missing_, median(obeys_after_), most(obeys_after_),
         median(drives_after_), most(drives_after_));
@@ -150,7 +151,7 @@ class Soak {
   std::vector<std::unique_ptr<Process>> parents_{};
   std::map<std::string, Series> series_{};
   std::vector<double> shm_files_{}, shm_mb_{}, obeys_after_{}, drives_after_{};
-  std::size_t restarts_{};
+  std::size_t restarts_{}, turn_{};
   int missing_{};
 };
 
