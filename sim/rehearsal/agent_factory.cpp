@@ -35,6 +35,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     params.start = context.spec.pose;
     params.lock_lease = context.lock_lease;
     params.defects = defects;
+    params.disk = context.disk;
     params.end = context.end;
     auto agent = std::make_unique<ProductAgent>(std::move(params), context);
     if (auto started = agent->start(); !started) return started.error();
