@@ -24,12 +24,13 @@ enum class Defect {
   move_on_reset,             ///< rule 7: reset resumes the kept goal
   manual_survives_handover,  ///< rule 7: a manual mode goes on under the next holder
   enter_off_centre,          ///< rule 7: a manual mode is entered with the stick pushed
+  accept_stale_joystick,     ///< rule 1: a sample counts however old its echo is
   epoch_kept_at_restart,     ///< rule 1: the epoch of before the restart stays in force
   lock_forgotten,            ///< rule 7: the lock does not survive a restart
   acknowledged_lost,         ///< rule 9: acknowledged before it is saved, and saved much later
 };
 
-inline constexpr std::array<std::pair<std::string_view, Defect>, 17> kDefectNames{{
+inline constexpr std::array<std::pair<std::string_view, Defect>, 18> kDefectNames{{
     {"none", Defect::none},
     {"accept_without_epoch", Defect::accept_without_epoch},
     {"repeat_done_twice", Defect::repeat_done_twice},
@@ -44,6 +45,7 @@ inline constexpr std::array<std::pair<std::string_view, Defect>, 17> kDefectName
     {"move_on_reset", Defect::move_on_reset},
     {"manual_survives_handover", Defect::manual_survives_handover},
     {"enter_off_centre", Defect::enter_off_centre},
+    {"accept_stale_joystick", Defect::accept_stale_joystick},
     {"epoch_kept_at_restart", Defect::epoch_kept_at_restart},
     {"lock_forgotten", Defect::lock_forgotten},
     {"acknowledged_lost", Defect::acknowledged_lost},

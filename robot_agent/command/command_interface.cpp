@@ -285,7 +285,10 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
   if (s.epoch != authority_.epoch() && !params_.defects.has(Defect::accept_without_epoch) &&
       !params_.defects.has(Defect::obey_stranger))
     return {Reason::stale_epoch};
-  if (const Reason reason = gate_.judge(s, now); reason != Reason::none) return {reason};
+  if (const Reason reason = gate_.judge(s, now);
+      reason != Reason::none &&
+      !(reason == Reason::sample_stale && params_.defects.has(Defect::accept_stale_joystick)))
+    return {reason};
   if (params_.defects.has(Defect::joystick_clears_stop) && stops_.any()) {
     stops_.clear_all();
     requests_.stop_changed(false, now);

@@ -28,7 +28,7 @@ class Acknowledge : public Rule {
   }
 
   void settle(const RobotModel& robot, const Report& broken) override {
-    if (!robot.alive()) return;
+    if (!robot.alive() || robot.disturbed()) return;
     for (const RobotModel::Pending& p : robot.pending()) {
       if (robot.now() - p.at <= answer_time || p.at <= told_[p.command.from]) continue;
       told_[p.command.from] = p.at;

@@ -28,17 +28,24 @@ struct Checker::Watch {
     rules[4] = make_one_source_rule();
     rules[5] = make_stale_is_zero_rule();
     rules[6] = make_no_surprise_rule();
+    rules[7] = make_nothing_lost_rule();
   }
   RobotModel model;
-  std::array<std::unique_ptr<Rule>, Checker::rules> rules{};
+  std::array<std::unique_ptr<Rule>, Checker::numbers.size()> rules{};  ///< as in numbers
   Duration instant{};
   std::vector<Event> waiting{};
 };
 
 const char* Checker::title(int number) {
-  static constexpr std::array titles{
-      "one holder", "a lock is a lock", "nothing is refused in silence", "a stop needs no authority",
-      "one source", "stale is zero",    "nothing moves by surprise"};
+  static constexpr std::array titles{"one holder",
+                                     "a lock is a lock",
+                                     "nothing is refused in silence",
+                                     "a stop needs no authority",
+                                     "one source",
+                                     "stale is zero",
+                                     "nothing moves by surprise",
+                                     "another robot's word moves nothing",
+                                     "nothing acknowledged is lost"};
   return titles.at(static_cast<std::size_t>(number - 1));
 }
 
@@ -83,20 +90,27 @@ void Checker::dispatch(Watch& watch) {
   std::stable_sort(watch.waiting.begin(), watch.waiting.end(),
                    [](const Event& a, const Event& b) { return rank(a) < rank(b); });
   watch.model.set_now(watch.instant);
-  const auto report_of = [&](int rule) {
-    return [this, rule, &watch](std::string text) {
-      if (++counts_[static_cast<std::size_t>(rule)] > kept_per_rule) return;
-      violations_.push_back({rule, watch.instant, watch.model.facts().name, std::move(text)});
-    };
-  };
   for (const Event& event : watch.waiting) {
-    for (int i = 0; i < rules; ++i)
-      watch.rules[static_cast<std::size_t>(i)]->see(watch.model, event, report_of(i + 1));
-    watch.model.take_in(event);
+    // A command component that failed and speaks under another start was made anew.
+    if (watch.model.begins_again(event)) judge(watch, AgentStarted{watch.model.participant()});
+    judge(watch, event);
   }
   watch.waiting.clear();
-  for (int i = 0; i < rules; ++i)
-    watch.rules[static_cast<std::size_t>(i)]->settle(watch.model, report_of(i + 1));
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    watch.rules[i]->settle(watch.model, report_of(watch, numbers[i]));
+}
+
+void Checker::judge(Watch& watch, const Event& event) {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    watch.rules[i]->see(watch.model, event, report_of(watch, numbers[i]));
+  watch.model.take_in(event);
+}
+
+Report Checker::report_of(Watch& watch, int rule) {
+  return [this, rule, &watch](std::string text) {
+    if (++counts_[static_cast<std::size_t>(rule)] > kept_per_rule) return;
+    violations_.push_back({rule, watch.instant, watch.model.facts().name, std::move(text)});
+  };
 }
 
 }  // namespace adit::sim

@@ -18,8 +18,9 @@ struct Violation {
 /// robot sent, and what the world did, and never looks into an agent.
 class Checker {
  public:
-  static constexpr int rules = 7;
-  /// What rule `number` (1 to 7) is called.
+  /// Those that are watched; the eighth, of other robots' words, has nothing to watch yet.
+  static constexpr std::array numbers{1, 2, 3, 4, 5, 6, 7, 9};
+  /// What rule `number` is called.
   static const char* title(int number);
 
   explicit Checker(std::vector<RobotFacts> robots);
@@ -38,10 +39,12 @@ class Checker {
  private:
   struct Watch;
   void dispatch(Watch& watch);
+  void judge(Watch& watch, const Event& event);
+  Report report_of(Watch& watch, int rule);
 
   std::map<std::string, std::unique_ptr<Watch>> watches_;
   std::vector<Violation> violations_{};
-  std::array<std::uint64_t, rules + 1> counts_{};
+  std::array<std::uint64_t, 10> counts_{};  ///< by number
 };
 
 }  // namespace adit::sim

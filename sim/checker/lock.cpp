@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <deque>
 
 #include "sim/checker/rule.hpp"
@@ -11,9 +12,13 @@ class Lock : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
-    if (const auto* status = std::get_if<AuthoritySent>(&event)) see_status(robot, *status, broken);
+    if (const auto* status = std::get_if<AuthoritySent>(&event); status && !robot.ahead_of_answer(*status))
+      see_status(robot, *status, broken);
     if (const auto* note = std::get_if<NotificationSent>(&event))
-      std::erase(owed_codes_, Owed{note->code, note->to, {}});
+      if (std::erase(owed_codes_, Owed{note->code, note->to, {}}) == 0) {
+        told_.push_back({note->code, note->to, robot.now()});
+        if (told_.size() > 64) told_.pop_front();
+      }
     if (std::get_if<AgentStarted>(&event) || std::get_if<AgentDied>(&event)) owed_codes_.clear();
   }
 
@@ -31,6 +36,17 @@ class Lock : public Rule {
     bool operator==(const Owed& other) const { return code == other.code && to == other.to; }
   };
 
+  // Nothing is owed when it was told between the command and its answer, which may wait for the disk.
+  void owe(const RobotModel& robot, const RobotModel::Pending& asked, const char* code) {
+    const Owed owed{code, robot.authority().holder, robot.now()};
+    const auto told = std::find_if(told_.begin(), told_.end(),
+                                   [&](const Owed& t) { return t == owed && t.since >= asked.at; });
+    if (told == told_.end())
+      owed_codes_.push_back(owed);
+    else
+      told_.erase(told);
+  }
+
   void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
     const RobotModel::Pending* pending = robot.answered_by(ack);
     if (!pending || pending->repeat || pending->command.verb != Verb::take) return;
@@ -39,16 +55,16 @@ class Lock : public Rule {
     const bool by_holder = take.station == before.holder && take.id == before.holder_id;
     const bool held_by_other = !before.holder.empty() && !by_holder;
     if (held_by_other && before.locked) {
-      if (ack.accepted && !lapsed(robot))
+      if (ack.accepted && !robot.lock_lapsed())
         return broken(take.station + " took it although " + before.holder + " had locked it");
-      if (ack.accepted) return owed_codes_.push_back({"taken", before.holder, robot.now()});
+      if (ack.accepted) return owe(robot, *pending, "taken");
       if (ack.reason != Reason::locked) return;
       if (ack.holder != before.holder) broken("refused a take without the holder's name");
-      owed_codes_.push_back({"asked", before.holder, robot.now()});
+      owe(robot, *pending, "asked");
     } else if (!ack.accepted && ack.reason == Reason::locked) {
       broken("refused a take as locked while it was not");
     } else if (ack.accepted && held_by_other) {
-      owed_codes_.push_back({"taken", before.holder, robot.now()});
+      owe(robot, *pending, "taken");
     }
   }
 
@@ -58,22 +74,11 @@ class Lock : public Rule {
         known.locked == status.authority.locked)
       return;
     if (!known.locked) return broken("published a lock that nobody set");
-    if (!lapsed(robot))
-      broken("a lock ended after " + std::to_string(silence(robot)) + " s of its holder's silence");
+    if (!robot.lock_lapsed())
+      broken("a lock ended after " + std::to_string(robot.holder_silence()) + " s of its holder's silence");
   }
 
-  /// Of the holder, s.
-  static double silence(const RobotModel& robot) {
-    const RobotModel::Heard* holder = robot.heard(robot.authority().holder);
-    return holder ? seconds(robot.age(holder->last)) : 0.0;
-  }
-  /// The lock's lease ran out.
-  static bool lapsed(const RobotModel& robot) {
-    const double lease = robot.facts().lock_lease;
-    return lease > 0.0 && silence(robot) >= lease - 0.05;
-  }
-
-  std::deque<Owed> owed_codes_{};
+  std::deque<Owed> owed_codes_{}, told_{};
 };
 
 }  // namespace

@@ -8,13 +8,14 @@ namespace {
 class NoSurprise : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
-    if (std::get_if<AgentStarted>(&event)) revoke("a start of its agent");
+    if (std::get_if<AgentStarted>(&event)) see_start(robot);
     // A late repeat of a stop that was answered, and reset since, has no second effect.
     if (const auto* command = std::get_if<CommandHeard>(&event);
         command && command->verb == Verb::stop && !robot.first_answer(RobotModel::key(*command)))
       revoke("a stop");
     if (const auto* presence = std::get_if<PresenceHeard>(&event)) see_presence(robot, *presence);
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
+    if (const auto* behaviour = std::get_if<BehaviourSent>(&event)) see_mode(robot, behaviour->mode, broken);
     if (const auto* behaviour = std::get_if<BehaviourSent>(&event))
       if (behaviour->mode == "hold" && granted_at_ != robot.now()) revoke("a fall to hold");
     if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
@@ -32,6 +33,16 @@ class NoSurprise : public Rule {
   void revoke(const char* why) {
     allowed_ = false;
     why_not_ = why;
+  }
+
+  // An autonomous mode goes on when it was on, or was asked for when the agent ended; a manual one does not.
+  void see_start(const RobotModel& robot) {
+    first_velocity_ = true;
+    bool goes_on = allowed_ && robot.mode() == "waypoint";
+    for (const RobotModel::Pending& p : robot.unanswered())
+      goes_on = goes_on || p.command.verb == Verb::go_to ||
+                (p.command.verb == Verb::mode && p.command.text == "waypoint");
+    if (!goes_on) revoke("a start of its agent");
   }
 
   // The holder speaks as a participant that was never heard before: his station was started again, and a
@@ -73,6 +84,14 @@ class NoSurprise : public Rule {
     }
   }
 
+  // A mode may show before its answer, which waits for the disk.
+  void see_mode(const RobotModel& robot, const std::string& mode, const Report& broken) {
+    if (mode == robot.mode() || (mode != "manual" && mode != "smart_joystick")) return;
+    for (const RobotModel::Pending& p : robot.pending())
+      if (p.command.verb == Verb::mode && p.command.text == mode)
+        return see_manual_entry(robot, p.command, broken);
+  }
+
   void see_manual_entry(const RobotModel& robot, const CommandHeard& command, const Report& broken) {
     if (robot.mode() == command.text) return;
     const auto& stick = robot.stick();
@@ -83,17 +102,21 @@ class NoSurprise : public Rule {
   }
 
   void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
+    if (robot.alive() && std::exchange(first_velocity_, false) && !velocity.zero())
+      broken("its first velocity after a start was not zero");
     if (velocity.zero() || !robot.alive()) {
       told_ = false;
       return;
     }
     // A velocity sent in the very instant in which motion was forbidden may have come before.
     if (allowed_ || told_ || robot.mode_changed() == robot.now()) return;
+    if (RobotModel::asked(robot.pending(), {Verb::go_to, Verb::mode}))
+      return;  // its answer waits for the disk
     told_ = true;
     broken("moved without a new request after " + why_not_);
   }
 
-  bool allowed_{}, told_{};
+  bool allowed_{}, told_{}, first_velocity_{};
   std::string why_not_{"a start of its agent"};
   Duration granted_at_{-1};
   std::optional<Duration> manual_must_end_{};

@@ -39,6 +39,14 @@ struct AgentStarted {
   wire::ParticipantId participant{};
 };
 struct AgentDied {};
+/// A fault was put into that component of the agent: one of its callbacks throws, or does not return.
+struct ComponentFaulted {
+  std::string component{};
+};
+/// Nothing fits on the robot's disk, or again.
+struct DiskChanged {
+  bool full{};
+};
 
 // Received by the robot -------------------------------------------------------------------------------
 /// Presence or Capabilities of a station.
@@ -69,6 +77,9 @@ struct JoystickHeard {
   Twist2 stick{};
 };
 
+/// A scan of its lidar reached the robot.
+struct ScanHeard {};
+
 // Sent by the robot -----------------------------------------------------------------------------------
 struct AckSent {
   std::string station{};
@@ -88,6 +99,8 @@ struct AuthoritySent {
 struct BehaviourSent {
   std::string mode{};
   bool stopped{};
+  bool has_goal{};
+  std::uint32_t goal_id{};
 };
 struct StateSent {
   std::uint64_t stamp{};  ///< ns, the robot's clock
@@ -113,9 +126,9 @@ struct ClockJumped {
   Duration by{};
 };
 
-using Event =
-    std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent, AuthoritySent,
-                 BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion, ClockJumped>;
+using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
+                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion,
+                           ClockJumped, ComponentFaulted, DiskChanged, ScanHeard>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

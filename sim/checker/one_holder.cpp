@@ -13,7 +13,8 @@ class OneHolder : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
-    if (const auto* status = std::get_if<AuthoritySent>(&event)) see_status(robot, status->authority, broken);
+    if (const auto* status = std::get_if<AuthoritySent>(&event); status && !robot.ahead_of_answer(*status))
+      see_status(robot, status->authority, broken);
     if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
   }
 
@@ -26,7 +27,11 @@ class OneHolder : public Rule {
                     " that it never received");
     const CommandHeard& command = pending->command;
     if (const AckSent* first = robot.first_answer(RobotModel::key(command))) {
-      if (first->accepted != ack.accepted || first->reason != ack.reason)
+      // What was accepted is answered so after a restart, too, or refused as too old. A refusal had no
+      // effect, and need not be kept: another one will do.
+      const bool other_refusal =
+          robot.before() && !ack.accepted && (!first->accepted || ack.reason == Reason::stale_sequence);
+      if (!other_refusal && (first->accepted != ack.accepted || first->reason != ack.reason))
         broken("a repeat of command " + std::to_string(ack.seq) + " of " + ack.station +
                " got another answer");
       return;
@@ -74,7 +79,11 @@ class OneHolder : public Rule {
 
   void see_status(const RobotModel& robot, const Authority& now, const Report& broken) {
     const Authority& known = robot.authority();
-    if (known.start == 0) return;  // the first word of this start
+    if (known.start == 0) {  // the first word of this start
+      if (const auto& before = robot.before(); before && now.start == before->authority.start)
+        broken("kept its epoch through a restart");
+      return;
+    }
     if (now.holder != known.holder || now.holder_id != known.holder_id)
       broken("published holder '" + now.holder + "' where its answers gave '" + known.holder + "'");
     else if (now.start != known.start || now.counter != known.counter)

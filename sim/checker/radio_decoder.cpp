@@ -132,7 +132,8 @@ Decoded decode_sent(std::string_view topic, std::span<const std::uint8_t> cdr) {
   if (is(topic, topics::behaviour)) {
     const auto b = read<radio::BehaviourState>(cdr);
     if (!b) return std::nullopt;
-    return DecodedSample{b->robot(), BehaviourSent{b->mode(), b->stopped()}};
+    return DecodedSample{b->robot(), BehaviourSent{b->mode(), b->stopped(),
+                                                   b->goal_state() != radio::GOAL_NONE, b->goal_id()}};
   }
   if (is(topic, topics::notification)) {
     const auto n = read<radio::Notification>(cdr);

@@ -8,21 +8,90 @@ void RobotModel::take_in(const Event& event) {
   std::visit([this](const auto& e) { take_in_event(e); }, event);
 }
 
-void RobotModel::take_in_event(const AgentStarted&) {
-  // A new process remembers nothing: neither holder nor stops nor whom it heard.
-  const RobotFacts facts = facts_;
-  const Motion truth = truth_;
-  const auto jumps = jumps_;
-  const Duration now = now_, died = died_, velocity_at = velocity_at_;
-  const std::optional<VelocitySent> velocity = velocity_;
-  *this = RobotModel(facts);
-  now_ = started_ = now;
-  died_ = died;
-  velocity_ = velocity;
-  velocity_at_ = velocity_at;
-  truth_ = truth;
-  jumps_ = jumps;
-  alive_ = true;
+void RobotModel::take_in_event(const AgentStarted& e) {
+  // A new process, or a component made anew, knows what is on its disk: what it then says is compared with
+  // what was. It does not know whom it heard.
+  RobotModel next(facts_);
+  if (authority_.start != 0 || before_) next.before_ = authority_.start != 0 ? remember() : *before_;
+  next.commands_ = std::move(commands_);
+  std::erase_if(next.commands_, [](const auto& c) { return !c.second; });
+  if (next.before_ && next.before_->disk_failed) next.commands_.clear();
+  next.now_ = next.started_ = now_;
+  next.died_ = died_;
+  next.velocity_ = velocity_;
+  next.velocity_at_ = velocity_at_;
+  next.truth_ = truth_;
+  next.jumps_ = std::move(jumps_);
+  next.scanned_ = scanned_;
+  next.disk_full_ = disk_full_;
+  next.disk_freed_ = disk_freed_;
+  next.participant_ = e.participant;
+  next.alive_ = true;
+  // A component alone: who is heard is the radio's edge to know.
+  if (alive_ && e.participant == participant_) next.participants_ = std::move(participants_);
+  *this = std::move(next);
+}
+
+RobotModel::Before RobotModel::remember() const {
+  return {authority_, latches_, behaviour_, unanswered(), lock_lapsed(), disk_failed()};
+}
+
+bool RobotModel::begins_again(const Event& event) const {
+  if (!faulted_ || authority_.start == 0) return false;
+  const auto* status = std::get_if<AuthoritySent>(&event);
+  const auto* ack = std::get_if<AckSent>(&event);
+  const std::uint64_t start = status ? status->authority.start : ack ? ack->start : 0;
+  return start != 0 && start != authority_.start;
+}
+
+bool RobotModel::disk_failed() const { return disk_full_ || (disk_freed_ && now_ - *disk_freed_ < 2500ms); }
+
+bool RobotModel::asked(const std::deque<Pending>& open, std::initializer_list<Verb> verbs) {
+  return std::any_of(open.begin(), open.end(), [&](const Pending& p) {
+    return std::find(verbs.begin(), verbs.end(), p.command.verb) != verbs.end();
+  });
+}
+
+bool RobotModel::may_hold(const Authority& was, const std::deque<Pending>& open, const std::string& holder) {
+  if (holder == was.holder) return true;
+  return std::any_of(open.begin(), open.end(), [&](const Pending& p) {
+    if (p.command.verb == Verb::take) return p.command.station == holder;
+    if (p.command.verb == Verb::grant) return p.command.text == holder;
+    return p.command.verb == Verb::release && holder.empty();
+  });
+}
+
+bool RobotModel::ahead_of_answer(const AuthoritySent& status) const {
+  if (pending_.empty() || authority_.start == 0 || !may_hold(authority_, pending_, status.authority.holder))
+    return false;
+  const Authority& now = status.authority;
+  const bool other_holder = now.holder != authority_.holder || now.counter != authority_.counter;
+  const bool other_lock = now.locked != authority_.locked;
+  const bool other_stops =
+      !std::is_permutation(latches_.begin(), latches_.end(), status.stops.begin(), status.stops.end());
+  if (!other_holder && !other_lock && !other_stops) return false;
+  if (other_holder && !asked(pending_, {Verb::take, Verb::release, Verb::grant})) return false;
+  if (other_lock && !asked(pending_, {Verb::lock, Verb::unlock, Verb::take, Verb::release, Verb::grant}))
+    return false;
+  return !other_stops || asked(pending_, {Verb::stop, Verb::reset});
+}
+
+double RobotModel::holder_silence() const {
+  const Heard* holder = heard(authority_.holder);
+  return seconds(age(holder ? holder->last : started_));
+}
+
+bool RobotModel::lock_lapsed() const {
+  return facts_.lock_lease > 0.0 && holder_silence() >= facts_.lock_lease - 0.05;
+}
+
+void RobotModel::take_in_event(const ComponentFaulted& e) {
+  if (e.component == "command" && alive_) faulted_ = now_;
+}
+
+void RobotModel::take_in_event(const DiskChanged& e) {
+  disk_full_ = e.full;
+  if (!e.full) disk_freed_ = now_;
 }
 
 Duration RobotModel::age(Duration then) const {
@@ -35,6 +104,8 @@ Duration RobotModel::age(Duration then) const {
 void RobotModel::take_in_event(const AgentDied&) {
   alive_ = false;
   died_ = now_;
+  faulted_.reset();
+  unanswered_ = std::move(pending_);
   pending_.clear();
 }
 
@@ -150,11 +221,14 @@ void RobotModel::apply(const CommandHeard& command, const AckSent& ack) {
 }
 
 void RobotModel::take_in_event(const AuthoritySent& e) {
+  if (ahead_of_answer(e)) return;
   // Before the first answer, and when a lease ran out, the published state is all there is to know.
+  if (authority_.start == 0) latches_ = e.stops;
   authority_ = e.authority;
 }
 
 void RobotModel::take_in_event(const BehaviourSent& e) {
+  behaviour_ = e;
   if (e.mode == mode_) return;
   mode_before_ = mode_;
   mode_ = e.mode;

@@ -13,6 +13,8 @@ inline constexpr Duration reaction{80ms};
 inline constexpr Duration joystick_silence{300ms};
 inline constexpr Duration oldest_echo{600ms};
 inline constexpr Duration hearing{3s};
+/// A component that failed is back, or the whole agent was started again, within this.
+inline constexpr Duration recovery{2500ms};
 
 /// What the outsider concludes from all it has seen of one robot: the authority that follows from the
 /// answers the robot gave, who is heard, the mode it last published, the last samples.
@@ -38,7 +40,19 @@ class RobotModel {
   };
   using CommandKey = std::tuple<wire::ParticipantId, StationId, std::uint64_t>;
 
+  /// What was known when the agent, or its command component, ended.
+  struct Before {
+    Authority authority{};
+    std::vector<Latch> latches{};
+    BehaviourSent behaviour{};
+    std::deque<Pending> unanswered{};  ///< done or not: either is right
+    bool lock_lapsed{};                ///< its lease had run out
+    bool disk_failed{};  ///< the disk took nothing: the state may be lost, but must not be guessed
+  };
+
   void take_in(const Event& event);
+  /// Whether with this event the command component speaks that was made anew.
+  bool begins_again(const Event& event) const;
   void set_now(Duration now) { now_ = now; }
 
   const RobotFacts& facts() const { return facts_; }
@@ -46,6 +60,18 @@ class RobotModel {
   bool alive() const { return alive_; }
   /// How long ago that was by the robot's clock, which jumps.
   Duration age(Duration then) const;
+  const wire::ParticipantId& participant() const { return participant_; }
+  /// The command component failed a moment ago and has not spoken since.
+  bool disturbed() const { return faulted_ && now_ - *faulted_ < recovery; }
+  /// Of the last start that was not the first.
+  const std::optional<Before>& before() const { return before_; }
+  const BehaviourSent& behaviour() const { return behaviour_; }
+  std::optional<Duration> scanned() const { return scanned_; }
+  bool disk_failed() const;
+  /// The lock's lease ran out.
+  bool lock_lapsed() const;
+  /// Of the holder, by the robot's clock, s.
+  double holder_silence() const;
   Duration started() const { return started_; }
   Duration died() const { return died_; }
 
@@ -62,6 +88,14 @@ class RobotModel {
   /// The oldest unanswered command that this answers; null when there is none.
   const Pending* answered_by(const AckSent& ack) const;
   const std::deque<Pending>& pending() const { return pending_; }
+  /// Whether these commands, carried out or not, may have made `holder` of who held it before.
+  static bool may_hold(const Authority& was, const std::deque<Pending>& open, const std::string& holder);
+  static bool asked(const std::deque<Pending>& open, std::initializer_list<Verb> verbs);
+  /// What is published differs from what the answers gave, by commands that wait for theirs: an answer may be
+  /// held back until the disk has what it says.
+  bool ahead_of_answer(const AuthoritySent& status) const;
+  /// Those that wait, or that waited when the agent died.
+  const std::deque<Pending>& unanswered() const { return alive_ ? pending_ : unanswered_; }
   const AckSent* first_answer(const CommandKey& key) const;
   static CommandKey key(const CommandHeard& c) { return {c.from, c.id, c.seq}; }
 
@@ -99,18 +133,28 @@ class RobotModel {
   void take_in_event(const NotificationSent&) {}
   void take_in_event(const VelocitySent& e);
   void take_in_event(const Motion& e) { truth_ = e; }
+  void take_in_event(const ComponentFaulted& e);
+  void take_in_event(const DiskChanged& e);
+  void take_in_event(const ScanHeard&) { scanned_ = now_; }
   void take_in_event(const ClockJumped& e) { jumps_.emplace_back(now_, e.by); }
   void hear(const std::string& station, const StationId& id, const wire::ParticipantId& from);
+  Before remember() const;
   void apply(const CommandHeard& command, const AckSent& ack);
 
   RobotFacts facts_;
   Duration now_{}, started_{}, died_{}, holder_changed_{}, mode_changed_{}, velocity_at_{};
   bool alive_{};
+  wire::ParticipantId participant_{};
+  std::optional<Duration> faulted_{}, scanned_{};
+  bool disk_full_{};
+  std::optional<Duration> disk_freed_{};
+  std::optional<Before> before_{};
+  BehaviourSent behaviour_{};
   Authority authority_{};
   std::vector<Latch> latches_{};
   std::map<std::string, Heard> stations_{};
   std::map<wire::ParticipantId, std::set<std::pair<std::string, StationId>>> participants_{};
-  std::deque<Pending> pending_{};
+  std::deque<Pending> pending_{}, unanswered_{};  ///< unanswered: when the agent died
   std::map<CommandKey, std::optional<AckSent>> commands_{};
   std::deque<std::pair<std::uint64_t, Duration>> stamps_{};
   std::string mode_{}, mode_before_{};

@@ -27,5 +27,6 @@ std::unique_ptr<Rule> make_stop_rule();           ///< rule 4
 std::unique_ptr<Rule> make_one_source_rule();     ///< rule 5
 std::unique_ptr<Rule> make_stale_is_zero_rule();  ///< rule 6
 std::unique_ptr<Rule> make_no_surprise_rule();    ///< rule 7
+std::unique_ptr<Rule> make_nothing_lost_rule();   ///< rule 9
 
 }  // namespace adit::sim

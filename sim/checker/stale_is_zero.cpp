@@ -5,11 +5,13 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration longest_gap{120ms};     // between two cmd_vel of a living agent; 50 ms is its period
-constexpr Duration start_up{500ms};        // until the first cmd_vel of a new agent
-constexpr Duration parent_reaction{60ms};  // from an agent's death to its parent's zero
-constexpr Duration stick_release{1s};      // silence after which a manual mode falls to hold
-constexpr Duration centred_rest{2500ms};   // a robot brakes in less from its highest speed
+constexpr Duration longest_gap{120ms};  // between two cmd_vel of a living agent; 50 ms is its period
+constexpr Duration longest_gap_of_a_failure{350ms};  // until the supervisor sends zero in its stead
+constexpr Duration plan_silence{500ms};              // without a scan no plan is fresh
+constexpr Duration start_up{500ms};                  // until the first cmd_vel of a new agent
+constexpr Duration parent_reaction{60ms};            // from an agent's death to its parent's zero
+constexpr Duration stick_release{1s};                // silence after which a manual mode falls to hold
+constexpr Duration centred_rest{2500ms};             // a robot brakes in less from its highest speed
 
 /// Rule 6: when the joystick falls silent the driver is sent zero, actively, and a manual mode then falls
 /// to hold; the driver is never left without a word; a dead agent's parent sends zero.
@@ -24,10 +26,10 @@ class StaleIsZero : public Rule {
   void settle(const RobotModel& robot, const Report& broken) override {
     if (robot.alive()) {
       const Duration last = std::max(robot.velocity_at(), robot.started() + start_up);
-      const bool gap = robot.now() - last > longest_gap;
+      const bool gap = robot.now() - last > (robot.disturbed() ? longest_gap_of_a_failure : longest_gap);
       if (gap && !told_gap_) broken("left its driver without a command for 120 ms");
       told_gap_ = gap;
-      watch_mode(robot, broken);
+      if (!robot.disturbed()) watch_mode(robot, broken);
     } else if (robot.died() != Duration{} && !zero_after_death_ && !told_death_ &&
                robot.now() - robot.died() > parent_reaction) {
       told_death_ = true;
@@ -45,7 +47,11 @@ class StaleIsZero : public Rule {
         broken("a velocity was sent for a dead agent");
       return;
     }
-    if (velocity.zero() || !robot.in_manual_mode() || robot.mode_changed() == robot.now()) return;
+    if (velocity.zero() || robot.mode_changed() == robot.now()) return;
+    const bool planned = robot.mode() == "waypoint" || robot.mode() == "smart_joystick";
+    if (planned && (!robot.scanned() || robot.now() - *robot.scanned() > plan_silence + reaction))
+      broken("sent a velocity in " + robot.mode() + " without a scan for more than 500 ms");
+    if (!robot.in_manual_mode()) return;
     const auto& stick = robot.stick();
     if (!stick || robot.now() - stick->at > joystick_silence + reaction) {
       broken("sent a velocity in " + robot.mode() + " with a joystick silent for more than 300 ms");

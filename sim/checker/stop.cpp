@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sim/checker/rule.hpp"
 
@@ -15,7 +16,11 @@ constexpr std::size_t most_latches = 16;  // of AuthorityStatus
 class Stop : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
-    if (std::get_if<AgentStarted>(&event)) stopped_since_.reset();
+    if (std::get_if<AgentStarted>(&event)) owed_.clear();
+    if (const auto* note = std::get_if<NotificationSent>(&event); note && note->code == "reset") {
+      std::erase_if(owed_, [&](const auto& owed) { return owed.first == note->to; });
+      told_[note->to] = robot.now();
+    }
     if (const auto* command = std::get_if<CommandHeard>(&event); command && command->verb == Verb::stop) {
       // A late repeat of a stop that was answered, and reset since, has no second effect.
       const bool repeat = robot.first_answer(RobotModel::key(*command)) != nullptr;
@@ -29,9 +34,15 @@ class Stop : public Rule {
     if (const auto* truth = std::get_if<Motion>(&event)) see_truth(robot, *truth, broken);
   }
 
-  void settle(const RobotModel& robot, const Report&) override {
-    // A stop that was refused (see_answer has told), or the last latch cleared.
-    if (stopped_since_ && robot.latches().empty() && robot.pending().empty() && robot.now() > *stopped_since_)
+  void settle(const RobotModel& robot, const Report& broken) override {
+    while (!owed_.empty() && robot.now() - owed_.front().second > 200ms) {
+      broken("did not tell " + owed_.front().first + " that a stop was reset by override");
+      owed_.erase(owed_.begin());
+    }
+    // A stop that was refused (see_answer has told), the last latch cleared, or one that came in vain before
+    // the agent ended.
+    if (stopped_since_ && robot.authority().start != 0 && robot.latches().empty() &&
+        robot.pending().empty() && robot.now() > *stopped_since_)
       stopped_since_.reset();
   }
 
@@ -42,6 +53,7 @@ class Stop : public Rule {
     const double brake = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
     const double unwind = std::abs(v.wz) / robot.facts().max_turn_acceleration;
     at_rest_by_ = robot.now() + from_seconds(std::max(brake, unwind) * 1.1 + 0.25);
+    if (robot.disturbed()) at_rest_by_ += recovery;
     told_moving_ = false;
   }
 
@@ -53,6 +65,7 @@ class Stop : public Rule {
     const bool name_taken = known && known->id != command.id;
     if (command.verb == Verb::stop && !ack.accepted && !name_taken)
       broken("refused a stop of " + command.station);
+    if (command.verb == Verb::reset && ack.accepted && command.flag) owe(robot, *pending);
     if (command.verb == Verb::reset && ack.accepted && !command.flag) {
       const auto& latches = robot.latches();
       const bool own =
@@ -61,7 +74,26 @@ class Stop : public Rule {
     }
   }
 
+  // Who stopped it and who clears it are both told.
+  void owe(const RobotModel& robot, const RobotModel::Pending& reset) {
+    const Latch own{reset.command.station, reset.command.id};
+    const auto owe_to = [&](const std::string& station) {
+      // Told already: the answer may have waited for the disk.
+      const auto told = told_.find(station);
+      if (told == told_.end() || told->second < reset.at) owed_.emplace_back(station, robot.now());
+    };
+    bool others = false;
+    for (const Latch& latch : robot.latches()) {
+      if (latch == own) continue;
+      others = true;
+      owe_to(latch.station);
+    }
+    if (others) owe_to(own.station);
+  }
+
   void see_status(const RobotModel& robot, const AuthoritySent& status, const Report& broken) {
+    // The first word of this start, or one before the answer that explains it.
+    if (robot.authority().start == 0 || robot.ahead_of_answer(status)) return;
     const auto& set = robot.latches();
     if (set.empty() != status.stops.empty())
       return broken(set.empty() ? "published a stop that nobody set" : "published no stop while one was set");
@@ -82,6 +114,8 @@ class Stop : public Rule {
   std::optional<Duration> stopped_since_{};
   Duration at_rest_by_{};
   bool told_moving_{};
+  std::map<std::string, Duration> told_{};                ///< of a reset, when last
+  std::vector<std::pair<std::string, Duration>> owed_{};  ///< who is to be told of a reset, since when
 };
 
 }  // namespace

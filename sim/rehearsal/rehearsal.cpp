@@ -184,7 +184,7 @@ class Run {
     out.events = witness_.events();
     out.faults = faults_.counts();
     out.failures = scheduler_.failures();
-    for (int rule = 1; rule <= Checker::rules; ++rule) {
+    for (const int rule : Checker::numbers) {
       RuleResult result{rule, Checker::title(rule), checker_.count(rule), {}};
       for (const Violation& violation : checker_.violations())
         if (violation.rule == rule) result.first.push_back(violation);

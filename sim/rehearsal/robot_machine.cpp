@@ -109,6 +109,7 @@ void RobotMachine::crash() {
 
 Result<void> RobotMachine::inject(const std::string& component, ComponentFault fault) {
   if (!agent_) return {};
+  stage_.witness.component_faulted(spec_.id, stage_.scheduler.elapsed(), component);
   return agent_->program->inject(component, fault);
 }
 
@@ -123,6 +124,7 @@ void RobotMachine::jump_clock(Duration by) {
 void RobotMachine::fill_disk(bool full) {
   disk_full_ += full ? 1 : -1;
   disk_->set_full(disk_full_ > 0);
+  stage_.witness.disk_changed(spec_.id, stage_.scheduler.elapsed(), disk_full_ > 0);
 }
 
 }  // namespace adit::sim

@@ -1,5 +1,6 @@
 #include "sim/rehearsal/witness.hpp"
 
+#include "core/wire/topics.hpp"
 #include "sim/checker/radio_decoder.hpp"
 
 namespace adit::sim {
@@ -97,9 +98,13 @@ void Witness::count(const std::string& robot, const AckSent& ack) {
 void Witness::delivered(const wire::Frame& frame) {
   const auto it = topics_.find(frame.topic);
   if (it != topics_.end()) ++it->second.delivered;
-  if (frame.domain != radio_domain) return;
   const std::string robot = robot_of(frame.to_name);
   if (robot.empty()) return;
+  if (frame.domain != radio_domain) {
+    if (frame.topic == wire::topics::points.name && frame.to_name == robot)
+      checker_.observe(robot, frame.at, ScanHeard{});
+    return;
+  }
   auto decoded = decode_received(frame.topic, frame.bytes, frame.from);
   if (decoded) checker_.observe(robot, frame.at, std::move(decoded->event));
 }
@@ -113,6 +118,14 @@ void Witness::agent_started(const std::string& robot, Duration at, const wire::P
 void Witness::agent_died(const std::string& robot, Duration at) {
   note(robot, at, "agent died");
   checker_.observe(robot, at, AgentDied{});
+}
+
+void Witness::component_faulted(const std::string& robot, Duration at, const std::string& component) {
+  checker_.observe(robot, at, ComponentFaulted{component});
+}
+
+void Witness::disk_changed(const std::string& robot, Duration at, bool full) {
+  checker_.observe(robot, at, DiskChanged{full});
 }
 
 void Witness::clock_jumped(const std::string& robot, Duration at, Duration by) {

@@ -42,6 +42,8 @@ class Witness {
   void agent_started(const std::string& robot, Duration at, const wire::ParticipantId& participant);
   /// A fault begins; `text` says what.
   void fault(Duration at, std::string text) { note({}, at, std::move(text)); }
+  void component_faulted(const std::string& robot, Duration at, const std::string& component);
+  void disk_changed(const std::string& robot, Duration at, bool full);
   void clock_jumped(const std::string& robot, Duration at, Duration by);
   void agent_died(const std::string& robot, Duration at);
   void truth(const std::string& robot, Duration at, const Motion& truth);

@@ -15,6 +15,8 @@ class Record {
  public:
   Record() : checker_({{"r1", 1.5, 3.0, 20.0}}) {
     see(AgentStarted{participant(100)});
+    see(VelocitySent{});
+    see(ScanHeard{});
     publish();
     behave("hold");
     hear_stations();
@@ -28,6 +30,7 @@ class Record {
     while (now < end) {
       now += 10ms;
       if (now % 100ms == 0ns) see(StateSent{static_cast<std::uint64_t>(now.count())});
+      if (now % 100ms == 0ns && seeing) see(ScanHeard{});
       if (now % 1s == 0ns && stations) hear_stations();
       if (stick && now % 50ms == 0ns) push(1, *stick);
       if (now % 50ms == 0ns && driven) see(VelocitySent{velocity});
@@ -43,7 +46,7 @@ class Record {
   }
   void push(int from, Twist2 stick) {
     const Duration stamp = now / 100ms * 100ms - 100ms;
-    see(JoystickHeard{participant(from), station_id(from), 9, epoch, ++sequence,
+    see(JoystickHeard{participant(from), station_id(from), start, epoch, ++sequence,
                       static_cast<std::uint64_t>(stamp.count()), stick});
   }
   /// The command reaches the robot; returns it, for the answer.
@@ -51,7 +54,7 @@ class Record {
     CommandHeard c{participant(from),
                    "op" + std::to_string(from),
                    station_id(from),
-                   9,
+                   start,
                    epoch,
                    ++sequence,
                    verb,
@@ -63,11 +66,11 @@ class Record {
   }
   void answer(const CommandHeard& c, Reason reason = Reason::none) {
     see(AckSent{c.station, c.id, c.seq, reason == Reason::none, reason, reason == Reason::none ? "" : "no",
-                authority.holder, 9, epoch});
+                authority.holder, start, epoch});
   }
   /// An accepted command, with what it changes in `authority` and `epoch` done by the caller before.
   void publish() {
-    authority.start = 9;
+    authority.start = start;
     authority.counter = epoch;
     see(AuthoritySent{authority, stops});
   }
@@ -103,7 +106,7 @@ class Record {
   std::vector<int> broken() {
     checker_.advance(now + 1ns);
     std::vector<int> out;
-    for (int rule = 1; rule <= Checker::rules; ++rule)
+    for (const int rule : Checker::numbers)
       if (checker_.count(rule) > 0) out.push_back(rule);
     return out;
   }
@@ -121,6 +124,8 @@ class Record {
   Twist2 moving{};
   bool driven{true};
   bool stations{true};
+  bool seeing{true};       ///< its lidar gives scans
+  std::uint64_t start{9};  ///< of the epoch
 
  private:
   Checker checker_;

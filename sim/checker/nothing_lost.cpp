@@ -1,0 +1,79 @@
+#include <algorithm>
+
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+namespace {
+
+/// Rule 9, and the restoring half of rule 7: holder, lock, stops and goal that were acknowledged before a
+/// restart are there after it. What was received and not answered may have been done or not. When the disk
+/// took nothing the state may be lost as a whole: then nobody holds the robot, and it holds.
+class NothingLost : public Rule {
+ public:
+  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+    if (std::get_if<AgentStarted>(&event)) behaviour_due_ = true;
+    if (!robot.before()) return;
+    if (const auto* status = std::get_if<AuthoritySent>(&event); status && robot.authority().start == 0)
+      see_status(*robot.before(), *status, broken);
+    if (const auto* behaviour = std::get_if<BehaviourSent>(&event);
+        behaviour && std::exchange(behaviour_due_, false))
+      see_behaviour(*robot.before(), *behaviour, broken);
+  }
+
+ private:
+  using Before = RobotModel::Before;
+
+  static bool asked(const Before& before, std::initializer_list<Verb> verbs) {
+    return RobotModel::asked(before.unanswered, verbs);
+  }
+
+  void see_status(const Before& before, const AuthoritySent& now, const Report& broken) {
+    lost_ = before.disk_failed && now.authority.holder.empty();
+    if (lost_) return;
+    const Authority& was = before.authority;
+    if (!RobotModel::may_hold(was, before.unanswered, now.authority.holder))
+      return broken("'" + was.holder + "' held it before a restart, '" + now.authority.holder + "' after it");
+    const bool same = now.authority.holder == was.holder;
+    const bool told = asked(before, {Verb::lock, Verb::unlock, Verb::take, Verb::release, Verb::grant});
+    if (same && now.authority.locked != was.locked && !told && !before.lock_lapsed)
+      broken(was.locked ? "its lock was lost in a restart" : "a restart locked it");
+    if (now.authority.counter <= was.counter) broken("the counter of its epoch did not go on in a restart");
+    see_stops(before, now.stops, broken);
+  }
+
+  static void see_stops(const Before& before, const std::vector<Latch>& now, const Report& broken) {
+    const auto has = [](const std::vector<Latch>& all, const Latch& one) {
+      return std::find(all.begin(), all.end(), one) != all.end();
+    };
+    for (const Latch& latch : before.latches)
+      if (!has(now, latch) && !asked(before, {Verb::reset}))
+        broken("the stop of " + latch.station + " was lost in a restart");
+    for (const Latch& latch : now)
+      if (!has(before.latches, latch) && !asked(before, {Verb::stop}))
+        broken("a stop of " + latch.station + " came up in a restart");
+  }
+
+  void see_behaviour(const Before& before, const BehaviourSent& now, const Report& broken) const {
+    const bool manual = before.behaviour.mode == "manual" || before.behaviour.mode == "smart_joystick";
+    if (now.mode == "manual" || now.mode == "smart_joystick")
+      broken("came back in " + now.mode);
+    else if (now.mode != "hold" && (manual || before.behaviour.mode == "hold") &&
+             !asked(before, {Verb::go_to, Verb::mode}))
+      broken("came back in " + now.mode + " where it was in " + before.behaviour.mode);
+    if (lost_) {
+      if (now.mode != "hold") broken("lost its state and came back in " + now.mode);
+      return;
+    }
+    const bool told = asked(before, {Verb::go_to, Verb::mode});
+    if (before.behaviour.has_goal && !told && (!now.has_goal || now.goal_id != before.behaviour.goal_id))
+      broken("its goal was lost in a restart");
+  }
+
+  bool behaviour_due_{}, lost_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_nothing_lost_rule() { return std::make_unique<NothingLost>(); }
+
+}  // namespace adit::sim
