@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace adit::sim {
@@ -59,9 +60,9 @@ std::vector<ScriptLine> draw_script(const RandomScript& spec, const Scenario& sc
   std::vector<ScriptLine> lines;
   std::string robot = pick(spec.robots, random);
   for (int i = 0; i < spec.commands; ++i) {
-    // In whole milliseconds: as a scenario file can say it.
-    const Duration at = std::chrono::round<std::chrono::milliseconds>(
-        from_seconds(random.uniform(seconds(spec.from), seconds(spec.to))));
+    // In whole milliseconds: as a scenario file says it, and as it is read from there.
+    const double at_s = random.uniform(seconds(spec.from), seconds(spec.to));
+    const Duration at = from_seconds(std::round(at_s * 1000.0) / 1000.0);
     const std::string by = pick(spec.by, random);
     if (!random.chance(0.25)) robot = pick(spec.robots, random);
     lines.push_back({at, by, draw_command(spec, scenario, by, robot, random)});

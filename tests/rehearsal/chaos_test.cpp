@@ -1,0 +1,94 @@
+// Faults and commands drawn from seeds; and that a seed that fails is shrunk to a scenario that fails by
+// itself.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "sim/rehearsal/rehearsal.hpp"
+#include "sim/rehearsal/scenario_file.hpp"
+#include "sim/rehearsal/shrink.hpp"
+
+namespace adit::sim {
+namespace {
+
+Scenario team() {
+  auto scenario = load_scenario(std::string(ADIT_SOURCE_DIR) + "/config/scenarios/team_chaos.yaml");
+  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
+  return *scenario;
+}
+
+RunReport run(const Scenario& scenario, std::uint64_t seed, const std::string& defect = {}) {
+  static const auto world = *make_world(team().world);
+  RunParams params;
+  params.seed = seed;
+  params.workers = 1;
+  params.make_agent = *make_agent_factory(defect);
+  auto outcome = rehearse(scenario, world, params);
+  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
+  return std::move(outcome->report);
+}
+
+TEST(Chaos, TwentySeedsBreakNoRule) {
+  const Scenario scenario = team();
+  std::vector<RunReport> reports(20);
+  {
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      for (std::size_t i = next++; i < reports.size(); i = next++) reports[i] = run(scenario, i + 1);
+    };
+    const std::jthread one(work), two(work);
+  }
+  for (const RunReport& report : reports) {
+    for (const std::string& line : report.complaints())
+      ADD_FAILURE() << "seed " << report.seed << ": " << line;
+    EXPECT_GE(report.commands.sent, 30U);
+    EXPECT_GE(report.fault_count(), 5U);
+  }
+}
+
+TEST(Chaos, WhatASeedDrawsCanBeWrittenOutAndIsTheSameRun) {
+  const Scenario scenario = team();
+  const Scenario written = written_out(scenario, 5);
+  EXPECT_FALSE(written.random);
+  EXPECT_EQ(run(written, 5).digest, run(scenario, 5).digest);
+  const auto text = to_text(written, {6, 0, 3s, "r1: x"}, "again.yaml");
+  ASSERT_TRUE(text.ok()) << text.error().text;
+  const auto again = parse_scenario(*text, "again.yaml");
+  ASSERT_TRUE(again.ok()) << again.error().text;
+  EXPECT_EQ(again->seed, 5U);
+  EXPECT_EQ(run(*again, 5).digest, run(scenario, 5).digest);
+}
+
+TEST(Chaos, AFailingSeedIsShrunkToAScenarioThatFailsByItself) {
+  const std::string defect = "joystick_clears_stop";
+  const Scenario scenario = team();
+  std::optional<Failure> failure;
+  std::uint64_t seed = 0;
+  while (!failure && seed < 200) failure = failure_of(scenario, run(scenario, ++seed, defect));
+  ASSERT_TRUE(failure);
+  const ShrinkResult small =
+      shrink(written_out(scenario, seed), *failure,
+             [&](const Scenario& s) -> Result<RunReport> { return run(s, s.seed, defect); }, {});
+  EXPECT_LE(small.scenario.faults.size(), 3U);
+  EXPECT_LE(small.scenario.script.size(), 10U);
+  const auto text = to_text(small.scenario, small.failure, "small.yaml");
+  ASSERT_TRUE(text.ok()) << text.error().text;
+  const auto again = parse_scenario(*text, "small.yaml");
+  ASSERT_TRUE(again.ok()) << again.error().text;
+  const auto same = failure_of(*again, run(*again, again->seed, defect));
+  ASSERT_TRUE(same);
+  EXPECT_TRUE(same->same(*failure)) << same->text;
+  EXPECT_FALSE(failure_of(*again, run(*again, again->seed, "none"))) << "the defect is what fails";
+}
+
+TEST(Chaos, TextThatIsNotLaidOutInLinesIsNotWritten) {
+  auto scenario = parse_scenario(
+      "{world: {boxes: []}, duration: 5, robots: [{id: r1, platform: wheeled, pose: [0, 0, 0]}]}",
+      "flow.yaml");
+  ASSERT_TRUE(scenario.ok()) << scenario.error().text;
+  EXPECT_EQ(to_text(*scenario, {6, 0, 3s, "x"}, "again.yaml").reason(), Reason::not_supported);
+}
+
+}  // namespace
+}  // namespace adit::sim
