@@ -4,6 +4,7 @@
 
 #include "basestation/command/grammar.hpp"
 #include "basestation/command/words.hpp"
+#include "basestation/findings/report.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
@@ -17,7 +18,7 @@ constexpr std::size_t max_flows = 64;
 
 bool is_query(Verb verb) {
   return verb == Verb::list || verb == Verb::status || verb == Verb::net || verb == Verb::health ||
-         verb == Verb::actions;
+         verb == Verb::findings || verb == Verb::actions;
 }
 
 Kind kind_of(Verb verb) {
@@ -175,6 +176,12 @@ void Station::Impl::run(std::uint64_t handle, const Request& request, Done done)
 }
 
 void Station::Impl::answer_query(const Request& request, const Done& done) {
+  if (request.verb == Verb::findings) {  // what is here stays here when its robot is gone
+    Outcome outcome{.json = json_of(request.verb, 0)};
+    outcome.text = findings_text(desk_, fleet_, request.robots);
+    outcome.json["findings"] = findings_json(desk_, fleet_, request.robots);
+    return done(outcome);
+  }
   std::vector<const RobotView*> selection;
   for (const std::string& robot : request.robots) {
     selection.push_back(fleet_.robot(robot));
@@ -398,6 +405,7 @@ void Station::Impl::stick(std::uint64_t handle, const std::array<double, 3>& vel
 
 void Station::Impl::tick() {
   fleet_.check(strand_.now());
+  desk_.tick();
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
   for (Waiting& next : std::exchange(waiting_, {})) {
     const bool behind = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {

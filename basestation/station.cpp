@@ -10,6 +10,7 @@
 #include "basestation/command/grammar.hpp"
 #include "basestation/command/parse.hpp"
 #include "basestation/command/words.hpp"
+#include "basestation/findings/convert.hpp"
 #include "basestation/station_impl.hpp"
 #include "core/wire/typed.hpp"
 
@@ -28,6 +29,7 @@ struct Station::Impl::Radio {
   wire::Writer<radio::Presence> presence{};
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> report{};
+  wire::Writer<radio::FindingsAck> findings{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
 };
 
@@ -41,6 +43,7 @@ Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire
       stick_(params_.id, strand, radio, fleet_),
       started_(strand.now()),
       random_(params_.seed),
+      desk_({}, params_.disk, strand, desk_outputs()),
       topics_(std::make_unique<Radio>()) {}
 
 Station::Impl::~Impl() = default;
@@ -81,6 +84,19 @@ Result<void> Station::Impl::start() {
   if (!report) return report.error();
   topics_->report = std::move(*report);
 
+  auto findings = wire::Writer<radio::FindingsAck>::make(radio_, wire::topics::findings_ack);
+  if (!findings) return findings.error();
+  topics_->findings = std::move(*findings);
+  if (const std::size_t damaged = desk_.load(); damaged > 0)
+    desk_outputs().trouble("findings_damaged",
+                           std::to_string(damaged) + " findings on the disk were damaged");
+  auto found = wire::make_reader(radio_, wire::topics::finding, strand_,
+                                 [this](const radio::Finding& sample, const wire::SampleInfo&) {
+                                   desk_.hear(from_radio(sample), {sample.kept(), sample.overflowed()});
+                                 });
+  if (!found) return found.error();
+  topics_->readers.push_back(std::move(*found));
+
   auto answers =
       wire::make_reader(radio_, wire::topics::acknowledgement, strand_,
                         [this](const radio::Acknowledgement& sample, const wire::SampleInfo& info) {
@@ -116,6 +132,24 @@ Result<void> Station::Impl::start() {
   }));
   timers_.push_back(strand_.every(tick_period, [this] { tick(); }));
   return {};
+}
+
+FindingDesk::Outputs Station::Impl::desk_outputs() {
+  return {
+      [this](const std::string& robot, const std::vector<std::uint64_t>& ids) {
+        // When it is lost, the robot sends them again, and so do we.
+        if (!closed_) (void)topics_->findings.write(to_radio(robot, params_.id, ids));
+      },
+      [this](const findings::Finding& f) {
+        fleet_.say({.at = strand_.now(),
+                    .robot = f.key.robot,
+                    .code = "found",
+                    .text = f.key.robot + " found " + clean(f.kind, findings::Finding::kKind) +
+                            (f.text.empty() ? "" : ": " + clean(f.text, findings::Finding::kText))});
+      },
+      [this](const std::string& code, const std::string& text) {
+        fleet_.say({.at = strand_.now(), .level = Level::warning, .code = code, .text = clean(text, 240)});
+      }};
 }
 
 void Station::Impl::announce() {

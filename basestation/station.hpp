@@ -11,6 +11,7 @@
 #include "basestation/outcome.hpp"
 #include "basestation/send/answer.hpp"
 #include "core/exec/executor.hpp"
+#include "core/store/disk.hpp"
 #include "core/wire/wire.hpp"
 
 namespace adit::station {
@@ -23,6 +24,7 @@ struct StationParams {
   std::string software{};                             ///< version, for the others to see
   std::string link{"lan"};                            ///< name of the link profile, for `net`
   double bandwidth{0.0};                              ///< of that link, bit/s; 0: not known
+  std::shared_ptr<store::Disk> disk{};                ///< where findings are kept; null: in memory alone
   Duration presence{std::chrono::seconds(1)};         ///< between signs of life, [0.1 s, 1 s]
   Duration discovery_grace{std::chrono::seconds(5)};  ///< after the start: how long a robot may stay unknown
   Duration settle{std::chrono::seconds(

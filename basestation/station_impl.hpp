@@ -4,6 +4,7 @@
 #include <set>
 #include <vector>
 
+#include "basestation/findings/desk.hpp"
 #include "basestation/fleet/traffic.hpp"
 #include "basestation/flow/arrival.hpp"
 #include "basestation/flow/steer.hpp"
@@ -62,6 +63,7 @@ class Station::Impl {
   void announce();
   void announce_often();
   void report_traffic();
+  FindingDesk::Outputs desk_outputs();
   void tick();
   void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
 
@@ -90,6 +92,7 @@ class Station::Impl {
   Time started_;
   Random random_;
   TrafficMeter meter_{};
+  FindingDesk desk_;
   std::uint64_t next_handle_{1};
   std::uint32_t presence_seq_{};
   std::uint64_t report_seq_{};

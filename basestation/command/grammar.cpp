@@ -16,6 +16,8 @@ constexpr std::array table{
                 0},
     CommandInfo{Verb::net, "net", "", "bytes a second per agent and topic, discovery apart", "net", -1, 0},
     CommandInfo{Verb::health, "health", "[R]", "components of a robot, or of all", "health r1", 0, 1},
+    CommandInfo{Verb::findings, "findings", "[R...]", "what robots found, most important first",
+                "findings r1", 0, 0},
     CommandInfo{Verb::actions, "actions", "R...", "which commands are valid now, and why the others are not",
                 "actions r1 r2", 1, 0},
     CommandInfo{Verb::run, "run", "FILE [--all]",

@@ -16,6 +16,7 @@ enum class Verb {
   watch,
   net,
   health,
+  findings,
   actions,
   run,
   take,

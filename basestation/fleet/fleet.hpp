@@ -37,6 +37,8 @@ class Fleet {
   void own_traffic(TrafficView traffic);
   /// Marks silent robots lost, and forgets stations and reports that were silent for a minute.
   void check(Time now);
+  /// Something that this station itself has to say.
+  void say(Notice said) { notice(std::move(said)); }
 
   /// Null when the robot is not known.
   const RobotView* robot(const std::string& name) const;

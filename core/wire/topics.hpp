@@ -14,6 +14,8 @@ class BehaviourState;
 class Notification;
 class Health;
 class LinkReport;
+class Finding;
+class FindingsAck;
 }  // namespace adit::radio
 namespace geometry_msgs::msg {
 class Twist;
@@ -56,6 +58,10 @@ inline constexpr Topic<radio::Health> health{
     {"adit/health", "adit::radio::Health", QosClass::status, 1, keyed, 4096}};
 inline constexpr Topic<radio::LinkReport> link_report{
     {"adit/link", "adit::radio::LinkReport", QosClass::state, 1, keyed, 4096}};
+inline constexpr Topic<radio::Finding> finding{
+    {"adit/finding", "adit::radio::Finding", QosClass::bulk, 8, unkeyed, 1024}};
+inline constexpr Topic<radio::FindingsAck> findings_ack{
+    {"adit/findings_ack", "adit::radio::FindingsAck", QosClass::bulk, 8, unkeyed, 1024}};
 
 /// The robot domain: ROS 2 names and types towards drivers.
 inline constexpr Topic<geometry_msgs::msg::Twist> cmd_vel{

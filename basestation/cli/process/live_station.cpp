@@ -5,6 +5,7 @@
 #include <random>
 
 #include "basestation/cli/process/paths.hpp"
+#include "core/store/file_disk.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
 #include "core/wire/link_file.hpp"
 
@@ -40,6 +41,14 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
                        .presence = hooks.presence,
                        .discovery_grace = hooks.discovery_grace};
   for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
+  // A disk that cannot be used is no reason not to stop a robot: findings stay in memory then.
+  if (const auto folder = state_folder()) {
+    auto disk = store::FileDisk::open(*folder + "/findings-" + options.name);
+    if (disk)
+      params.disk = std::move(*disk);
+    else
+      std::fprintf(stderr, "basestation: findings are not kept: %s\n", disk.error().text.c_str());
+  }
   Result<void> started;
   live->on_strand([&] {
     live->station_ = std::make_unique<Station>(std::move(params), *live->strand_, wire);

@@ -1,0 +1,17 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "basestation/findings/desk.hpp"
+#include "basestation/fleet/fleet.hpp"
+
+namespace adit::station {
+
+/// Of the robots named, or of all: most important first.
+std::string findings_text(const FindingDesk& desk, const Fleet& fleet,
+                          const std::vector<std::string>& robots);
+nlohmann::json findings_json(const FindingDesk& desk, const Fleet& fleet,
+                             const std::vector<std::string>& robots);
+
+}  // namespace adit::station
