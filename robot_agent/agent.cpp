@@ -64,6 +64,16 @@ void Agent::at_console(const std::string& line, std::function<void(const std::st
   });
 }
 
+void Agent::report(findings::Finding finding) {
+  Executor& strand = parts_->command_strand();
+  strand.post([edges = parts_->edges.get(), &strand, finding = std::move(finding)]() mutable {
+    if (finding.stamp == 0) finding.stamp = to_stamp(strand.now());
+    if (const auto taken = edges->findings->report(std::move(finding)); !taken)
+      edges->notifier->send(
+          {{}, Severity::warning, "finding_refused", taken.reason(), "a finding: " + taken.error().text});
+  });
+}
+
 Result<void> Agent::inject(const std::string& component, ComponentFault fault) {
   Unit* unit = parts_ ? parts_->find(component) : nullptr;
   if (!unit) return {Reason::bad_argument, "no component is named " + component};

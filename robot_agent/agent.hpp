@@ -6,6 +6,7 @@
 #include "core/component/fault.hpp"
 #include "core/config/platform.hpp"
 #include "core/exec/executor.hpp"
+#include "core/findings/finding.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/log/log.hpp"
 #include "core/result/result.hpp"
@@ -14,6 +15,8 @@
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/defects.hpp"
+#include "robot_agent/safeguard/battery_watch.hpp"
+#include "robot_agent/safeguard/link_loss.hpp"
 
 namespace adit::agent {
 
@@ -32,6 +35,10 @@ struct AgentParams {
   std::uint64_t
       boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known
   bool resume_after_restart{true};  ///< an autonomous mode goes on after a restart; false: hold, goal kept
+  LinkLossParams link_loss{};       ///< its `start` is the start pose above
+  BatteryParams battery{};
+  bool return_at_last_battery{};  ///< back to the start when the charge passes the last threshold, else hold
+  std::size_t findings{512};      ///< kept at most, [1, 65536]
   SupervisionParams supervision{};
   /// The agent's process is to end and to be started anew: a component could not be brought back. Called
   /// once, on a strand of the agent; empty: the agent stays as it is, with zero at the driver.
@@ -58,6 +65,11 @@ class Agent {
   /// auto|manual". `answer` runs on a strand of the agent, or never when that hangs. From any thread, after
   /// start().
   void at_console(const std::string& line, std::function<void(const std::string&)> answer);
+
+  /// Something was found: kept on the disk, sent until every station that is heard has it (rule 9). Its robot
+  /// is this one; id 0: it gets one; stamp 0: now. What is not taken (no room, no finding) is told to
+  /// everybody. From any thread live, after start().
+  void report(findings::Finding finding);
 
   /// For tests and rehearsals: a callback on the strand of that component throws or never returns.
   /// Components: command, planner, sensors. Errors: bad_argument for another name. From any thread live,

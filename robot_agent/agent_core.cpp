@@ -39,6 +39,12 @@ NavigationParams navigation_params(const AgentParams& params) {
   return n;
 }
 
+LinkLossParams link_loss_params(const AgentParams& params) {
+  LinkLossParams l = params.link_loss;
+  l.start = {params.start.x, params.start.y};
+  return l;
+}
+
 constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
@@ -58,7 +64,9 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
                   navigation_outputs()),
       mux_(navigation_, mux_params(params)),
       behaviour_(behaviour_params(params), std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
-      commands_(command_params(params, edges.instances++), behaviour_, command_outputs()) {}
+      commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
+      link_loss_(link_loss_params(params)),
+      battery_watch_(params.battery) {}
 
 void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
   protect([&] { localisation_.update(odom, twist, stamp, now()); });
@@ -74,7 +82,12 @@ void Agent::Core::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp) 
   });
 }
 
-void Agent::Core::battery(float charge) { battery_ = std::isfinite(charge) ? charge : -1.0f; }
+void Agent::Core::battery(float charge) {
+  protect([&] {
+    battery_ = std::isfinite(charge) ? charge : -1.0f;
+    if (const auto level = battery_watch_.update(battery_)) battery_fell(*level);
+  });
+}
 
 void Agent::Core::commands(const std::function<void(CommandInterface&)>& use) {
   protect([&] { use(commands_); });
@@ -90,6 +103,7 @@ void Agent::Core::restore() {
   // Where its driver's odometry began anew, the goal's place is no longer known for sure.
   const bool resume = params_.resume_after_restart && s.boot == params_.boot;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume);
+  battery_watch_.restore(static_cast<BatteryLevel>(s.battery));
 }
 
 Result<void> Agent::Core::on_start() {
@@ -112,7 +126,9 @@ Result<void> Agent::Core::on_start() {
   }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
+    watch_link();
     send_status();
+    send_findings();
   }));
   timers_.push_back(
       every(kLinkPeriod, [this] { edges_.radio->send_link_report(now(), edges_.driver->malformed()); }));
@@ -137,7 +153,11 @@ void Agent::Core::beat() {
 }
 
 void Agent::Core::keep() {
-  edges_.keeper->save({commands_.kept(), behaviour_.kept(), params_.boot, 0, {}},
+  edges_.keeper->save({commands_.kept(),
+                       behaviour_.kept(),
+                       params_.boot,
+                       static_cast<std::uint8_t>(battery_watch_.level()),
+                       {}},
                       [this] { return commands_.kept_answers(); });
 }
 

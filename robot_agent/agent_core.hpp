@@ -8,6 +8,7 @@
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/discovery/directory.hpp"
+#include "robot_agent/findings/sync.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/mux.hpp"
@@ -32,10 +33,11 @@ struct Agent::Edges {
   Directory directory;
   Restored restored{};  ///< what was there at the start, or when the component was made anew
   std::unique_ptr<StateKeeper> keeper{};  ///< what the component gave last, here and on the disk
-  PlanService* planner{};                 ///< from any thread
-  Watch* watch{};                         ///< from any thread
-  Core* core{};                           ///< null while the command component is away
-  std::uint32_t instances{};              ///< of the command component so far
+  std::unique_ptr<FindingSync> findings{};
+  PlanService* planner{};     ///< from any thread
+  Watch* watch{};             ///< from any thread
+  Core* core{};               ///< null while the command component is away
+  std::uint32_t instances{};  ///< of the command component so far
 };
 
 /// The command component: command interface, behaviour, mux, navigation's light half. Everything in it is
@@ -68,6 +70,10 @@ class Agent::Core : public Component {
   void note_driver();
   void watch_driver();
   void tell_restored();
+  void watch_link();
+  void battery_fell(BatteryLevel level);
+  void go_back(const Eigen::Vector2d& place, const std::string& why);
+  void send_findings();
   void tell(Notice notice);
   void tell_holder(Notice notice);
   Facts sense(Time now) const;
@@ -84,6 +90,8 @@ class Agent::Core : public Component {
   Mux mux_;
   Behaviour behaviour_;
   CommandInterface commands_;
+  LinkLoss link_loss_;
+  BatteryWatch battery_watch_;
   float battery_{-1.0f};
   bool driver_was_alive_{};
   Time started_{};

@@ -1,5 +1,7 @@
 #include "robot_agent/agent_parts.hpp"
 
+#include "core/time/random.hpp"
+
 namespace adit::agent {
 namespace {
 
@@ -110,6 +112,12 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   e.keeper = std::make_unique<StateKeeper>(keeper_params(params), params.disk, strand, disk_strand,
                                            e.restored.generation, keeper_outputs());
 
+  e.findings = std::make_unique<FindingSync>(
+      SyncParams{.robot = params.name, .most = params.findings, .seed = Random(params.seed).fork(2).next()},
+      params.disk, strand, disk_strand, findings_outputs());
+  if (const std::size_t damaged = e.findings->load(); damaged > 0)
+    findings_outputs().full(std::to_string(damaged) + " findings on the disk were damaged");
+
   const auto with_core = [&e](const auto& use) {
     if (e.core) use(*e.core);
   };
@@ -143,6 +151,9 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
                           [&e](Task task) {
                             if (e.core) e.core->keep();
                             e.keeper->when_safe(std::move(task));
+                          },
+                          [&e, &strand](const Id& station, std::span<const std::uint64_t> ids) {
+                            e.findings->acknowledged(station, ids, strand.now());
                           }});
 }
 
@@ -173,6 +184,16 @@ StateKeeper::Outputs Agent::Parts::keeper_outputs() {
     }
     watch->note(row);
   }};
+}
+
+FindingSync::Outputs Agent::Parts::findings_outputs() {
+  const auto tell = [this](Severity severity, const char* code, const std::string& text) {
+    edges->notifier->send({{}, severity, code, Reason::none, params.name + ": " + text});
+  };
+  return {[tell](const std::string& text) { tell(Severity::warning, "findings_full", text); },
+          [tell](bool failing, const std::string& text) {
+            tell(failing ? Severity::error : Severity::info, failing ? "store_failing" : "store_works", text);
+          }};
 }
 
 Unit* Agent::Parts::find(const std::string& component) {

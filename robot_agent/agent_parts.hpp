@@ -48,6 +48,7 @@ struct Agent::Parts {
 
   StateKeeper::Outputs keeper_outputs();
   std::shared_ptr<const nav::PlannerLibrary> library();
+  FindingSync::Outputs findings_outputs();
   UnitParams command_unit();
   UnitParams planner_unit();
   UnitParams sensors_unit();

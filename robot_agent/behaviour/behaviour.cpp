@@ -115,6 +115,13 @@ void Behaviour::resume_goal(Time now) {
   tick(now);
 }
 
+void Behaviour::hold(Reason reason, Time now) {
+  requested_ = &mode_table().front();
+  fell_because_ = reason;
+  idle_since_ = now;
+  tick(now);
+}
+
 KeptBehaviour Behaviour::kept() const {
   return {std::string(requested_->name), fell_because_, goal_.known, goal_.reached, goal_.id, goal_.place};
 }

@@ -74,6 +74,8 @@ class Behaviour : public Requests {
   Result<void> stick(const Twist2& twist, Time now) override;
   void resume_goal(Time now) override;
 
+  /// By the robot itself: falls to hold, the goal is kept.
+  void hold(Reason reason, Time now);
   /// What must survive a restart of the agent.
   KeptBehaviour kept() const;
   /// Comes back with it. `resume`: an autonomous mode is asked for again and waits until its conditions hold;

@@ -52,6 +52,8 @@ class Authority {
 
   /// The holder gave a sign of life.
   void hear(Time now) { heard_ = now; }
+  /// The holder's last sign of life.
+  Time heard() const { return heard_; }
   /// Seconds until the lock lapses; negative when no lease runs.
   double lease_left(Time now) const {
     return locked_ && lease_ > Duration{0} ? std::max(0.0, seconds(heard_ + lease_ - now)) : -1.0;

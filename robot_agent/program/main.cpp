@@ -170,6 +170,9 @@ int run_agent(const RobotConfig& config, const Options& options) {
   params.lock_lease = config.lock_lease;
   params.tree = config.tree;
   params.log = keeper.tap(*log);
+  params.link_loss = config.link_loss;
+  params.battery = config.battery;
+  params.return_at_last_battery = config.return_at_last_battery;
   params.resume_after_restart = config.resume_after_restart;
   params.boot = this_boot();
   if (const std::string folder = state_folder(config); !folder.empty()) {

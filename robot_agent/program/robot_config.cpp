@@ -27,6 +27,25 @@ void read_radio(const config::Node& node, const std::string& file, wire::FastDds
     node.child("link").fail(link.error().reason, link.error().text);
 }
 
+void read_safeguards(const config::Node& root, RobotConfig& c) {
+  const std::string loss = root.text("on_link_loss", "continue");
+  c.link_loss.action = loss == "hold" ? OnLoss::hold : loss == "return" ? OnLoss::back : OnLoss::go_on;
+  if (loss != "continue" && loss != "hold" && loss != "return")
+    root.child("on_link_loss").fail(Reason::out_of_range, "expected continue, hold or return");
+  c.link_loss.after = from_seconds(root.number("link_loss_after", config::within(1.0, 3600.0), 10.0));
+  const auto battery = root.child_if("battery");
+  if (!battery.present()) return;
+  c.battery.warning = battery.number("warning", config::within(0.0, 1.0), c.battery.warning);
+  c.battery.low = battery.number("low", config::within(0.0, 1.0), c.battery.low);
+  c.battery.last = battery.number("last", config::within(0.0, 1.0), c.battery.last);
+  if (c.battery.warning < c.battery.low || c.battery.low < c.battery.last)
+    battery.fail(Reason::out_of_range, "expected warning >= low >= last");
+  const std::string last = battery.text("at_last", "hold");
+  c.return_at_last_battery = last == "return";
+  if (last != "hold" && last != "return")
+    battery.child("at_last").fail(Reason::out_of_range, "expected hold or return");
+}
+
 }  // namespace
 
 std::string state_folder(const RobotConfig& config) {
@@ -63,6 +82,7 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
     root->child("tree").fail(tree.error().reason, tree.error().text);
   else
     return tree.error();
+  read_safeguards(*root, c);
   c.state = root->text("state", "");
   const std::string after = root->text("after_restart", "resume");
   c.resume_after_restart = after == "resume";

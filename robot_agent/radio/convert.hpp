@@ -3,6 +3,7 @@
 #include "adit/authority.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
+#include "adit/findings.h"
 #include "adit/link.h"
 #include "adit/robot.h"
 #include "core/config/platform.hpp"

@@ -26,6 +26,7 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
+  wire::Writer<radio::Finding> finding{};
   radio::Presence presence_sample{};
   wire::PeerMeter stations{};  // what the link from each of them gives
   Timer presence_timer{};
@@ -69,7 +70,7 @@ Result<std::unique_ptr<RadioEdge>> RadioEdge::open(wire::Wire& wire, Executor& s
        {e->open(e->acknowledgement, topics::acknowledgement), e->open(e->authority, topics::authority),
         e->open(e->behaviour, topics::behaviour), e->open(e->state, topics::robot_state),
         e->open(e->capabilities, topics::capabilities), e->open(e->link, topics::link_report),
-        e->open(e->presence, topics::presence)})
+        e->open(e->presence, topics::presence), e->open(e->finding, topics::finding)})
     if (!made) return made.error();
   return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
 }
@@ -127,6 +128,10 @@ Result<void> RadioEdge::listen(Parts parts) {
                  });
                },
                e.robot),
+           e.read(topics::findings_ack,
+                  [&e, kept = parts.findings_kept](const radio::FindingsAck&a, const wire::SampleInfo&) {
+                    if (a.robot() == e.robot) kept(a.station_id(), a.ids());
+                  }),
        })
     if (!made) return made.error();
   return {};
@@ -136,6 +141,21 @@ void RadioEdge::close() {
   endpoints_->wire.on_participant(endpoints_->strand, {});
   endpoints_->presence_timer.cancel();
   endpoints_->readers.clear();
+}
+
+void RadioEdge::send(const findings::Finding& f, std::size_t kept, std::uint32_t overflowed) {
+  radio::Finding out;
+  out.robot(endpoints_->robot);
+  out.id(f.key.id);
+  out.kind(f.kind);
+  out.importance(f.importance);
+  out.position(f.position);
+  out.stamp(f.stamp);
+  out.text(f.text);
+  out.data(f.data);
+  out.kept(static_cast<std::uint32_t>(kept));
+  out.overflowed(overflowed);
+  (void)endpoints_->finding.write(out);  // sent again until it is acknowledged
 }
 
 void RadioEdge::send_authority(const CommandInterface& commands, Time now) {

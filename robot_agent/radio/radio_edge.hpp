@@ -1,9 +1,11 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "core/config/platform.hpp"
+#include "core/findings/finding.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/discovery/directory.hpp"
@@ -28,6 +30,8 @@ class RadioEdge {
     std::function<void(const std::function<void(CommandInterface&)>&)> commands;
     /// Runs what gives an answer once all that it tells of is on disk.
     std::function<void(Task)> settle{};
+    /// A station has these findings of ours on its disk.
+    std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};
   };
 
   /// Errors of the wire.
@@ -43,6 +47,8 @@ class RadioEdge {
   /// Nothing is heard any more. From any thread.
   void close();
 
+  /// `kept`: how many there are; `overflowed`: given up or not taken.
+  void send(const findings::Finding& finding, std::size_t kept, std::uint32_t overflowed);
   void send_authority(const CommandInterface& commands, Time now);
   void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
   void send_state(const RobotReport& report, std::uint64_t stamp);

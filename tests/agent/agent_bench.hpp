@@ -163,6 +163,7 @@ class AgentBench {
   radio::Command last_command{};
   wire::Ether& ether() { return ether_; }
   Agent& agent() { return *agent_; }
+  std::unique_ptr<Runtime> machine(const std::string& name) { return scheduler_.machine(name, 9s); }
 
  private:
   void connect(Operator& op) {

@@ -1,0 +1,250 @@
+// What an agent does by itself when its holder is silent or its battery empties, and what it found (rule 9).
+#include <gmock/gmock.h>
+
+#include "adit/findings.h"
+#include "core/store/memory_disk.hpp"
+#include "sensor_msgs/msg/BatteryState.h"
+#include "tests/agent/agent_bench.hpp"
+
+namespace adit::agent {
+namespace {
+
+using namespace radio;  // the command kinds
+using testing::Contains;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class Safeguards : public testing::Test {
+ protected:
+  void begin(AgentParams params = {}) {
+    params.disk = disk;
+    bench = std::make_unique<AgentBench>(params);
+    op1 = &bench->join("op1");
+    op2 = &bench->join("op2");
+    bench->run(1500ms);
+  }
+  static AgentParams with(OnLoss action) {
+    AgentParams params;
+    params.link_loss.action = action;
+    params.link_loss.after = 5s;
+    return params;
+  }
+  void go(double x) {
+    ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
+    ASSERT_EQ(bench->ask(*op1, CMD_GOTO, "", x, 0), Reason::none);
+    bench->run(2s);
+    ASSERT_GT(bench->command.vx, 0.1);
+  }
+  /// op1 is out of reach; op2 sees it all.
+  void lose(bool lost) { op1->up = !lost; }
+
+  std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
+  std::unique_ptr<AgentBench> bench{};
+  AgentBench::Operator *op1{}, *op2{};
+};
+
+TEST_F(Safeguards, GoesOnWithoutItsHolder) {
+  begin(with(OnLoss::go_on));
+  go(60);
+  lose(true);
+  bench->run(8s);
+  EXPECT_GT(bench->command.vx, 0.1);
+  EXPECT_EQ(op2->behaviour.mode(), "waypoint");
+  EXPECT_THAT(op2->told(), Contains("link_lost"));
+  lose(false);
+  bench->run(2s);
+  EXPECT_THAT(op1->told(), Contains("link_back"));
+}
+
+TEST_F(Safeguards, HoldsWithoutItsHolderAndDoesNotGoOnByItself) {
+  begin(with(OnLoss::hold));
+  go(60);
+  lose(true);
+  bench->run(4s);
+  EXPECT_GT(bench->command.vx, 0.1);
+  bench->run(3s);
+  EXPECT_EQ(op2->behaviour.mode(), "hold");
+  EXPECT_EQ(op2->behaviour.goal_state(), radio::GOAL_KEPT);
+  EXPECT_EQ(bench->command, Twist2{});
+  lose(false);
+  bench->run(5s);
+  EXPECT_EQ(bench->command, Twist2{}) << "reconnection moves nothing";
+  EXPECT_EQ(bench->ask(*op1, CMD_MODE, "waypoint"), Reason::none);
+  bench->run(1s);
+  EXPECT_GT(bench->command.vx, 0.1);
+}
+
+TEST_F(Safeguards, GoesBackToWhereItsHolderWasHeard) {
+  begin(with(OnLoss::back));
+  go(60);
+  const double heard = bench->pose.x;
+  lose(true);
+  bench->run(7s);
+  EXPECT_THAT(op2->told(), Contains("returning"));
+  EXPECT_NEAR(op2->behaviour.goal()[0], heard, 3.0);
+  bench->run(15s);
+  EXPECT_NEAR(bench->pose.x, op2->behaviour.goal()[0], 1.0);
+}
+
+TEST_F(Safeguards, ARobotThatHoldsIsNotMade) {
+  begin(with(OnLoss::back));
+  ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
+  bench->commands.clear();
+  lose(true);
+  bench->run(20s);
+  EXPECT_THAT(bench->commands, testing::Each(Twist2{}));
+}
+
+TEST_F(Safeguards, AStoppedRobotDoesNotGoBack) {
+  begin(with(OnLoss::back));
+  go(60);
+  ASSERT_EQ(bench->ask(*op2, CMD_STOP), Reason::none);
+  bench->commands.clear();
+  lose(true);
+  bench->run(20s);
+  EXPECT_THAT(bench->commands, testing::Each(Twist2{}));
+}
+
+class Batteries : public Safeguards {
+ protected:
+  void begin(AgentParams params = {}) {
+    Safeguards::begin(std::move(params));
+    wire = bench->ether().join(100, "battery");
+    writer = wire::Writer<sensor_msgs::msg::BatteryState>::make(*wire, wire::topics::battery).value();
+    bench->run(500ms);
+  }
+  void charge(float percentage) {
+    sensor_msgs::msg::BatteryState b;
+    b.percentage(percentage);
+    (void)writer.write(b);
+    bench->run(300ms);
+  }
+  int count(const std::string& code) {
+    const auto told = op2->told();
+    return static_cast<int>(std::count(told.begin(), told.end(), code));
+  }
+  std::unique_ptr<wire::Wire> wire{};
+  wire::Writer<sensor_msgs::msg::BatteryState> writer{};
+};
+
+TEST_F(Batteries, EveryThresholdIsToldOnceToEverybody) {
+  begin();
+  charge(0.9F);
+  EXPECT_FLOAT_EQ(op1->state.battery(), 0.9F);
+  for (const float c : {0.29F, 0.28F, 0.19F, 0.18F}) charge(c);
+  EXPECT_EQ(count("battery_warning"), 1);
+  EXPECT_EQ(count("battery_low"), 1);
+  EXPECT_EQ(count("battery_last"), 0);
+}
+
+TEST_F(Batteries, TheLastOneHolds) {
+  begin();
+  go(60);
+  charge(0.05F);
+  bench->run(1s);
+  EXPECT_EQ(op1->behaviour.mode(), "hold");
+  EXPECT_EQ(op1->behaviour.goal_state(), radio::GOAL_KEPT);
+  EXPECT_EQ(bench->ask(*op1, CMD_MODE, "waypoint"), Reason::none) << "the holder decides";
+  bench->run(1s);
+  EXPECT_GT(bench->command.vx, 0.1);
+}
+
+TEST_F(Batteries, TheLastOneReturnsWhereThatIsWanted) {
+  AgentParams params;
+  params.return_at_last_battery = true;
+  begin(params);
+  go(60);
+  charge(0.05F);
+  bench->run(1s);
+  EXPECT_EQ(op1->behaviour.mode(), "waypoint");
+  EXPECT_EQ(op1->behaviour.goal()[0], 0.0);
+}
+
+TEST_F(Batteries, ARestartTellsNothingAgain) {
+  begin();
+  charge(0.25F);
+  EXPECT_EQ(count("battery_warning"), 1);
+  bench->stop_agent();
+  bench->start_agent();
+  bench->run(2s);
+  op2->notices.clear();
+  charge(0.24F);
+  EXPECT_EQ(count("battery_warning"), 0);
+}
+
+class Found : public Safeguards {
+ protected:
+  Found() {
+    begin();
+    wire = bench->ether().join(77, "listener");
+    machine = bench->machine("listener");
+    strand = machine->strand("listener");
+    acks = wire::Writer<radio::FindingsAck>::make(*wire, wire::topics::findings_ack).value();
+    reader =
+        wire::make_reader(*wire, wire::topics::finding, *strand,
+                          [this](const radio::Finding& f, const wire::SampleInfo&) { heard.push_back(f); })
+            .value();
+    bench->run(1s);
+  }
+  void report(std::uint64_t id) {
+    findings::Finding f;
+    f.key.id = id;
+    f.kind = "artifact";
+    f.position = {1, 2, 3};
+    bench->agent().report(f);
+  }
+  void acknowledge(const AgentBench::Operator& op, std::uint64_t id) {
+    radio::FindingsAck a;
+    a.robot("r1");
+    a.station_id(op.id);
+    a.ids({id});
+    (void)acks.write(a);
+  }
+  std::unique_ptr<wire::Wire> wire{};
+  std::unique_ptr<Runtime> machine{};
+  std::shared_ptr<Executor> strand{};
+  wire::Writer<radio::FindingsAck> acks{};
+  std::unique_ptr<wire::RawReader> reader{};
+  std::vector<radio::Finding> heard{};
+};
+
+TEST_F(Found, IsSentUntilEveryStationHasIt) {
+  report(7);
+  bench->run(5s);
+  ASSERT_GE(heard.size(), 2u);
+  EXPECT_EQ(heard[0].robot(), "r1");
+  EXPECT_EQ(heard[0].id(), 7u);
+  EXPECT_EQ(heard[0].kept(), 1u);
+  EXPECT_GT(heard[0].stamp(), 0u);
+  acknowledge(*op1, 7);
+  bench->run(1s);
+  heard.clear();
+  bench->run(20s);
+  EXPECT_GE(heard.size(), 1u) << "op2 does not have it";
+  acknowledge(*op2, 7);
+  bench->run(1s);
+  heard.clear();
+  bench->run(60s);
+  EXPECT_THAT(heard, IsEmpty());
+}
+
+TEST_F(Found, SurvivesADeathOfTheAgent) {
+  report(7);
+  bench->run(100ms);
+  bench->stop_agent();
+  bench->start_agent();
+  heard.clear();
+  bench->run(5s);
+  ASSERT_GE(heard.size(), 1u);
+  EXPECT_EQ(heard[0].id(), 7u);
+}
+
+TEST_F(Found, WhatIsNoneIsTold) {
+  findings::Finding f;
+  bench->agent().report(f);
+  bench->run(1s);
+  EXPECT_THAT(op1->told(), Contains("finding_refused"));
+}
+
+}  // namespace
+}  // namespace adit::agent
