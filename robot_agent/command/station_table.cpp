@@ -68,7 +68,7 @@ bool StationTable::heard(const std::string& name, Time now) const {
 std::vector<Id> StationTable::heard_ids(Time now) const {
   std::vector<Id> ids;
   for (const Station& s : stations_)
-    if (now - s.heard < kHeardFor) ids.push_back(s.id);
+    if (s.binding.alive(now, kHeardFor)) ids.push_back(s.id);
   return ids;
 }
 

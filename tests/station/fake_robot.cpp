@@ -129,8 +129,8 @@ std::vector<std::uint64_t> FakeRobot::numbers() const {
   return out;
 }
 
-StationTest::StationTest(wire::LinkProfile link)
-    : ether_(scheduler_, {.link = std::move(link)}),
+StationTest::StationTest(wire::LinkProfile link, std::uint64_t seed)
+    : ether_(scheduler_, {.seed = seed, .link = std::move(link)}),
       machine_(scheduler_.machine("op", 5s)),
       strand_(machine_->strand("station")) {}
 

@@ -80,7 +80,7 @@ class FakeRobot {
 /// Robots and one station on a virtual radio.
 class StationTest : public testing::Test {
  protected:
-  explicit StationTest(wire::LinkProfile link = {});
+  explicit StationTest(wire::LinkProfile link = {}, std::uint64_t seed = 1);
   ~StationTest() override;
 
   FakeRobot& add(const std::string& name);

@@ -158,7 +158,7 @@ TEST_F(SenderTest, AnswersToOthersAreNotOurs) {
 
 class LossySender : public StationTest {
  protected:
-  LossySender() : StationTest({.name = "bad", .bandwidth = 500e3, .latency = 0.05, .loss = 0.3}) {}
+  LossySender() : StationTest({.name = "bad", .bandwidth = 500e3, .latency = 0.05, .loss = 0.3}, 5) {}
 };
 
 TEST_F(LossySender, EveryCommandIsAnsweredOverALossyLink) {
