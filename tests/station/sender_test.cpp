@@ -156,12 +156,14 @@ TEST_F(SenderTest, AnswersToOthersAreNotOurs) {
   EXPECT_FALSE(op_->last_answer().has_value());
 }
 
-class LossySender : public StationTest {
+class LossySender : public StationTest, public testing::WithParamInterface<std::uint64_t> {
  protected:
-  LossySender() : StationTest({.name = "bad", .bandwidth = 500e3, .latency = 0.05, .loss = 0.3}, 5) {}
+  LossySender()
+      : StationTest({.name = "bad", .bandwidth = 500e3, .latency = 0.05, .loss = 0.3}, GetParam()) {}
 };
+INSTANTIATE_TEST_SUITE_P(Seeds, LossySender, testing::Range<std::uint64_t>(1, 11));
 
-TEST_F(LossySender, EveryCommandIsAnsweredOverALossyLink) {
+TEST_P(LossySender, EveryCommandIsAnsweredOverALossyLink) {
   FakeRobot& r1 = add("r1");
   start();
   run_for(6s);
