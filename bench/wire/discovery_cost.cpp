@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "bench/wire/default_dds.hpp"
 #include "bench/wire/idle.hpp"
+#include "core/wire/bench/default_dds.hpp"
 
 namespace adit::bench {
 namespace {

@@ -71,8 +71,8 @@ std::set<std::string> own_addresses() {
   return result;
 }
 
-/// Lets through so many bytes per period that the class gets its share of the link: four frames at least, as a
-/// sample is sent when all of a fragment of it fits.
+/// Lets through so many bytes per period that the class gets its share of the link: four frames at least, as
+/// a sample is sent when all of a fragment of it fits.
 void add_flow(const char* name, double share, const LinkProfile& link, dds::DomainParticipantQos& qos) {
   const double frames = std::max(4.0, share * link.bandwidth / 8.0 * 0.02 / link.frame_bytes());  // in 20 ms
   const double bytes = std::floor(frames) * link.frame_bytes();

@@ -1,4 +1,4 @@
-#include "bench/wire/default_dds.hpp"
+#include "core/wire/bench/default_dds.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
