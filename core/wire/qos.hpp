@@ -56,8 +56,10 @@ inline Qos reader_qos(const TopicInfo& topic) {
 struct Discovery {
   static constexpr Duration lease = 60s;             ///< a silent participant is dropped after it
   static constexpr Duration announcement = 25s;      ///< period of participant announcements
-  static constexpr Duration initial_period = 250ms;  ///< period of the first ones
-  static constexpr int initial_announcements = 8;    ///< their number
+  static constexpr Duration initial_period = 400ms;  ///< period of the first ones
+  /// Their number: 6 s of them. A participant answers another's first one only, once; where that answer is
+  /// lost, these are what the other hears next.
+  static constexpr int initial_announcements = 15;
 };
 
 }  // namespace adit::wire
