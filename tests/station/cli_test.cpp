@@ -69,7 +69,7 @@ TEST_F(Cli, HelpOfTheProgramAndOfEachCommand) {
     EXPECT_THAT(one.out, HasSubstr("example: basestation " + std::string(command.example)));
   }
   EXPECT_THAT(all.out, HasSubstr("Examples:"));
-  for (const char* later : {"yield", "convoy", "peeloff", "policy", "camera"})
+  for (const char* later : {"yield", "convoy", "peeloff", "camera"})
     EXPECT_EQ(all.out.find(later), std::string::npos) << later;
 }
 
@@ -142,7 +142,7 @@ TEST_F(Cli, AnAddressDoesNotSwallowTheCommand) {
 TEST_F(Cli, AnUnknownLinkIsWrongUsageAndNamesTheKnownOnes) {
   const auto asked = run({"--link", "warp", "list"});
   EXPECT_EQ(asked.exit_code, 2);
-  EXPECT_THAT(asked.err, HasSubstr("there are: lan, loopback, mesh_100k, mesh_500k, wifi"));
+  EXPECT_THAT(asked.err, HasSubstr("there are: lan, loopback, mesh_100k, mesh_500k, subt, wifi"));
 }
 
 TEST_F(Cli, AKilledStationIsReplacedAndKeepsItsIdentity) {
