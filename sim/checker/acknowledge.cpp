@@ -54,7 +54,7 @@ class Acknowledge : public Rule {
     // Only what is certain to be refused: the sender does not hold the robot.
     if (!robot.alive() || robot.refusal(sample) != "it was not sent by the holder") return;
     if (sample.id == robot.authority().holder_id) return;
-    const bool answered = stream.answered && robot.now() - *stream.answered <= stream_answer_period;
+    const bool answered = stream.answered && robot.age(*stream.answered) <= stream_answer_period;
     if (!stream.refused_since && !answered) stream.refused_since = robot.now();
   }
 
@@ -63,7 +63,7 @@ class Acknowledge : public Rule {
     // An answer names no participant: of several that stream under one id each is told once a second.
     std::erase_if(stream.senders, [&](const auto& s) { return robot.now() - s.second > 2s; });
     const bool one = stream.senders.size() <= 1;
-    if (one && stream.answered && robot.now() - *stream.answered < stream_answer_period - 10ms)
+    if (one && stream.answered && robot.age(*stream.answered) < stream_answer_period - 10ms)
       broken("answered a stream of " + ack.station + " more than once a second");
     stream.answered = robot.now();
     stream.refused_since.reset();

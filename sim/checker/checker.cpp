@@ -85,7 +85,8 @@ void Checker::dispatch(Watch& watch) {
   if (last != watch.waiting.rend()) {
     const Event kept = *last;
     std::erase_if(watch.waiting, is_status);
-    watch.waiting.push_back(kept);
+    // First of what is published: a component made anew shows itself by it.
+    watch.waiting.insert(watch.waiting.begin(), kept);
   }
   std::stable_sort(watch.waiting.begin(), watch.waiting.end(),
                    [](const Event& a, const Event& b) { return rank(a) < rank(b); });

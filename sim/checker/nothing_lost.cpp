@@ -28,9 +28,9 @@ class NothingLost : public Rule {
   }
 
   void see_status(const Before& before, const AuthoritySent& now, const Report& broken) {
-    lost_ = before.disk_failed && now.authority.holder.empty();
-    if (lost_) return;
     const Authority& was = before.authority;
+    lost_ = before.disk_failed && now.authority.holder.empty() && !was.holder.empty();
+    if (before.disk_failed && now.authority.holder.empty()) return;  // lost, or there was none
     if (!RobotModel::may_hold(was, before.unanswered, now.authority.holder))
       return broken("'" + was.holder + "' held it before a restart, '" + now.authority.holder + "' after it");
     const bool same = now.authority.holder == was.holder;
@@ -64,6 +64,7 @@ class NothingLost : public Rule {
       if (now.mode != "hold") broken("lost its state and came back in " + now.mode);
       return;
     }
+    if (before.disk_failed) return;
     const bool told = asked(before, {Verb::go_to, Verb::mode});
     if (before.behaviour.has_goal && !told && (!now.has_goal || now.goal_id != before.behaviour.goal_id))
       broken("its goal was lost in a restart");

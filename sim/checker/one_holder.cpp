@@ -5,6 +5,8 @@ namespace {
 
 std::string describe_epoch(std::uint32_t counter) { return "epoch " + std::to_string(counter); }
 
+std::string said(const AckSent& ack) { return ack.accepted ? "accepted" : std::string(name(ack.reason)); }
+
 bool needs_holder(Verb verb) { return verb != Verb::take && verb != Verb::stop && verb != Verb::query; }
 
 /// Rule 1: a command counts only with the holder's identity, the current epoch and a new sequence number;
@@ -33,13 +35,14 @@ class OneHolder : public Rule {
           robot.before() && !ack.accepted && (!first->accepted || ack.reason == Reason::stale_sequence);
       if (!other_refusal && (first->accepted != ack.accepted || first->reason != ack.reason))
         broken("a repeat of command " + std::to_string(ack.seq) + " of " + ack.station +
-               " got another answer");
+               " got another answer: " + said(*first) + ", then " + said(ack));
       return;
     }
     if (!ack.accepted) return;
     if (needs_holder(command.verb)) {
       if (!robot.is_holder(command))
-        broken("obeyed a command of " + command.station + ", who does not hold it");
+        broken("obeyed a command of " + command.station + ", who does not hold it, but '" +
+               robot.authority().holder + "'");
       else if (!robot.current_epoch(command.start, command.counter))
         broken("obeyed a command of " + describe_epoch(command.counter) + " in " +
                describe_epoch(robot.authority().counter));
