@@ -24,7 +24,7 @@ inline sensor_msgs::msg::PointCloud2 cloud_of(std::span<const float> numbers, st
   cloud.point_step(4 * values);
   cloud.row_step(cloud.point_step() * cloud.width());
   cloud.data().resize(numbers.size_bytes());
-  std::memcpy(cloud.data().data(), numbers.data(), numbers.size_bytes());
+  if (!numbers.empty()) std::memcpy(cloud.data().data(), numbers.data(), numbers.size_bytes());
   return cloud;
 }
 

@@ -305,7 +305,7 @@ TEST(Ether, CutNeitherBlocksNorGrowsAndHealsWithTheNewestStatus) {
     scheduler.run_until(scheduler.elapsed() + cut_for);
     EXPECT_TRUE(heard.empty());
     ether.cut("r1", "op1", false);
-    scheduler.run_until(scheduler.elapsed() + 15s);
+    scheduler.run_until(scheduler.elapsed() + 30s);  // the next announcement is at most 25 s away
     EXPECT_EQ(heard, std::vector<std::uint64_t>{100});
   }
   ASSERT_EQ(events.size(), 3U);  // came, lease ran out in the longer cut, came back
@@ -353,14 +353,14 @@ TEST(Ether, RangeAndDegradeLoseFrames) {
   scheduler.run_until(15s);
   EXPECT_EQ(robot.wire->counters().total_in, 0U);
   ether.set_position("r1", 40, 0);
-  scheduler.run_until(30s);
+  scheduler.run_until(45s);
   const std::uint64_t heard = robot.wire->counters().total_in;
   EXPECT_GT(heard, 0U);
   ether.degrade("op1", "r1", 1.0);
-  scheduler.run_until(50s);
+  scheduler.run_until(75s);
   EXPECT_EQ(robot.wire->counters().total_in, heard);
   ether.degrade("op1", "r1", std::nullopt);
-  scheduler.run_until(70s);
+  scheduler.run_until(110s);
   EXPECT_GT(robot.wire->counters().total_in, heard);
 }
 
