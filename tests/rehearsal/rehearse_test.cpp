@@ -96,8 +96,8 @@ INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
                          testing::Values("handover", "locked", "grant", "stop_by_other", "joystick_loss",
                                          "smart_joystick_wall", "waypoint_corridor", "dead_end",
                                          "agent_crash", "cut_link", "two_robots_passing", "station_restart",
-                                         "foreign_writer", "thin_link", "floor_plan", "stuck_stick", "ten_robots",
-                                         "demo"),
+                                         "foreign_writer", "thin_link", "floor_plan", "stuck_stick",
+                                         "ten_robots", "demo"),
                          [](const auto& which) { return std::string(which.param); });
 
 TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {
