@@ -10,9 +10,6 @@
 namespace adit::agent {
 namespace {
 
-// What a seed is used for; each has its own sequence.
-constexpr std::uint64_t kIdentitySalt = 1;
-
 Id drawn(Random random) {
   Id id{};
   for (std::size_t i = 0; i < id.size(); i += 8) {

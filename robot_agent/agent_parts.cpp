@@ -112,9 +112,11 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   e.keeper = std::make_unique<StateKeeper>(keeper_params(params), params.disk, strand, disk_strand,
                                            e.restored.generation, keeper_outputs());
 
-  e.findings = std::make_unique<FindingSync>(
-      SyncParams{.robot = params.name, .most = params.findings, .seed = Random(params.seed).fork(2).next()},
-      params.disk, strand, disk_strand, findings_outputs());
+  e.findings =
+      std::make_unique<FindingSync>(SyncParams{.robot = params.name,
+                                               .most = params.findings,
+                                               .seed = Random(params.seed).fork(kFindingsSalt).next()},
+                                    params.disk, strand, disk_strand, findings_outputs());
   if (const std::size_t damaged = e.findings->load(); damaged > 0)
     findings_outputs().full(std::to_string(damaged) + " findings on the disk were damaged");
 

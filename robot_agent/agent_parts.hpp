@@ -6,6 +6,10 @@
 
 namespace adit::agent {
 
+// What a seed is used for beside the epoch; each has its own sequence.
+inline constexpr std::uint64_t kIdentitySalt = 1;
+inline constexpr std::uint64_t kFindingsSalt = 2;
+
 /// Sends planning jobs to the planner there is, and plans back while it counts.
 class PlannerUnit final : public PlanService {
  public:

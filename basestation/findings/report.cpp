@@ -28,8 +28,6 @@ double age(const Finding& finding, const Fleet& fleet) {
   return static_cast<double>(robot->stamp - finding.stamp) * 1e-9;
 }
 
-std::string hex(std::uint64_t id) { return findings::file_name({"r", id}).substr(sizeof "finding-r-" - 1); }
-
 }  // namespace
 
 std::string findings_text(const FindingDesk& desk, const Fleet& fleet,
@@ -45,7 +43,7 @@ std::string findings_text(const FindingDesk& desk, const Fleet& fleet,
       rows.push_back({f->key.robot, clean(f->kind, Finding::kKind), fixed(f->position[0], 2),
                       fixed(f->position[1], 2), fixed(f->position[2], 2),
                       seconds_ago < 0 ? "-" : fixed(seconds_ago, 0), clean(f->text, Finding::kText),
-                      hex(f->key.id)});
+                      findings::id_text(f->key.id)});
     }
     out = table(rows);
   }
@@ -65,7 +63,7 @@ nlohmann::json findings_json(const FindingDesk& desk, const Fleet& fleet,
   nlohmann::json out = nlohmann::json::array();
   for (const Finding* f : chosen(desk, robots)) {
     nlohmann::json row{{"robot", f->key.robot},
-                       {"id", hex(f->key.id)},
+                       {"id", findings::id_text(f->key.id)},
                        {"kind", clean(f->kind, Finding::kKind)},
                        {"importance", f->importance},
                        {"position", f->position},

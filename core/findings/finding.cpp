@@ -51,11 +51,13 @@ std::optional<Finding> from_file(std::span<const std::uint8_t> bytes) {
   return f;
 }
 
-std::string file_name(const Key& key) {
-  std::string name = kPrefix + key.robot + "-";
-  for (int shift = 60; shift >= 0; shift -= 4) name += "0123456789abcdef"[key.id >> shift & 15];
-  return name;
+std::string id_text(std::uint64_t id) {
+  std::string text;
+  for (int shift = 60; shift >= 0; shift -= 4) text += "0123456789abcdef"[id >> shift & 15];
+  return text;
 }
+
+std::string file_name(const Key& key) { return kPrefix + key.robot + "-" + id_text(key.id); }
 
 bool is_finding_file(const std::string& name) { return name.starts_with(kPrefix); }
 

@@ -36,6 +36,8 @@ bool valid(const Finding& finding);
 /// As a sealed file; nothing when the bytes are none that was sealed.
 store::Bytes to_file(const Finding& finding);
 std::optional<Finding> from_file(std::span<const std::uint8_t> bytes);
+/// Sixteen hexadecimal digits, as people and files see an id.
+std::string id_text(std::uint64_t id);
 /// "finding-ROBOT-0123456789abcdef"
 std::string file_name(const Key& key);
 bool is_finding_file(const std::string& name);

@@ -26,22 +26,16 @@ class Walk {
   double remaining() const { return plan_.length - at_; }
   void advance(double distance) { at_ = std::min(plan_.length, at_ + distance); }
   Pose2 pose() const {
-    const double exact = at_ / spacing_;
-    const std::size_t i = std::min(static_cast<std::size_t>(exact), path_.size() - 2);
-    const double part = std::clamp(exact - static_cast<double>(i), 0.0, 1.0);
+    const auto [i, part] = spot();
     const Pose2 &a = path_[i], &b = path_[i + 1];
     return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y),
             wrap_angle(a.yaw + part * wrap_angle(b.yaw - a.yaw))};
   }
   /// Turn per metre here, rad/m.
-  double curvature() const {
-    return bend(std::min(static_cast<std::size_t>(at_ / spacing_), path_.size() - 2));
-  }
+  double curvature() const { return bend(spot().index); }
   /// The value of a table over the path's poses here.
   double at(const std::array<double, Plan::kMaxPath>& table) const {
-    const double exact = at_ / spacing_;
-    const std::size_t i = std::min(static_cast<std::size_t>(exact), path_.size() - 2);
-    const double part = std::clamp(exact - static_cast<double>(i), 0.0, 1.0);
+    const auto [i, part] = spot();
     return table[i] + part * (table[i + 1] - table[i]);
   }
   /// How fast the path may be driven at each of its poses: its bends within `max_turn` (rad/s), its end, and
@@ -59,6 +53,16 @@ class Walk {
   }
 
  private:
+  /// The pose before, and how far the walk is from it to the next, [0, 1].
+  struct Spot {
+    std::size_t index;
+    double part;
+  };
+  Spot spot() const {
+    const double exact = at_ / spacing_;
+    const std::size_t i = std::min(static_cast<std::size_t>(exact), path_.size() - 2);
+    return {i, std::clamp(exact - static_cast<double>(i), 0.0, 1.0)};
+  }
   double bend(std::size_t i) const { return wrap_angle(path_[i + 1].yaw - path_[i].yaw) / spacing_; }
 
   const Plan& plan_;

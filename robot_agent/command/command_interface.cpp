@@ -32,13 +32,6 @@ bool open_to_all(CommandKind kind) {
          kind == CommandKind::unknown;
 }
 
-std::string hex(const wire::ParticipantId& id) {
-  std::string text;
-  for (const std::uint8_t byte : id)
-    for (const int nibble : {byte >> 4, byte & 15}) text += "0123456789abcdef"[nibble];
-  return text;
-}
-
 }  // namespace
 
 CommandInterface::CommandInterface(CommandParams params, Requests& requests, Outputs outputs)
@@ -334,7 +327,7 @@ void CommandInterface::report_intruder(const std::string& name, const wire::Part
                                        Time now) {
   if (!authority_.holder() || !intruders_.pass(participant, now)) return;
   tell(authority_.holder_name(), Severity::error, "intruder", Reason::identity_mismatch,
-       "participant " + hex(participant) + " claims to be " + name + " on " + params_.robot);
+       "participant " + wire::to_string(participant) + " claims to be " + name + " on " + params_.robot);
 }
 
 void CommandInterface::tell(const std::string& to, Severity severity, const char* code, Reason reason,

@@ -8,7 +8,7 @@
 #include "core/result/reason.hpp"
 #include "core/wire/wire.hpp"
 
-/// What the command interface speaks, free of generated message types: robot_agent/command/radio.cpp
+/// What the command interface speaks, free of generated message types: robot_agent/radio/convert.cpp
 /// converts at the edge.
 namespace adit::agent {
 
