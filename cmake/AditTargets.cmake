@@ -1,6 +1,22 @@
 # One way to declare each kind of target. Includes are written from the root of the source tree:
 #   #include "core/exec/executor.hpp"
 
+# The headers that most libraries parse, parsed once for all of them: a third of the time of a build.
+function(adit_library_headers target)
+  if(NOT TARGET adit_library_pch)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/library_pch.cpp CONTENT "\n")
+    add_library(adit_library_pch STATIC ${PROJECT_BINARY_DIR}/library_pch.cpp)
+    target_link_libraries(adit_library_pch PRIVATE Eigen3::Eigen Threads::Threads)
+    target_precompile_headers(adit_library_pch PRIVATE
+      <Eigen/Dense> <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <deque> <filesystem>
+      <fstream> <functional> <iostream> <map> <memory> <mutex> <optional> <random> <set> <span> <sstream> <string>
+      <thread> <unordered_map> <variant> <vector>)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM adit_library_pch)
+  # A library whose dependencies set a flag that the headers were not compiled with parses them again, quietly.
+  set_target_properties(${target} PROPERTIES PCH_WARN_INVALID OFF)
+endfunction()
+
 # adit_library(NAME SOURCES a.cpp ... [PUBLIC dep ...] [PRIVATE dep ...])
 # A static library target adit_NAME (alias adit::NAME), installed and exported.
 function(adit_library name)
@@ -12,6 +28,7 @@ function(adit_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/adit>)
   target_link_libraries(adit_${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
   target_compile_features(adit_${name} PUBLIC cxx_std_20)
+  adit_library_headers(adit_${name})
   install(TARGETS adit_${name} EXPORT adit-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 

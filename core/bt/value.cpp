@@ -19,7 +19,7 @@ bool read_boolean(std::string_view text, bool& out) {
   return out || text == "0" || text == "false" || text == "FALSE" || text == "False";
 }
 
-std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
 
 }  // namespace
 
@@ -77,7 +77,7 @@ std::int64_t to_integer(const Value& v) {
   }
   if (const auto* text = std::get_if<std::string>(&v)) {
     std::int64_t out = 0;
-    if (!read_number(*text, out)) throw NodeError(quoted(*text) + " is not an integer");
+    if (!read_number(*text, out)) throw NodeError(in_quotes(*text) + " is not an integer");
     return out;
   }
   throw NodeError(is_empty(v) ? "the entry was never written" : "the value is not a number");
@@ -88,7 +88,7 @@ double to_real(const Value& v) {
   if (const auto* real = std::get_if<double>(&v)) return *real;
   if (const auto* text = std::get_if<std::string>(&v)) {
     double out = 0;
-    if (!read_number(*text, out)) throw NodeError(quoted(*text) + " is not a number");
+    if (!read_number(*text, out)) throw NodeError(in_quotes(*text) + " is not a number");
     return out;
   }
   throw NodeError(is_empty(v) ? "the entry was never written" : "the value is not a number");
@@ -97,7 +97,7 @@ double to_real(const Value& v) {
 bool to_boolean(const Value& v) {
   if (const auto* text = std::get_if<std::string>(&v)) {
     bool out = false;
-    if (!read_boolean(*text, out)) throw NodeError(quoted(*text) + " is neither true nor false");
+    if (!read_boolean(*text, out)) throw NodeError(in_quotes(*text) + " is neither true nor false");
     return out;
   }
   return to_condition(v);
@@ -124,7 +124,7 @@ std::string to_text(const Value& v) {
 NodeStatus to_status(const Value& v) {
   const std::string text = to_text(v);
   if (const auto status = status_from_name(text)) return *status;
-  throw NodeError(quoted(text) + " is not a status");
+  throw NodeError(in_quotes(text) + " is not a status");
 }
 
 void copy_into(const Value& from, Value& to) {

@@ -13,6 +13,7 @@ cmp -s "$here/package.json" "$folder/installed.json" && exit 0
 # Not tried again for each test when it has just failed.
 [ -z "$(find "$folder/failed" -mmin -10 2> /dev/null)" ] || { echo "npm could not fetch it a moment ago"; exit 77; }
 cp "$here/package.json" "$folder/package.json" || exit 1
-(cd "$folder" && timeout 100 npm install --no-audit --no-fund --no-package-lock --ignore-scripts --loglevel=error \
+# -k: npm without a network does not always heed a TERM. 9>&-: whatever it leaves behind must not keep the lock.
+(cd "$folder" && exec 9>&- && timeout -k 5 90 npm install --no-audit --no-fund --no-package-lock --ignore-scripts --loglevel=error \
   --fetch-retries=1 --fetch-timeout=20000) || { touch "$folder/failed"; exit 77; }
 cp "$here/package.json" "$folder/installed.json"
