@@ -69,7 +69,7 @@ LocalPlanner::LocalPlanner(const Platform& platform, const LocalPlannerParams& p
   occupied_.reserve(static_cast<std::size_t>(rings_) * kAngles);
 }
 
-Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const Eigen::Vector2f> obstacles,
+Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
                         double stamp_s) {
   Plan plan;
   plan.stamp_s = stamp_s;
@@ -190,7 +190,7 @@ LocalPlanner::Goal LocalPlanner::goal_of(const Target& target, const Pose2& pose
   return goal;
 }
 
-void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const Eigen::Vector2f> obstacles,
+void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const ObstaclePoint> obstacles,
                            Plan& plan) {
   const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
   const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
@@ -205,12 +205,13 @@ void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const 
   room_ = {};
   std::fill(seen_.begin(), seen_.end(), 0);
 
-  const auto give = [&plan](const Eigen::Vector2f& p) {
-    if (plan.obstacle_count < Plan::kMaxObstacles) plan.obstacles[plan.obstacle_count++] = p;
+  const auto give = [&](const ObstaclePoint& p) {
+    if (plan.obstacle_count < Plan::kMaxObstacles)
+      plan.obstacles[plan.obstacle_count++] = {x0 + c * p.x - s * p.y, y0 + s * p.x + c * p.y};
   };
-  for (const Eigen::Vector2f& p : obstacles) {
-    const float dx = p.x() - x0, dy = p.y() - y0;
-    const float x = c * dx + s * dy, y = c * dy - s * dx;
+  for (const ObstaclePoint& p : obstacles) {
+    if (p.cost < 1.0f) continue;
+    const float x = p.x, y = p.y;
     const float range = std::sqrt(x * x + y * y);
     const int ring = CorrespondenceGrid::ring_of(range);
     if (range <= kNearest) give(p);
@@ -223,10 +224,9 @@ void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const 
     const auto bit = static_cast<std::size_t>(ring * kAngles + whole_degrees(angle - bearing));
     seen_[bit >> 6] |= std::uint64_t{1} << (bit & 63);
   }
-  for (const Eigen::Vector2f& p : obstacles) {
-    const float dx = p.x() - x0, dy = p.y() - y0;
-    const float range2 = dx * dx + dy * dy;
-    if (range2 > kNearest * kNearest && range2 <= watch * watch) give(p);
+  for (const ObstaclePoint& p : obstacles) {
+    const float range2 = p.x * p.x + p.y * p.y;
+    if (p.cost >= 1.0f && range2 > kNearest * kNearest && range2 <= watch * watch) give(p);
   }
   plan.clearance = clearance;
 

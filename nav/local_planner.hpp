@@ -9,6 +9,7 @@
 #include "nav/path_tree.hpp"
 #include "nav/plan.hpp"
 #include "nav/rotation.hpp"
+#include "nav/terrain/obstacle_point.hpp"
 
 namespace adit::nav {
 
@@ -77,9 +78,10 @@ class LocalPlanner {
   explicit LocalPlanner(const Platform& platform, const LocalPlannerParams& params = {},
                         std::shared_ptr<const PlannerLibrary> library = nullptr);
 
-  /// One cycle. `pose`: the body in the odometry frame at `stamp_s`. `obstacles`: odometry frame, m. Never
-  /// leads through an obstacle; when nothing is free the plan says `blocked` and is empty. Allocates nothing.
-  Plan plan(const Target& target, const Pose2& pose, std::span<const Eigen::Vector2f> obstacles,
+  /// One cycle. `pose`: the body in the odometry frame at `stamp_s`. `obstacles`: in the body frame at
+  /// `pose`. Never leads through an obstacle; when nothing is free the plan says `blocked` and is empty.
+  /// Allocates nothing.
+  Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
             double stamp_s);
 
   const LocalPlannerParams& params() const { return params_; }
@@ -113,7 +115,7 @@ class LocalPlanner {
   };
 
   Goal goal_of(const Target& target, const Pose2& pose);
-  void project(const Pose2& pose, const Goal& goal, std::span<const Eigen::Vector2f> obstacles, Plan& plan);
+  void project(const Pose2& pose, const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan);
   void judge_headings(const Goal& goal);
   void block_paths(const Option& option, const Goal& goal);
   bool vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best);

@@ -1,10 +1,14 @@
 #include "nav/navigator.hpp"
 
+#include <cmath>
+
 namespace adit::nav {
 
 Navigator::Navigator(const Platform& platform, const ObstacleMapParams& map,
                      const LocalPlannerParams& planner, std::shared_ptr<const PlannerLibrary> library)
-    : map_(platform, map), planner_(platform, planner, std::move(library)) {}
+    : map_(platform, map), planner_(platform, planner, std::move(library)) {
+  obstacles_.reserve(ObstacleMap::kMaxCells);
+}
 
 void Navigator::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   map_.add_scan(points, body, stamp_s);
@@ -19,7 +23,14 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
     plan.reason = Reason::terrain_stale;
     return plan;
   }
-  return planner_.plan(target, pose, map_.cells(), stamp_s);
+  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
+  const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
+  obstacles_.clear();
+  for (const Eigen::Vector2f& cell : map_.cells()) {
+    const float dx = cell.x() - x0, dy = cell.y() - y0;
+    obstacles_.push_back({c * dx + s * dy, c * dy - s * dx, 1.0f});
+  }
+  return planner_.plan(target, pose, obstacles_, stamp_s);
 }
 
 void Navigator::clear() {

@@ -25,6 +25,7 @@ class Navigator {
  private:
   ObstacleMap map_;
   LocalPlanner planner_;
+  std::vector<ObstaclePoint> obstacles_{};  ///< of one plan
   bool has_scan_{false};
 };
 

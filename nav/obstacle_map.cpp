@@ -5,9 +5,7 @@
 namespace adit::nav {
 namespace {
 
-/// Bounds of the buffers: every cell within the largest range fits, and more returns than a scan has.
-constexpr std::size_t kMaxCells = 50000;
-constexpr std::size_t kUsualReturns = 32768;
+constexpr std::size_t kUsualReturns = 32768;  ///< more returns than a scan has
 constexpr int kMany = 8;               ///< a surface has this many times the hits of the noise before it
 constexpr double kForgetBeyond = 0.3;  ///< m beyond the range
 

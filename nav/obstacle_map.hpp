@@ -35,7 +35,8 @@ struct ObstacleMapParams {
 /// long as it is near.
 class ObstacleMap {
  public:
-  static constexpr float kCell = 0.05f;  ///< m
+  static constexpr float kCell = 0.05f;             ///< m
+  static constexpr std::size_t kMaxCells = 50'000;  ///< every cell within the largest range fits
 
   explicit ObstacleMap(const Platform& platform, const ObstacleMapParams& params = {});
 

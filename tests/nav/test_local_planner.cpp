@@ -7,7 +7,18 @@
 namespace adit::nav::test {
 namespace {
 
+/// Obstacles in the odometry frame.
 using Cells = std::vector<Eigen::Vector2f>;
+
+/// The same as the planner sees them at `pose`.
+std::vector<ObstaclePoint> seen_from(const Pose2& pose, const Cells& cells) {
+  std::vector<ObstaclePoint> points;
+  for (const auto& c : cells) {
+    const Eigen::Vector2f p = (pose.inverse() * c.cast<double>()).cast<float>();
+    points.push_back({p.x(), p.y(), 1.0f});
+  }
+  return points;
+}
 
 /// The outline of a box as 5 cm cells.
 void add_box(Cells& cells, float x0, float x1, float y0, float y1) {
@@ -66,7 +77,8 @@ TEST_F(Planner, PathsKeepClearOfObstaclesInManyWorlds) {
     }
     planner_.plan(Target{}, {}, {}, 0);
     const Pose2 pose{0, 0, yaw(random)};
-    const Plan plan = planner_.plan(Target::to({along(random), along(random)}), pose, cells, 0);
+    const Plan plan =
+        planner_.plan(Target::to({along(random), along(random)}), pose, seen_from(pose, cells), 0);
     if (plan.path().empty()) continue;
     ++found;
     // The body turns to the path's first direction on the spot; from there on it keeps clear.
@@ -78,7 +90,7 @@ TEST_F(Planner, PathsKeepClearOfObstaclesInManyWorlds) {
 TEST_F(Planner, GoesRoundABox) {
   Cells cells;
   add_box(cells, 1.6f, 1.9f, -0.2f, 0.2f);
-  const Plan plan = planner_.plan(Target::to({4, 0}), {}, cells, 0);
+  const Plan plan = planner_.plan(Target::to({4, 0}), {}, seen_from({}, cells), 0);
   ASSERT_FALSE(plan.blocked);
   EXPECT_GT(std::fabs(plan.path()[plan.pose_count / 2].y) + std::fabs(plan.path().back().y), 0.3);
 }
@@ -87,7 +99,7 @@ TEST_F(Planner, AllRoundBlockedSaysSo) {
   Cells cells;
   for (float a = 0; a < 6.28f; a += 0.05f) cells.emplace_back(0.55f * std::cos(a), 0.55f * std::sin(a));
   for (const Target& target : {Target::to({4, 0}), Target::to({-2, 1}), Target::along(0.3, 1.0)}) {
-    const Plan plan = planner_.plan(target, {}, cells, 0);
+    const Plan plan = planner_.plan(target, {}, seen_from({}, cells), 0);
     EXPECT_TRUE(plan.blocked);
     EXPECT_EQ(plan.reason, Reason::blocked);
     EXPECT_TRUE(plan.path().empty());
@@ -101,8 +113,8 @@ TEST_F(Planner, WithoutCorrespondencesItDrivesThroughWalls) {
   LocalPlanner blind(wheeled(), {}, emptied);
   Cells cells;
   add_box(cells, 1.5f, 1.7f, -3.0f, 3.0f);
-  EXPECT_GT(deepest(blind.plan(Target::to({4, 0}), {}, cells, 0), wheeled(), cells), 0.1);
-  EXPECT_LT(deepest(planner_.plan(Target::to({4, 0}), {}, cells, 0), wheeled(), cells), 0.0);
+  EXPECT_GT(deepest(blind.plan(Target::to({4, 0}), {}, seen_from({}, cells), 0), wheeled(), cells), 0.1);
+  EXPECT_LT(deepest(planner_.plan(Target::to({4, 0}), {}, seen_from({}, cells), 0), wheeled(), cells), 0.0);
 }
 
 TEST_F(Planner, ArrivesWithinTheTolerance) {
@@ -133,7 +145,7 @@ TEST_F(Planner, BacksAwayAfterAWhileAndNotForEver) {
   int retreats = 0, blocked = 0;
   bool before = false;
   for (int i = 0; i < 400; ++i) {
-    const Plan plan = planner_.plan(Target::to({5, 0}), {}, cells, 0.1 * i);
+    const Plan plan = planner_.plan(Target::to({5, 0}), {}, seen_from({}, cells), 0.1 * i);
     if (i < 25) {
       EXPECT_TRUE(plan.blocked) << i;
     }
@@ -145,7 +157,7 @@ TEST_F(Planner, BacksAwayAfterAWhileAndNotForEver) {
   }
   EXPECT_GE(retreats, 1);
   EXPECT_LE(retreats, 2);
-  EXPECT_TRUE(planner_.plan(Target::to({5, 0}), {}, cells, 50).blocked);
+  EXPECT_TRUE(planner_.plan(Target::to({5, 0}), {}, seen_from({}, cells), 50).blocked);
   EXPECT_GT(blocked, 100);
 }
 
@@ -153,7 +165,7 @@ TEST_F(Planner, GivesTheFollowerWhatIsNear) {
   Cells cells;
   for (int i = 0; i < 3000; ++i) cells.emplace_back(1.3f + 0.0003f * static_cast<float>(i), 0.8f);
   cells.emplace_back(0.5f, 0.5f);  // last, and nearest
-  const Plan plan = planner_.plan(Target::to({-3, 0}), {}, cells, 0);
+  const Plan plan = planner_.plan(Target::to({-3, 0}), {}, seen_from({}, cells), 0);
   EXPECT_EQ(plan.obstacle_count, Plan::kMaxObstacles);
   EXPECT_EQ(plan.near().front(), Eigen::Vector2f(0.5f, 0.5f));
 }
