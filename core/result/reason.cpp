@@ -38,6 +38,8 @@ constexpr std::array rows{
     Row{Reason::sample_stale, "sample_stale", "the sample echoes too old a stamp"},
     Row{Reason::wrong_mode, "wrong_mode", "the current mode does not take this input"},
     Row{Reason::blocked, "blocked", "every path is blocked"},
+    Row{Reason::program_silent, "program_silent", "the program that is to steer from outside is silent"},
+    Row{Reason::obstacle_close, "obstacle_close", "an obstacle is too close to go on"},
     Row{Reason::bad_argument, "bad_argument", "an argument is wrong"},
     Row{Reason::unknown_robot, "unknown_robot", "no robot of that name has been heard"},
     Row{Reason::unknown_command, "unknown_command", "no such command"},

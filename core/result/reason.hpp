@@ -36,6 +36,8 @@ enum class Reason : std::uint16_t {
   sample_stale = 211,        ///< the echoed stamp is too old
   wrong_mode = 212,          ///< the current mode does not take this input
   blocked = 213,             ///< every path is blocked
+  program_silent = 214,      ///< the program that steers from outside has not been heard
+  obstacle_close = 215,      ///< the collision monitor holds the robot back
 
   // What was typed or sent
   bad_argument = 301,
