@@ -36,6 +36,11 @@ class WatchedWire final : public wire::Wire {
     inner_->on_participant(strand, std::move(handler));
   }
   wire::WireCounters counters() const override { return inner_->counters(); }
+  wire::SenderState sender() const override { return inner_->sender(); }
+  std::vector<wire::PeerState> peers() const override { return inner_->peers(); }
+  void set_place(const wire::ParticipantId& who, const wire::Position& at) override {
+    inner_->set_place(who, at);
+  }
 
  private:
   class Writer final : public wire::RawWriter {

@@ -1,8 +1,18 @@
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
 namespace adit::wire {
+
+/// Priorities on a link, 0 first: `urgent` 0, discovery and acknowledgements 1, `stream` 2, `state` and
+/// `sensor` 3, `status` 4, `bulk` 5, `video` 6.
+inline constexpr std::size_t priorities = 7;
+
+/// Where a machine is, world or map coordinates, m.
+struct Position {
+  double x{}, y{}, z{};
+};
 
 /// What a radio link gives in one direction. The standard ones are config/links/*.yaml; docs/links.md says
 /// where each key comes from. core/wire/link/ has the model, the same live and in rehearsal.
@@ -24,6 +34,7 @@ struct LinkProfile {
   double shadowing{0.0};    ///< standard deviation of the received power from frame to frame, dB, [0, 40]
   double power{27.0};       ///< sent, dBm, [-50, 60]
   double noise{-90.0};      ///< dBm, [-150, 0]
+  double wall{0.0};         ///< attenuation by a metre of what is solid, on links that fade, dB, [0, 1000]
   /// Largest frame that is sent, B.
   std::uint32_t frame_bytes() const {
     if (frame > 0) return frame;

@@ -20,6 +20,7 @@ void read_link_keys(const config::Node& node, LinkProfile& link) {
   link.shadowing = node.number("shadowing", config::within(0, 40), link.shadowing);
   link.power = node.number("power", config::within(-50, 60), link.power);
   link.noise = node.number("noise", config::within(-150, 0), link.noise);
+  link.wall = node.number("wall", config::within(0, 1000), link.wall);
 }
 
 Result<LinkProfile> load_link_file(const std::string& path) {

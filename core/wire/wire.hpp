@@ -9,12 +9,11 @@
 
 #include "core/exec/executor.hpp"
 #include "core/result/result.hpp"
+#include "core/wire/link_state.hpp"
 
 /// The wire: one participant on one domain, behind one face with two adapters (Fast DDS, in-memory).
 namespace adit::wire {
 
-/// DDS GUID prefix of a participant: who really sent a sample, whatever the sample says.
-using ParticipantId = std::array<std::uint8_t, 12>;
 std::string to_string(const ParticipantId& id);
 
 /// What a topic is for; docs/architecture.md has the table of what each gets.
@@ -100,6 +99,13 @@ class Wire {
   virtual void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) = 0;
   /// Since this participant was made.
   virtual WireCounters counters() const = 0;
+  /// What waits here to be sent. Cheap, and allocates nothing.
+  virtual SenderState sender() const = 0;
+  /// What the link to each other participant carried, by id; those that left a while ago may be missing.
+  virtual std::vector<PeerState> peers() const = 0;
+  /// Where a participant is in the map (our own id: where we are), for links with a range or that fade. In a
+  /// rehearsal the simulated truth counts instead.
+  virtual void set_place(const ParticipantId& who, const Position& at) = 0;
 };
 
 }  // namespace adit::wire

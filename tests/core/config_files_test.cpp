@@ -96,7 +96,7 @@ TEST(Links, wrong_files_are_errors) {
   ASSERT_TRUE(wire::load_link_file(folder.write("good.yaml", good)));
   for (const char* bad : {"jitter: -1", "burst: 0.5", "window: 11", "frame: 100", "frame: 1.5",
                           "frame: 70000", "fading: 11", "path_loss: -1", "shadowing: 41", "power: 61",
-                          "noise: 1", "queue: 0", "range: far", "burst: [1]", "bursts: 2", "jitter: .nan"}) {
+                          "noise: 1", "wall: -1", "queue: 0", "range: far", "burst: [1]", "bursts: 2", "jitter: .nan"}) {
     const auto wrong = wire::load_link_file(folder.write("bad.yaml", good + bad + "\n"));
     ASSERT_FALSE(wrong) << bad;
     EXPECT_THAT(wrong.error().text, HasSubstr("bad.yaml:5: ")) << bad;

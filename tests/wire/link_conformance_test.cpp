@@ -115,6 +115,24 @@ TYPED_TEST(LinkConformance, ASaturatedLinkCarriesItsBandwidthAndUrgentGoesFirst)
   EXPECT_LT(took.back(), 150ms);
 }
 
+TYPED_TEST(LinkConformance, TheSenderKnowsItsQueueAndWhatItDroppedAndWhatPeersGot) {
+  this->open({.bandwidth = 50e3, .latency = 0.01, .queue = 1.0});
+  const SenderState rest = this->a->sender();
+  ASSERT_NE(rest.link, nullptr);
+  EXPECT_EQ(rest.link->bandwidth, 50e3);
+  for (std::uint32_t i = 0; i < 5; ++i) this->write(state, i, 4000);
+  const SenderState full = this->a->sender();
+  EXPECT_GT(full.queue[3], 300ms);
+  EXPECT_EQ(full.queue[0], 0ms);
+  ASSERT_TRUE(this->net->until([&] { return this->a->sender().waiting(4) == 0ms; }));
+  const auto peers = this->a->peers();
+  ASSERT_EQ(peers.size(), 1U);
+  EXPECT_EQ(peers[0].peer, this->b->id());
+  EXPECT_GT(peers[0].bytes_out, 4000U);
+  EXPECT_GT(peers[0].bytes_in, 1000U);  // endpoints and acknowledgements
+  EXPECT_FALSE(peers[0].signal);
+}
+
 TYPED_TEST(LinkConformance, LongSamplesOfEveryClassPassInSmallFrames) {
   this->open({.bandwidth = 200e3, .latency = 0.01});
   for (const TopicInfo& topic : {urgent, state, bulk}) {

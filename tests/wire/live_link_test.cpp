@@ -86,7 +86,7 @@ TEST(LiveLink, SendsByPriorityAndTheNewestOfAStream) {
   std::atomic<int> sent{0};
   // 69 B and 28 of headers: 40 ms each.
   LiveLink link({.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, {"127.0.0.1"},
-                [&](std::uint32_t, bool) { ++sent; });
+                {[&](auto, in_addr_t, std::uint16_t) { ++sent; }, {}});
   link.add_writer(0x103, 0, false);
   link.add_writer(0x203, 3, true);
   for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x303, tag), loopback, receiver.port);
@@ -103,14 +103,44 @@ TEST(LiveLink, SendsByPriorityAndTheNewestOfAStream) {
   EXPECT_EQ(std::count(tags.begin(), tags.end(), 12), 0);
 }
 
+TEST(LiveLink, TellsWhatWaitsAndWhatWasDroppedByClass) {
+  Receiver receiver;
+  LiveLink link({.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, {"127.0.0.1"}, {});
+  link.add_writer(0x203, 3, true);
+  for (int i = 0; i < 4; ++i) link.send(rtps(0x15, 0x203), loopback, receiver.port);
+  link.send(rtps(0x15, 0x303), loopback, receiver.port);  // of no writer that it knows: as discovery
+  const SenderState state = link.sender();
+  EXPECT_EQ(state.link->bandwidth, 1e3);
+  // 85 bytes each; the first may be on the air already.
+  EXPECT_EQ(state.queue[3], 680ms);
+  EXPECT_GE(state.dropped[3], 2U);
+  EXPECT_EQ(state.waiting(3), state.queue[1] + state.queue[3]);
+  EXPECT_EQ(state.lost(2), 0U);
+}
+
+TEST(LiveLink, BeyondTheRangeNothingArrives) {
+  Receiver receiver;
+  std::optional<double> metres{};
+  LiveLink link({.bandwidth = 1e6, .latency = 0, .range = 50}, 1, {"127.0.0.1"},
+                {{}, [&](in_addr_t, std::uint16_t) {
+                   return Path{metres, 0.0};
+                 }});
+  metres = 60.0;
+  link.send(rtps(0x15, 1, 7), loopback, receiver.port);
+  EXPECT_TRUE(receiver.tags(100).empty());
+  metres = 40.0;
+  link.send(rtps(0x15, 1, 8), loopback, receiver.port);
+  EXPECT_EQ(receiver.tags(100), Bytes{8});
+}
+
 TEST(LiveLink, LosesDropsAndCounts) {
   Receiver receiver;
   {
-    LiveLink all({.bandwidth = 1e6, .loss = 1.0}, 1, {"127.0.0.1"}, [](std::uint32_t, bool) {});
+    LiveLink all({.bandwidth = 1e6, .loss = 1.0}, 1, {"127.0.0.1"}, {});
     all.send(rtps(0x15, 1), loopback, receiver.port);
     EXPECT_TRUE(receiver.tags(50).empty());
   }
-  LiveLink slow({.bandwidth = 1e3, .queue = 0.01}, 1, {"127.0.0.1"}, [](std::uint32_t, bool) {});
+  LiveLink slow({.bandwidth = 1e3, .queue = 0.01}, 1, {"127.0.0.1"}, {});
   for (int i = 0; i < 5; ++i) slow.send(rtps(0x15, 1), loopback, receiver.port);
   slow.close();
   slow.send(rtps(0x15, 1), loopback, receiver.port);
@@ -121,7 +151,7 @@ TEST(LiveLink, LosesDropsAndCounts) {
 TEST(LiveLink, WhatWaitsIsSentBeforeItEnds) {
   Receiver receiver;
   {
-    LiveLink link({.bandwidth = 1e6, .latency = 0.1}, 1, {"127.0.0.1"}, [](std::uint32_t, bool) {});
+    LiveLink link({.bandwidth = 1e6, .latency = 0.1}, 1, {"127.0.0.1"}, {});
     for (std::uint8_t i = 0; i < 10; ++i) link.send(rtps(0x15, 1, i), loopback, receiver.port);
   }
   EXPECT_EQ(receiver.tags(10).size(), 10U);

@@ -21,7 +21,8 @@ struct Line {
                                       .priority = priority,
                                       .supersedes = number,
                                       .since = now,
-                                      .patience = 250ms});
+                                      .patience = 250ms,
+                                      .airtime = 10ms});
     if (replaced) dropped.push_back(*replaced);
   }
   void run(Duration time) {
@@ -53,6 +54,24 @@ TEST(Transmitter, SendsByPriorityThenInOrder) {
   line.run(100ms);
   EXPECT_EQ(line.sent, (Names{"stop", "take", "state", "map"}));
   EXPECT_EQ(line.queue.size(), 0U);
+}
+
+TEST(Transmitter, TellsWhatWaitsAndWhatNeverWent) {
+  Line line;
+  line.now = 10s;
+  line.push("stop", 0), line.push("map", 5, 0, 3);
+  for (int i = 0; i < 4; ++i) line.push("state", 3, 7);
+  EXPECT_EQ(line.queue.waiting()[0], 10ms);
+  EXPECT_EQ(line.queue.waiting()[3], 10ms);
+  EXPECT_EQ(line.queue.waiting()[5], 30ms);
+  EXPECT_EQ(line.queue.dropped()[3], 3U);
+  line.run(30ms);
+  EXPECT_EQ(line.queue.waiting()[5], 20ms);  // one frame of three went
+  line.push("late", 4);
+  line.now += 1s;
+  line.run(100ms);
+  EXPECT_EQ(line.queue.dropped()[4], 1U);
+  EXPECT_EQ(line.queue.dropped()[5], 0U);  // what was begun is finished
 }
 
 TEST(Transmitter, AnUrgentMessageWaitsForOneFrameAtMost) {

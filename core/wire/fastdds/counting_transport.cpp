@@ -17,6 +17,20 @@ constexpr std::uint64_t udp_and_ip = 28;
 
 }  // namespace
 
+void Traffic::sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
+  const std::uint64_t bytes = message.size() + udp_and_ip;
+  total_out.fetch_add(bytes, std::memory_order_relaxed);
+  if (is_discovery_port(port)) discovery_out.fetch_add(bytes, std::memory_order_relaxed);
+  peers.sent(peek(message), address, port, bytes);
+}
+
+void Traffic::received(std::span<const std::uint8_t> message, std::uint32_t port) {
+  const std::uint64_t bytes = message.size() + udp_and_ip;
+  total_in.fetch_add(bytes, std::memory_order_relaxed);
+  if (is_discovery_port(port)) discovery_in.fetch_add(bytes, std::memory_order_relaxed);
+  peers.received(peek(message), bytes);
+}
+
 CountingTransport::CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
                                      std::shared_ptr<Traffic> traffic)
     : ChainingTransport(descriptor),
@@ -38,18 +52,14 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
        ++destination) {
     const rtps::Locator_t& locator = *destination;
     if (!IsLocatorSupported(locator)) continue;
+    in_addr_t address{};
+    std::memcpy(&address, rtps::IPLocator::getIPv4(locator), sizeof address);
+    const std::uint16_t port = rtps::IPLocator::getPhysicalPort(locator);
     if (traffic_->link) {
-      in_addr_t address{};
-      std::memcpy(&address, rtps::IPLocator::getIPv4(locator), sizeof address);
-      traffic_->link->send({send_buffer, send_buffer_size}, address,
-                           rtps::IPLocator::getPhysicalPort(locator));
+      traffic_->link->send({send_buffer, send_buffer_size}, address, port);
       continue;
     }
-    const std::uint64_t bytes = send_buffer_size + udp_and_ip;
-    traffic_->total_out.fetch_add(bytes, std::memory_order_relaxed);
-    if (is_discovery_port(rtps::IPLocator::getPhysicalPort(locator))) {
-      traffic_->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
-    }
+    traffic_->sent({send_buffer, send_buffer_size}, address, port);
     rtps::LocatorList_t one;
     one.push_back(locator);
     rtps::Locators begin(one.begin()), end(one.end());
@@ -61,12 +71,9 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
 void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterface* next_receiver,
                                 const rtps::octet* receive_buffer, std::uint32_t receive_buffer_size,
                                 const rtps::Locator_t& local_locator, const rtps::Locator_t& remote_locator) {
-  const std::uint64_t bytes = receive_buffer_size + udp_and_ip;
-  traffic_->total_in.fetch_add(bytes, std::memory_order_relaxed);
-  if (is_discovery_port(rtps::IPLocator::getPhysicalPort(local_locator))) {
-    traffic_->discovery_in.fetch_add(bytes, std::memory_order_relaxed);
-    traffic_->ready.wait();
-  }
+  const std::uint16_t port = rtps::IPLocator::getPhysicalPort(local_locator);
+  traffic_->received({receive_buffer, receive_buffer_size}, port);
+  if (is_discovery_port(port)) traffic_->ready.wait();
   next_receiver->OnDataReceived(receive_buffer, receive_buffer_size, local_locator, remote_locator);
 }
 

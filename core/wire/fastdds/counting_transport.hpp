@@ -8,6 +8,8 @@
 #include <memory>
 #include <mutex>
 
+#include "core/wire/fastdds/peer_book.hpp"
+
 namespace adit::wire {
 
 class LiveLink;
@@ -40,8 +42,14 @@ class Gate {
 /// Bytes that went through a participant's sockets, UDP and IP headers included.
 struct Traffic {
   std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
+  PeerBook peers{};                  ///< the same by peer
   Gate ready{};                      ///< discovery datagrams wait here
   std::shared_ptr<LiveLink> link{};  ///< what is sent goes through it, if there is one
+
+  /// Counts a datagram that leaves.
+  void sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
+  /// One that came in at that port.
+  void received(std::span<const std::uint8_t> message, std::uint32_t port);
 };
 
 /// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them,

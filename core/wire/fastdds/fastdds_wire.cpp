@@ -104,10 +104,12 @@ class FastDdsWire final : public Wire {
       const std::vector<std::string> loopback{"127.0.0.1"};
       traffic_->link = std::make_shared<LiveLink>(
           *params.link, params.link_seed, params.interfaces.empty() ? loopback : params.interfaces,
-          [traffic = traffic_.get()](std::uint32_t bytes, bool discovery) {
-            traffic->total_out.fetch_add(bytes, std::memory_order_relaxed);
-            if (discovery) traffic->discovery_out.fetch_add(bytes, std::memory_order_relaxed);
-          });
+          LiveLink::Outputs{[traffic = traffic_.get()](auto message, in_addr_t address, std::uint16_t port) {
+                              traffic->sent(message, address, port);
+                            },
+                            [traffic = traffic_.get()](in_addr_t address, std::uint16_t port) {
+                              return traffic->peers.path(address, port);
+                            }});
     }
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
         params.domain, *qos, &presence_, dds::StatusMask::none());
@@ -166,6 +168,17 @@ class FastDdsWire final : public Wire {
     result.total_out = traffic_->total_out;
     result.total_in = traffic_->total_in;
     return result;
+  }
+
+  SenderState sender() const override { return traffic_->link ? traffic_->link->sender() : SenderState{}; }
+  std::vector<PeerState> peers() const override {
+    return traffic_->peers.all(id(), traffic_->link ? &traffic_->link->profile() : nullptr);
+  }
+  void set_place(const ParticipantId& who, const Position& at) override {
+    if (who == id())
+      traffic_->peers.set_own_place(at);
+    else
+      traffic_->peers.set_place(who, at);
   }
 
  private:

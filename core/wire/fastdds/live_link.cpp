@@ -17,8 +17,8 @@ constexpr std::uint32_t udp_and_ip = 28;
 }  // namespace
 
 LiveLink::LiveLink(LinkProfile link, std::uint64_t seed, const std::vector<std::string>& interfaces,
-                   SentHandler sent)
-    : link_(std::move(link)), sent_(std::move(sent)), random_(seed) {
+                   Outputs outputs)
+    : link_(std::move(link)), outputs_(std::move(outputs)), random_(seed) {
   for (const std::string& address : interfaces) {
     const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
     if (fd < 0) continue;
@@ -51,27 +51,28 @@ void LiveLink::send(std::span<const std::uint8_t> message, in_addr_t address, st
   const RtpsPeek seen = peek(message);
   {
     const std::lock_guard lock(mutex_);
-    if (close_at_ != Duration::max() || queue_.size() >= most_waiting) {
-      ++dropped_;
-      return;
-    }
     Class what{WireCost::discovery_priority, false};
     if (seen.writer) {
       const auto known = writers_.find(*seen.writer);
       if (known != writers_.end()) what = known->second;
+    }
+    if (close_at_ != Duration::max() || queue_.size() >= most_waiting) {
+      queue_.note_dropped(what.priority);
+      return;
     }
     std::uint64_t number = 0;
     if (what.newest_wins && seen.whole) {
       number = (static_cast<std::uint64_t>(address) << 32 | *seen.writer) * 0x9e3779b97f4a7c15ULL + port;
       number |= 1;
     }
-    const auto replaced =
-        queue_.push({.item = Packet{{message.begin(), message.end()}, address, port, is_discovery_port(port)},
-                     .priority = what.priority,
-                     .supersedes = number,
-                     .since = now(),
-                     .patience = patience(link_, what.priority)});
-    if (replaced) ++dropped_;
+    Packet packet{{message.begin(), message.end()}, address, port};
+    const Duration cost = airtime(packet);
+    (void)queue_.push({.item = std::move(packet),
+                       .priority = what.priority,
+                       .supersedes = number,
+                       .since = now(),
+                       .patience = patience(link_, what.priority),
+                       .airtime = cost});
   }
   wake_.notify_one();
 }
@@ -79,6 +80,11 @@ void LiveLink::send(std::span<const std::uint8_t> message, in_addr_t address, st
 Duration LiveLink::waiting() const {
   const std::lock_guard lock(mutex_);
   return queue_.oldest(now());
+}
+
+SenderState LiveLink::sender() const {
+  const std::lock_guard lock(mutex_);
+  return {&link_, queue_.waiting(), queue_.dropped()};
 }
 
 void LiveLink::close() {
@@ -107,18 +113,14 @@ void LiveLink::run() {
 }
 
 Duration LiveLink::step(Duration at) {
-  const auto airtime = [this](const Packet& packet) {
-    if (link_.window > 0.0) return Duration{};
-    return from_seconds(static_cast<double>(packet.bytes.size() + udp_and_ip) * 8.0 / link_.bandwidth);
-  };
-  const auto drop = [this](const Packet&) { ++dropped_; };
   while (free_at_ <= at) {
-    auto next = queue_.next(at, airtime, drop);
+    auto next = queue_.next(
+        at, [this](const Packet& packet) { return airtime(packet); }, [](const Packet&) {});
     if (!next) break;
     // A thread that woke late has not lost the time: the air was free since then.
     const Duration start = std::max(free_at_, at - 5ms);
     free_at_ = start + next->airtime;
-    put_on_air(std::move(next->message.item), start, next->airtime);
+    put_on_air(std::move(next->message.item), next->message.priority, start, next->airtime);
   }
   while (!in_air_.empty() && in_air_.begin()->first <= at) {
     deliver(in_air_.begin()->second);
@@ -129,15 +131,21 @@ Duration LiveLink::step(Duration at) {
   return soonest;
 }
 
-void LiveLink::put_on_air(Packet packet, Duration at, Duration airtime) {
+Duration LiveLink::airtime(const Packet& packet) const {
+  if (link_.window > 0.0) return Duration{};
+  return from_seconds(static_cast<double>(packet.bytes.size() + udp_and_ip) * 8.0 / link_.bandwidth);
+}
+
+void LiveLink::put_on_air(Packet packet, int priority, Duration at, Duration airtime) {
   const auto bytes = static_cast<std::uint32_t>(packet.bytes.size()) + udp_and_ip;
   if (link_.window > 0.0 && !window_.admit(link_, bytes, at)) {
-    ++dropped_;
+    queue_.note_dropped(priority);
     return;
   }
-  sent_(bytes, packet.discovery);
+  if (outputs_.sent) outputs_.sent(packet.bytes, packet.address, packet.port);
+  const Path path = outputs_.path ? outputs_.path(packet.address, packet.port) : Path{};
   // Multicast is one frame: all hear it or nobody does.
-  if (channels_[peer_of(packet)].lost(link_, {}, bytes, std::nullopt, random_)) return;
+  if (channels_[peer_of(packet)].lost(link_, path, bytes, std::nullopt, random_)) return;
   in_air_.emplace(at + airtime + transit(link_, random_), std::move(packet));
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 #include <netinet/in.h>
 
-#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -14,6 +13,7 @@
 
 #include "core/wire/link/model.hpp"
 #include "core/wire/link/transmitter.hpp"
+#include "core/wire/link_state.hpp"
 
 namespace adit::wire {
 
@@ -22,11 +22,16 @@ namespace adit::wire {
 /// is still in the air does not depend on the library's life.
 class LiveLink {
  public:
-  using SentHandler = std::function<void(std::uint32_t bytes, bool discovery)>;
+  /// What it asks of others, from its own thread; each may be empty.
+  struct Outputs {
+    /// A datagram was put on the air.
+    std::function<void(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)> sent{};
+    /// What lies between us and whoever that address is.
+    std::function<Path(in_addr_t address, std::uint16_t port)> path{};
+  };
 
-  /// `interfaces`: addresses that multicast goes out on. `sent` is called for each datagram put on the air.
-  LiveLink(LinkProfile link, std::uint64_t seed, const std::vector<std::string>& interfaces,
-           SentHandler sent);
+  /// `interfaces`: addresses that multicast goes out on.
+  LiveLink(LinkProfile link, std::uint64_t seed, const std::vector<std::string>& interfaces, Outputs outputs);
   ~LiveLink();
   LiveLink(const LiveLink&) = delete;
   LiveLink& operator=(const LiveLink&) = delete;
@@ -40,7 +45,8 @@ class LiveLink {
 
   const LinkProfile& profile() const { return link_; }
   /// Datagrams that were dropped before they went on the air, since the start.
-  std::uint64_t dropped() const { return dropped_; }
+  std::uint64_t dropped() const { return sender().lost(priorities - 1); }
+  SenderState sender() const;
   /// The longest that anything waits to be sent.
   Duration waiting() const;
   /// Sends what waits, which takes as long as it takes on the link but at most a second, and ends.
@@ -51,7 +57,6 @@ class LiveLink {
     std::vector<std::uint8_t> bytes{};
     in_addr_t address{};
     std::uint16_t port{};
-    bool discovery{};
   };
   struct Class {
     int priority{};
@@ -62,12 +67,13 @@ class LiveLink {
   void run();
   /// Puts what is due on the air and into sockets; when to be asked again.
   Duration step(Duration at);
-  void put_on_air(Packet packet, Duration at, Duration airtime);
+  Duration airtime(const Packet& packet) const;
+  void put_on_air(Packet packet, int priority, Duration at, Duration airtime);
   void deliver(const Packet& packet) const;
   std::uint64_t peer_of(const Packet& packet) const;
 
   LinkProfile link_;
-  SentHandler sent_;
+  Outputs outputs_;
   std::vector<int> sockets_{};  // one per interface; the first one for unicast
   mutable std::mutex mutex_{};
   std::condition_variable wake_{};
@@ -79,7 +85,6 @@ class LiveLink {
   std::map<std::uint32_t, Class> writers_{};
   Duration free_at_{};  // the air is ours again
   Duration close_at_{Duration::max()};
-  std::atomic<std::uint64_t> dropped_{};
   std::thread thread_{};
 };
 

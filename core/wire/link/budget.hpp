@@ -7,10 +7,6 @@
 
 namespace adit::wire {
 
-/// Priorities on a link, 0 first: `urgent` 0, discovery and acknowledgements 1, `stream` 2, `state` and
-/// `sensor` 3, `status` 4, `bulk` 5, `video` 6.
-inline constexpr std::size_t priorities = 7;
-
 /// What each may use of a sender's airtime, (0, 1]; over `memory` seconds in the mean. Small messages that a
 /// robot obeys are not limited; maps and pictures never get all, so that others' frames find a gap.
 struct Budget {

@@ -10,11 +10,6 @@
 /// The one link model: pure, seeded from outside, used by the rehearsal's radio and by the live transport.
 namespace adit::wire {
 
-/// Where a machine is, world coordinates, m.
-struct Position {
-  double x{}, y{}, z{};
-};
-
 /// m
 double distance(const Position& a, const Position& b);
 

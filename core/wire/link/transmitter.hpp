@@ -27,6 +27,7 @@ class Transmitter {
     std::uint64_t supersedes{};  ///< not 0: replaces a waiting one of this number
     Duration since{};
     Duration patience{};  ///< dropped when it waited longer
+    Duration airtime{};   ///< of one frame, as it was when it began to wait: for waiting()
   };
 
   explicit Transmitter(Budget budget = {}) : budget_(budget) {}
@@ -39,6 +40,7 @@ class Transmitter {
       for (Waiting& old : queue) {
         if (old.supersedes != waiting.supersedes || old.sent > 0) continue;
         std::swap(old, waiting);
+        ++dropped_[static_cast<std::size_t>(waiting.priority)];
         return std::move(waiting.item);
       }
     }
@@ -61,6 +63,7 @@ class Transmitter {
              now - queue.front().since > queue.front().patience) {
         Waiting stale = std::move(queue.front());
         queue.pop_front();
+        ++dropped_[p];
         drop(std::move(stale.item));
       }
       if (queue.empty() || saved(p, now) < 0.0) continue;
@@ -95,6 +98,17 @@ class Transmitter {
     return n;
   }
   std::size_t size(int priority) const { return queues_[static_cast<std::size_t>(priority)].size(); }
+  /// Airtime that what waits needs, by priority.
+  std::array<Duration, priorities> waiting() const {
+    std::array<Duration, priorities> need{};
+    for (std::size_t p = 0; p < priorities; ++p)
+      for (const Waiting& w : queues_[p]) need[p] += w.airtime * (w.frames - w.sent);
+    return need;
+  }
+  /// Messages that never went on the air, by priority.
+  const std::array<std::uint64_t, priorities>& dropped() const { return dropped_; }
+  /// One that was given up elsewhere.
+  void note_dropped(int priority) { ++dropped_[static_cast<std::size_t>(priority)]; }
   /// The longest that anything has waited.
   Duration oldest(Duration now) const {
     Duration longest{};
@@ -119,6 +133,7 @@ class Transmitter {
   std::array<std::deque<Waiting>, priorities> queues_{};
   std::array<double, priorities> saved_{};      // airtime, s; below zero: over its share
   std::array<Duration, priorities> counted_{};  // when it was last brought up to date
+  std::array<std::uint64_t, priorities> dropped_{};
 };
 
 }  // namespace adit::wire

@@ -79,6 +79,25 @@ class MemoryWire final : public Wire {
     return result;
   }
 
+  SenderState sender() const override { return core_->radio->sender(participant_->node); }
+
+  std::vector<PeerState> peers() const override {
+    std::vector<PeerState> result;
+    for (const auto& [node, state] : participant_->carried) {
+      if (!participant_->peers.contains(node)) continue;
+      PeerState& peer = result.emplace_back(state);
+      const Participant& other = *participant_->peer_participant(node);
+      peer.peer = other.id;
+      if (!core_->radio->inner(node))
+        peer.signal = core_->radio->signal(other.machine, participant_->machine);
+    }
+    std::sort(result.begin(), result.end(),
+              [](const PeerState& a, const PeerState& b) { return a.peer < b.peer; });
+    return result;
+  }
+
+  void set_place(const ParticipantId&, const Position&) override {}  // Ether::set_position() tells the truth
+
  private:
   std::shared_ptr<Ether::Core> core_;
   std::shared_ptr<Participant> participant_;

@@ -122,6 +122,7 @@ void Participant::on_endpoint(int from, int entity) {
 
 void Participant::drop(int peer) {
   if (peers.erase(peer) == 0) return;
+  carried.erase(peer);
   const auto of_peer = [peer](const auto& entry) { return entry.first.node == peer; };
   for (const auto& [own, state] : readers) std::erase_if(state->writers, of_peer);
   for (const auto& [own, state] : writers) std::erase_if(state->readers, of_peer);
@@ -198,8 +199,9 @@ void Participant::send(int to, Datagram datagram, std::function<void(Participant
                        bool discovery) {
   if (core->closed) return;
   const std::uint32_t bytes = datagram.bytes;
-  datagram.sent = [self = shared_from_this(), bytes, discovery, also = std::move(datagram.sent)] {
+  datagram.sent = [self = shared_from_this(), to, bytes, discovery, also = std::move(datagram.sent)] {
     self->totals.total_out += bytes;
+    self->carried[to].bytes_out += bytes;
     if (discovery) self->totals.discovery_out += bytes;
     if (also) also();
   };
@@ -209,6 +211,7 @@ void Participant::send(int to, Datagram datagram, std::function<void(Participant
     if (there == nullptr || there->stopped) return;
     const std::uint32_t in = bytes * through / frames;
     there->totals.total_in += in;
+    there->carried[self->node].bytes_in += in;
     if (discovery) there->totals.discovery_in += in;
     const auto peer = there->peers.find(self->node);
     if (peer != there->peers.end()) peer->second.heard = there->core->scheduler.elapsed();

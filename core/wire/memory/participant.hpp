@@ -161,6 +161,7 @@ struct Participant : std::enable_shared_from_this<Participant> {
   Executor* event_strand{};
   std::shared_ptr<std::function<void(const ParticipantEvent&)>> event_handler{};
   std::map<std::pair<std::string, ParticipantId>, TopicCount> counts{};
+  std::map<int, PeerState> carried{};  ///< by node; those in `peers` and some that were not yet or no more
   WireCounters totals{};
 };
 

@@ -74,16 +74,34 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
   packet->datagram = shared;
   std::uint64_t number = shared->supersedes;
   if (number != 0) number ^= (static_cast<std::uint64_t>(packet->to.front()) + 1) * 0x9e3779b97f4a7c15ULL;
+  const Duration cost = airtime(from, *packet);
   const auto replaced = node.queue.push({.item = std::move(packet),
                                          .frames = shared->frames,
                                          .priority = shared->priority,
                                          .supersedes = number,
                                          .since = scheduler_.elapsed(),
-                                         .patience = longest});
+                                         .patience = longest,
+                                         .airtime = cost});
   if (replaced && (*replaced)->datagram->lost) {
     for (const int node_to : (*replaced)->to) (*replaced)->datagram->lost(node_to);
   }
   if (!node.busy) pump(from);
+}
+
+Duration Radio::airtime(int from, const Packet& packet) const {
+  double slowest = 1e12;
+  for (const int to : packet.to) {
+    const double slower = disturbances_.none() ? 1.0 : disturbances_.on(machine(from), machine(to)).slower;
+    const LinkProfile& link = profile(from, to);
+    slowest = std::min(slowest, (link.window > 0.0 ? 1e12 : link.bandwidth) / slower);
+  }
+  return from_seconds(packet.datagram->bytes * 8.0 / packet.datagram->frames / slowest);
+}
+
+SenderState Radio::sender(int node) const {
+  const Node& sender = nodes_[static_cast<std::size_t>(node)];
+  if (sender.inner) return {};
+  return {&standard_, sender.queue.waiting(), sender.queue.dropped()};
 }
 
 void Radio::pump(int index) {
@@ -91,21 +109,12 @@ void Radio::pump(int index) {
   node.busy = false;
   ++node.asked;
   if (!node.on) return node.queue.clear();
-  const auto airtime = [this, index](const std::shared_ptr<Packet>& packet) {
-    // Multicast goes out at the rate of the slowest of those it is meant for.
-    double slowest = 1e12;
-    for (const int to : packet->to) {
-      const double slower = disturbances_.none() ? 1.0 : disturbances_.on(machine(index), machine(to)).slower;
-      const LinkProfile& link = profile(index, to);
-      slowest = std::min(slowest, (link.window > 0.0 ? 1e12 : link.bandwidth) / slower);
-    }
-    return from_seconds(packet->datagram->bytes * 8.0 / packet->datagram->frames / slowest);
-  };
+  const auto cost = [this, index](const std::shared_ptr<Packet>& packet) { return airtime(index, *packet); };
   const auto drop = [](const std::shared_ptr<Packet>& packet) {
     if (!packet->datagram->lost) return;
     for (const int to : packet->to) packet->datagram->lost(to);
   };
-  const auto next = node.queue.next(scheduler_.elapsed(), airtime, drop);
+  const auto next = node.queue.next(scheduler_.elapsed(), cost, drop);
   if (next) {
     node.busy = true;
     put_on_air(index, next->message.item, next->last, next->airtime);
@@ -129,6 +138,7 @@ void Radio::put_on_air(int from, const std::shared_ptr<Packet>& packet, bool las
     const Disturbances::Effect effect =
         disturbances_.none() ? Disturbances::Effect{} : disturbances_.on(machine(from), machine(to));
     const bool admitted = link.window <= 0.0 || i > 0 || node.window.admit(link, bytes, scheduler_.elapsed());
+    if (!admitted && last) node.queue.note_dropped(datagram.priority);
     if (admitted && !lost(from, to, bytes, effect)) ++packet->through[i];
     if (!last) continue;
     const std::uint16_t through = packet->through[i];

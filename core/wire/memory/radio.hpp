@@ -12,6 +12,7 @@
 #include "core/time/random.hpp"
 #include "core/wire/link/model.hpp"
 #include "core/wire/link/transmitter.hpp"
+#include "core/wire/link_state.hpp"
 #include "core/wire/memory/disturbance.hpp"
 
 namespace adit::wire {
@@ -54,6 +55,9 @@ class Radio : public std::enable_shared_from_this<Radio> {
     return nodes_[static_cast<std::size_t>(node)].queue.oldest(scheduler_.elapsed());
   }
 
+  /// What waits there, and what was given up.
+  SenderState sender(int node) const;
+
   void send(int from, int to, Datagram datagram) { multicast(from, {to}, std::move(datagram)); }
   /// One transmission, heard by all of `to`.
   void multicast(int from, std::vector<int> to, Datagram datagram);
@@ -85,6 +89,8 @@ class Radio : public std::enable_shared_from_this<Radio> {
   const LinkProfile& profile(const std::string& a, const std::string& b) const;
   const LinkProfile& profile(int from, int to) const { return profile(machine(from), machine(to)); }
   Path path(const std::string& from, const std::string& to) const;
+  /// Of one frame of it, from that node; multicast goes out at the rate of the slowest of those it is for.
+  Duration airtime(int from, const Packet& packet) const;
   void pump(int node);
   void put_on_air(int node, const std::shared_ptr<Packet>& packet, bool last, Duration airtime);
   void arrive(int from, int to, const std::shared_ptr<Datagram>& datagram, std::uint16_t through,
