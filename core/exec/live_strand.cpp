@@ -1,10 +1,12 @@
 #include <pthread.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <limits>
 
 #include "core/exec/live_shared.hpp"
+#include "core/exec/processor_use.hpp"
 
 namespace adit {
 namespace {
@@ -73,6 +75,7 @@ class Loop {
   }
 
   void run() {
+    system_id_.store(static_cast<int>(syscall(SYS_gettid)), std::memory_order_relaxed);
     thread_id_.store(std::this_thread::get_id(), std::memory_order_relaxed);
     pthread_setname_np(pthread_self(), name_.substr(0, 15).c_str());
     std::vector<Task> batch;
@@ -105,6 +108,7 @@ class Loop {
     alarms.swap(alarms_);
   }
 
+  int system_id() const { return system_id_.load(std::memory_order_relaxed); }
   const std::string& name() const { return name_; }
   LiveRuntime::Shared& shared() { return *shared_; }
   bool on_own_thread() const {
@@ -175,6 +179,7 @@ class Loop {
   std::shared_ptr<LiveRuntime::Shared> shared_;
   std::string name_;
   std::atomic<std::thread::id> thread_id_{};
+  std::atomic<int> system_id_{0};  // 0: does not run yet
   std::atomic<bool> stop_now_{false};
   std::atomic<std::int64_t> next_alarm_{never};
   WakeWord wake_{};
@@ -186,7 +191,7 @@ class Loop {
   bool stopping_{false};
 };
 
-class LiveStrand final : public Executor {
+class LiveStrand final : public Executor, public OnProcessor {
  public:
   LiveStrand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name, bool heavy)
       : loop_(std::make_shared<Loop>(std::move(shared), name)), heavy_(heavy), thread_([loop = loop_, heavy] {
@@ -242,6 +247,11 @@ class LiveStrand final : public Executor {
     if (!thread_.joinable()) return;
     thread_.detach();
     loop_->shared().left_behind.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  std::optional<ProcessorUse> processor_use() const override {
+    const int id = loop_->system_id();
+    return id == 0 ? ProcessorUse{.ready = true} : adit::processor_use(id);
   }
 
  private:

@@ -20,7 +20,7 @@ Result<std::size_t> Overseer::find(const std::string& part) const {
 
 Overseer::Verdict Overseer::look(const std::vector<Pulse>& pulses, Time now) {
   Verdict verdict;
-  const Duration lived = looked_ ? std::min(now - *looked_, 2 * params_.period) : Duration{};
+  const Duration lived = looked_ ? std::min(now - *looked_, params_.period) : Duration{};
   looked_ = now;
   for (std::size_t i = 0; i < status_.size() && i < pulses.size() && !escalated_; ++i)
     watch(i, pulses[i], lived, now, verdict);
@@ -44,9 +44,13 @@ void Overseer::watch(std::size_t part, const Pulse& pulse, Duration lived, Time 
   if (pulse.failed) return failed(part, pulse.text, now, verdict);
   const bool beats = pulse.running && (status.state == PartState::starting || pulse.beats != course.beats);
   course.beats = pulse.beats;
+  const bool compared = !beats && pulse.use && course.use;
+  const Duration counts = compared ? answerable(*course.use, *pulse.use, lived) : lived;
+  course.use = beats ? std::nullopt : pulse.use;
   status.silent = beats ? Duration{} : status.silent + lived;
+  status.stalled = beats ? Duration{} : status.stalled + counts;
   const Duration patience = status.state == PartState::starting ? params_.start : params_.silence;
-  if (status.silent > patience) return hung(part, verdict);
+  if (status.stalled > patience) return hung(part, verdict);
   if (!pulse.running || status.state == PartState::up) return;
   status.state = PartState::up;
   if (!course.was_down) return;
@@ -92,7 +96,8 @@ void Overseer::hung(std::size_t part, Verdict& verdict) {
 
 void Overseer::order(std::size_t part, Order::Kind kind, Verdict& verdict) {
   status_[part].state = PartState::starting;
-  status_[part].silent = Duration{};
+  status_[part].silent = status_[part].stalled = Duration{};
+  courses_[part].use.reset();
   verdict.orders.push_back({kind, part});
 }
 

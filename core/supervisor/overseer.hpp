@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/exec/processor_use.hpp"
 #include "core/result/result.hpp"
 #include "core/time/time.hpp"
 
@@ -22,9 +23,9 @@ enum class PartState : std::uint8_t {
 };
 
 struct SupervisionParams {
-  Duration period{50ms};       ///< how often the hearts are looked at, [10 ms, 500 ms]
-  Duration silence{700ms};     ///< without a beat for longer: hung, [200 ms, 60 s]
-  Duration start{5s};          ///< without a first beat for longer: hung, [silence, 60 s]
+  Duration period{50ms};    ///< how often the hearts are looked at, [10 ms, 500 ms]
+  Duration silence{700ms};  ///< without a beat for longer, waits for a processor apart: hung, [200 ms, 60 s]
+  Duration start{5s};       ///< without a first beat for longer: hung, [silence, 60 s]
   Duration first_pause{10ms};  ///< before the first restart in a window; four times as long at each next
   Duration longest_pause{2s};
   int attempts{5};  ///< restarts of one component within the window, [1, 100]; then the agent is restarted
@@ -45,6 +46,8 @@ struct Pulse {
   bool failed{};   ///< this instance ended with an exception, or did not start
   std::uint64_t beats{};
   std::string text{};  ///< why it failed
+  /// What its thread had of the processor; asked for in Overseer::doubts(). Nothing: all time counts.
+  std::optional<ProcessorUse> use{};
 };
 
 struct PartStatus {
@@ -53,6 +56,7 @@ struct PartStatus {
   std::uint32_t restarts{};  ///< that brought it back
   std::uint32_t hangs{};     ///< threads that it left behind
   Duration silent{};         ///< since its loop last beat, as far as the watcher lived
+  Duration stalled{};        ///< of that, what was no wait for a processor
   std::string text{};        ///< the last failure, "" when there was none
 };
 
@@ -79,7 +83,8 @@ struct PartEvent {
 
 /// Decides what becomes of components that fail or hang: policy, back-off, attempts in a window, then
 /// escalation to the agent (docs/supervision.md). Pure: it is shown pulses and told the time. Silence counts
-/// only while the overseer itself lives, so that a machine that slept does not look hung.
+/// only while the overseer itself is in time, so that a machine that slept does not look hung, and only while
+/// the silent one was not waiting for a processor, so that a busy machine does not either.
 class Overseer {
  public:
   struct Verdict {
@@ -93,6 +98,9 @@ class Overseer {
 
   /// One pulse per part. Every params.period, and at once when something failed.
   Verdict look(const std::vector<Pulse>& pulses, Time now);
+  /// It is silent for so long that its next pulses must tell what its thread had of the processor. No sooner:
+  /// it is asked of the system.
+  bool doubts(std::size_t part) const { return status_[part].silent >= params_.silence / 4; }
   /// The operator's word; a component that works is made anew, too. Errors: bad_argument.
   Result<Verdict> restart(const std::string& part, Time now);
   /// Errors: bad_argument, not_supported (the component takes the operators' word itself).
@@ -104,8 +112,9 @@ class Overseer {
  private:
   struct Course {
     std::uint64_t beats{};
-    bool was_down{};  ///< since it was last up
-    Time resume{};    ///< end of the pause
+    bool was_down{};                    ///< since it was last up
+    Time resume{};                      ///< end of the pause
+    std::optional<ProcessorUse> use{};  ///< at the last look
     std::deque<Time> attempts{};
   };
   Result<std::size_t> find(const std::string& part) const;

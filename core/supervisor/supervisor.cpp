@@ -32,7 +32,13 @@ void Supervisor::on_stop() { timer_.cancel(); }
 
 void Supervisor::look() {
   std::vector<Pulse> pulses;
-  for (const Unit* unit : units_) pulses.push_back(unit->pulse());
+  for (std::size_t i = 0; i < units_.size(); ++i) {
+    pulses.push_back(units_[i]->pulse());
+    if (!overseer_.doubts(i)) continue;
+    const auto seat = units_[i]->seat();
+    if (const auto* thread = dynamic_cast<const OnProcessor*>(seat->strand.get()))
+      pulses.back().use = thread->processor_use();
+  }
   carry_out(overseer_.look(pulses, now()));
 }
 

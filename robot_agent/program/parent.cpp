@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -21,6 +22,7 @@ namespace adit::agent {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr Duration kTurn = 100ms;  // how often the child is looked at
 
 int milliseconds(Duration d) {
   return static_cast<int>(std::chrono::duration_cast<std::chrono::milliseconds>(d).count());
@@ -96,10 +98,11 @@ int Parent::wait_for_end() {
   auto killed_at = Clock::time_point::max();
   heard_ = Clock::now();
   looked_ = {};
+  auto turned = heard_;
   for (;;) {
     pollfd wait[3] = {{pidfd_, POLLIN, 0}, {signals_, POLLIN, 0}, {report_, POLLIN, 0}};
     const bool zero = prepared_ && !commands_;
-    ::poll(wait, 3, milliseconds(zero ? params_.zero_period : Duration(100ms)));
+    ::poll(wait, 3, milliseconds(zero ? params_.zero_period : kTurn));
     if (wait[0].revents != 0) return reap();
     if (wait[2].revents != 0) hear();
     if (wait[1].revents != 0) {
@@ -110,7 +113,11 @@ int Parent::wait_for_end() {
       killed_at = Clock::now() + params_.patience;
     }
     const auto now = Clock::now();
-    if (commands_ && now - looked_ > params_.look) {
+    // Where we ourselves got no processor, the child's silence tells nothing.
+    heard_ += std::max(now - turned - 2 * kTurn, Clock::duration{});
+    turned = now;
+    // Often while it starts: it may die at any moment, and again.
+    if (now - looked_ > (commands_ ? params_.look : Duration(kTurn))) {
       looked_ = now;
       shared_memory_.watch(child_);
     }

@@ -25,6 +25,7 @@ class OverseerTest : public testing::Test {
       now += step;
       for (std::size_t i = 0; i < pulses.size(); ++i)
         if (!stuck[i]) ++pulses[i].beats;
+      pass_on_the_processor(step);
       for (const Order& order : look()) orders.push_back(order);
     }
     return orders;
@@ -40,6 +41,19 @@ class OverseerTest : public testing::Test {
       }
     return verdict.orders;
   }
+  /// `part`'s thread from now on: so much of each step it runs, waits for a processor, and is ready at its
+  /// end.
+  void on_the_processor(std::size_t part, double runs, double waits, bool ready) {
+    thread = {part, runs, waits, {.ready = ready}};
+  }
+  void pass_on_the_processor(Duration step) {
+    if (!thread) return;
+    thread->use.ran += from_seconds(thread->runs * seconds(step));
+    // As the system does: a wait is counted when it ends.
+    if (!thread->use.ready || thread->runs > 0.0)
+      thread->use.waited += from_seconds(thread->waits * seconds(step));
+    pulses[thread->part].use = thread->use;
+  }
   void fail(std::size_t part) {
     pulses[part].failed = true;
     pulses[part].running = false;
@@ -47,6 +61,12 @@ class OverseerTest : public testing::Test {
   }
   PartState state(std::size_t part) const { return overseer.status()[part].state; }
 
+  struct Thread {
+    std::size_t part{};
+    double runs{}, waits{};
+    ProcessorUse use{};
+  };
+  std::optional<Thread> thread{};
   Overseer overseer{};
   Time now{5s};
   std::vector<Pulse> pulses{2};
@@ -111,6 +131,47 @@ TEST_F(OverseerTest, WhoIsSilentIsReplacedWithinASecond) {
   EXPECT_EQ(state(1), PartState::up);
   EXPECT_EQ(overseer.status()[1].hangs, 1u);
   EXPECT_THAT(events, ElementsAre(PartEvent::Kind::hung, PartEvent::Kind::back));
+}
+
+TEST_F(OverseerTest, WhoGetsNoProcessorIsNotHungHoweverLongItIsSilent) {
+  on_the_processor(0, 0.0, 1.0, true);  // it waits all the time
+  stuck[0] = true;
+  EXPECT_THAT(pass(60s), IsEmpty());
+  EXPECT_EQ(state(0), PartState::up);
+  EXPECT_GT(overseer.status()[0].silent, 59s);  // as others see it: zero is sent meanwhile
+  EXPECT_LT(overseer.status()[0].stalled, 300ms);
+  EXPECT_THAT(events, IsEmpty());
+}
+
+TEST_F(OverseerTest, WhoGetsATenthOfAProcessorIsHungOnceItRanForTooLong) {
+  on_the_processor(0, 0.1, 0.9, true);
+  stuck[0] = true;
+  EXPECT_THAT(pass(4s), IsEmpty());
+  EXPECT_THAT(pass(3s), ElementsAre(Order{Kind::escalate, 0}));
+}
+
+TEST_F(OverseerTest, WhoIsBlockedIsHungWithinASecondWhileAnotherIsStarved) {
+  on_the_processor(0, 0.0, 1.0, true);
+  stuck[0] = stuck[1] = true;
+  pulses[1].use = ProcessorUse{.ran = 1s, .waited = 2s};  // and stays that
+  EXPECT_THAT(pass(650ms), IsEmpty());
+  EXPECT_THAT(pass(150ms), ElementsAre(Order{Kind::replace, 1}));
+}
+
+TEST_F(OverseerTest, WhoBlocksAfterItStarvedIsHungWithinASecondFromThen) {
+  on_the_processor(0, 0.0, 1.0, true);
+  stuck[0] = true;
+  EXPECT_THAT(pass(10s), IsEmpty());
+  on_the_processor(0, 0.0, 0.0, false);
+  EXPECT_THAT(pass(800ms), ElementsAre(Order{Kind::escalate, 0}));
+}
+
+TEST_F(OverseerTest, WithoutAWordOfTheSystemAllSilenceCounts) {
+  stuck[0] = true;
+  pass(300ms);
+  EXPECT_TRUE(overseer.doubts(0));
+  EXPECT_FALSE(overseer.doubts(1));
+  EXPECT_THAT(pass(500ms), ElementsAre(Order{Kind::escalate, 0}));
 }
 
 TEST_F(OverseerTest, TheSecondHangEscalates) {
