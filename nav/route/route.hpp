@@ -1,0 +1,29 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace adit::nav {
+
+/// What came of a search.
+enum class RouteStatus : std::uint8_t {
+  found,
+  unreachable,    ///< proven: what can be reached, unknown space included, does not hold the goal
+  start_blocked,  ///< nothing is passable near the start: nothing is proven
+  too_far,        ///< the search would need more than its memory
+};
+
+/// A way on the ground from one place to another. Frame: that of the map, m.
+struct Route {
+  RouteStatus status{RouteStatus::unreachable};
+  std::vector<Eigen::Vector3d> points{};  ///< corners, from the start to the goal; empty unless found
+  std::vector<std::uint8_t> unknown{};  ///< one per leg (points - 1): whether it leads through unknown space
+  double length{0};                     ///< m
+  double unknown_length{0};             ///< of it through unknown space, m
+  double cost{0};                       ///< m, with what narrow and unknown places cost more
+
+  bool found() const { return status == RouteStatus::found; }
+  bool attempt() const { return unknown_length > 0.0; }
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,106 @@
+#include "nav/route/route_keeper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kSameGoal = 0.05;   // m
+constexpr double kReachAhead = 0.9;  // m: a route that is blocked is so this far ahead
+constexpr double kSampling = 0.5;    // m
+
+// The point of a way at a length from its beginning, and whether that is its end.
+Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double length, bool& end) {
+  end = false;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Eigen::Vector3d way = points[i + 1] - points[i];
+    const double leg = way.norm();
+    if (length < leg) return points[i] + way * (length / leg);
+    length -= leg;
+  }
+  end = true;
+  return points.back();
+}
+
+}  // namespace
+
+// The route from the point of it that is nearest, over the first metres: a way that comes back beside
+// itself is not cut.
+void RouteKeeper::advance(const Eigen::Vector3d& place) {
+  auto& points = route_.points;
+  double least = std::numeric_limits<double>::infinity(), passed = 0;
+  std::size_t leg = 0;
+  Eigen::Vector3d nearest = points.front();
+  for (std::size_t i = 0; i + 1 < points.size() && passed < 5.0; ++i) {
+    const Eigen::Vector3d way = points[i + 1] - points[i];
+    const double length2 = way.head<2>().squaredNorm();
+    const double t =
+        length2 > 0 ? std::clamp((place - points[i]).head<2>().dot(way.head<2>()) / length2, 0.0, 1.0) : 0.0;
+    const Eigen::Vector3d p = points[i] + t * way;
+    if (const double d = (p - place).head<2>().norm(); d < least - 1e-6) {
+      least = d;
+      leg = i;
+      nearest = p;
+    }
+    passed += way.norm();
+  }
+  points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(leg));
+  points.front() = {place.x(), place.y(), nearest.z()};
+}
+
+void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked,
+                                double stamp_s) {
+  if (!blocked || !route_.found()) {
+    blocked_since_.reset();
+    return;
+  }
+  if (!blocked_since_) blocked_since_ = stamp_s;
+  if (stamp_s - *blocked_since_ < params_.blocked) return;
+  blocked_since_.reset();
+  bool end = false;
+  const Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
+  if (!end) planner.block({there.x(), there.y(), place.z()}, stamp_s);
+}
+
+// The farthest point of the route, up to `ahead`, that is in a straight line from here.
+RouteStep RouteKeeper::along(const RoutePlanner& planner, const Eigen::Vector3d& place) const {
+  RouteStep step{RouteStep::State::along, {}, false};
+  const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};
+  for (double ahead = params_.ahead; ahead >= params_.least_ahead; ahead -= kSampling) {
+    step.target = point_at(route_.points, ahead, step.last);
+    if (planner.line(from, step.target).passable) return step;
+  }
+  step.target = point_at(route_.points, params_.least_ahead, step.last);
+  return step;
+}
+
+RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place, const Eigen::Vector3d& goal,
+                            bool blocked, double stamp_s) {
+  if (!goal_ || (*goal_ - goal).head<2>().norm() > kSameGoal) {
+    clear();
+    goal_ = goal;
+  }
+  if (planner.map().used() == 0) return {RouteStep::State::straight, goal, true};
+  bool kept = route_.found();
+  if (kept) advance(place);
+  watch_blocked(planner, place, blocked, stamp_s);
+  Route other = planner.plan(place, goal);
+  if (kept) kept = planner.measure(route_);
+  if (other.found() &&
+      (!kept || (other.cost < route_.cost * params_.momentum && other.cost < route_.cost - params_.gain)))
+    route_ = std::move(other);
+  else if (!kept && !other.found())
+    route_ = std::move(other);
+  if (route_.found()) {
+    lost_since_.reset();
+    return along(planner, place);
+  }
+  if (route_.status != RouteStatus::unreachable) return {RouteStep::State::straight, goal, true};
+  if (planner.has_blocked_places()) return {RouteStep::State::blocked, goal, true};
+  if (!lost_since_) lost_since_ = stamp_s;
+  if (stamp_s - *lost_since_ < params_.proof) return {RouteStep::State::blocked, goal, true};
+  return {RouteStep::State::unreachable, goal, true};
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,57 @@
+#pragma once
+#include <optional>
+
+#include "nav/route/route_planner.hpp"
+
+namespace adit::nav {
+
+struct RouteKeeperParams {
+  double momentum{
+      0.85};          ///< another route is taken when it costs less than this part of the one kept, (0, 1]
+  double gain{0.5};   ///< and so much less, m, [0, 10]
+  double ahead{4.0};  ///< the local planner is given the point of the route this far ahead, m, [1, 10]
+  double least_ahead{1.2};  ///< and never a nearer one but the goal, m, [0.3, 5]
+  double proof{2.0};        ///< a goal is unreachable when that was so all this time, s, [0, 10]
+  double blocked{1.0};      ///< a route is blocked when the local planner says so for this long, s, [0, 30]
+};
+
+/// Where to drive next.
+struct RouteStep {
+  enum class State : std::uint8_t {
+    straight,     ///< nothing is known: to the goal
+    along,        ///< to `target`, a point of the route
+    unreachable,  ///< proven
+    blocked,      ///< no way round the places that were found blocked
+  };
+  State state{State::straight};
+  Eigen::Vector3d target{0, 0, 0};  ///< m
+  bool last{true};                  ///< `target` is the goal
+};
+
+/// Keeps to a route: another one is taken when it is clearly better or the old one is blocked, so that it
+/// does not flicker between two that are alike.
+class RouteKeeper {
+ public:
+  explicit RouteKeeper(const RouteKeeperParams& params = {}) : params_(params) {}
+
+  /// After a scan: the next step from `place` to `goal` (z NaN: the floor of `place`). `blocked`: the local
+  /// planner found no way along the step before.
+  RouteStep step(RoutePlanner& planner, const Eigen::Vector3d& place, const Eigen::Vector3d& goal,
+                 bool blocked, double stamp_s);
+  /// What is left of the route, from where it was last asked.
+  const Route& route() const { return route_; }
+  void clear() { *this = RouteKeeper(params_); }
+
+ private:
+  void advance(const Eigen::Vector3d& place);
+  void watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked, double stamp_s);
+  RouteStep along(const RoutePlanner& planner, const Eigen::Vector3d& place) const;
+
+  RouteKeeperParams params_;
+  Route route_{};
+  std::optional<Eigen::Vector3d> goal_{};
+  std::optional<double> blocked_since_{};
+  std::optional<double> lost_since_{};
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,121 @@
+#include "nav/route/route_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kResample = 0.5;  // m
+constexpr int kGiveUp = 3;         // corners in a row that are not seen
+
+}  // namespace
+
+LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  const Eigen::Vector2d way = to.head<2>() - from.head<2>();
+  const double length = way.norm();
+  const int steps = std::max(1, static_cast<int>(std::ceil(length / kRouteCell)));
+  const double share = length / steps;
+  LineCost result;
+  double z = from.z();
+  int index = -1, tx = 0, ty = 0;
+  bool have = false, was_known = false;
+  for (int i = 0; i <= steps; ++i) {
+    const double t = static_cast<double>(i) / steps;
+    const int ix = route_cell(from.x() + t * way.x()), iy = route_cell(from.y() + t * way.y());
+    if (!have || tile_of(ix) != tx || tile_of(iy) != ty) {
+      tx = tile_of(ix);
+      ty = tile_of(iy);
+      index = map_.at(tx, ty, z);
+      // Of two floors within reach, the one whose ground goes on from here.
+      const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
+      for (int s = map_.first(tx, ty); s >= 0; s = map_.tile(s).next)
+        if (const GroundCell& cell = map_.tile(s).cells[c];
+            cell.known && std::abs(cell.z - z) <= (was_known ? builder_.rise() : kSheetReach / 2))
+          index = s;
+      have = true;
+    }
+    const double weight = i == 0 || i == steps ? share / 2 : share;
+    if (index < 0) {
+      result.cost += weight * builder_.unknown_cost();
+      result.unknown += weight;
+      was_known = false;
+      continue;
+    }
+    const Tile& tile = map_.tile(index);
+    const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
+    if (tile.cost[c] == 0) return {};
+    result.cost += weight * tile.cost[c] / 16.0;
+    const GroundCell& cell = tile.cells[c];
+    if (!cell.known) {
+      result.unknown += weight;
+    } else {
+      if (was_known && std::abs(cell.z - z) > 2 * builder_.rise()) return {};
+      z = cell.z;
+    }
+    was_known = cell.known;
+  }
+  result.passable = std::abs(z - to.z()) <= kSheetReach + 0.1;
+  return result;
+}
+
+void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) const {
+  if (points.size() < 3) return;
+  std::vector<double> before(points.size(), 0.0);
+  for (std::size_t i = 1; i < points.size(); ++i)
+    before[i] = before[i - 1] + line(points[i - 1], points[i]).cost;
+  std::vector<Eigen::Vector3d> result{points.front()};
+  for (std::size_t anchor = 0; anchor + 1 < points.size();) {
+    std::size_t best = anchor + 1;
+    int unseen = 0;
+    for (std::size_t j = anchor + 2; j < points.size() && unseen < kGiveUp; ++j) {
+      const LineCost direct = line(points[anchor], points[j]);
+      if (direct.passable && direct.cost <= before[j] - before[anchor] + 1e-3) {
+        best = j;
+        unseen = 0;
+      } else {
+        ++unseen;
+      }
+    }
+    result.push_back(points[best]);
+    anchor = best;
+  }
+  points = std::move(result);
+}
+
+void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) const {
+  shorten_once(points);
+  std::vector<Eigen::Vector3d> dense;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    const Eigen::Vector3d way = points[i + 1] - points[i];
+    const int parts = std::max(1, static_cast<int>(std::ceil(way.norm() / kResample)));
+    for (int k = 0; k < parts; ++k) dense.push_back(points[i] + way * k / parts);
+  }
+  if (!points.empty()) dense.push_back(points.back());
+  // A point between two on a slope takes its height from the ground's.
+  for (Eigen::Vector3d& p : dense) {
+    const int ix = route_cell(p.x()), iy = route_cell(p.y());
+    if (const int t = map_.at(tile_of(ix), tile_of(iy), p.z()); t >= 0) {
+      const GroundCell& cell = map_.tile(t).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+      if (cell.known && std::abs(cell.z - p.z()) < kSheetReach / 2) p.z() = cell.z;
+    }
+  }
+  points = std::move(dense);
+  shorten_once(points);
+}
+
+bool RouteLine::measure(Route& route) const {
+  route.length = route.unknown_length = route.cost = 0;
+  route.unknown.clear();
+  for (std::size_t i = 0; i + 1 < route.points.size(); ++i) {
+    const LineCost leg = line(route.points[i], route.points[i + 1]);
+    if (!leg.passable) return false;
+    route.cost += leg.cost;
+    route.unknown.push_back(leg.unknown > 2 * kRouteCell);
+    route.unknown_length += leg.unknown > 2 * kRouteCell ? leg.unknown : 0.0;
+    route.length += (route.points[i + 1] - route.points[i]).norm();
+  }
+  return true;
+}
+
+}  // namespace adit::nav

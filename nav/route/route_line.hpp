@@ -1,0 +1,38 @@
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "nav/route/route.hpp"
+#include "nav/route/surface_map.hpp"
+#include "nav/route/tile_builder.hpp"
+
+namespace adit::nav {
+
+/// What a straight line over the ground costs.
+struct LineCost {
+  bool passable{false};
+  double cost{0};     ///< m, as of a route
+  double unknown{0};  ///< of its length, m
+};
+
+/// Walks lines over the map's ground, and shortens ways with them.
+class RouteLine {
+ public:
+  RouteLine(const SurfaceMap& map, const TileBuilder& builder) : map_(map), builder_(builder) {}
+
+  /// From one point of the ground to another, both within 1.2 m of it; not passable where the ground is
+  /// not, where a step is, or where the floor does not lead to `to`'s height.
+  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  /// Replaces parts of a way by straight lines, where those are passable and cost no more. Each leg of
+  /// `points` must be passable.
+  void shorten(std::vector<Eigen::Vector3d>& points) const;
+  /// Fills in lengths, unknown legs and cost. False when a leg is not passable.
+  bool measure(Route& route) const;
+
+ private:
+  void shorten_once(std::vector<Eigen::Vector3d>& points) const;
+  const SurfaceMap& map_;
+  const TileBuilder& builder_;
+};
+
+}  // namespace adit::nav

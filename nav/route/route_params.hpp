@@ -1,0 +1,23 @@
+#pragma once
+
+namespace adit::nav {
+
+struct RouteParams {
+  double range{15.0};          ///< of a scan, what it says farther away is not used, m, [2, 60]
+  double comfort{0.3};         ///< kept beside the body where there is room, m, [0, 0.5]
+  double narrow_cost{2.0};     ///< a metre without that room costs so many more, [0, 4]
+  double unknown_cost{1.4};    ///< a metre of unknown space costs this many known ones, [1, 3]
+  double slope{0.35};          ///< steepest ground, rise per run, [0, 1]
+  double drop{0.20};           ///< lower ground than this is a hole (at least twice the step), m, [0.05, 2]
+  double step_margin{0.025};   ///< more than the platform's step by this is an obstacle, m, [0, 0.1]
+  double height_margin{0.15};  ///< what hangs this much above body and lidar is passed under, m, [0, 1]
+  double level_cost{8.0};  ///< of 1.2 m up or down through unknown space, towards a goal there, m, [0, 100]
+  double snap{0.5};        ///< a start or goal is moved to a passable place this near, m, [0, 1.5]
+  double margin{13.0};     ///< unknown space is used this far around what is known, m, [2, 100]
+  int rebuilds{64};        ///< tiles of the graph made anew in one update, at most, [4, 100000]
+  int tiles{12'288};       ///< of 1.6 x 1.6 m and 4.7 kB, at most; then the farthest go, [64, 20000]
+  double block_radius{0.30};  ///< of a place that was found blocked, m, [0.1, 1]
+  double block_time{20.0};    ///< it counts so long, and twice that when found so again, s, [1, 3600]
+};
+
+}  // namespace adit::nav

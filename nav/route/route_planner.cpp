@@ -1,0 +1,154 @@
+#include "nav/route/route_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kStartReach = 1.5;  // m: a robot that stands close to something is let out
+constexpr double kOwnGoal = 0.1;     // m: a goal that was moved by more is a leg of its own
+
+}  // namespace
+
+RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
+    : params_(params),
+      map_(params),
+      profile_(platform, params),
+      builder_(platform, params),
+      line_(map_, builder_),
+      search_(map_, builder_, params) {}
+
+void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+  profile_.add(points, body, map_);
+  map_.expire(stamp_s);
+  for (int i = 0; i < params_.rebuilds; ++i) {
+    const int index = map_.next_dirty();
+    if (index < 0) break;
+    builder_.build(map_, index);
+  }
+}
+
+void RoutePlanner::set_ground(const Eigen::Vector3d& place) {
+  map_.see_free(route_cell(place.x()), route_cell(place.y()), static_cast<float>(place.z()), 0.0f);
+}
+
+void RoutePlanner::set_obstacle(const Eigen::Vector3d& place, double top) {
+  map_.see_obstacle(route_cell(place.x()), route_cell(place.y()), static_cast<float>(place.z()),
+                    static_cast<float>(top), true);
+}
+
+void RoutePlanner::finish() {
+  for (int index = map_.next_dirty(); index >= 0; index = map_.next_dirty()) builder_.build(map_, index);
+}
+
+bool RoutePlanner::refresh(const std::vector<int>& tiles) {
+  bool any = false;
+  for (const int index : tiles)
+    if (map_.tile(index).dirty) {
+      builder_.build(map_, index);
+      any = true;
+    }
+  return any;
+}
+
+void RoutePlanner::block(const Eigen::Vector3d& place, double stamp_s) {
+  map_.block(place.x(), place.y(), place.z(), stamp_s);
+}
+
+bool RoutePlanner::has_blocked_places() const {
+  const auto& places = map_.blocked_places();
+  return std::any_of(places.begin(), places.end(), [](const BlockedPlace& p) { return p.active; });
+}
+
+std::optional<double> RoutePlanner::ground(double x, double y, double z) const {
+  const int ix = route_cell(x), iy = route_cell(y);
+  std::optional<double> best;
+  for (int i = map_.first(tile_of(ix), tile_of(iy)); i >= 0; i = map_.tile(i).next) {
+    const GroundCell& cell = map_.tile(i).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+    if (cell.known && (!best || std::abs(cell.z - z) < std::abs(*best - z))) best = cell.z;
+  }
+  return best;
+}
+
+double RoutePlanner::goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  if (std::isfinite(to.z())) return to.z();
+  return ground(to.x(), to.y(), from.z()).value_or(from.z());
+}
+
+// The passable cell nearest to a place; unknown space without a tile is passable as it is.
+std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, double reach) const {
+  const int cx = route_cell(place.x()), cy = route_cell(place.y());
+  if (map_.at(tile_of(cx), tile_of(cy), place.z()) < 0) return RouteEnd{place, -1, 0};
+  const int cells = static_cast<int>(reach / kRouteCell);
+  std::optional<RouteEnd> best;
+  double least = reach + kRouteCell;
+  for (int iy = cy - cells; iy <= cy + cells; ++iy)
+    for (int ix = cx - cells; ix <= cx + cells; ++ix) {
+      const double d = std::hypot((ix + 0.5) * kRouteCell - place.x(), (iy + 0.5) * kRouteCell - place.y());
+      if (d >= least) continue;
+      const int index = map_.at(tile_of(ix), tile_of(iy), place.z());
+      if (index < 0) continue;
+      const Tile& tile = map_.tile(index);
+      const int c = cell_in_tile(ix, iy);
+      if (tile.cost[static_cast<std::size_t>(c)] == 0) continue;
+      least = d;
+      best = RouteEnd{{tile.cell_x(c), tile.cell_y(c), tile.cell_z(c)}, index, c};
+    }
+  return best;
+}
+
+// The ends were moved to passable cells; a robot starts and arrives where it was told.
+void RoutePlanner::finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  const auto join = [&](const Eigen::Vector3d& cell, const Eigen::Vector3d& place) {
+    return (cell - place).head<2>().norm() > kOwnGoal;
+  };
+  const Eigen::Vector3d goal{to.x(), to.y(), route.points.back().z()};
+  if (join(route.points.back(), goal)) {
+    const double more = (goal - route.points.back()).norm();
+    route.points.push_back(goal);
+    route.unknown.push_back(0);
+    route.length += more;
+    route.cost += more;
+  } else {
+    route.points.back() = goal;
+  }
+  if (join(route.points.front(), from)) {
+    const double more = (from - route.points.front()).head<2>().norm();
+    route.points.insert(route.points.begin(), {from.x(), from.y(), route.points.front().z()});
+    route.unknown.insert(route.unknown.begin(), 0);
+    route.length += more;
+    route.cost += more;
+  } else {
+    route.points.front().head<2>() = from.head<2>();
+  }
+}
+
+std::size_t RoutePlanner::memory() const {
+  return static_cast<std::size_t>(map_.size()) * (sizeof(Tile) + 96) + search_.memory();
+}
+
+Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  Route route;
+  const Eigen::Vector3d goal_place{to.x(), to.y(), goal_height(from, to)};
+  // A search over tiles that are not up to date is repeated when it leads through them, or proves something.
+  for (;;) {
+    const auto start = find_end(from, kStartReach);
+    const auto goal = find_end(goal_place, params_.snap);
+    if (!start)
+      route.status = RouteStatus::start_blocked;
+    else if (!goal)
+      route.status = RouteStatus::unreachable;
+    else
+      route.status = search_.search(*start, *goal, route.points);
+    if (route.found() ? !refresh(search_.tiles()) : map_.dirty() == 0) break;
+    if (!route.found()) finish();
+  }
+  if (!route.found()) return route;
+  line_.shorten(route.points);
+  line_.measure(route);
+  finish_ends(route, from, goal_place);
+  return route;
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,66 @@
+#pragma once
+#include <optional>
+#include <span>
+
+#include "core/geometry/pose.hpp"
+#include "nav/route/route_line.hpp"
+#include "nav/route/route_search.hpp"
+#include "nav/route/scan_profile.hpp"
+
+namespace adit::nav {
+
+/// The global planner: a sparse graph of free space, kept up to date as the map grows, across floors and
+/// slopes; unknown space may be tried, at a price. Has no thread and no clock; calls must not overlap. Frame:
+/// whatever the poses are in, m, z up. Bounded: see RouteParams::tiles and memory().
+class RoutePlanner {
+ public:
+  explicit RoutePlanner(const Platform& platform, const RouteParams& params = {});
+  RoutePlanner(const RoutePlanner&) = delete;
+  RoutePlanner& operator=(const RoutePlanner&) = delete;
+
+  /// Takes a scan and brings the graph up to date, RouteParams::rebuilds tiles at most. `points`: in
+  /// base_link, m, not finite where nothing was hit. `body`: base_link, which is on the ground, at the scan's
+  /// time; `stamp_s`: that time, s, not decreasing.
+  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  /// From a map that is known: ground, or an obstacle that stands `top` metres above the ground, m. An
+  /// obstacle counts whatever else was said of its cell. To be followed by finish().
+  void set_ground(const Eigen::Vector3d& place);
+  void set_obstacle(const Eigen::Vector3d& place, double top);
+  /// Brings all of the graph up to date.
+  void finish();
+
+  /// The way from one place to another. Goal: z NaN is the floor nearest to the start's. Never through a
+  /// known obstacle.
+  Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  /// That place was found blocked, whatever the scans say; it counts for RouteParams::block_time.
+  void block(const Eigen::Vector3d& place, double stamp_s);
+  bool has_blocked_places() const;
+
+  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const { return line_.line(from, to); }
+  /// Brings costs, lengths and unknown legs of a route up to date; false when it is not passable any more.
+  bool measure(Route& route) const { return line_.measure(route); }
+  /// Height of the ground there, of the floor nearest to z; nothing when it is not known.
+  std::optional<double> ground(double x, double y, double z) const;
+  const SurfaceMap& map() const { return map_; }
+  /// Nodes that the last search looked at.
+  std::size_t expanded() const { return search_.expanded(); }
+  /// Held by map, graph and search, bytes.
+  std::size_t memory() const;
+  /// Forgets everything, as after a jump of the poses.
+  void clear() { map_.clear(); }
+
+ private:
+  std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach) const;
+  double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  bool refresh(const std::vector<int>& tiles);
+  void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  RouteParams params_;
+  SurfaceMap map_;
+  ScanProfile profile_;
+  TileBuilder builder_;
+  RouteLine line_;
+  RouteSearch search_;
+};
+
+}  // namespace adit::nav

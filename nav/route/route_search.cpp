@@ -1,0 +1,343 @@
+#include "nav/route/route_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kTile = kTileSide * kRouteCell;  // m
+constexpr std::int64_t kMostGhosts = 262'144;     // places of unknown space: 17 MB
+
+int opposite(int side) { return (side + 2) % 4; }
+
+Eigen::Vector3d cell_place(const Tile& tile, int cell) {
+  return {tile.cell_x(cell), tile.cell_y(cell), tile.cell_z(cell)};
+}
+
+// Of the straight line between two cells of a tile, m; infinite when it is not passable.
+float straight_cost(const Tile& tile, int from, int to) {
+  const int dx = to % kTileSide - from % kTileSide, dy = to / kTileSide - from / kTileSide;
+  const int steps = std::max({std::abs(dx), std::abs(dy), 1});
+  int sum = 0;
+  for (int i = 1; i <= steps; ++i) {
+    const int x = from % kTileSide + (2 * i * dx + steps) / (2 * steps);
+    const int y = from / kTileSide + (2 * i * dy + steps) / (2 * steps);
+    const int cost = tile.cost[static_cast<std::size_t>(y * kTileSide + x)];
+    if (cost == 0) return kUnreached;
+    sum += cost;
+  }
+  return static_cast<float>(std::hypot(dx, dy) * kRouteCell * sum / (16.0 * steps));
+}
+
+}  // namespace
+
+RouteSearch::RouteSearch(const SurfaceMap& map, TileBuilder& builder, const RouteParams& params)
+    : map_(map), builder_(builder), params_(params) {}
+
+std::size_t RouteSearch::memory() const {
+  return states_.capacity() * sizeof(State) + open_.capacity() * sizeof(Open);
+}
+
+int RouteSearch::level_of(double z) const {
+  return static_cast<int>(std::lround((z - origin_z_) / double{kSheetReach}));
+}
+
+bool RouteSearch::in_box(int tx, int ty, int level) const {
+  return tx >= x0_ && tx < x0_ + width_ && ty >= y0_ && ty < y0_ + depth_ && level >= level0_ &&
+         level < level0_ + levels_;
+}
+
+RouteSearch::Id RouteSearch::ghost_id(const Ghost& g) const {
+  return ghosts_from_ +
+         static_cast<Id>(((g.level - level0_) * depth_ + (g.ty - y0_)) * width_ + (g.tx - x0_)) * 4 +
+         static_cast<Id>(g.side);
+}
+
+RouteSearch::Ghost RouteSearch::ghost_of(Id id) const {
+  const int i = static_cast<int>(id - ghosts_from_);
+  const int square = i / 4;
+  return {x0_ + square % width_, y0_ + square / width_ % depth_, level0_ + square / (width_ * depth_), i % 4};
+}
+
+Eigen::Vector3d RouteSearch::place(Id id) const {
+  if (id == start_id_) return start_.place;
+  if (id == goal_id_) return goal_.place;
+  if (is_ghost(id)) {
+    const Ghost g = ghost_of(id);
+    const auto side = static_cast<std::size_t>(g.side);
+    return {(g.tx + 0.5 + kSideX[side] * 0.47) * kTile, (g.ty + 0.5 + kSideY[side] * 0.47) * kTile,
+            level_z(g.level)};
+  }
+  const Tile& tile = map_.tile(static_cast<int>(id / kTileNodes));
+  return cell_place(tile, tile.nodes[id % kTileNodes].cell);
+}
+
+// The box of unknown space that may be used, and the numbers of its nodes.
+bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
+  start_ = start;
+  goal_ = goal;
+  origin_z_ = start.place.z();
+  const int margin = std::max(1, static_cast<int>(params_.margin / kTile));
+  const auto tile_at = [](double v) { return tile_of(route_cell(v)); };
+  int x1 = std::max(tile_at(start.place.x()), tile_at(goal.place.x()));
+  int y1 = std::max(tile_at(start.place.y()), tile_at(goal.place.y()));
+  x0_ = std::min(tile_at(start.place.x()), tile_at(goal.place.x()));
+  y0_ = std::min(tile_at(start.place.y()), tile_at(goal.place.y()));
+  double z0 = std::min(start.place.z(), goal.place.z()), z1 = std::max(start.place.z(), goal.place.z());
+  if (const auto& e = map_.extent(); !e.empty()) {
+    x0_ = std::min(x0_, e.x0);
+    x1 = std::max(x1, e.x1);
+    y0_ = std::min(y0_, e.y0);
+    y1 = std::max(y1, e.y1);
+    z0 = std::min(z0, double{e.z0});
+    z1 = std::max(z1, double{e.z1});
+  }
+  x0_ -= margin;
+  y0_ -= margin;
+  const std::int64_t width = std::int64_t{x1} + margin - x0_ + 1, depth = std::int64_t{y1} + margin - y0_ + 1;
+  level0_ = level_of(z0);
+  const std::int64_t levels = level_of(z1) - level0_ + 1;
+  if (width > kMostGhosts || depth > kMostGhosts || width * depth * levels > kMostGhosts) return false;
+  width_ = static_cast<int>(width);
+  depth_ = static_cast<int>(depth);
+  levels_ = static_cast<int>(levels);
+  ghosts_from_ = static_cast<Id>(map_.size() * kTileNodes);
+  start_id_ = ghosts_from_ + static_cast<Id>(width * depth * levels * 4);
+  goal_id_ = start_id_ + 1;
+  if (states_.size() < goal_id_ + 1) states_.resize(goal_id_ + 1);
+  if (++search_ == 0) {
+    std::fill(states_.begin(), states_.end(), State{});
+    search_ = 1;
+  }
+  open_.clear();
+  expanded_ = 0;
+  return true;
+}
+
+void RouteSearch::reach(Id id, float cost, Id from) {
+  State& s = states_[id];
+  if (s.search == search_ && (s.closed || s.cost <= cost)) return;
+  s = {cost, from, search_, false};
+  const float rest = static_cast<float>((place(id) - goal_.place).norm());
+  open_.push_back({cost + rest, id});
+  std::push_heap(open_.begin(), open_.end());
+}
+
+void RouteSearch::begin(const RouteEnd& start) {
+  states_[start_id_] = {0, start_id_, search_, true};
+  if (start.tile >= 0) {
+    const Tile& tile = map_.tile(start.tile);
+    builder_.spread(tile, start.cell);
+    for (int n = 0; n < tile.node_count; ++n)
+      if (const float d = builder_.distance(tile.nodes[static_cast<std::size_t>(n)].cell); d < kUnreached)
+        reach(static_cast<Id>(start.tile * kTileNodes + n), d, start_id_);
+    if (start.tile == goal_.tile)
+      if (const float d = builder_.distance(goal_.cell); d < kUnreached) reach(goal_id_, d, start_id_);
+    return;
+  }
+  const int tx = tile_of(route_cell(start.place.x())), ty = tile_of(route_cell(start.place.y()));
+  for (int side = 0; side < 4; ++side) {
+    const Id id = ghost_id({tx, ty, 0, side});
+    reach(id, static_cast<float>((place(id) - start.place).norm()) * builder_.unknown_cost(), start_id_);
+  }
+  if (goal_.tile < 0 && tx == tile_of(route_cell(goal_.place.x())) &&
+      ty == tile_of(route_cell(goal_.place.y())) && level_of(goal_.place.z()) == 0)
+    reach(goal_id_, static_cast<float>((goal_.place - start.place).norm()) * builder_.unknown_cost(),
+          start_id_);
+}
+
+RouteStatus RouteSearch::search(const RouteEnd& start, const RouteEnd& goal,
+                                std::vector<Eigen::Vector3d>& points) {
+  points.clear();
+  through_.clear();
+  if (!prepare(start, goal)) return RouteStatus::too_far;
+  to_goal_.fill(kUnreached);
+  if (goal.tile >= 0) {
+    const Tile& tile = map_.tile(goal.tile);
+    builder_.spread(tile, goal.cell);
+    for (int n = 0; n < tile.node_count; ++n)
+      to_goal_[static_cast<std::size_t>(n)] = builder_.distance(tile.nodes[static_cast<std::size_t>(n)].cell);
+  }
+  begin(start);
+  while (!open_.empty()) {
+    std::pop_heap(open_.begin(), open_.end());
+    const Id id = open_.back().id;
+    open_.pop_back();
+    State& s = states_[id];
+    if (s.closed) continue;
+    s.closed = true;
+    if (id == goal_id_) {
+      write(points);
+      return RouteStatus::found;
+    }
+    ++expanded_;
+    expand(id, s.cost);
+  }
+  return RouteStatus::unreachable;
+}
+
+void RouteSearch::expand(Id id, float cost) {
+  if (is_ghost(id))
+    expand_ghost(ghost_of(id), cost, id);
+  else
+    expand_tile(static_cast<int>(id / kTileNodes), static_cast<int>(id % kTileNodes), cost, id);
+}
+
+void RouteSearch::expand_tile(int index, int node, float cost, Id id) {
+  const Tile& tile = map_.tile(index);
+  for (int m = 0; m < tile.node_count; ++m) {
+    const float d = tile.distance[static_cast<std::size_t>(node * kTileNodes + m)];
+    if (m != node && d < kUnreached) reach(static_cast<Id>(index * kTileNodes + m), cost + d, id);
+  }
+  if (index == goal_.tile)
+    if (const float d = to_goal_[static_cast<std::size_t>(node)]; d < kUnreached)
+      reach(goal_id_, cost + d, id);
+  cross(tile, tile.nodes[static_cast<std::size_t>(node)], cost, id);
+}
+
+// Where along the side both are open and the ground goes on without a step; -1: nowhere. The place nearest to
+// the middles.
+int RouteSearch::meeting_place(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const {
+  const int first = std::max(from.first, to.first), last = std::min(from.last, to.last);
+  const int middle = (from.first + from.last + to.first + to.last) / 4;
+  int best = -1;
+  for (int i = first; i <= last; ++i) {
+    const GroundCell& p = a.cells[static_cast<std::size_t>(side_cell(from.side, i))];
+    const GroundCell& q = b.cells[static_cast<std::size_t>(side_cell(to.side, i))];
+    const float most = p.known && q.known ? builder_.rise() : kSheetReach;
+    const float pz = p.known ? p.z : a.z, qz = q.known ? q.z : b.z;
+    if (std::abs(pz - qz) <= most && (best < 0 || std::abs(i - middle) < std::abs(best - middle))) best = i;
+  }
+  return best;
+}
+
+bool RouteSearch::meets(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const {
+  return to.side == opposite(from.side) && meeting_place(a, from, b, to) >= 0;
+}
+
+void RouteSearch::cross(const Tile& tile, const TileNode& node, float cost, Id id) {
+  const Eigen::Vector3d here = cell_place(tile, node.cell);
+  const float weight = static_cast<float>(tile.cost[node.cell]) / 16.0f;
+  bool met = false;
+  for (int i = tile.beside[node.side]; i >= 0; i = map_.tile(i).next) {
+    const Tile& other = map_.tile(i);
+    if (std::abs(other.z - node.z) > kSheetReach) continue;
+    met = true;
+    for (int m = 0; m < other.node_count; ++m) {
+      const TileNode& to = other.nodes[static_cast<std::size_t>(m)];
+      if (!meets(tile, node, other, to)) continue;
+      const float length = static_cast<float>((cell_place(other, to.cell) - here).norm());
+      reach(static_cast<Id>(i * kTileNodes + m),
+            cost + length * (weight + static_cast<float>(other.cost[to.cell]) / 16.0f) / 2, id);
+    }
+  }
+  if (met) return;
+  const Ghost ghost{tile.tx + kSideX[node.side], tile.ty + kSideY[node.side], level_of(node.z),
+                    opposite(node.side)};
+  if (!in_box(ghost.tx, ghost.ty, ghost.level)) return;
+  const Id to = ghost_id(ghost);
+  reach(to, cost + static_cast<float>((place(to) - here).head<2>().norm()) * builder_.unknown_cost(), id);
+}
+
+void RouteSearch::enter_from_ghost(const Ghost& g, float cost, Id id) {
+  const auto side = static_cast<std::size_t>(g.side);
+  const int tx = g.tx + kSideX[side], ty = g.ty + kSideY[side];
+  const float z = level_z(g.level);
+  const Eigen::Vector3d here = place(id);
+  bool met = false;
+  for (int i = map_.first(tx, ty); i >= 0; i = map_.tile(i).next) {
+    const Tile& other = map_.tile(i);
+    if (std::abs(other.z - z) > kSheetReach) continue;
+    met = true;
+    for (int m = 0; m < other.node_count; ++m) {
+      const TileNode& to = other.nodes[static_cast<std::size_t>(m)];
+      if (to.side != opposite(g.side) || std::abs(to.z - z) > kSheetReach) continue;
+      reach(static_cast<Id>(i * kTileNodes + m),
+            cost + static_cast<float>((cell_place(other, to.cell) - here).head<2>().norm()) *
+                       builder_.unknown_cost(),
+            id);
+    }
+  }
+  if (met || !in_box(tx, ty, g.level)) return;
+  const Id to = ghost_id({tx, ty, g.level, opposite(g.side)});
+  reach(to, cost + static_cast<float>((place(to) - here).norm()) * builder_.unknown_cost(), id);
+}
+
+void RouteSearch::expand_ghost(const Ghost& g, float cost, Id id) {
+  const Eigen::Vector3d here = place(id);
+  for (int side = 0; side < 4; ++side) {
+    if (side == g.side) continue;
+    const Id to = ghost_id({g.tx, g.ty, g.level, side});
+    reach(to, cost + static_cast<float>((place(to) - here).norm()) * builder_.unknown_cost(), id);
+  }
+  const int goal_level = level_of(goal_.place.z());
+  if (goal_.tile < 0 && g.level == goal_level && g.tx == tile_of(route_cell(goal_.place.x())) &&
+      g.ty == tile_of(route_cell(goal_.place.y())))
+    reach(goal_id_, cost + static_cast<float>((goal_.place - here).norm()) * builder_.unknown_cost(), id);
+  // Nobody knows where it goes up or down: anywhere, at a price, but only towards a goal that is not here.
+  if (g.level != goal_level) {
+    const int level = g.level + (goal_level > g.level ? 1 : -1);
+    if (in_box(g.tx, g.ty, level) && map_.at(g.tx, g.ty, level_z(level)) < 0)
+      reach(ghost_id({g.tx, g.ty, level, g.side}), cost + static_cast<float>(params_.level_cost), id);
+  }
+  enter_from_ghost(g, cost, id);
+}
+
+// Straight where that costs hardly more than the way that was found; else along it.
+void RouteSearch::write_within(int index, int from, int to, float cost,
+                               std::vector<Eigen::Vector3d>& points) {
+  const Tile& tile = map_.tile(index);
+  if (straight_cost(tile, from, to) <= 1.05f * cost + 0.05f) {
+    points.push_back(cell_place(tile, to));
+    return;
+  }
+  builder_.spread(tile, from);
+  const auto begin = static_cast<std::ptrdiff_t>(points.size());
+  for (int c = to; c >= 0 && c != from; c = builder_.before(c)) points.push_back(cell_place(tile, c));
+  std::reverse(points.begin() + begin, points.end());
+}
+
+// Appends the points from one node to the next, the latter included.
+void RouteSearch::write_leg(Id from, Id to, std::vector<Eigen::Vector3d>& points) {
+  const auto tile_index = [this](Id id) {
+    return id == start_id_  ? start_.tile
+           : id == goal_id_ ? goal_.tile
+           : is_ghost(id)   ? -1
+                            : static_cast<int>(id / kTileNodes);
+  };
+  const auto cell = [this](Id id) {
+    return id == start_id_  ? start_.cell
+           : id == goal_id_ ? goal_.cell
+                            : map_.tile(static_cast<int>(id / kTileNodes)).nodes[id % kTileNodes].cell;
+  };
+  const int a = tile_index(from), b = tile_index(to);
+  if (a >= 0 && a == b) {
+    write_within(a, cell(from), cell(to), states_[to].cost - states_[from].cost, points);
+  } else if (a >= 0 && b >= 0) {
+    const Tile& p = map_.tile(a);
+    const Tile& q = map_.tile(b);
+    const TileNode& out = p.nodes[from % kTileNodes];
+    const TileNode& in = q.nodes[to % kTileNodes];
+    const int i = meeting_place(p, out, q, in);
+    points.push_back(cell_place(p, side_cell(out.side, i)));
+    points.push_back(cell_place(q, side_cell(in.side, i)));
+    points.push_back(cell_place(q, in.cell));
+  } else {
+    points.push_back(place(to));
+  }
+  if (b >= 0 && (through_.empty() || through_.back() != b)) through_.push_back(b);
+}
+
+void RouteSearch::write(std::vector<Eigen::Vector3d>& points) {
+  std::vector<Id> ids;
+  for (Id id = goal_id_; id != start_id_; id = states_[id].from) ids.push_back(id);
+  ids.push_back(start_id_);
+  std::reverse(ids.begin(), ids.end());
+  points.push_back(start_.place);
+  if (start_.tile >= 0) through_.push_back(start_.tile);
+  for (std::size_t i = 0; i + 1 < ids.size(); ++i) write_leg(ids[i], ids[i + 1], points);
+  points.back() = goal_.place;
+}
+
+}  // namespace adit::nav

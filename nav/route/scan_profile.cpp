@@ -1,0 +1,153 @@
+#include "nav/route/scan_profile.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr float kStack = 0.15f;  // m: returns this near above each other are of one thing
+constexpr float kCellF = static_cast<float>(kRouteCell);
+constexpr float kFirst = 1.5f;  // m: nothing is known of the ground this far around a lidar of few rings
+
+}  // namespace
+
+ScanProfile::ScanProfile(const Platform& platform, const RouteParams& params)
+    : platform_(platform),
+      params_(params),
+      clear_(static_cast<float>(std::max(platform.height, platform.lidar_height) + params.height_margin)),
+      step_(static_cast<float>(platform.step + params.step_margin)),
+      drop_(static_cast<float>(std::max(params.drop, 2 * platform.step))),
+      slope_(static_cast<float>(params.slope)) {}
+
+void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& body) {
+  const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f at = body.position.cast<float>();
+  const float half_length = static_cast<float>(platform_.length / 2) + 0.05f;
+  const float half_width = static_cast<float>(platform_.width / 2) + 0.05f;
+  const float most = static_cast<float>(params_.range);
+  unsorted_.clear();
+  direction_.clear();
+  begin_.assign(kDirections + 1, 0);
+  for (const Eigen::Vector3f& p : points) {
+    if (!p.allFinite() || (std::abs(p.x()) < half_length && std::abs(p.y()) < half_width)) continue;
+    const Eigen::Vector3f offset = turn * p;
+    const float range = std::hypot(offset.x(), offset.y());
+    if (range > most) continue;
+    const int d = static_cast<int>((std::atan2(offset.y(), offset.x()) + static_cast<float>(M_PI)) *
+                                   (kDirections / (2 * static_cast<float>(M_PI))));
+    const Eigen::Vector3f place = at + offset;
+    unsorted_.push_back({range, place.z(), route_cell(place.x()), route_cell(place.y())});
+    direction_.push_back(std::clamp(d, 0, kDirections - 1));
+    ++begin_[static_cast<std::size_t>(direction_.back()) + 1];
+  }
+  for (std::size_t d = 1; d < begin_.size(); ++d) begin_[d] += begin_[d - 1];
+  sorted_.resize(unsorted_.size());
+  std::vector<int>& next = begin_;
+  for (std::size_t i = 0; i < unsorted_.size(); ++i)
+    sorted_[static_cast<std::size_t>(next[static_cast<std::size_t>(direction_[i])]++)] = unsorted_[i];
+  // Each entry is now the end of its direction, which is the beginning of the next.
+  for (std::size_t d = kDirections; d > 0; --d) begin_[d] = begin_[d - 1];
+  begin_[0] = 0;
+  for (std::size_t d = 0; d < kDirections; ++d)
+    std::sort(sorted_.begin() + begin_[d], sorted_.begin() + begin_[d + 1],
+              [](const Return& a, const Return& b) {
+                return a.range < b.range || (a.range == b.range && a.z < b.z);
+              });
+}
+
+// Hits are marked; the free pieces before the first of them are kept for write_free().
+void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map) {
+  const std::size_t first = pieces_.size();
+  float z = ground_, at = 0.0f;  // the last ground
+  float z_before = ground_;      // and the one before it
+  const Return* last_ground = nullptr;
+  bool ended = false;
+  for (const Return& r : returns) {
+    const float run = r.range - at;
+    const float rise = r.z - z;
+    if (rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
+    if (ended) {
+      if (rise > step_) map.see_obstacle(r.ix, r.iy, z, rise);
+      continue;
+    }
+    if (rise > step_ + slope_ * run) {
+      float base = z;
+      if (last_ground && run < kStack && z - z_before > step_) {  // its foot passed for ground
+        base = z_before;
+        map.see_obstacle(last_ground->ix, last_ground->iy, base, z - base);
+        if (pieces_.size() > first) pieces_.back().z_to = base;
+      }
+      map.see_obstacle(r.ix, r.iy, base, r.z - base);
+      pieces_.push_back({at, r.range - kCellF, base, base, r.z});
+      z = base;
+      ended = true;
+    } else if (rise < -(drop_ + slope_ * run)) {
+      // Where the ray went through the ground's height there is none.
+      const float share = (sensor_.z() - z) / (sensor_.z() - r.z);
+      const float there = share * r.range;
+      if (there > std::max(at, kFirst)) {
+        const float x = sensor_.x() + share * (static_cast<float>((r.ix + 0.5) * kRouteCell) - sensor_.x());
+        const float y = sensor_.y() + share * (static_cast<float>((r.iy + 0.5) * kRouteCell) - sensor_.y());
+        map.see_obstacle(route_cell(x), route_cell(y), z, 0.02f);
+      }
+      return;
+    } else {
+      pieces_.push_back({at, r.range, z, r.z, r.z});
+      z_before = z;
+      z = r.z;
+      at = r.range;
+      last_ground = &r;
+    }
+  }
+}
+
+void ScanProfile::write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const {
+  for (const float offset : {0.25f, 0.75f}) {
+    const float angle =
+        (static_cast<float>(direction) + offset) * (2 * static_cast<float>(M_PI) / kDirections) -
+        static_cast<float>(M_PI);
+    const float c = std::cos(angle), s = std::sin(angle);
+    for (const Piece& p : pieces) {
+      const float run = std::max(p.to - p.from, 1e-3f);
+      for (float r = std::ceil(p.from / kCellF) * kCellF; r <= p.to; r += kCellF) {
+        const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
+        const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
+        map.see_free(route_cell(sensor_.x() + r * c), route_cell(sensor_.y() + r * s), z,
+                     std::max(0.0f, ray - z));
+      }
+    }
+  }
+}
+
+void ScanProfile::stand(const Pose3& body, SurfaceMap& map) const {
+  const double radius = std::min(platform_.length, platform_.width) / 2;
+  const int reach = static_cast<int>(radius / kRouteCell) + 1;
+  const int cx = route_cell(body.position.x()), cy = route_cell(body.position.y());
+  for (int y = cy - reach; y <= cy + reach; ++y)
+    for (int x = cx - reach; x <= cx + reach; ++x)
+      if (std::hypot((x + 0.5) * kRouteCell - body.position.x(),
+                     (y + 0.5) * kRouteCell - body.position.y()) <= radius)
+        map.see_free(x, y, ground_, 0.0f, true);
+}
+
+void ScanProfile::add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map) {
+  sensor_ = (body * Eigen::Vector3d(0, 0, platform_.lidar_height)).cast<float>();
+  ground_ = static_cast<float>(body.position.z());
+  map.begin_scan(body.position.x(), body.position.y());
+  sort(points, body);
+  stand(body, map);
+  // All hits first: a cell that was hit is not freed by a neighbouring ray.
+  pieces_.clear();
+  std::array<std::size_t, kDirections + 1> first{};
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    const auto from = static_cast<std::size_t>(begin_[d]), to = static_cast<std::size_t>(begin_[d + 1]);
+    walk(std::span(sorted_).subspan(from, to - from), map);
+    first[d + 1] = pieces_.size();
+  }
+  for (std::size_t d = 0; d < kDirections; ++d)
+    write_free(static_cast<int>(d), std::span(pieces_).subspan(first[d], first[d + 1] - first[d]), map);
+}
+
+}  // namespace adit::nav

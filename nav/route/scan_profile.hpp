@@ -1,0 +1,51 @@
+#pragma once
+#include <span>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "core/geometry/pose.hpp"
+#include "nav/route/surface_map.hpp"
+
+namespace adit::nav {
+
+/// Reads ground and obstacles from a scan, direction by direction: outwards from under the robot the ground
+/// goes on as long as slope and step allow; what stands higher is an obstacle, what hangs high enough is
+/// passed under, and a ray that went through where ground should be found a hole. (M. Himmelsbach et al.,
+/// *Fast segmentation of 3D point clouds for ground vehicles*, 2010, has the directions.) A lidar of one
+/// level ring sees no ground; then what is before an obstacle is as high as under the robot.
+class ScanProfile {
+ public:
+  ScanProfile(const Platform& platform, const RouteParams& params);
+
+  /// `points`: in base_link, m, not finite or on the own body where nothing was hit. `body`: in the map's
+  /// frame.
+  void add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map);
+
+ private:
+  static constexpr int kDirections = 360;
+  struct Return {
+    float range, z;
+    int ix, iy;
+  };
+  /// A piece of ground between two ranges, seen by a ray that is `height` above the ground at its end.
+  struct Piece {
+    float from, to, z_from, z_to, ray_z;  ///< ray_z: of the ray at `to`
+  };
+  void sort(std::span<const Eigen::Vector3f> points, const Pose3& body);
+  void walk(std::span<const Return> returns, SurfaceMap& map);
+  void write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const;
+  void stand(const Pose3& body, SurfaceMap& map) const;
+
+  Platform platform_;
+  RouteParams params_;
+  float clear_, step_, drop_, slope_;
+  Eigen::Vector3f sensor_{0, 0, 0};
+  float ground_{0};
+  std::vector<Return> sorted_{};
+  std::vector<Return> unsorted_{};
+  std::vector<int> direction_{};
+  std::vector<int> begin_{};
+  std::vector<Piece> pieces_{};
+};
+
+}  // namespace adit::nav

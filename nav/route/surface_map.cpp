@@ -1,0 +1,257 @@
+#include "nav/route/surface_map.hpp"
+
+#include <algorithm>
+
+namespace adit::nav {
+namespace {
+
+constexpr int kHit = 3;      // evidence of a return
+constexpr int kBlocked = 5;  // two returns
+constexpr int kMost = 12;    // as many rays, and no more, free it again
+constexpr int kFree = 0;
+constexpr int kLeast = -4;
+constexpr float kSame = 0.4f;  // m: heights of one cell that are one ground
+constexpr std::size_t kPlaces = 32;
+constexpr double kSamePlace = 0.6;  // m
+constexpr int kMostTimes = 4;
+constexpr float kTopUnit = 0.02f;  // m
+constexpr std::array<int, 8> kAroundX{1, 0, -1, 0, 1, -1, -1, 1};
+constexpr std::array<int, 8> kAroundY{0, 1, 0, -1, 1, 1, -1, -1};
+constexpr std::array<std::size_t, 8> kOpposite{2, 3, 0, 1, 6, 7, 4, 5};
+
+}  // namespace
+
+void SurfaceMap::clear() {
+  tiles_.clear();
+  free_.clear();
+  heads_.clear();
+  queue_.clear();
+  places_.clear();
+  extent_ = {};
+  used_ = 0;
+  last_ = -1;
+  ++version_;
+}
+
+int SurfaceMap::first(int tx, int ty) const {
+  const auto found = heads_.find(key(tx, ty));
+  return found == heads_.end() ? -1 : found->second;
+}
+
+int SurfaceMap::at(int tx, int ty, double z) const {
+  int best = -1;
+  double least = kSheetReach;
+  for (int i = first(tx, ty); i >= 0; i = tile(i).next)
+    if (const double d = std::abs(tile(i).z - z); d <= least) {
+      least = d;
+      best = i;
+    }
+  return best;
+}
+
+// The floor that a height belongs to: the one whose cell there is at that height, else the nearest.
+int SurfaceMap::sheet(int ix, int iy, float z) {
+  const int tx = tile_of(ix), ty = tile_of(iy);
+  const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
+  const auto same = [&](const Tile& t) { return t.cells[c].known && std::abs(t.cells[c].z - z) <= kSame; };
+  if (last_ >= 0 && tile(last_).tx == tx && tile(last_).ty == ty && same(tile(last_))) return last_;
+  int best = -1;
+  float least = kSheetReach;
+  for (int i = first(tx, ty); i >= 0; i = tile(i).next) {
+    const Tile& t = tile(i);
+    if (same(t)) return last_ = i;
+    if (t.cells[c].known) continue;
+    if (const float d = std::abs(t.z - z); d <= least) {
+      least = d;
+      best = i;
+    }
+  }
+  return last_ = best >= 0 ? best : create(tx, ty, z);
+}
+
+int SurfaceMap::create(int tx, int ty, float z) {
+  if (used_ >= params_.tiles) evict();
+  int index;
+  if (free_.empty()) {
+    index = size();
+    tiles_.push_back(std::make_unique<Tile>());
+  } else {
+    index = free_.back();
+    free_.pop_back();
+    tile(index) = Tile{};
+  }
+  ++used_;
+  Tile& t = tile(index);
+  t.tx = tx;
+  t.ty = ty;
+  t.z = z;
+  t.used = true;
+  if (const int head = first(tx, ty); head >= 0) {
+    int i = head;
+    while (tile(i).next >= 0) i = tile(i).next;
+    tile(i).next = index;
+    t.beside = tile(head).beside;
+  } else {
+    heads_[key(tx, ty)] = index;
+    link(index);
+  }
+  if (extent_.empty())
+    extent_ = {tx, tx, ty, ty, z, z};
+  else
+    extent_ = {std::min(extent_.x0, tx), std::max(extent_.x1, tx), std::min(extent_.y0, ty),
+               std::max(extent_.y1, ty), std::min(extent_.z0, z),  std::max(extent_.z1, z)};
+  mark_dirty(index);
+  return index;
+}
+
+void SurfaceMap::link(int index) {
+  Tile& t = tile(index);
+  for (std::size_t k = 0; k < 8; ++k) {
+    const int other = first(t.tx + kAroundX[k], t.ty + kAroundY[k]);
+    t.beside[k] = other;
+    for (int i = other; i >= 0; i = tile(i).next) tile(i).beside[kOpposite[k]] = index;
+  }
+}
+
+// All floors of the farthest place; what is known there is forgotten.
+void SurfaceMap::evict() {
+  int farthest = -1;
+  double most = -1;
+  for (int i = 0; i < size(); ++i) {
+    const Tile& t = tile(i);
+    if (!t.used) continue;
+    const double d =
+        std::hypot((t.tx + 0.5) * kTileSide * kRouteCell - x_, (t.ty + 0.5) * kTileSide * kRouteCell - y_);
+    if (d > most) {
+      most = d;
+      farthest = i;
+    }
+  }
+  const int head = first(tile(farthest).tx, tile(farthest).ty);
+  for (std::size_t k = 0; k < 8; ++k)
+    for (int i = tile(head).beside[k]; i >= 0; i = tile(i).next) tile(i).beside[kOpposite[k]] = -1;
+  heads_.erase(key(tile(head).tx, tile(head).ty));
+  for (int i = head; i >= 0;) {
+    Tile& t = tile(i);
+    t.used = t.dirty = false;
+    free_.push_back(i);
+    --used_;
+    i = t.next;
+  }
+  std::erase_if(queue_, [this](int i) { return !tile(i).used; });
+  last_ = -1;
+  ++version_;
+}
+
+void SurfaceMap::begin_scan(double x, double y) {
+  ++scan_;
+  x_ = x;
+  y_ = y;
+}
+
+void SurfaceMap::mark_dirty(int index) {
+  if (tile(index).dirty) return;
+  tile(index).dirty = true;
+  queue_.push_back(index);
+}
+
+// An obstacle takes clearance from the tiles around, too.
+void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
+  const int lx = ix & 15, ly = iy & 15;
+  const int dx = lx < kTileHalo ? -1 : lx >= kTileSide - kTileHalo ? 1 : 0;
+  const int dy = ly < kTileHalo ? -1 : ly >= kTileSide - kTileHalo ? 1 : 0;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const bool near_x = kAroundX[k] == 0 || kAroundX[k] == dx, near_y = kAroundY[k] == 0 || kAroundY[k] == dy;
+    if (!near_x || !near_y) continue;
+    for (int i = t.beside[k]; i >= 0; i = tile(i).next)
+      if (std::abs(tile(i).z - t.z) <= 2 * kSheetReach) mark_dirty(i);
+  }
+}
+
+void SurfaceMap::see_free(int ix, int iy, float z, float height, bool certain) {
+  const int index = sheet(ix, iy, z);
+  Tile& t = tile(index);
+  GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  if (!cell.known) {
+    cell = {z, 0, 0, true, false, 0};
+    mark_dirty(index);
+    // A step between two cells is known with the second.
+    if (const int x = ix & 15, y = iy & 15; x == 0 || y == 0 || x == 15 || y == 15) mark_around(t, ix, iy);
+    return;
+  }
+  const float before = cell.z;
+  cell.z += 0.25f * (z - cell.z);
+  if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
+  if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
+  if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;
+  if (cell.blocked && height > static_cast<float>(cell.top) * kTopUnit + 0.05f) return;
+  --cell.evidence;
+  if (!cell.blocked || cell.evidence > kFree) return;
+  cell.blocked = false;
+  cell.top = 0;
+  mark_dirty(index);
+  mark_around(t, ix, iy);
+}
+
+void SurfaceMap::see_obstacle(int ix, int iy, float z, float top, bool sure) {
+  const int index = sheet(ix, iy, z);
+  Tile& t = tile(index);
+  GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  if (!cell.known) {
+    cell = {z, 0, 0, true, false, 0};
+    mark_dirty(index);
+  }
+  cell.top = std::max(cell.top, static_cast<std::uint8_t>(std::clamp(top / kTopUnit, 0.0f, 255.0f)));
+  if (cell.scan == scan_ && !sure) return;
+  cell.scan = scan_;
+  cell.evidence = static_cast<std::int8_t>(sure ? kMost : std::min(cell.evidence + kHit, kMost));
+  if (cell.blocked || cell.evidence < kBlocked) return;
+  cell.blocked = true;
+  mark_dirty(index);
+  mark_around(t, ix, iy);
+}
+
+void SurfaceMap::mark_place(const BlockedPlace& place) {
+  const int reach = route_cell(place.radius) + 1 + kTileHalo;
+  const int ix = route_cell(place.x), iy = route_cell(place.y);
+  for (int ty = tile_of(iy - reach); ty <= tile_of(iy + reach); ++ty)
+    for (int tx = tile_of(ix - reach); tx <= tile_of(ix + reach); ++tx)
+      for (int i = first(tx, ty); i >= 0; i = tile(i).next) mark_dirty(i);
+}
+
+void SurfaceMap::block(double x, double y, double z, double now) {
+  const auto same = std::find_if(places_.begin(), places_.end(), [&](const BlockedPlace& p) {
+    return std::hypot(p.x - x, p.y - y) < kSamePlace && std::abs(p.z - z) < kSheetReach;
+  });
+  BlockedPlace place{x, y, z, params_.block_radius, 0, 1, true};
+  if (same != places_.end()) {
+    place.times = std::min(same->times + 1, kMostTimes);
+    places_.erase(same);
+  } else if (places_.size() >= kPlaces) {
+    mark_place(places_.front());
+    places_.erase(places_.begin());
+  }
+  place.until = now + params_.block_time * std::exp2(place.times - 1);
+  places_.push_back(place);
+  mark_place(place);
+  ++version_;
+}
+
+void SurfaceMap::expire(double now) {
+  for (BlockedPlace& place : places_)
+    if (place.active && place.until <= now) {
+      place.active = false;
+      mark_place(place);
+    }
+}
+
+int SurfaceMap::next_dirty() {
+  while (!queue_.empty()) {
+    const int index = queue_.front();
+    queue_.pop_front();
+    if (tile(index).dirty) return index;  // else made anew out of turn
+  }
+  return -1;
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,93 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "nav/route/route_params.hpp"
+#include "nav/route/tile.hpp"
+
+namespace adit::nav {
+
+/// A place that was found blocked though it looked free.
+struct BlockedPlace {
+  double x, y, z;  ///< m
+  double radius;   ///< m
+  double until;    ///< s
+  int times;       ///< that it was found so
+  bool active;     ///< counts; else only remembered
+};
+
+/// What is known of the ground: tiles of 0.1 m cells, several floors at one place. Keeps the evidence and a
+/// queue of tiles whose part of the graph is to be made anew; of bounded size.
+class SurfaceMap {
+ public:
+  explicit SurfaceMap(const RouteParams& params) : params_(params) {}
+
+  /// A ray passed over the ground of a cell. `height` of the ray above the ground, m: what is lower than it
+  /// may still be there. `certain`: the robot stands there.
+  void see_free(int ix, int iy, float z, float height, bool certain = false);
+  /// A return at `top` metres above the ground of a cell; `sure`: one is enough.
+  void see_obstacle(int ix, int iy, float z, float top, bool sure = false);
+  /// Begins a scan from there; the tiles farthest from it go when there are too many.
+  void begin_scan(double x, double y);
+
+  /// Counts as blocked for a while, and longer when it was found so before.
+  void block(double x, double y, double z, double now);
+  /// Ends what has counted long enough.
+  void expire(double now);
+  const std::vector<BlockedPlace>& blocked_places() const { return places_; }
+
+  /// First tile at a place of tiles, or -1; others by Tile::next.
+  int first(int tx, int ty) const;
+  /// The tile of the floor nearest to z there, within reach; or -1.
+  int at(int tx, int ty, double z) const;
+  const Tile& tile(int index) const { return *tiles_[static_cast<std::size_t>(index)]; }
+  Tile& tile(int index) { return *tiles_[static_cast<std::size_t>(index)]; }
+  int size() const { return static_cast<int>(tiles_.size()); }
+  int used() const { return used_; }
+  /// Next tile to be made anew, or -1.
+  int next_dirty();
+  std::size_t dirty() const { return queue_.size(); }
+
+  /// Corners of all that is known, in tiles.
+  struct Extent {
+    int x0{0}, x1{-1}, y0{0}, y1{-1};
+    float z0{0}, z1{0};
+    bool empty() const { return x1 < x0; }
+  };
+  const Extent& extent() const { return extent_; }
+  /// Changes with every change of what is passable.
+  std::uint64_t version() const { return version_; }
+  void changed() { ++version_; }
+  void clear();
+
+ private:
+  static std::uint64_t key(int tx, int ty) {
+    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(tx)) << 32) |
+           static_cast<std::uint32_t>(ty);
+  }
+  int sheet(int ix, int iy, float z);
+  int create(int tx, int ty, float z);
+  void link(int index);
+  void evict();
+  void mark_dirty(int index);
+  void mark_around(const Tile& tile, int ix, int iy);
+  void mark_place(const BlockedPlace& place);
+
+  RouteParams params_;
+  std::vector<std::unique_ptr<Tile>> tiles_{};
+  std::vector<int> free_{};
+  std::unordered_map<std::uint64_t, int> heads_{};  // looked up only
+  std::deque<int> queue_{};
+  std::vector<BlockedPlace> places_{};
+  Extent extent_{};
+  int used_{0};
+  std::uint64_t version_{0};
+  std::uint32_t scan_{0};
+  double x_{0}, y_{0};
+  int last_{-1};  // tile that was written last
+};
+
+}  // namespace adit::nav

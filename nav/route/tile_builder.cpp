@@ -1,0 +1,204 @@
+#include "nav/route/tile_builder.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace adit::nav {
+namespace {
+
+constexpr float kUnit = 16.0f;  // of a cell's cost
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kCellF = static_cast<float>(kRouteCell);
+
+}  // namespace
+
+TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
+    : rise_(static_cast<float>(platform.step + params.step_margin + params.slope * kRouteCell)),
+      unknown_cost_(static_cast<float>(params.unknown_cost)) {
+  // Half a cell less than the body needs: obstacles fill whole cells. The local planner knows better, and
+  // tells when it does not get through.
+  const double hard = std::max(platform.width / 2 - kRouteCell / 2, kRouteCell);
+  const double comfort =
+      std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell);
+  for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2) {
+    const double d = std::sqrt(static_cast<double>(d2)) * kRouteCell;
+    const double lack = comfort > hard ? std::clamp((comfort - d) / (comfort - hard), 0.0, 1.0) : 0.0;
+    cost_of_[d2] = d < hard - 1e-9 ? std::uint8_t{0}
+                                   : static_cast<std::uint8_t>(std::lround(
+                                         std::min(255.0, kUnit * (1.0 + params.narrow_cost * lack * lack))));
+  }
+}
+
+void TileBuilder::gather_tile(const SurfaceMap&, const Tile& from, float z, int ox, int oy) {
+  const int x0 = std::max(0, ox), x1 = std::min(kWindow, ox + kTileSide);
+  const int y0 = std::max(0, oy), y1 = std::min(kWindow, oy + kTileSide);
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
+      if (!cell.known || std::abs(cell.z - z) > 2 * kSheetReach) continue;
+      height_[in_window(x, y)] = cell.z;
+      solid_[in_window(x, y)] = cell.blocked;
+    }
+}
+
+void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
+  height_.fill(kNan);
+  solid_.fill(false);
+  gather_tile(map, tile, tile.z, kTileHalo, kTileHalo);
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (dx == 0 && dy == 0) continue;
+      const int other = map.at(tile.tx + dx, tile.ty + dy, tile.z);
+      if (other >= 0)
+        gather_tile(map, map.tile(other), tile.z, kTileHalo + dx * kTileSide, kTileHalo + dy * kTileSide);
+    }
+  for (const BlockedPlace& p : map.blocked_places()) {
+    if (!p.active || std::abs(p.z - tile.z) > kSheetReach) continue;
+    const double cx = p.x / kRouteCell - (tile.tx * kTileSide - kTileHalo);
+    const double cy = p.y / kRouteCell - (tile.ty * kTileSide - kTileHalo);
+    const double r = p.radius / kRouteCell;
+    for (int y = std::max(0, static_cast<int>(cy - r)); y < std::min<double>(kWindow, cy + r); ++y)
+      for (int x = std::max(0, static_cast<int>(cx - r)); x < std::min<double>(kWindow, cx + r); ++x)
+        if (std::hypot(x + 0.5 - cx, y + 0.5 - cy) <= r) solid_[in_window(x, y)] = true;
+  }
+}
+
+// Ground that is too steep between two cells is an edge to keep away from, below and above.
+void TileBuilder::find_steps() {
+  const auto compare = [this](std::size_t a, std::size_t b) {
+    if (std::abs(height_[a] - height_[b]) > rise_) solid_[a] = solid_[b] = true;  // false for NaN
+  };
+  for (int y = 0; y < kWindow; ++y)
+    for (int x = 0; x < kWindow; ++x) {
+      if (x + 1 < kWindow) compare(in_window(x, y), in_window(x + 1, y));
+      if (y + 1 < kWindow) compare(in_window(x, y), in_window(x, y + 1));
+    }
+}
+
+// The squared distance to the nearest obstacle, exact within the halo: columns first, then across.
+void TileBuilder::measure(Tile& tile) {
+  constexpr int kFar = kTileHalo + 1;
+  std::array<std::uint8_t, kWindow * kWindow> up{};
+  for (int x = 0; x < kWindow; ++x) {
+    int d = kFar;
+    for (int y = 0; y < kWindow; ++y) {
+      d = solid_[in_window(x, y)] ? 0 : std::min(d + 1, kFar);
+      up[in_window(x, y)] = static_cast<std::uint8_t>(d);
+    }
+    d = kFar;
+    for (int y = kWindow - 1; y >= 0; --y) {
+      d = solid_[in_window(x, y)] ? 0 : std::min(d + 1, kFar);
+      up[in_window(x, y)] = static_cast<std::uint8_t>(std::min<int>(up[in_window(x, y)], d));
+    }
+  }
+  for (int y = 0; y < kTileSide; ++y)
+    for (int x = 0; x < kTileSide; ++x) {
+      int least = kTileHalo * kTileHalo + 1;
+      for (int dx = -kTileHalo; dx <= kTileHalo; ++dx) {
+        const int d = up[in_window(x + kTileHalo + dx, y + kTileHalo)];
+        if (d <= kTileHalo) least = std::min(least, dx * dx + d * d);
+      }
+      const auto c = static_cast<std::size_t>(y * kTileSide + x);
+      float cost = cost_of_[static_cast<std::size_t>(least)];
+      if (!tile.cells[c].known) cost = std::min(255.0f, cost * unknown_cost_);
+      tile.cost[c] = static_cast<std::uint8_t>(cost);
+    }
+}
+
+void TileBuilder::add_node(Tile& tile, int side, int first, int last) {
+  int place = tile.node_count;
+  if (place < kTileNodes) {
+    ++tile.node_count;
+  } else {  // the narrowest goes, which may be this one
+    const auto narrowest = std::min_element(
+        tile.nodes.begin(), tile.nodes.end(),
+        [](const TileNode& a, const TileNode& b) { return a.last - a.first < b.last - b.first; });
+    if (narrowest->last - narrowest->first >= last - first) return;
+    place = static_cast<int>(narrowest - tile.nodes.begin());
+  }
+  const int cell = side_cell(side, (first + last) / 2);
+  tile.nodes[static_cast<std::size_t>(place)] = {
+      static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(last),
+      static_cast<std::uint8_t>(cell), tile.cell_z(cell)};
+}
+
+void TileBuilder::open_sides(Tile& tile) {
+  tile.node_count = 0;
+  for (int side = 0; side < 4; ++side)
+    for (int i = 0; i < kTileSide;) {
+      if (tile.cost[static_cast<std::size_t>(side_cell(side, i))] == 0) {
+        ++i;
+        continue;
+      }
+      int last = i;
+      while (last + 1 < kTileSide && tile.cost[static_cast<std::size_t>(side_cell(side, last + 1))] > 0)
+        ++last;
+      add_node(tile, side, i, last);
+      i = last + 1;
+    }
+}
+
+void TileBuilder::spread(const Tile& tile, int cell) {
+  distance_.fill(kUnreached);
+  before_.fill(-1);
+  heap_.clear();
+  distance_[static_cast<std::size_t>(cell)] = 0;
+  heap_.push_back({0, cell});
+  while (!heap_.empty()) {
+    std::pop_heap(heap_.begin(), heap_.end());
+    const Entry e = heap_.back();
+    heap_.pop_back();
+    if (e.distance > distance_[static_cast<std::size_t>(e.cell)]) continue;
+    const int x = e.cell % kTileSide, y = e.cell / kTileSide;
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int nx = x + dx, ny = y + dy;
+        if ((dx == 0 && dy == 0) || nx < 0 || ny < 0 || nx >= kTileSide || ny >= kTileSide) continue;
+        const int next = ny * kTileSide + nx;
+        const int cost = tile.cost[static_cast<std::size_t>(next)];
+        if (cost == 0) continue;
+        const float step = kCellF * (dx != 0 && dy != 0 ? 1.41421356f : 1.0f);
+        const float d =
+            e.distance +
+            step * static_cast<float>(cost + tile.cost[static_cast<std::size_t>(e.cell)]) / (2 * kUnit);
+        if (d >= distance_[static_cast<std::size_t>(next)]) continue;
+        distance_[static_cast<std::size_t>(next)] = d;
+        before_[static_cast<std::size_t>(next)] = e.cell;
+        heap_.push_back({d, next});
+        std::push_heap(heap_.begin(), heap_.end());
+      }
+  }
+}
+
+void TileBuilder::connect(Tile& tile) {
+  // In a tile that costs the same everywhere ways are straight.
+  const bool even = std::all_of(tile.cost.begin(), tile.cost.end(),
+                                [&](std::uint8_t c) { return c == tile.cost[0] && c > 0; });
+  for (int a = 0; a < tile.node_count; ++a) {
+    const TileNode& from = tile.nodes[static_cast<std::size_t>(a)];
+    if (!even && a + 1 < tile.node_count) spread(tile, from.cell);
+    for (int b = a; b < tile.node_count; ++b) {
+      const TileNode& to = tile.nodes[static_cast<std::size_t>(b)];
+      const float dx = static_cast<float>(to.cell % kTileSide - from.cell % kTileSide);
+      const float dy = static_cast<float>(to.cell / kTileSide - from.cell / kTileSide);
+      tile.distance[static_cast<std::size_t>(a * kTileNodes + b)] =
+          tile.distance[static_cast<std::size_t>(b * kTileNodes + a)] =
+              a == b ? 0.0f
+              : even ? std::hypot(dx, dy) * kCellF * static_cast<float>(tile.cost[0]) / kUnit
+                     : distance(to.cell);
+    }
+  }
+}
+
+void TileBuilder::build(SurfaceMap& map, int index) {
+  Tile& tile = map.tile(index);
+  tile.dirty = false;
+  gather(map, tile);
+  find_steps();
+  measure(tile);
+  open_sides(tile);
+  connect(tile);
+  map.changed();
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,55 @@
+#pragma once
+#include <array>
+
+#include "core/config/platform.hpp"
+#include "nav/route/surface_map.hpp"
+
+namespace adit::nav {
+
+/// Makes a tile's part of the graph: what each cell costs, the openings in its sides, and how far they are
+/// from each other within it (Botea, Müller, Schaeffer: *Near optimal hierarchical path-finding*, 2004, with
+/// openings of its own for each tile, so that one tile can be made anew alone).
+class TileBuilder {
+ public:
+  TileBuilder(const Platform& platform, const RouteParams& params);
+
+  /// From the map's evidence; 10 to 60 us.
+  void build(SurfaceMap& map, int index);
+  /// Ways from a cell to all others of its tile, m; see distance() and trace().
+  void spread(const Tile& tile, int cell);
+  float distance(int cell) const { return distance_[static_cast<std::size_t>(cell)]; }
+  /// The cell before that one on the way from where spread() began; -1 at its beginning.
+  int before(int cell) const { return before_[static_cast<std::size_t>(cell)]; }
+  /// Ground that rises more than this from one cell to the next is a step, m.
+  float rise() const { return rise_; }
+  /// What a cell in the open costs (unknown: in unknown space), m per m.
+  float unknown_cost() const { return unknown_cost_; }
+
+ private:
+  static constexpr int kWindow = kTileSide + 2 * kTileHalo;
+  static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
+  void gather(const SurfaceMap& map, const Tile& tile);
+  void gather_tile(const SurfaceMap& map, const Tile& from, float z, int ox, int oy);
+  void find_steps();
+  void measure(Tile& tile);
+  void open_sides(Tile& tile);
+  void add_node(Tile& tile, int side, int first, int last);
+  void connect(Tile& tile);
+
+  float rise_, unknown_cost_;
+  std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
+  std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
+  std::array<bool, kWindow * kWindow> solid_{};
+  std::array<float, kTileArea> distance_{};
+  std::array<int, kTileArea> before_{};
+  struct Entry {
+    float distance;
+    int cell;
+    bool operator<(const Entry& o) const {
+      return distance > o.distance || (distance == o.distance && cell > o.cell);
+    }
+  };
+  std::vector<Entry> heap_{};
+};
+
+}  // namespace adit::nav
