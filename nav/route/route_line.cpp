@@ -7,6 +7,7 @@ namespace adit::nav {
 namespace {
 
 constexpr double kResample = 0.5;  // m
+constexpr double kLongest = 40.0;  // m: of a leg
 constexpr int kGiveUp = 3;         // corners in a row that are not seen
 
 }  // namespace
@@ -69,6 +70,7 @@ void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) const {
     std::size_t best = anchor + 1;
     int unseen = 0;
     for (std::size_t j = anchor + 2; j < points.size() && unseen < kGiveUp; ++j) {
+      if ((points[j] - points[anchor]).squaredNorm() > kLongest * kLongest) break;
       const LineCost direct = line(points[anchor], points[j]);
       if (direct.passable && direct.cost <= before[j] - before[anchor] + 1e-3) {
         best = j;

@@ -3,8 +3,8 @@
 namespace adit::nav {
 
 struct RouteParams {
-  double range{15.0};          ///< of a scan, what it says farther away is not used, m, [2, 60]
-  double comfort{0.3};         ///< kept beside the body where there is room, m, [0, 0.5]
+  double range{20.0};          ///< of a scan, what it says farther away is not used, m, [2, 60]
+  double comfort{0.4};         ///< kept beside the body where there is room, m, [0, 0.5]
   double narrow_cost{2.0};     ///< a metre without that room costs so many more, [0, 4]
   double unknown_cost{1.4};    ///< a metre of unknown space costs this many known ones, [1, 3]
   double slope{0.35};          ///< steepest ground, rise per run, [0, 1]

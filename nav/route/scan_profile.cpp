@@ -9,7 +9,12 @@ namespace {
 
 constexpr float kStack = 0.15f;  // m: returns this near above each other are of one thing
 constexpr float kCellF = static_cast<float>(kRouteCell);
-constexpr float kFirst = 1.5f;  // m: nothing is known of the ground this far around a lidar of few rings
+constexpr float kRun = 0.8f;       // m: over more than this nobody knows how the ground goes on
+constexpr float kWallGap = 1.5f;   // m
+constexpr float kStraight = 0.1f;  // m
+constexpr float kDense = 8.0f;     // m
+constexpr float kGap = 0.5f;       // m
+constexpr float kFirst = 1.5f;     // m: nothing is known of the ground this far around a lidar of few rings
 
 }  // namespace
 
@@ -58,14 +63,15 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
 }
 
 // Hits are marked; the free pieces before the first of them are kept for write_free().
-void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map) {
+void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit) {
+  hit = {};
   const std::size_t first = pieces_.size();
   float z = ground_, at = 0.0f;  // the last ground
   float z_before = ground_;      // and the one before it
   const Return* last_ground = nullptr;
   bool ended = false;
   for (const Return& r : returns) {
-    const float run = r.range - at;
+    const float run = std::min(r.range - at, kRun);
     const float rise = r.z - z;
     if (rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
     if (ended) {
@@ -74,13 +80,15 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map) {
     }
     if (rise > step_ + slope_ * run) {
       float base = z;
-      if (last_ground && run < kStack && z - z_before > step_) {  // its foot passed for ground
+      if (last_ground && r.range - at < kStack && z - z_before > step_) {  // its foot passed for ground
         base = z_before;
         map.see_obstacle(last_ground->ix, last_ground->iy, base, z - base);
         if (pieces_.size() > first) pieces_.back().z_to = base;
       }
       map.see_obstacle(r.ix, r.iy, base, r.z - base);
       pieces_.push_back({at, r.range - kCellF, base, base, r.z});
+      hit = {r.range, static_cast<float>((r.ix + 0.5) * kRouteCell),
+             static_cast<float>((r.iy + 0.5) * kRouteCell), base, r.z - base};
       z = base;
       ended = true;
     } else if (rise < -(drop_ + slope_ * run)) {
@@ -103,15 +111,40 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map) {
   }
 }
 
+// Far away, and along a wall, the returns of neighbouring directions leave gaps that a robot does not fit
+// through; unknown space would leak out of a closed room. Longer ones are closed where a wall goes straight
+// on.
+void ScanProfile::close_gaps(SurfaceMap& map) const {
+  const auto at = [this](std::size_t d) -> const Hit& { return hits_[(d + kDirections) % kDirections]; };
+  for (std::size_t d = 0; d < kDirections; ++d) {
+    const Hit& a = at(d);
+    const Hit& b = at(d + 1);
+    if (a.range <= 0 || b.range <= 0 || std::abs(a.base - b.base) > step_) continue;
+    const float gap = std::hypot(a.x - b.x, a.y - b.y);
+    const auto in_line = [&](const Hit& c) {
+      return c.range > 0 && std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) < kStraight * gap;
+    };
+    if (gap > kWallGap || (gap > kGap && !(in_line(at(d + kDirections - 1)) && in_line(at(d + 2))))) continue;
+    const int parts = static_cast<int>(std::ceil(gap / kCellF));
+    for (int i = 1; i < parts; ++i) {
+      const float t = static_cast<float>(i) / static_cast<float>(parts);
+      map.see_obstacle(route_cell(a.x + t * (b.x - a.x)), route_cell(a.y + t * (b.y - a.y)), a.base,
+                       std::min(a.top, b.top));
+    }
+  }
+}
+
 void ScanProfile::write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const {
-  for (const float offset : {0.25f, 0.75f}) {
+  // Four lines a direction where two would leave cells between them.
+  for (const auto& [offset, begin] : std::array<std::pair<float, float>, 4>{
+           {{0.125f, kDense}, {0.25f, 0.0f}, {0.625f, kDense}, {0.75f, 0.0f}}}) {
     const float angle =
         (static_cast<float>(direction) + offset) * (2 * static_cast<float>(M_PI) / kDirections) -
         static_cast<float>(M_PI);
     const float c = std::cos(angle), s = std::sin(angle);
     for (const Piece& p : pieces) {
       const float run = std::max(p.to - p.from, 1e-3f);
-      for (float r = std::ceil(p.from / kCellF) * kCellF; r <= p.to; r += kCellF) {
+      for (float r = std::ceil(std::max(p.from, begin) / kCellF) * kCellF; r <= p.to; r += kCellF) {
         const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
         const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
         map.see_free(route_cell(sensor_.x() + r * c), route_cell(sensor_.y() + r * s), z,
@@ -143,9 +176,10 @@ void ScanProfile::add(std::span<const Eigen::Vector3f> points, const Pose3& body
   std::array<std::size_t, kDirections + 1> first{};
   for (std::size_t d = 0; d < kDirections; ++d) {
     const auto from = static_cast<std::size_t>(begin_[d]), to = static_cast<std::size_t>(begin_[d + 1]);
-    walk(std::span(sorted_).subspan(from, to - from), map);
+    walk(std::span(sorted_).subspan(from, to - from), map, hits_[d]);
     first[d + 1] = pieces_.size();
   }
+  close_gaps(map);
   for (std::size_t d = 0; d < kDirections; ++d)
     write_free(static_cast<int>(d), std::span(pieces_).subspan(first[d], first[d + 1] - first[d]), map);
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -31,9 +32,14 @@ class ScanProfile {
   struct Piece {
     float from, to, z_from, z_to, ray_z;  ///< ray_z: of the ray at `to`
   };
+  /// The first obstacle of a direction; range 0: none.
+  struct Hit {
+    float range{0}, x{0}, y{0}, base{0}, top{0};
+  };
   void sort(std::span<const Eigen::Vector3f> points, const Pose3& body);
-  void walk(std::span<const Return> returns, SurfaceMap& map);
+  void walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit);
   void write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const;
+  void close_gaps(SurfaceMap& map) const;
   void stand(const Pose3& body, SurfaceMap& map) const;
 
   Platform platform_;
@@ -46,6 +52,7 @@ class ScanProfile {
   std::vector<int> direction_{};
   std::vector<int> begin_{};
   std::vector<Piece> pieces_{};
+  std::array<Hit, kDirections> hits_{};
 };
 
 }  // namespace adit::nav

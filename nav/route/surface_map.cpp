@@ -18,6 +18,20 @@ constexpr float kTopUnit = 0.02f;  // m
 constexpr std::array<int, 8> kAroundX{1, 0, -1, 0, 1, -1, -1, 1};
 constexpr std::array<int, 8> kAroundY{0, 1, 0, -1, 1, 1, -1, -1};
 constexpr std::array<std::size_t, 8> kOpposite{2, 3, 0, 1, 6, 7, 4, 5};
+constexpr float kLeadsOn = 0.25f;  // m: from a cell to one two cells away
+
+// The least difference of height to the known cells around; -1 when there are none.
+float step_around(const Tile& tile, int x, int y, float z) {
+  float least = -1;
+  for (int v = std::max(0, y - 2); v <= std::min(kTileSide - 1, y + 2); ++v)
+    for (int u = std::max(0, x - 2); u <= std::min(kTileSide - 1, x + 2); ++u) {
+      const GroundCell& cell = tile.cells[static_cast<std::size_t>(v * kTileSide + u)];
+      if (!cell.known) continue;
+      const float d = std::abs(cell.z - z);
+      if (least < 0 || d < least) least = d;
+    }
+  return least;
+}
 
 }  // namespace
 
@@ -49,7 +63,8 @@ int SurfaceMap::at(int tx, int ty, double z) const {
   return best;
 }
 
-// The floor that a height belongs to: the one whose cell there is at that height, else the nearest.
+// The floor that a height belongs to: the one whose cell there is at that height; else one that its cells
+// around lead to; else the nearest that has none around.
 int SurfaceMap::sheet(int ix, int iy, float z) {
   const int tx = tile_of(ix), ty = tile_of(iy);
   const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
@@ -61,7 +76,11 @@ int SurfaceMap::sheet(int ix, int iy, float z) {
     const Tile& t = tile(i);
     if (same(t)) return last_ = i;
     if (t.cells[c].known) continue;
-    if (const float d = std::abs(t.z - z); d <= least) {
+    const float step = step_around(t, ix & 15, iy & 15, z);
+    if (step > kLeadsOn) continue;
+    // Cells around that lead there count before all that is merely near.
+    const float d = step >= 0 ? step - 2 * kLeadsOn : std::abs(t.z - z);
+    if (d <= least) {
       least = d;
       best = i;
     }

@@ -29,7 +29,7 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
   }
 }
 
-void TileBuilder::gather_tile(const SurfaceMap&, const Tile& from, float z, int ox, int oy) {
+void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
   const int x0 = std::max(0, ox), x1 = std::min(kWindow, ox + kTileSide);
   const int y0 = std::max(0, oy), y1 = std::min(kWindow, oy + kTileSide);
   for (int y = y0; y < y1; ++y)
@@ -44,13 +44,24 @@ void TileBuilder::gather_tile(const SurfaceMap&, const Tile& from, float z, int 
 void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   height_.fill(kNan);
   solid_.fill(false);
-  gather_tile(map, tile, tile.z, kTileHalo, kTileHalo);
+  gather_tile(tile, tile.z, kTileHalo, kTileHalo);
+  // What is ground of another floor, higher or lower by less than a storey, is an edge of this one.
+  for (int i = map.first(tile.tx, tile.ty); i >= 0; i = map.tile(i).next) {
+    const Tile& other = map.tile(i);
+    if (&other == &tile) continue;
+    for (int c = 0; c < kTileArea; ++c) {
+      const auto k = static_cast<std::size_t>(c);
+      if (tile.cells[k].known || !other.cells[k].known || std::abs(other.cells[k].z - tile.z) > kSheetReach)
+        continue;
+      solid_[in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo)] = true;
+    }
+  }
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       if (dx == 0 && dy == 0) continue;
       const int other = map.at(tile.tx + dx, tile.ty + dy, tile.z);
       if (other >= 0)
-        gather_tile(map, map.tile(other), tile.z, kTileHalo + dx * kTileSide, kTileHalo + dy * kTileSide);
+        gather_tile(map.tile(other), tile.z, kTileHalo + dx * kTileSide, kTileHalo + dy * kTileSide);
     }
   for (const BlockedPlace& p : map.blocked_places()) {
     if (!p.active || std::abs(p.z - tile.z) > kSheetReach) continue;

@@ -29,7 +29,7 @@ class TileBuilder {
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);
-  void gather_tile(const SurfaceMap& map, const Tile& from, float z, int ox, int oy);
+  void gather_tile(const Tile& from, float z, int ox, int oy);
   void find_steps();
   void measure(Tile& tile);
   void open_sides(Tile& tile);

@@ -1,0 +1,103 @@
+// The global planner over scans, and the robot that follows it.
+#include <gtest/gtest.h>
+
+#include "nav/route/route_keeper.hpp"
+#include "tests/nav/closed_loop.hpp"
+#include "tests/nav/route_world.hpp"
+
+namespace adit::nav::test {
+namespace {
+
+/// A robot that follows the route keeper.
+struct Drive {
+  ClosedLoop loop;
+  RoutePlanner planner;
+  RouteKeeper keeper{};
+  RouteStep step{};
+
+  Drive(BoxWorld world, const Pose2& start) : loop(wheeled(), std::move(world), start), planner(wheeled()) {}
+
+  /// True when it stands at the goal; false after so many seconds, or when there is no way.
+  bool to(double x, double y, double seconds) {
+    const double end = loop.time + seconds;
+    while (loop.time < end) {
+      const Pose2 at = loop.odometry();
+      planner.add_scan(loop.world.scan(loop.truth, 0.5, loop.rings, loop.columns, loop.noise, loop.random),
+                       Pose3::level(at, 0.0), loop.time);
+      step = keeper.step(planner, {at.x, at.y, 0}, {x, y, std::nan("")}, loop.last.blocked, loop.time);
+      if (step.state == RouteStep::State::unreachable) return false;
+      loop.cycle(Target::to(step.target.head<2>()));
+      if (step.last && loop.last.arrived && loop.follower.command().zero()) return true;
+    }
+    return false;
+  }
+};
+
+TEST(RouteScans, SeesWallsAndGround) {
+  BoxWorld world{
+      {{-5, 10, 3, 3.2}, {-5, 10, -3.2, -3}, {10, 10.2, -3, 3}, {-5.2, -5, -3, 3}, {4, 5, -1, 1, 0, 0.4}}};
+  std::mt19937 random(1);
+  for (const int rings : {1, 16}) {
+    RoutePlanner planner(wheeled());
+    if (rings == 1) world.boxes.back().z1 = 2.5;
+    for (int i = 0; i < 6; ++i)
+      planner.add_scan(world.scan({0, 0, 0}, 0.5, rings, 360, 0.01, random), Pose3::level({0, 0, 0}, 0),
+                       0.1 * i);
+    planner.finish();
+    EXPECT_FALSE(planner.line({0, 0, 0}, {5.7, 0, 0}).passable) << rings;
+    EXPECT_FALSE(planner.line({0, 0, 0}, {0, 5, 0}).passable) << rings;
+    const LineCost free = planner.line({0, 2, 0}, {5.5, 2, 0});
+    EXPECT_TRUE(free.passable) << rings;
+    EXPECT_LT(free.unknown, 1.0) << rings;
+  }
+}
+
+TEST(RouteScans, ObstacleThatWentAwayIsFreed) {
+  BoxWorld empty{{{-5, 10, 1, 1.2}, {-5, 10, -1.2, -1}, {10, 10.2, -1, 1}, {-5.2, -5, -1, 1}}};
+  BoxWorld person = empty;
+  person.boxes.push_back({3, 3.4, -1, 1, 0, 1.8});
+  std::mt19937 random(1);
+  RoutePlanner planner(wheeled());
+  const auto look = [&](const BoxWorld& world, int times) {
+    for (int i = 0; i < times; ++i)
+      planner.add_scan(world.scan({0, 0, 0}, 0.5, 16, 360, 0.01, random), Pose3::level({0, 0, 0}, 0), 0.0);
+  };
+  look(empty, 5);
+  EXPECT_TRUE(planner.plan({0, 0, 0}, {8, 0, 0}).found());
+  look(person, 5);
+  EXPECT_FALSE(planner.plan({0, 0, 0}, {8, 0, 0}).found());
+  look(empty, 15);
+  EXPECT_TRUE(planner.plan({0, 0, 0}, {8, 0, 0}).found());
+}
+
+TEST(RouteScans, OutOfADeadEnd) {
+  Drive drive({{{4, 4.3, -3, 3},
+                {-3, 4.3, 3, 3.3},
+                {-3, 4.3, -3.3, -3},
+                {-8, 12, 8, 8.2},
+                {-8, 12, -8.2, -8},
+                {12, 12.2, -8, 8},
+                {-8.2, -8, -8, 8}}},
+              {0, 0, 0});
+  EXPECT_TRUE(drive.to(8, 0, 60));
+  EXPECT_GT(drive.loop.least_clearance, 0.0);
+}
+
+TEST(RouteScans, ClosedRoomIsUnreachable) {
+  Drive drive({{{4, 4.3, -3, 3}, {-3, 4.3, 3, 3.3}, {-3, 4.3, -3.3, -3}, {-3.3, -3, -3.3, 3.3}}}, {0, 0, 0});
+  EXPECT_FALSE(drive.to(8, 0, 60));
+  EXPECT_EQ(drive.step.state, RouteStep::State::unreachable);
+  EXPECT_LT(drive.loop.time, 10.0);
+}
+
+// The world: FAR planner drives 60 m in it.
+TEST(RouteScans, CornerToCornerOfAnUnknownCity) {
+  Drive drive(city(3, 8, 3.2), {1.6, 1.6, 0});
+  EXPECT_TRUE(drive.to(35.2, 35.2, 60));
+  RecordProperty("seconds", std::to_string(drive.loop.time));
+  EXPECT_LT(drive.loop.driven, 66.0);
+  EXPECT_GT(drive.loop.least_clearance, 0.0);
+}
+
+}  // namespace
+}  // namespace adit::nav::test
