@@ -405,6 +405,8 @@ void Station::Impl::stick(std::uint64_t handle, const std::array<double, 3>& vel
 
 void Station::Impl::tick() {
   fleet_.check(strand_.now());
+  for (const auto& [name, robot] : fleet_.robots())
+    if (robot.located) radio_.set_place(robot.participant, {robot.x, robot.y, robot.z});
   desk_.tick();
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
   for (Waiting& next : std::exchange(waiting_, {})) {

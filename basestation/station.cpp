@@ -116,6 +116,12 @@ Result<void> Station::Impl::start() {
   self.id(params_.id);
   self.protocol(protocol);
   self.software(params_.software);
+  if (params_.place) {
+    self.placed(true);
+    self.place(*params_.place);
+    const auto& [x, y, z] = *params_.place;
+    radio_.set_place(radio_.id(), {x, y, z});
+  }
   if (auto written = topics_->capabilities.write(self); !written) return written.error();
   announce();
 
@@ -174,7 +180,8 @@ void Station::Impl::announce_often() {
 }
 
 void Station::Impl::report_traffic() {
-  TrafficView view = meter_.read(params_.name, radio_.counters(), strand_.now());
+  TrafficView view = meter_.read(params_.name, radio_.counters(), radio_.sender(), strand_.now());
+  fleet_.carried(radio_.peers(), strand_.now());
   radio::LinkReport report;
   report.agent(params_.name);
   report.discovery_out(view.discovery_out);
@@ -182,6 +189,10 @@ void Station::Impl::report_traffic() {
   report.total_out(view.total_out);
   report.total_in(view.total_in);
   report.malformed(view.malformed);
+  report.link(view.sender.link);
+  report.bandwidth(static_cast<float>(view.sender.bandwidth));
+  report.queue(static_cast<float>(view.sender.queue));
+  report.dropped(view.sender.dropped);
   report.seq(++report_seq_);
   for (const TopicRate& rate : view.topics) {
     if (report.topics().size() == max_report_topics) break;

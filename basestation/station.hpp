@@ -24,6 +24,7 @@ struct StationParams {
   std::string software{};                             ///< version, for the others to see
   std::string link{"lan"};                            ///< name of the link profile, for `net`
   double bandwidth{0.0};                              ///< of that link, bit/s; 0: not known
+  std::optional<std::array<float, 3>> place{};        ///< where it stands, map frame, m
   std::shared_ptr<store::Disk> disk{};                ///< where findings are kept; null: in memory alone
   Duration presence{std::chrono::seconds(1)};         ///< between signs of life, [0.1 s, 1 s]
   Duration discovery_grace{std::chrono::seconds(5)};  ///< after the start: how long a robot may stay unknown

@@ -48,7 +48,6 @@ LinkLossParams link_loss_params(const AgentParams& params) {
 constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
-constexpr Duration kLinkPeriod = 2s;
 constexpr Duration kPulse = 50ms;
 
 }  // namespace
@@ -121,18 +120,38 @@ Result<void> Agent::Core::on_start() {
   note_driver();
   timers_.push_back(every(kBeat, [this] { beat(); }));
   timers_.push_back(every(kStatePeriod, [this] {
-    send_state();
+    follow_link();
+    if (edges_.rate.due(now())) send_state();
     edges_.directory.tick(now());
   }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
     watch_link();
-    send_status();
+    send_periodic();
     send_findings();
   }));
-  timers_.push_back(
-      every(kLinkPeriod, [this] { edges_.radio->send_link_report(now(), edges_.driver->malformed()); }));
   return {};
+}
+
+void Agent::Core::follow_link() {
+  // The stick echoes our stamps, and at 600 ms an echo is stale.
+  constexpr double kWithStick = 5.0;
+  const wire::SenderState sender = edges_.wire->sender();
+  edges_.rate.observe(now(), sender.waiting(wire::status_priority), sender.lost(wire::status_priority));
+  edges_.rate.set_floor(commands_.stick_used(now()) ? kWithStick : 0.0);
+  if (localisation_.initialised())
+    edges_.wire->set_place(edges_.wire->id(),
+                           {localisation_.pose().x, localisation_.pose().y, localisation_.z()});
+}
+
+void Agent::Core::send_periodic() {
+  constexpr std::uint32_t kLinkSeconds = 2;  // between two link reports
+  const std::uint32_t at = seconds_++;
+  const auto stretch = static_cast<std::uint32_t>(edges_.rate.stretch());
+  // What changes is told at once; this is for those who came late.
+  if (at % stretch == 0) send_status();
+  if (at % (kLinkSeconds * stretch) == kLinkSeconds * stretch - 1)
+    edges_.radio->send_link_report(now(), edges_.driver->malformed(), edges_.rate.rate());
 }
 
 void Agent::Core::on_stop() {

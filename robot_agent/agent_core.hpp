@@ -4,6 +4,7 @@
 
 #include "core/component/component.hpp"
 #include "core/supervisor/unit.hpp"
+#include "core/wire/link/rate_control.hpp"
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
@@ -38,6 +39,8 @@ struct Agent::Edges {
   Watch* watch{};             ///< from any thread
   Core* core{};               ///< null while the command component is away
   std::uint32_t instances{};  ///< of the command component so far
+  wire::Wire* wire{};         ///< the radio domain
+  wire::RateControl rate{};   ///< of RobotState; the rest of the telemetry follows
 };
 
 /// The command component: command interface, behaviour, mux, navigation's light half. Everything in it is
@@ -64,7 +67,9 @@ class Agent::Core : public Component {
   /// The last known safe state, before anything is sent or heard.
   void restore();
   void beat();
+  void follow_link();
   void send_state();
+  void send_periodic();
   void send_status();
   void send_behaviour();
   void note_driver();
@@ -95,6 +100,7 @@ class Agent::Core : public Component {
   float battery_{-1.0f};
   bool driver_was_alive_{};
   Time started_{};
+  std::uint32_t seconds_{};  // since it started, for what is sent more rarely
   std::vector<Timer> timers_{};
 };
 

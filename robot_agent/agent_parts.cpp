@@ -106,6 +106,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   auto radio_edge = RadioEdge::open(radio, strand, params.name);
   if (!radio_edge) return radio_edge.error();
   e.radio = std::move(*radio_edge);
+  e.wire = &radio;
 
   e.restored = restore_state(params.disk);
   if (params.disk && !params.disk->instant()) disk_strand = runtime.strand("disk");

@@ -17,6 +17,9 @@ constexpr std::size_t text_limit = 240;
 constexpr std::size_t name_limit = 32;
 constexpr Duration forget_after = 60s;
 
+/// What a report says of an amount; 0 for what is none.
+double number(float value) { return value >= 0.0F && value < 1e12F ? static_cast<double>(value) : 0.0; }
+
 std::vector<std::string> cleaned(const std::vector<std::string>& words, std::size_t most) {
   std::vector<std::string> out;
   for (const std::string& word : words) {
@@ -99,7 +102,13 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
 void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
   if (valid_name(sample.name()) && sample.name() != own_name_)
     links_.heard(sample.name(), sample.seq(), info.received);
-  if (sample.kind() != radio::AGENT_STATION) return;  // a robot's state says more, and more often
+  if (sample.kind() != radio::AGENT_STATION) {
+    // Its states say more, but where the link is full they come as rarely as this.
+    const auto robot = robots_.find(sample.name());
+    if (robot != robots_.end() && robot->second.participant == info.sender)
+      robot->second.last_sign = info.received;
+    return;
+  }
   if (sample.name() == own_name_ && sample.id() != own_id_) {
     // Robots will refuse one of the two: its operator has to choose another name.
     if (!clashed_ || info.received - last_clash_ > forget_after)
@@ -224,6 +233,11 @@ void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) 
                    .total_out = sample.total_out(),
                    .total_in = sample.total_in(),
                    .malformed = sample.malformed()};
+  view.sender.link = clean(sample.link(), 32);
+  view.sender.bandwidth = number(sample.bandwidth());
+  view.sender.queue = number(sample.queue());
+  view.sender.state_rate = number(sample.state_rate());
+  view.sender.dropped = sample.dropped();
   for (const auto& row : sample.topics()) {
     if (view.topics.size() == 16) break;
     view.topics.push_back({clean(row.topic(), 64), row.bytes_out(), row.samples_out(), row.bytes_in(),
@@ -258,7 +272,7 @@ void Fleet::own_traffic(TrafficView traffic) { traffic_[own_name_] = std::move(t
 
 void Fleet::check(Time now) {
   for (auto& [name, robot] : robots_) {
-    if (robot.lost || now - robot.last_heard <= lost_after) continue;
+    if (robot.lost || now - std::max(robot.last_heard, robot.last_sign) <= lost_after) continue;
     robot.lost = true;
     notice({.at = now,
             .robot = name,

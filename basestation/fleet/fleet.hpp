@@ -48,6 +48,9 @@ class Fleet {
   const std::map<std::string, TrafficView>& traffic() const { return traffic_; }
   /// What the link from each agent gives, by its signs of life.
   const wire::PeerMeter& links() const { return links_; }
+  /// What this station's wire counted for each peer, by participant.
+  void carried(const std::vector<wire::PeerState>& peers, Time now) { peer_rates_.read(peers, now); }
+  const PeerRates& peer_rates() const { return peer_rates_; }
   /// This station's own sign of life went out under that number.
   void said_present(std::uint32_t number, Time now) { links_.sent(number, now); }
   /// Oldest first, the last 200.
@@ -73,6 +76,7 @@ class Fleet {
   std::map<std::string, StationView> stations_{};
   std::map<std::string, TrafficView> traffic_{};
   wire::PeerMeter links_{};
+  PeerRates peer_rates_{};
   std::deque<Notice> notices_{};
   Time last_clash_{};
   bool clashed_{false};

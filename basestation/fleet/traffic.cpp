@@ -25,7 +25,8 @@ std::map<std::string, Sums> by_topic(const wire::WireCounters& counters) {
 
 }  // namespace
 
-TrafficView TrafficMeter::read(const std::string& agent, const wire::WireCounters& counters, Time now) {
+TrafficView TrafficMeter::read(const std::string& agent, const wire::WireCounters& counters,
+                               const wire::SenderState& sender, Time now) {
   const double span = started_ ? seconds(now - last_at_) : 0.0;
   const auto rate = [span](std::uint64_t after, std::uint64_t before) {
     return span > 0.0 && after >= before ? static_cast<float>(static_cast<double>(after - before) / span)
@@ -47,6 +48,13 @@ TrafficView TrafficMeter::read(const std::string& agent, const wire::WireCounter
   std::uint64_t malformed = 0;
   for (const wire::TopicCount& row : counters.topics) malformed += row.malformed;
   view.malformed = static_cast<std::uint32_t>(std::min<std::uint64_t>(malformed, UINT32_MAX));
+  if (sender.link != nullptr) {
+    view.sender.link = sender.link->name;
+    view.sender.bandwidth = sender.link->bandwidth;
+    view.sender.queue = seconds(sender.waiting(wire::status_priority));
+    for (std::size_t i = 0; i < sender.dropped.size(); ++i)
+      view.sender.dropped[i] = static_cast<std::uint32_t>(sender.dropped[i]);
+  }
   last_ = counters;
   last_at_ = now;
   started_ = true;

@@ -7,7 +7,8 @@ namespace adit::station {
 class TrafficMeter {
  public:
   /// Bytes and samples a second since the reading before; zero rates at the first one.
-  TrafficView read(const std::string& agent, const wire::WireCounters& counters, Time now);
+  TrafficView read(const std::string& agent, const wire::WireCounters& counters,
+                   const wire::SenderState& sender, Time now);
 
  private:
   wire::WireCounters last_{};

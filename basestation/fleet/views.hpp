@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "basestation/fleet/links.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/wire.hpp"
@@ -53,7 +54,8 @@ struct RobotView {
   wire::ParticipantId participant{};
   Time first_heard{};
   Time last_heard{};  ///< last RobotState, or the first sign of life before that
-  bool lost{false};   ///< no RobotState for 2.5 s
+  Time last_sign{};   ///< of life, by what it says once a second beside its RobotStates
+  bool lost{false};   ///< neither for 2.5 s
 
   bool described{false};  ///< capabilities were heard
   std::string platform{};
@@ -127,6 +129,7 @@ struct TrafficView {
   float discovery_out{}, discovery_in{}, total_out{}, total_in{};  ///< bytes a second
   std::uint32_t malformed{};                                       ///< samples since its start
   std::vector<TopicRate> topics{};
+  SenderView sender{};
   float lost_there{-1.0F};  ///< share of our signs of life that the agent missed; negative: not known
 };
 

@@ -81,6 +81,22 @@ json actions_json(const std::vector<Action>& actions) {
   return rows;
 }
 
+namespace {
+
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+json sender_json(const SenderView& sender) {
+  json dropped = json::object();
+  for (std::size_t p = 0; p < wire::priorities; ++p) dropped[priority_name(p)] = sender.dropped[p];
+  return {{"link", sender.link},
+          {"bandwidth", sender.bandwidth},
+          {"queue", sender.queue},
+          {"state_rate", sender.state_rate},
+          {"dropped", dropped}};
+}
+
+}  // namespace
+
 json net_json(const Fleet& fleet, Time now) {
   json agents = json::array();
   for (const auto& [agent, traffic] : fleet.traffic()) {
@@ -101,17 +117,23 @@ json net_json(const Fleet& fleet, Time now) {
                       {"malformed", traffic.malformed},
                       {"topics", topics}});
   }
-  json links = json::array();
-  for (const wire::PeerMeter::Peer& peer : fleet.links().peers(now)) {
-    const auto report = fleet.traffic().find(peer.name);
-    const bool known = report != fleet.traffic().end() && report->second.lost_there >= 0.0F;
-    links.push_back({{"agent", peer.name},
-                     {"age", seconds(peer.held)},
-                     {"lost_from", peer.lost},
-                     {"lost_to", known ? json(report->second.lost_there) : json(nullptr)},
-                     {"round_trip", peer.round_trip ? json(*peer.round_trip) : json(nullptr)}});
+  json rows = json::array();
+  for (const LinkView& link : links(fleet, now)) {
+    json row{{"agent", link.peer.name},
+             {"age", seconds(link.peer.held)},
+             {"lost_from", link.peer.lost},
+             {"lost_to", or_null(link.lost_to)},
+             {"round_trip", or_null(link.peer.round_trip)},
+             {"bytes_from", link.rate ? json(link.rate->in) : json(nullptr)},
+             {"bytes_to", link.rate ? json(link.rate->out) : json(nullptr)},
+             {"signal", link.rate ? or_null(link.rate->signal) : json(nullptr)}};
+    row["sender"] = link.sender ? sender_json(*link.sender) : json(nullptr);
+    rows.push_back(std::move(row));
   }
-  return {{"agents", agents}, {"links", links}};
+  json out{{"agents", agents}, {"links", rows}};
+  const auto own = fleet.traffic().find(fleet.own_name());
+  if (own != fleet.traffic().end()) out["sender"] = sender_json(own->second.sender);
+  return out;
 }
 
 json health_json(const RobotView& robot) {

@@ -97,17 +97,34 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
 
 namespace {
 
+std::string ms_text(double seconds) { return fixed(seconds * 1e3, 0); }
+
 std::string links_text(const Fleet& fleet, Time now) {
-  std::vector<std::vector<std::string>> rows{
-      {"LINK TO", "HEARD S AGO", "LOST FROM %", "LOST TO %", "ROUND TRIP MS"}};
-  for (const wire::PeerMeter::Peer& peer : fleet.links().peers(now)) {
-    const auto report = fleet.traffic().find(peer.name);
-    const float there = report == fleet.traffic().end() ? -1.0F : report->second.lost_there;
-    rows.push_back({peer.name, fixed(seconds(peer.held), 1), fixed(peer.lost * 100.0, 0),
-                    there < 0.0F ? "-" : fixed(there * 100.0, 0),
-                    peer.round_trip ? fixed(*peer.round_trip * 1e3, 0) : "-"});
+  std::vector<std::vector<std::string>> rows{{"LINK TO", "HEARD S AGO", "LOST FROM %", "LOST TO %",
+                                              "ROUND TRIP MS", "B/S FROM", "B/S TO", "QUEUE MS", "STATE HZ",
+                                              "SIGNAL DBM", "LINK"}};
+  for (const LinkView& link : links(fleet, now)) {
+    const bool limited = link.sender && !link.sender->link.empty();
+    const bool states = link.sender && link.sender->state_rate > 0.0;
+    rows.push_back(
+        {link.peer.name, fixed(seconds(link.peer.held), 1), fixed(link.peer.lost * 100.0, 0),
+         link.lost_to ? fixed(*link.lost_to * 100.0, 0) : "-",
+         link.peer.round_trip ? ms_text(*link.peer.round_trip) : "-",
+         link.rate ? fixed(link.rate->in, 0) : "-", link.rate ? fixed(link.rate->out, 0) : "-",
+         limited ? ms_text(link.sender->queue) : "-", states ? fixed(link.sender->state_rate, 1) : "-",
+         link.rate && link.rate->signal ? fixed(*link.rate->signal, 0) : "-",
+         limited ? link.sender->link + " " + fixed(link.sender->bandwidth / 1e3, 0) + " kbit/s" : "-"});
   }
-  return table(rows);
+  std::string out = table(rows);
+  for (const auto& [agent, traffic] : fleet.traffic()) {
+    std::string classes;
+    for (std::size_t p = 0; p < wire::priorities; ++p)
+      if (traffic.sender.dropped[p] > 0)
+        classes += (classes.empty() ? "" : ", ") + std::string(priority_name(p)) + " " +
+                   std::to_string(traffic.sender.dropped[p]);
+    if (!classes.empty()) out += agent + " dropped before the air took it: " + classes + "\n";
+  }
+  return out;
 }
 
 }  // namespace
@@ -118,7 +135,8 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
       {"AGENT", "TOPIC", "B/S OUT", "N/S OUT", "B/S IN", "N/S IN", "DROPPED"}};
   double out_sum = 0.0, discovery_sum = 0.0;
   for (const auto& [agent, traffic] : fleet.traffic()) {
-    const bool silent = now - traffic.last_heard > 2 * Fleet::lost_after;
+    // On a full link reports come every 8 s.
+    const bool silent = now - traffic.last_heard > 4 * Fleet::lost_after;
     std::string first = agent + (silent ? " (silent)" : "");
     for (const TopicRate& row : traffic.topics) {
       rows.push_back({first, row.topic, fixed(row.bytes_out, 0), fixed(row.samples_out, 1),

@@ -278,6 +278,7 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
   if (s.epoch != authority_.epoch() && !params_.defects.has(Defect::accept_without_epoch) &&
       !params_.defects.has(Defect::obey_stranger))
     return {Reason::stale_epoch};
+  stick_heard_ = now;
   if (const Reason reason = gate_.judge(s, now);
       reason != Reason::none &&
       !(reason == Reason::sample_stale && params_.defects.has(Defect::accept_stale_joystick)))

@@ -48,6 +48,8 @@ class CommandInterface {
   void tick(Time now);
   /// A robot state with that stamp went out.
   void sent_stamp(std::uint64_t stamp) { gate_.sent(stamp); }
+  /// The holder's stick was heard within the last second, fresh or stale: it lives on the stamps we send.
+  bool stick_used(Time now) const { return stick_heard_ && now - *stick_heard_ < 1s; }
   /// The robot's own console: it can always end a lock. False when there was none.
   bool unlock_at_console();
 
@@ -96,6 +98,7 @@ class CommandInterface {
   StopLatches stops_{};
   AnswerMemory memory_{};
   StickGate gate_{};
+  std::optional<Time> stick_heard_{};
   RateLimit<wire::ParticipantId> stream_refusals_{1s};
   RateLimit<wire::ParticipantId> intruders_{1s};
 };

@@ -2,7 +2,8 @@
 
 namespace adit::agent {
 
-radio::LinkReport LinkMeter::report(const wire::WireCounters& counters, const std::string& agent, Time now) {
+radio::LinkReport LinkMeter::report(const wire::WireCounters& counters, const wire::SenderState& sender,
+                                    const std::string& agent, Time now) {
   constexpr std::size_t kTopics = 16;  // as many as the contract lets through
   const double period = at_ ? std::max(1e-3, seconds(now - *at_)) : 1.0;
   const auto rate = [&](std::uint64_t is, std::uint64_t was) {
@@ -40,6 +41,13 @@ radio::LinkReport LinkMeter::report(const wire::WireCounters& counters, const st
     out.topics().push_back(t);
   }
   out.malformed(static_cast<std::uint32_t>(malformed));
+  if (sender.link != nullptr) {
+    out.link(sender.link->name);
+    out.bandwidth(static_cast<float>(sender.link->bandwidth));
+    out.queue(static_cast<float>(seconds(sender.waiting(wire::status_priority))));
+    for (std::size_t i = 0; i < sender.dropped.size(); ++i)
+      out.dropped()[i] = static_cast<std::uint32_t>(sender.dropped[i]);
+  }
   last_ = std::move(sums);
   totals_ = counters;
   totals_.topics.clear();

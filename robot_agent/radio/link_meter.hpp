@@ -12,7 +12,8 @@ namespace adit::agent {
 class LinkMeter {
  public:
   /// Rates since the last call; since the start of the wire for the first one, which is taken as 1 s.
-  radio::LinkReport report(const wire::WireCounters& counters, const std::string& agent, Time now);
+  radio::LinkReport report(const wire::WireCounters& counters, const wire::SenderState& sender,
+                           const std::string& agent, Time now);
 
  private:
   struct Sums {

@@ -110,6 +110,8 @@ Result<void> RadioEdge::listen(Parts parts) {
                       commands([&](CommandInterface& interface) {
                         interface.hear({c.name(), c.id(), info.sender}, c.protocol(), now);
                       });
+                    if (c.kind() == radio::AGENT_STATION && c.placed())
+                      e.wire.set_place(info.sender, {c.place()[0], c.place()[1], c.place()[2]});
                     if (c.name() != e.robot) directory.capabilities(from_radio(c, info.sender), now);
                   }),
            e.read(
@@ -192,9 +194,10 @@ void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::u
   e.presence_timer = e.strand.every(kPresencePeriod, [&e] { e.say_present(); });
 }
 
-void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed) {
+void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed, double state_rate) {
   Endpoints& e = *endpoints_;
-  radio::LinkReport report = e.meter.report(e.wire.counters(), e.robot, now);
+  radio::LinkReport report = e.meter.report(e.wire.counters(), e.wire.sender(), e.robot, now);
+  report.state_rate(static_cast<float>(state_rate));
   report.malformed(report.malformed() + static_cast<std::uint32_t>(inner_malformed));
   constexpr std::size_t kPeers = 16;    // as many as the contract lets through
   constexpr Duration kForgotten = 60s;  // a station that is gone is no link

@@ -56,7 +56,8 @@ class RadioEdge {
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
   /// What passed on the wire since the last call. `inner_malformed`: samples on the robot's inner network
   /// that were none, since the start; operators see them with the radio's.
-  void send_link_report(Time now, std::uint64_t inner_malformed);
+  /// `state_rate`: RobotStates a second, as the link lets it.
+  void send_link_report(Time now, std::uint64_t inner_malformed, double state_rate);
 
  private:
   struct Endpoints;

@@ -8,6 +8,7 @@
 #include "adit/authority.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
+#include "adit/link.h"
 #include "adit/robot.h"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/memory/ether.hpp"
@@ -41,6 +42,7 @@ class AgentBench {
     radio::RobotState state{};
     radio::Capabilities capabilities{};
     radio::Health health{};
+    radio::LinkReport link{};
     std::uint64_t seq{}, stick_seq{};
     bool up{true};
     Timer beat{};
@@ -180,6 +182,7 @@ class AgentBench {
     keep(op, wire::topics::robot_state, [o](const radio::RobotState& s) { o->state = s; });
     keep(op, wire::topics::capabilities, [o](const radio::Capabilities& c) { o->capabilities = c; });
     keep(op, wire::topics::health, [o](const radio::Health& h) { o->health = h; });
+    keep(op, wire::topics::link_report, [o](const radio::LinkReport& l) { o->link = l; });
     const auto announce = [o] {
       if (!o->up) return;
       radio::Presence p;

@@ -77,6 +77,24 @@ TEST(Fleet, RobotIsLostWithinThreeSecondsAndBackAtTheNextState) {
   EXPECT_THAT(codes(fleet), ElementsAre("lost", "back"));
 }
 
+TEST(Fleet, OnAFullLinkASignOfLifeIsEnoughNotToBeLost) {
+  Fleet fleet("op1", own_id);
+  radio::Presence presence;
+  presence.name("r1");
+  presence.kind(radio::AGENT_ROBOT);
+  fleet.hear(presence, at(1s));
+  EXPECT_EQ(fleet.robot("r1"), nullptr);
+  fleet.hear(state("r1"), at(1s));
+  fleet.hear(presence, at(3s));
+  fleet.check(Time(5500ms));
+  EXPECT_FALSE(fleet.robot("r1")->lost);
+  wire::SampleInfo another = at(5s);
+  another.sender = {99};
+  fleet.hear(presence, another);
+  fleet.check(Time(5501ms));
+  EXPECT_TRUE(fleet.robot("r1")->lost);
+}
+
 TEST(Fleet, FirstHearingIsToldOnce) {
   Fleet fleet("op1", own_id);
   int told = 0;
@@ -196,11 +214,11 @@ TEST(Traffic, RatesAreDifferencesOverTime) {
       {.topic = "adit/command", .peer = {1}, .samples_out = 10, .bytes_out = 1000},
       {.topic = "adit/command", .peer = {2}, .samples_out = 5, .bytes_out = 500, .malformed = 3}};
   counters.discovery_out = 100;
-  EXPECT_EQ(meter.read("op1", counters, Time(1s)).total_out, 0.0F);
+  EXPECT_EQ(meter.read("op1", counters, {}, Time(1s)).total_out, 0.0F);
   counters.topics[0].bytes_out += 200;
   counters.topics[1].bytes_out += 100;
   counters.discovery_out += 50;
-  const TrafficView view = meter.read("op1", counters, Time(3s));
+  const TrafficView view = meter.read("op1", counters, {}, Time(3s));
   ASSERT_EQ(view.topics.size(), 1U);
   EXPECT_FLOAT_EQ(view.topics[0].bytes_out, 150.0F);
   EXPECT_FLOAT_EQ(view.discovery_out, 25.0F);

@@ -93,6 +93,53 @@ TEST(Report, NetShowsWhatTheLinkToEachRobotGives) {
   EXPECT_TRUE(net_json(fleet, Time(5s))["links"][0]["lost_to"].is_null());
 }
 
+wire::PeerState carried(std::uint64_t out, std::uint64_t in, std::optional<double> signal = {}) {
+  return {.peer = {7}, .bytes_out = out, .bytes_in = in, .signal = signal};
+}
+
+TEST(Report, NetShowsThroughputQueueSignalAndProfile) {
+  Fleet fleet("op1", {1});
+  radio::RobotState state;
+  state.robot("r1");
+  fleet.hear(state, {.sender = {7}, .received = Time(1s)});
+  radio::Presence robot;
+  robot.name("r1");
+  robot.kind(radio::AGENT_ROBOT);
+  robot.seq(1);
+  fleet.hear(robot, {.sender = {7}, .received = Time(1s)});
+  auto link = net_json(fleet, Time(1s))["links"][0];
+  for (const char* unknown : {"bytes_from", "bytes_to", "signal", "sender"})
+    EXPECT_TRUE(link[unknown].is_null()) << unknown;
+
+  radio::LinkReport report;
+  report.agent("r1");
+  report.link("mesh_100k");
+  report.bandwidth(100e3F);
+  report.queue(0.25F);
+  report.dropped()[3] = 12;
+  report.state_rate(2.5F);
+  fleet.hear(report, {.received = Time(2s)});
+  fleet.carried({carried(100, 1000)}, Time(2s));
+  EXPECT_TRUE(net_json(fleet, Time(2s))["links"][0]["bytes_to"].is_null());  // no time to take it over yet
+  fleet.carried({carried(300, 5000, -71.0)}, Time(4s));
+  link = net_json(fleet, Time(4s))["links"][0];
+  EXPECT_NEAR(link["bytes_to"].get<double>(), 100.0, 1e-9);
+  EXPECT_NEAR(link["bytes_from"].get<double>(), 2000.0, 1e-9);
+  EXPECT_NEAR(link["signal"].get<double>(), -71.0, 1e-9);
+  EXPECT_EQ(link["sender"]["link"], "mesh_100k");
+  EXPECT_NEAR(link["sender"]["queue"].get<double>(), 0.25, 1e-6);
+  EXPECT_EQ(link["sender"]["dropped"]["state"], 12);
+  const std::string text = net_text(fleet, Time(4s), "lan", 0);
+  for (const char* part : {"2000", "250", "2.5", "-71", "mesh_100k 100 kbit/s", "r1 dropped", "state 12"})
+    EXPECT_THAT(text, HasSubstr(part));
+  report.queue(-1.0F);
+  report.bandwidth(std::nanf(""));
+  fleet.hear(report, {.received = Time(5s)});
+  EXPECT_EQ(net_json(fleet, Time(5s))["links"][0]["sender"]["queue"], 0.0);
+  fleet.carried({}, Time(6s));  // it left
+  EXPECT_TRUE(net_json(fleet, Time(6s))["links"][0]["bytes_to"].is_null());
+}
+
 TEST(Report, ARefusalNamesReasonAndHolder) {
   const Answer answer{.robot = "r1", .answered = true, .reason = Reason::not_holder, .holder = "op2"};
   const std::string text = answer_text(answer, "yours");

@@ -1,0 +1,55 @@
+#include "basestation/fleet/links.hpp"
+
+#include "basestation/fleet/fleet.hpp"
+
+namespace adit::station {
+
+void PeerRates::read(const std::vector<wire::PeerState>& peers, Time now) {
+  std::map<wire::ParticipantId, Entry> fresh;
+  const double span = seconds(now - at_);
+  for (const wire::PeerState& peer : peers) {
+    Entry& entry = fresh[peer.peer];
+    entry.last = peer;
+    const auto before = peers_.find(peer.peer);
+    if (before == peers_.end() || span <= 0.0) continue;
+    const auto rate = [span](std::uint64_t is, std::uint64_t was) {
+      return is >= was ? static_cast<double>(is - was) / span : 0.0;
+    };
+    entry.rate = PeerRate{rate(peer.bytes_out, before->second.last.bytes_out),
+                          rate(peer.bytes_in, before->second.last.bytes_in), peer.signal};
+  }
+  peers_ = std::move(fresh);
+  at_ = now;
+}
+
+const PeerRate* PeerRates::find(const wire::ParticipantId& peer) const {
+  const auto found = peers_.find(peer);
+  return found == peers_.end() || !found->second.rate ? nullptr : &*found->second.rate;
+}
+
+std::vector<LinkView> links(const Fleet& fleet, Time now) {
+  std::vector<LinkView> result;
+  for (const wire::PeerMeter::Peer& peer : fleet.links().peers(now)) {
+    LinkView& view = result.emplace_back(LinkView{peer, {}, {}, {}});
+    const RobotView* robot = fleet.robot(peer.name);
+    const auto station = fleet.stations().find(peer.name);
+    const PeerRate* rate = robot != nullptr ? fleet.peer_rates().find(robot->participant)
+                           : station != fleet.stations().end()
+                               ? fleet.peer_rates().find(station->second.participant)
+                               : nullptr;
+    if (rate != nullptr) view.rate = *rate;
+    const auto report = fleet.traffic().find(peer.name);
+    if (report == fleet.traffic().end()) continue;
+    if (report->second.lost_there >= 0.0F) view.lost_to = report->second.lost_there;
+    view.sender = report->second.sender;
+  }
+  return result;
+}
+
+const char* priority_name(std::size_t priority) {
+  static constexpr std::array<const char*, wire::priorities> names{"urgent", "discovery", "stream", "state",
+                                                                   "status", "bulk",      "video"};
+  return names.at(priority);
+}
+
+}  // namespace adit::station
