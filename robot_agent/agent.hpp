@@ -15,6 +15,7 @@
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/defects.hpp"
+#include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/battery_watch.hpp"
 #include "robot_agent/safeguard/link_loss.hpp"
 
@@ -36,6 +37,7 @@ struct AgentParams {
       boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known
   bool resume_after_restart{true};  ///< an autonomous mode goes on after a restart; false: hold, goal kept
   LinkLossParams link_loss{};       ///< its `start` is the start pose above
+  VelocityType velocity{};          ///< what the driver's /cmd_vel is
   BatteryParams battery{};
   bool return_at_last_battery{};  ///< back to the start when the charge passes the last threshold, else hold
   std::size_t findings{512};      ///< kept at most, [1, 65536]

@@ -62,10 +62,12 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       navigation_(navigation_params(params), command, log(), localisation_, *edges.planner,
                   navigation_outputs()),
       mux_(navigation_, mux_params(params)),
+      external_(mux_),
       behaviour_(behaviour_params(params), std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
       link_loss_(link_loss_params(params)),
-      battery_watch_(params.battery) {}
+      battery_watch_(params.battery),
+      rivals_(now()) {}
 
 void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
   protect([&] { localisation_.update(odom, twist, stamp, now()); });
@@ -85,6 +87,22 @@ void Agent::Core::battery(float charge) {
   protect([&] {
     battery_ = std::isfinite(charge) ? charge : -1.0f;
     if (const auto level = battery_watch_.update(battery_)) battery_fell(*level);
+  });
+}
+
+void Agent::Core::external(const Twist2& velocity) {
+  protect([&] { external_.heard(velocity, now()); });
+}
+
+void Agent::Core::rival(const wire::ParticipantId& writer) {
+  protect([&] {
+    if (rivals_.heard(writer, now()))
+      tell({{},
+            Severity::error,
+            "rival_writer",
+            Reason::none,
+            "participant " + wire::to_string(writer) + " writes velocities to the driver of " + params_.name +
+                " beside its agent: end that program, neither is obeyed as long as both write"});
   });
 }
 
@@ -255,6 +273,7 @@ Facts Agent::Core::sense(Time now) const {
   f.driver_alive = localisation_.alive(now);
   f.localised = localisation_.initialised();
   f.terrain_fresh = navigation_.terrain_fresh(now);
+  f.program_fresh = external_.fresh(now);
   return f;
 }
 

@@ -11,9 +11,11 @@
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/findings/sync.hpp"
 #include "robot_agent/motion/driver.hpp"
+#include "robot_agent/motion/external.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
+#include "robot_agent/motion/rival.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/state/restored.hpp"
@@ -54,6 +56,9 @@ class Agent::Core : public Component {
   void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp);
   void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp);
   void battery(float charge);
+  void external(const Twist2& velocity);
+  /// Somebody else writes velocities to this robot's driver.
+  void rival(const wire::ParticipantId& writer);
   void commands(const std::function<void(CommandInterface&)>& use);
   std::string at_console(const std::string& line);
   /// What must survive, as it is now.
@@ -93,6 +98,7 @@ class Agent::Core : public Component {
   Localisation localisation_;
   Navigation navigation_;
   Mux mux_;
+  External external_;
   Behaviour behaviour_;
   CommandInterface commands_;
   LinkLoss link_loss_;
@@ -101,6 +107,7 @@ class Agent::Core : public Component {
   bool driver_was_alive_{};
   Time started_{};
   std::uint32_t seconds_{};  // since it started, for what is sent more rarely
+  RivalWatch rivals_;
   std::vector<Timer> timers_{};
 };
 

@@ -80,16 +80,16 @@ UnitParams Agent::Parts::sensors_unit() {
         if (lease->valid() && edges->core) edges->core->scan(points, stamp);
       });
     };
-    return std::unique_ptr<Component>(
-        std::make_unique<Scans>(strand, Log(params.log, params.name), std::move(output)));
+    return std::unique_ptr<Component>(std::make_unique<Scans>(
+        strand, Log(params.log, params.name), params.platform.lidar_height, std::move(output)));
   };
   unit.fit = [this](const std::shared_ptr<Seat>& seat) -> Result<std::shared_ptr<void>> {
-    auto reader = Scans::read(*robot_wire, *seat->strand, [seat = std::weak_ptr<Seat>(seat)] {
+    auto readers = Scans::read(*robot_wire, *seat->strand, [seat = std::weak_ptr<Seat>(seat)] {
       const auto taken = seat.lock();
       return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
     });
-    if (!reader) return reader.error();
-    return std::shared_ptr<void>(std::move(*reader));
+    if (!readers) return readers.error();
+    return std::shared_ptr<void>(std::make_shared<Scans::Readers>(std::move(*readers)));
   };
   return unit;
 }
@@ -129,7 +129,13 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
     with_core([&](Core& core) { core.odometry(odom, twist, stamp); });
   };
   handlers.battery = [with_core](float charge) { with_core([&](Core& core) { core.battery(charge); }); };
-  auto driver = Driver::open(robot, strand, std::move(handlers));
+  handlers.external = [with_core](const Twist2& velocity) {
+    with_core([&](Core& core) { core.external(velocity); });
+  };
+  handlers.rival = [with_core](const wire::ParticipantId& writer) {
+    with_core([&](Core& core) { core.rival(writer); });
+  };
+  auto driver = Driver::open(robot, strand, params.velocity, std::move(handlers));
   if (!driver) return driver.error();
   e.driver = std::move(*driver);
 

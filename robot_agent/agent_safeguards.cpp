@@ -10,7 +10,7 @@ void Agent::Core::watch_link() {
   LinkLoss::Inputs in{};
   in.held = authority.holder().has_value();
   in.heard = authority.heard();
-  in.autonomous = behaviour_.mode().accepts == Accepts::goal;
+  in.autonomous = behaviour_.mode().autonomous();
   in.arrived = behaviour_.view().goal_state == GoalState::reached;
   if (localisation_.initialised()) in.place = Eigen::Vector2d(localisation_.pose().x, localisation_.pose().y);
   const LinkLoss::Step step = link_loss_.tick(in, now());
@@ -57,7 +57,7 @@ void Agent::Core::battery_fell(BatteryLevel level) {
         Reason::none,
         params_.name + " has " + std::to_string(std::lround(battery_ * 100)) + " % of its battery left"});
   // Who drives by hand sees it, and decides.
-  if (level != BatteryLevel::last || behaviour_.mode().accepts != Accepts::goal) return;
+  if (level != BatteryLevel::last || !behaviour_.mode().autonomous()) return;
   if (params_.return_at_last_battery)
     return go_back({params_.start.x, params_.start.y}, "its battery is nearly empty");
   behaviour_.hold(Reason::none, now());

@@ -19,12 +19,14 @@ class FindingsAck;
 }  // namespace adit::radio
 namespace geometry_msgs::msg {
 class Twist;
-}
+class TwistStamped;
+}  // namespace geometry_msgs::msg
 namespace nav_msgs::msg {
 class Odometry;
 }
 namespace sensor_msgs::msg {
 class PointCloud2;
+class LaserScan;
 class BatteryState;
 }  // namespace sensor_msgs::msg
 
@@ -66,10 +68,21 @@ inline constexpr Topic<radio::FindingsAck> findings_ack{
 /// The robot domain: ROS 2 names and types towards drivers.
 inline constexpr Topic<geometry_msgs::msg::Twist> cmd_vel{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::urgent, 1, unkeyed, 64}};
+inline constexpr Topic<geometry_msgs::msg::TwistStamped> cmd_vel_stamped{
+    {"rt/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_", QosClass::urgent, 1, unkeyed, 256}};
+/// Who listens for a second writer, reliable or not.
+inline constexpr Topic<geometry_msgs::msg::Twist> cmd_vel_heard{
+    {"rt/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::state, 1, unkeyed, 64}};
+/// What a program of the robot asks for in the mode `external`.
+inline constexpr Topic<geometry_msgs::msg::Twist> external_cmd_vel{
+    {"rt/external/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::state, 1, unkeyed, 64}};
 inline constexpr Topic<nav_msgs::msg::Odometry> odom{
     {"rt/odom", "nav_msgs::msg::dds_::Odometry_", QosClass::state, 1, unkeyed, 2048}};
 inline constexpr Topic<sensor_msgs::msg::PointCloud2> points{
     {"rt/points", "sensor_msgs::msg::dds_::PointCloud2_", QosClass::sensor, 1, unkeyed, 4 << 20}};
+/// A lidar that sees one plane.
+inline constexpr Topic<sensor_msgs::msg::LaserScan> scan{
+    {"rt/scan", "sensor_msgs::msg::dds_::LaserScan_", QosClass::sensor, 1, unkeyed, 1 << 20}};
 inline constexpr Topic<sensor_msgs::msg::BatteryState> battery{
     {"rt/battery_state", "sensor_msgs::msg::dds_::BatteryState_", QosClass::state, 1, unkeyed, 2048}};
 

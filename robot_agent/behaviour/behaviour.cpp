@@ -34,6 +34,7 @@ Result<void> Behaviour::refuse(Reason reason, std::string_view mode) const {
 
 Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   const ModeRow* row = find_mode(mode);
+  if (row && !decider_->installed(*row)) return refuse(Reason::mode_not_installed, mode);
   if (!row)
     return refuse(known_but_not_installed(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
   // Who is in a manual mode already need not centre his stick to ask for it again.
@@ -219,7 +220,8 @@ BehaviourView Behaviour::view() const {
 std::vector<ModeOption> Behaviour::options(Time now) const {
   const Facts f = facts(now);
   std::vector<ModeOption> all;
-  for (const ModeRow& row : mode_table()) all.push_back({row.name, entry_refusal(row, f)});
+  for (const ModeRow& row : mode_table())
+    all.push_back({row.name, decider_->installed(row) ? entry_refusal(row, f) : Reason::mode_not_installed});
   return all;
 }
 

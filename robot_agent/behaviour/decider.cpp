@@ -1,15 +1,15 @@
 #include "robot_agent/behaviour/decider.hpp"
 
 #include <algorithm>
-#include <set>
 
 namespace adit::agent {
 namespace {
 
 bt::NodeStatus status(bool holds) { return holds ? bt::NodeStatus::success : bt::NodeStatus::failure; }
 
-// Every mode must be reachable: a row without a subtree would be refused in silence by the tree.
-Result<void> check_complete(const bt::Tree& tree) {
+// The modes that the tree runs. Every mode that is not optional must be reachable: a row without a subtree
+// would be refused in silence by the tree.
+Result<std::set<std::string, std::less<>>> modes_of(const bt::Tree& tree) {
   std::set<std::string, std::less<>> runs;
   tree.for_each([&](const bt::Node& node, std::size_t) {
     if (node.id() != "Run") return;
@@ -17,12 +17,12 @@ Result<void> check_complete(const bt::Tree& tree) {
     if (mode != node.config().ports.end()) runs.insert(mode->second);
   });
   for (const ModeRow& row : mode_table())
-    if (!runs.contains(row.name))
+    if (!row.optional && !runs.contains(row.name))
       return Error{Reason::not_supported, "the behaviour tree has no Run for mode " + std::string(row.name)};
   for (const std::string& mode : runs)
     if (!find_mode(mode))
       return Error{Reason::mode_unknown, "the behaviour tree runs the unknown mode " + mode};
-  return {};
+  return runs;
 }
 
 }  // namespace
@@ -80,7 +80,9 @@ Result<std::unique_ptr<Decider>> Decider::load_text(const std::string& xml) {
 
 Result<std::unique_ptr<Decider>> Decider::finish(std::unique_ptr<Decider> decider, Result<bt::Tree> tree) {
   if (!tree) return tree.error();
-  if (const auto complete = check_complete(*tree); !complete) return complete.error();
+  auto modes = modes_of(*tree);
+  if (!modes) return modes.error();
+  decider->modes_ = std::move(*modes);
   decider->tree_ = std::move(*tree);
   decider->tree_.on_error([d = decider.get()](const bt::Node& node, std::string_view what) {
     d->error_ = node.name() + ": " + std::string(what);

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <set>
 #include <string>
 
 #include "core/bt/tree.hpp"
@@ -18,7 +19,8 @@ struct Decision {
 /// name, `Requested mode=""`, and the two ways of deciding, `Run mode=""` and `Pause mode=""`.
 class Decider {
  public:
-  /// Errors: of the file, with its line; not_supported when a mode of the table appears nowhere in the tree.
+  /// Errors: of the file, with its line; not_supported when a mode of the table that is not optional appears
+  /// nowhere in the tree.
   static Result<std::unique_ptr<Decider>> load(const std::string& tree_file);
   static Result<std::unique_ptr<Decider>> load_text(const std::string& xml);
   Decider(const Decider&) = delete;
@@ -26,6 +28,8 @@ class Decider {
 
   /// One tick. A tree that decides nothing, or fails, holds.
   Decision decide(std::string_view requested, const Facts& facts, Time now);
+  /// The tree has a Run for that mode.
+  bool installed(const ModeRow& row) const { return modes_.contains(row.name); }
   /// What a leaf threw in the last tick; empty: nothing.
   const std::string& error() const { return error_; }
 
@@ -36,6 +40,7 @@ class Decider {
   bt::NodeStatus choose(bt::Leaf& leaf, bool runs);
 
   bt::Tree tree_{};
+  std::set<std::string, std::less<>> modes_{};  ///< that the tree runs
   std::string_view requested_{};
   Facts facts_{};
   Decision decision_{};

@@ -25,8 +25,11 @@ constexpr Condition kGoalKnown{"GoalKnown", Reason::goal_missing, [](const Facts
 constexpr Condition kGoalFree{"GoalFree", Reason::goal_unreachable,
                               [](const Facts& f) { return f.goal_free; }, true};
 
+constexpr Condition kProgramFresh{"ProgramFresh", Reason::program_silent,
+                                  [](const Facts& f) { return f.program_fresh; }, false};
+
 constexpr std::array kAll{kNotStopped,   kDriverAlive, kLocalised, kTerrainFresh, kStickFresh,
-                          kStickCentred, kStickKept,   kGoalKnown, kGoalFree};
+                          kStickCentred, kStickKept,   kGoalKnown, kGoalFree,     kProgramFresh};
 
 // StickKept comes last: on entry the clock of the mode has not begun, StickFresh has spoken already.
 constexpr std::array kManual{kNotStopped, kDriverAlive, kStickFresh, kStickCentred, kStickKept};
@@ -34,12 +37,17 @@ constexpr std::array kSmart{kNotStopped, kDriverAlive,  kLocalised, kTerrainFres
                             kStickFresh, kStickCentred, kStickKept};
 constexpr std::array kWaypoint{kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kGoalKnown, kGoalFree};
 
+constexpr std::array kExternal{kNotStopped, kDriverAlive, kProgramFresh};
+
 constexpr std::array kTable{
     ModeRow{"hold", "holder", Accepts::nothing, GoalOnLeaving::none, OnFailure::falls_to_hold, {}},
     ModeRow{"manual", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold, kManual},
     ModeRow{"smart_joystick", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold,
             kSmart},
     ModeRow{"waypoint", "holder", Accepts::goal, GoalOnLeaving::cleared, OnFailure::pauses, kWaypoint},
+    // Falls to hold when its program is silent: one that comes back must not move the robot by that alone.
+    ModeRow{"external", "holder", Accepts::program, GoalOnLeaving::none, OnFailure::falls_to_hold, kExternal,
+            true},
 };
 
 constexpr std::array<std::string_view, 3> kNotInstalled{"explore", "convoy_follow", "get_out"};

@@ -16,7 +16,8 @@ struct Facts {
   bool stick_kept{};     ///< a sample, or the entry into the mode, within the last 1 s
   bool stick_centred{};
   bool goal_known{};
-  bool goal_free{};  ///< no obstacle that is known covers it
+  bool goal_free{};      ///< no obstacle that is known covers it
+  bool program_fresh{};  ///< the program that steers from outside spoke within the last 0.5 s
 };
 
 /// A condition: the leaf of that name in the behaviour tree, and what the operator reads when it fails.
@@ -27,8 +28,8 @@ struct Condition {
   bool entry_only{};  ///< asked when the mode is entered, not while it lasts
 };
 
-/// What a mode takes from its holder.
-enum class Accepts { nothing, stick, goal };
+/// What a mode takes: from its holder, or from a program on the robot.
+enum class Accepts { nothing, stick, goal, program };
 /// What becomes of the goal when the mode is left for another.
 enum class GoalOnLeaving { none, cleared };
 /// When a condition fails while the mode lasts, or the holder changes.
@@ -42,7 +43,11 @@ struct ModeRow {
   OnFailure on_failure{};  ///< `pauses`: autonomous, goes on under the next holder
   std::span<const Condition> conditions{};
 
+  bool optional{};  ///< a tree may do without it: then it is not installed
+
   bool manual() const { return accepts == Accepts::stick; }
+  /// Goes on without its operator.
+  bool autonomous() const { return accepts == Accepts::goal || accepts == Accepts::program; }
 };
 
 /// The mode table: the tree's leaves, the command interface, BehaviourState and, through it, every

@@ -26,9 +26,8 @@ bool usable(const Pose3& pose, const Twist2& twist) {
 
 struct Driver::Endpoints {
   const wire::Wire* wire{};
-  wire::Writer<geometry_msgs::msg::Twist> cmd_vel{};
-  geometry_msgs::msg::Twist twist{};
-  std::unique_ptr<wire::RawReader> odom{}, battery{};
+  VelocityWriter cmd_vel{};
+  std::unique_ptr<wire::RawReader> odom{}, battery{}, external{}, rival{};
 };
 
 Driver::Driver() : endpoints_(std::make_unique<Endpoints>()) {}
@@ -40,11 +39,12 @@ std::uint64_t Driver::malformed() const {
   return sum;
 }
 
-Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command, Handlers handlers) {
+Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command, VelocityType type,
+                                             Handlers handlers) {
   std::unique_ptr<Driver> driver(new Driver);
   Endpoints& e = *driver->endpoints_;
   e.wire = &wire;
-  auto cmd_vel = wire::Writer<geometry_msgs::msg::Twist>::make(wire, wire::topics::cmd_vel);
+  auto cmd_vel = VelocityWriter::make(wire, type);
   if (!cmd_vel) return cmd_vel.error();
   e.cmd_vel = std::move(*cmd_vel);
 
@@ -69,20 +69,32 @@ Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command
                                               const wire::SampleInfo&) { battery(b.percentage()); });
   if (!charge) return charge.error();
   e.battery = std::move(*charge);
+
+  auto external = wire::make_reader(
+      wire, wire::topics::external_cmd_vel, command,
+      [external = std::move(handlers.external)](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
+        external({t.linear().x(), t.linear().y(), t.angular().z()});
+      });
+  if (!external) return external.error();
+  e.external = std::move(*external);
+
+  auto rival = wire::make_reader(wire, wire::topics::cmd_vel_heard, command,
+                                 [rival = std::move(handlers.rival), self = wire.id()](
+                                     const geometry_msgs::msg::Twist&, const wire::SampleInfo& info) {
+                                   if (info.sender != self) rival(info.sender);
+                                 });
+  if (!rival) return rival.error();
+  e.rival = std::move(*rival);
   return driver;
 }
 
 void Driver::close() {
   endpoints_->odom.reset();
   endpoints_->battery.reset();
+  endpoints_->external.reset();
+  endpoints_->rival.reset();
 }
 
-void Driver::write(const Twist2& velocity) {
-  Endpoints& e = *endpoints_;
-  e.twist.linear().x(velocity.vx);
-  e.twist.linear().y(velocity.vy);
-  e.twist.angular().z(velocity.wz);
-  (void)e.cmd_vel.write(e.twist);
-}
+void Driver::write(const Twist2& velocity) { endpoints_->cmd_vel.write(velocity); }
 
 }  // namespace adit::agent

@@ -5,20 +5,25 @@
 #include "core/exec/executor.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/wire/wire.hpp"
+#include "robot_agent/motion/velocity_writer.hpp"
 
 namespace adit::agent {
 
 /// The robot domain: ROS 2 messages from and to the robot's driver, the lidar's clouds apart (scans.hpp).
+/// Programs of the robot that steer in the mode `external` speak here, too.
 class Driver {
  public:
   /// Called on the command strand. Stamps are of the driver's clock, ns.
   struct Handlers {
     std::function<void(const Pose3& odom, const Twist2& twist, std::uint64_t stamp)> odometry{};
-    std::function<void(float charge)> battery{};  ///< 0..1
+    std::function<void(float charge)> battery{};                     ///< 0..1
+    std::function<void(const Twist2& velocity)> external{};          ///< what a program asks for
+    std::function<void(const wire::ParticipantId& writer)> rival{};  ///< somebody else wrote a velocity
   };
 
   /// Strand and wire must outlive the driver's last callback. Errors of the wire.
-  static Result<std::unique_ptr<Driver>> open(wire::Wire& wire, Executor& command, Handlers handlers);
+  static Result<std::unique_ptr<Driver>> open(wire::Wire& wire, Executor& command, VelocityType type,
+                                              Handlers handlers);
   ~Driver();
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;

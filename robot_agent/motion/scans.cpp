@@ -1,10 +1,13 @@
 #include "robot_agent/motion/scans.hpp"
 
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
+#include "sensor_msgs/msg/LaserScan.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 
 namespace adit::agent {
@@ -14,26 +17,38 @@ constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/msg/PointField.FLOAT32
 
 }  // namespace
 
-Scans::Scans(Executor& strand, Log log, Output output)
-    : Component("sensors", strand, std::move(log), {.beat = 100ms}), output_(std::move(output)) {}
+Scans::Scans(Executor& strand, Log log, double lidar_height, Output output)
+    : Component("sensors", strand, std::move(log), {.beat = 100ms}),
+      lidar_height_(lidar_height),
+      output_(std::move(output)) {}
 
-void Scans::take(const sensor_msgs::msg::PointCloud2& cloud) {
+void Scans::give(const std::function<Result<PointCloud>()>& unpack, const std_msgs::msg::Header& header) {
   protect([&] {
-    auto points = to_points(cloud);
+    auto points = unpack();
     if (!points) return;  // terrain_stale follows, which the operator sees
-    const auto& stamp = cloud.header().stamp();
+    const auto& stamp = header.stamp();
     output_(std::make_shared<PointCloud>(std::move(*points)),
             static_cast<std::uint64_t>(stamp.sec()) * 1'000'000'000u + stamp.nanosec());
   });
 }
 
-Result<std::unique_ptr<wire::RawReader>> Scans::read(wire::Wire& robot, Executor& strand,
-                                                     std::function<Scans*()> taker) {
-  return wire::make_reader(
-      robot, wire::topics::points, strand,
-      [taker = std::move(taker)](const sensor_msgs::msg::PointCloud2& cloud, const wire::SampleInfo&) {
-        if (Scans* scans = taker()) scans->take(cloud);
-      });
+void Scans::take(const sensor_msgs::msg::PointCloud2& cloud) {
+  give([&] { return to_points(cloud); }, cloud.header());
+}
+
+void Scans::take(const sensor_msgs::msg::LaserScan& scan) {
+  give([&] { return to_points(scan, lidar_height_); }, scan.header());
+}
+
+Result<Scans::Readers> Scans::read(wire::Wire& robot, Executor& strand, std::function<Scans*()> taker) {
+  const auto give = [taker = std::move(taker)](const auto& sample, const wire::SampleInfo&) {
+    if (Scans* scans = taker()) scans->take(sample);
+  };
+  auto points = wire::make_reader<sensor_msgs::msg::PointCloud2>(robot, wire::topics::points, strand, give);
+  if (!points) return points.error();
+  auto scan = wire::make_reader<sensor_msgs::msg::LaserScan>(robot, wire::topics::scan, strand, give);
+  if (!scan) return scan.error();
+  return Readers{std::move(*points), std::move(*scan)};
 }
 
 Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud) {
@@ -62,6 +77,23 @@ Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud) {
     for (std::size_t axis = 0; axis < 3; ++axis)
       std::memcpy(&p[static_cast<Eigen::Index>(axis)], cloud.data().data() + i * step + offset[axis], 4);
     if (p.allFinite()) points.push_back(p);
+  }
+  return points;
+}
+
+Result<PointCloud> to_points(const sensor_msgs::msg::LaserScan& scan, double height) {
+  const double first = scan.angle_min(), step = scan.angle_increment();
+  const std::size_t count = scan.ranges().size();
+  if (!std::isfinite(first) || !std::isfinite(step) || std::abs(first) > 10.0 ||
+      std::abs(step) * static_cast<double>(count) > 2.2 * std::numbers::pi)
+    return Error{Reason::malformed, "the scan's angles are none of one turn"};
+  PointCloud points;
+  points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float range = scan.ranges()[i];
+    if (!std::isfinite(range) || range < scan.range_min() || range > scan.range_max()) continue;
+    const double angle = first + step * static_cast<double>(i);
+    points.push_back(Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), height).cast<float>());
   }
   return points;
 }

@@ -8,30 +8,46 @@
 
 namespace sensor_msgs::msg {
 class PointCloud2;
+class LaserScan;
+}  // namespace sensor_msgs::msg
+namespace std_msgs::msg {
+class Header;
 }
 
 namespace adit::agent {
 
-/// Unpacks the lidar's clouds on a strand of its own, so that they never hold the command strand up.
+/// Unpacks the lidar's clouds, or a planar one's scans, on a strand of its own, so that they never hold the
+/// command strand up.
 class Scans : public Component {
  public:
   /// Points in the frame of base_link, m; `stamp` is of the driver's clock, ns. On this strand.
   using Output = std::function<void(std::shared_ptr<PointCloud> points, std::uint64_t stamp)>;
 
-  Scans(Executor& strand, Log log, Output output);
+  /// `lidar_height`: of a planar lidar above the ground, m.
+  Scans(Executor& strand, Log log, double lidar_height, Output output);
   /// On its strand; nothing when it does not run.
   void take(const sensor_msgs::msg::PointCloud2& cloud);
+  void take(const sensor_msgs::msg::LaserScan& scan);
 
-  /// The reader of the clouds; `taker` gives who takes them now, on `strand`, or null. Errors of the wire.
-  static Result<std::unique_ptr<wire::RawReader>> read(wire::Wire& robot, Executor& strand,
-                                                       std::function<Scans*()> taker);
+  struct Readers {
+    std::unique_ptr<wire::RawReader> points{}, scan{};
+  };
+  /// Readers of /points and of /scan; `taker` gives who takes them now, on `strand`, or null. Errors of the
+  /// wire.
+  static Result<Readers> read(wire::Wire& robot, Executor& strand, std::function<Scans*()> taker);
 
  private:
+  void give(const std::function<Result<PointCloud>()>& points, const std_msgs::msg::Header& header);
+
+  double lidar_height_;
   Output output_;
 };
 
 /// The points of a cloud that has float32 x, y and z; not finite ones are left out. Reason::malformed when
 /// the layout does not fit the data.
 Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud);
+/// The points of a planar scan, `height` m above the ground; what met nothing, or is out of the scanner's
+/// range, is left out. Reason::malformed when its angles are no numbers or turn more than once.
+Result<PointCloud> to_points(const sensor_msgs::msg::LaserScan& scan, double height);
 
 }  // namespace adit::agent

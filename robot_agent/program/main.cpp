@@ -172,6 +172,7 @@ int run_agent(const RobotConfig& config, const Options& options) {
   params.log = keeper.tap(*log);
   params.link_loss = config.link_loss;
   params.battery = config.battery;
+  params.velocity = config.velocity;
   params.return_at_last_battery = config.return_at_last_battery;
   params.resume_after_restart = config.resume_after_restart;
   params.boot = this_boot();
@@ -230,7 +231,7 @@ int run_parent(const RobotConfig& config, const Options& options, int argc, char
   Parent parent(
       params,
       [&] {
-        if (const auto opened = zero.open(robot_wire(config)); !opened)
+        if (const auto opened = zero.open(robot_wire(config), config.velocity); !opened)
           std::cerr << "robot_agent: the parent cannot send zero: " << opened.error().text << "\n";
       },
       [&] { zero.send(); });

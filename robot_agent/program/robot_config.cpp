@@ -72,6 +72,10 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.start = {pose[0], pose[1], wrap_angle(pose[2])};
   if (const auto radio = root->child_if("radio"); radio.present()) read_radio(radio, file, c.radio);
   c.robot_domain = static_cast<std::uint32_t>(root->integer("robot_domain", 0, 232, 0));
+  const std::string velocity = root->text("cmd_vel", "twist");
+  c.velocity = velocity == "twist" ? VelocityType::twist : VelocityType::twist_stamped;
+  if (velocity != "twist" && velocity != "twist_stamped")
+    root->child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
   c.shared_memory = root->flag("shared_memory", c.shared_memory);
   c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));
   c.memory_limit = root->number("memory_limit", config::within(0.0, 1e6), c.memory_limit);

@@ -6,6 +6,7 @@
 #include "core/log/log.hpp"
 #include "core/result/result.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
+#include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/battery_watch.hpp"
 #include "robot_agent/safeguard/link_loss.hpp"
 
@@ -18,6 +19,7 @@ struct RobotConfig {
   Pose2 start{};                  ///< map frame: m, m, rad
   wire::FastDdsParams radio{};    ///< radio domain
   std::uint32_t robot_domain{0};  ///< of the driver, on loopback, [0, 232]
+  VelocityType velocity{};        ///< `cmd_vel: twist` or `twist_stamped`
   bool shared_memory{true};       ///< towards the driver, when it runs on the same machine
   Duration lock_lease{300s};      ///< 0: never
   std::string tree{"trees/robot.xml"};

@@ -2,22 +2,21 @@
 #include <memory>
 
 #include "core/wire/fastdds/fastdds_wire.hpp"
+#include "robot_agent/motion/velocity_writer.hpp"
 
 namespace adit::agent {
 
 /// The parent's own writer of rt/cmd_vel.
 class ZeroSender {
  public:
-  ZeroSender();
-  ~ZeroSender();
   /// Errors of the wire.
-  Result<void> open(const wire::FastDdsParams& robot);
+  Result<void> open(const wire::FastDdsParams& robot, VelocityType type);
   /// Nothing when open() failed; a failed write is followed by the next one.
-  void send();
+  void send() { cmd_vel_.write({}); }
 
  private:
-  struct Endpoints;
-  std::unique_ptr<Endpoints> endpoints_;
+  std::unique_ptr<wire::Wire> wire_{};
+  VelocityWriter cmd_vel_{};
 };
 
 }  // namespace adit::agent

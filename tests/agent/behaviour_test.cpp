@@ -38,7 +38,7 @@ class BehaviourTest : public testing::Test {
     return all;
   }
 
-  Facts facts{false, true, true, true, false, false, false, false, false};
+  Facts facts{false, true, true, true, false, false, false, false, false, false};
   bool goal_free{true};
   Recorder nav{};
   Mux mux{nav};

@@ -6,7 +6,7 @@ namespace adit::agent {
 namespace {
 
 const std::string kTree = std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml";
-constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true};
+constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
 
 std::unique_ptr<Decider> load() {
   auto decider = Decider::load(kTree);
@@ -32,9 +32,9 @@ TEST(Decider, FollowsTheTableWhenAConditionFails) {
     Facts f = kAllGood;
     f.stopped = true;
     if (!c.holds(f)) return f;
-    for (bool Facts::*fact :
-         {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
-          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free}) {
+    for (bool Facts::*fact : {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh,
+                              &Facts::stick_fresh, &Facts::stick_kept, &Facts::stick_centred,
+                              &Facts::goal_known, &Facts::goal_free, &Facts::program_fresh}) {
       f = kAllGood;
       f.*fact = false;
       if (!c.holds(f)) return f;

@@ -8,8 +8,11 @@
 #include "core/wire/memory/ether.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
+#include "geometry_msgs/msg/Twist.h"
+#include "geometry_msgs/msg/TwistStamped.h"
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/motion/scans.hpp"
+#include "sensor_msgs/msg/LaserScan.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "tests/point_cloud.hpp"
 
@@ -62,6 +65,74 @@ TEST(PointCloud2, LayoutsThatDoNotFitAreRefused) {
   EXPECT_TRUE(to_points(cloud({}))->empty());
 }
 
+sensor_msgs::msg::LaserScan laser(std::vector<float> ranges) {
+  sensor_msgs::msg::LaserScan scan;
+  scan.angle_min(-static_cast<float>(M_PI));
+  scan.angle_increment(static_cast<float>(M_PI / 2));
+  scan.range_min(0.1f);
+  scan.range_max(30.0f);
+  scan.ranges(std::move(ranges));
+  return scan;
+}
+
+TEST(LaserScan, IsPointsAtTheLidarsHeight) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const auto points = to_points(laser({2.0f, 3.0f, 4.0f, inf}), 0.5);
+  ASSERT_TRUE(points);
+  ASSERT_EQ(points->size(), 3u) << "what met nothing is no point";
+  EXPECT_TRUE((*points)[0].isApprox(Eigen::Vector3f(-2, 0, 0.5), 1e-4f)) << (*points)[0];
+  EXPECT_TRUE((*points)[1].isApprox(Eigen::Vector3f(0, -3, 0.5), 1e-4f)) << (*points)[1];
+  EXPECT_TRUE((*points)[2].isApprox(Eigen::Vector3f(4, 0, 0.5), 1e-4f)) << (*points)[2];
+  EXPECT_TRUE(to_points(laser({nan, 0.01f, 31.0f, -1.0f}), 0.5)->empty()) << "none of the scanner's range";
+}
+
+TEST(LaserScan, AnglesThatAreNoneAreRefused) {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), 1e30f, 3.0f}) {
+    auto scan = laser({1, 1, 1, 1});
+    scan.angle_increment(bad);
+    EXPECT_EQ(to_points(scan, 0.5).reason(), Reason::malformed) << bad;
+  }
+  auto scan = laser({1});
+  scan.angle_min(std::numeric_limits<float>::infinity());
+  EXPECT_EQ(to_points(scan, 0.5).reason(), Reason::malformed);
+}
+
+/// What the two kinds of driver hear.
+template <class T>
+std::vector<double> heard_by(const wire::Topic<T>& topic, VelocityType type,
+                             const std::function<double(const T&)>& vx) {
+  VirtualScheduler scheduler{1};
+  wire::Ether ether{scheduler, {}};
+  const std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
+  const std::shared_ptr<Executor> strand{machine->strand("driver")};
+  const std::unique_ptr<wire::Wire> agent{ether.join(101, "r1")}, body{ether.join(101, "r1/driver")};
+  std::vector<double> heard;
+  const auto reader = wire::make_reader<T>(*body, topic, *strand, [&](const T& t, const wire::SampleInfo&) {
+                        heard.push_back(vx(t));
+                      }).value();
+  VelocityWriter writer = VelocityWriter::make(*agent, type).value();
+  scheduler.run_until(3s);
+  writer.write({0.5, 0.1, -0.2});
+  scheduler.run_until(4s);
+  return heard;
+}
+
+TEST(Velocity, IsTheTypeThatTheDriverKnows) {
+  using geometry_msgs::msg::Twist;
+  using geometry_msgs::msg::TwistStamped;
+  const std::function<double(const Twist&)> plain = [](const Twist& t) { return t.linear().x(); };
+  const std::function<double(const TwistStamped&)> stamped = [](const TwistStamped& t) {
+    EXPECT_EQ(t.header().stamp().sec(), 0) << "now, to a driver";
+    EXPECT_EQ(t.twist().angular().z(), -0.2);
+    return t.twist().linear().x();
+  };
+  EXPECT_EQ(heard_by(wire::topics::cmd_vel, VelocityType::twist, plain), std::vector{0.5});
+  EXPECT_EQ(heard_by(wire::topics::cmd_vel_stamped, VelocityType::twist_stamped, stamped), std::vector{0.5});
+  EXPECT_TRUE(heard_by(wire::topics::cmd_vel, VelocityType::twist_stamped, plain).empty());
+}
+
+TEST(Velocity, NobodyIsToldBeforeItIsMade) { VelocityWriter().write({1, 0, 0}); }
+
 /// A driver that publishes odometry, and an agent's side of the robot domain that counts what it believes.
 class OdometryTest : public testing::Test {
  protected:
@@ -69,7 +140,9 @@ class OdometryTest : public testing::Test {
     Driver::Handlers handlers{};
     handlers.odometry = [this](const Pose3& pose, const Twist2&, std::uint64_t) { seen.push_back(pose); };
     handlers.battery = [](float) {};
-    driver = Driver::open(*agent, *strand, std::move(handlers)).value();
+    handlers.external = [this](const Twist2& velocity) { asked.push_back(velocity); };
+    handlers.rival = [this](const wire::ParticipantId& who) { rivals.push_back(who); };
+    driver = Driver::open(*agent, *strand, VelocityType::twist, std::move(handlers)).value();
     writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::odom).value();
     run(3s);
   }
@@ -95,6 +168,8 @@ class OdometryTest : public testing::Test {
   std::unique_ptr<Driver> driver{};
   wire::Writer<nav_msgs::msg::Odometry> writer{};
   std::vector<Pose3> seen{};
+  std::vector<Twist2> asked{};
+  std::vector<wire::ParticipantId> rivals{};
 };
 
 TEST_F(OdometryTest, WhatNoBodyCanHaveIsAsGoodAsSilence) {
@@ -104,6 +179,24 @@ TEST_F(OdometryTest, WhatNoBodyCanHaveIsAsGoodAsSilence) {
   for (const double x : {nan, inf, -inf, 1e300, -1e9}) EXPECT_EQ(publish(x, 1.0, 0.5), 0u) << x;
   for (const double w : {nan, inf, 0.0, 1e300}) EXPECT_EQ(publish(1.0, w, 0.5), 0u) << w;
   for (const double v : {nan, inf}) EXPECT_EQ(publish(1.0, 1.0, v), 0u) << v;
+}
+
+TEST_F(OdometryTest, AProgramsVelocityIsHeardAndASecondWriterTold) {
+  geometry_msgs::msg::Twist twist;
+  twist.linear().x(0.3);
+  auto outside = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::external_cmd_vel).value();
+  auto rival = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::cmd_vel).value();
+  run(3s);
+  driver->write({0.1, 0, 0});
+  run(1s);
+  EXPECT_TRUE(rivals.empty()) << "its own are no rival's";
+  ASSERT_TRUE(outside.write(twist));
+  ASSERT_TRUE(rival.write(twist));
+  run(1s);
+  ASSERT_EQ(asked.size(), 1u);
+  EXPECT_EQ(asked[0].vx, 0.3);
+  ASSERT_EQ(rivals.size(), 1u);
+  EXPECT_EQ(rivals[0], body->id());
 }
 
 }  // namespace

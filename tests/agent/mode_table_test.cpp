@@ -7,7 +7,7 @@
 namespace adit::agent {
 namespace {
 
-constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true};
+constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
 
 struct Row {
   const char* mode;
@@ -33,6 +33,7 @@ void blind(Facts& f) { f.terrain_fresh = false; }
 void no_stick(Facts& f) { f.stick_fresh = f.stick_kept = f.stick_centred = false; }
 void pushed(Facts& f) { f.stick_centred = false; }
 void no_goal(Facts& f) { f.goal_known = false; }
+void silent(Facts& f) { f.program_fresh = false; }
 void walled(Facts& f) { f.goal_free = false; }
 
 INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
@@ -50,6 +51,11 @@ INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
                                          Row{"smart_joystick", "terrain", blind, Reason::terrain_stale},
                                          Row{"smart_joystick", "stick", no_stick, Reason::joystick_stale},
                                          Row{"smart_joystick", "pushed", pushed, Reason::stick_not_centred},
+                                         Row{"external", "stop", stop, Reason::stopped},
+                                         Row{"external", "driver", no_driver, Reason::driver_silent},
+                                         Row{"external", "localisation", lost, Reason::none},
+                                         Row{"external", "terrain", blind, Reason::none},
+                                         Row{"external", "program", silent, Reason::program_silent},
                                          Row{"waypoint", "stop", stop, Reason::stopped},
                                          Row{"waypoint", "driver", no_driver, Reason::driver_silent},
                                          Row{"waypoint", "localisation", lost, Reason::no_localisation},

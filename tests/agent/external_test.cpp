@@ -1,0 +1,105 @@
+// The mode `external`, and a second writer of the driver's velocities.
+#include "robot_agent/motion/external.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "robot_agent/behaviour/decider.hpp"
+#include "robot_agent/motion/rival.hpp"
+
+namespace adit::agent {
+namespace {
+
+struct Recorder : NavigationInput {
+  void accept(MuxKey, const Motion& motion, Time) override { last = motion; }
+  Motion last{};
+};
+
+class ExternalMode : public testing::Test {
+ protected:
+  Recorder nav{};
+  Mux mux{nav};
+  External external{mux};
+  Time now{Duration{1h}};
+
+  void step(Duration time) {
+    now += time;
+    mux.step(now);
+  }
+};
+
+TEST_F(ExternalMode, PassesWhileItsSourceIsEnabled) {
+  external.heard({0.4, 0, 0.1}, now);
+  step(50ms);
+  EXPECT_EQ(nav.last, Motion{Stand{}}) << "nobody enabled it";
+  mux.enable("external", now);
+  step(100ms);
+  external.heard({0.4, 0, 0.1}, now);
+  step(50ms);
+  EXPECT_EQ(nav.last, (Motion{Velocity{{0.4, 0, 0.1}}}));
+}
+
+TEST_F(ExternalMode, SilenceIsZeroAfterHalfASecond) {
+  mux.enable("external", now);
+  step(100ms);
+  external.heard({0.4, 0, 0}, now);
+  step(450ms);
+  EXPECT_NE(nav.last, Motion{Stand{}});
+  EXPECT_TRUE(external.fresh(now));
+  step(100ms);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_FALSE(external.fresh(now));
+}
+
+TEST_F(ExternalMode, WhatIsNoNumberIsSilence) {
+  mux.enable("external", now);
+  step(100ms);
+  external.heard({std::numeric_limits<double>::quiet_NaN(), 0, 0}, now);
+  external.heard({0, std::numeric_limits<double>::infinity(), 0}, now);
+  step(50ms);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_FALSE(external.fresh(now));
+}
+
+TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
+  const auto decider = Decider::load_text(R"(<root BTCPP_format="4"><BehaviorTree ID="T"><Fallback>
+    <Run mode="manual"/><Run mode="smart_joystick"/><Run mode="waypoint"/><Run mode="hold"/></Fallback></BehaviorTree></root>)");
+  ASSERT_TRUE(decider) << decider.error().text;
+  EXPECT_FALSE((*decider)->installed(*find_mode("external")));
+  EXPECT_TRUE((*decider)->installed(*find_mode("waypoint")));
+  const auto whole = Decider::load(std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml");
+  ASSERT_TRUE(whole) << whole.error().text;
+  EXPECT_TRUE((*whole)->installed(*find_mode("external")));
+}
+
+class Rival : public testing::Test {
+ protected:
+  static constexpr wire::ParticipantId a{1}, b{2};
+  Time start{Duration{1h}};
+  RivalWatch watch{start};
+};
+
+TEST_F(Rival, IsToldAtItsThirdSampleAndNotAgainSoon) {
+  Time now = start + 10s;
+  EXPECT_FALSE(watch.heard(a, now));
+  EXPECT_FALSE(watch.heard(a, now += 50ms));
+  EXPECT_TRUE(watch.heard(a, now += 50ms));
+  for (int i = 0; i < 200; ++i) EXPECT_FALSE(watch.heard(a, now += 100ms));
+  int told = 0;
+  for (int i = 0; i < 200; ++i) told += watch.heard(a, now += 100ms);
+  EXPECT_EQ(told, 1) << "once more after half a minute";
+}
+
+TEST_F(Rival, ASingleSampleIsAProbeByHand) {
+  Time now = start + 10s;
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(watch.heard(a, now += 2s));
+}
+
+TEST_F(Rival, TheParentsZerosAtTheStartAreNone) {
+  Time now = start;
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(watch.heard(b, now += 50ms));
+}
+
+}  // namespace
+}  // namespace adit::agent
