@@ -30,7 +30,8 @@ constexpr std::array table{
     CommandInfo{Verb::grant, "grant", "R OPERATOR", "hand a robot over to another operator", "grant r1 op2",
                 1, 1},
     CommandInfo{Verb::mode, "mode", "R... MODE",
-                "ask for a mode: hold, manual, smart_joystick, waypoint, explore or external", "mode r1 hold", 1, 0},
+                "ask for a mode: hold, manual, smart_joystick, waypoint, explore or external", "mode r1 hold",
+                1, 0},
     CommandInfo{Verb::drive, "drive", "R VX VY WZ [--for SECONDS]",
                 "drive with m/s, m/s and rad/s for a time (1 s), then let go", "drive r1 0.5 0 -0.2 --for 3",
                 1, 1},
@@ -70,8 +71,8 @@ std::vector<std::string> command_names() {
 }
 
 const std::vector<std::string>& mode_names() {
-  static const std::vector<std::string> names{"hold", "manual", "smart_joystick", "waypoint", "explore",
-                                              "external"};
+  static const std::vector<std::string> names{"hold",     "manual",  "smart_joystick",
+                                              "waypoint", "explore", "external"};
   return names;
 }
 

@@ -40,7 +40,7 @@ TEST_F(Cyclone, APlannerFromOutsideSteersInAModeOfItsOwn) {
   ASSERT_TRUE(soon({"take", "r1"}));
   ASSERT_TRUE(eventually([&] { return listed("op1", "r1").value("mode", "") == "hold"; }));
   const auto refused = op("op1", {"mode", "r1", "external"});
-  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.out + refused.err, HasSubstr("program"));
   {
     const Process outside = planner("1.2");

@@ -59,7 +59,9 @@ TEST_F(Reader, ALiveRunDecodes) {
     };
     ASSERT_EQ(done({"take", "r1"}), "");
     // The agent may not have heard its lidar yet.
-    ASSERT_TRUE(eventually([&] { return done({"goto", "r1", "1", "0"}).empty(); })) << done({"goto", "r1", "1", "0"});
+    ASSERT_TRUE(eventually([&] {
+      return done({"goto", "r1", "1", "0"}).empty();
+    })) << done({"goto", "r1", "1", "0"});
     EXPECT_EQ(done({"drive", "r1", "0.2", "0", "0", "--for", "0.5"}), "");
     EXPECT_EQ(done({"stop", "r1"}), "");
     EXPECT_EQ(done({"down"}), "");
