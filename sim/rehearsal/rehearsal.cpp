@@ -7,6 +7,7 @@
 #include "core/record/frame_recorder.hpp"
 #include "sim/rehearsal/expectations.hpp"
 #include "sim/rehearsal/fault_player.hpp"
+#include "sim/rehearsal/radio_walls.hpp"
 #include "sim/rehearsal/random_faults.hpp"
 #include "sim/rehearsal/random_script.hpp"
 
@@ -94,13 +95,17 @@ class Run {
       witness_.see(frame);
       if (recorder_) recorder_->see(frame);
     });
+    if (scenario_.link.wall > 0.0)
+      ether_.set_attenuation(
+          [walls = std::make_shared<RadioWalls>(simulation_.world(), scenario_.link.wall)](
+              const wire::Position& a, const wire::Position& b) { return (*walls)(a, b); });
     world_runtime_ = scheduler_.machine("world", 0ns);
     world_ = world_runtime_->strand("world");
     step_ = world_->every(simulation_.params().step, [this] { simulation_.step(); });
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const RobotSpec& spec = scenario_.robots[i];
       robots_[spec.id] = std::make_unique<RobotMachine>(stage_, i, spec, random_.fork(100 + i));
-      ether_.set_position(spec.id, spec.pose.x, spec.pose.y);
+      ether_.set_position(spec.id, spec.pose.x, spec.pose.y, simulation_.truth(i).pose.position.z());
       if (auto started = robots_[spec.id]->start(); !started) return started;
     }
     for (std::size_t i = 0; i < scenario_.stations.size(); ++i) {

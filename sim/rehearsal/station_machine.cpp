@@ -6,6 +6,7 @@ namespace adit::sim {
 namespace {
 
 constexpr Duration restart_after{500ms};
+constexpr double headroom = 0.3;  // m
 
 }  // namespace
 
@@ -28,7 +29,9 @@ StationMachine::StationMachine(Stage& stage, const StationSpec& spec, Random ran
 StationMachine::~StationMachine() = default;
 
 Result<void> StationMachine::start() {
-  stage_.ether.set_position(spec_.id, spec_.position.x(), spec_.position.y());
+  const Eigen::Vector2d& at = spec_.position;
+  const auto floor = stage_.simulation.world().ground_height(at.x(), at.y(), headroom);
+  stage_.ether.set_position(spec_.id, at.x(), at.y(), floor ? *floor : 0.0);  // none: beside the map
   return start_process();
 }
 

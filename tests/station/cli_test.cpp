@@ -142,7 +142,7 @@ TEST_F(Cli, AnAddressDoesNotSwallowTheCommand) {
 TEST_F(Cli, AnUnknownLinkIsWrongUsageAndNamesTheKnownOnes) {
   const auto asked = run({"--link", "warp", "list"});
   EXPECT_EQ(asked.exit_code, 2);
-  EXPECT_THAT(asked.err, HasSubstr("there are: lan, loopback, mesh_100k, mesh_500k, subt, wifi"));
+  EXPECT_THAT(asked.err, HasSubstr("there are: lan, loopback, mesh_100k, mesh_500k, subt, tunnel, wifi"));
 }
 
 TEST_F(Cli, AKilledStationIsReplacedAndKeepsItsIdentity) {
