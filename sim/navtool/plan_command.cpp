@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/config/platform_file.hpp"
+#include "nav/navigator.hpp"
+#include "sim/navtool/canvas.hpp"
+#include "sim/navtool/commands.hpp"
+#include "sim/navtool/cpu_time.hpp"
+#include "sim/navtool/pcd.hpp"
+#include "sim/rehearsal/program/complain.hpp"
+
+namespace adit::sim::navtool {
+namespace {
+
+constexpr double kPeriod = 0.1;  // s: from one cloud to the next
+constexpr double kNear = 6.0;    // m: where the ground is looked for
+
+/// How far the lowest points around the sensor are from where the ground must be, m; a point of the cloud by
+/// `in_sensor` is in the sensor's frame.
+template <class Convert>
+double ground_error(const PcdFile& cloud, double lidar_height, const Convert& in_sensor) {
+  std::vector<double> heights;
+  for (const Eigen::Vector3f& p : cloud.points) {
+    if (!p.allFinite()) continue;
+    const Eigen::Vector3d q = in_sensor(p.cast<double>());
+    if (q.head<2>().norm() < kNear) heights.push_back((cloud.viewpoint.orientation * q).z());
+  }
+  if (heights.size() < 10) return 1e9;
+  const auto low = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 10);
+  std::nth_element(heights.begin(), low, heights.end());
+  return std::abs(*low + lidar_height);
+}
+
+/// Whether the points are in the map's frame: the ground then lies where the lidar's height says.
+bool in_map_frame(const PlanOptions& options, const PcdFile& cloud, double lidar_height) {
+  if (options.frame != "auto") return options.frame == "map";
+  const Pose3 to_sensor = cloud.viewpoint.inverse();
+  return ground_error(cloud, lidar_height, [&](const Eigen::Vector3d& p) { return to_sensor * p; }) <=
+         ground_error(cloud, lidar_height, [](const Eigen::Vector3d& p) { return p; });
+}
+
+void print(const PlanOptions& options, std::size_t cycle, double terrain_ms, double plan_ms,
+           const nav::Plan& plan) {
+  if (!options.json) {
+    std::printf("cycle %zu: terrain %.3f ms, plan %.3f ms, %s\n", cycle, terrain_ms, plan_ms,
+                plan.blocked   ? "blocked"
+                : plan.arrived ? "arrived"
+                               : ("path of " + std::to_string(plan.length) + " m").c_str());
+    return;
+  }
+  nlohmann::ordered_json line{
+      {"cycle", cycle}, {"terrain_ms", terrain_ms}, {"plan_ms", plan_ms}, {"blocked", plan.blocked}};
+  nlohmann::json path = nlohmann::json::array();
+  for (const Pose2& p : plan.path()) path.push_back({p.x, p.y});
+  line["path"] = std::move(path);
+  std::printf("%s\n", line.dump().c_str());
+}
+
+Result<void> draw(const PlanOptions& options, const Platform& platform, const nav::Plan& plan,
+                  const PcdFile& cloud, const Pose3& to_map, const Pose3& body) {
+  const Eigen::Vector2d at = body.position.head<2>();
+  Canvas canvas(at - Eigen::Vector2d(6, 5), at + Eigen::Vector2d(6, 5), "Local plan: " + options.clouds);
+  constexpr Colour points{0.6, 0.64, 0.68}, path{0.0, 0.45, 0.7}, goal{0.84, 0.37, 0.0};
+  for (const Eigen::Vector3f& p : cloud.points) {
+    if (!p.allFinite()) continue;
+    const Eigen::Vector2d q = (to_map * p.cast<double>()).head<2>();
+    if ((q - at).cwiseAbs().maxCoeff() < 5.0) canvas.dot(q, 1.0, points);
+  }
+  std::vector<Eigen::Vector2d> line;
+  for (const Pose2& p : plan.path()) line.push_back(p.position());
+  canvas.line(line, 4, path);
+  canvas.body(platform, body.planar(), {0.13, 0.15, 0.19});
+  if ((options.goal - at).cwiseAbs().maxCoeff() < 5.0) canvas.dot(options.goal, 8, goal);
+  canvas.legend("points", points);
+  canvas.legend(plan.blocked ? "blocked" : "path", path);
+  canvas.legend("goal", goal);
+  return canvas.save(options.picture);
+}
+
+}  // namespace
+
+int plan(const PlanOptions& options) {
+  const auto platform = config::load_platform(options.platform);
+  if (!platform) return complain("navtool", platform.error());
+  const auto files = pcd_files(options.clouds);
+  if (!files) return complain("navtool", files.error());
+  nav::Navigator navigator(*platform);
+  const Pose3 sensor_in_body{{0, 0, platform->lidar_height}, Eigen::Quaterniond::Identity()};
+  bool registered = false;
+  for (std::size_t cycle = 0; cycle < files->size(); ++cycle) {
+    const auto cloud = read_pcd((*files)[cycle]);
+    if (!cloud) return complain("navtool", cloud.error());
+    if (cycle == 0) registered = in_map_frame(options, *cloud, platform->lidar_height);
+    const Pose3 body = cloud->viewpoint * sensor_in_body.inverse();
+    const Pose3 to_body = registered ? body.inverse() : sensor_in_body;
+    PointCloud points;
+    points.reserve(cloud->points.size());
+    for (const Eigen::Vector3f& p : cloud->points)
+      if (p.allFinite()) points.push_back((to_body * p.cast<double>()).cast<float>());
+    const double stamp = kPeriod * static_cast<double>(cycle);
+    const double t0 = cpu_ms();
+    navigator.add_scan(points, body, stamp);
+    const double t1 = cpu_ms();
+    const nav::Plan plan = navigator.plan(nav::Target::to(options.goal), body.planar(), stamp);
+    print(options, cycle, t1 - t0, cpu_ms() - t1, plan);
+    if (!options.picture.empty() && cycle + 1 == files->size())
+      if (const auto drawn =
+              draw(options, *platform, plan, *cloud, registered ? Pose3{} : cloud->viewpoint, body);
+          !drawn)
+        return complain("navtool", drawn.error());
+  }
+  return 0;
+}
+
+}  // namespace adit::sim::navtool

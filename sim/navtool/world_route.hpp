@@ -1,0 +1,11 @@
+#pragma once
+#include "nav/route/route_planner.hpp"
+#include "sim/world/world.hpp"
+
+namespace adit::sim {
+
+/// Tells the global planner all of a world: the floors of each column that have headroom for the platform,
+/// and as obstacles what stands beside them.
+void tell_world(const World& world, const Platform& platform, nav::RoutePlanner& planner);
+
+}  // namespace adit::sim
