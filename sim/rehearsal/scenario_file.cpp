@@ -7,6 +7,7 @@
 #include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
+#include "sim/world/generate.hpp"
 #include "sim/world/read_file.hpp"
 
 namespace adit::sim {
@@ -36,13 +37,22 @@ std::filesystem::path find_map(const Node& world, const std::string& key, const 
 
 WorldSpec read_world(const Node& world, const std::string& file) {
   WorldSpec out;
-  const int kinds = static_cast<int>(world.has("map")) + world.has("boxes") + world.has("floorplan");
+  const int kinds = static_cast<int>(world.has("map")) + world.has("boxes") + world.has("floorplan") +
+                    world.has("generate");
   if (world.is_mapping() && kinds != 1)
-    world.fail(Reason::missing_key, "expected one of map, boxes and floorplan");
+    world.fail(Reason::missing_key, "expected one of map, boxes, floorplan and generate");
   if (world.has("map")) out.map = find_map(world, "map", file);
   if (world.has("floorplan")) {
     out.floor_plan = find_map(world, "floorplan", file);
     out.ceiling = world.number("ceiling", config::above(0.0, 100.0), 3.0);
+  }
+  if (world.has("generate")) {
+    const std::vector<std::string> words(world_kinds().begin(), world_kinds().end());
+    const std::string& kind = words[world.choice("generate", words)];
+    out.boxes = generate_world(kind, static_cast<std::uint64_t>(world.integer("seed", 0, most_seed, 1)))
+                    .value()
+                    .boxes;
+    out.ceiling = 3.0;
   }
   if (world.has("boxes")) {
     for (const Node& box : world.list("boxes")) {

@@ -1,0 +1,26 @@
+#pragma once
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/result/result.hpp"
+#include "sim/world/world.hpp"
+
+namespace adit::sim {
+
+/// A world to try navigation in: boxes for make_box_world on a floor at 0, closed by walls all around, with
+/// free ground around `start`. Metres.
+struct GeneratedWorld {
+  std::vector<Box> boxes{};
+  Eigen::Vector2d start{0.0, 0.0};  ///< free for 1 m around
+  Eigen::Vector2d size{0.0, 0.0};   ///< of the inside, from (0, 0)
+};
+
+/// Every kind, in the order of the documentation (docs/rehearsal.md).
+std::span<const std::string_view> world_kinds();
+
+/// The world of that kind; the same seed gives the same world on every machine. Reason::bad_argument for a
+/// kind that is none of world_kinds().
+Result<GeneratedWorld> generate_world(std::string_view kind, std::uint64_t seed);
+
+}  // namespace adit::sim

@@ -1,0 +1,69 @@
+// Worlds to try navigation in.
+#include "sim/world/generate.hpp"
+
+#include <gmock/gmock.h>
+
+#include <deque>
+
+#include "sim/world/standing_map.hpp"
+
+namespace adit::sim {
+namespace {
+
+class Generated : public testing::TestWithParam<std::string_view> {};
+
+/// Where a body of the given width, height and step gets to from the start, by columns of 0.1 m.
+double reachable(const GeneratedWorld& made, double width, double step) {
+  const World world = make_box_world(made.boxes, 0.0, 3.0).value();
+  const StandingMap map(world, 0.6, step);
+  const int nx = static_cast<int>(made.size.x() * 10), ny = static_cast<int>(made.size.y() * 10);
+  std::vector<std::uint8_t> seen(static_cast<std::size_t>(nx) * ny);
+  std::deque<std::pair<int, int>> open{
+      {static_cast<int>(made.start.x() * 10), static_cast<int>(made.start.y() * 10)}};
+  std::size_t count = 0;
+  while (!open.empty()) {
+    const auto [i, j] = open.front();
+    open.pop_front();
+    if (i < 0 || j < 0 || i >= nx || j >= ny) continue;
+    auto& here = seen[static_cast<std::size_t>(j) * nx + i];
+    if (here || map.distance(0.1 * i + 0.05, 0.1 * j + 0.05) < width / 2) continue;
+    here = 1;
+    ++count;
+    for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) open.emplace_back(i + a, j + b);
+  }
+  return static_cast<double>(count) / (made.size.x() * made.size.y() * 100);
+}
+
+TEST_P(Generated, IsTheSameForASeedAndGivesAWay) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    const auto made = generate_world(GetParam(), seed);
+    ASSERT_TRUE(made) << made.error().text;
+    EXPECT_EQ(made->boxes, generate_world(GetParam(), seed)->boxes);
+    const World world = make_box_world(made->boxes, 0.0, 3.0).value();
+    EXPECT_GT(StandingMap(world, 0.6, 0.08).distance(made->start.x(), made->start.y()), 0.9)
+        << "seed " << seed;
+    EXPECT_GT(reachable(*made, 0.6, 0.08), 0.15) << "seed " << seed;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Generated, testing::ValuesIn(world_kinds().begin(), world_kinds().end()),
+                         [](const auto& each) { return std::string(each.param); });
+
+TEST(GeneratedWorlds, AreTen) { EXPECT_EQ(world_kinds().size(), 10u); }
+
+TEST(GeneratedWorlds, SeedsDiffer) {
+  for (const char* kind : {"corridor", "cave", "rubble", "maze", "rooms", "gaps"})
+    EXPECT_NE(generate_world(kind, 1)->boxes, generate_world(kind, 2)->boxes) << kind;
+}
+
+TEST(GeneratedWorlds, StairsAreForWhoClimbsThem) {
+  const auto made = generate_world("stairs", 1).value();
+  EXPECT_GT(reachable(made, 0.5, 0.22), reachable(made, 0.5, 0.08) + 0.1);
+}
+
+TEST(GeneratedWorlds, WhatIsNoKindIsAnError) {
+  EXPECT_EQ(generate_world("castle", 1).reason(), Reason::bad_argument);
+}
+
+}  // namespace
+}  // namespace adit::sim
