@@ -113,7 +113,7 @@ TEST(RateControl, TheFloorHoldsWhileItIsSet) {
 TEST(RateControl, TimersThatAreALittleLateCostNoMessage) {
   RateControl control;
   int sent = 0;
-  Time now = from_seconds(5.0);
+  Time now{from_seconds(5.0)};
   for (int i = 0; i < 100; ++i) {
     now += i % 2 == 0 ? 93ms : 107ms;
     control.observe(now, 0ms, 0);
