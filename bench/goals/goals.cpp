@@ -1,0 +1,147 @@
+// goals: random goals in closed loop over generated worlds and platforms, as a table.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <map>
+#include <thread>
+
+#include "bench/goals/course.hpp"
+#include "sim/rehearsal/rehearsal.hpp"
+
+namespace {
+
+using namespace adit;
+using namespace adit::bench;
+
+struct Outcome {
+  Course course{};
+  std::string error{};
+  bool arrived{}, told{};  ///< told: that it cannot be reached
+  int collisions{};
+  double clearance{}, seconds{}, told_after{};
+};
+
+constexpr double kArrived = 0.6;  // m: the goal's tolerance, and what odometry may be off after 25 m
+constexpr double kSent = 4.0;     // s: when the goal is sent
+
+Outcome run(const Course& course, const sim::AgentFactory& agents, double slowness, bool planar) {
+  Outcome out{.course = course};
+  const auto scenario = scenario_of(course, slowness, planar);
+  if (!scenario) return out.error = scenario.error().text, out;
+  const auto world = sim::make_world(scenario->world);
+  if (!world) return out.error = world.error().text, out;
+  sim::RunParams params{};
+  params.seed = course.seed;
+  params.workers = 1;
+  params.make_agent = agents;
+  const auto done = sim::rehearse(*scenario, *world, params);
+  if (!done) return out.error = done.error().text, out;
+  const auto& robot = done->report.robots.at("r1");
+  out.collisions = robot.collisions;
+  out.clearance = robot.min_clearance;
+  const auto& poses = done->trails.at("r1").poses;
+  for (std::size_t n = 0; n < poses.size() && !out.arrived; ++n) {
+    out.arrived = (poses[n].position() - course.goal).norm() < kArrived;
+    out.seconds = 0.1 * static_cast<double>(n) - kSent;
+  }
+  for (const sim::TimedEvent& event : done->report.events) {
+    if (out.told ||
+        (event.text.find("reach") == std::string::npos && event.text.find("blocked") == std::string::npos))
+      continue;
+    out.told = event.text.find("goal reached") == std::string::npos;
+    out.told_after = std::chrono::duration<double>(event.at).count() - kSent;
+  }
+  return out;
+}
+
+struct Row {
+  int reachable{}, arrived{}, apart{}, told{}, collided{}, broken{};
+  double clearance{1e9}, ratio{};
+  void add(const Outcome& o) {
+    broken += !o.error.empty();
+    if (!o.error.empty()) return;
+    collided += o.collisions > 0;
+    clearance = std::min(clearance, o.clearance);
+    if (!o.course.reachable) {
+      ++apart;
+      told += o.told && !o.arrived;
+      return;
+    }
+    ++reachable;
+    if (!o.arrived) return;
+    ++arrived;
+    ratio += o.seconds / (o.course.straight / o.course.speed);
+  }
+  void print(const std::string& name) const {
+    fmt::print("| {} | {} | {} | {} | {} | {} | {:.2f} | {:.1f} | {} |\n", name, reachable, arrived, apart,
+               told, collided, clearance > 1e8 ? 0.0 : clearance, arrived > 0 ? ratio / arrived : 0.0,
+               broken);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Random goals in closed loop: generated worlds, every platform, noisy odometry and lidar."};
+  std::vector<std::string> kinds(sim::world_kinds().begin(), sim::world_kinds().end());
+  std::vector<std::string> platforms{"wheeled", "tracked", "legged"};
+  int goals = 500;
+  std::uint64_t first = 1;
+  double slowness = 4.0;
+  bool planar = false, each = false;
+  app.add_option("--goals", goals, "how many (default 500)")->check(CLI::Range(1, 100000));
+  app.add_option("--first", first, "the first seed (default 1)");
+  app.add_option("--kinds", kinds, "worlds (default all)")->check(CLI::IsMember(kinds));
+  app.add_option("--platforms", platforms, "platforms (default wheeled tracked legged)");
+  app.add_option("--slowness", slowness, "time allowed, in straight drives at half speed (default 4)");
+  app.add_flag("--planar", planar, "one ring instead of the full lidar: faster");
+  app.add_flag("--each", each, "a line for each goal that was not as it should be");
+  app.footer("Examples:\n  goals --goals 500\n  goals --goals 20 --kinds cave maze --each");
+  CLI11_PARSE(app, argc, argv);
+
+  const auto agents = sim::make_agent_factory();
+  if (!agents) return std::fprintf(stderr, "goals: %s\n", agents.error().text.c_str()), 1;
+  std::vector<Outcome> outcomes(static_cast<std::size_t>(goals));
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t n = next++; n < outcomes.size(); n = next++) {
+      const std::string& kind = kinds[n % kinds.size()];
+      const std::string& platform = platforms[n / kinds.size() % platforms.size()];
+      const auto course = draw_course(kind, platform, first + n);
+      if (course)
+        outcomes[n] = run(*course, *agents, slowness, planar);
+      else
+        outcomes[n] = {.course = {kind, platform, first + n, {0, 0}, {0, 0}, 0, 1, true},
+                       .error = course.error().text};
+      std::fprintf(stderr, "\r%zu of %zu ", n + 1, outcomes.size());
+    }
+  };
+  std::vector<std::thread> workers;
+  for (unsigned n = 0; n < std::max(1u, std::thread::hardware_concurrency()); ++n) workers.emplace_back(work);
+  for (std::thread& worker : workers) worker.join();
+  std::fprintf(stderr, "\r");
+
+  std::map<std::string, Row> by_kind, by_platform;
+  Row all;
+  for (const Outcome& o : outcomes) {
+    for (Row* row : {&by_kind[o.course.kind], &by_platform[o.course.platform], &all}) row->add(o);
+    const bool good = o.error.empty() && o.collisions == 0 && (o.course.reachable ? o.arrived : o.told);
+    if (each && !good)
+      fmt::print("{} {} seed {}: ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}){}{}{} {}\n", o.course.kind,
+                 o.course.platform, o.course.seed, o.course.start.x(), o.course.start.y(), o.course.goal.x(),
+                 o.course.goal.y(), o.collisions > 0 ? ", collided" : "",
+                 o.course.reachable && !o.arrived ? ", not reached" : "",
+                 !o.course.reachable && !o.told ? ", cannot be reached and that was not told" : "", o.error);
+  }
+  fmt::print(
+      "| | goals | reached | out of reach | told | with a collision | smallest clearance, m | time / "
+      "straight drive | "
+      "failed to run |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const auto& [name, row] : by_kind) row.print(name);
+  for (const auto& [name, row] : by_platform) row.print(name);
+  all.print("all");
+  return 0;
+}
