@@ -63,8 +63,8 @@ std::vector<std::string> candidates(const std::vector<std::string>& all_words,
       all_words.begin() + static_cast<std::ptrdiff_t>(std::min(at, all_words.size())), all_words.end());
   if (words.size() <= 1) {
     std::vector<std::string> out = command_names();
-    out.insert(out.end(),
-               {"help", "completion", "--name", "--link", "--json", "--domain", "--interface", "--peer"});
+    out.insert(out.end(), {"help", "completion", "--name", "--link", "--json", "--domain", "--interface",
+                           "--peer", "--at"});
     return out;
   }
   if (words[0] == "help") return command_names();

@@ -133,8 +133,8 @@ TEST_F(Cli, AStationOnAnotherDomainIsNotAskedByMistake) {
 }
 
 TEST_F(Cli, AnAddressDoesNotSwallowTheCommand) {
-  const auto asked =
-      run({"--interface", "127.0.0.1", "--peer", "127.0.0.1", "--peer", "127.0.0.1:7", "status"});
+  const auto asked = run({"--interface", "127.0.0.1", "--peer", "127.0.0.1", "--peer", "127.0.0.1:7", "--at",
+                          "1", "-2", "0.5", "status"});
   EXPECT_EQ(asked.exit_code, 0) << asked.err;
   EXPECT_THAT(asked.out, HasSubstr("station op1"));
 }

@@ -116,13 +116,13 @@ TYPED_TEST(LinkConformance, ASaturatedLinkCarriesItsBandwidthAndUrgentGoesFirst)
 }
 
 TYPED_TEST(LinkConformance, TheSenderKnowsItsQueueAndWhatItDroppedAndWhatPeersGot) {
-  this->open({.bandwidth = 50e3, .latency = 0.01, .queue = 1.0});
+  this->open({.bandwidth = 200e3, .latency = 0.01, .queue = 1.0});
   const SenderState rest = this->a->sender();
   ASSERT_NE(rest.link, nullptr);
-  EXPECT_EQ(rest.link->bandwidth, 50e3);
+  EXPECT_EQ(rest.link->bandwidth, 200e3);
   for (std::uint32_t i = 0; i < 5; ++i) this->write(state, i, 4000);
   const SenderState full = this->a->sender();
-  EXPECT_GT(full.queue[3], 300ms);
+  EXPECT_GT(full.queue[3], 100ms);
   EXPECT_EQ(full.queue[0], 0ms);
   ASSERT_TRUE(this->net->until([&] { return this->a->sender().waiting(4) == 0ms; }));
   const auto peers = this->a->peers();
@@ -154,6 +154,32 @@ TYPED_TEST(LinkConformance, OfStatesTheNewestIsSent) {
   const auto all = seen.all();
   EXPECT_LT(all.size(), 60U);
   EXPECT_LT(all.back().at - all[all.size() - 2].at, 300ms);
+}
+
+TEST(LiveRange, WhoIsBelievedFarAwayHearsNothingUntilHeIsNear) {
+  LiveNet net({{.bandwidth = 1e6, .latency = 0.0, .range = 50.0, .fading = 2.0}});
+  const auto strand = net.strand("test");
+  const auto a = net.join("a"), b = net.join("b");
+  Seen<int> seen;
+  const auto writer = a->make_writer(state, "").value();
+  const auto reader = b->make_reader(state, "", *strand, [&](auto, const SampleInfo&) {
+                         seen.add(1);
+                         return true;
+                       }).value();
+  const auto heard = [&] {
+    const std::size_t before = seen.size();
+    EXPECT_TRUE(writer->write(sample(1)).ok());
+    return net.until([&] { return seen.size() > before; }, 300ms);
+  };
+  ASSERT_TRUE(net.until([&] { return writer->matched() == 1 && heard(); }));
+  a->set_place(a->id(), {0, 0, 0});
+  a->set_place(b->id(), {100, 0, 0});
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(heard());
+  a->set_place(b->id(), {10, 0, 0});
+  EXPECT_TRUE(net.until(heard));
+  const auto peers = a->peers();
+  ASSERT_EQ(peers.size(), 1U);
+  EXPECT_NEAR(peers[0].signal.value(), 27.0 - 40.0 - 20.0, 1e-9);
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
                        .software = ADIT_VERSION,
                        .link = link->name,
                        .bandwidth = link->bandwidth,
+                       .place = std::array{options.at[0], options.at[1], options.at[2]},
                        .presence = hooks.presence,
                        .discovery_grace = hooks.discovery_grace};
   for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
