@@ -259,6 +259,7 @@ SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t 
   SimulationParams out;
   if (scenario.lidar == LidarKind::planar) out.lidar = LidarParams::planar();
   out.seed = seed;
+  out.people = scenario.people;
   return out;
 }
 

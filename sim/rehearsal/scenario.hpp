@@ -12,6 +12,7 @@
 #include "core/time/time.hpp"
 #include "core/wire/link.hpp"
 #include "sim/rehearsal/fault.hpp"
+#include "sim/world/person.hpp"
 
 /// A rehearsal as its YAML file says it; docs/rehearsal.md is the reference.
 namespace adit::sim {
@@ -106,6 +107,7 @@ struct Scenario {
   Duration lock_lease{300s};  ///< 0: a lock never lapses
   std::vector<RobotSpec> robots{};
   std::vector<StationSpec> stations{};
+  std::vector<PersonSpec> people{};
   std::vector<ScriptLine> script{};  ///< by time
   std::optional<RandomScript> random{};
   std::vector<Fault> faults{};  ///< by time

@@ -97,6 +97,21 @@ void read_robots(const Node& root, Scenario& out) {
   }
 }
 
+void read_people(const Node& root, Scenario& out) {
+  for (const Node& person : root.list_if("people")) {
+    PersonSpec spec;
+    for (const Node& place : person.list("path")) {
+      const std::vector<double> at = place.as_numbers(2, 2, config::within(-1e5, 1e5));
+      if (at.size() == 2) spec.path.emplace_back(at[0], at[1]);
+    }
+    if (spec.path.size() < 2 || spec.path.size() > 100)
+      person.fail(Reason::bad_argument, "expected a path of 2 to 100 places [x, y]");
+    spec.speed = person.number("speed", config::above(0.0, 3.0), spec.speed);
+    out.people.push_back(std::move(spec));
+  }
+  if (out.people.size() > 100) root.child("people").fail(Reason::out_of_range, "expected at most 100 people");
+}
+
 }  // namespace
 
 std::string read_name(const config::Node& node, const char* key) {
@@ -157,6 +172,7 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;
   out.lock_lease = from_seconds(root.number("lock_lease", config::within(0.0, longest), 300.0));
   read_robots(root, out);
+  read_people(root, out);
   out.script = read_script(root, out);
   if (root.has("random_script")) out.random = read_random(root.child("random_script"), out);
   out.faults = read_faults(root, out);

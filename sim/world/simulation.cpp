@@ -18,6 +18,12 @@ Result<Simulation> Simulation::create(std::shared_ptr<const World> world, std::v
   Simulation simulation(std::move(world), params);
   for (const RobotStart& start : robots)
     if (const Result<void> added = simulation.add(start); !added) return added.error();
+  if (params.people.size() > 100) return {Reason::bad_argument, "people: at most 100"};
+  for (const PersonSpec& person : params.people) {
+    if (person.path.size() < 2 || person.path.size() > 100 || !(person.speed > 0.0 && person.speed <= 3.0))
+      return {Reason::bad_argument, "people: expected a path of 2 to 100 places and a speed of 0 to 3 m/s"};
+    simulation.people_.emplace_back(person);
+  }
   for (std::size_t n = 0; n < simulation.size(); ++n) {
     simulation.robots_[n].truth.min_clearance = std::numeric_limits<double>::infinity();
     simulation.measure(n);
@@ -73,6 +79,8 @@ std::optional<std::size_t> Simulation::contact(std::size_t robot, const Rectangl
   if (robots_[robot].ground->touches(body)) return robots_.size();
   for (std::size_t n = 0; n < robots_.size(); ++n)
     if (n != robot && overlap(body, footprint(robots_[n].body.platform(), robots_[n].body.pose()))) return n;
+  for (const Person& person : people_)
+    if (overlap(body, person.body())) return robots_.size() + 1;
   return std::nullopt;
 }
 
@@ -86,8 +94,23 @@ void Simulation::record(std::size_t robot, std::size_t partner) {
   }
   robots_[robot].truth.min_clearance = 0.0;
   if (collisions_.size() < limit)
-    collisions_.push_back({now_, robots_[robot].id, partner < robots_.size() ? robots_[partner].id : "world",
-                           robots_[robot].body.pose()});
+    collisions_.push_back({now_, robots_[robot].id, partner_name(partner), robots_[robot].body.pose()});
+}
+
+std::string Simulation::partner_name(std::size_t partner) const {
+  if (partner < robots_.size()) return robots_[partner].id;
+  return partner == robots_.size() ? "world" : "a person";
+}
+
+void Simulation::walk(Person& person) {
+  const double dt = seconds(params_.step);
+  const Rectangle next = person.next(dt);
+  for (const Robot& robot : robots_) {
+    const Rectangle body = footprint(robot.body.platform(), robot.body.pose());
+    const double then = distance(next, body);
+    if (then < Person::respect && then <= distance(person.body(), body)) return;
+  }
+  person.take(dt);
 }
 
 void Simulation::move(std::size_t index) {
@@ -133,12 +156,14 @@ void Simulation::measure(std::size_t index) {
     if (n != index)
       clearance =
           std::min(clearance, distance(body, footprint(robots_[n].body.platform(), robots_[n].body.pose())));
+  for (const Person& person : people_) clearance = std::min(clearance, distance(body, person.body()));
   robot.truth.min_clearance = clearance;
 }
 
 void Simulation::step() {
   now_ += params_.step;
   ++steps_;
+  for (Person& person : people_) walk(person);
   for (std::size_t n = 0; n < robots_.size(); ++n) move(n);
   for (std::size_t n = 0; n < robots_.size(); ++n) measure(n);
 }
@@ -153,6 +178,14 @@ Simulation::ScanJob Simulation::scan(std::size_t index) const {
                 platform.height};
     // In the ring's plane, however low it is.
     if (params_.lidar.profile) box = {box.pose, job.base.position.z(), box.length, box.width, 2.0 * height};
+    job.others.push_back(box);
+  }
+  for (const Person& person : people_) {
+    const Rectangle body = person.body();
+    const double ground = robots_[index].ground->ground(body.pose.x, body.pose.y);
+    BodyBox box{body.pose, std::isnan(ground) ? job.base.position.z() : ground, body.length, body.width,
+                Person::height};
+    if (params_.lidar.profile) box.ground = job.base.position.z();
     job.others.push_back(box);
   }
   job.seed = derive_seed(params_.seed ^ (steps_ << 8), 2 * index + 2);

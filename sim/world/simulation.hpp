@@ -9,6 +9,7 @@
 #include "sim/world/body.hpp"
 #include "sim/world/lidar.hpp"
 #include "sim/world/odometry.hpp"
+#include "sim/world/person.hpp"
 #include "sim/world/standing_map.hpp"
 #include "sim/world/world.hpp"
 
@@ -20,6 +21,7 @@ struct SimulationParams {
   LidarParams lidar{};
   OdometryParams odometry{};
   std::uint64_t seed{1};
+  std::vector<PersonSpec> people{};  ///< at most 100
 };
 
 /// A robot to be put into the world.
@@ -33,7 +35,7 @@ struct RobotStart {
 struct Collision {
   Duration at{};
   std::string robot{};    ///< the one that moved
-  std::string partner{};  ///< another robot's id, or "world"
+  std::string partner{};  ///< another robot's id, "world", or "a person"
   Pose2 pose{};           ///< of `robot`, where it was held, world
 };
 
@@ -52,7 +54,7 @@ struct Truth {
 class Simulation {
  public:
   /// Reason::bad_argument when two robots share an id or overlap, or one starts in a wall or without ground;
-  /// the text names them.
+  /// the text names them; or when a person has no path.
   static Result<Simulation> create(std::shared_ptr<const World> world, std::vector<RobotStart> robots,
                                    const SimulationParams& params);
 
@@ -62,6 +64,7 @@ class Simulation {
   Duration now() const { return now_; }
 
   std::size_t size() const { return robots_.size(); }
+  const std::vector<Person>& people() const { return people_; }
   const std::string& id(std::size_t robot) const { return robots_[robot].id; }
   std::optional<std::size_t> find(const std::string& id) const;
   const Platform& platform(std::size_t robot) const { return robots_[robot].body.platform(); }
@@ -100,7 +103,7 @@ class Simulation {
     std::shared_ptr<const StandingMap> ground;
     std::shared_ptr<const World> seen;  ///< by its lidar
     Truth truth{};
-    std::optional<std::size_t> partner{};  ///< of the contact that lasts; size() for the world
+    std::optional<std::size_t> partner{};  ///< of the contact that lasts, see contact()
     Pose2 contact{};                       ///< where it began
     int jams{};                            ///< of its drive, that last
   };
@@ -109,7 +112,9 @@ class Simulation {
   static Rectangle footprint(const Platform& platform, const Pose2& pose);
   Result<void> add(const RobotStart& start);
   void move(std::size_t robot);
-  /// What the footprint would touch: a robot's index, size() for the world, nothing.
+  void walk(Person& person);
+  std::string partner_name(std::size_t partner) const;
+  /// What the footprint would touch: a robot's index, size() for the world, size() + 1 for a person, nothing.
   std::optional<std::size_t> contact(std::size_t robot, const Rectangle& footprint) const;
   void record(std::size_t robot, std::size_t partner);
   void measure(std::size_t robot);
@@ -121,6 +126,7 @@ class Simulation {
   std::uint64_t steps_{0};
   std::vector<Robot> robots_{};
   std::vector<Collision> collisions_{};
+  std::vector<Person> people_{};
 };
 
 }  // namespace adit::sim
