@@ -18,6 +18,7 @@ class Person {
  public:
   static constexpr double size{0.45};    ///< m
   static constexpr double height{1.75};  ///< m
+  static constexpr double respect{0.4};  ///< they come no nearer to a robot, m
 
   explicit Person(PersonSpec spec);
   /// Where the body would be after `dt` seconds; the person stays until take().

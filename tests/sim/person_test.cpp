@@ -40,7 +40,7 @@ TEST(Person, WaitsBeforeARobotThatStands) {
   for (int n = 0; n < 1000; ++n) s.step();
   EXPECT_GT(x(s), 0.0);
   EXPECT_EQ(s.truth(0).collisions, 0u);
-  EXPECT_LT(s.truth(0).min_clearance, 0.05) << "and it is near";
+  EXPECT_NEAR(s.truth(0).min_clearance, Person::respect, 0.05) << "and it is near";
 }
 
 TEST(Person, IsHitByARobotThatDoesNotLook) {
