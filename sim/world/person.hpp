@@ -13,7 +13,7 @@ struct PersonSpec {
 };
 
 /// A person in the true world: a box of 0.45 m that lidars see and robots can hit. People look where they go:
-/// they wait while the next step would touch a robot, so a contact is a robot's fault.
+/// they wait rather than come near a robot, so a contact is a robot's fault.
 class Person {
  public:
   static constexpr double size{0.45};    ///< m
