@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "core/wire/fastdds/counting_transport.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
 
 namespace adit::wire {
@@ -13,15 +14,16 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// An RTPS message with one DATA (0x15) or DATA_FRAG (0x16) of that writer, `tag` at its end.
+/// An RTPS message with one DATA (0x15) or DATA_FRAG (0x16) of that writer, of sequence number `tag`, which
+/// is at its end as well.
 Bytes rtps(std::uint8_t kind, std::uint32_t writer, std::uint8_t tag = 0) {
   Bytes m(20);
   m[0] = 'R', m[1] = 'T', m[2] = 'P', m[3] = 'S';
   const Bytes stamp{0x09, 1, 8, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   m.insert(m.end(), stamp.begin(), stamp.end());
   const auto id = [writer](int shift) { return static_cast<std::uint8_t>(writer >> shift); };
-  const Bytes data{kind,   1,     21,    0, 0, 0, 16, 0, 0, 0, 0, 0,  id(24),
-                   id(16), id(8), id(0), 0, 0, 0, 0,  1, 0, 0, 0, tag};
+  const Bytes data{kind, 1, 28, 0, 0,   0, 16, 0, 0, 0, 0, 0, id(24), id(16), id(8), id(0),
+                   0,    0, 0,  0, tag, 0, 0,  0, 1, 0, 0, 0, 0,      0,      0,     tag};
   m.insert(m.end(), data.begin(), data.end());
   return m;
 }
@@ -47,6 +49,77 @@ TEST(RtpsPeek, AnythingElseHasNoWriter) {
     EXPECT_EQ(seen.writer.has_value(), n >= 48) << n;
   }
   EXPECT_FALSE(peek(rtps(0x07, 0x103)).writer);  // a heartbeat
+}
+
+/// Submessages behind the header of a Fast DDS participant: kind, then its body.
+Bytes message(const std::vector<Bytes>& submessages) {
+  Bytes m{'R', 'T', 'P', 'S', 2, 3, 1, 15, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9};
+  for (const Bytes& sub : submessages) {
+    m.insert(m.end(), {sub[0], 1, static_cast<std::uint8_t>(sub.size() - 1), 0});
+    m.insert(m.end(), sub.begin() + 1, sub.end());
+  }
+  return m;
+}
+Bytes heartbeat(std::uint8_t writer, std::uint8_t last, std::uint8_t count) {
+  return {0x07, 0, 0, 0, 7, 0, 0,    writer, 2, 0, 0,     0, 0, 1, 0,
+          0,    0, 0, 0, 0, 0, last, 0,      0, 0, count, 0, 0, 0};
+}
+Bytes statistics() {
+  Bytes body(57);
+  body[0] = 0x80;
+  return body;
+}
+
+TEST(RtpsPeek, ARepairOrAHeartbeatMeansWhatTheOneBeforeMeant) {
+  const auto meaning = [](const Bytes& m) { return peek(m).meaning; };
+  EXPECT_NE(meaning(rtps(0x15, 0x103, 1)), 0U);
+  EXPECT_EQ(meaning(rtps(0x15, 0x103, 1)), meaning(rtps(0x15, 0x103, 1)));
+  EXPECT_NE(meaning(rtps(0x15, 0x103, 1)), meaning(rtps(0x15, 0x103, 2)));
+  EXPECT_NE(meaning(rtps(0x15, 0x103, 1)), meaning(rtps(0x15, 0x203, 1)));
+  EXPECT_NE(meaning(rtps(0x15, 0x103, 1)), meaning(rtps(0x16, 0x103, 1)));
+  EXPECT_EQ(meaning(message({heartbeat(1, 5, 1)})), meaning(message({heartbeat(1, 6, 2)})));
+  EXPECT_NE(meaning(message({heartbeat(1, 5, 1)})), meaning(message({heartbeat(2, 5, 1)})));
+  EXPECT_EQ(meaning(message({})), 0U);
+  EXPECT_EQ(meaning(message({Bytes{0x07, 0, 0}})), 0U);
+}
+
+TEST(RtpsPeek, TellsWhoSentItAndWhomItIsMeantFor) {
+  const RtpsPeek seen = peek(message({Bytes{0x0e, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5}, heartbeat(1, 5, 1)}));
+  ParticipantId nine{}, five{};
+  nine.fill(9), five.fill(5);
+  EXPECT_EQ(seen.source, nine);
+  EXPECT_EQ(seen.destination, five);
+  EXPECT_FALSE(peek(message({heartbeat(1, 5, 1)})).destination);
+}
+
+TEST(RtpsPeek, StatisticsAreCutFromFastDdsMessagesAlone) {
+  Bytes m = message({heartbeat(1, 5, 1), statistics()});
+  EXPECT_EQ(without_statistics(m), m.size() - 60);
+  const Bytes cut = message({heartbeat(1, 5, 1)});
+  EXPECT_EQ(without_statistics(cut), cut.size());
+  m[7] = 16;  // another vendor's
+  EXPECT_EQ(without_statistics(m), m.size());
+  for (std::size_t n = 0; n < 80; ++n) EXPECT_EQ(without_statistics(std::span(m).first(n)), n);
+}
+
+TEST(HeartbeatFilter, LetsOneThatSaysNothingNewPassOnlySoOften) {
+  HeartbeatFilter filter(200ms);
+  const auto passes = [&](const Bytes& m, std::uint16_t port, Duration at) {
+    return filter.passes(m, 1, port, at);
+  };
+  EXPECT_TRUE(passes(message({heartbeat(1, 5, 1)}), 1, 0ms));
+  EXPECT_FALSE(passes(message({heartbeat(1, 5, 2)}), 1, 100ms));
+  EXPECT_TRUE(passes(message({heartbeat(1, 5, 2)}), 2, 100ms));  // another peer
+  EXPECT_TRUE(passes(message({heartbeat(2, 5, 3)}), 1, 100ms));  // another writer
+  EXPECT_TRUE(passes(message({heartbeat(1, 6, 4)}), 1, 110ms));  // there is more to ask for
+  EXPECT_FALSE(passes(message({heartbeat(1, 6, 5)}), 1, 300ms));
+  EXPECT_TRUE(passes(message({heartbeat(1, 6, 6)}), 1, 311ms));
+  for (int i = 0; i < 3; ++i) {
+    Bytes with_sample = rtps(0x15, 0x103, 1);
+    const Bytes beat = message({heartbeat(1, 6, 7)});
+    with_sample.insert(with_sample.end(), beat.begin() + 20, beat.end());
+    EXPECT_TRUE(passes(with_sample, 1, 312ms));
+  }
 }
 
 /// A socket that waits for what a link lets through.
@@ -111,8 +184,8 @@ TEST(LiveLink, TellsWhatWaitsAndWhatWasDroppedByClass) {
   link.send(rtps(0x15, 0x303), loopback, receiver.port);  // of no writer that it knows: as discovery
   const SenderState state = link.sender();
   EXPECT_EQ(state.link->bandwidth, 1e3);
-  // 85 bytes each; the first may be on the air already.
-  EXPECT_EQ(state.queue[3], 680ms);
+  // 92 bytes each; the first may be on the air already.
+  EXPECT_EQ(state.queue[3], 736ms);
   EXPECT_GE(state.dropped[3], 2U);
   EXPECT_EQ(state.waiting(3), state.queue[1] + state.queue[3]);
   EXPECT_EQ(state.lost(2), 0U);
@@ -133,6 +206,17 @@ TEST(LiveLink, BeyondTheRangeNothingArrives) {
   EXPECT_EQ(receiver.tags(100), Bytes{8});
 }
 
+TEST(LiveLink, WhatIsAskedForAgainWhileItWaitsIsSentOnce) {
+  Receiver receiver;
+  LiveLink link({.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, {"127.0.0.1"}, {});
+  for (int i = 0; i < 10; ++i) {
+    for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x3c2, tag), loopback, receiver.port);
+  }
+  const Bytes tags = receiver.tags(300);
+  EXPECT_LE(tags.size(), 4U);  // the first may have been on the air already
+  for (const std::uint8_t tag : {1, 2, 3}) EXPECT_GE(std::count(tags.begin(), tags.end(), tag), 1);
+}
+
 TEST(LiveLink, LosesDropsAndCounts) {
   Receiver receiver;
   {
@@ -141,7 +225,7 @@ TEST(LiveLink, LosesDropsAndCounts) {
     EXPECT_TRUE(receiver.tags(50).empty());
   }
   LiveLink slow({.bandwidth = 1e3, .queue = 0.01}, 1, {"127.0.0.1"}, {});
-  for (int i = 0; i < 5; ++i) slow.send(rtps(0x15, 1), loopback, receiver.port);
+  for (std::uint8_t i = 0; i < 5; ++i) slow.send(rtps(0x15, 1, i), loopback, receiver.port);
   slow.close();
   slow.send(rtps(0x15, 1), loopback, receiver.port);
   EXPECT_GE(slow.dropped(), 1U);  // after the end

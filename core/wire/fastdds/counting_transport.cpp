@@ -7,6 +7,7 @@
 
 #include "core/wire/fastdds/live_link.hpp"
 #include "core/wire/fastdds/ports.hpp"
+#include "core/wire/fastdds/rtps_peek.hpp"
 
 namespace adit::wire {
 namespace rtps = eprosima::fastrtps::rtps;
@@ -41,6 +42,27 @@ eprosima::fastdds::rtps::TransportDescriptorInterface* CountingTransport::get_co
   return descriptor_;
 }
 
+bool CountingTransport::OpenInputChannel(const rtps::Locator_t& locator,
+                                         eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
+                                         std::uint32_t largest) {
+  if (!rtps::IPLocator::isMulticast(locator))
+    traffic_->own_ports.insert(rtps::IPLocator::getPhysicalPort(locator));
+  return ChainingTransport::OpenInputChannel(locator, receiver, largest);
+}
+
+void CountingTransport::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
+  message = message.first(without_statistics(message));
+  // Robots read what they write, of their own as well: that is no radio traffic.
+  if (traffic_->own_addresses.contains(address) && traffic_->own_ports.contains(port))
+    return traffic_->outlet->send(message, address, port);
+  if (!traffic_->heartbeats.passes(message, address, port,
+                                   std::chrono::steady_clock::now().time_since_epoch()))
+    return;
+  if (traffic_->link) return traffic_->link->send(message, address, port);
+  traffic_->sent(message, address, port);
+  traffic_->outlet->send(message, address, port);
+}
+
 bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rtps::octet* send_buffer,
                              std::uint32_t send_buffer_size,
                              rtps::LocatorsIterator* destination_locators_begin,
@@ -55,8 +77,8 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
     in_addr_t address{};
     std::memcpy(&address, rtps::IPLocator::getIPv4(locator), sizeof address);
     const std::uint16_t port = rtps::IPLocator::getPhysicalPort(locator);
-    if (traffic_->link) {
-      traffic_->link->send({send_buffer, send_buffer_size}, address, port);
+    if (traffic_->outlet) {
+      send({send_buffer, send_buffer_size}, address, port);
       continue;
     }
     traffic_->sent({send_buffer, send_buffer_size}, address, port);

@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <set>
 
+#include "core/wire/fastdds/heartbeat_filter.hpp"
+#include "core/wire/fastdds/outlet.hpp"
 #include "core/wire/fastdds/peer_book.hpp"
 
 namespace adit::wire {
@@ -45,6 +48,12 @@ struct Traffic {
   PeerBook peers{};                  ///< the same by peer
   Gate ready{};                      ///< discovery datagrams wait here
   std::shared_ptr<LiveLink> link{};  ///< what is sent goes through it, if there is one
+  /// A radio: what is sent leaves by it, without what is of no use there. None: by the library's own sockets,
+  /// as it is.
+  std::shared_ptr<Outlet> outlet{};
+  std::set<in_addr_t> own_addresses{};  ///< network order
+  std::set<std::uint16_t> own_ports{};  ///< opened while the participant is made
+  HeartbeatFilter heartbeats{200ms};
 
   /// Counts a datagram that leaves.
   void sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
@@ -52,14 +61,17 @@ struct Traffic {
   void received(std::span<const std::uint8_t> message, std::uint32_t port);
 };
 
-/// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them,
-/// and hands what is sent to the link model where one is named.
+/// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them, takes from
+/// those that leave by radio what is of no use there, and hands them to the link model where one is named.
 class CountingTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
   CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
                     std::shared_ptr<Traffic> traffic);
 
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override;
+  bool OpenInputChannel(const eprosima::fastrtps::rtps::Locator_t& locator,
+                        eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
+                        std::uint32_t largest) override;
   bool send(eprosima::fastrtps::rtps::SenderResource* low_sender_resource,
             const eprosima::fastrtps::rtps::octet* send_buffer, std::uint32_t send_buffer_size,
             eprosima::fastrtps::rtps::LocatorsIterator* destination_locators_begin,
@@ -71,6 +83,9 @@ class CountingTransport final : public eprosima::fastdds::rtps::ChainingTranspor
                const eprosima::fastrtps::rtps::Locator_t& remote_locator) override;
 
  private:
+  /// Sends one datagram by radio.
+  void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
+
   eprosima::fastdds::rtps::ChainingTransportDescriptor* descriptor_;  // owned by whoever made us
   std::shared_ptr<Traffic> traffic_;
 };

@@ -1,5 +1,6 @@
 #include "core/wire/fastdds/fastdds_wire.hpp"
 
+#include <arpa/inet.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/domain/DomainParticipantListener.hpp>
@@ -100,10 +101,13 @@ class FastDdsWire final : public Wire {
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
     auto qos = dds_participant_qos(params, traffic_);
     if (!qos) return qos.error();
+    const std::vector<std::string> loopback{"127.0.0.1"};
+    const auto& interfaces = params.interfaces.empty() ? loopback : params.interfaces;
+    for (const std::string& address : interfaces) traffic_->own_addresses.insert(inet_addr(address.c_str()));
+    if (!params.shared_memory) traffic_->outlet = std::make_shared<Outlet>(interfaces);
     if (params.link) {
-      const std::vector<std::string> loopback{"127.0.0.1"};
       traffic_->link = std::make_shared<LiveLink>(
-          *params.link, params.link_seed, params.interfaces.empty() ? loopback : params.interfaces,
+          *params.link, params.link_seed, interfaces,
           LiveLink::Outputs{[traffic = traffic_.get()](auto message, in_addr_t address, std::uint16_t port) {
                               traffic->sent(message, address, port);
                             },

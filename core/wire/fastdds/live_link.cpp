@@ -1,9 +1,5 @@
 #include "core/wire/fastdds/live_link.hpp"
 
-#include <arpa/inet.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include "core/wire/cost.hpp"
 #include "core/wire/fastdds/ports.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
@@ -18,22 +14,11 @@ constexpr std::uint32_t udp_and_ip = 28;
 
 LiveLink::LiveLink(LinkProfile link, std::uint64_t seed, const std::vector<std::string>& interfaces,
                    Outputs outputs)
-    : link_(std::move(link)), outputs_(std::move(outputs)), random_(seed) {
-  for (const std::string& address : interfaces) {
-    const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (fd < 0) continue;
-    in_addr interface {};
-    ::inet_pton(AF_INET, address.c_str(), &interface);
-    ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &interface, sizeof interface);
-    sockets_.push_back(fd);
-  }
+    : link_(std::move(link)), outputs_(std::move(outputs)), outlet_(interfaces), random_(seed) {
   thread_ = std::thread([this] { run(); });
 }
 
-LiveLink::~LiveLink() {
-  close();
-  for (const int fd : sockets_) ::close(fd);
-}
+LiveLink::~LiveLink() { close(); }
 
 Duration LiveLink::now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
@@ -60,9 +45,12 @@ void LiveLink::send(std::span<const std::uint8_t> message, in_addr_t address, st
       queue_.note_dropped(what.priority);
       return;
     }
-    std::uint64_t number = 0;
-    if (what.newest_wins && seen.whole) {
-      number = (static_cast<std::uint64_t>(address) << 32 | *seen.writer) * 0x9e3779b97f4a7c15ULL + port;
+    // The newest sample of a stream stands for those before it, a repair or a heartbeat for the same one that
+    // waits: else what is asked for again while it waits is sent as often as it was asked for.
+    const bool newest = what.newest_wins && seen.whole;
+    std::uint64_t number = newest ? *seen.writer : seen.meaning;
+    if (number != 0) {
+      number = (number ^ (static_cast<std::uint64_t>(address) << 16 | port)) * 0x9e3779b97f4a7c15ULL;
       number |= 1;
     }
     Packet packet{{message.begin(), message.end()}, address, port};
@@ -70,6 +58,7 @@ void LiveLink::send(std::span<const std::uint8_t> message, in_addr_t address, st
     (void)queue_.push({.item = std::move(packet),
                        .priority = what.priority,
                        .supersedes = number,
+                       .again = !newest,
                        .since = now(),
                        .patience = patience(link_, what.priority),
                        .airtime = cost});
@@ -123,7 +112,8 @@ Duration LiveLink::step(Duration at) {
     put_on_air(std::move(next->message.item), next->message.priority, start, next->airtime);
   }
   while (!in_air_.empty() && in_air_.begin()->first <= at) {
-    deliver(in_air_.begin()->second);
+    const Packet& packet = in_air_.begin()->second;
+    outlet_.send(packet.bytes, packet.address, packet.port);
     in_air_.erase(in_air_.begin());
   }
   Duration soonest = in_air_.empty() ? Duration::max() : in_air_.begin()->first;
@@ -147,20 +137,6 @@ void LiveLink::put_on_air(Packet packet, int priority, Duration at, Duration air
   // Multicast is one frame: all hear it or nobody does.
   if (channels_[peer_of(packet)].lost(link_, path, bytes, std::nullopt, random_)) return;
   in_air_.emplace(at + airtime + transit(link_, random_), std::move(packet));
-}
-
-void LiveLink::deliver(const Packet& packet) const {
-  sockaddr_in to{};
-  to.sin_family = AF_INET;
-  to.sin_addr.s_addr = packet.address;
-  to.sin_port = htons(packet.port);
-  const bool multicast = IN_MULTICAST(ntohl(packet.address));
-  for (const int fd : sockets_) {
-    // What the socket does not take is lost, as on the air.
-    (void)::sendto(fd, packet.bytes.data(), packet.bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to),
-                   sizeof to);
-    if (!multicast) return;
-  }
 }
 
 std::uint64_t LiveLink::peer_of(const Packet& packet) const {

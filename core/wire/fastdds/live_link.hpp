@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/wire/fastdds/outlet.hpp"
 #include "core/wire/link/model.hpp"
 #include "core/wire/link/transmitter.hpp"
 #include "core/wire/link_state.hpp"
@@ -69,12 +70,11 @@ class LiveLink {
   Duration step(Duration at);
   Duration airtime(const Packet& packet) const;
   void put_on_air(Packet packet, int priority, Duration at, Duration airtime);
-  void deliver(const Packet& packet) const;
   std::uint64_t peer_of(const Packet& packet) const;
 
   LinkProfile link_;
   Outputs outputs_;
-  std::vector<int> sockets_{};  // one per interface; the first one for unicast
+  Outlet outlet_;
   mutable std::mutex mutex_{};
   std::condition_variable wake_{};
   Random random_;

@@ -27,6 +27,10 @@ constexpr std::uint32_t segment =
     8 << 20;  // the default of 512 kB makes samples of 1 MiB take 22 ms instead of 1 ms
 constexpr std::uint32_t participants_per_host = 16;  // ports tried at an address that is named without one
 constexpr std::uint32_t udp_and_ip = 28;
+constexpr std::uint32_t send_buffer = 212992;  // B, as Linux has it
+/// The library keeps room in each message for statistics, 60 B that are cut off again, and for a heartbeat,
+/// 32 B, which hardly ever goes with a fragment. With 20 of these an endpoint fits one frame of 500 B.
+constexpr std::uint32_t never_sent = 60 + 20;
 constexpr const char* everybody = "239.255.0.1";  // RTPS multicast group
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
@@ -113,10 +117,12 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   }
   if (udp->interfaceWhiteList.empty()) udp->interfaceWhiteList.push_back("127.0.0.1");
   udp->non_blocking_send = true;
-  udp->maxMessageSize = params.shared_memory ? loopback_datagram : WireCost::frame;
-  if (params.link)
-    udp->maxMessageSize = std::min(udp->maxMessageSize, params.link->frame_bytes() - udp_and_ip);
+  // Without a size the library takes the buffer for full after each sample, and a heartbeat goes with each
+  // fragment and each repair to every reader, which every reader acknowledges.
+  udp->sendBufferSize = send_buffer;
+  udp->maxMessageSize = params.shared_memory ? loopback_datagram : WireCost::frame + never_sent;
   if (params.link) {
+    udp->maxMessageSize = std::min(udp->maxMessageSize, params.link->frame_bytes() - udp_and_ip + never_sent);
     const Budget budget;
     add_flow(bulk_flow, budget.share[5], *params.link, qos);
     add_flow(video_flow, budget.share[6], *params.link, qos);

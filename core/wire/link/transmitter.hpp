@@ -25,6 +25,7 @@ class Transmitter {
     std::uint16_t sent{};     ///< of them already
     int priority{};
     std::uint64_t supersedes{};  ///< not 0: replaces a waiting one of this number
+    bool again{};                ///< it says the same as that one: nothing is lost then
     Duration since{};
     Duration patience{};  ///< dropped when it waited longer
     Duration airtime{};   ///< of one frame, as it was when it began to wait: for waiting()
@@ -40,7 +41,7 @@ class Transmitter {
       for (Waiting& old : queue) {
         if (old.supersedes != waiting.supersedes || old.sent > 0) continue;
         std::swap(old, waiting);
-        ++dropped_[static_cast<std::size_t>(waiting.priority)];
+        if (!waiting.again) ++dropped_[static_cast<std::size_t>(waiting.priority)];
         return std::move(waiting.item);
       }
     }
