@@ -13,14 +13,12 @@ struct WireCost {
   static constexpr std::uint32_t frame = 1400;           ///< largest one, where no link says otherwise
   static constexpr std::uint32_t headers = 20 + 20 + 8;  ///< RTPS, IP, UDP: once per frame
   static constexpr std::uint32_t data = headers + 16 + 12 + 24;  ///< + INFO_DST, INFO_TS, DATA
-  static constexpr std::uint32_t key = 24;                       ///< key hash as inline QoS
   static constexpr std::uint32_t heartbeat = headers + 16 + 32;
   static constexpr std::uint32_t piggyback = 32;  ///< a heartbeat that goes with a sample
   static constexpr std::uint32_t acknack = headers + 16 + 32;
   static constexpr std::uint32_t gap = headers + 16 + 36;
-  static constexpr std::uint32_t participant = 340;  ///< announcement
-  static constexpr std::uint32_t endpoint =
-      950;  ///< one endpoint announced to one peer, with what acknowledges it
+  static constexpr std::uint32_t participant = 290;  ///< announcement
+  static constexpr std::uint32_t endpoint = 480;     ///< one endpoint announced to one peer
   static constexpr std::uint32_t goodbye = 150;
   static constexpr int discovery_priority = 1;  ///< after urgent samples
   static constexpr Duration response = 5ms;     ///< to heartbeats and to acknacks
@@ -31,8 +29,8 @@ struct WireCost {
     return static_cast<std::uint16_t>(std::clamp<std::size_t>((payload + room - 1) / room, 1, 65535));
   }
   /// Bytes of that sample to one reader.
-  static constexpr std::uint32_t sample(std::size_t payload, bool keyed, std::uint32_t largest = frame) {
-    return static_cast<std::uint32_t>(payload) + frames(payload, largest) * (data + (keyed ? key : 0U));
+  static constexpr std::uint32_t sample(std::size_t payload, std::uint32_t largest = frame) {
+    return static_cast<std::uint32_t>(payload) + frames(payload, largest) * data;
   }
 };
 

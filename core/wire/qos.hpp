@@ -57,9 +57,13 @@ struct Discovery {
   static constexpr Duration lease = 60s;             ///< a silent participant is dropped after it
   static constexpr Duration announcement = 25s;      ///< period of participant announcements
   static constexpr Duration initial_period = 400ms;  ///< period of the first ones
-  /// Their number: 6 s of them. A participant answers another's first one only, once; where that answer is
-  /// lost, these are what the other hears next.
-  static constexpr int initial_announcements = 15;
+  static constexpr int initial_announcements = 15;   ///< their number: 6 s of them
+  /// Whoever was heard and does not show that it heard us is told of us again, each time that it announces
+  /// itself so often. Fast DDS alone answers once: that lost, the other hears of us with our next
+  /// announcement.
+  static constexpr Duration tell_period = 200ms;
+  static constexpr int tells = 12;
+  static constexpr Duration heartbeat = 250ms;  ///< of endpoints that a peer has not acknowledged
 };
 
 }  // namespace adit::wire

@@ -166,7 +166,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, LossySender, testing::Range<std::uint64_t>(1, 11
 TEST_P(LossySender, EveryCommandIsAnsweredOverALossyLink) {
   FakeRobot& r1 = add("r1");
   start();
-  run_for(60s);  // an answer to the first announcement that was lost comes with the next, 25 s later
+  run_for(10s);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(execute(i % 2 == 0 ? "take r1" : "goto r1 1 1").exit_code, 0) << i;
   EXPECT_EQ(op_->counts().accepted, 20U);
   EXPECT_EQ(r1.numbers().size(), 20U);

@@ -26,10 +26,18 @@ void Traffic::sent(std::span<const std::uint8_t> message, in_addr_t address, std
 }
 
 void Traffic::received(std::span<const std::uint8_t> message, std::uint32_t port) {
+  const RtpsPeek seen = peek(message);
+  if (seen.source && contact.is_own(*seen.source)) return;  // did not come by radio
   const std::uint64_t bytes = message.size() + udp_and_ip;
   total_in.fetch_add(bytes, std::memory_order_relaxed);
   if (is_discovery_port(port)) discovery_in.fetch_add(bytes, std::memory_order_relaxed);
-  peers.received(peek(message), bytes);
+  peers.received(seen, bytes);
+}
+
+void Traffic::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
+  if (link) return link->send(message, address, port);
+  sent(message, address, port);
+  outlet->send(message, address, port);
 }
 
 CountingTransport::CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
@@ -55,12 +63,15 @@ void CountingTransport::send(std::span<const std::uint8_t> message, in_addr_t ad
   // Robots read what they write, of their own as well: that is no radio traffic.
   if (traffic_->own_addresses.contains(address) && traffic_->own_ports.contains(port))
     return traffic_->outlet->send(message, address, port);
-  if (!traffic_->heartbeats.passes(message, address, port,
-                                   std::chrono::steady_clock::now().time_since_epoch()))
-    return;
-  if (traffic_->link) return traffic_->link->send(message, address, port);
-  traffic_->sent(message, address, port);
-  traffic_->outlet->send(message, address, port);
+  const Duration now = std::chrono::steady_clock::now().time_since_epoch();
+  std::vector<std::uint8_t> changed;
+  if (is_discovery_port(port)) {
+    changed.assign(message.begin(), message.end());
+    message = changed;
+    if (!traffic_->contact.sent(changed, address, port, now)) return;
+  }
+  if (traffic_->heartbeats.passes(message, address, port, now)) traffic_->send(message, address, port);
+  if (traffic_->repeats) traffic_->repeats->wake();
 }
 
 bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rtps::octet* send_buffer,
@@ -95,7 +106,12 @@ void CountingTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterf
                                 const rtps::Locator_t& local_locator, const rtps::Locator_t& remote_locator) {
   const std::uint16_t port = rtps::IPLocator::getPhysicalPort(local_locator);
   traffic_->received({receive_buffer, receive_buffer_size}, port);
-  if (is_discovery_port(port)) traffic_->ready.wait();
+  if (is_discovery_port(port)) {
+    traffic_->contact.received({receive_buffer, receive_buffer_size},
+                               std::chrono::steady_clock::now().time_since_epoch());
+    if (traffic_->repeats) traffic_->repeats->wake();
+    traffic_->ready.wait();
+  }
   next_receiver->OnDataReceived(receive_buffer, receive_buffer_size, local_locator, remote_locator);
 }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "core/wire/fastdds/contact.hpp"
 #include "core/wire/fastdds/heartbeat_filter.hpp"
 #include "core/wire/fastdds/outlet.hpp"
 #include "core/wire/fastdds/peer_book.hpp"
@@ -54,6 +55,11 @@ struct Traffic {
   std::set<in_addr_t> own_addresses{};  ///< network order
   std::set<std::uint16_t> own_ports{};  ///< opened while the participant is made
   HeartbeatFilter heartbeats{200ms};
+  Contact contact{};
+  std::unique_ptr<ContactThread> repeats{};  ///< by radio
+
+  /// Sends a datagram by radio: by the link if there is one.
+  void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 
   /// Counts a datagram that leaves.
   void sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
@@ -83,7 +89,7 @@ class CountingTransport final : public eprosima::fastdds::rtps::ChainingTranspor
                const eprosima::fastrtps::rtps::Locator_t& remote_locator) override;
 
  private:
-  /// Sends one datagram by radio.
+  /// Sends by radio what the library sends to one address, as far as it is needed.
   void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 
   eprosima::fastdds::rtps::ChainingTransportDescriptor* descriptor_;  // owned by whoever made us

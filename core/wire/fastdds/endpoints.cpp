@@ -82,7 +82,7 @@ Result<void> FastDdsWriter::write(std::span<const std::uint8_t> cdr) {
                   "Fast DDS did not take the sample (return code " + std::to_string(code()) + ")");
   }
   const std::uint64_t on_the_network =
-      static_cast<std::uint64_t>(matched_.load()) * WireCost::sample(cdr.size(), keyed_);
+      static_cast<std::uint64_t>(matched_.load()) * WireCost::sample(cdr.size());
   counts_->change(topic_, {}, [&](TopicCount& c) {
     ++c.samples_out;
     c.bytes_out += on_the_network;
@@ -98,7 +98,7 @@ Result<std::unique_ptr<RawReader>> FastDdsReader::make(dds::Subscriber& subscrib
                                                        const TopicInfo& topic,
                                                        std::shared_ptr<SharedCounts> counts, Executor& strand,
                                                        RawHandler handler) {
-  std::unique_ptr<FastDdsReader> reader(new FastDdsReader(subscriber, topic.keyed));
+  std::unique_ptr<FastDdsReader> reader(new FastDdsReader(subscriber));
   reader->target_->handler = std::move(handler);
   reader->target_->strand = &strand;
   reader->target_->topic = topic.name;
@@ -145,7 +145,7 @@ void FastDdsReader::on_data_available(dds::DataReader* reader) {
     std::copy(std::begin(writer.guidPrefix.value), std::end(writer.guidPrefix.value), sender.begin());
     target_->counts->change(target_->topic, sender, [&](TopicCount& c) {
       ++c.samples_in;
-      c.bytes_in += WireCost::sample(bytes.in.size(), keyed_);
+      c.bytes_in += WireCost::sample(bytes.in.size());
       if (bytes.too_long) ++c.malformed;
     });
     if (bytes.too_long) continue;

@@ -93,15 +93,13 @@ class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::Da
     void run(const std::vector<std::uint8_t>& bytes, const ParticipantId& sender);
   };
 
-  FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber, bool keyed)
-      : subscriber_(subscriber), keyed_(keyed) {}
+  explicit FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber) : subscriber_(subscriber) {}
   void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
   void on_sample_lost(eprosima::fastdds::dds::DataReader* reader,
                       const eprosima::fastdds::dds::SampleLostStatus& status) override;
 
   eprosima::fastdds::dds::Subscriber& subscriber_;
   eprosima::fastdds::dds::DataReader* reader_{};
-  bool keyed_;
   std::shared_ptr<Target> target_{std::make_shared<Target>()};
 };
 

@@ -91,6 +91,7 @@ class FastDdsWire final : public Wire {
       participant_->delete_contained_entities();
       dds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
     }
+    traffic_->repeats.reset();
     if (traffic_->link) traffic_->link->close();
   }
 
@@ -114,6 +115,14 @@ class FastDdsWire final : public Wire {
                             [traffic = traffic_.get()](in_addr_t address, std::uint16_t port) {
                               return traffic->peers.path(address, port);
                             }});
+    }
+    if (traffic_->outlet) {
+      traffic_->repeats = std::make_unique<ContactThread>(
+          traffic_->contact,
+          [traffic = traffic_.get()] { return !traffic->link || traffic->link->sender().waiting(1) < 100ms; },
+          [traffic = traffic_.get()](auto message, in_addr_t address, std::uint16_t port) {
+            traffic->send(message, address, port);
+          });
     }
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
         params.domain, *qos, &presence_, dds::StatusMask::none());

@@ -17,7 +17,7 @@ constexpr std::size_t statistics_size = 60;
 constexpr std::uint8_t eprosima[2] = {0x01, 0x0f};
 
 struct Submessage {
-  std::uint8_t kind{};
+  std::uint8_t kind{}, flags{};
   bool little{};
   Message body{};  // without its header
 };
@@ -28,7 +28,7 @@ void each(Message message, See see) {
   if (message.size() < header || std::memcmp(message.data(), "RTPS", 4) != 0) return;
   std::size_t at = header;
   while (at + 4 <= message.size()) {
-    Submessage sub{message[at], (message[at + 1] & 1) != 0, {}};
+    Submessage sub{message[at], message[at + 1], (message[at + 1] & 1) != 0, {}};
     const std::size_t length =
         sub.little ? message[at + 2] | message[at + 3] << 8 : message[at + 3] | message[at + 2] << 8;
     const std::size_t rest = message.size() - at - 4;
@@ -142,6 +142,63 @@ std::optional<LoneHeartbeat> lone_heartbeat(Message message) {
     return lone;
   });
   return lone ? result : std::nullopt;
+}
+
+std::optional<PeerAddress> announced_address(Message message) {
+  constexpr std::uint8_t with_qos = 2, with_data = 4;
+  constexpr std::size_t fixed = 20;  // in front of the parameters
+  constexpr std::uint32_t sentinel = 1, metatraffic_unicast = 0x32, udp_v4 = 1;
+  std::optional<PeerAddress> result;
+  each(message, [&](const Submessage& sub) {
+    if (sub.kind != data || sub.body.size() < fixed || entity(sub.body, 8) != announcing_writer) return true;
+    // Little-endian parameter lists alone, as every machine that we know of sends them.
+    if (!sub.little || (sub.flags & with_data) == 0) return false;
+    std::size_t at = fixed;
+    for (int lists = (sub.flags & with_qos) != 0 ? 2 : 1; lists > 0; --lists) {
+      if (lists == 1) {
+        if (at + 4 > sub.body.size() || sub.body[at + 1] != 3) return false;  // PL_CDR_LE
+        at += 4;
+      }
+      while (at + 4 <= sub.body.size()) {
+        const std::uint32_t id = sub.body[at] | sub.body[at + 1] << 8;
+        const std::size_t length = sub.body[at + 2] | sub.body[at + 3] << 8;
+        at += 4;
+        if (id == sentinel || at + length > sub.body.size()) break;
+        if (lists == 1 && id == metatraffic_unicast && length >= 24 && word(sub, at) == udp_v4) {
+          PeerAddress found;
+          found.port = static_cast<std::uint16_t>(word(sub, at + 4));
+          std::memcpy(&found.address, sub.body.data() + at + 20, 4);
+          result = found;
+          return false;
+        }
+        at += length;
+      }
+    }
+    return false;
+  });
+  return result;
+}
+
+std::optional<Acknowledged> acknowledgement(Message message) {
+  std::optional<Acknowledged> result;
+  each(message, [&](const Submessage& sub) {
+    if (sub.kind == acknack && sub.body.size() >= 16) result = {entity(sub.body, 4), sequence(sub, 8)};
+    return !result;
+  });
+  return result;
+}
+
+void change_heartbeat_counts(std::span<std::uint8_t> message,
+                             const std::function<bool(std::uint32_t)>& of_writer, std::uint32_t factor,
+                             std::uint32_t more) {
+  each(message, [&](const Submessage& sub) {
+    if (sub.kind != heartbeat || sub.body.size() < 28 || !of_writer(entity(sub.body, 4))) return true;
+    const auto count = static_cast<std::uint32_t>(word(sub, 24)) * factor + more;
+    const auto at = static_cast<std::size_t>(sub.body.data() - message.data()) + 24;
+    for (std::size_t i = 0; i < 4; ++i)
+      message[at + i] = static_cast<std::uint8_t>(count >> 8 * (sub.little ? i : 3 - i));
+    return true;
+  });
 }
 
 }  // namespace adit::wire

@@ -1,5 +1,8 @@
 #pragma once
+#include <netinet/in.h>
+
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -33,5 +36,29 @@ struct LoneHeartbeat {
   std::uint64_t first{}, last{};
 };
 std::optional<LoneHeartbeat> lone_heartbeat(std::span<const std::uint8_t> message);
+
+/// Entity id of the writer of participant announcements: RTPS 2.2, 9.3.1.3.
+inline constexpr std::uint32_t announcing_writer = 0x000100c2;
+
+/// Where the participant that announces itself wants to hear of others; nothing where the message is no
+/// announcement or a goodbye.
+struct PeerAddress {
+  in_addr_t address{};  ///< IPv4, network order
+  std::uint16_t port{};
+};
+std::optional<PeerAddress> announced_address(std::span<const std::uint8_t> message);
+
+/// What a reader acknowledges: all before `base`, of that writer.
+struct Acknowledged {
+  std::uint32_t writer{};
+  std::uint64_t base{};
+};
+std::optional<Acknowledged> acknowledgement(std::span<const std::uint8_t> message);
+
+/// Heartbeats that those writers send, with `factor` * count + `more` as their count. Readers ignore all but
+/// a higher count than before.
+void change_heartbeat_counts(std::span<std::uint8_t> message,
+                             const std::function<bool(std::uint32_t)>& of_writer, std::uint32_t factor,
+                             std::uint32_t more);
 
 }  // namespace adit::wire

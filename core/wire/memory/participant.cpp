@@ -21,7 +21,7 @@ void Participant::start() {
   discovery_writer->owner = this;
   discovery_writer->entity = discovery_writer_entity;
   discovery_writer->discovery = true;
-  discovery_writer->topic.qos = {true, true, 1000ms, WireCost::discovery_priority, false};
+  discovery_writer->topic.qos = {true, true, Discovery::heartbeat, WireCost::discovery_priority, false};
   discovery_reader = std::make_shared<ReaderState>();
   discovery_reader->owner = this;
   discovery_reader->entity = discovery_reader_entity;
@@ -36,29 +36,27 @@ void Participant::announce() {
   for (const auto& other : core->participants) {
     if (other.get() != this && other->domain == domain && !other->stopped) everybody.push_back(other->node);
   }
-  const auto announcement = [this] {
-    Datagram datagram;
-    datagram.bytes = WireCost::participant;
-    datagram.priority = WireCost::discovery_priority;
-    return datagram;
-  };
-  const auto heard = [from = node](Participant& there, std::uint16_t) { there.on_announcement(from); };
-  // By multicast to whoever is there, and once more to each that is known: what Fast DDS does.
-  Datagram to_all = announcement();
+  // By multicast to whoever is there, and to each that is known: what Fast DDS does. Those who know us need
+  // that once a period, as Contact has it live.
+  Datagram to_all;
+  to_all.bytes = WireCost::participant;
+  to_all.priority = WireCost::discovery_priority;
   to_all.sent = [self = shared_from_this()] {
     self->totals.discovery_out += WireCost::participant;
     self->totals.total_out += WireCost::participant;
   };
-  to_all.arrived = [self = shared_from_this(), heard](int to, std::uint16_t frames) {
+  to_all.arrived = [self = shared_from_this()](int to, std::uint16_t) {
     Participant* there = self->peer_participant(to);
     if (there == nullptr || there->stopped) return;
     there->totals.discovery_in += WireCost::participant;
     there->totals.total_in += WireCost::participant;
-    heard(*there, frames);
+    there->on_announcement(self->node);
   };
   core->radio->multicast(node, everybody, std::move(to_all));
-  for (const auto& [peer, state] : peers) send(peer, announcement(), heard, true);
   const bool initial = ++announced < Discovery::initial_announcements;
+  for (const auto& [peer, state] : peers) {
+    if (!initial || !state.knows_us) announce_to(peer);
+  }
   core->after(initial ? Discovery::initial_period : Discovery::announcement, [weak = weak_from_this()] {
     if (const auto self = weak.lock()) self->announce();
   });
@@ -79,17 +77,41 @@ void Participant::check_leases() {
 void Participant::on_announcement(int from) {
   const auto [peer, is_new] = peers.try_emplace(from);
   peer->second.heard = core->scheduler.elapsed();
+  if (!peer->second.knows_us) {
+    peer->second.tells = Discovery::tells;
+    if (!peer->second.telling) tell_again(from);
+  }
   if (!is_new) return;
   tell(from, true);
-  Datagram datagram;
-  datagram.bytes = WireCost::participant;
-  datagram.priority = WireCost::discovery_priority;
-  send(
-      from, std::move(datagram),
-      [me = node](Participant& there, std::uint16_t) { there.on_announcement(me); }, true);
+  announce_to(from);
   discovery_reader->writers.try_emplace(EndpointId{from, discovery_writer_entity},
                                         ReaderState::Proxy{true, 0, {}});
   discovery_writer->match({from, discovery_reader_entity}, true);
+}
+
+void Participant::announce_to(int peer) {
+  Datagram datagram;
+  datagram.bytes = WireCost::participant;
+  datagram.priority = WireCost::discovery_priority;
+  datagram.supersedes = 1;  // one that waits is enough
+  datagram.again = true;
+  send(
+      peer, std::move(datagram),
+      [me = node](Participant& there, std::uint16_t) { there.on_announcement(me); }, true);
+}
+
+void Participant::tell_again(int peer) {
+  peers.at(peer).telling = true;
+  core->after(Discovery::tell_period, [weak = weak_from_this(), peer] {
+    const auto self = weak.lock();
+    if (!self || self->stopped) return;
+    const auto known = self->peers.find(peer);
+    if (known == self->peers.end()) return;
+    known->second.telling = false;
+    if (known->second.knows_us || --known->second.tells < 0) return;
+    self->announce_to(peer);
+    self->tell_again(peer);
+  });
 }
 
 void Participant::on_endpoint(int from, int entity) {
@@ -214,7 +236,10 @@ void Participant::send(int to, Datagram datagram, std::function<void(Participant
     there->carried[self->node].bytes_in += in;
     if (discovery) there->totals.discovery_in += in;
     const auto peer = there->peers.find(self->node);
-    if (peer != there->peers.end()) peer->second.heard = there->core->scheduler.elapsed();
+    if (peer != there->peers.end()) {
+      peer->second.heard = there->core->scheduler.elapsed();
+      peer->second.knows_us = true;  // we are sent to because we are known
+    }
     arrive(*there, through);
   };
   core->radio->send(node, to, std::move(datagram));

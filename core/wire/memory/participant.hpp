@@ -120,6 +120,9 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
 struct Participant : std::enable_shared_from_this<Participant> {
   struct Peer {
     Duration heard{};
+    bool knows_us{};  ///< it sent something to us alone
+    int tells{};      ///< announcements to it that are left, while it does not know us
+    bool telling{};
     std::map<int, TopicOf> writers{}, readers{};  ///< as announced, by entity
   };
 
@@ -127,6 +130,9 @@ struct Participant : std::enable_shared_from_this<Participant> {
   void announce();
   void check_leases();
   void on_announcement(int from);
+  /// Announces itself to a peer until that shows that it heard.
+  void tell_again(int peer);
+  void announce_to(int peer);
   void on_endpoint(int from, int entity);
   void drop(int peer);
   void stop(bool goodbye);

@@ -79,6 +79,7 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
                                          .frames = shared->frames,
                                          .priority = shared->priority,
                                          .supersedes = number,
+                                         .again = shared->again,
                                          .since = scheduler_.elapsed(),
                                          .patience = longest,
                                          .airtime = cost});

@@ -23,6 +23,7 @@ struct Datagram {
   std::uint16_t frames{1};
   int priority{};                ///< core/wire/link/budget.hpp
   std::uint64_t supersedes{};    ///< not 0: replaces a waiting datagram of this number to the same node
+  bool again{};                  ///< it says the same as that one: nothing is lost then
   std::function<void()> sent{};  ///< it went on the air
   std::function<void(int to, std::uint16_t frames)> arrived{};  ///< so many of its frames, at least one
   std::function<void(int to)> lost{};  ///< none of its frames, or dropped at the sender

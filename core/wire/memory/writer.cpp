@@ -38,7 +38,7 @@ Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
   sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(cdr.begin(), cdr.end());
   const std::uint32_t largest = owner->core->radio->frame_bytes(owner->node);
   sample.frames = WireCost::frames(cdr.size(), largest);
-  sample.wire_bytes = WireCost::sample(cdr.size(), topic.keyed, largest);
+  sample.wire_bytes = WireCost::sample(cdr.size(), largest);
   if (!owner->stopped) owner->core->show(Frame::Kind::sent, *owner, nullptr, topic, sample.bytes);
   add(std::move(sample));
   return {};
@@ -134,6 +134,12 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
   datagram.priority = discovery ? WireCost::discovery_priority : topic.qos.priority;
   if (topic.qos.newest_wins && !topic.qos.reliable) {
     datagram.supersedes = number_of(sample.key, entity, reader.entity);
+  } else if (topic.qos.reliable) {
+    // Asked for again while it waits: sent once, as the live link has it. Other frames of it are another
+    // repair.
+    datagram.supersedes =
+        number_of(std::to_string(sample.sequence) + '/' + std::to_string(frames), entity, reader.entity);
+    datagram.again = true;
   }
   if (!discovery) {
     datagram.sent = [self = shared_from_this(), bytes = datagram.bytes] {
@@ -190,6 +196,7 @@ void WriterState::heartbeat() {
     datagram.bytes = WireCost::heartbeat;
     datagram.priority = WireCost::discovery_priority;
     datagram.supersedes = number_of("heartbeat", entity, reader.entity);
+    datagram.again = true;
     owner->send(
         reader.node, std::move(datagram),
         [from = EndpointId{owner->node, entity}, reader_id = reader.entity, start = proxy.start, first, last,

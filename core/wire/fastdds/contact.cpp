@@ -1,0 +1,179 @@
+#include "core/wire/fastdds/contact.hpp"
+
+#include <algorithm>
+
+namespace adit::wire {
+namespace {
+
+// Entity ids of RTPS 2.2, 9.3.1.3.
+constexpr std::uint32_t publications_writer = 0x000003c2, subscriptions_writer = 0x000004c2;
+constexpr Duration settled = 20s;     // until someone who knows us is told by unicast again
+constexpr int repeats = 3;            // of a heartbeat, until the library sends the next
+constexpr std::uint32_t counts = 16;  // of ours for one of the library's
+
+bool of_discovery(std::uint32_t writer) {
+  return writer == publications_writer || writer == subscriptions_writer;
+}
+
+}  // namespace
+
+Contact::Peer* Contact::at(in_addr_t address, std::uint16_t port) {
+  for (auto& [id, peer] : peers_) {
+    if (peer.address == address && peer.port == port) return &peer;
+  }
+  return nullptr;
+}
+
+bool Contact::sent(std::span<std::uint8_t> message, in_addr_t address, std::uint16_t port, Duration now) {
+  const RtpsPeek seen = peek(message);
+  if (!seen.source) return true;
+  const std::lock_guard lock(mutex_);
+  own_ = *seen.source;
+  if (seen.writer == announcing_writer) {
+    if (!announced_address(message)) return true;  // a goodbye
+    announcement_.assign(message.begin(), message.end());
+    Peer* peer = at(address, port);
+    if (peer == nullptr) return true;
+    if (peer->knows_us && now - peer->told < settled) return false;
+    peer->told = now;
+    return true;
+  }
+  change_heartbeat_counts(message, of_discovery, counts, 0);
+  const auto beat = lone_heartbeat(message);
+  Peer* peer = beat && of_discovery(beat->writer) ? at(address, port) : nullptr;
+  if (peer != nullptr && beat->last >= beat->first)
+    peer->beats[beat->writer] = {{message.begin(), message.end()}, beat->last, 0, now + Discovery::heartbeat};
+  return true;
+}
+
+void Contact::received(std::span<const std::uint8_t> message, Duration now) {
+  const RtpsPeek seen = peek(message);
+  if (!seen.source) return;
+  const std::lock_guard lock(mutex_);
+  if (*seen.source == own_) return;
+  const auto known = peers_.find(*seen.source);
+  if (seen.writer == announcing_writer) {
+    const auto locator = announced_address(message);
+    if (!locator) {
+      if (known != peers_.end()) peers_.erase(known);
+      return;
+    }
+    if (known == peers_.end()) {
+      // Whoever was there before is gone.
+      std::erase_if(peers_, [&](const auto& entry) {
+        return entry.second.address == locator->address && entry.second.port == locator->port;
+      });
+      if (peers_.size() >= most_peers) return;
+    }
+    Peer& peer = peers_[*seen.source];
+    peer.address = locator->address, peer.port = locator->port;
+    if (peer.knows_us) return;
+    peer.tells = Discovery::tells;
+    if (peer.tell_at == Duration::max()) peer.tell_at = now + Discovery::tell_period;
+    return;
+  }
+  if (known == peers_.end()) return;
+  Peer& peer = known->second;
+  if (seen.destination == own_) {
+    peer.knows_us = true;
+    peer.tell_at = Duration::max();
+  }
+  if (const auto answer = acknowledgement(message)) {
+    const auto beat = peer.beats.find(answer->writer);
+    if (beat == peer.beats.end()) return;
+    if (answer->base > beat->second.last) {
+      peer.beats.erase(beat);
+    } else {
+      beat->second.at =
+          std::max(beat->second.at, now + Discovery::heartbeat);  // what it asks for is on its way
+    }
+  }
+}
+
+void Contact::repeat(Duration now, bool calm, const Send& send) {
+  struct Out {
+    std::vector<std::uint8_t> message{};
+    in_addr_t address{};
+    std::uint16_t port{};
+  };
+  std::vector<Out> out;
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [id, peer] : peers_) {
+      if (peer.tell_at <= now) {
+        peer.tell_at = --peer.tells > 0 ? now + Discovery::tell_period : Duration::max();
+        if (!announcement_.empty()) out.push_back({announcement_, peer.address, peer.port});
+      }
+      for (auto beat = peer.beats.begin(); beat != peer.beats.end();) {
+        Beat& b = beat->second;
+        if (b.at > now) {
+          ++beat;
+          continue;
+        }
+        b.at = now + Discovery::heartbeat;
+        if (calm) {
+          ++b.repeats;
+          change_heartbeat_counts(b.message, of_discovery, 1, 1);
+          out.push_back({b.message, peer.address, peer.port});
+        }
+        beat = b.repeats >= repeats ? peer.beats.erase(beat) : std::next(beat);
+      }
+    }
+  }
+  for (const Out& one : out) send(one.message, one.address, one.port);
+}
+
+bool Contact::is_own(const ParticipantId& id) const {
+  const std::lock_guard lock(mutex_);
+  return id == own_;
+}
+
+Duration Contact::next() const {
+  const std::lock_guard lock(mutex_);
+  Duration soonest = Duration::max();
+  for (const auto& [id, peer] : peers_) {
+    soonest = std::min(soonest, peer.tell_at);
+    for (const auto& [writer, beat] : peer.beats) soonest = std::min(soonest, beat.at);
+  }
+  return soonest;
+}
+
+ContactThread::ContactThread(Contact& contact, std::function<bool()> calm, Contact::Send send)
+    : contact_(contact), calm_(std::move(calm)), send_(std::move(send)), thread_([this] { run(); }) {}
+
+ContactThread::~ContactThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+void ContactThread::wake() {
+  const Duration next = contact_.next();
+  {
+    const std::lock_guard lock(mutex_);
+    if (next >= planned_) return;
+    planned_ = next;
+  }
+  changed_.notify_one();
+}
+
+void ContactThread::run() {
+  std::unique_lock lock(mutex_);
+  while (!ends_) {
+    planned_ = contact_.next();
+    if (planned_ == Duration::max()) {
+      changed_.wait(lock);
+    } else {
+      changed_.wait_until(lock, std::chrono::steady_clock::time_point(planned_));
+    }
+    if (ends_) return;
+    lock.unlock();
+    contact_.repeat(std::chrono::steady_clock::now().time_since_epoch(), calm_(), send_);
+    lock.lock();
+  }
+}
+
+}  // namespace adit::wire
