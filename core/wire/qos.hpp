@@ -63,7 +63,7 @@ struct Discovery {
   /// announcement.
   static constexpr Duration tell_period = 200ms;
   static constexpr int tells = 12;
-  static constexpr Duration heartbeat = 250ms;  ///< of endpoints that a peer has not acknowledged
+  static constexpr Duration heartbeat = 150ms;  ///< of endpoints that a peer has not acknowledged
 };
 
 }  // namespace adit::wire

@@ -54,7 +54,7 @@ struct Traffic {
   std::shared_ptr<Outlet> outlet{};
   std::set<in_addr_t> own_addresses{};  ///< network order
   std::set<std::uint16_t> own_ports{};  ///< opened while the participant is made
-  HeartbeatFilter heartbeats{200ms};
+  HeartbeatFilter heartbeats{Discovery::heartbeat};
   Contact contact{};
   std::unique_ptr<ContactThread> repeats{};  ///< by radio
 

@@ -69,6 +69,8 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   void add(Sample sample);
   void match(EndpointId reader, bool reader_reliable);
   void send(EndpointId reader, const Sample& sample, std::uint16_t frames);
+  /// Discovery: as many endpoints in a frame as fit.
+  void send_endpoints(EndpointId reader, const std::vector<Sample>& samples);
   /// `bulk`: hands on what waits as the air takes it, so that what is replaced meanwhile is never sent.
   void pump();
   void repair(Pending entry);

@@ -112,7 +112,11 @@ void WriterState::match(EndpointId reader, bool reader_reliable) {
   proxy.acknowledged = proxy.start - 1;
   if (!readers.emplace(reader, proxy).second) return;
   if (late) {
-    for (const Sample& sample : history) send(reader, sample, sample.frames);
+    if (discovery) {
+      send_endpoints(reader, {history.begin(), history.end()});
+    } else {
+      for (const Sample& sample : history) send(reader, sample, sample.frames);
+    }
     arm_heartbeat();
   }
 }
@@ -170,6 +174,33 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
   owner->send(reader.node, std::move(datagram), arrive, discovery);
 }
 
+void WriterState::send_endpoints(EndpointId reader, const std::vector<Sample>& samples) {
+  const auto fit =
+      std::max<std::size_t>(1, owner->core->radio->frame_bytes(owner->node) / WireCost::endpoint);
+  const auto proxy = readers.find(reader);
+  if (proxy == readers.end()) return;
+  for (std::size_t at = 0; at < samples.size(); at += fit) {
+    std::vector<Sample> some(
+        samples.begin() + static_cast<std::ptrdiff_t>(at),
+        samples.begin() + static_cast<std::ptrdiff_t>(std::min(at + fit, samples.size())));
+    Datagram datagram;
+    datagram.bytes = static_cast<std::uint32_t>(some.size()) * WireCost::endpoint;
+    datagram.priority = WireCost::discovery_priority;
+    std::string which;
+    for (const Sample& sample : some) which += std::to_string(sample.sequence) + ',';
+    datagram.supersedes = number_of(which, entity, reader.entity);
+    datagram.again = true;
+    owner->send(
+        reader.node, std::move(datagram),
+        [from = EndpointId{owner->node, entity}, start = proxy->second.start, some = std::move(some)](
+            Participant& there, std::uint16_t) {
+          for (const Sample& sample : some)
+            there.discovery_reader->on_data(from, start, sample, sample.frames);
+        },
+        true);
+  }
+}
+
 void WriterState::arm_heartbeat() {
   // Inner networks lose nothing: there is nothing to repair.
   if (heartbeat_armed || !topic.qos.reliable || owner->core->radio->inner(owner->node)) return;
@@ -219,17 +250,21 @@ void WriterState::on_acknack(EndpointId reader, std::uint64_t base, const std::v
       WireCost::response, [self = shared_from_this(), keep = owner->shared_from_this(), reader, missing] {
         if (keep->stopped || !self->readers.contains(reader)) return;
         std::vector<std::uint64_t> gone;
+        std::vector<Sample> endpoints;
         for (const Missing& wanted : missing) {
           const auto sample = std::find_if(self->history.begin(), self->history.end(),
                                            [&](const Sample& s) { return s.sequence == wanted.sequence; });
           if (sample == self->history.end()) {
             gone.push_back(wanted.sequence);
+          } else if (self->discovery) {
+            endpoints.push_back(*sample);
           } else if (self->topic.qos.paced) {
             self->repair({wanted.sequence, wanted.frames, reader});
           } else {
             self->send(reader, *sample, wanted.frames == 0 ? sample->frames : wanted.frames);
           }
         }
+        self->send_endpoints(reader, endpoints);
         if (self->topic.qos.paced) self->pump();
         if (gone.empty()) return;
         Datagram datagram;
