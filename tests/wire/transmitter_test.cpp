@@ -99,6 +99,19 @@ TEST(Transmitter, TheNewestReplacesWhatWaitsButNotWhatIsHalfSent) {
             (Names{"picture.1", "picture.2", "next.1", "next.2"}));
 }
 
+TEST(Transmitter, WhatIsSaidAgainKeepsItsPlaceAndIsNoLoss) {
+  Queue queue;
+  for (const char* text : {"repair", "other", "repair"}) {
+    const std::uint64_t number = text[0] == 'r' ? 7 : 8;
+    (void)queue.push({.item = text, .priority = 1, .supersedes = number, .again = true, .patience = 1s});
+  }
+  EXPECT_EQ(queue.size(), 2U);
+  EXPECT_EQ(queue.dropped()[1], 0U);
+  const auto first = queue.next(
+      0ms, [](const std::string&) { return 1ms; }, [](const std::string&) {});
+  EXPECT_EQ(first->message.item, "repair");
+}
+
 TEST(Transmitter, DropsWhatWaitedTooLong) {
   Line line;
   for (int i = 0; i < 40; ++i) line.push("stop", 0);

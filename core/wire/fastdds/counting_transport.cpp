@@ -54,7 +54,7 @@ bool CountingTransport::OpenInputChannel(const rtps::Locator_t& locator,
                                          eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                                          std::uint32_t largest) {
   if (!rtps::IPLocator::isMulticast(locator))
-    traffic_->own_ports.insert(rtps::IPLocator::getPhysicalPort(locator));
+    traffic_->own_ports.add(rtps::IPLocator::getPhysicalPort(locator));
   return ChainingTransport::OpenInputChannel(locator, receiver, largest);
 }
 

@@ -2,6 +2,8 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
@@ -43,6 +45,22 @@ class Gate {
   std::condition_variable opened_{};
 };
 
+/// Ports that a participant hears on; opened while it is made, and asked for meanwhile.
+class OwnPorts {
+ public:
+  void add(std::uint16_t port) {
+    const std::size_t at = used_.fetch_add(1);
+    if (at < ports_.size()) ports_[at].store(port);
+  }
+  bool contains(std::uint16_t port) const {
+    return std::any_of(ports_.begin(), ports_.end(), [port](const auto& own) { return own.load() == port; });
+  }
+
+ private:
+  std::array<std::atomic<std::uint16_t>, 8> ports_{};
+  std::atomic<std::size_t> used_{};
+};
+
 /// Bytes that went through a participant's sockets, UDP and IP headers included.
 struct Traffic {
   std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
@@ -53,7 +71,7 @@ struct Traffic {
   /// as it is.
   std::shared_ptr<Outlet> outlet{};
   std::set<in_addr_t> own_addresses{};  ///< network order
-  std::set<std::uint16_t> own_ports{};  ///< opened while the participant is made
+  OwnPorts own_ports{};
   HeartbeatFilter heartbeats{Discovery::heartbeat};
   Contact contact{};
   std::unique_ptr<ContactThread> repeats{};  ///< by radio
