@@ -106,8 +106,8 @@ Duration LiveLink::step(Duration at) {
     auto next = queue_.next(
         at, [this](const Packet& packet) { return airtime(packet); }, [](const Packet&) {});
     if (!next) break;
-    // A thread that woke late has not lost the time: the air was free since then.
-    const Duration start = std::max(free_at_, at - 5ms);
+    // A thread that woke late has not lost the time: the air was free since then, and this waited.
+    const Duration start = std::max({free_at_, at - 5ms, next->message.since});
     free_at_ = start + next->airtime;
     put_on_air(std::move(next->message.item), next->message.priority, start, next->airtime);
   }
