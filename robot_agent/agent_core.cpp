@@ -190,12 +190,13 @@ void Agent::Core::beat() {
 }
 
 void Agent::Core::keep() {
-  edges_.keeper->save({commands_.kept(),
-                       behaviour_.kept(),
-                       params_.boot,
-                       static_cast<std::uint8_t>(battery_watch_.level()),
-                       {}},
-                      [this] { return commands_.kept_answers(); });
+  edges_.keeper->save(
+      {commands_.kept(),
+       behaviour_.kept(),
+       params_.boot,
+       static_cast<std::uint8_t>(battery_watch_.level()),
+       {}},
+      [this] { return commands_.kept_answers(); }, commands_.accepted());
 }
 
 void Agent::Core::tell_restored() {

@@ -24,6 +24,7 @@ void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answe
     entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
       return a.second.used < b.second.used;
     }));
+  if (answer.reason == Reason::none) ++accepted_;
   Entry& entry = entries_[from];
   if (entry.answers.empty()) entry.answers.resize(kAnswers);
   entry.used = now;

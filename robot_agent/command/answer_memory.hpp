@@ -27,6 +27,9 @@ class AnswerMemory {
   bool too_old(const wire::ParticipantId& from, std::uint64_t seq, Line line) const;
   void remember(const wire::ParticipantId& from, const Answer& answer, Line line, Time now);
 
+  /// Commands accepted since the start of this agent.
+  std::uint64_t accepted() const { return accepted_; }
+
   /// What a restart must not forget: the participants heard last, their newest answers.
   std::vector<KeptAnswers> kept() const;
   void restore(const std::vector<KeptAnswers>& kept, Time now);
@@ -40,6 +43,7 @@ class AnswerMemory {
     Time used{};
   };
   std::map<wire::ParticipantId, Entry> entries_{};
+  std::uint64_t accepted_{};
 };
 
 }  // namespace adit::agent

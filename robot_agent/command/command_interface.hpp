@@ -58,6 +58,8 @@ class CommandInterface {
     return {authority_.epoch(), authority_.holder(), authority_.locked(), stops_.all()};
   }
   std::vector<KeptAnswers> kept_answers() const { return memory_.kept(); }
+  /// Commands accepted since the start of this agent.
+  std::uint64_t accepted() const { return memory_.accepted(); }
   /// Comes back with it, before anything was heard: holder, lock and stops as they were, under a new epoch.
   /// Tells nobody.
   void restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now);

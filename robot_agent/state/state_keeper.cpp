@@ -29,6 +29,7 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
   Outputs outputs;
 
   std::optional<Snapshot> state{};         ///< given last
+  std::uint64_t accepted{};                // commands, when that was given
   std::optional<store::Bytes> next{};      ///< not being written yet
   std::uint64_t asked{}, done{};           ///< generations: given, and settled one way or the other
   std::optional<std::uint64_t> writing{};  ///< the one under way
@@ -119,9 +120,11 @@ StateKeeper::StateKeeper(KeeperParams params, std::shared_ptr<store::Disk> disk,
 
 StateKeeper::~StateKeeper() = default;
 
-void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers) {
+void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers,
+                       std::uint64_t accepted) {
   Writer& w = *writer_;
-  if (w.state && w.state->same_state(state)) return;
+  if (w.state && w.state->same_state(state) && w.accepted == accepted) return;
+  w.accepted = accepted;
   state.answers = answers();
   w.state = std::move(state);
   if (!w.disk) return;

@@ -35,8 +35,11 @@ class StateKeeper {
   StateKeeper(const StateKeeper&) = delete;
   StateKeeper& operator=(const StateKeeper&) = delete;
 
-  /// The state as it is now; written when it differs from the last one given. `answers` is asked then.
-  void save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers);
+  /// The state as it is now; written when it differs from the last one given, or when more commands were
+  /// accepted than then: one that changed nothing is answered as before after a restart, too. `answers` is
+  /// asked then.
+  void save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers,
+            std::uint64_t accepted = 0);
   /// Runs once every state given so far is on disk: at once when it is, or when the disk fails. At most 256
   /// wait: beyond that the first of them is dropped (who sent it repeats).
   void when_safe(Task task);

@@ -65,6 +65,23 @@ TEST_F(KeeperTest, AnAnswerWaitsUntilTheStateIsOnDisk) {
   EXPECT_EQ(on_disk(), 1u);
 }
 
+TEST_F(KeeperTest, AnAcceptedCommandThatChangedNothingIsWrittenToo) {
+  int written = 0;
+  const auto save_after = [&](std::uint64_t accepted) {
+    keeper->save(
+        with_goal(1),
+        [&] {
+          ++written;
+          return std::vector<KeptAnswers>{};
+        },
+        accepted);
+    return written;
+  };
+  EXPECT_EQ(save_after(1), 1);
+  EXPECT_EQ(save_after(1), 1);
+  EXPECT_EQ(save_after(2), 2);
+}
+
 TEST_F(KeeperTest, WithNothingToSaveAnAnswerGoesAtOnce) {
   make();
   say_when_safe("first");
