@@ -1,0 +1,41 @@
+// Many on a thin link: rates follow it, and commands keep their latency.
+#include <gtest/gtest.h>
+
+#include "sim/rehearsal/rehearsal.hpp"
+#include "sim/rehearsal/scenario_file.hpp"
+
+namespace adit::sim {
+namespace {
+
+RunReport run(const wire::LinkProfile* link) {
+  auto scenario = load_scenario(std::string(ADIT_SOURCE_DIR) + "/config/scenarios/thin_team.yaml");
+  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
+  if (link != nullptr) scenario->link = *link;
+  RunParams params;
+  params.make_agent = *make_agent_factory();
+  auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
+  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
+  return outcome->report;
+}
+
+constexpr double robots = 6, stations = 3, time = 90;  // s
+
+TEST(ThinTeam, StatesKeepToTheLinkAndStopsGetThrough) {
+  const RunReport report = run(nullptr);
+  EXPECT_TRUE(report.ok()) << (report.complaints().empty() ? "" : report.complaints().front());
+  const auto& states = report.topics.at("adit/robot_state");
+  EXPECT_LT(static_cast<double>(states.samples), 7.0 * robots * time);
+  EXPECT_GT(static_cast<double>(states.samples), 0.95 * robots * time);
+  // What is written passes: the air loses 10 %, start-up some, a queue that overflows would lose most.
+  EXPECT_GT(static_cast<double>(states.delivered), 0.6 * stations * static_cast<double>(states.samples));
+}
+
+TEST(ThinTeam, WithRoomForAllTheyComeTenTimesASecond) {
+  const wire::LinkProfile room{.name = "room", .bandwidth = 10e6, .latency = 0.05};
+  const RunReport report = run(&room);
+  const auto& states = report.topics.at("adit/robot_state");
+  EXPECT_NEAR(static_cast<double>(states.samples), 10.0 * robots * time, 0.03 * 10.0 * robots * time);
+}
+
+}  // namespace
+}  // namespace adit::sim
