@@ -100,7 +100,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   Executor& strand = command_strand();
   edges = std::make_unique<Edges>(strand);
   Edges& e = *edges;
-  auto notifier = Notifier::open(radio, params.name);
+  auto notifier = Notifier::open(radio, params.name, strand);
   if (!notifier) return notifier.error();
   e.notifier = std::move(*notifier);
   auto radio_edge = RadioEdge::open(radio, strand, params.name);

@@ -23,6 +23,7 @@
 #include "basestation/command/grammar.hpp"
 #include "basestation/command/parse.hpp"
 #include "basestation/command/words.hpp"
+#include "basestation/report/table.hpp"
 
 namespace adit::station::cli {
 namespace {
@@ -82,7 +83,9 @@ class Prompt {
       const std::string robot = notice.value("robot", std::string());
       const std::string text = notice.value("text", std::string());
       const bool named = robot.empty() || text.find(robot) != std::string::npos;
-      std::printf("\r\x1b[K* %s%s\n", named ? "" : (robot + ": ").c_str(), text.c_str());
+      const std::string when = ago(notice.value("age", 0.0));
+      std::printf("\r\x1b[K* %s%s%s\n", named ? "" : (robot + ": ").c_str(), text.c_str(),
+                  when.empty() ? "" : (" (" + when + ")").c_str());
       printed_ = true;
     };
     client_->on_snapshot = [this](const json& snapshot) {

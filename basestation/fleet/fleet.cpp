@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t text_limit = 240;
 constexpr std::size_t name_limit = 32;
 constexpr Duration forget_after = 60s;
+constexpr Duration oldest_notice = 240h;  // what a robot may claim
 
 /// What a report says of an amount; 0 for what is none.
 double number(float value) { return value >= 0.0F && value < 1e12F ? static_cast<double>(value) : 0.0; }
@@ -136,6 +137,9 @@ void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) 
   robot->located = true;
   robot->last_heard = info.received;
   robot->stamp = sample.stamp();
+  robot->stamped_by = info.sender;
+  for (Notice& waits : notices_)
+    if (waits.undated && waits.robot == robot->name) date(waits, *robot);
   robot->x = sample.x();
   robot->y = sample.y();
   robot->z = sample.z();
@@ -190,15 +194,32 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
 }
 
 void Fleet::hear(const radio::Notification& sample, const wire::SampleInfo& info) {
-  if (!touch(sample.robot(), info)) return;
+  const RobotView* robot = touch(sample.robot(), info);
+  if (!robot) return;
   const auto severity = static_cast<std::uint32_t>(sample.severity());
-  notice({.at = info.received,
-          .robot = sample.robot(),
-          .operator_name = clean(sample.operator_name(), name_limit),
-          .level = severity <= 2 ? static_cast<Level>(severity) : Level::error,
-          .code = clean(sample.code(), name_limit),
-          .reason = static_cast<Reason>(sample.reason()),
-          .text = clean(sample.text(), text_limit)});
+  Notice told{.at = info.received,
+              .robot = sample.robot(),
+              .operator_name = clean(sample.operator_name(), name_limit),
+              .level = severity <= 2 ? static_cast<Level>(severity) : Level::error,
+              .code = clean(sample.code(), name_limit),
+              .reason = static_cast<Reason>(sample.reason()),
+              .text = clean(sample.text(), text_limit),
+              .said_by = info.sender};
+  if (sample.stamp() != 0) told.undated = sample.stamp();
+  date(told, *robot);
+  notice(std::move(told));
+}
+
+/// By the robot's own clock alone: what it showed last, and what passed since. A notification that is
+/// repeated after a gap is as old as it is; another start of the robot may have another clock.
+void Fleet::date(Notice& notice, const RobotView& robot) const {
+  if (!notice.undated || !robot.located || robot.stamped_by != notice.said_by) return;
+  const Duration since_shown = notice.at - robot.last_heard;
+  // Negative: it arose since. Whatever a robot claims, it stays within bounds.
+  const auto shown = std::clamp(Duration(static_cast<std::int64_t>(robot.stamp - *notice.undated)),
+                                -oldest_notice, oldest_notice);
+  notice.at -= std::clamp(shown + since_shown, Duration{}, oldest_notice);
+  notice.undated.reset();
 }
 
 void Fleet::hear(const radio::Health& sample, const wire::SampleInfo& info) {

@@ -69,6 +69,7 @@ class Fleet {
  private:
   RobotView* touch(const std::string& name, const wire::SampleInfo& info);
   void notice(Notice notice);
+  void date(Notice& notice, const RobotView& robot) const;
 
   std::string own_name_;
   Id own_id_;

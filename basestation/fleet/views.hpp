@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,7 @@ struct RobotView {
 
   bool located{false};    ///< a RobotState was heard
   std::uint64_t stamp{};  ///< the robot's clock, as it is to be echoed
+  wire::ParticipantId stamped_by{};
   float x{}, y{}, z{}, yaw{};
   float vx{}, vy{}, wz{};
   float battery{-1.0F};  ///< 0..1; negative: not known
@@ -106,7 +108,7 @@ enum class Level : std::uint8_t { info, warning, error };
 
 /// Something an operator should know, from a robot or from this station (lost, back).
 struct Notice {
-  Time at{};  ///< this station's clock
+  Time at{};  ///< when it arose, by this station's clock
   std::string robot{};
   std::string operator_name{};  ///< whom it concerns; empty: everybody
   Level level{Level::info};
@@ -114,6 +116,9 @@ struct Notice {
   Reason reason{Reason::none};
   std::string text{};
   bool mine{};  ///< concerns this operator
+  /// Until the robot's clock is known, `at` is when this was heard; then it is made earlier.
+  std::optional<std::uint64_t> undated{};  ///< the robot's stamp
+  wire::ParticipantId said_by{};
 };
 
 /// Bytes and samples a second of one topic at one agent.

@@ -47,4 +47,18 @@ std::string fixed(double value, int decimals) {
   return out;
 }
 
+std::string short_age(double seconds) {
+  if (!std::isfinite(seconds)) return "-";
+  if (seconds < 99.5) return fixed(seconds, 0) + "s";
+  if (seconds < 99.5 * 60.0) return fixed(seconds / 60.0, 0) + "m";
+  return fixed(seconds / 3600.0, 0) + "h";
+}
+
+std::string ago(double seconds) {
+  if (!std::isfinite(seconds) || seconds < 5.0) return {};
+  if (seconds < 99.5) return fixed(seconds, 0) + " s ago";
+  if (seconds < 99.5 * 60.0) return fixed(seconds / 60.0, 0) + " min ago";
+  return fixed(seconds / 3600.0, 0) + " h ago";
+}
+
 }  // namespace adit::station

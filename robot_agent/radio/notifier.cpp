@@ -10,12 +10,14 @@ namespace adit::agent {
 
 struct Notifier::Endpoint {
   std::string robot{};
+  const Executor* clock{};
   std::mutex mutex{};  // guards what follows
   wire::Writer<radio::Notification> writer{};
   std::uint64_t seq{};
   void write(const Notice& notice) {
     auto sample = to_radio(notice, robot);
     sample.seq(++seq);
+    sample.stamp(to_stamp(clock->now()));
     (void)writer.write(sample);
   }
 };
@@ -23,11 +25,13 @@ struct Notifier::Endpoint {
 Notifier::Notifier() : endpoint_(std::make_unique<Endpoint>()) {}
 Notifier::~Notifier() = default;
 
-Result<std::unique_ptr<Notifier>> Notifier::open(wire::Wire& radio, const std::string& robot) {
+Result<std::unique_ptr<Notifier>> Notifier::open(wire::Wire& radio, const std::string& robot,
+                                                 const Executor& clock) {
   auto writer = wire::Writer<radio::Notification>::make(radio, wire::topics::notification);
   if (!writer) return writer.error();
   std::unique_ptr<Notifier> notifier(new Notifier);
   notifier->endpoint_->robot = robot;
+  notifier->endpoint_->clock = &clock;
   notifier->endpoint_->writer = std::move(*writer);
   return notifier;
 }

@@ -2,17 +2,20 @@
 #include <memory>
 #include <string>
 
+#include "core/exec/executor.hpp"
 #include "core/result/result.hpp"
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
 
 namespace adit::agent {
 
-/// Sends notifications, from any strand, and numbers them. A failed write is counted by the wire.
+/// Sends notifications, from any strand, numbers them and says when they arose. A failed write is counted by
+/// the wire.
 class Notifier {
  public:
-  /// Errors of the wire.
-  static Result<std::unique_ptr<Notifier>> open(wire::Wire& radio, const std::string& robot);
+  /// `clock`: asked for the time alone, from any thread; it outlives this. Errors of the wire.
+  static Result<std::unique_ptr<Notifier>> open(wire::Wire& radio, const std::string& robot,
+                                                const Executor& clock);
   ~Notifier();
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;

@@ -2,12 +2,15 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "adit/authority.h"
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
 #include "basestation/fleet/traffic.hpp"
 #include "basestation/report/json.hpp"
+#include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
 
 namespace adit::station {
@@ -168,6 +171,83 @@ TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
   EXPECT_EQ(fleet.notices().front().text, "t100");
   EXPECT_TRUE(fleet.notices().front().mine);
   EXPECT_FALSE(fleet.notices().back().mine);
+}
+
+/// r1's clock is 1000 s ahead of this station's.
+radio::RobotState stamped_state(Duration here) {
+  radio::RobotState sample = state("r1");
+  sample.stamp(to_stamp(Time(here + 1000s)));
+  return sample;
+}
+
+radio::Notification arisen(Duration here) {
+  radio::Notification sample;
+  sample.robot("r1");
+  sample.code("stopped");
+  sample.stamp(to_stamp(Time(here + 1000s)));
+  return sample;
+}
+
+double newest_age(const Fleet& fleet, Duration now) {
+  return notice_json(fleet.notices().back(), Time(now))["age"].get<double>();
+}
+
+TEST(Fleet, ANoticeThatComesAfterAGapIsAsOldAsItIs) {
+  Fleet fleet("op1", own_id);
+  fleet.hear(stamped_state(100s), at(100s));
+  fleet.hear(arisen(100s), at(100s));
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 100s), 0.0);
+  fleet.check(Time(110s));
+  fleet.hear(arisen(120s), at(300s));  // repeated by the wire, before the first state after the gap
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 300s), 180.0);
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 310s), 190.0);
+}
+
+TEST(Fleet, ANoticeBeforeTheFirstStateIsDatedByIt) {
+  Fleet fleet("op1", own_id);
+  fleet.hear(arisen(40s), at(100s));
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 100s), 0.0);  // not known yet
+  fleet.hear(stamped_state(101s), at(101s));
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 101s), 61.0);
+  fleet.hear(stamped_state(150s), at(150s));
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 150s), 110.0);
+}
+
+TEST(Fleet, AnotherStartOfARobotMayHaveAnotherClock) {
+  Fleet fleet("op1", own_id);
+  fleet.hear(stamped_state(100s), at(100s));
+  radio::Notification sample = arisen(0s);
+  sample.stamp(to_stamp(Time(5s)));  // its computer was started anew
+  fleet.hear(sample, {.sender = {10}, .received = Time(200s)});
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 200s), 0.0);
+  radio::RobotState after = state("r1");
+  after.stamp(to_stamp(Time(8s)));
+  fleet.hear(after, {.sender = {10}, .received = Time(201s)});
+  EXPECT_DOUBLE_EQ(newest_age(fleet, 201s), 3.0);
+}
+
+TEST(Fleet, WhatARobotClaimsOfTheTimeStaysWithinBounds) {
+  for (const std::uint64_t stamp :
+       {std::uint64_t{0}, std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{1} << 63}) {
+    Fleet fleet("op1", own_id);
+    fleet.hear(stamped_state(1s), at(1s));
+    radio::Notification sample = arisen(0s);
+    sample.stamp(stamp);
+    fleet.hear(sample, at(1s));
+    EXPECT_GE(newest_age(fleet, 1s), 0.0) << stamp;
+    EXPECT_LE(newest_age(fleet, 1s), 240.0 * 3600.0) << stamp;
+  }
+}
+
+TEST(Ages, AreShortAndReadable) {
+  EXPECT_EQ(short_age(59.0), "59s");
+  EXPECT_EQ(short_age(180.0), "3m");
+  EXPECT_EQ(short_age(1e5), "28h");
+  EXPECT_EQ(short_age(std::nan("")), "-");
+  EXPECT_EQ(ago(2.0), "");
+  EXPECT_EQ(ago(12.0), "12 s ago");
+  EXPECT_EQ(ago(180.0), "3 min ago");
+  EXPECT_EQ(ago(1e5), "28 h ago");
 }
 
 TEST(Fleet, TextFromTheRadioIsMadeSafe) {

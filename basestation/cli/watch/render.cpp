@@ -205,8 +205,7 @@ void notices(Page& page, const json& snapshot, std::size_t room) {
   for (auto it = list.rbegin(); it != list.rend() && shown < room - 1; ++it, ++shown) {
     const std::string level = text(*it, "level");
     const char* colour = !flag(*it, "mine") ? dim : level == "error" ? red : level == "warning" ? yellow : "";
-    std::string line =
-        " " + padded(fixed(number(*it, "age"), 0) + "s", 5, true) + padded(text(*it, "robot"), 6);
+    std::string line = " " + padded(short_age(number(*it, "age")), 5, true) + padded(text(*it, "robot"), 6);
     page.line({{line}, {text(*it, "text").empty() ? text(*it, "code") : text(*it, "text"), colour}});
   }
   if (list.empty()) {
