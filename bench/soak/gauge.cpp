@@ -19,6 +19,14 @@ long entries(const std::string& folder) {
   return count;
 }
 
+double growth(const std::vector<double>& samples, std::size_t from) {
+  std::vector<double> slopes;
+  for (std::size_t i = from; i < samples.size(); ++i)
+    for (std::size_t j = i + 1; j < samples.size(); ++j)
+      slopes.push_back((samples[j] - samples[i]) / static_cast<double>(j - i));
+  return median(std::move(slopes)) * static_cast<double>(samples.size() - from);
+}
+
 }  // namespace
 
 Gauge gauge(pid_t pid) {
@@ -74,7 +82,8 @@ Trend trend(const std::vector<double>& samples) {
     const long begin = std::clamp(from, 0L, n - 1), end = std::min(begin + fifth, n);
     return median({samples.begin() + begin, samples.begin() + end});
   };
-  return {part(fifth), part(n - fifth), most(samples)};
+  return {part(fifth), part(n - fifth), most(samples),
+          growth(samples, static_cast<std::size_t>(std::min(fifth, n - 1)))};
 }
 
 }  // namespace adit::soak

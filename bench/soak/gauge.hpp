@@ -35,9 +35,11 @@ struct Series {
   }
 };
 
-/// Medians of the second fifth (the first is start-up) and of the last fifth of some samples.
+/// Of some samples: medians of the second fifth (the first is start-up) and of the last fifth, and the growth
+/// from there to the end: the median of the slopes between any two samples (Theil-Sen), times their number. A
+/// step (a port opened once, a cache filled), or a burst, is no growth; what goes on is.
 struct Trend {
-  double early{}, late{}, most{};
+  double early{}, late{}, most{}, growth{};
 };
 Trend trend(const std::vector<double>& samples);
 double median(std::vector<double> values);

@@ -1,11 +1,12 @@
 // soak: four supervised agents, a station and the simulated world; an agent is killed (SIGKILL) again and
-// again. What the processes that live through it hold must not grow. Run it by tools/soak.sh, which gives it
-// a network and a /dev/shm of its own.
+// again. What the processes that live through it hold must not grow, and nobody may restart by itself. Run it
+// by tools/soak.sh, which gives it a network and a /dev/shm of its own.
 #include <signal.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <set>
 #include <thread>
 
 #include "bench/soak/gauge.hpp"
@@ -19,6 +20,9 @@ using adit::live::Folder;
 using adit::live::Process;
 using adit::live::Seconds;
 using Clock = std::chrono::steady_clock;
+
+constexpr Seconds kPatience(30.0);  // a busy machine is late; who is not back by then does not come back
+constexpr double kLate = 5.0;       // s; told, but no failure: it says as much of the machine
 
 struct Options {
   double length{600.0}, every{10.0};
@@ -91,11 +95,21 @@ class Soak {
     for (std::size_t i = 0; i < parents_.size(); ++i)
       series_["parent of r" + std::to_string(i + 1)].add(gauge(parents_[i]->pid()));
     // The last agent is never killed: it sees all the others come and go.
+    for (std::size_t i = 0; i < parents_.size(); ++i) see_child(child(i), i);
     series_["agent r" + std::to_string(parents_.size()) + " (never killed)"].add(
         gauge(child(parents_.size() - 1)));
     const SharedMemory shared = shared_memory();
     shm_files_.push_back(static_cast<double>(shared.files));
     shm_mb_.push_back(shared.mb);
+  }
+
+  /// Another child than before, whose forerunner was not killed by us, was started because the agent gave up.
+  void see_child(pid_t now, std::size_t agent) {
+    children_.resize(parents_.size(), -1);
+    pid_t& before = children_[agent];
+    if (now <= 0 || now == before) return;
+    if (before > 0 && !killed_.contains(before)) ++by_themselves_;
+    before = now;
   }
 
   void restart_one() {
@@ -107,40 +121,47 @@ class Soak {
       return;
     }
     ::kill(before, SIGKILL);
+    killed_.insert(before);
     ++restarts_;
     const auto killed = Clock::now();
-    const bool back = eventually([&] { return command({"take", name}); }, Seconds(5));
+    const bool back = eventually([&] { return command({"take", name}); }, kPatience);
     obeys_after_.push_back(since(killed));
     const std::string x = turn_ % 2 == 0 ? "3" : "0", y = std::to_string(3 * (agent + 1));
-    const bool drives = eventually([&] { return command({"goto", name, x, y}); }, Seconds(5));
+    const bool drives = eventually([&] { return command({"goto", name, x, y}); }, kPatience);
     drives_after_.push_back(since(killed));
     if (!back || !drives) ++missing_;
+    if (drives_after_.back() > kLate) ++late_;
   }
 
   int report() {
     bool flat = true;
     std::printf(
-        "%.0f s, %d agents, %zu restarts by SIGKILL, %d times not there or not back within 5 s\n"
-        "answers a take again after %.2f s (median), %.2f s (worst), a goto after %.2f s, %.2f s\n",
-        options_.length, options_.agents, restarts_, missing_, median(obeys_after_), most(obeys_after_),
-        median(drives_after_), most(drives_after_));
-    std::printf("%-28s %24s %18s %18s\n", "", "memory MB: early, late, max", "threads", "files");
+        "%.0f s, %d agents, %zu restarts by SIGKILL, %d by themselves\n"
+        "answers a take again after %.2f s (median), %.2f s (worst), a goto after %.2f s, %.2f s\n"
+        "%d times late (a goto not accepted within %.0f s of the kill), %d times not there or not back "
+        "within %.0f s\n",
+        options_.length, options_.agents, restarts_, by_themselves_, median(obeys_after_), most(obeys_after_),
+        median(drives_after_), most(drives_after_), late_, kLate, missing_, kPatience.count());
+    std::printf("%-28s %26s %18s %18s\n", "", "memory MB: early, late, max", "threads", "files");
     for (const auto& [name, series] : series_) {
       const Trend m = trend(series.rss_mb), t = trend(series.threads), f = trend(series.fds);
-      // Caches and tables fill up to their bounds; a leak goes on.
-      const bool ok = m.late <= m.early * 1.1 + 2.0 && t.late <= t.early && f.late <= f.early + 1.0;
+      // Caches and tables fill up to their bounds, and a port of a neighbour that comes up under another
+      // number is opened once; a leak goes on.
+      const bool ok = m.growth <= m.early * 0.1 + 2.0 && t.growth < 0.5 && f.growth < 0.5 &&
+                      t.late <= t.early + 2.0 && f.late <= f.early + 6.0;
       std::printf("%-28s %8.1f %8.1f %8.1f %6.0f %6.0f %4.0f %6.0f %6.0f %4.0f%s\n", name.c_str(), m.early,
                   m.late, m.most, t.early, t.late, t.most, f.early, f.late, f.most, ok ? "" : "   GROWS");
       flat = flat && ok;
     }
     const Trend files = trend(shm_files_), mb = trend(shm_mb_);
-    const bool ok = files.late <= files.early * 1.1 + 4.0 && mb.late <= mb.early * 1.1 + 2.0;
+    const bool ok = files.growth <= files.early * 0.1 + 4.0 && mb.growth <= mb.early * 0.1 + 2.0;
     std::printf("%-28s %8.1f %8.1f %8.1f %18s %6.0f %6.0f %4.0f%s\n", "/dev/shm", mb.early, mb.late, mb.most,
                 "", files.early, files.late, files.most, ok ? "" : "   GROWS");
     for (const auto* process : {simulate_.get(), station_.get()}) missing_ += alive(process->pid()) ? 0 : 1;
     for (const auto& parent : parents_) missing_ += alive(parent->pid()) ? 0 : 1;
-    std::printf("%s\n", flat && ok && missing_ == 0 ? "flat" : "NOT FLAT");
-    return flat && ok && missing_ == 0 ? 0 : 1;
+    const bool there = missing_ == 0 && by_themselves_ == 0;
+    std::printf("%s%s\n", flat && ok ? "flat" : "NOT FLAT", there ? "" : ", NOT ALWAYS THERE");
+    return flat && ok && there ? 0 : 1;
   }
   static bool alive(pid_t pid) { return gauge(pid).rss_mb > 0.0; }
 
@@ -151,8 +172,10 @@ class Soak {
   std::vector<std::unique_ptr<Process>> parents_{};
   std::map<std::string, Series> series_{};
   std::vector<double> shm_files_{}, shm_mb_{}, obeys_after_{}, drives_after_{};
+  std::vector<pid_t> children_{};
+  std::set<pid_t> killed_{};
   std::size_t restarts_{}, turn_{};
-  int missing_{};
+  int missing_{}, late_{}, by_themselves_{};
 };
 
 }  // namespace

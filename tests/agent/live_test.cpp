@@ -1,9 +1,14 @@
 // The agent as a process over Fast DDS, on loopback.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
@@ -89,6 +94,90 @@ TEST_F(LiveAgent, ParentSendsZeroWhenItsAgentDiesAndStartsItAgain) {
   parent.signal(SIGTERM);
   EXPECT_EQ(parent.wait(live::Seconds(10)).exit_code, 0);
   EXPECT_TRUE(live::eventually([&] { return children_of(parent.pid()).empty(); }));
+}
+
+long entries(pid_t pid, const char* folder) {
+  std::error_code gone;  // counts as none
+  const std::filesystem::directory_iterator all("/proc/" + std::to_string(pid) + "/" + folder, gone);
+  return gone ? 0 : std::distance(begin(all), end(all));
+}
+
+/// Files in shared memory that the process has open and locked.
+std::set<std::string> locks_of(pid_t pid) {
+  std::set<std::string> names;
+  std::error_code gone;
+  for (const auto& fd : std::filesystem::directory_iterator("/proc/" + std::to_string(pid) + "/fd", gone)) {
+    const std::string target = std::filesystem::read_symlink(fd.path(), gone);
+    if (target.starts_with("/dev/shm/") && target.ends_with("_el")) names.insert(target);
+  }
+  return names;
+}
+
+bool left_without_owner(const std::string& lock) {
+  const int fd = ::open(lock.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool nobodys = ::flock(fd, LOCK_EX | LOCK_NB) == 0;
+  ::close(fd);
+  return nobodys;
+}
+
+TEST_F(LiveAgent, RestartsLeaveNothingBehind) {
+  live::Process parent(command({"--supervised", "--good-run", "0"}), folder.environment());
+  std::set<std::string> locks;
+  pid_t before = -1;
+  const auto restarted = [&] {
+    return live::eventually([&] {
+      const auto child = children_of(parent.pid());
+      if (child.size() != 1 || child[0] == before) return false;
+      const auto health =
+          live::run({"robot_agent", "console", "health", "--name", "r1"}, folder.environment());
+      if (health.out.find("command    up") == std::string::npos) return false;
+      before = child[0];
+      locks.merge(locks_of(before));
+      return true;
+    });
+  };
+  const auto restart = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      ::kill(before, SIGKILL);
+      ASSERT_TRUE(restarted()) << parent.err();
+    }
+  };
+  ASSERT_TRUE(restarted()) << parent.err();
+  restart(2);
+  const long files = entries(parent.pid(), "fd"), threads = entries(parent.pid(), "task");
+  ASSERT_GT(files, 0);
+  restart(5);
+  EXPECT_TRUE(live::eventually([&] { return entries(parent.pid(), "fd") <= files; }))
+      << entries(parent.pid(), "fd") << " files, " << files << " before five restarts";
+  EXPECT_EQ(entries(parent.pid(), "task"), threads);
+  EXPECT_FALSE(locks.empty());
+  for (const std::string& lock : locks) EXPECT_FALSE(left_without_owner(lock)) << lock;
+}
+
+TEST_F(LiveAgent, ATooSmallMemoryLimitNamesTheLeastAndThatWorks) {
+  const auto refused = live::run(command({"--memory-limit", "15"}), folder.environment());
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  const std::size_t at = refused.err.find("at least ");
+  ASSERT_NE(at, std::string::npos) << refused.err;
+  const std::string least =
+      refused.err.substr(at + 9, refused.err.find_first_not_of("0123456789", at + 9) - at - 9);
+  EXPECT_LT(std::stoi(least), 100);
+  live::Process parent(command({"--supervised", "--memory-limit", least}), folder.environment());
+  const auto health = [&] {
+    return live::run({"robot_agent", "console", "health", "--name", "r1"}, folder.environment()).out;
+  };
+  ASSERT_TRUE(live::eventually([&] { return health().find("command    up") != std::string::npos; }));
+  const auto child = children_of(parent.pid());
+  const auto bounded = [&] {
+    std::ifstream limits("/proc/" + std::to_string(child.at(0)) + "/limits");
+    for (std::string line; std::getline(limits, line);)
+      if (line.starts_with("Max data size")) return line.find("unlimited") == std::string::npos;
+    return false;
+  };
+  EXPECT_TRUE(live::eventually(bounded));
+  EXPECT_THAT(health(), testing::HasSubstr("command    up"));
+  EXPECT_EQ(children_of(parent.pid()), child) << parent.err();
 }
 
 TEST_F(LiveAgent, ConsoleAnswersAndCtrlCIsClean) {
