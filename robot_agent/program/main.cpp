@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/random.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +22,7 @@
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/program/console.hpp"
+#include "robot_agent/program/memory_limit.hpp"
 #include "robot_agent/program/parent.hpp"
 #include "robot_agent/program/robot_config.hpp"
 #include "robot_agent/program/service.hpp"
@@ -32,6 +32,8 @@ namespace {
 
 using namespace adit;
 using namespace adit::agent;
+
+constexpr int kBeatsOfStart = 40;  // 2 s: planner and sensors are made, too
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -130,13 +132,10 @@ std::string inject(agent::Agent& agent, const std::string& line) {
   return done ? "done\n" : done.error().text + "\n";
 }
 
-/// Allocations beyond that fail; what then fails is restarted.
-void limit_memory(double megabytes) {
-  if (megabytes <= 0.0) return;
-  const auto bytes = static_cast<rlim_t>(megabytes * 1024.0 * 1024.0);
-  const rlimit limit{bytes, bytes};
-  if (::setrlimit(RLIMIT_DATA, &limit) != 0)
-    std::cerr << "robot_agent: the memory limit cannot be set: " << std::strerror(errno) << "\n";
+/// Once everything is made; a limit that is too little is wrong configuration.
+void bound_memory(double limit) {
+  const auto bounded = limit_memory(limit);
+  if (!bounded) std::_Exit(fail(bounded.error(), 2));
 }
 
 /// A component that hangs must not hold up the end of the process.
@@ -146,7 +145,6 @@ void end_soon() {
 }
 
 int run_agent(const RobotConfig& config, const Options& options) {
-  limit_memory(config.memory_limit);
   auto log = make_live_log({config.log});
   if (!log) return fail(log.error(), 1);
   LiveRuntime runtime;
@@ -187,10 +185,12 @@ int run_agent(const RobotConfig& config, const Options& options) {
     std::_Exit(kEscalatedExit);
   };
   const Service service = Service::from_environment();
-  params.alive = [service, reports = options.reports, ready = false, beats = 0]() mutable {
+  params.alive = [service, reports = options.reports, limit = config.memory_limit, ready = false,
+                  beats = 0]() mutable {
     if (reports) (void)!::write(kReportFd, "1", 1);
     if (!std::exchange(ready, true)) service.tell("READY=1");
     if (beats++ % 10 == 0) service.tell("WATCHDOG=1");
+    if (beats == kBeatsOfStart) bound_memory(limit);
   };
   agent::Agent agent(params, runtime, keeper.tap(**radio, "radio"), keeper.tap(**robot, "robot"));
   // The console's socket is also what keeps two agents of one name apart.
@@ -273,7 +273,7 @@ int main(int argc, char** argv) {
       "--record", options.record,
       "folder for the recording of the last minutes, or none; below the state folder when not given");
   app.add_flag("--supervised", options.supervised, "run under a parent that sends zero when the agent dies");
-  app.add_option("--memory-limit", options.memory_limit, "MB that the agent may allocate; 0: no limit")
+  app.add_option("--memory-limit", options.memory_limit, "MB that the agent may use; 0: no limit")
       ->check(CLI::Range(0.0, 1e6));
   app.add_flag("--allow-faults", options.allow_faults,
                "let the robot's console make components fail: fault crash|hang COMPONENT");

@@ -25,7 +25,7 @@ struct RobotConfig {
   std::string tree{"trees/robot.xml"};
   std::string state{};              ///< folder of what survives a restart; empty: the usual one; "none"
   bool resume_after_restart{true};  ///< `after_restart: resume`, else `hold`
-  double memory_limit{0.0};         ///< MB that the agent may allocate, [0, 1e6]; 0: no limit
+  double memory_limit{0.0};         ///< MB that the agent may use, [0, 1e6]; 0: no limit
   LinkLossParams link_loss{};
   BatteryParams battery{};
   bool return_at_last_battery{};  ///< `battery.at_last: return`, else `hold`
