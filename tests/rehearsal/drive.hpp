@@ -1,0 +1,24 @@
+#pragma once
+#include "tests/rehearsal/record.hpp"
+
+namespace adit::sim {
+
+/// op1 holds the robot and drives it by joystick.
+inline void drive(Record& r) {
+  r.pass(1s);
+  r.take(1);
+  r.pass(200ms, still, &still);
+  r.enter("manual");
+  r.pass(100ms, still, &still);
+  r.pass(500ms, forward, &forward);
+}
+
+inline void stop(Record& r, int by) {
+  const CommandHeard c = r.ask(by, Verb::stop);
+  r.stops.push_back({c.station, c.id});
+  r.answer(c);
+  r.behave("hold", true);
+  r.publish();
+}
+
+}  // namespace adit::sim
