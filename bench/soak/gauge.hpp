@@ -36,8 +36,9 @@ struct Series {
 };
 
 /// Of some samples: medians of the second fifth (the first is start-up) and of the last fifth, and the growth
-/// from there to the end: the median of the slopes between any two samples (Theil-Sen), times their number. A
-/// step (a port opened once, a cache filled), or a burst, is no growth; what goes on is.
+/// from there to the end: the 45 % quantile of the slopes between any two samples (after Theil and Sen),
+/// times their number. A step (a port opened once, a cache filled), or a burst, is no growth; what goes on
+/// is.
 struct Trend {
   double early{}, late{}, most{}, growth{};
 };

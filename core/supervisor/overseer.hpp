@@ -128,6 +128,7 @@ class Overseer {
   std::vector<PartStatus> status_{};
   std::vector<Course> courses_{};
   std::optional<Time> looked_{};
+  Duration allowance_{};
   int left_behind_{};
   bool escalated_{};
 };

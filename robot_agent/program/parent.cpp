@@ -90,6 +90,7 @@ void Parent::hear() {
   char bytes[64];
   const ssize_t got = ::read(report_, bytes, sizeof bytes);
   if (got <= 0) return close_fd(report_);
+  if (!commands_) looked_ = {};  // at once: now it has all that it will have
   commands_ = true;
   heard_ = Clock::now();
 }

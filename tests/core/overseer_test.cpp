@@ -166,6 +166,15 @@ TEST_F(OverseerTest, WhoBlocksAfterItStarvedIsHungWithinASecondFromThen) {
   EXPECT_THAT(pass(800ms), ElementsAre(Order{Kind::escalate, 0}));
 }
 
+TEST_F(OverseerTest, LooksThatAreALittleLateFindAHangInTimeAllTheSame) {
+  pass(1s);
+  stuck[1] = true;
+  const Time hung_at = now;
+  for (int i = 0; overseer.status()[1].hangs == 0 && i < 100; ++i) pass(70ms, 70ms), pass(30ms, 30ms);
+  EXPECT_LT(now - hung_at, 900ms);
+  EXPECT_EQ(overseer.status()[1].hangs, 1u);
+}
+
 TEST_F(OverseerTest, WithoutAWordOfTheSystemAllSilenceCounts) {
   stuck[0] = true;
   pass(300ms);
