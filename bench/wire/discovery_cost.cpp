@@ -1,5 +1,6 @@
 // Radio bytes a second per robot, discovery apart, at rest and while driven, for a growing fleet; beside it
-// participants with Fast DDS's own defaults and the same topics, at the same time: discovery_cost [SECONDS].
+// participants with Fast DDS's own defaults and the same topics, at the same time: discovery_cost [SECONDS
+// [AGENTS]].
 #include <sys/resource.h>
 
 #include <cstdio>
@@ -7,6 +8,7 @@
 
 #include "bench/wire/idle.hpp"
 #include "core/wire/bench/default_dds.hpp"
+#include "core/wire/qos.hpp"
 
 namespace adit::bench {
 namespace {
@@ -77,7 +79,7 @@ void measure(int agents, Duration time) {
   std::vector<std::unique_ptr<Idle>> ours;
   for (int i = 0; i < robots; ++i) ours.push_back(robot(net, "r" + std::to_string(i)));
   if (agents > 1) ours.push_back(station(net, "op1", robots));
-  net.pass(5s);
+  net.pass(wire::Discovery::initial_announcements * wire::Discovery::initial_period + 2s);
   const auto all = [&] {
     std::vector<wire::WireCounters> result;
     for (const auto& one : ours) result.push_back(one->wire->counters());
@@ -132,5 +134,6 @@ int main(int argc, char** argv) {
   std::printf("Bytes a second sent by each agent; start-up in bytes; processor in %% of a core for each\n\n");
   std::printf("| agents | discovery | default | ratio | at rest | driven | start-up | default | CPU |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  if (argc > 2) return bench::measure(std::atoi(argv[2]), time), 0;
   for (const int agents : {1, 2, 4, 8, 16}) bench::measure(agents, time);
 }
