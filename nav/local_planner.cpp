@@ -17,7 +17,6 @@ constexpr double kTurnMargin = 0.02;     ///< m around the footprint while it tu
 constexpr double kStraightStick = 15.0;  ///< degrees: a stick within this of ahead or back holds the course
 constexpr double kSteadyStick = 4.0;     ///< degrees: a stick that moves more sets a new course
 constexpr float kSecondChoice = 0.3f;    ///< weight of driving the other way round than was asked for
-constexpr float kNearest = 1.2f;         ///< m: obstacles up to here are given to the follower first
 
 /// Degrees in [0, 360), whole, of an angle in radians.
 int whole_degrees(float radians) {
@@ -79,7 +78,7 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
     const Goal back = retreat_goal(pose);
     if (retreating_) goal = back;
   }
-  project(pose, goal, obstacles, plan);
+  project(goal, obstacles, plan);
 
   const bool nowhere =
       target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
@@ -190,31 +189,19 @@ LocalPlanner::Goal LocalPlanner::goal_of(const Target& target, const Pose2& pose
   return goal;
 }
 
-void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const ObstaclePoint> obstacles,
-                           Plan& plan) {
-  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
-  const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
+void LocalPlanner::project(const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan) {
   const auto bearing = static_cast<float>(goal.bearing);
   const auto hl = static_cast<float>(platform_.length / 2), hw = static_cast<float>(platform_.width / 2);
   const RotationTable& rotation = library_->rotation;
-  // What the follower's braking check can need: the way to a stop from full speed, and a reaction.
-  const auto watch = static_cast<float>(
-      std::hypot(hl, hw) + platform_.max_speed * platform_.max_speed / (2 * platform_.max_acceleration) +
-      0.4 * platform_.max_speed + 0.2);
   float clearance = 2.0f;
   room_ = {};
   std::fill(seen_.begin(), seen_.end(), 0);
 
-  const auto give = [&](const ObstaclePoint& p) {
-    if (plan.obstacle_count < Plan::kMaxObstacles)
-      plan.obstacles[plan.obstacle_count++] = {x0 + c * p.x - s * p.y, y0 + s * p.x + c * p.y};
-  };
   for (const ObstaclePoint& p : obstacles) {
     if (p.cost < 1.0f) continue;
     const float x = p.x, y = p.y;
     const float range = std::sqrt(x * x + y * y);
     const int ring = CorrespondenceGrid::ring_of(range);
-    if (range <= kNearest) give(p);
     if (ring >= rings_ && ring >= rotation.rings()) continue;
     const float angle = std::atan2(y, x);
     if (ring < rotation.rings()) rotation.limit(ring, whole_degrees(angle), room_);
@@ -223,10 +210,6 @@ void LocalPlanner::project(const Pose2& pose, const Goal& goal, std::span<const 
     if (ring >= rings_) continue;
     const auto bit = static_cast<std::size_t>(ring * kAngles + whole_degrees(angle - bearing));
     seen_[bit >> 6] |= std::uint64_t{1} << (bit & 63);
-  }
-  for (const ObstaclePoint& p : obstacles) {
-    const float range2 = p.x * p.x + p.y * p.y;
-    if (p.cost >= 1.0f && range2 > kNearest * kNearest && range2 <= watch * watch) give(p);
   }
   plan.clearance = clearance;
 

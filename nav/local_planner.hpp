@@ -115,7 +115,7 @@ class LocalPlanner {
   };
 
   Goal goal_of(const Target& target, const Pose2& pose);
-  void project(const Pose2& pose, const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan);
+  void project(const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan);
   void judge_headings(const Goal& goal);
   void block_paths(const Option& option, const Goal& goal);
   bool vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best);

@@ -27,7 +27,6 @@ struct Target {
 /// What the local planner found. Of bounded size, without pointers: copied at no more than a memcpy.
 struct Plan {
   static constexpr std::size_t kMaxPath = 72;
-  static constexpr std::size_t kMaxObstacles = 1024;
 
   double stamp_s{0};            ///< of the pose that it was made for
   bool blocked{false};          ///< every way is blocked: `path` is empty
@@ -45,12 +44,8 @@ struct Plan {
 
   std::array<Pose2, kMaxPath> poses{};  ///< odometry frame, from the robot on
   std::uint32_t pose_count{0};
-  std::array<Eigen::Vector2f, kMaxObstacles>
-      obstacles{};  ///< cells near the robot, nearest ones first to be kept
-  std::uint32_t obstacle_count{0};
 
   std::span<const Pose2> path() const { return {poses.data(), pose_count}; }
-  std::span<const Eigen::Vector2f> near() const { return {obstacles.data(), obstacle_count}; }
 };
 
 }  // namespace adit::nav

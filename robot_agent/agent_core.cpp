@@ -36,6 +36,7 @@ BehaviourParams behaviour_params(const AgentParams& params) {
 NavigationParams navigation_params(const AgentParams& params) {
   NavigationParams n{};
   n.platform = params.platform;
+  n.defects = params.defects;
   return n;
 }
 
@@ -303,7 +304,25 @@ Navigation::Outputs Agent::Core::navigation_outputs() {
   return {[this](const Twist2& velocity) {
             if (lease_->valid()) edges_.driver->write(velocity);
           },
-          [this](const Progress& progress) { behaviour_.set_progress(progress); }};
+          [this](const Progress& progress) { behaviour_.set_progress(progress); },
+          [this](Warning warning) { warn(warning); }};
+}
+
+void Agent::Core::warn(Warning warning) {
+  const bool stops = params_.platform.manual_collision_stop;
+  if (warning == Warning::lidar_silent)
+    tell_holder({{},
+                 Severity::warning,
+                 "lidar_silent",
+                 Reason::terrain_stale,
+                 "the lidar of " + params_.name + " is silent: it drives blindly, at most 0.3 m/s"});
+  else
+    tell_holder({{},
+                 Severity::warning,
+                 "obstacle_near",
+                 Reason::none,
+                 "something is in the way of " + params_.name +
+                     (stops ? ": it slows down and stops" : ": it slows down to 0.3 m/s and does not stop")});
 }
 
 std::string Agent::Core::at_console(const std::string& line) {

@@ -79,6 +79,7 @@ class Agent::Core : public Component {
   void send_behaviour();
   void note_driver();
   void watch_driver();
+  void warn(Warning warning);
   void tell_restored();
   void watch_link();
   void battery_fell(BatteryLevel level);

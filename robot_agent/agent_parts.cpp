@@ -63,8 +63,9 @@ UnitParams Agent::Parts::planner_unit() {
   unit.name = "planner";
   unit.heavy = true;
   unit.make = [this](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
-    return std::unique_ptr<Component>(std::make_unique<Planner>(
-        PlannerParams{params.platform, params.planning}, strand, Log(params.log, params.name), library()));
+    return std::unique_ptr<Component>(
+        std::make_unique<Planner>(PlannerParams{params.platform, params.planning, params.defects}, strand,
+                                  Log(params.log, params.name), library()));
   };
   return unit;
 }

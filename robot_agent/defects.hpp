@@ -28,9 +28,11 @@ enum class Defect {
   epoch_kept_at_restart,     ///< rule 1: the epoch of before the restart stays in force
   lock_forgotten,            ///< rule 7: the lock does not survive a restart
   acknowledged_lost,         ///< rule 9: acknowledged before it is saved, and saved much later
+  blind_planner,             ///< no rule: plans straight at the goal, through everything
+  blind_and_unwatched,       ///< the same, and no collision monitor between it and the wheels
 };
 
-inline constexpr std::array<std::pair<std::string_view, Defect>, 18> kDefectNames{{
+inline constexpr std::array<std::pair<std::string_view, Defect>, 20> kDefectNames{{
     {"none", Defect::none},
     {"accept_without_epoch", Defect::accept_without_epoch},
     {"repeat_done_twice", Defect::repeat_done_twice},
@@ -49,6 +51,8 @@ inline constexpr std::array<std::pair<std::string_view, Defect>, 18> kDefectName
     {"epoch_kept_at_restart", Defect::epoch_kept_at_restart},
     {"lock_forgotten", Defect::lock_forgotten},
     {"acknowledged_lost", Defect::acknowledged_lost},
+    {"blind_planner", Defect::blind_planner},
+    {"blind_and_unwatched", Defect::blind_and_unwatched},
 }};
 
 constexpr std::optional<Defect> defect_from_name(std::string_view name) {

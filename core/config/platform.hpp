@@ -1,5 +1,8 @@
 #pragma once
+#include <Eigen/Core>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 namespace adit {
 
@@ -7,12 +10,15 @@ namespace adit {
 enum class Drive { differential, holonomic };
 
 /// What a robot's body is and can do; read from config/platforms/NAME.yaml. Footprint: a rectangle
-/// centred on base_link, x forward.
+/// centred on base_link, x forward, or a convex polygon within it.
 struct Platform {
+  static constexpr std::size_t kMaxCorners = 16;
   std::string name{};  ///< wheeled, tracked, legged, ...
   Drive drive{Drive::differential};
-  double length{0.6};                 ///< footprint along x, m, (0, 5]
-  double width{0.5};                  ///< footprint along y, m, (0, 5]
+  double length{0.6};  ///< footprint along x, m, (0, 5]
+  double width{0.5};   ///< footprint along y, m, (0, 5]
+  /// Corners, counter-clockwise, m; convex, around base_link, at most kMaxCorners; none: the rectangle.
+  std::vector<Eigen::Vector2d> footprint{};
   double height{0.5};                 ///< of the body above the ground, m, (0, 5]
   double max_speed{1.0};              ///< m/s, (0, 10]
   double max_turn{1.0};               ///< rad/s, (0, 10]
@@ -23,6 +29,8 @@ struct Platform {
   bool stairs{false};
   std::string controller{
       "pure_pursuit"};  ///< that tracks the local planner's paths: nav/control/controller.hpp
+  /// In manual mode the collision monitor stops the robot; false: it slows it and warns the operator.
+  bool manual_collision_stop{false};
 };
 
 }  // namespace adit

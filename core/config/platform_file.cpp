@@ -1,9 +1,38 @@
 #include "core/config/platform_file.hpp"
 
+#include <cmath>
+
 #include "core/config/node.hpp"
 #include "core/config/search.hpp"
 
 namespace adit::config {
+namespace {
+
+void read_footprint(const Node& root, Platform& p) {
+  const Node node = root.child_if("footprint");
+  if (!node.present()) return;
+  for (const Node& corner : node.as_list()) {
+    const std::vector<double> at = corner.as_numbers(2, 2, within(-2.5, 2.5));
+    if (at.size() != 2) return;
+    if (std::fabs(at[0]) > p.length / 2 + 1e-6 || std::fabs(at[1]) > p.width / 2 + 1e-6)
+      corner.fail(Reason::out_of_range, "expected a corner within length and width");
+    p.footprint.emplace_back(at[0], at[1]);
+  }
+  const std::size_t n = p.footprint.size();
+  bool good = n >= 3 && n <= Platform::kMaxCorners;
+  for (std::size_t i = 0; good && i < n; ++i) {
+    const Eigen::Vector2d &a = p.footprint[i], &b = p.footprint[(i + 1) % n], &c = p.footprint[(i + 2) % n];
+    const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
+      return u.x() * v.y() - u.y() * v.x();
+    };
+    good = cross(b - a, c - b) > 0 && cross(b - a, -a) > 0;  // turns left, and base_link lies to the left
+  }
+  if (!good)
+    node.fail(Reason::out_of_range,
+              "expected 3 to 16 corners [x, y], convex, counter-clockwise, around base_link");
+}
+
+}  // namespace
 
 Result<Platform> load_platform_file(const std::string& path) {
   auto file = load(path);
@@ -14,6 +43,7 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.drive = root.choice("drive", {"differential", "holonomic"}) == 0 ? Drive::differential : Drive::holonomic;
   p.length = root.number("length", above(0, 5));
   p.width = root.number("width", above(0, 5));
+  read_footprint(root, p);
   p.height = root.number("height", above(0, 5), p.height);
   p.max_speed = root.number("max_speed", above(0, 10));
   p.max_turn = root.number("max_turn", above(0, 10));
@@ -23,6 +53,7 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.lidar_height = root.number("lidar_height", above(0, 5));
   p.stairs = root.flag("stairs", false);
   p.controller = root.text("controller", p.controller);
+  p.manual_collision_stop = root.flag("manual_collision_stop", p.manual_collision_stop);
   if (auto done = root.finish(); !done) return done.error();
   return p;
 }

@@ -16,22 +16,16 @@ double stepped(double from, double to, double step) { return from + std::clamp(t
 }  // namespace
 
 Controller::Controller(const Platform& platform, const ControllerParams& params)
-    : platform_(platform), params_(params), check_(platform, params.check) {}
+    : platform_(platform), params_(params) {}
 
 Twist2 Controller::stop_now() {
   plan_ = {};
-  turning_ = held_ = false;
+  turning_ = false;
   rest();
   return last_ = {};
 }
 
-Twist2 Controller::follow(const Pose2& odom, double dt) {
-  const Twist2 candidate = towards(desired(odom, dt), dt);
-  check_.look(plan_.near(), odom);
-  held_ = !check_.safe(candidate);
-  last_ = held_ ? braked(dt) : candidate;
-  return last_;
-}
+Twist2 Controller::follow(const Pose2& odom, double dt) { return last_ = towards(desired(odom, dt), dt); }
 
 Twist2 Controller::desired(const Pose2& odom, double dt) {
   const auto path = plan_.path();
@@ -78,16 +72,6 @@ Twist2 Controller::towards(const Twist2& wanted, double dt) const {
   if (change.norm() > most) change *= most / change.norm();
   const Eigen::Vector2d v = from + change;
   return {v.x(), v.y(), stepped(last_.wz, wanted.wz, platform_.max_turn_acceleration * dt)};
-}
-
-Twist2 Controller::braked(double dt) const {
-  // Down along the curve that the robot is on, which the check of the command before found free.
-  const double speed = std::hypot(last_.vx, last_.vy);
-  double keep = 0.0;
-  if (speed > 0.0) keep = std::max(keep, 1.0 - platform_.max_acceleration * dt / speed);
-  if (last_.wz != 0.0)
-    keep = std::max(keep, 1.0 - platform_.max_turn_acceleration * dt / std::fabs(last_.wz));
-  return {keep * last_.vx, keep * last_.vy, keep * last_.wz};
 }
 
 const std::vector<std::string>& controller_names() {

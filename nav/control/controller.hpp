@@ -5,7 +5,6 @@
 
 #include "core/config/platform.hpp"
 #include "core/result/result.hpp"
-#include "nav/braking_check.hpp"
 #include "nav/plan.hpp"
 
 namespace adit::nav {
@@ -14,12 +13,11 @@ struct ControllerParams {
   double turn_from{0.45};     ///< turns on the spot when the path starts off by more, rad, [0.1, 3]
   double turn_until{0.12};    ///< and until it is off by less, rad, [0.02, turn_from]
   double braking_share{0.7};  ///< share of the platform's acceleration that is planned with, (0, 1]
-  BrakingCheckParams check{};
 };
 
 /// Turns a plan into velocities. What all controllers share is here: turning on the spot where the path
-/// starts to the side, the platform's limits of acceleration, and a BrakingCheck of each command against the
-/// plan's obstacles. How the path is tracked is each one's own.
+/// starts to the side, and the platform's limits of acceleration. How the path is tracked is each one's own.
+/// Obstacles are the planner's matter and, after all else, the CollisionMonitor's.
 class Controller {
  public:
   Controller(const Platform& platform, const ControllerParams& params);
@@ -33,8 +31,8 @@ class Controller {
   Twist2 stop_now();
 
   const Twist2& command() const { return last_; }
-  /// The last command was cut because it would have led into an obstacle.
-  bool held() const { return held_; }
+  /// What became of the last command on its way to the driver, when that was something else.
+  void sent(const Twist2& velocity) { last_ = velocity; }
 
  protected:
   /// Where the robot is on the path.
@@ -56,15 +54,12 @@ class Controller {
   Twist2 desired(const Pose2& odom, double dt);
   Twist2 turn_on_spot(double error) const;
   Twist2 towards(const Twist2& wanted, double dt) const;
-  Twist2 braked(double dt) const;
 
   Platform platform_;
   ControllerParams params_;
-  BrakingCheck check_;
   Plan plan_{};
   Twist2 last_{};
   bool turning_{false};
-  bool held_{false};
 };
 
 /// Every controller there is, for configuration files and help.

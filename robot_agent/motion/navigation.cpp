@@ -21,7 +21,8 @@ Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const
       localisation_(localisation),
       planner_(planner),
       outputs_(std::move(outputs)),
-      controller_(nav::make_controller(params_.platform.controller, params_.platform).value()) {}
+      controller_(nav::make_controller(params_.platform.controller, params_.platform).value()),
+      monitor_(params_.platform) {}
 
 void Navigation::accept(MuxKey, const Motion& motion, Time) {
   if (motion == motion_) return;
@@ -34,18 +35,41 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
     controller_->stop_now();
   }
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
-    emit(limited(velocity->twist));
+    drive_manually(velocity->twist);
   else if (std::holds_alternative<Stand>(motion_))
-    emit({});
+    outputs_.velocity({});
 }
 
 void Navigation::step(Time now) {
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
-    emit(limited(velocity->twist));
+    drive_manually(velocity->twist);
   else if (std::holds_alternative<Stand>(motion_))
-    emit({});
+    outputs_.velocity({});
   else
-    emit(along_plan(now));
+    outputs_.velocity(along_plan(now));
+}
+
+nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
+                                                   nav::CollisionMonitor::Policy policy) const {
+  if (params_.defects.has(Defect::blind_and_unwatched)) return {wanted, nav::CollisionMonitor::Cause::none};
+  return monitor_.check(wanted, localisation_.odom().planar(), seconds(now().time_since_epoch()), policy);
+}
+
+void Navigation::drive_manually(const Twist2& wanted) {
+  using Policy = nav::CollisionMonitor::Policy;
+  const auto verdict =
+      guarded(limited(wanted), params_.platform.manual_collision_stop ? Policy::stop_seen : Policy::limit);
+  watch_warning(verdict.cause, now());
+  outputs_.velocity(verdict.velocity);
+}
+
+void Navigation::watch_warning(nav::CollisionMonitor::Cause cause, Time now) {
+  using Cause = nav::CollisionMonitor::Cause;
+  if (cause == Cause::none) return;
+  const Warning warning = cause == Cause::stale ? Warning::lidar_silent : Warning::obstacle_near;
+  std::optional<Time>& last = warned_[static_cast<std::size_t>(warning)];
+  if ((!last || now - *last > params_.warned_for) && outputs_.warn) outputs_.warn(warning);
+  last = now;
 }
 
 Twist2 Navigation::along_plan(Time now) {
@@ -53,16 +77,18 @@ Twist2 Navigation::along_plan(Time now) {
   const bool centred = guidance && guidance->stick.zero();
   if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !localisation_.alive(now))
     return controller_->stop_now();
-  const Twist2 velocity = controller_->follow(localisation_.odom().planar(), seconds(params_.period));
-  watch_held(now);
-  return velocity;
+  const Twist2 wanted = controller_->follow(localisation_.odom().planar(), seconds(params_.period));
+  const auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
+  if (verdict.cause != nav::CollisionMonitor::Cause::none) controller_->sent(verdict.velocity);
+  watch_held(verdict.cause == nav::CollisionMonitor::Cause::stopped, now);
+  return verdict.velocity;
 }
 
-void Navigation::watch_held(Time now) {
+void Navigation::watch_held(bool stopped, Time now) {
   const Eigen::Vector2d at = localisation_.odom().planar().position();
   if (held_since_ && (now - held_last_ > kFreeAgain || (at - held_at_).norm() > kHeldWithin))
     held_since_.reset();
-  if (!controller_->held()) return;
+  if (!stopped) return;
   held_last_ = now;
   if (held_since_) return;
   held_since_ = now;
@@ -94,10 +120,9 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
   return t;
 }
 
-void Navigation::emit(const Twist2& velocity) { outputs_.velocity(velocity); }
-
 void Navigation::add_scan(std::shared_ptr<Scan> scan, Time now) {
   scanned_ = now;
+  monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
   if (planning(now))
     waiting_ = std::move(scan);
   else

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -6,6 +7,7 @@
 
 #include "core/component/component.hpp"
 #include "nav/control/controller.hpp"
+#include "nav/monitor/collision_monitor.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/motion.hpp"
@@ -18,16 +20,24 @@ struct NavigationParams {
   Duration period{50ms};        ///< of step(): the driver's rate, [20 ms, 50 ms]
   Duration plan_age{500ms};     ///< an older plan moves nothing
   Duration scan_age{500ms};     ///< older points: the terrain is not known
-  Duration held_after{1500ms};  ///< a robot that its braking check keeps on the spot this long is blocked
+  Duration held_after{1500ms};  ///< a robot that its collision monitor keeps on the spot this long is blocked
+  Duration warned_for{2s};      ///< a warning is told anew when its cause was away for longer
+  Defects defects{};
 };
 
+/// Why the operator of a manual mode is warned.
+enum class Warning { obstacle_near, lidar_silent };
+
 /// Turns what the mux passes into velocities within the platform's limits: as they are, or along the local
-/// planner's paths. Has the planner plan once per scan, on another strand, and follows on its own.
+/// planner's paths. Has the planner plan once per scan, on another strand, and follows on its own. The
+/// collision monitor has the last word on each velocity: in autonomous modes and smart joystick it stops the
+/// robot, in manual mode it slows it down and has the operator warned.
 class Navigation : public Component, public NavigationInput {
  public:
   struct Outputs {
     std::function<void(const Twist2&)> velocity{};    ///< to the driver
     std::function<void(const Progress&)> progress{};  ///< of the goal asked for last
+    std::function<void(Warning)> warn{};              ///< once, as long as it lasts; may be empty
   };
 
   Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
@@ -46,9 +56,11 @@ class Navigation : public Component, public NavigationInput {
  private:
   nav::Target target() const;
   Twist2 along_plan(Time now);
-  void watch_held(Time now);
+  void watch_held(bool stopped, Time now);
+  void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
   Twist2 limited(const Twist2& wanted) const;
-  void emit(const Twist2& velocity);
+  void drive_manually(const Twist2& wanted);
+  nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;
   void plan(std::shared_ptr<Scan> scan, Time now);
   bool planning(Time now) const;
   void planned(const PlanJob& job);
@@ -58,12 +70,14 @@ class Navigation : public Component, public NavigationInput {
   PlanService& planner_;
   Outputs outputs_;
   std::unique_ptr<nav::Controller> controller_;
+  nav::CollisionMonitor monitor_;
 
   Motion motion_{Stand{}};
   std::uint64_t goal_generation_{};  // rises with every other goal, so that late plans report no progress
   bool has_plan_{};
   Time plan_made_{};
-  std::optional<Time> held_since_{};  // the braking check cuts velocities, with no more than short breaks
+  std::array<std::optional<Time>, 2> warned_{};  // by Warning: when its cause was there last
+  std::optional<Time> held_since_{};  // the monitor stops the robot, with no more than short breaks
   Time held_last_{};
   Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
   std::optional<Time> planning_{};     // since when a cycle is under way

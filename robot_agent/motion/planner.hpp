@@ -4,6 +4,7 @@
 
 #include "core/component/component.hpp"
 #include "nav/navigator.hpp"
+#include "robot_agent/defects.hpp"
 
 namespace adit::agent {
 
@@ -27,6 +28,7 @@ struct PlanJob {
 struct PlannerParams {
   Platform platform{};
   Duration planning{20ms};  ///< what a cycle takes in rehearsal
+  Defects defects{};
 };
 
 /// The planning work: obstacle map and local planner, on a strand of its own. When it is made anew its map

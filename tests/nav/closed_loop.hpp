@@ -2,12 +2,14 @@
 #include <vector>
 
 #include "nav/control/controller.hpp"
+#include "nav/monitor/collision_monitor.hpp"
 #include "nav/navigator.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {
 
-/// A robot in a box world: scan and plan at 10 Hz, follower at 50 Hz, as the agent calls them.
+/// A robot in a box world: scan and plan at 10 Hz, controller and collision monitor at 50 Hz, as the agent
+/// calls them.
 struct ClosedLoop {
   BoxWorld world{};
   Platform platform{wheeled()};
@@ -19,12 +21,13 @@ struct ClosedLoop {
   Navigator navigator{platform};
   std::unique_ptr<Controller> controller;
   Controller& follower;
+  CollisionMonitor monitor;
 
   Plan last{};
   double time{0};
   double least_clearance{10};
   double driven{0}, fastest{0}, steepest{0};  ///< m, m/s, m/s2
-  int blocked_cycles{0}, held_steps{0};
+  int blocked_cycles{0}, held_steps{0}, slowed_steps{0};
 
   ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start, const std::string& tracks = "pure_pursuit")
       : world(std::move(w)),
@@ -32,23 +35,29 @@ struct ClosedLoop {
         truth(start),
         navigator(p),
         controller(make_controller(tracks, p).value()),
-        follower(*controller) {}
+        follower(*controller),
+        monitor(p) {}
 
   Pose2 odometry() const { return {truth.x + bias.x, truth.y + bias.y, truth.yaw}; }
 
   /// One planner cycle and the five follower steps until the next.
   void cycle(const Target& target) {
     const Pose2 odom = odometry();
-    navigator.add_scan(world.scan(truth, platform.lidar_height, rings, columns, noise, random),
-                       Pose3::level(odom, 0.0), time);
+    const auto scan = world.scan(truth, platform.lidar_height, rings, columns, noise, random);
+    navigator.add_scan(scan, Pose3::level(odom, 0.0), time);
+    monitor.look(scan, Pose3::level(odom, 0.0), time);
     last = navigator.plan(target, odom, time);
     blocked_cycles += last.blocked;
     follower.set_plan(last);
     for (int i = 0; i < 5; ++i) {
       constexpr double kDt = 0.02;
       const Twist2 before = follower.command();
-      const Twist2 v = follower.follow(odometry(), kDt);
-      held_steps += follower.held();
+      const auto verdict =
+          monitor.check(follower.follow(odometry(), kDt), odometry(), time, CollisionMonitor::Policy::stop);
+      const Twist2 v = verdict.velocity;
+      if (verdict.cause != CollisionMonitor::Cause::none) follower.sent(v);
+      held_steps += verdict.cause == CollisionMonitor::Cause::stopped;
+      slowed_steps += verdict.cause == CollisionMonitor::Cause::slowed;
       steepest = std::max(steepest, std::hypot(v.vx - before.vx, v.vy - before.vy) / kDt);
       fastest = std::max(fastest, std::hypot(v.vx, v.vy));
       driven += std::hypot(v.vx, v.vy) * kDt;

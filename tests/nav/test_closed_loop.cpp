@@ -161,9 +161,9 @@ TEST(ClosedLoopDeterminism, SameSeedSameDrive) {
   EXPECT_EQ(std::vector(ends.begin(), ends.begin() + 4), std::vector(ends.begin() + 4, ends.end()));
 }
 
-TEST(ClosedLoopWithoutCorrespondences, HitsTheHeldCheckInsteadOfPlanningAround) {
+TEST(ClosedLoopWithoutCorrespondences, OnlyTheMonitorIsLeft) {
   // What the other tests would see if the correspondence grid were lost: no plan says "blocked" any more, and
-  // only the braking check is left between the robot and the wall.
+  // only the collision monitor is left between the robot and the wall.
   BoxWorld world{{{4, 4.2, -1.2, 1.2}}};
   ClosedLoop with(wheeled(), world, {0, 0, 0}), without(wheeled(), world, {0, 0, 0});
   auto emptied = std::make_shared<PlannerLibrary>(*PlannerLibrary::build(wheeled()));

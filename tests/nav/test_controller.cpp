@@ -118,44 +118,14 @@ TEST_P(ControllerTest, AnEmptyPlanIsASmoothStopAndStopNowIsZeroAtOnce) {
   EXPECT_TRUE(follower.follow(pose, kDt).zero());
 }
 
-TEST_P(ControllerTest, BrakesBeforeWhatThePlanLeadsInto) {
-  for (const Platform& p : {wheeled(), tracked(), legged()}) {
-    const auto made = make(p);
-    Controller& follower = *made;
-    Plan plan = straight(3.0);
-    for (float y = -0.5f; y < 0.5f; y += 0.05f) plan.obstacles[plan.obstacle_count++] = {2.0f, y};
-    follower.set_plan(plan);
-    const Pose2 end = run(follower, p, {}, 10);
-    EXPECT_LT(end.x + p.length / 2, 2.0) << p.name;
-    EXPECT_GT(end.x + p.length / 2, 1.7) << p.name;
-    EXPECT_TRUE(follower.held());
-  }
-}
-
-TEST(BrakingCheck, LooksAsFarAsBrakingTakes) {
-  BrakingCheck check(wheeled());  // 2 m/s, 1.5 m/s2: 1.33 m, and 0.3 m in the reaction time
-  const std::vector<Eigen::Vector2f> ahead{{1.5f, 0.0f}};
-  check.look(ahead, {});
-  EXPECT_FALSE(check.safe({2.0, 0, 0}));
-  EXPECT_TRUE(check.safe({1.0, 0, 0}));
-  EXPECT_TRUE(check.safe({-2.0, 0, 0}));
-  EXPECT_TRUE(check.safe({}));
-}
-
-TEST(BrakingCheck, SeesWhatATurnSweeps) {
-  BrakingCheck check(tracked());
-  const std::vector<Eigen::Vector2f> corner{{0.36f, 0.325f}};
-  check.look(corner, {});
-  EXPECT_FALSE(check.safe({0, 0, 1.0}));
-  EXPECT_TRUE(check.safe({0, 0, -0.5}));
-}
-
-TEST(BrakingCheck, LetsARobotOutOfWhatItTouches) {
-  BrakingCheck check(wheeled());
-  const std::vector<Eigen::Vector2f> touching{{0.305f, 0.0f}};
-  check.look(touching, {});
-  EXPECT_FALSE(check.safe({0.3, 0, 0}));
-  EXPECT_TRUE(check.safe({-0.3, 0, 0}));
+TEST_P(ControllerTest, GoesOnFromWhatWasSent) {
+  const auto made = make(wheeled());
+  Controller& follower = *made;
+  follower.set_plan(straight(3.0));
+  const Pose2 pose = run(follower, wheeled(), {}, 0.6);
+  ASSERT_GT(follower.command().vx, 0.5);
+  follower.sent({});  // as a collision monitor does
+  EXPECT_LE(follower.follow(pose, kDt).vx, wheeled().max_acceleration * kDt + 1e-9);
 }
 
 }  // namespace

@@ -161,14 +161,5 @@ TEST_F(Planner, BacksAwayAfterAWhileAndNotForEver) {
   EXPECT_GT(blocked, 100);
 }
 
-TEST_F(Planner, GivesTheFollowerWhatIsNear) {
-  Cells cells;
-  for (int i = 0; i < 3000; ++i) cells.emplace_back(1.3f + 0.0003f * static_cast<float>(i), 0.8f);
-  cells.emplace_back(0.5f, 0.5f);  // last, and nearest
-  const Plan plan = planner_.plan(Target::to({-3, 0}), {}, seen_from({}, cells), 0);
-  EXPECT_EQ(plan.obstacle_count, Plan::kMaxObstacles);
-  EXPECT_EQ(plan.near().front(), Eigen::Vector2f(0.5f, 0.5f));
-}
-
 }  // namespace
 }  // namespace adit::nav::test

@@ -1,0 +1,62 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+
+#include "nav/monitor/near_points.hpp"
+
+namespace adit::nav {
+
+struct CollisionMonitorParams {
+  NearPointsParams points{};
+  double margin{0.02};         ///< kept around the footprint, m, [0, 0.2]
+  double reaction{0.15};       ///< a velocity goes on this long before braking begins, s, [0, 1]
+  double braking_share{0.75};  ///< of the platform's acceleration, that slowing down counts on, (0, 1]
+  double stale{0.5};           ///< an older scan shows nothing, s, (0, 10]
+  double limit_speed{0.3};     ///< of any part of the body, where a robot is limited and not stopped, m/s
+};
+
+/// The last word on a velocity, by the newest scan alone: independent of map, planner and controller, which
+/// it watches. It sweeps the footprint along the arc of the velocity that is asked for and lets through as
+/// much of it as can be braked before the body, and a margin, touch what was seen: far off everything, nearer
+/// less (the slow zone), at the margin nothing (the stop zone). Both zones grow with the speed and
+/// bend with the arc. What is inside the margin already may not come deeper: a robot that touches something
+/// can leave it, and what stands behind it does not matter to one that drives ahead.
+///
+/// After Nav2's collision monitor, with fixed polygons replaced: they stop a robot for what it is driving
+/// away from, and hold it there (ros-navigation/navigation2, issues 3313 and 3748).
+class CollisionMonitor {
+ public:
+  /// What is done about a collision ahead, and about a scan that is too old.
+  enum class Policy : std::uint8_t {
+    stop,       ///< autonomous modes and smart joystick: both stop
+    limit,      ///< manual: both limit the speed, neither ever stops
+    stop_seen,  ///< manual, as the platform's file may ask for: what is seen stops, an old scan limits
+  };
+  enum class Cause : std::uint8_t { none, slowed, stopped, stale };
+  struct Verdict {
+    Twist2 velocity{};
+    Cause cause{Cause::none};  ///< `stopped`: nothing of it may be driven; under Policy::limit it is, slowly
+  };
+
+  explicit CollisionMonitor(const Platform& platform, const CollisionMonitorParams& params = {});
+
+  /// The newest scan: points in base_link, m; the body in the odometry frame when it was taken; the time
+  /// that it came, s.
+  void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  /// What may be driven of `wanted` (body frame) by a robot that is at `odom`, at `now_s`.
+  Verdict check(const Twist2& wanted, const Pose2& odom, double now_s, Policy policy) const;
+  bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }
+
+ private:
+  /// How long `velocity` can be driven until the body touches something, s, at most `horizon`.
+  double free_time(const Twist2& velocity, const Pose2& odom, double horizon) const;
+  Twist2 limited(const Twist2& wanted) const;
+
+  Platform platform_;
+  CollisionMonitorParams params_;
+  Footprint body_;
+  NearPoints near_;
+  double stamp_s_{-std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace adit::nav

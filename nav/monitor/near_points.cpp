@@ -1,0 +1,123 @@
+#include "nav/monitor/near_points.hpp"
+
+#include <algorithm>
+
+namespace adit::nav {
+namespace {
+
+constexpr float kRayTolerance = 0.03f;  ///< rise per metre: a ray's neighbourhood
+constexpr float kWithinCell = 0.10f;    ///< m: ground may rise over this far within a 10 cm cell
+constexpr int kFewest = 2;              ///< returns in a cell and those around it; one alone is noise
+
+}  // namespace
+
+NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsParams& params)
+    : platform_(platform),
+      params_(params),
+      body_(platform),
+      reach_(static_cast<float>(std::min(reach, kCell * kSide / 2.0 - 0.1))),
+      lowest_(kCoarse * kCoarse),
+      cells_(kSide * kSide) {
+  used_.reserve(cells_.size());
+  places_.reserve(kMost);
+  kept_.reserve(kMost);
+}
+
+NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
+  const auto top = static_cast<float>(std::max(platform_.height, platform_.lidar_height) + params_.overhang);
+  const auto lidar = static_cast<float>(platform_.lidar_height);
+  const auto own = static_cast<float>(-params_.body_margin);
+  const auto step = static_cast<float>(platform_.step + params_.rise);
+  const auto slope = static_cast<float>(params_.slope);
+  const auto inside = [this](const Eigen::Vector3f& p) {
+    return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
+  };
+  const auto coarse = [](const Eigen::Vector3f& p) {
+    const int i = static_cast<int>(p.x() / (2 * kCell) + kCoarse / 2.0f);
+    const int j = static_cast<int>(p.y() / (2 * kCell) + kCoarse / 2.0f);
+    return static_cast<std::size_t>(j * kCoarse + i);
+  };
+  std::fill(lowest_.begin(), lowest_.end(), 1e9f);
+  Fan fan{};
+  for (const Eigen::Vector3f& p : points) {
+    if (!inside(p)) continue;
+    const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
+    if (range > 0.1f) {
+      const float rise = (p.z() - lidar) / range;
+      fan.lowest = std::min(fan.lowest, rise);
+      fan.highest = std::max(fan.highest, rise);
+    }
+    float& low = lowest_[coarse(p)];
+    low = std::min(low, p.z());
+  }
+  for (const std::uint32_t i : used_) cells_[i] = {};
+  used_.clear();
+  for (const Eigen::Vector3f& p : points) {
+    if (!inside(p) || p.z() > top || p.z() <= step) continue;
+    const float depth = body_.depth(p.x(), p.y());
+    if (depth > own) continue;
+    if (p.z() <= step - slope * depth && p.z() <= lowest_[coarse(p)] + step + slope * kWithinCell) continue;
+    const int i = static_cast<int>(p.x() / kCell + kSide / 2.0f);
+    const int j = static_cast<int>(p.y() / kCell + kSide / 2.0f);
+    const auto index = static_cast<std::uint32_t>(j * kSide + i);
+    Cell& cell = cells_[index];
+    if (cell.count == 0) used_.push_back(index);
+    if (cell.count == 60000) continue;
+    cell.x += p.x();
+    cell.y += p.y();
+    cell.z = std::max(cell.z, p.z());
+    ++cell.count;
+  }
+  return fan;
+}
+
+bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
+  const auto range = static_cast<float>(std::hypot(local.x(), local.y()));
+  if (range > reach_) return false;
+  if (range < static_cast<float>(params_.shortest)) return true;
+  const float rise = static_cast<float>(local.z() - platform_.lidar_height) / range;
+  return rise < fan.lowest - kRayTolerance || rise > fan.highest + kRayTolerance;
+}
+
+void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s) {
+  kept_.clear();
+  const Pose2 back = body.planar().inverse();
+  for (const Place& place : places_) {
+    if (stamp_s - place.seen > params_.memory) continue;
+    const Eigen::Vector2d at = back * Eigen::Vector2d(place.x, place.y);
+    if (hidden({at.x(), at.y(), place.z}, fan)) kept_.push_back(place);
+  }
+}
+
+void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+  const Fan fan = sort_in(points);
+  remember(body, fan, stamp_s);
+  std::swap(places_, kept_);
+  // Nearest first, should there be more than are kept.
+  const auto rank = [this](std::uint32_t i) {
+    return std::pair{cells_[i].x * cells_[i].x + cells_[i].y * cells_[i].y, i};
+  };
+  const auto mean = [this](std::uint32_t i) {
+    cells_[i].x /= static_cast<float>(cells_[i].count);
+    cells_[i].y /= static_cast<float>(cells_[i].count);
+  };
+  for (const std::uint32_t i : used_) mean(i);
+  const std::size_t room = kMost - places_.size();
+  if (used_.size() > room)
+    std::sort(used_.begin(), used_.end(), [&](auto a, auto b) { return rank(a) < rank(b); });
+  for (const std::uint32_t i : used_) {
+    if (places_.size() == kMost) break;
+    int around = 0;
+    for (const int row : {-kSide, 0, kSide})
+      for (int k = -1; k <= 1; ++k) {
+        const auto beside = static_cast<std::int64_t>(i) + row + k;
+        if (beside >= 0 && beside < static_cast<std::int64_t>(cells_.size()))
+          around += cells_[static_cast<std::size_t>(beside)].count;
+      }
+    if (around < kFewest) continue;
+    const Eigen::Vector3d at = body * Eigen::Vector3d(cells_[i].x, cells_[i].y, cells_[i].z);
+    places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()), cells_[i].z, stamp_s});
+  }
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,69 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/geometry/pose.hpp"
+#include "nav/footprint.hpp"
+
+namespace adit::nav {
+
+struct NearPointsParams {
+  double slope{0.35};        ///< ground may rise so much per metre from the footprint on, [0, 1]
+  double rise{0.025};        ///< and be higher than the platform's step by this, m, [0, 0.2]
+  double overhang{0.15};     ///< what hangs so much above body and lidar is passed under, m, [0, 1]
+  double body_margin{0.02};  ///< returns this close around the footprint are the own body, m, [0, 0.5]
+  double shortest{0.35};     ///< nearer to the lidar nothing may be seen, m, [0, 1]
+  double memory{10.0};       ///< what no newer scan can show is kept so long, s, [0, 60]
+};
+
+/// What stands near the robot by its newest scan, and nothing else: no map, no ground model. A return is an
+/// obstacle when it is higher than ground could be at its distance, or much higher than what was seen
+/// directly below it. What the newest scan cannot show, below its lowest ray or nearer than its shortest,
+/// is taken from those before. Fixed sizes; nothing is allocated after construction.
+class NearPoints {
+ public:
+  static constexpr std::size_t kMost = 4096;  ///< places; the nearest ones when there are more
+  /// Where something stands, m, odometry frame: the mean of the returns of one 5 cm cell.
+  struct Place {
+    float x{}, y{};
+    float z{};  ///< of the highest one, above base_link
+    double seen{};
+  };
+
+  /// `reach`: how far around base_link it looks, m, (0, 4].
+  NearPoints(const Platform& platform, double reach, const NearPointsParams& params = {});
+
+  /// One scan: points in base_link, m, the body in the odometry frame then, and the time, s.
+  void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  std::span<const Place> places() const { return {places_.data(), places_.size()}; }
+
+ private:
+  static constexpr int kSide = 160;  ///< cells of 5 cm
+  static constexpr int kCoarse = 80;
+  static constexpr float kCell = 0.05f;
+  struct Cell {
+    float x, y, z;  ///< sums of x and y, base_link; the highest z
+    std::uint16_t count;
+  };
+  /// The rays of the newest scan, as rise per metre.
+  struct Fan {
+    float lowest{1e9f}, highest{-1e9f};
+  };
+
+  Fan sort_in(std::span<const Eigen::Vector3f> points);
+  void remember(const Pose3& body, const Fan& fan, double stamp_s);
+  bool hidden(const Eigen::Vector3d& local, const Fan& fan) const;
+
+  Platform platform_;
+  NearPointsParams params_;
+  Footprint body_;
+  float reach_;
+  std::vector<float> lowest_;  ///< return in each 10 cm cell, m
+  std::vector<Cell> cells_;
+  std::vector<std::uint32_t> used_{};
+  std::vector<Place> places_{}, kept_{};
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,205 @@
+#include "nav/monitor/collision_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/nav/box_world.hpp"
+
+namespace adit::nav::test {
+namespace {
+
+using Cause = CollisionMonitor::Cause;
+using Policy = CollisionMonitor::Policy;
+
+/// A monitor that has seen a world from where the robot stands.
+struct Seen {
+  BoxWorld world{};
+  Platform platform{wheeled()};
+  Pose2 pose{};
+  CollisionMonitor monitor{platform};
+  std::mt19937 random{3};
+  double noise{0.0};
+
+  Seen(std::vector<Box> boxes, const Platform& p = wheeled(), const Pose2& at = {})
+      : world{std::move(boxes)}, platform(p), pose(at), monitor(p) {
+    look(0.0);
+  }
+  void look(double time) {
+    monitor.look(world.scan(pose, platform.lidar_height, 16, 720, noise, random), Pose3::level(pose, 0),
+                 time);
+  }
+  CollisionMonitor::Verdict ask(const Twist2& wanted, Policy policy = Policy::stop, double now = 0.0) const {
+    return monitor.check(wanted, pose, now, policy);
+  }
+  /// Drives with that wish, a new scan every 0.1 s, as a body that brakes as fast as its platform can; how
+  /// near it came, m.
+  double drive(const Twist2& wanted, double seconds, Policy policy = Policy::stop) {
+    double least = 10, time = 0;
+    Twist2 v{};
+    for (int i = 0; time < seconds; ++i) {
+      if (i % 5 == 0) look(time);
+      constexpr double kDt = 0.02;
+      const Twist2 allowed = monitor.check(wanted, pose, time, policy).velocity;
+      const auto step = [](double from, double to, double most) {
+        return from + std::clamp(to - from, -most, most);
+      };
+      v = {step(v.vx, allowed.vx, platform.max_acceleration * kDt),
+           step(v.vy, allowed.vy, platform.max_acceleration * kDt),
+           step(v.wz, allowed.wz, platform.max_turn_acceleration * kDt)};
+      pose = pose * Pose2{v.vx * kDt, v.vy * kDt, v.wz * kDt};
+      time += kDt;
+      least = std::min(least, world.clearance(platform, pose));
+    }
+    return least;
+  }
+};
+
+TEST(CollisionMonitor, FreeSpaceLetsEverythingThrough) {
+  const Seen seen({{5, 5.2, -3, 3}});
+  for (const Twist2& t : {Twist2{2, 0, 0}, Twist2{-2, 0, 0}, Twist2{1, 0, 1.5}, Twist2{0, 0, -1.5}}) {
+    const auto verdict = seen.ask(t);
+    EXPECT_EQ(verdict.velocity, t);
+    EXPECT_EQ(verdict.cause, Cause::none);
+  }
+}
+
+TEST(CollisionMonitor, SlowsHeadOnAndStopsAtTheMargin) {
+  for (const Platform& p : {wheeled(), tracked(), legged()}) {
+    Seen seen({{2.5, 2.7, -3, 3}}, p);
+    const double least = seen.drive({p.max_speed, 0, 0}, 12);
+    EXPECT_GT(least, 0.0) << p.name;
+    EXPECT_LT(least, 0.1) << p.name << ": it came as near as it safely can";
+    EXPECT_EQ(seen.ask({p.max_speed, 0, 0}, Policy::stop, 12).cause, Cause::stopped);
+  }
+}
+
+TEST(CollisionMonitor, TheSlowZoneGrowsWithTheSpeed) {
+  const Seen seen({{1.5, 1.7, -3, 3}});
+  EXPECT_EQ(seen.ask({0.5, 0, 0}).cause, Cause::none);
+  const auto fast = seen.ask({2, 0, 0});
+  EXPECT_EQ(fast.cause, Cause::slowed);
+  EXPECT_GT(fast.velocity.vx, 0.8);
+  EXPECT_LT(fast.velocity.vx, 1.9);
+}
+
+TEST(CollisionMonitor, SweepsTheArc) {
+  // A post to the left: straight on passes it, a left bend meets it, a right bend does not.
+  const Seen seen({{0.8, 1.0, 0.5, 0.7}});
+  EXPECT_EQ(seen.ask({1.2, 0, 0}).cause, Cause::none);
+  const auto left = seen.ask({1.2, 0, 1.1});
+  EXPECT_EQ(left.cause, Cause::slowed);
+  EXPECT_NEAR(left.velocity.wz / left.velocity.vx, 1.1 / 1.2, 1e-9) << "the arc is kept";
+  EXPECT_EQ(seen.ask({1.2, 0, -1.1}).cause, Cause::none);
+}
+
+TEST(CollisionMonitor, WhatStandsBehindMattersToReverseOnly) {
+  Seen seen({{-0.7, -0.5, -1, 1}});
+  EXPECT_EQ(seen.ask({1.5, 0, 0}).cause, Cause::none);
+  EXPECT_NE(seen.ask({-1.0, 0, 0}).cause, Cause::none);
+  EXPECT_GT(seen.drive({-1.0, 0, 0}, 6), 0.0);
+}
+
+TEST(CollisionMonitor, SidewaysForThoseWhoCan) {
+  Seen seen({{-1, 1, 0.8, 1.0}}, legged());
+  EXPECT_EQ(seen.ask({0, -1, 0}).cause, Cause::none);
+  EXPECT_GT(seen.drive({0, 1, 0}, 6), 0.0);
+}
+
+TEST(CollisionMonitor, TurnsOnTheSpotBesideAWallAsFarAsThereIsRoom) {
+  // 0.8 m x 0.6 m with a wall 8 cm beside it: the corners need 10 cm.
+  Seen seen({{-2, 2, 0.38, 0.5}}, tracked());
+  EXPECT_EQ(seen.ask({0.6, 0, 0}).cause, Cause::none) << "along the wall";
+  EXPECT_GT(seen.drive({0, 0, 1.0}, 6), 0.0);
+  EXPECT_LT(std::fabs(seen.pose.yaw), 0.7);
+  Seen open({{-2, 2, 0.6, 0.8}}, tracked());
+  open.drive({0, 0, 1.0}, 2);
+  EXPECT_GT(open.pose.yaw, 1.4);
+}
+
+TEST(CollisionMonitor, WhoTouchesSomethingMayLeaveIt) {
+  Seen seen({{0.31, 0.5, -1, 1}});
+  EXPECT_TRUE(seen.ask({0.3, 0, 0}).velocity.zero());
+  EXPECT_EQ(seen.ask({-0.3, 0, 0}).velocity, (Twist2{-0.3, 0, 0}));
+}
+
+TEST(CollisionMonitor, AnOldScanStops) {
+  const Seen seen({});
+  EXPECT_EQ(seen.ask({1, 0, 0}, Policy::stop, 0.4).cause, Cause::none);
+  const auto late = seen.ask({1, 0, 0}, Policy::stop, 0.6);
+  EXPECT_EQ(late.cause, Cause::stale);
+  EXPECT_TRUE(late.velocity.zero());
+  const CollisionMonitor never(wheeled());
+  EXPECT_TRUE(never.check({1, 0, 0}, {}, 0.0, Policy::stop).velocity.zero());
+}
+
+TEST(CollisionMonitor, ManualIsLimitedAndNeverStopped) {
+  const Seen blocked({{0.33, 0.5, -1, 1}});
+  const auto at_wall = blocked.ask({1, 0, 0}, Policy::limit);
+  EXPECT_EQ(at_wall.cause, Cause::stopped);
+  EXPECT_NEAR(at_wall.velocity.vx, 0.3, 1e-9);
+  EXPECT_NEAR(blocked.ask({0.2, 0, 0}, Policy::limit).velocity.vx, 0.2, 1e-9) << "it is slow already";
+  const auto late = blocked.ask({1, 0, 0.5}, Policy::limit, 9);
+  EXPECT_EQ(late.cause, Cause::stale);
+  EXPECT_NEAR(late.velocity.vx, 0.3, 1e-9);
+  EXPECT_NEAR(late.velocity.wz, 0.15, 1e-9);
+  EXPECT_LT(blocked.ask({0, 0, 1.5}, Policy::limit, 9).velocity.wz, 0.8) << "a corner's 0.3 m/s";
+}
+
+TEST(CollisionMonitor, ManualThatAskedForItIsStoppedByWhatIsSeenOnly) {
+  const Seen blocked({{0.33, 0.5, -1, 1}});
+  EXPECT_TRUE(blocked.ask({1, 0, 0}, Policy::stop_seen).velocity.zero());
+  EXPECT_NEAR(blocked.ask({1, 0, 0}, Policy::stop_seen, 9).velocity.vx, 0.3, 1e-9);
+}
+
+TEST(CollisionMonitor, RemembersWhatTheLidarNoLongerSees) {
+  // A crate 0.25 m high is below the lowest ray when it is right before the robot.
+  Seen seen({{1.6, 1.9, -0.3, 0.3, 0.0, 0.25}});
+  EXPECT_GT(seen.drive({0.8, 0, 0}, 8), 0.0);
+  EXPECT_LT(seen.pose.x, 1.3);
+}
+
+TEST(CollisionMonitor, AScanThatShowsItGoneFreesTheWay) {
+  Seen seen({{0.8, 1.0, -0.3, 0.3}});
+  EXPECT_NE(seen.ask({1.5, 0, 0}).cause, Cause::none);
+  seen.world.boxes.clear();
+  seen.look(0.1);
+  EXPECT_EQ(seen.ask({1.5, 0, 0}, Policy::stop, 0.1).cause, Cause::none);
+}
+
+TEST(CollisionMonitor, ARampIsNoWallAndACeilingNoObstacle) {
+  std::vector<Eigen::Vector3f> ramp;
+  for (float x = 0.4f; x < 3.0f; x += 0.05f)
+    for (float y = -1.0f; y < 1.0f; y += 0.05f) {
+      ramp.emplace_back(x, y, 0.3f * (x - 0.4f));
+      ramp.emplace_back(x, y, 1.2f);
+    }
+  CollisionMonitor monitor(wheeled());
+  monitor.look(ramp, {}, 0);
+  EXPECT_EQ(monitor.check({2, 0, 0}, {}, 0, Policy::stop).cause, Cause::none);
+  for (float z = 0.0f; z < 0.5f; z += 0.05f) ramp.emplace_back(1.2f, 0.0f, 0.24f + z);  // a post on it
+  monitor.look(ramp, {}, 0);
+  EXPECT_EQ(monitor.check({2, 0, 0}, {}, 0, Policy::stop).cause, Cause::slowed);
+}
+
+TEST(CollisionMonitor, PassesAGapThatIsTenCentimetresWider) {
+  for (const Platform& p : {wheeled(), tracked(), legged()}) {
+    const double side = p.width / 2 + 0.05;
+    Seen seen({{1, 3, side, side + 0.2}, {1, 3, -side - 0.2, -side}}, p);
+    seen.noise = 0.02;
+    seen.drive({0.5, 0, 0}, 9);
+    EXPECT_GT(seen.pose.x, 3.5) << p.name;
+  }
+}
+
+TEST(CollisionMonitor, GarbageIsNoObstacleAndHarmsNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  CollisionMonitor monitor(wheeled());
+  monitor.look(
+      std::vector<Eigen::Vector3f>{{nan, 0, 0.3f}, {0.6f, nan, 0.3f}, {0.6f, 0, nan}, {inf, inf, inf}}, {},
+      0);
+  EXPECT_EQ(monitor.check({2, 0, 0}, {}, 0, Policy::stop).cause, Cause::none);
+  monitor.look(std::vector<Eigen::Vector3f>{{0.6f, 0, 0.3f}}, {}, 0);
+  EXPECT_EQ(monitor.check({2, 0, 0}, {}, 0, Policy::stop).cause, Cause::none) << "one return alone is noise";
+}
+
+}  // namespace
+}  // namespace adit::nav::test
