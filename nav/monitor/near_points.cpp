@@ -5,9 +5,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kRayTolerance = 0.03f;  ///< rise per metre: a ray's neighbourhood
-constexpr float kWithinCell = 0.10f;    ///< m: ground may rise over this far within a 10 cm cell
-constexpr int kFewest = 2;              ///< returns in a cell and those around it; one alone is noise
+constexpr float kEdge = 0.06f;        ///< of the fan of rays: what lies that near to its edge may be missed
+constexpr float kLevel = 1e-3f;       ///< rise per metre that is none
+constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far within a 10 cm cell
+constexpr int kFewest = 2;            ///< returns in a cell and those around it; one alone is noise
 
 }  // namespace
 
@@ -40,13 +41,13 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   std::fill(lowest_.begin(), lowest_.end(), 1e9f);
   Fan fan{};
   for (const Eigen::Vector3f& p : points) {
-    if (!inside(p)) continue;
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
-    if (range > 0.1f) {
+    if (range > 0.1f) {  // compares false when it is not a number
       const float rise = (p.z() - lidar) / range;
       fan.lowest = std::min(fan.lowest, rise);
       fan.highest = std::max(fan.highest, rise);
     }
+    if (!inside(p)) continue;
     float& low = lowest_[coarse(p)];
     low = std::min(low, p.z());
   }
@@ -76,7 +77,8 @@ bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
   if (range > reach_) return false;
   if (range < static_cast<float>(params_.shortest)) return true;
   const float rise = static_cast<float>(local.z() - platform_.lidar_height) / range;
-  return rise < fan.lowest - kRayTolerance || rise > fan.highest + kRayTolerance;
+  const float edge = kEdge * (fan.highest - fan.lowest) - kLevel;
+  return rise < fan.lowest + edge || rise > fan.highest - edge;
 }
 
 void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s) {

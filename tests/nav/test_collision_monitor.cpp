@@ -116,7 +116,7 @@ TEST(CollisionMonitor, TurnsOnTheSpotBesideAWallAsFarAsThereIsRoom) {
 }
 
 TEST(CollisionMonitor, WhoTouchesSomethingMayLeaveIt) {
-  Seen seen({{0.31, 0.5, -1, 1}});
+  Seen seen({{0.325, 0.5, -1, 1}});
   EXPECT_TRUE(seen.ask({0.3, 0, 0}).velocity.zero());
   EXPECT_EQ(seen.ask({-0.3, 0, 0}).velocity, (Twist2{-0.3, 0, 0}));
 }
