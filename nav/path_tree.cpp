@@ -7,10 +7,11 @@ namespace adit::nav {
 namespace {
 
 /// Curvature `s` metres along a path whose generations bend by `c`, changing linearly over `blend` at the
-/// start of each segment. The first segment starts straight: a path leaves the origin along +x.
+/// start of the second and third segment. The first one bends at once.
 double curvature_at(double s, const std::array<double, 3>& c, const PathTreeParams& p) {
   const int segment = std::min(2, static_cast<int>(s / p.segment));
-  const double before = segment == 0 ? 0.0 : c[segment - 1];
+  if (segment == 0) return c[0];
+  const double before = c[segment - 1];
   const double into = (s - segment * p.segment) / p.blend;
   return into >= 1.0 ? c[segment] : before + (c[segment] - before) * into;
 }

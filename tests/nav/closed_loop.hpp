@@ -29,7 +29,7 @@ struct ClosedLoop {
   double driven{0}, fastest{0}, steepest{0};  ///< m, m/s, m/s2
   int blocked_cycles{0}, held_steps{0}, slowed_steps{0};
 
-  ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start, const std::string& tracks = "pure_pursuit")
+  ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start, const std::string& tracks = "ilqr")
       : world(std::move(w)),
         platform(p),
         truth(start),
