@@ -6,19 +6,13 @@
 namespace adit::nav {
 namespace {
 
-/// How deep a point is inside the body, in the body's frame, m; negative outside.
-float depth(const SweptBody& body, float x, float y) {
-  return std::min(static_cast<float>(body.half_length) - std::fabs(x),
-                  static_cast<float>(body.half_width) - std::fabs(y));
-}
-
 constexpr float kSlack = 0.002f;  ///< m: straight on along a wall is not "deeper"
 
 /// Marks the cells that the body covers while it stands at `pose`.
 class Painter {
  public:
-  Painter(std::vector<PathMask>& masks, int rings, const SweptBody& body)
-      : masks_(masks), rings_(rings), body_(body), radius_(std::hypot(body.half_length, body.half_width)) {
+  Painter(std::vector<PathMask>& masks, int rings, const Footprint& body)
+      : masks_(masks), rings_(rings), body_(body), radius_(body.radius()) {
     for (int a = 0; a < CorrespondenceGrid::kAngles; ++a) {
       const double angle = (a + 0.5) * 2.0 * M_PI / CorrespondenceGrid::kAngles;
       cos_[a] = static_cast<float>(std::cos(angle));
@@ -27,7 +21,7 @@ class Painter {
     start_rings_ = std::min(rings, static_cast<int>(std::ceil(radius_ / CorrespondenceGrid::kRing)));
     for (int ring = 0; ring < start_rings_; ++ring)
       for (int a = 0; a < CorrespondenceGrid::kAngles; ++a)
-        start_.push_back(kSlack + std::max(0.0f, depth(body, range(ring) * cos_[a], range(ring) * sin_[a])));
+        start_.push_back(kSlack + std::max(0.0f, body.depth(range(ring) * cos_[a], range(ring) * sin_[a])));
   }
 
   void paint(const Pose2& pose, int bit) {
@@ -43,13 +37,13 @@ class Painter {
       // Along a ray the body's coordinates are linear in the range, so that it covers one interval of it.
       const float ux = c * cos_[a] + s * sin_[a], uy = c * sin_[a] - s * cos_[a];
       float from = 0.0f, to = range(rings_);
-      clip(ux, bx, static_cast<float>(body_.half_length) - kSlack, from, to);
-      clip(uy, by, static_cast<float>(body_.half_width) - kSlack, from, to);
+      for (const Footprint::Edge& e : body_.edges())
+        clip(e.nx * ux + e.ny * uy, e.offset - kSlack + e.nx * bx + e.ny * by, from, to);
       const int last = std::min(rings_ - 1, static_cast<int>(to / kRing - 0.5f));
       for (int ring = static_cast<int>(std::ceil(from / kRing - 0.5f)); ring <= last; ++ring) {
         const int index = ring * CorrespondenceGrid::kAngles + a;
         const float r = range(ring);
-        if (ring < start_rings_ && depth(body_, r * ux - bx, r * uy - by) <= start_[index]) continue;
+        if (ring < start_rings_ && body_.depth(r * ux - bx, r * uy - by) <= start_[index]) continue;
         masks_[index].set(bit);
       }
     }
@@ -58,20 +52,20 @@ class Painter {
  private:
   static constexpr auto kRing = static_cast<float>(CorrespondenceGrid::kRing);
   static float range(int ring) { return (static_cast<float>(ring) + 0.5f) * kRing; }
-  /// Narrows [from, to] to the ranges r with |r * slope - middle| <= half.
-  static void clip(float slope, float middle, float half, float& from, float& to) {
+  /// Narrows [from, to] to the ranges r with r * slope <= most.
+  static void clip(float slope, float most, float& from, float& to) {
     if (std::fabs(slope) < 1e-6f) {
-      if (std::fabs(middle) > half) to = -1.0f;
-      return;
+      if (most < 0) to = -1.0f;
+    } else if (slope > 0) {
+      to = std::min(to, most / slope);
+    } else {
+      from = std::max(from, most / slope);
     }
-    const float a = (middle - half) / slope, b = (middle + half) / slope;
-    from = std::max(from, std::min(a, b));
-    to = std::min(to, std::max(a, b));
   }
 
   std::vector<PathMask>& masks_;
   int rings_;
-  SweptBody body_;
+  Footprint body_;
   double radius_;
   int start_rings_{};
   std::array<float, CorrespondenceGrid::kAngles> cos_{}, sin_{};
@@ -80,8 +74,8 @@ class Painter {
 
 }  // namespace
 
-CorrespondenceGrid::CorrespondenceGrid(const PathTree& tree, const SweptBody& body) {
-  const double reach = tree.length() + std::hypot(body.half_length, body.half_width);
+CorrespondenceGrid::CorrespondenceGrid(const PathTree& tree, const Footprint& body) {
+  const double reach = tree.length() + body.radius();
   rings_ = static_cast<int>(std::ceil(reach / kRing));
   masks_.resize(static_cast<std::size_t>(rings_) * kAngles);
   Painter painter(masks_, rings_, body);

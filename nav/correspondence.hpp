@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "nav/footprint.hpp"
 #include "nav/path_tree.hpp"
 
 namespace adit::nav {
@@ -26,18 +27,12 @@ struct alignas(64) PathMask {
   bool dead() const { return (words[0] & 0x7f) == 0x7f; }
 };
 
-/// The body that sweeps along the paths: a rectangle centred on the path, along its tangent.
-struct SweptBody {
-  double half_length{};  ///< m
-  double half_width{};   ///< m
-};
-
 /// The correspondence grid: which parts of which paths an obstacle at a place blocks.
 ///
 /// Falco keeps a Cartesian grid and rotates each obstacle point into each of 36 headings. This grid is
 /// *polar*, 1 degree by 5 cm: a turn of ten degrees is a shift of ten columns, so that checking a heading
-/// costs one table access and the union of one cache line. And the body is the rectangle that moves, not a
-/// disc around it: a robot longer than wide still fits a door.
+/// costs one table access and the union of one cache line. And the body is the polygon that moves, not a disc
+/// around it: a robot longer than wide still fits a door.
 ///
 /// An obstacle that is inside the body's margin already where the path starts blocks only what would bring it
 /// deeper in: a robot that came too close can slide along or away.
@@ -49,7 +44,7 @@ class CorrespondenceGrid {
   /// Builds the grid: each cell of a path's sweep is marked (10 to 20 ms). An empty grid, which blocks
   /// nothing, is what a default-constructed one is.
   CorrespondenceGrid() = default;
-  CorrespondenceGrid(const PathTree& tree, const SweptBody& body);
+  CorrespondenceGrid(const PathTree& tree, const Footprint& body);
 
   /// Rings of the grid; an obstacle in a ring beyond blocks nothing.
   int rings() const { return rings_; }

@@ -13,10 +13,14 @@ constexpr double kHeadingStep = 10.0;    ///< degrees
 constexpr double kNoTurn = 12.0;         ///< degrees: the follower steers that much out while driving
 constexpr double kEitherSide = 140.0;    ///< degrees: beyond, the side of a turn is kept once chosen
 constexpr double kTurnSlack = 0.06;      ///< m kept free before the body beyond what a turn needs
-constexpr double kTurnMargin = 0.02;     ///< m around the footprint while it turns
+constexpr double kTurnMargin = 0.04;     ///< m around the footprint while it turns
 constexpr double kStraightStick = 15.0;  ///< degrees: a stick within this of ahead or back holds the course
 constexpr double kSteadyStick = 4.0;     ///< degrees: a stick that moves more sets a new course
-constexpr float kSecondChoice = 0.3f;    ///< weight of driving the other way round than was asked for
+constexpr float kSmooth = 0.1f;          ///< cost of ground that is as good as any
+constexpr float kVeryRough = 0.5f;       ///< cost of ground that is avoided where there is another way
+constexpr std::array<float, 2> kEase{0.4f, 0.05f};  ///< weight of a path across rough and very rough ground
+constexpr double kSlowest = 0.25;                   ///< of the speed is left on ground that weighs nothing
+constexpr float kSecondChoice = 0.3f;  ///< weight of driving the other way round than was asked for
 
 /// Degrees in [0, 360), whole, of an angle in radians.
 int whole_degrees(float radians) {
@@ -35,11 +39,8 @@ float heading_weight(double degrees) {
 
 std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& platform,
                                                             const LocalPlannerParams& params) {
-  const double half_length = platform.length / 2, half_width = platform.width / 2;
-  const double turn_needs = std::hypot(half_length, half_width) - half_length + kTurnSlack;
-  const SweptBody wide{half_length + std::max(params.front_margin, turn_needs),
-                       half_width + params.side_margin};
-  const SweptBody tight{half_length + turn_needs, half_width + params.tight_margin};
+  const Footprint body(platform);
+  const double turn_needs = body.radius() - body.front() + kTurnSlack;
   PathTreeParams small = params.tree;
   small.segment *= params.short_scale;
   small.blend *= params.short_scale;
@@ -48,24 +49,57 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
 
   const PathTree long_tree(params.tree), short_tree(small);
   auto library = std::make_shared<PlannerLibrary>();
+  const auto add = [&](const PathTree& tree, double front, double side, double speed, int least_stage) {
+    const Footprint grown = body.grown(front, side);
+    library->options.push_back(
+        {tree, CorrespondenceGrid(tree, grown),
+         body.symmetric() ? CorrespondenceGrid() : CorrespondenceGrid(tree, grown.turned()),
+         std::min(speed, platform.max_speed), least_stage});
+  };
   // A narrow passage is seen from afar: the long tight library comes before the short ones, so that the robot
   // lines up for the passage in time.
-  library->options.push_back({long_tree, CorrespondenceGrid(long_tree, wide), false, 5});
-  library->options.push_back({long_tree, CorrespondenceGrid(long_tree, tight), true, 5});
-  library->options.push_back({short_tree, CorrespondenceGrid(short_tree, wide), false, 1});
-  library->options.push_back({short_tree, CorrespondenceGrid(short_tree, tight), true, 1});
-  library->rotation = RotationTable({half_length + kTurnMargin, half_width + kTurnMargin});
+  const double wide = std::max(params.front_margin, turn_needs);
+  add(long_tree, wide, params.side_margin, platform.max_speed, 5);
+  add(long_tree, turn_needs, params.tight_margin, params.tight_speed, 5);
+  add(short_tree, wide, params.side_margin, platform.max_speed, 1);
+  add(short_tree, turn_needs, params.tight_margin, params.tight_speed, 1);
+  library->rotation = RotationTable(body.grown(kTurnMargin, kTurnMargin));
   return library;
+}
+
+void LocalPlanner::Cells::size(int rings) {
+  bits.resize((static_cast<std::size_t>(rings) * kAngles + 63) / 64);
+  list.reserve(static_cast<std::size_t>(rings) * kAngles);
+}
+
+void LocalPlanner::Cells::clear() {
+  std::fill(bits.begin(), bits.end(), 0);
+  list.clear();
+}
+
+void LocalPlanner::Cells::add(int ring, int angle) {
+  const auto bit = static_cast<std::size_t>(ring * kAngles + angle);
+  bits[bit >> 6] |= std::uint64_t{1} << (bit & 63);
+}
+
+void LocalPlanner::Cells::to_list() {
+  for (std::size_t word = 0; word < bits.size(); ++word)
+    for (std::uint64_t left = bits[word]; left != 0; left &= left - 1) {
+      const auto cell = word * 64 + static_cast<std::size_t>(__builtin_ctzll(left));
+      list.push_back(
+          {static_cast<std::uint16_t>(cell / kAngles), static_cast<std::uint16_t>(cell % kAngles)});
+    }
 }
 
 LocalPlanner::LocalPlanner(const Platform& platform, const LocalPlannerParams& params,
                            std::shared_ptr<const PlannerLibrary> library)
     : platform_(platform),
       params_(params),
-      library_(library ? std::move(library) : PlannerLibrary::build(platform, params)) {
+      library_(library ? std::move(library) : PlannerLibrary::build(platform, params)),
+      body_(platform) {
   for (const Option& o : library_->options) rings_ = std::max(rings_, o.grid.rings());
-  seen_.resize((static_cast<std::size_t>(rings_) * kAngles + 63) / 64);
-  occupied_.reserve(static_cast<std::size_t>(rings_) * kAngles);
+  occupied_.size(rings_);
+  for (Cells& cells : rough_) cells.size(rings_);
 }
 
 Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
@@ -103,7 +137,7 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
     return plan;
   }
   write_path(choice, goal, pose, plan);
-  plan.max_speed = speed_limit(target, choice.option->tight, plan.clearance);
+  plan.max_speed = speed_limit(target, choice, pose, plan, obstacles);
   last_turn_ = plan.turn;
   return plan;
 }
@@ -191,35 +225,30 @@ LocalPlanner::Goal LocalPlanner::goal_of(const Target& target, const Pose2& pose
 
 void LocalPlanner::project(const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan) {
   const auto bearing = static_cast<float>(goal.bearing);
-  const auto hl = static_cast<float>(platform_.length / 2), hw = static_cast<float>(platform_.width / 2);
   const RotationTable& rotation = library_->rotation;
   float clearance = 2.0f;
   room_ = {};
-  std::fill(seen_.begin(), seen_.end(), 0);
+  occupied_.clear();
+  for (Cells& cells : rough_) cells.clear();
 
   for (const ObstaclePoint& p : obstacles) {
-    if (p.cost < 1.0f) continue;
-    const float x = p.x, y = p.y;
-    const float range = std::sqrt(x * x + y * y);
+    if (p.cost < kSmooth) continue;
+    const float range = std::sqrt(p.x * p.x + p.y * p.y);
     const int ring = CorrespondenceGrid::ring_of(range);
     if (ring >= rings_ && ring >= rotation.rings()) continue;
-    const float angle = std::atan2(y, x);
-    if (ring < rotation.rings()) rotation.limit(ring, whole_degrees(angle), room_);
-    const float ox = std::max(0.0f, std::fabs(x) - hl), oy = std::max(0.0f, std::fabs(y) - hw);
-    clearance = std::min(clearance, std::sqrt(ox * ox + oy * oy));
+    const float angle = std::atan2(p.y, p.x);
+    const bool solid = p.cost >= 1.0f;
+    if (solid) {
+      if (ring < rotation.rings()) rotation.limit(ring, whole_degrees(angle), room_);
+      clearance = std::min(clearance, std::max(0.0f, -body_.depth(p.x, p.y)));
+    }
     if (ring >= rings_) continue;
-    const auto bit = static_cast<std::size_t>(ring * kAngles + whole_degrees(angle - bearing));
-    seen_[bit >> 6] |= std::uint64_t{1} << (bit & 63);
+    Cells& cells = solid ? occupied_ : rough_[p.cost < kVeryRough ? 0 : 1];
+    cells.add(ring, whole_degrees(angle - bearing));
   }
   plan.clearance = clearance;
-
-  occupied_.clear();
-  for (std::size_t word = 0; word < seen_.size(); ++word)
-    for (std::uint64_t bits = seen_[word]; bits != 0; bits &= bits - 1) {
-      const auto cell = word * 64 + static_cast<std::size_t>(__builtin_ctzll(bits));
-      occupied_.push_back(
-          {static_cast<std::uint16_t>(cell / kAngles), static_cast<std::uint16_t>(cell % kAngles)});
-    }
+  occupied_.to_list();
+  for (Cells& cells : rough_) cells.to_list();
 }
 
 void LocalPlanner::judge_headings(const Goal& goal) {
@@ -251,36 +280,55 @@ void LocalPlanner::judge_headings(const Goal& goal) {
 }
 
 void LocalPlanner::block_paths(const Option& option, const Goal& goal) {
+  cover(option, goal, occupied_, true, blocked_);
+  for (std::size_t i = 0; i < rough_.size(); ++i) cover(option, goal, rough_[i], false, rough_paths_[i]);
+}
+
+void LocalPlanner::cover(const Option& option, const Goal& goal, const Cells& cells, bool drop_dead,
+                         std::array<PathMask, kHeadings>& masks) {
   const int count = 2 * goal.headings + 1;
   std::array<int, kHeadings> alive{};
   int living = 0;
   for (int h = 0; h < count; ++h) {
-    blocked_[h] = {};
-    if (approach_[h].possible) alive[living++] = h;
+    masks[h] = {};
+    if (approach_[h].possible && (drop_dead || !blocked_[h].dead())) alive[living++] = h;
   }
   int ring = -1;
-  for (const Occupied& cell : occupied_) {
+  for (const Occupied& cell : cells.list) {
     if (cell.ring >= option.grid.rings() || living == 0) break;
     if (cell.ring != ring) {
       // Nearest rings first: headings that are blocked at their very start drop out early.
       ring = cell.ring;
       for (int i = 0; i < living;) {
-        if (blocked_[alive[i]].dead())
+        if (drop_dead && masks[alive[i]].dead())
           alive[i] = alive[--living];
         else
           ++i;
       }
     }
-    const int half = option.grid.half_angle(ring);
     for (int i = 0; i < living; ++i) {
       const int h = alive[i];
+      const CorrespondenceGrid& grid =
+          approach_[h].reverse && option.back.rings() > 0 ? option.back : option.grid;
+      if (ring >= grid.rings()) continue;
       int angle = cell.angle - (h - goal.headings) * static_cast<int>(kHeadingStep);
       if (angle < 0) angle += kAngles;
       if (angle >= kAngles) angle -= kAngles;
-      if ((angle < kAngles / 2 ? angle : kAngles - 1 - angle) > half) continue;
-      blocked_[h] |= option.grid.at(ring, angle);
+      if ((angle < kAngles / 2 ? angle : kAngles - 1 - angle) > grid.half_angle(ring)) continue;
+      masks[h] |= grid.at(ring, angle);
     }
   }
+}
+
+float LocalPlanner::ease(int heading, int stage, int node) const {
+  constexpr auto& kBit = PathTree::kFirstBit;
+  for (std::size_t i = rough_.size(); i-- > 0;) {
+    if (rough_[i].list.empty()) continue;
+    const PathMask& mask = rough_paths_[i][heading];
+    for (int s = 0; s <= stage; ++s)
+      if (mask.test(kBit[s] + node * PathTree::kNodes[s] / PathTree::kNodes[stage])) return kEase[i];
+  }
+  return 1.0f;
 }
 
 bool LocalPlanner::vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best) {
@@ -309,6 +357,7 @@ bool LocalPlanner::vote(const Option& option, const Goal& goal, int stage, doubl
           if (stage == 6 && mask.test(kBit[6] + n)) continue;
         }
         const float score =
+            ease(h, stage, n) *
             agreement_[static_cast<int>(std::fabs(turned + option.tree.end_bearing(stage, n)) + 0.5f)];
         sum += score;
         if (score > top) {
@@ -361,11 +410,13 @@ void LocalPlanner::write_path(const Choice& choice, const Goal& goal, const Pose
   plan.ends_at_goal = goal.distance <= plan.length + tree.params().spacing;
 }
 
-double LocalPlanner::speed_limit(const Target& target, bool tight, double clearance) const {
-  double limit = platform_.max_speed;
-  if (target.speed > 0.0) limit = std::min(limit, target.speed);
-  if (tight) limit = std::min(limit, params_.tight_speed);
-  return std::min(limit, params_.caution + params_.caution_gain * clearance);
+double LocalPlanner::speed_limit(const Target& target, const Choice& choice, const Pose2& pose,
+                                 const Plan& plan, std::span<const ObstaclePoint> obstacles) const {
+  double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
+  limit = std::min(limit, choice.option->max_speed);
+  limit = std::min(limit, platform_.max_speed *
+                              (kSlowest + (1 - kSlowest) * ease(choice.heading, choice.stage, choice.node)));
+  return target.speed > 0.0 ? std::min(limit, target.speed) : limit;
 }
 
 }  // namespace adit::nav

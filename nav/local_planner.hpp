@@ -6,10 +6,10 @@
 
 #include "core/config/platform.hpp"
 #include "nav/correspondence.hpp"
+#include "nav/path_speed.hpp"
 #include "nav/path_tree.hpp"
-#include "nav/plan.hpp"
+#include "nav/planner.hpp"
 #include "nav/rotation.hpp"
-#include "nav/terrain/obstacle_point.hpp"
 
 namespace adit::nav {
 
@@ -32,8 +32,7 @@ struct LocalPlannerParams {
   double effort_near{6.0};   ///< the same within effort_range of it, where there is no way round, s, [1, 600]
   double effort_range{1.0};  ///< m, [0, 10]
   double rest{30.0};         ///< and stays blocked this long before it tries again, s, [0, 3600]
-  double caution{0.3};       ///< speed with an obstacle at the footprint, m/s, (0, 2]
-  double caution_gain{2.4};  ///< more speed for each metre of clearance, 1/s, [0, 10]
+  PathSpeedParams speed{};
 };
 
 /// What a local planner looks up: its libraries, longest and widest first, and the turning table of the
@@ -43,8 +42,9 @@ struct PlannerLibrary {
   struct Option {
     PathTree tree;
     CorrespondenceGrid grid;
-    bool tight;
-    int least_stage;  ///< a shorter way than this is left to the next library
+    CorrespondenceGrid back;  ///< of the body driving backwards; empty: the same
+    double max_speed;         ///< m/s, with such margins
+    int least_stage;          ///< a shorter way than this is left to the next library
   };
   std::vector<Option> options{};
   RotationTable rotation{};
@@ -68,9 +68,10 @@ struct PlannerLibrary {
 ///   passage it cannot turn, and so cannot take the way beside the one that it tried;
 /// - a robot that drives to and fro without coming nearer to its goal (it stands in something, or behind it)
 ///   gives up for a while and says so;
+/// - ground that is passable at a cost makes the paths across it count for less, and slow;
 /// - shorter paths and tighter margins are further libraries of the true footprint: scaling the obstacle
 ///   points, as Falco does, would scale the robot as well.
-class LocalPlanner {
+class LocalPlanner final : public Planner {
  public:
   static constexpr int kHeadings = 36;
 
@@ -78,11 +79,8 @@ class LocalPlanner {
   explicit LocalPlanner(const Platform& platform, const LocalPlannerParams& params = {},
                         std::shared_ptr<const PlannerLibrary> library = nullptr);
 
-  /// One cycle. `pose`: the body in the odometry frame at `stamp_s`. `obstacles`: in the body frame at
-  /// `pose`. Never leads through an obstacle; when nothing is free the plan says `blocked` and is empty.
-  /// Allocates nothing.
   Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
-            double stamp_s);
+            double stamp_s) override;
 
   const LocalPlannerParams& params() const { return params_; }
 
@@ -113,11 +111,23 @@ class LocalPlanner {
   struct Occupied {
     std::uint16_t ring, angle;  ///< angle from the goal's bearing, degrees
   };
+  /// A set of polar cells: as bits while it is filled, then as a list by ring, nearest first.
+  struct Cells {
+    std::vector<std::uint64_t> bits{};
+    std::vector<Occupied> list{};
+    void size(int rings);
+    void clear();
+    void add(int ring, int angle);
+    void to_list();
+  };
 
   Goal goal_of(const Target& target, const Pose2& pose);
   void project(const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan);
   void judge_headings(const Goal& goal);
   void block_paths(const Option& option, const Goal& goal);
+  void cover(const Option& option, const Goal& goal, const Cells& cells, bool drop_dead,
+             std::array<PathMask, kHeadings>& masks);
+  float ease(int heading, int stage, int node) const;
   bool vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best);
   bool choose(const Goal& goal, Choice& best);
   Goal retreat_goal(const Pose2& pose);
@@ -125,11 +135,13 @@ class LocalPlanner {
   void watch_progress(const Target& target, double distance);
   bool given_up(bool drives, double stamp_s);
   void write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const;
-  double speed_limit(const Target& target, bool tight, double clearance) const;
+  double speed_limit(const Target& target, const Choice& choice, const Pose2& pose, const Plan& plan,
+                     std::span<const ObstaclePoint> obstacles) const;
 
   Platform platform_;
   LocalPlannerParams params_;
   std::shared_ptr<const PlannerLibrary> library_;
+  Footprint body_;
   int rings_{0};  ///< of the largest grid
   int last_turn_{0};
   double course_{0};        ///< of a stick held ahead or back, odometry frame, rad
@@ -147,11 +159,12 @@ class LocalPlanner {
   Eigen::Vector2d retreat_to_{0, 0};  ///< odometry frame
 
   // Of one cycle.
-  std::vector<std::uint64_t> seen_{};  ///< one bit per polar cell
-  std::vector<Occupied> occupied_{};   ///< by ring, nearest first
+  Cells occupied_{};              ///< cannot be passed
+  std::array<Cells, 2> rough_{};  ///< costs something; costs much
   TurnRoom room_{};
   std::array<Approach, kHeadings> approach_{};
   std::array<PathMask, kHeadings> blocked_{};
+  std::array<std::array<PathMask, kHeadings>, 2> rough_paths_{};
   std::array<float, 361> agreement_{};  ///< of a bearing that is off by so many degrees, 0..1
 };
 

@@ -6,7 +6,7 @@ namespace adit::nav {
 
 Navigator::Navigator(const Platform& platform, const ObstacleMapParams& map,
                      const LocalPlannerParams& planner, std::shared_ptr<const PlannerLibrary> library)
-    : map_(platform, map), planner_(platform, planner, std::move(library)) {
+    : map_(platform, map), planner_(make_planner(platform, planner, std::move(library)).value()) {
   obstacles_.reserve(ObstacleMap::kMaxCells);
 }
 
@@ -30,7 +30,7 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
     const float dx = cell.x() - x0, dy = cell.y() - y0;
     obstacles_.push_back({c * dx + s * dy, c * dy - s * dx, 1.0f});
   }
-  return planner_.plan(target, pose, obstacles_, stamp_s);
+  return planner_->plan(target, pose, obstacles_, stamp_s);
 }
 
 void Navigator::clear() {

@@ -1,5 +1,5 @@
 #pragma once
-#include "nav/local_planner.hpp"
+#include "nav/make_planner.hpp"
 #include "nav/obstacle_map.hpp"
 
 namespace adit::nav {
@@ -8,13 +8,14 @@ namespace adit::nav {
 /// no clock; calls must not overlap. The light half, a Controller, shares nothing with it but the plan.
 class Navigator {
  public:
+  /// Throws when the platform names a planner that there is not: see make_planner.
   explicit Navigator(const Platform& platform, const ObstacleMapParams& map = {},
                      const LocalPlannerParams& planner = {},
                      std::shared_ptr<const PlannerLibrary> library = nullptr);
 
   /// See ObstacleMap::add_scan.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
-  /// See LocalPlanner::plan; over what the scans showed. Before the first scan nothing is known to be free:
+  /// See Planner::plan; over what the scans showed. Before the first scan nothing is known to be free:
   /// the plan is blocked with Reason::terrain_stale.
   Plan plan(const Target& target, const Pose2& pose, double stamp_s);
 
@@ -24,7 +25,7 @@ class Navigator {
 
  private:
   ObstacleMap map_;
-  LocalPlanner planner_;
+  std::unique_ptr<Planner> planner_;
   std::vector<ObstaclePoint> obstacles_{};  ///< of one plan
   bool has_scan_{false};
 };

@@ -22,7 +22,7 @@ struct TurnRoom {
 class RotationTable {
  public:
   RotationTable() = default;
-  explicit RotationTable(const SweptBody& body);
+  explicit RotationTable(const Footprint& body);
 
   int rings() const { return rings_; }
   /// Narrows `room` by an obstacle in `ring` (< rings()) at `angle` in [0, 360) degrees from the body's x.
@@ -30,7 +30,7 @@ class RotationTable {
 
  private:
   int rings_{0};
-  std::vector<std::uint16_t> left_{};  ///< degrees of free turn to the left, per (ring, angle)
+  std::vector<std::uint16_t> left_{}, right_{};  ///< degrees of free turn, per (ring, angle)
 };
 
 }  // namespace adit::nav

@@ -1,10 +1,12 @@
 #include "robot_agent/agent.hpp"
 
+#include <algorithm>
 #include <sstream>
 
 #include "core/config/search.hpp"
 #include "core/time/random.hpp"
 #include "nav/control/controller.hpp"
+#include "nav/make_planner.hpp"
 #include "robot_agent/agent_parts.hpp"
 
 namespace adit::agent {
@@ -34,6 +36,10 @@ Result<void> Agent::start() {
     return {Reason::bad_argument, "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + params_.name + "'"};
   if (const auto known = nav::make_controller(params_.platform.controller, params_.platform); !known)
     return {known.error().reason, "platform " + params_.platform.name + ": " + known.error().text};
+  const auto& planners = nav::planner_names();
+  if (std::find(planners.begin(), planners.end(), params_.platform.planner) == planners.end())
+    return {Reason::bad_argument,
+            "platform " + params_.platform.name + ": " + nav::no_planner(params_.platform.planner).text};
   const auto tree = config::find_file(params_.tree);
   if (!tree) return tree.error();
   // Here as well as in each instance of the command component: who starts an agent is told at once.

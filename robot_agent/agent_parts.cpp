@@ -168,6 +168,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
 }
 
 std::shared_ptr<const nav::PlannerLibrary> Agent::Parts::library() {
+  if (params.platform.planner != nav::planner_names().front()) return nullptr;  // no other planner has one
   {
     const std::lock_guard lock(mutex_);
     if (library_) return library_;

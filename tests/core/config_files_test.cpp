@@ -49,6 +49,10 @@ TEST(Platforms, the_three_standard_ones_have_the_documented_values) {
     EXPECT_EQ(p->lidar_height, row.lidar);
     EXPECT_EQ(p->drive == Drive::holonomic, row.holonomic);
     EXPECT_EQ(p->stairs, row.stairs);
+    EXPECT_TRUE(p->footprint.empty());
+    EXPECT_EQ(p->planner, "trajectories");
+    EXPECT_EQ(p->controller, "ilqr");
+    EXPECT_FALSE(p->manual_collision_stop);
   }
 }
 
@@ -86,6 +90,26 @@ TEST(Platforms, wrong_files_name_file_line_and_what_was_expected) {
               HasSubstr("d.yaml:1: drive: expected one of differential, holonomic; got 'hover'"));
 }
 
+TEST(Platforms, a_footprint_is_a_convex_polygon_around_base_link) {
+  const Folder folder;
+  const std::string good =
+      "name: x\ndrive: holonomic\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n"
+      "max_acceleration: 1\nstep: 0\nlidar_height: 1\nfootprint: ";
+  const auto p =
+      config::load_platform_file(folder.write("p.yaml", good + "[[0.5, 0], [-0.5, 0.4], [-0.5, -0.4]]\n"));
+  ASSERT_TRUE(p) << p.error().text;
+  ASSERT_EQ(p->footprint.size(), 3U);
+  EXPECT_EQ(p->footprint[1], Eigen::Vector2d(-0.5, 0.4));
+  for (const char* bad : {"[]", "[[0.5, 0], [-0.5, 0.4]]", "[[0.5, 0], [-0.5, -0.4], [-0.5, 0.4]]",
+                          "[[0.6, 0], [-0.5, 0.4], [-0.5, -0.4]]", "[[0.5, 0], [0.4, 0.4], [0.4, -0.4]]",
+                          "[[0.5, 0], [0, 0.1], [-0.5, 0.4], [-0.5, -0.4]]", "[[0.5], [0, 1], [0, 0]]",
+                          "[[.nan, 0], [-0.5, 0.4], [-0.5, -0.4]]", "7", "[a, b, c]"}) {
+    const auto wrong = config::load_platform_file(folder.write("bad.yaml", good + bad + "\n"));
+    ASSERT_FALSE(wrong) << bad;
+    EXPECT_THAT(wrong.error().text, HasSubstr("bad.yaml:10: ")) << bad;
+  }
+}
+
 TEST(Links, wrong_files_are_errors) {
   const Folder folder;
   const auto link =
@@ -94,9 +118,10 @@ TEST(Links, wrong_files_are_errors) {
   EXPECT_THAT(link.error().text, HasSubstr("l.yaml:4: loss: expected a number in [0, 1], got '5'"));
   const std::string good = "name: l\nbandwidth: 1e6\nlatency: 0.1\nloss: 0\n";
   ASSERT_TRUE(wire::load_link_file(folder.write("good.yaml", good)));
-  for (const char* bad : {"jitter: -1", "burst: 0.5", "window: 11", "frame: 100", "frame: 1.5",
-                          "frame: 70000", "fading: 11", "path_loss: -1", "shadowing: 41", "power: 61",
-                          "noise: 1", "wall: -1", "queue: 0", "range: far", "burst: [1]", "bursts: 2", "jitter: .nan"}) {
+  for (const char* bad :
+       {"jitter: -1", "burst: 0.5", "window: 11", "frame: 100", "frame: 1.5", "frame: 70000", "fading: 11",
+        "path_loss: -1", "shadowing: 41", "power: 61", "noise: 1", "wall: -1", "queue: 0", "range: far",
+        "burst: [1]", "bursts: 2", "jitter: .nan"}) {
     const auto wrong = wire::load_link_file(folder.write("bad.yaml", good + bad + "\n"));
     ASSERT_FALSE(wrong) << bad;
     EXPECT_THAT(wrong.error().text, HasSubstr("bad.yaml:5: ")) << bad;

@@ -5,7 +5,8 @@
 namespace adit::nav {
 namespace {
 
-constexpr SweptBody kBody{0.4, 0.3};
+constexpr double kHalfLength = 0.4, kHalfWidth = 0.3;
+const Footprint kBody(kHalfLength, kHalfWidth);
 
 /// The bits that an obstacle at (x, y) blocks.
 PathMask mask_at(const CorrespondenceGrid& grid, double x, double y) {
@@ -20,8 +21,7 @@ double deepest(const PathTree& tree, int stage, int node, double x, double y) {
   const auto path = tree.path(PathTree::path_through(stage, node));
   for (std::size_t i = stage == 0 ? 0 : tree.last_pose(stage - 1); i <= tree.last_pose(stage); ++i) {
     const Eigen::Vector2d p = path[i].inverse() * Eigen::Vector2d(x, y);
-    most =
-        std::max(most, std::min(kBody.half_length - std::fabs(p.x()), kBody.half_width - std::fabs(p.y())));
+    most = std::max(most, std::min(kHalfLength - std::fabs(p.x()), kHalfWidth - std::fabs(p.y())));
   }
   return most;
 }
@@ -33,7 +33,7 @@ TEST(Correspondence, AgreesWithTheSweptBody) {
   int blocked = 0, checked = 0;
   for (double x = -0.9; x < 3.6; x += 0.23)
     for (double y = -2.0; y < 2.0; y += 0.19) {
-      if (std::fabs(x) < kBody.half_length + 0.05 && std::fabs(y) < kBody.half_width + 0.05) continue;
+      if (std::fabs(x) < kHalfLength + 0.05 && std::fabs(y) < kHalfWidth + 0.05) continue;
       const PathMask mask = mask_at(grid, x, y);
       for (int stage = 0; stage < PathTree::kStages; ++stage)
         for (int node = 0; node < PathTree::kNodes[stage]; node += stage == 6 ? 5 : 1) {

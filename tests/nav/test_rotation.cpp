@@ -5,7 +5,7 @@
 namespace adit::nav {
 namespace {
 
-constexpr SweptBody kBody{0.4, 0.2};
+const Footprint kBody(0.4, 0.2);
 
 TurnRoom room_with(double x, double y) {
   const RotationTable table(kBody);

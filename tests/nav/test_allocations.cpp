@@ -1,0 +1,54 @@
+// A planning cycle, a controller's step and the collision monitor allocate nothing once they are made.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "nav/control/controller.hpp"
+#include "nav/make_planner.hpp"
+#include "nav/monitor/collision_monitor.hpp"
+#include "tests/nav/box_world.hpp"
+
+namespace {
+thread_local std::uint64_t allocations = 0;
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* p = std::malloc(size)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+
+namespace adit::nav::test {
+namespace {
+
+TEST(Allocations, NoneInACycle) {
+  const BoxWorld world{{{3, 3.3, -1, 1}, {-3, 6, 2, 2.2}, {-3, 6, -2.2, -2}}};
+  std::mt19937 random(4);
+  const auto scan = world.scan({}, 0.5, 16, 360, 0.01, random);
+  std::vector<ObstaclePoint> cells;
+  for (const auto& p : scan)
+    if (p.z() > 0.1f && p.norm() < 4) cells.push_back({p.x(), p.y(), p.x() > 1 ? 1.0f : 0.4f});
+  for (const std::string& name : planner_names()) {
+    Platform platform = wheeled();
+    platform.planner = name;
+    const auto planner = make_planner(platform).value();
+    const auto controller = make_controller(platform.controller, platform).value();
+    CollisionMonitor monitor(platform);
+    const auto cycle = [&](double time) {
+      const Plan plan = planner->plan(Target::to({6, 0}), {}, cells, time);
+      controller->set_plan(plan);
+      monitor.look(scan, {}, time);
+      return monitor.check(controller->follow({}, 0.05), {}, time, CollisionMonitor::Policy::stop).velocity;
+    };
+    cycle(0);
+    const std::uint64_t before = allocations;
+    for (int i = 1; i < 20; ++i) cycle(0.1 * i);
+    EXPECT_EQ(allocations, before) << name;
+  }
+}
+
+}  // namespace
+}  // namespace adit::nav::test
