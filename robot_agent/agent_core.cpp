@@ -309,7 +309,7 @@ Navigation::Outputs Agent::Core::navigation_outputs() {
 }
 
 void Agent::Core::warn(Warning warning) {
-  const bool stops = params_.platform.manual_collision_stop;
+  const bool stops = params_.platform.manual_collision_stop || behaviour_.mode().name != "manual";
   if (warning == Warning::lidar_silent)
     tell_holder({{},
                  Severity::warning,

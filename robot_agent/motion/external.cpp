@@ -7,7 +7,7 @@ namespace adit::agent {
 void External::heard(const Twist2& velocity, Time now) {
   if (!std::isfinite(velocity.vx) || !std::isfinite(velocity.vy) || !std::isfinite(velocity.wz)) return;
   last_ = now;
-  output_.write(Velocity{velocity}, now);
+  output_.write(Velocity{velocity, true}, now);
 }
 
 }  // namespace adit::agent

@@ -14,6 +14,7 @@ struct Stand {
 /// A velocity for the wheels, body frame, cut to the platform's limits.
 struct Velocity {
   Twist2 twist{};
+  bool by_program{false};  ///< nobody sees where it leads: the collision monitor stops it, not warns
   bool operator==(const Velocity&) const = default;
 };
 /// A stick that says where to, for the local planner: direction and speed in the body frame, turn rate.

@@ -35,14 +35,14 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
     controller_->stop_now();
   }
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
-    drive_manually(velocity->twist);
+    pass_on(*velocity);
   else if (std::holds_alternative<Stand>(motion_))
     outputs_.velocity({});
 }
 
 void Navigation::step(Time now) {
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
-    drive_manually(velocity->twist);
+    pass_on(*velocity);
   else if (std::holds_alternative<Stand>(motion_))
     outputs_.velocity({});
   else
@@ -55,10 +55,10 @@ nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
   return monitor_.check(wanted, localisation_.odom().planar(), seconds(now().time_since_epoch()), policy);
 }
 
-void Navigation::drive_manually(const Twist2& wanted) {
+void Navigation::pass_on(const Velocity& wanted) {
   using Policy = nav::CollisionMonitor::Policy;
-  const auto verdict =
-      guarded(limited(wanted), params_.platform.manual_collision_stop ? Policy::stop_seen : Policy::limit);
+  const bool stops = wanted.by_program || params_.platform.manual_collision_stop;
+  const auto verdict = guarded(limited(wanted.twist), stops ? Policy::stop_seen : Policy::limit);
   watch_warning(verdict.cause, now());
   outputs_.velocity(verdict.velocity);
 }

@@ -59,7 +59,7 @@ class Navigation : public Component, public NavigationInput {
   void watch_held(bool stopped, Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
   Twist2 limited(const Twist2& wanted) const;
-  void drive_manually(const Twist2& wanted);
+  void pass_on(const Velocity& wanted);
   nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;
   void plan(std::shared_ptr<Scan> scan, Time now);
   bool planning(Time now) const;

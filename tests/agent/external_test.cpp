@@ -37,7 +37,7 @@ TEST_F(ExternalMode, PassesWhileItsSourceIsEnabled) {
   step(100ms);
   external.heard({0.4, 0, 0.1}, now);
   step(50ms);
-  EXPECT_EQ(nav.last, (Motion{Velocity{{0.4, 0, 0.1}}}));
+  EXPECT_EQ(nav.last, (Motion{Velocity{{0.4, 0, 0.1}, true}}));
 }
 
 TEST_F(ExternalMode, SilenceIsZeroAfterHalfASecond) {
