@@ -16,12 +16,40 @@ NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsP
     : platform_(platform),
       params_(params),
       body_(platform),
-      reach_(static_cast<float>(std::min(reach, kCell * kSide / 2.0 - 0.1))),
+      reach_(static_cast<float>(std::min(reach, kCell * kSide / 2.0 - 2 * kCell))),
       lowest_(kCoarse * kCoarse),
+      highest_(kSide * kSide),
       cells_(kSide * kSide) {
   used_.reserve(cells_.size());
   places_.reserve(kMost);
   kept_.reserve(kMost);
+}
+
+std::size_t NearPoints::coarse(float x, float y) {
+  const int i = static_cast<int>(x / (2 * kCell) + kCoarse / 2.0f);
+  const int j = static_cast<int>(y / (2 * kCell) + kCoarse / 2.0f);
+  return static_cast<std::size_t>(j * kCoarse + i);
+}
+
+std::size_t NearPoints::fine(float x, float y) {
+  const int i = static_cast<int>(x / kCell + kSide / 2.0f);
+  const int j = static_cast<int>(y / kCell + kSide / 2.0f);
+  return static_cast<std::size_t>(j * kSide + i);
+}
+
+bool NearPoints::seen_again(const Eigen::Vector2f& local) const {
+  if (std::fabs(local.x()) >= reach_ || std::fabs(local.y()) >= reach_) return false;
+  const auto step = static_cast<float>(platform_.step + params_.rise);
+  const std::size_t middle = fine(local.x(), local.y());
+  int obstacle = 0;
+  bool raised = false;
+  for (int k = -1; k <= 1; ++k)
+    for (const std::size_t i : {middle - kSide + k, middle + k, middle + kSide + k}) {
+      raised |= highest_[i] > step;
+      obstacle += cells_[i].count;
+    }
+  // Where the newest scan shows an obstacle by itself, that one counts alone.
+  return raised && obstacle < kFewest;
 }
 
 NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
@@ -33,12 +61,8 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   const auto inside = [this](const Eigen::Vector3f& p) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
   };
-  const auto coarse = [](const Eigen::Vector3f& p) {
-    const int i = static_cast<int>(p.x() / (2 * kCell) + kCoarse / 2.0f);
-    const int j = static_cast<int>(p.y() / (2 * kCell) + kCoarse / 2.0f);
-    return static_cast<std::size_t>(j * kCoarse + i);
-  };
   std::fill(lowest_.begin(), lowest_.end(), 1e9f);
+  std::fill(highest_.begin(), highest_.end(), -1e9f);
   Fan fan{};
   for (const Eigen::Vector3f& p : points) {
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
@@ -48,8 +72,11 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
       fan.highest = std::max(fan.highest, rise);
     }
     if (!inside(p)) continue;
-    float& low = lowest_[coarse(p)];
-    low = std::min(low, p.z());
+    const std::size_t cell = coarse(p.x(), p.y());
+    lowest_[cell] = std::min(lowest_[cell], p.z());
+    if (p.z() > top) continue;
+    float& high = highest_[fine(p.x(), p.y())];
+    high = std::max(high, p.z());
   }
   for (const std::uint32_t i : used_) cells_[i] = {};
   used_.clear();
@@ -57,10 +84,9 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     if (!inside(p) || p.z() > top || p.z() <= step) continue;
     const float depth = body_.depth(p.x(), p.y());
     if (depth > own) continue;
-    if (p.z() <= step - slope * depth && p.z() <= lowest_[coarse(p)] + step + slope * kWithinCell) continue;
-    const int i = static_cast<int>(p.x() / kCell + kSide / 2.0f);
-    const int j = static_cast<int>(p.y() / kCell + kSide / 2.0f);
-    const auto index = static_cast<std::uint32_t>(j * kSide + i);
+    if (p.z() <= step - slope * depth && p.z() <= lowest_[coarse(p.x(), p.y())] + step + slope * kWithinCell)
+      continue;
+    const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     Cell& cell = cells_[index];
     if (cell.count == 0) used_.push_back(index);
     if (cell.count == 60000) continue;
@@ -84,10 +110,12 @@ bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
 void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s) {
   kept_.clear();
   const Pose2 back = body.planar().inverse();
-  for (const Place& place : places_) {
+  for (Place& place : places_) {
     if (stamp_s - place.seen > params_.memory) continue;
     const Eigen::Vector2d at = back * Eigen::Vector2d(place.x, place.y);
-    if (hidden({at.x(), at.y(), place.z}, fan)) kept_.push_back(place);
+    const bool again = seen_again(at.cast<float>());
+    if (again) place.seen = stamp_s;
+    if (again || hidden({at.x(), at.y(), place.z}, fan)) kept_.push_back(place);
   }
 }
 

@@ -20,8 +20,9 @@ struct NearPointsParams {
 
 /// What stands near the robot by its newest scan, and nothing else: no map, no ground model. A return is an
 /// obstacle when it is higher than ground could be at its distance, or much higher than what was seen
-/// directly below it. What the newest scan cannot show, below its lowest ray or nearer than its shortest,
-/// is taken from those before. Fixed sizes; nothing is allocated after construction.
+/// directly below it, or where such a one was seen before. What the newest scan cannot show, below its lowest
+/// ray or nearer than its shortest, is taken from those before. Fixed sizes; nothing is allocated after
+/// construction.
 class NearPoints {
  public:
   static constexpr std::size_t kMost = 4096;  ///< places; the nearest ones when there are more
@@ -52,7 +53,10 @@ class NearPoints {
     float lowest{1e9f}, highest{-1e9f};
   };
 
+  static std::size_t coarse(float x, float y);
+  static std::size_t fine(float x, float y);
   Fan sort_in(std::span<const Eigen::Vector3f> points);
+  bool seen_again(const Eigen::Vector2f& local) const;
   void remember(const Pose3& body, const Fan& fan, double stamp_s);
   bool hidden(const Eigen::Vector3d& local, const Fan& fan) const;
 
@@ -60,7 +64,8 @@ class NearPoints {
   NearPointsParams params_;
   Footprint body_;
   float reach_;
-  std::vector<float> lowest_;  ///< return in each 10 cm cell, m
+  std::vector<float> lowest_;   ///< return in each 10 cm cell, m
+  std::vector<float> highest_;  ///< in each 5 cm cell
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> used_{};
   std::vector<Place> places_{}, kept_{};
