@@ -18,7 +18,7 @@ class LinkRate : public testing::Test {
     bench.ether().set_tap([this](const wire::Frame& frame) {
       if (frame.kind != wire::Frame::Kind::sent || frame.from_name != "r1" || frame.domain != 77) return;
       if (frame.topic == "adit/robot_state") ++states;
-      offered += static_cast<double>(wire::WireCost::sample(frame.bytes.size(), true, 500) * ops.size());
+      offered += static_cast<double>(wire::WireCost::sample(frame.bytes.size(), 500) * ops.size());
     });
     bench.run(3s);
   }
