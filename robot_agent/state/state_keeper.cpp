@@ -29,6 +29,7 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
   Outputs outputs;
 
   std::optional<Snapshot> state{};         ///< given last
+  std::uint64_t needed{};                  ///< the last one that changed the state: answers wait for it
   std::uint64_t accepted{};                // commands, when that was given
   std::optional<store::Bytes> next{};      ///< not being written yet
   std::uint64_t asked{}, done{};           ///< generations: given, and settled one way or the other
@@ -114,7 +115,7 @@ StateKeeper::StateKeeper(KeeperParams params, std::shared_ptr<store::Disk> disk,
                          std::shared_ptr<Executor> writer, std::uint64_t generation, Outputs outputs)
     : writer_(
           std::make_shared<Writer>(params, std::move(disk), command, std::move(writer), std::move(outputs))) {
-  writer_->asked = writer_->done = generation;
+  writer_->asked = writer_->done = writer_->needed = generation;
   writer_->since = command.now();
 }
 
@@ -123,21 +124,23 @@ StateKeeper::~StateKeeper() = default;
 void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers,
                        std::uint64_t accepted) {
   Writer& w = *writer_;
-  if (w.state && w.state->same_state(state) && w.accepted == accepted) return;
+  const bool same = w.state && w.state->same_state(state);
+  if (same && w.accepted == accepted) return;
   w.accepted = accepted;
   state.answers = answers();
   w.state = std::move(state);
   if (!w.disk) return;
   w.next = encode(*w.state);
   ++w.asked;
+  if (!same) w.needed = w.asked;
   if (w.params.lazy == Duration{0}) w.start();
 }
 
 void StateKeeper::when_safe(Task task) {
   Writer& w = *writer_;
-  if (w.done == w.asked || w.stuck || w.params.lazy > Duration{0}) return task();
+  if (w.done >= w.needed || w.stuck || w.params.lazy > Duration{0}) return task();
   if (w.waiting.size() >= kWaiting) w.waiting.pop_front();
-  w.waiting.emplace_back(w.asked, std::move(task));
+  w.waiting.emplace_back(w.needed, std::move(task));
 }
 
 void StateKeeper::tick() { writer_->tick(); }
