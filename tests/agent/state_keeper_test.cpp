@@ -66,6 +66,7 @@ TEST_F(KeeperTest, AnAnswerWaitsUntilTheStateIsOnDisk) {
 }
 
 TEST_F(KeeperTest, AnAcceptedCommandThatChangedNothingIsWrittenToo) {
+  make();
   int written = 0;
   const auto save_after = [&](std::uint64_t accepted) {
     keeper->save(
