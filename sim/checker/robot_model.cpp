@@ -110,11 +110,13 @@ void RobotModel::take_in_event(const AgentDied&) {
 }
 
 void RobotModel::hear(const std::string& station, const StationId& id, const wire::ParticipantId& from) {
-  auto [it, fresh] = stations_.try_emplace(station, Heard{id, from, now_});
+  auto [it, fresh] = stations_.try_emplace(station, Heard{id, from, now_, {}});
   Heard& heard = it->second;
   // Another id may use the name only when the first was silent.
   if (!fresh && heard.id != id && age(heard.last) < hearing) return;
-  heard = {id, from, now_};
+  auto former = heard.former;
+  if (!fresh && heard.id == id && heard.participant != from) former = {heard.participant, now_};
+  heard = {id, from, now_, former};
 }
 
 void RobotModel::take_in_event(const PresenceHeard& e) {
@@ -145,7 +147,13 @@ bool RobotModel::is_holder(const CommandHeard& command) const {
   if (authority_.holder.empty() || command.station != authority_.holder || command.id != authority_.holder_id)
     return false;
   const Heard* bound = heard(command.station);
-  if (bound && bound->id == command.id && bound->participant == command.from) return true;
+  if (bound && bound->id == command.id) {
+    if (bound->participant == command.from) return true;
+    // Whoever got the place in a silence keeps it a little when the first is heard again: what comes then may
+    // have been under way.
+    if (bound->former && bound->former->first == command.from && age(bound->former->second) < giving_back)
+      return true;
+  }
   const auto it = participants_.find(command.from);
   return it != participants_.end() && it->second.contains({command.station, command.id});
 }

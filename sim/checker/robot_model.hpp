@@ -13,6 +13,8 @@ inline constexpr Duration reaction{80ms};
 inline constexpr Duration joystick_silence{300ms};
 inline constexpr Duration oldest_echo{600ms};
 inline constexpr Duration hearing{3s};
+/// Who got a name in a silence of the first keeps it so long when that one is heard again.
+inline constexpr Duration giving_back{1s};
 /// A component that failed is back, or the whole agent was started again, within this.
 inline constexpr Duration recovery{2500ms};
 
@@ -26,6 +28,8 @@ class RobotModel {
     StationId id{};
     wire::ParticipantId participant{};
     Duration last{};
+    /// Who spoke for it before, and until when.
+    std::optional<std::pair<wire::ParticipantId, Duration>> former{};
   };
   /// A command that was received and is not answered yet.
   struct Pending {
