@@ -92,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(
                ""},
         Broken{"manual_survives_handover", 7,
                "  - {at: 4, by: op1, do: drive r1 0.6 0 0 --for 8}\n  - {at: 6, by: op2, do: take r1}\n", ""},
-        Broken{"enter_off_centre", 7, "  - {at: 6, by: op1, do: mode r1 manual}\n",
+        Broken{"enter_off_centre", 7, "  - {at: 6.03, by: op1, do: mode r1 manual}\n",
                "faults:\n  - {at: 4, stuck: [op1, r1], for: 6}\n"}),
     [](const auto& which) { return std::string(which.param.defect); });
 
