@@ -156,6 +156,7 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
   const Duration limit = pending->is_stop() ? params_.give_up_stop : params_.give_up;
   if (strand_.now() - pending->first_sent >= limit) {
     if (pending->resting) return finish(to, pending, pending->refusal);
+    withdraw(to, *pending);
     const std::string text = "no answer within " + std::to_string(limit / 1s) + " s";
     return finish(to, pending, {.reason = Reason::no_answer, .text = text});
   }
@@ -166,6 +167,16 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
     ++counts_.repeats;
   }
   transmit(to, *pending);
+}
+
+void Sender::withdraw(Lane& to, const Pending& pending) {
+  // The writer keeps its newest sample and repairs it across a gap of any length: a question takes its place. A stop
+  // does no harm late, and one on its way has taken the place already.
+  if (pending.is_stop() || to.stop) return;
+  radio::Command question = pending.message;
+  question.seq(to.next_seq++);
+  question.kind(radio::CMD_QUERY);
+  (void)to.writer.write(question);
 }
 
 bool Sender::worth_another(const Pending& pending, const radio::Acknowledgement& sample) const {

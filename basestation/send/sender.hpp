@@ -51,6 +51,8 @@ class Sender {
   void transmit(Lane& lane, Pending& pending);
   void renumber(Lane& lane, Pending& pending);
   void tick(const std::string& robot, const std::shared_ptr<Pending>& pending);
+  /// What the operator was told is without answer must not be obeyed when the link comes back.
+  void withdraw(Lane& lane, const Pending& pending);
   void finish(Lane& lane, const std::shared_ptr<Pending>& pending, Answer answer);
   /// A refusal for a cause that passes.
   bool worth_another(const Pending& pending, const radio::Acknowledgement& sample) const;

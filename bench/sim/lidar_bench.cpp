@@ -7,6 +7,7 @@
 
 #include "sim/world/lidar.hpp"
 #include "sim/world/noise.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace {
 
@@ -14,8 +15,8 @@ using namespace adit;
 using namespace adit::sim;
 
 std::filesystem::path map_file() {
-  const std::array<std::filesystem::path, 3> folders{ADIT_SOURCE_DIR "/config/maps",
-                                                     ADIT_SOURCE_DIR "/config",
+  const std::array<std::filesystem::path, 3> folders{source_folder() + "/data/maps",
+                                                     source_folder() + "/config",
                                                      "/usr/share/doc/liboctomap-dev/examples/data"};
   const auto found = find_map("geb079.bt", folders);
   return found ? *found : std::filesystem::path("geb079.bt");

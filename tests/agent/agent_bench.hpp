@@ -18,6 +18,7 @@
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/agent.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"
+#include "tests/folders/folders.hpp"
 #include "tests/point_cloud.hpp"
 
 namespace adit::agent {
@@ -57,7 +58,7 @@ class AgentBench {
 
   explicit AgentBench(AgentParams params = {}, std::uint64_t seed = 1)
       : params_(std::move(params)), scheduler_(seed), ether_(scheduler_, {seed}) {
-    params_.tree = std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml";
+    params_.tree = source_folder() + "/config/trees/robot.xml";
     machine_ = scheduler_.machine("r1", 77777s);
     world_ = scheduler_.machine("world", 3s);
     strand_ = world_->strand("bench");

@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "tests/folders/folders.hpp"
+
 namespace adit::agent {
 namespace {
 
@@ -45,7 +47,7 @@ class BehaviourTest : public testing::Test {
   std::vector<Notice> told{};
   int changes{};
   Behaviour behaviour{{},
-                      Decider::load(std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml").value(),
+                      Decider::load(source_folder() + "/config/trees/robot.xml").value(),
                       mux,
                       {[this](Time) { return facts; }, [this](const Eigen::Vector2d&) { return goal_free; }},
                       {[this](const Notice& n) { told.push_back(n); }, [this] { ++changes; }}};

@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include "tests/folders/folders.hpp"
+
 namespace adit::agent {
 namespace {
 
-const std::string kTree = std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml";
+const std::string kTree = source_folder() + "/config/trees/robot.xml";
 constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
 
 std::unique_ptr<Decider> load() {

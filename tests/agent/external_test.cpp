@@ -7,6 +7,7 @@
 
 #include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/motion/rival.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::agent {
 namespace {
@@ -68,7 +69,7 @@ TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
   ASSERT_TRUE(decider) << decider.error().text;
   EXPECT_FALSE((*decider)->installed(*find_mode("external")));
   EXPECT_TRUE((*decider)->installed(*find_mode("waypoint")));
-  const auto whole = Decider::load(std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml");
+  const auto whole = Decider::load(source_folder() + "/config/trees/robot.xml");
   ASSERT_TRUE(whole) << whole.error().text;
   EXPECT_TRUE((*whole)->installed(*find_mode("external")));
 }

@@ -16,6 +16,7 @@
 #include "robot_agent/program/robot_config.hpp"
 #include "robot_agent/program/service.hpp"
 #include "robot_agent/program/shared_memory.hpp"
+#include "tests/folders/folders.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::agent {
@@ -25,7 +26,7 @@ using testing::HasSubstr;
 
 TEST(RobotConfig, TheShippedOnesLoad) {
   for (const char* name : {"r1", "r2", "r3"}) {
-    const auto config = load_robot_config(std::string(ADIT_SOURCE_DIR) + "/config/robots/" + name + ".yaml");
+    const auto config = load_robot_config(source_folder() + "/config/robots/" + name + ".yaml");
     ASSERT_TRUE(config) << config.error().text;
     EXPECT_EQ(config->name, name);
     EXPECT_TRUE(config->radio.interfaces.empty());

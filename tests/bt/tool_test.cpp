@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "tests/folders/folders.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +34,7 @@ class Tool : public testing::Test {
   }
   Answer tree(const std::string& arguments) {
     const std::string command =
-        "cd '" + folder_.string() + "' && '" ADIT_BIN_DIR "/tree' " + arguments + " 2>&1";
+        "cd '" + folder_.string() + "' && '" + adit::program_folder() + "/tree' " + arguments + " 2>&1";
     Answer answer;
     FILE* pipe = popen(command.c_str(), "r");
     std::array<char, 4096> buffer{};

@@ -6,6 +6,7 @@
 
 #include "core/config/node.hpp"
 #include "core/time/random.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::config {
 namespace {
@@ -55,7 +56,7 @@ void read(const Node& n) {
 }
 
 TEST(ConfigMutation, damaged_files_give_a_value_or_one_line) {
-  const std::string sources[] = {slurp(ADIT_SOURCE_DIR "/config/platforms/legged.yaml"),
+  const std::string sources[] = {slurp(source_folder() + "/config/platforms/legged.yaml"),
                                  "name: &n r1\npose: [1, 0, 0]\nscript:\n  - {at: 2, do: take r1}\n  - {at: "
                                  "3, do: *n}\ntext: |\n  block\n"};
   ASSERT_FALSE(sources[0].empty());

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "tests/folders/folders.hpp"
+
 namespace adit::hosts {
 namespace {
 
@@ -87,7 +89,7 @@ void Hosts::link(const std::string& host, bool up) {
 
 Process Hosts::start(const std::string& host, std::vector<std::string> words,
                      std::map<std::string, std::string> environment) const {
-  if (words[0].find('/') == std::string::npos) words[0] = std::string(ADIT_BIN_DIR) + "/" + words[0];
+  if (words[0].find('/') == std::string::npos) words[0] = program_folder() + "/" + words[0];
   return Process(joined(with_us, joined(entering(*hosts_.at(host).holder), words)), std::move(environment));
 }
 

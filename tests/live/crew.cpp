@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/wire/topics.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::live {
 
@@ -13,7 +14,7 @@ Robot::Robot(Net& net, agent::AgentParams params)
       params_(std::move(params)),
       radio_(net.join_radio(params_.name)),
       robot_(net.join_robot(params_.name)) {
-  params_.tree = std::string(ADIT_SOURCE_DIR) + "/config/trees/robot.xml";
+  params_.tree = source_folder() + "/config/trees/robot.xml";
   restart();
 }
 

@@ -109,14 +109,20 @@ FailureLab::Killed FailureLab::kill_agent() {
   const Time dead = now();
   ::kill(pid, SIGKILL);
   std::optional<Time> back;
-  eventually([&] { return (back = new_authority(before, dead)).has_value(); });
+  // Two networks: the agent's return may be heard before the parent's zero is.
+  eventually([&] {
+    if (!back) back = new_authority(before, dead);
+    heard_.use([&](Heard& h) {
+      for (const auto& [at, moves] : h.velocities)
+        if (at >= dead && !moves && !result.zero) result.zero = ms(at - dead);
+    });
+    return back && result.zero;
+  });
   if (back) result.back = ms(*back - dead);
   heard_.use([&](Heard& h) {
-    for (const auto& [at, moves] : h.velocities) {
-      if (at < dead || (back && at > *back)) continue;
-      if (!moves && !result.zero) result.zero = ms(at - dead);
-      if (moves && result.zero) ++result.moved;
-    }
+    for (const auto& [at, moves] : h.velocities)
+      if (moves && result.zero && at >= dead + from_seconds(*result.zero / 1000.0) && (!back || at <= *back))
+        ++result.moved;
   });
   return result;
 }

@@ -16,6 +16,8 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "tests/folders/folders.hpp"
+
 extern char** environ;
 
 namespace adit::live {
@@ -35,7 +37,7 @@ void wait_on_timer(Seconds period) {
 }
 
 std::string program(const std::string& name) {
-  return name.find('/') == std::string::npos ? std::string(ADIT_BIN_DIR) + "/" + name : name;
+  return name.find('/') == std::string::npos ? program_folder() + "/" + name : name;
 }
 
 /// False at end of file.

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <regex>
 
+#include "tests/folders/folders.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::live {
@@ -12,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string scenario = ADIT_SOURCE_DIR "/config/scenarios/ten_robots.yaml";
+const std::string scenario = source_folder() + "/config/scenarios/ten_robots.yaml";
 
 TEST(TenRobots, Rehearsal) {
   const auto done = run({"rehearse", scenario}, {}, Seconds(60));
@@ -41,7 +42,8 @@ std::string shortened() {
 TEST(TenRobots, Live) {
   const Folder folder;
   const std::string file = folder.write("ten_robots.yaml", shortened());
-  const auto done = run({ADIT_SOURCE_DIR "/tools/live.sh", file}, {{"ADIT_BIN", ADIT_BIN_DIR}}, Seconds(60));
+  const auto done =
+      run({source_folder() + "/tools/live.sh", file}, {{"ADIT_BIN", program_folder()}}, Seconds(60));
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
   EXPECT_THAT(done.out, HasSubstr("10 robots known to 2 operators"));
   EXPECT_THAT(done.out, HasSubstr("everything holds"));

@@ -10,6 +10,7 @@
 #include <random>
 #include <sstream>
 
+#include "tests/folders/folders.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::sim {
@@ -22,7 +23,7 @@ struct Ended {
 
 Ended run(const std::string& arguments) {
   Ended ended{};
-  FILE* pipe = popen((ADIT_BIN_DIR "/navtool " + arguments + " 2>&1").c_str(), "r");
+  FILE* pipe = popen((program_folder() + "/navtool " + arguments + " 2>&1").c_str(), "r");
   std::array<char, 4096> buffer;
   while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
     ended.out.append(buffer.data(), n);

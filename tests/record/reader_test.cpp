@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/folders/folders.hpp"
 #include "tests/live/programs.hpp"
 
 namespace adit::live {
@@ -20,7 +21,7 @@ class Reader : public Programs {
   /// True when the reader is there; it is fetched into the build folder once.
   bool ready() {
     const auto installed =
-        run({ADIT_SOURCE_DIR "/tests/record/reader/install.sh", reader_}, {}, Seconds(150));
+        run({source_folder() + "/tests/record/reader/install.sh", reader_}, {}, Seconds(150));
     why_not_ = installed.out + installed.err;
     EXPECT_TRUE(installed.exit_code == 0 || installed.exit_code == 77) << why_not_;
     return installed.exit_code == 0;
@@ -44,7 +45,7 @@ class Reader : public Programs {
     return out;
   }
 
-  std::string reader_{ADIT_BIN_DIR "/../recording_reader"};
+  std::string reader_{program_folder() + "/../recording_reader"};
   std::string why_not_{};
 };
 
@@ -114,7 +115,7 @@ TEST_F(Reader, ARehearsalDecodes) {
   if (!ready()) GTEST_SKIP() << "the reader cannot be had here: " << why_not_;
   const std::string file = folder_.path() + "/run.mcap";
   const auto rehearsed =
-      run({"rehearse", ADIT_SOURCE_DIR "/config/scenarios/grant.yaml", "--record", file}, {}, Seconds(60));
+      run({"rehearse", source_folder() + "/config/scenarios/grant.yaml", "--record", file}, {}, Seconds(60));
   ASSERT_EQ(rehearsed.exit_code, 0) << rehearsed.err;
   const Json heard = read(file);
   for (const char* topic : {"op1/adit/command", "op1/adit/command>r1", "r1/adit/robot_state",
@@ -127,7 +128,7 @@ TEST_F(Reader, ARehearsalDecodes) {
 }
 
 TEST_F(Reader, RecordingDoesNotChangeARehearsal) {
-  const std::string scenario = ADIT_SOURCE_DIR "/config/scenarios/grant.yaml";
+  const std::string scenario = source_folder() + "/config/scenarios/grant.yaml";
   const auto digest = [&](std::vector<std::string> more) {
     std::vector<std::string> words{"rehearse", scenario};
     words.insert(words.end(), more.begin(), more.end());

@@ -8,12 +8,13 @@
 #include "sim/rehearsal/rehearsal.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 #include "sim/rehearsal/shrink.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::sim {
 namespace {
 
 Scenario team() {
-  auto scenario = load_scenario(std::string(ADIT_SOURCE_DIR) + "/config/scenarios/team_chaos.yaml");
+  auto scenario = load_scenario(source_folder() + "/config/scenarios/team_chaos.yaml");
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   return *scenario;
 }

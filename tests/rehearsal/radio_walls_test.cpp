@@ -6,6 +6,7 @@
 
 #include "sim/rehearsal/rehearsal.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::sim {
 namespace {
@@ -27,7 +28,7 @@ TEST(RadioWalls, WhatIsRememberedIsForgottenBeforeItGrowsWithoutEnd) {
 }
 
 Scenario pillar() {
-  auto scenario = load_scenario(std::string(ADIT_SOURCE_DIR) + "/config/scenarios/behind_the_wall.yaml");
+  auto scenario = load_scenario(source_folder() + "/config/scenarios/behind_the_wall.yaml");
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   return *scenario;
 }

@@ -6,12 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/rehearsal/scenario_file.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::sim {
 namespace {
 
 Scenario load(const std::string& name) {
-  auto scenario = load_scenario(std::string(ADIT_SOURCE_DIR) + "/config/scenarios/" + name);
+  auto scenario = load_scenario(source_folder() + "/config/scenarios/" + name);
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   return *scenario;
 }

@@ -3,12 +3,13 @@
 
 #include "sim/rehearsal/rehearsal.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::sim {
 namespace {
 
 RunReport run(const wire::LinkProfile* link) {
-  auto scenario = load_scenario(std::string(ADIT_SOURCE_DIR) + "/config/scenarios/thin_team.yaml");
+  auto scenario = load_scenario(source_folder() + "/config/scenarios/thin_team.yaml");
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   if (link != nullptr) scenario->link = *link;
   RunParams params;

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "tests/folders/folders.hpp"
+
 namespace adit::sim {
 
 /// A folder that vanishes after the test.
@@ -33,8 +35,8 @@ class Scratch {
 
 /// The map of a real building, where ./run setup or the package put it; empty when it is not installed.
 inline std::filesystem::path building_map() {
-  for (const char* folder : {ADIT_SOURCE_DIR "/config/maps", ADIT_SOURCE_DIR "/config",
-                             "/usr/share/doc/liboctomap-dev/examples/data"})
+  for (const std::string& folder : {source_folder() + "/data/maps", source_folder() + "/config",
+                                    std::string("/usr/share/doc/liboctomap-dev/examples/data")})
     if (const auto file = std::filesystem::path(folder) / "geb079.bt"; std::filesystem::exists(file))
       return file;
   return {};

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "tests/folders/folders.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::live {
@@ -26,7 +27,7 @@ class Fleet {
              const Process* machine = nullptr) {
     std::vector<std::string> command{"wire_member", std::to_string(domain()), address, kind, name};
     if (machine != nullptr) {
-      command[0] = ADIT_BIN_DIR "/wire_member";
+      command[0] = program_folder() + "/wire_member";
       const std::vector<std::string> enter{"/usr/bin/nsenter", "-t", std::to_string(machine->pid()), "-n"};
       command.insert(command.begin(), enter.begin(), enter.end());
     }

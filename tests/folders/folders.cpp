@@ -1,0 +1,15 @@
+#include "tests/folders/folders.hpp"
+
+namespace adit {
+
+const std::string& source_folder() {
+  static const std::string folder{ADIT_SOURCE_DIR};
+  return folder;
+}
+
+const std::string& program_folder() {
+  static const std::string folder{ADIT_BIN_DIR};
+  return folder;
+}
+
+}  // namespace adit
