@@ -250,6 +250,7 @@ const StationParams& Station::params() const { return impl_->params_; }
 Time Station::now() const { return impl_->now(); }
 const Counts& Station::counts() const { return impl_->sender_.counts(); }
 const std::optional<Answer>& Station::last_answer() const { return impl_->last_answer_; }
+std::size_t Station::findings() const { return impl_->findings(); }
 bool Station::closed() const { return impl_->closed_; }
 
 }  // namespace adit::station

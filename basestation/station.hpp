@@ -68,6 +68,8 @@ class Station {
   const Counts& counts() const;
   /// The newest answer to this operator, of a robot or of the station itself.
   const std::optional<Answer>& last_answer() const;
+  /// How many findings of all robots it has.
+  std::size_t findings() const;
   /// True after `down`, until `up`.
   bool closed() const;
 

@@ -33,6 +33,7 @@ class Station::Impl {
   std::uint64_t teleop(const std::string& robot, Done done);
   void stick(std::uint64_t handle, const std::array<double, 3>& velocity);
   Time now() const { return strand_.now(); }
+  std::size_t findings() const { return desk_.all().size(); }
 
   Station& owner_;
   StationParams params_;

@@ -13,6 +13,10 @@ class ProductAgent final : public RehearsedAgent {
   Result<void> inject(const std::string& component, ComponentFault fault) override {
     return agent_.inject(component, fault);
   }
+  Result<void> find(findings::Finding finding) override {
+    agent_.report(std::move(finding));
+    return {};
+  }
 
  private:
   agent::Agent agent_;
@@ -34,6 +38,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     params.seed = context.seed;
     params.start = context.spec.pose;
     params.lock_lease = context.lock_lease;
+    params.link_loss = context.spec.link_loss;
     params.defects = defects;
     params.disk = context.disk;
     params.end = context.end;

@@ -5,6 +5,7 @@
 #include "core/component/fault.hpp"
 #include "core/config/platform.hpp"
 #include "core/exec/executor.hpp"
+#include "core/findings/finding.hpp"
 #include "core/store/disk.hpp"
 #include "core/wire/wire.hpp"
 #include "sim/rehearsal/scenario.hpp"
@@ -22,6 +23,8 @@ class RehearsedAgent {
   /// Makes a callback of that component throw, or never return, from its own strand.
   /// Errors: bad_argument (no such component), not_supported.
   virtual Result<void> inject(const std::string& component, ComponentFault fault);
+  /// One of its components has found something. Errors: not_supported.
+  virtual Result<void> find(findings::Finding finding);
 };
 
 /// What an agent is made of in a rehearsal.

@@ -43,6 +43,12 @@ std::string mismatch(const AnswerExpectation& e, const Evidence& evidence) {
                                     : "refused: " + std::string(name(it->second));
 }
 
+std::string mismatch(const FindingsExpectation& e, const Evidence& evidence) {
+  const auto it = evidence.findings.find(e.by);
+  if (it == evidence.findings.end()) return "the station does not run";
+  return it->second == e.findings ? std::string() : "it has " + std::to_string(it->second);
+}
+
 std::string collisions(const Scenario& scenario, const Evidence& evidence) {
   for (const RobotSpec& robot : scenario.robots)
     if (evidence.collisions(robot.id) > 0) return robot.id + " touched something";
@@ -89,6 +95,7 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
     if (const auto* robot = std::get_if<StateExpectation>(&e.what)) found = mismatch(*robot, evidence);
     if (const auto* near = std::get_if<NearExpectation>(&e.what)) found = mismatch(*near, evidence);
     if (const auto* answer = std::get_if<AnswerExpectation>(&e.what)) found = mismatch(*answer, evidence);
+    if (const auto* desk = std::get_if<FindingsExpectation>(&e.what)) found = mismatch(*desk, evidence);
     if (e.when == When::always) continue;
     state.result.ok = found.empty();
     state.result.found = found;

@@ -75,6 +75,10 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
           [](const StuckStick& f) {
             return Parts{"stuck", pair(f.by, f.robot) + window(f.duration)};
           },
+          [](const Find& f) {
+            return Parts{"finds",
+                         fmt::format("\"{}\", robot: {}, importance: {}", f.kind, f.robot, f.importance)};
+          },
       },
       fault.what);
 }

@@ -77,11 +77,17 @@ struct StuckStick {
   std::string by{}, robot{};
   Duration duration{};
 };
+/// No fault, but it happens by itself, too: a component of the robot reports a finding where it stands.
+struct Find {
+  std::string robot{};
+  std::string kind{};  ///< 1 to 32 bytes
+  int importance{1};   ///< 0 to 255
+};
 
 struct Fault {
   Duration at{};
   std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
-               StuckDrive, DiskFull, Forge, StuckStick>
+               StuckDrive, DiskFull, Forge, StuckStick, Find>
       what{};
 };
 

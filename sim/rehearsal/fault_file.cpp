@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/findings/finding.hpp"
 #include "sim/rehearsal/random_faults.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
 
@@ -111,6 +112,19 @@ Forge read_forge(const Node& fault, const Scenario& scenario) {
   return {};
 }
 
+Find read_find(const Node& node, const Scenario& scenario) {
+  Find out;
+  out.kind = node.text("finds");
+  const auto plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
+  if (out.kind.empty() || out.kind.size() > findings::Finding::kKind ||
+      !std::all_of(out.kind.begin(), out.kind.end(), plain))
+    node.child("finds").fail(Reason::bad_argument,
+                             "expected 1 to 32 printable characters for finds, without quotes");
+  out.robot = read_robot(node, "robot", scenario);
+  out.importance = static_cast<int>(node.integer("importance", 0, 255, 1));
+  return out;
+}
+
 void read_link_fault(const Node& fault, const std::string& kind, const Scenario& scenario, Fault& out) {
   const auto [a, b] = read_pair(fault, kind.c_str(), scenario);
   const auto chance = [&](const char* key) { return fault.number(key, config::within(0.0, 1.0)); };
@@ -125,9 +139,9 @@ void read_link_fault(const Node& fault, const std::string& kind, const Scenario&
 }
 
 Fault read_fault(const Node& node, const Scenario& scenario) {
-  static const std::vector<std::string> kinds{"crash",         "hang",    "cut",       "degrade",
-                                              "partition",     "reorder", "duplicate", "clock_jump",
-                                              "sensor_silent", "stuck",   "disk_full", "forge"};
+  static const std::vector<std::string> kinds{
+      "crash",      "hang",          "cut",   "degrade",   "partition", "reorder", "duplicate",
+      "clock_jump", "sensor_silent", "stuck", "disk_full", "forge",     "finds"};
   Fault fault;
   fault.at = read_time(node, "at", scenario);
   std::string kind, all;
@@ -159,6 +173,8 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
     fault.what = DiskFull{read_robot(node, "disk_full", scenario), read_length(node)};
   } else if (kind == "forge") {
     fault.what = read_forge(node, scenario);
+  } else if (kind == "finds") {
+    fault.what = read_find(node, scenario);
   } else {
     read_link_fault(node, kind, scenario, fault);
   }
@@ -180,6 +196,7 @@ RandomFaults read_random_faults(const Node& node, const Scenario& scenario) {
   out.from = read_time(node, "from", scenario);
   out.to = read_time(node, "to", scenario);
   if (out.to < out.from) node.fail(Reason::out_of_range, "expected from before to");
+  out.finds = static_cast<int>(node.integer("finds", 0, 1000, 0));
   out.kinds = node.texts("kinds", random_fault_kinds());
   const auto& known = random_fault_kinds();
   std::string all;

@@ -7,7 +7,7 @@ void FaultPlayer::schedule(const Fault& fault) {
 }
 
 void FaultPlayer::happen(const Fault& fault) {
-  ++counts_[kind_of(fault)];
+  if (!std::holds_alternative<Find>(fault.what)) ++counts_[kind_of(fault)];
   stage_.witness.fault(stage_.scheduler.elapsed(), to_yaml(fault));
   std::visit([this](const auto& what) { play(what); }, fault.what);
 }
@@ -106,6 +106,16 @@ void FaultPlayer::play(const Forge& fault) {
 
 void FaultPlayer::play(const StuckStick& fault) {
   note(stations_.at(fault.by)->stick_hangs(fault.robot, fault.duration));
+}
+
+void FaultPlayer::play(const Find& find) {
+  const Eigen::Vector3d place =
+      stage_.simulation.truth(stage_.simulation.find(find.robot).value()).pose.position;
+  findings::Finding finding{};
+  finding.kind = find.kind;
+  finding.importance = static_cast<std::uint8_t>(find.importance);
+  finding.position = {place.x(), place.y(), place.z()};
+  note(robots_.at(find.robot)->find(std::move(finding)));
 }
 
 }  // namespace adit::sim

@@ -38,6 +38,7 @@ class FaultPlayer {
   void play(const DiskFull& fault);
   void play(const Forge& fault);
   void play(const StuckStick& fault);
+  void play(const Find& find);
   void disturb(wire::Disturbance disturbance, Duration duration);
   void later(Duration duration, Task task);
   void note(Result<void> result);

@@ -27,6 +27,13 @@ class Draw {
     return out;
   }
 
+  Fault find() {
+    Fault out;
+    out.at = from_seconds(between(seconds(spec_.from), seconds(spec_.to)));
+    out.what = Find{robot(), "artifact", static_cast<int>(random_.below(256))};
+    return out;
+  }
+
  private:
   double between(double low, double high) { return round_ms(random_.uniform(low, high)); }
   Duration length(double low, double high) { return from_seconds(between(low, high)); }
@@ -118,8 +125,10 @@ const std::vector<std::string>& component_names() {
 
 std::vector<Fault> draw_faults(const RandomFaults& spec, const Scenario& scenario, Random random) {
   std::vector<Fault> out;
-  Draw draw(spec, scenario, random);
+  Random copy = random, of_finds = copy.fork(9);  // how many there are changes no fault
+  Draw draw(spec, scenario, random), finds(spec, scenario, of_finds);
   for (int i = 0; i < spec.faults; ++i) out.push_back(draw.next());
+  for (int i = 0; i < spec.finds; ++i) out.push_back(finds.find());
   std::stable_sort(out.begin(), out.end(), [](const Fault& a, const Fault& b) { return a.at < b.at; });
   return out;
 }

@@ -160,8 +160,10 @@ class Run {
     out.word = [this](const std::string& robot) -> const RobotWord& { return witness_.word(robot); };
     out.pose = [this](const std::string& robot) { return truth(robot).pose.planar(); };
     out.collisions = [this](const std::string& robot) { return static_cast<int>(truth(robot).collisions); };
-    for (const auto& [id, station] : stations_)
+    for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
+      if (const auto findings = station->findings()) out.findings[id] = *findings;
+    }
     return out;
   }
 

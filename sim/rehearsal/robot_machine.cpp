@@ -10,6 +10,10 @@ Result<void> RehearsedAgent::inject(const std::string& component, ComponentFault
   return {Reason::not_supported, "this agent takes no faults in its component " + component};
 }
 
+Result<void> RehearsedAgent::find(findings::Finding) {
+  return {Reason::not_supported, "this agent keeps no findings"};
+}
+
 namespace {
 
 constexpr Duration parent_notices{20ms};
@@ -111,6 +115,11 @@ Result<void> RobotMachine::inject(const std::string& component, ComponentFault f
   if (!agent_) return {};
   stage_.witness.component_faulted(spec_.id, stage_.scheduler.elapsed(), component);
   return agent_->program->inject(component, fault);
+}
+
+Result<void> RobotMachine::find(findings::Finding finding) {
+  if (!agent_) return {};
+  return agent_->program->find(std::move(finding));
 }
 
 void RobotMachine::jump_clock(Duration by) {

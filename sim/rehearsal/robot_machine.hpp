@@ -34,6 +34,8 @@ class RobotMachine {
   void crash();
   /// A component of the agent throws or hangs; nothing happens while the agent is dead.
   Result<void> inject(const std::string& component, ComponentFault fault);
+  /// A component of the agent reports it; nothing happens while the agent is dead.
+  Result<void> find(findings::Finding finding);
   /// The computer's clock goes on by so much at once.
   void jump_clock(Duration by);
   void silence(Sensor sensor, bool silent) { driver_->silence(sensor, silent); }

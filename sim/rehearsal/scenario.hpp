@@ -11,6 +11,7 @@
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/link.hpp"
+#include "robot_agent/safeguard/link_loss.hpp"
 #include "sim/rehearsal/fault.hpp"
 #include "sim/world/person.hpp"
 
@@ -33,6 +34,7 @@ struct RobotSpec {
   std::string id{};
   std::string platform{};
   Pose2 pose{};  ///< at the start, world frame
+  agent::LinkLossParams link_loss{};
 };
 
 struct StationSpec {
@@ -62,6 +64,7 @@ struct RandomFaults {
   int faults{};
   Duration from{}, to{};
   std::vector<std::string> kinds{};  ///< names of fault_kinds()
+  int finds{};                       ///< beside them: findings, each of one of the robots
 };
 
 struct NearExpectation {
@@ -81,6 +84,11 @@ struct AnswerExpectation {
   std::string by{};
   Reason refused{Reason::none};
 };
+/// A station has so many findings, of all robots.
+struct FindingsExpectation {
+  std::string by{};
+  std::size_t findings{};
+};
 struct NoCollision {};
 /// Counted over the whole run.
 struct AtLeast {
@@ -90,7 +98,9 @@ struct AtLeast {
 struct Expectation {
   enum class When { at, by, always } when{When::always};
   Duration time{};
-  std::variant<StateExpectation, NearExpectation, AnswerExpectation, NoCollision, AtLeast> what{};
+  std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
+               AtLeast>
+      what{};
   int line{};          ///< in the scenario file
   std::string text{};  ///< as written
 };

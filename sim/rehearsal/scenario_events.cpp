@@ -64,7 +64,10 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
               "moving_at_least");
   out.when = at ? Expectation::When::at : Expectation::When::by;
   out.time = read_time(node, at ? "at" : "by", scenario);
-  if (node.has("by_operator")) {
+  if (node.has("by_operator") && node.has("findings")) {
+    out.what = FindingsExpectation{read_station(node, "by_operator", scenario),
+                                   static_cast<std::size_t>(node.integer("findings", 0, 65536))};
+  } else if (node.has("by_operator")) {
     AnswerExpectation answer{read_station(node, "by_operator", scenario), Reason::none};
     const std::string reason = node.text("refused");
     if (node.has("refused") && !reason_from_name(reason, answer.refused))

@@ -1,6 +1,7 @@
 #include "sim/rehearsal/scenario_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "core/config/node.hpp"
@@ -81,6 +82,9 @@ void read_robots(const Node& root, Scenario& out) {
         robot.child("platform").fail(known.error().reason, known.error().text);
     const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));
     if (pose.size() == 3) spec.pose = {pose[0], pose[1], wrap_angle(pose[2])};
+    static constexpr std::array actions{agent::OnLoss::go_on, agent::OnLoss::hold, agent::OnLoss::back};
+    spec.link_loss.action = actions[robot.choice("on_link_loss", {"continue", "hold", "return"}, 0)];
+    spec.link_loss.after = from_seconds(robot.number("link_loss_after", config::within(1.0, 3600.0), 10.0));
     if (!names.insert(spec.id).second)
       robot.fail(Reason::in_use, "expected another id: " + spec.id + " is taken");
     out.robots.push_back(std::move(spec));

@@ -24,6 +24,8 @@ StationMachine::StationMachine(Stage& stage, const StationSpec& spec, Random ran
       random_(random),
       clock_offset_(from_seconds(random_.uniform(10.0, 100000.0))) {
   for (std::uint8_t& byte : id_) byte = static_cast<std::uint8_t>(random_.next());
+  Random of_the_disk = random_;
+  disk_ = std::make_shared<store::MemoryDisk>(of_the_disk.fork(1).next());
 }
 
 StationMachine::~StationMachine() = default;
@@ -47,6 +49,7 @@ Result<void> StationMachine::start_process() {
   params.software = "rehearsal";
   params.link = stage_.scenario.link.name;
   params.bandwidth = stage_.scenario.link.bandwidth;
+  params.disk = disk_;
   process->station = std::make_unique<station::Station>(params, *process->strand, *process->radio);
   if (auto started = process->station->start(); !started) return started;
   process_ = std::move(process);
@@ -85,6 +88,11 @@ void StationMachine::crash() {
 void StationMachine::jump_clock(Duration by) {
   clock_offset_ += by;
   if (process_) stage_.scheduler.jump_clock(*process_->runtime, by);
+}
+
+std::optional<std::size_t> StationMachine::findings() const {
+  if (!process_) return std::nullopt;
+  return process_->station->findings();
 }
 
 std::optional<Reason> StationMachine::last_answer() const {

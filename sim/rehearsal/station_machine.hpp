@@ -8,7 +8,8 @@
 
 namespace adit::sim {
 
-/// One operator's computer with his station. The station can crash; it comes back with the same identity.
+/// One operator's computer with his station. The station can crash; it comes back with the same identity, and
+/// with what was on its disk.
 class StationMachine {
  public:
   StationMachine(Stage& stage, const StationSpec& spec, Random random);
@@ -26,6 +27,8 @@ class StationMachine {
   /// Of the newest answer this operator got, from a robot or from his station.
   std::optional<Reason> last_answer() const;
   const station::Id& id() const { return id_; }
+  /// What his station has of all robots; nothing while it is dead.
+  std::optional<std::size_t> findings() const;
 
  private:
   struct Process;
@@ -36,6 +39,7 @@ class StationMachine {
   Random random_;
   Duration clock_offset_;
   station::Id id_{};
+  std::shared_ptr<store::MemoryDisk> disk_;
   std::optional<Reason> answer_before_crash_{};
   std::unique_ptr<Process> process_{};
   Result<void> health_{};

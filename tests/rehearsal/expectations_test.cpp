@@ -47,6 +47,27 @@ TEST(Expectations, WhatIsWrongIsTold) {
   EXPECT_EQ(c.finish().found, "mode is hold, holder is op2, it is not locked, it is not stopped");
 }
 
+TEST(Expectations, AStationHasSoManyFindings) {
+  Case c({When::by, 10s, FindingsExpectation{"op1", 2}, 1, ""});
+  c.expectations->judge(1s, c.evidence);
+  c.evidence.findings["op1"] = 1;
+  c.expectations->judge(2s, c.evidence);
+  c.evidence.findings["op1"] = 2;
+  c.expectations->judge(3s, c.evidence);
+  EXPECT_TRUE(c.finish().ok);
+}
+
+TEST(Expectations, AStationThatIsDeadOrHasOthersIsTold) {
+  Case c({When::at, 10s, FindingsExpectation{"op1", 2}, 1, ""});
+  c.expectations->judge(10s, c.evidence);
+  EXPECT_EQ(c.finish().found, "the station does not run");
+  Case d({When::at, 10s, FindingsExpectation{"op1", 2}, 1, ""});
+  d.evidence.findings["op1"] = 3;
+  d.expectations->judge(10s, d.evidence);
+  EXPECT_FALSE(d.finish().ok);
+  EXPECT_EQ(d.finish().found, "it has 3");
+}
+
 TEST(Expectations, ByHoldsWhenItWasSoOnceBefore) {
   Case c({When::by, 10s, NearExpectation{"r1", 3.0, 4.0, 0.5}, 1, ""});
   c.pose = {3.2, 4.1, 0.0};

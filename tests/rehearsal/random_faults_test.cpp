@@ -57,6 +57,19 @@ TEST(RandomFaults, OnlyTheKindsAskedFor) {
     EXPECT_EQ(kind_of(fault), "hang");
 }
 
+TEST(RandomFaults, FindingsComeBesideThemAndChangeNoFault) {
+  const Scenario scenario = *parse_scenario(team, "t.yaml");
+  RandomFaults spec{30, 5s, 40s, random_fault_kinds()};
+  const auto without = draw_faults(spec, scenario, Random(3));
+  spec.finds = 20;
+  auto with = draw_faults(spec, scenario, Random(3));
+  const auto again = parse_scenario(team + text_of(with), "t.yaml");
+  ASSERT_TRUE(again.ok()) << again.error().text;
+  EXPECT_EQ(text_of(again->faults), text_of(with));
+  EXPECT_EQ(std::erase_if(with, [](const Fault& f) { return kind_of(f) == "finds"; }), 20U);
+  EXPECT_EQ(text_of(with), text_of(without));
+}
+
 TEST(RandomFaults, SameSeedSameFaults) {
   const Scenario scenario = *parse_scenario(team, "t.yaml");
   const RandomFaults spec{50, 5s, 40s, random_fault_kinds()};

@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
                                          "smart_joystick_wall", "waypoint_corridor", "dead_end",
                                          "agent_crash", "cut_link", "two_robots_passing", "station_restart",
                                          "foreign_writer", "thin_link", "floor_plan", "stuck_stick",
-                                         "ten_robots", "demo"),
+                                         "ten_robots", "findings_after_gap", "demo"),
                          [](const auto& which) { return std::string(which.param); });
 
 TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {

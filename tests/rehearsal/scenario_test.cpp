@@ -38,6 +38,28 @@ std::string with(const std::string& what, const std::string& instead) {
   return text.replace(at, what.size(), instead);
 }
 
+TEST(Scenario, ReadsWhatRobotsFindAndDoByThemselves) {
+  std::string text = with("crash: r1", "finds: \"a rope\", robot: r2, importance: 7");
+  const std::string robot = "pose: [4, 0, 1.5]";
+  text.replace(text.find(robot), robot.size(), robot + ", on_link_loss: return, link_loss_after: 4");
+  const std::string answer = "by_operator: op2, refused: locked";
+  text.replace(text.find(answer), answer.size(), "by_operator: op2, findings: 3");
+  const auto s = parse_scenario(text, "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  const auto& find = std::get<Find>(s->faults[0].what);
+  EXPECT_EQ(find.kind, "a rope");
+  EXPECT_EQ(find.robot, "r2");
+  EXPECT_EQ(find.importance, 7);
+  EXPECT_EQ(to_yaml(s->faults[0]), "{at: 20.000, finds: \"a rope\", robot: r2, importance: 7}");
+  EXPECT_EQ(s->robots[0].link_loss.action, agent::OnLoss::go_on);
+  EXPECT_EQ(s->robots[0].link_loss.after, Duration(10s));
+  EXPECT_EQ(s->robots[1].link_loss.action, agent::OnLoss::back);
+  EXPECT_EQ(s->robots[1].link_loss.after, Duration(4s));
+  const auto& expected = std::get<FindingsExpectation>(s->expectations[1].what);
+  EXPECT_EQ(expected.by, "op2");
+  EXPECT_EQ(expected.findings, 3u);
+}
+
 TEST(Scenario, ReadsEveryKey) {
   const auto s = parse_scenario(good, "a/b.yaml");
   ASSERT_TRUE(s.ok()) << s.error().text;
@@ -202,6 +224,20 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"stuck_station", "crash: r1", "stuck: op1, for: 3", 15, "op1"},
         Bad{"stuck_three", "crash: r1", "stuck: [op1, r1, r2], for: 3", 15, "[BASESTATION, ROBOT]"},
         Bad{"full_disk_of_a_station", "crash: r1", "disk_full: op1, for: 3", 15, "op1"},
+        Bad{"find_by_nobody", "crash: r1", "finds: artifact", 15, "robot"},
+        Bad{"find_by_a_station", "crash: r1", "finds: artifact, robot: op1", 15, "op1"},
+        Bad{"find_of_nothing", "crash: r1", "finds: '', robot: r1", 15, "1 to 32"},
+        Bad{"find_of_far_too_much", "crash: r1", "finds: 123456789012345678901234567890123, robot: r1", 15,
+            "1 to 32"},
+        Bad{"find_beyond_importance", "crash: r1", "finds: gas, robot: r1, importance: 256", 15, "255"},
+        Bad{"on_link_loss", "pose: [1, 0, 0]", "pose: [1, 0, 0], on_link_loss: cry", 6, "continue"},
+        Bad{"link_loss_after", "pose: [1, 0, 0]", "pose: [1, 0, 0], link_loss_after: 0", 6, "3600"},
+        Bad{"findings_of_nobody", "by_operator: op2, refused: locked", "by_operator: op9, findings: 1", 21,
+            "op9"},
+        Bad{"findings_negative", "by_operator: op2, refused: locked", "by_operator: op2, findings: -1", 21,
+            "65536"},
+        Bad{"random_finds", "duration: 120",
+            "random_faults: {faults: 3, finds: -1, from: 0, to: 9}\nduration: 120", 2, "1000"},
         Bad{"seed_negative", "duration: 120", "seed: -1\nduration: 120", 2, "0"},
         Bad{"random_faults_unknown", "duration: 120",
             "random_faults: {faults: 3, from: 0, to: 9, kinds: [rain]}\nduration: 120", 2, "clock_jump"},
