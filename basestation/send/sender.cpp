@@ -170,8 +170,8 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
 }
 
 void Sender::withdraw(Lane& to, const Pending& pending) {
-  // The writer keeps its newest sample and repairs it across a gap of any length: a question takes its place. A stop
-  // does no harm late, and one on its way has taken the place already.
+  // The writer keeps its newest sample and repairs it across a gap of any length: a question takes its place.
+  // A stop does no harm late, and one on its way has taken the place already.
   if (pending.is_stop() || to.stop) return;
   radio::Command question = pending.message;
   question.seq(to.next_seq++);

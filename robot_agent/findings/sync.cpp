@@ -1,6 +1,7 @@
 #include "robot_agent/findings/sync.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/store/pack.hpp"
 #include "core/store/state_file.hpp"
@@ -95,12 +96,21 @@ void FindingSync::acknowledged(const StationId& station, std::span<const std::ui
 std::vector<const Finding*> FindingSync::due(const std::vector<StationId>& heard, Time now) {
   save_tracks(now);
   std::vector<const Finding*> out;
-  if (heard.empty()) return out;
+  const auto contains = [](const std::vector<StationId>& set, const StationId& s) {
+    return std::find(set.begin(), set.end(), s) != set.end();
+  };
+  // Who is heard again waits for nothing: the pauses grew while its link was going.
+  const std::vector<StationId> before_this = std::exchange(heard_, heard);
+  const bool anew =
+      std::any_of(heard.begin(), heard.end(), [&](const StationId& s) { return !contains(before_this, s); });
   for (const auto& [key, finding] : shelf_.all()) {
-    const Track& t = track(key.id);
-    const bool wanted = std::any_of(heard.begin(), heard.end(), [&](const StationId& s) {
-      return std::find(t.has.begin(), t.has.end(), s) == t.has.end();
-    });
+    Track& t = track(key.id);
+    const bool wanted =
+        std::any_of(heard.begin(), heard.end(), [&](const StationId& s) { return !contains(t.has, s); });
+    if (anew && wanted) {
+      t.next = now;
+      t.pause = {};
+    }
     if (wanted && now >= t.next) out.push_back(&finding);
   }
   const auto before = [this](const Finding* a, const Finding* b) {

@@ -68,6 +68,7 @@ class FindingSync {
   Random random_;
   findings::Shelf shelf_;
   std::map<std::uint64_t, Track> tracks_{};
+  std::vector<StationId> heard_{};  ///< in the round before
   std::uint32_t overflowed_{};
   bool told_full_{}, tracks_changed_{};
   Time tracks_saved_{};

@@ -137,6 +137,22 @@ TEST_F(Sync, AStationThatComesLaterGetsAllOfThem) {
   EXPECT_EQ(ops[1].desk->all().size(), 8u);
 }
 
+TEST_F(Sync, AStationHeardAgainGetsAtOnceWhatWasRepeatedSeldomBefore) {
+  ops[0].answers = ops[1].answers = false;  // sent into a link that is away already
+  report(1);
+  rounds(40);
+  ops[0].heard = ops[1].heard = false;
+  rounds(1);
+  ops[0].answers = ops[1].answers = true;
+  ops[1].heard = true;
+  sent.clear();
+  rounds(2);
+  EXPECT_THAT(sent, ElementsAre(1));
+  ops[0].heard = true;
+  rounds(2);
+  EXPECT_THAT(sent, ElementsAre(1, 1)) << "the other one has it, this one does not";
+}
+
 TEST_F(Sync, SurvivesARestartOfTheRobot) {
   ops[1].heard = false;
   report(1);

@@ -14,7 +14,7 @@ namespace adit::live {
 class PlainDriver {
  public:
   /// `heard`: called for each velocity, m/s, on the driver's strand.
-  explicit PlainDriver(Net& net, std::function<void(double velocity, Time at)> heard = {})
+  explicit PlainDriver(Net& net, std::function<void(double velocity, const wire::SampleInfo&)> heard = {})
       : net_(net),
         heard_(std::move(heard)),
         strand_(net.machine("driver").strand("driver")),
@@ -33,7 +33,7 @@ class PlainDriver {
                                      if (velocity_ != 0.0) ++told.moving;
                                      told.last = velocity_;
                                    });
-                                   if (heard_) heard_(velocity_, info.received);
+                                   if (heard_) heard_(velocity_, info);
                                  })
                    .value();
   }
@@ -76,7 +76,7 @@ class PlainDriver {
   }
 
   Net& net_;
-  std::function<void(double, Time)> heard_;
+  std::function<void(double, const wire::SampleInfo&)> heard_;
   Shared<Told> told_{};
   std::shared_ptr<Executor> strand_;
   std::unique_ptr<wire::Wire> wire_;

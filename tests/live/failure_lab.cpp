@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <set>
 
 #include "core/wire/topics.hpp"
 #include "robot_agent/program/console.hpp"
@@ -17,8 +18,10 @@ double ms(Duration d) { return seconds(d) * 1000.0; }
 
 FailureLab::FailureLab()
     : driver_(*net_,
-              [this](double velocity, Time at) {
-                heard_.use([&](Heard& h) { h.velocities.emplace_back(at, velocity != 0.0); });
+              [this](double velocity, const wire::SampleInfo& info) {
+                heard_.use([&](Heard& h) {
+                  h.velocities.push_back({info.received, velocity != 0.0, info.sender});
+                });
               }),
       ear_strand_(net_->machine("ear").strand("ear")),
       ear_(net_->join_radio("ear")) {
@@ -69,6 +72,7 @@ bool FailureLab::calm() {
 }
 
 bool FailureLab::enter(const std::string& mode) {
+  goes_on_ = mode == "waypoint";
   if (!calm()) return false;
   if (mode == "hold") return true;
   if (mode == "waypoint" && !eventually([&] { return op_->ask("goto r1 9000 0").exit_code == 0; }))
@@ -113,16 +117,26 @@ FailureLab::Killed FailureLab::kill_agent() {
   eventually([&] {
     if (!back) back = new_authority(before, dead);
     heard_.use([&](Heard& h) {
-      for (const auto& [at, moves] : h.velocities)
-        if (at >= dead && !moves && !result.zero) result.zero = ms(at - dead);
+      for (const Velocity& v : h.velocities)
+        if (v.at >= dead && !v.moves && !result.zero) result.zero = ms(v.at - dead);
     });
     return back && result.zero;
   });
   if (back) result.back = ms(*back - dead);
   heard_.use([&](Heard& h) {
-    for (const auto& [at, moves] : h.velocities)
-      if (moves && result.zero && at >= dead + from_seconds(*result.zero / 1000.0) && (!back || at <= *back))
-        ++result.moved;
+    std::set<wire::ParticipantId> before_death;
+    bool silenced = false;
+    for (const Velocity& v : h.velocities) {
+      if (v.at < dead) {
+        before_death.insert(v.sender);
+      } else if (!v.moves) {
+        silenced = true;
+      } else if (silenced && (!back || v.at <= *back)) {
+        // What goes on by itself may do so before its station hears that it is back.
+        const bool anew = goes_on_ && !before_death.contains(v.sender);
+        if (!anew) ++result.moved;
+      }
+    }
   });
   return result;
 }

@@ -18,7 +18,9 @@ class FailureLab {
   struct Killed {
     std::optional<double> zero{};  ///< the driver is told zero
     std::optional<double> back{};  ///< a station hears the new agent's authority, with its holder
-    int moved{};                   ///< velocities that were not zero between the two
+    /// Velocities that were not zero between the two; in a mode that goes on by itself, of who wrote before
+    /// the death.
+    int moved{};
   };
   struct Failed {
     std::optional<double> told{};  ///< component_failed or component_hung is heard
@@ -49,10 +51,15 @@ class FailureLab {
   pid_t agent() const;
 
  private:
+  struct Velocity {
+    Time at{};
+    bool moves{};
+    wire::ParticipantId sender{};
+  };
   struct Heard {
     std::vector<std::pair<Time, std::string>> notices{};
     std::vector<std::pair<Time, radio::AuthorityStatus>> authorities{};
-    std::vector<std::pair<Time, bool>> velocities{};  ///< when, and whether it moves
+    std::vector<Velocity> velocities{};
   };
   Time now() const;
   std::optional<Time> notice(const std::string& code, Time since);
@@ -69,6 +76,7 @@ class FailureLab {
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::unique_ptr<Operator> op_{};
   std::unique_ptr<Process> parent_{};
+  bool goes_on_{};  ///< the mode entered is one that a new agent goes on in by itself
 };
 
 }  // namespace adit::live

@@ -46,8 +46,9 @@ TEST(Faults, OverlappingCutsEndOnlyThemselves) {
 }
 
 TEST(Faults, WhatWasGivenUpInACutIsNotObeyedAfterIt) {
-  expect_both("  - {at: 7, by: op1, do: mode r1 hold}\n", "  - {at: 6, cut: [op1, r1], for: 6}\n",
-              "  - {at: 11, by_operator: op1, refused: no_answer}\n  - {at: 18, robot: r1, mode: waypoint}\n");
+  expect_both(
+      "  - {at: 7, by: op1, do: mode r1 hold}\n", "  - {at: 6, cut: [op1, r1], for: 6}\n",
+      "  - {at: 11, by_operator: op1, refused: no_answer}\n  - {at: 18, robot: r1, mode: waypoint}\n");
 }
 
 TEST(Faults, ACutOneWayLetsTheOtherPass) {
