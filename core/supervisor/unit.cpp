@@ -11,6 +11,8 @@ Seat::~Seat() {
   component.reset();
 }
 
+LeftBehind::~LeftBehind() = default;
+
 Unit::Unit(Runtime& runtime, UnitParams params) : runtime_(runtime), params_(std::move(params)) {}
 
 Result<void> Unit::open() {
@@ -85,7 +87,7 @@ void Unit::report_failure(Record& record, const std::string& text) const {
 void Unit::replace() {
   std::shared_ptr<Seat> hung = seat();
   hung->strand->abandon();
-  left_behind_.push_back(std::move(hung));
+  left_behind_.seats.push_back(std::move(hung));
   if (const auto opened = open(); !opened) {
     const std::lock_guard lock(mutex_);
     record_->lease->revoke();

@@ -34,6 +34,15 @@ struct Seat {
   std::shared_ptr<void> fittings{};        ///< what delivers to the strand; dropped before it
 };
 
+/// Seats whose task hangs: kept, for it may still use them, until their unit goes.
+struct LeftBehind {
+  LeftBehind() = default;
+  LeftBehind(const LeftBehind&) = delete;
+  LeftBehind& operator=(const LeftBehind&) = delete;
+  ~LeftBehind();
+  std::vector<std::shared_ptr<Seat>> seats{};
+};
+
 struct UnitParams {
   std::string name{};
   bool heavy{false};  ///< lives on a Runtime::worker
@@ -93,7 +102,7 @@ class Unit {
   mutable std::mutex mutex_{};  // guards the two pointers
   std::shared_ptr<Seat> seat_{};
   std::shared_ptr<Record> record_{std::make_shared<Record>()};
-  std::vector<std::shared_ptr<Seat>> left_behind_{};  // bounded by SupervisionParams::hangs
+  LeftBehind left_behind_{};  // bounded by SupervisionParams::hangs
 };
 
 }  // namespace adit
