@@ -20,7 +20,8 @@ std::size_t threads_of_this_process() {
   return static_cast<std::size_t>(std::distance(begin(tasks), end(tasks)));
 }
 
-/// True once there are no more than these: the kernel lists a thread a moment longer than join() waits for it.
+/// True once there are no more than these: the kernel lists a thread a moment longer than join() waits for
+/// it.
 bool are_gone_but(std::size_t threads) {
   const auto end = std::chrono::steady_clock::now() + 5s;
   while (threads_of_this_process() > threads) {
