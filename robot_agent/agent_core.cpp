@@ -120,7 +120,7 @@ void Agent::Core::restore() {
   commands_.restore(s.authority, s.answers, now());
   // Where its driver's odometry began anew, the goal's place is no longer known for sure.
   const bool resume = params_.resume_after_restart && s.boot == params_.boot;
-  behaviour_.restore(s.behaviour, commands_.stops().any(), resume);
+  behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);
   battery_watch_.restore(static_cast<BatteryLevel>(s.battery));
 }
 
@@ -183,11 +183,24 @@ void Agent::Core::on_stop() {
 void Agent::Core::beat() {
   const Time at = now();
   watch_driver();
+  listen_first(at);
   behaviour_.tick(at);
   mux_.step(at);
   navigation_.step(at);
   keep();
   edges_.keeper->tick();
+}
+
+// What goes on by itself after a restart must not outrun a stop that was given meanwhile, and is repeated
+// until this agent answers it.
+void Agent::Core::listen_first(Time at) {
+  constexpr Duration least = 1s, heard_for = 300ms, most = 3s;
+  if (!behaviour_.listens()) return;
+  const auto& authority = commands_.authority();
+  if (!holder_heard_ && authority.holder() && commands_.stations().heard(authority.holder_name(), at))
+    holder_heard_ = at;
+  const bool heard = !authority.holder() || (holder_heard_ && at - *holder_heard_ >= heard_for);
+  if (at - started_ >= (heard ? least : most)) behaviour_.go_on(at);
 }
 
 void Agent::Core::keep() {

@@ -72,6 +72,7 @@ class Agent::Core : public Component {
   /// The last known safe state, before anything is sent or heard.
   void restore();
   void beat();
+  void listen_first(Time at);
   void follow_link();
   void send_state();
   void send_periodic();
@@ -107,7 +108,8 @@ class Agent::Core : public Component {
   float battery_{-1.0f};
   bool driver_was_alive_{};
   Time started_{};
-  std::uint32_t seconds_{};  // since it started, for what is sent more rarely
+  std::optional<Time> holder_heard_{};  ///< for the first time since then
+  std::uint32_t seconds_{};             // since it started, for what is sent more rarely
   RivalWatch rivals_;
   std::vector<Timer> timers_{};
 };

@@ -3,6 +3,7 @@
 // [AGENTS]].
 #include <sys/resource.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 
@@ -50,9 +51,23 @@ std::unique_ptr<DefaultDds> bare(const std::string& name, bool is_station, int r
   return one;
 }
 
+constexpr std::array classes{wire::QosClass::urgent, wire::QosClass::stream, wire::QosClass::state,
+                             wire::QosClass::status, wire::QosClass::bulk,   wire::QosClass::video};
+
 struct Rates {
   double discovery{}, other{};
+  std::array<double, classes.size()> payload{};  // of samples, by class: each once, however many are sent it
 };
+
+/// What one has written of a class, bytes.
+double written(const wire::WireCounters& counters, wire::QosClass which) {
+  double bytes = 0.0;
+  for (const wire::TopicCount& count : counters.topics)
+    for (const wire::Example& example : wire::examples())
+      if (count.topic == example.topic.name && example.topic.qos == which)
+        bytes += static_cast<double>(count.bytes_out);
+  return bytes;
+}
 template <class All>
 std::vector<wire::WireCounters> counters(const All& all) {
   std::vector<wire::WireCounters> result;
@@ -68,8 +83,20 @@ Rates between(const std::vector<wire::WireCounters>& a, const std::vector<wire::
     const double discovery = static_cast<double>(b[i].discovery_out - a[i].discovery_out);
     rates.discovery += discovery / n;
     rates.other += (static_cast<double>(b[i].total_out - a[i].total_out) - discovery) / n;
+    for (std::size_t k = 0; k < classes.size(); ++k)
+      rates.payload[k] += (written(b[i], classes[k]) - written(a[i], classes[k])) / n;
   }
   return rates;
+}
+
+void print_classes(const char* when, int agents, const Rates& rates) {
+  std::printf("by class, %d agents, %s:", agents, when);
+  double samples = 0.0;
+  for (const double bytes : rates.payload) {
+    std::printf(" %.0f", bytes);
+    samples += bytes;
+  }
+  std::printf(" and %.0f of headers, copies and acknowledgements\n", rates.other - samples);
 }
 
 /// `agents`: robots but one, a station; alone it is a robot.
@@ -121,6 +148,8 @@ void measure(int agents, Duration time) {
   std::printf("| %2d | %6.1f | %6.1f | %5.3f | %6.0f | %6.0f | %7.0f | %7.0f | %5.2f |\n", agents,
               rest.discovery, defaults.discovery, rest.discovery / std::max(1e-9, defaults.discovery),
               rest.other, drive.other, start_ours, start_bare, 100.0 * cpu / seconds(time) / agents);
+  print_classes("at rest", agents, rest);
+  print_classes("one driven", agents, drive);
   std::fflush(stdout);
   for (auto& one : ours) one->timers.clear();
 }
@@ -131,7 +160,8 @@ void measure(int agents, Duration time) {
 int main(int argc, char** argv) {
   using namespace adit;
   const Duration time = std::chrono::seconds(argc > 1 ? std::atoi(argv[1]) : 60);
-  std::printf("Bytes a second sent by each agent; start-up in bytes; processor in %% of a core for each\n\n");
+  std::printf("Bytes a second sent by each agent; start-up in bytes; processor in %% of a core for each.\n");
+  std::printf("By class: samples of urgent, stream, state, status, bulk, video\n\n");
   std::printf("| agents | discovery | default | ratio | at rest | driven | start-up | default | CPU |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   if (argc > 2) return bench::measure(std::atoi(argv[2]), time), 0;

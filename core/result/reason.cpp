@@ -40,6 +40,7 @@ constexpr std::array rows{
     Row{Reason::blocked, "blocked", "every path is blocked"},
     Row{Reason::program_silent, "program_silent", "the program that is to steer from outside is silent"},
     Row{Reason::obstacle_close, "obstacle_close", "an obstacle is too close to go on"},
+    Row{Reason::just_restarted, "just_restarted", "the agent was started a moment ago, and listens first"},
     Row{Reason::bad_argument, "bad_argument", "an argument is wrong"},
     Row{Reason::unknown_robot, "unknown_robot", "no robot of that name has been heard"},
     Row{Reason::unknown_command, "unknown_command", "no such command"},

@@ -38,6 +38,7 @@ enum class Reason : std::uint16_t {
   blocked = 213,             ///< every path is blocked
   program_silent = 214,      ///< the program that steers from outside has not been heard
   obstacle_close = 215,      ///< the collision monitor holds the robot back
+  just_restarted = 216,      ///< a stop may be under way to the agent that was started a moment ago
 
   // What was typed or sent
   bad_argument = 301,

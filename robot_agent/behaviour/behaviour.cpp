@@ -67,6 +67,7 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Time now) {
 void Behaviour::enter(const ModeRow& row, Time now) {
   if (row.accepts != Accepts::goal) goal_ = {false, false, goal_.id, Eigen::Vector3d::Zero()};
   requested_ = &row;
+  listens_ = false;
   fell_because_ = Reason::none;
   idle_told_ = blocked_told_ = false;
   idle_since_ = free_since_ = now;
@@ -127,19 +128,29 @@ KeptBehaviour Behaviour::kept() const {
   return {std::string(requested_->name), fell_because_, goal_.known, goal_.reached, goal_.id, goal_.place};
 }
 
-void Behaviour::restore(const KeptBehaviour& kept, bool stopped, bool resume) {
+void Behaviour::restore(const KeptBehaviour& kept, bool stopped, bool resume, bool listens) {
   const ModeRow* row = find_mode(kept.mode);
   const bool autonomous = row && row->accepts == Accepts::goal && kept.goal_known;
   goal_ = {kept.goal_known, kept.goal_reached, kept.goal_id, kept.goal};
   requested_ = autonomous && resume ? row : &mode_table().front();
   fell_because_ = kept.reason;
   stopped_ = stopped;
+  listens_ = listens;
+}
+
+void Behaviour::go_on(Time now) {
+  listens_ = false;
+  tick(now);
 }
 
 void Behaviour::tick(Time now) {
   if (!begun_) idle_since_ = free_since_ = now;
   begun_ = true;
   decision_ = decider_->decide(requested_->name, facts(now), now);
+  if (listens_ && decision_.runs) {
+    decision_.runs = false;
+    decision_.reason = Reason::just_restarted;
+  }
   if (decision_.mode != requested_) fall(decision_);
   mux_.enable(decision_.runs ? decision_.mode->name : std::string_view{}, now);
   feed_waypoint(now);

@@ -79,8 +79,11 @@ class Behaviour : public Requests {
   /// What must survive a restart of the agent.
   KeptBehaviour kept() const;
   /// Comes back with it. `resume`: an autonomous mode is asked for again and waits until its conditions hold;
-  /// else, and always for manual ones, it is hold with the goal kept. Takes effect with the next tick.
-  void restore(const KeptBehaviour& kept, bool stopped, bool resume);
+  /// else, and always for manual ones, it is hold with the goal kept. `listens`: it moves nothing until
+  /// go_on() or the next request. Takes effect with the next tick.
+  void restore(const KeptBehaviour& kept, bool stopped, bool resume, bool listens = false);
+  bool listens() const { return listens_; }
+  void go_on(Time now);
 
   /// At 20 Hz, and by the calls above.
   void tick(Time now);
@@ -117,6 +120,7 @@ class Behaviour : public Requests {
   Decision decision_;
   Reason fell_because_{Reason::none};  ///< of the last fall to hold, until the next request
   bool stopped_{};
+  bool listens_{};
   Stick stick_{};
   Goal goal_{};
   Progress progress_{};

@@ -22,6 +22,9 @@ StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, bool hol
     station = Station{from.name, from.id, Binding(from.participant, now)};
     return {};
   }
+  // Before it held, a command was claim enough; for the place of the holder it takes a presence.
+  if (holds && !station.holds) station.binding.forget_claim();
+  station.holds = holds;
   const auto verdict = station.binding.hear(from.participant, sign == Sign::presence || !holds, now);
   return {verdict.bound ? Reason::none : Reason::identity_mismatch, verdict.pending, verdict.restarted,
           verdict.found_out};

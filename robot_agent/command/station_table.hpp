@@ -16,6 +16,7 @@ struct Station {
   Id id{};
   Binding binding;           ///< the participant that speaks for it
   std::uint16_t protocol{};  ///< 0: not announced yet
+  bool holds{};              ///< the robot, when it was heard last
 };
 
 /// Which stations are on the air, and which participant speaks for each name (rule 1). Bounded.

@@ -37,6 +37,8 @@ class Binding {
 
   /// A sign of life. `announces`: it may claim the place; else it counts only for who has it.
   Verdict hear(const wire::ParticipantId& from, bool announces, Time now);
+  /// Whoever claims the place has to announce himself anew.
+  void forget_claim() { claimant_.reset(); }
   /// The participant left, or its lease ran out.
   void leave(const wire::ParticipantId& participant) { left_ = left_ || participant == participant_; }
 

@@ -77,12 +77,14 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
       marked = true;
       set_failed(false, "the state is kept again");
     } else {
-      if (!next) next = bytes;
-      retry = command.now() + params.retry;
       set_failed(true, result.error().text);
     }
     release(done);
-    if (result && params.lazy == Duration{0}) start();
+    // A newer state is tried at once, whatever became of this one: answers wait for it.
+    if (next && params.lazy == Duration{0}) return start();
+    if (result) return;
+    if (!next) next = bytes;
+    retry = command.now() + params.retry;
   }
 
   void set_failed(bool now_failing, const std::string& text) {

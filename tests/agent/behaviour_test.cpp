@@ -251,6 +251,26 @@ TEST_F(BehaviourTest, SmartJoystickGuidesTheLocalPlanner) {
   EXPECT_EQ(nav.last, (Motion{Guidance{value}}));
 }
 
+TEST_F(BehaviourTest, WhatComesBackListensBeforeItGoesOn) {
+  KeptBehaviour kept{};
+  kept.mode = "waypoint";
+  kept.goal_known = true;
+  kept.goal = {3, 0, 0};
+  behaviour.restore(kept, false, true, true);
+  facts.goal_known = true;
+  run(500ms);
+  EXPECT_EQ(mode(), "waypoint");
+  EXPECT_EQ(behaviour.view().reason, Reason::just_restarted);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  behaviour.stop_changed(true, now);  // the stop that was under way
+  behaviour.go_on(now);
+  EXPECT_FALSE(behaviour.view().moving_allowed);
+  behaviour.stop_changed(false, now);
+  behaviour.restore(kept, false, true, true);
+  behaviour.go_on(now);
+  EXPECT_TRUE(behaviour.view().moving_allowed);
+}
+
 TEST_F(BehaviourTest, UnknownModesAreRefused) {
   EXPECT_EQ(behaviour.request_mode("fly", now).reason(), Reason::mode_unknown);
   EXPECT_EQ(behaviour.request_mode("explore", now).reason(), Reason::mode_not_installed);

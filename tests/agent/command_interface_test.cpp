@@ -193,6 +193,16 @@ TEST(CommandInterface, AForgerWhoAnnouncesTheHolderMovesNothingWhileHeLives) {
   EXPECT_TRUE(bench.say("op1", "lock").accepted());
 }
 
+TEST(CommandInterface, WhoClaimedAGuestsNameByACommandDoesNotGetTheHoldersPlace) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  EXPECT_EQ(bench.say("forger:op2", "take").reason, Reason::identity_mismatch);
+  EXPECT_TRUE(bench.say("op1", "grant op2").accepted());
+  bench.kill("op2");  // or one of its signs of life is lost
+  bench.now += 1400ms;
+  EXPECT_EQ(bench.say("forger:op2", "release").reason, Reason::identity_mismatch);
+}
+
 TEST(CommandInterface, AKilledStationIsBackWhenItsLastWordIsASignOfLifeOld) {
   CommandBench bench;
   bench.say("op1", "take");

@@ -93,6 +93,17 @@ TEST_F(KeeperTest, WithNothingToSaveAnAnswerGoesAtOnce) {
   EXPECT_THAT(said, ElementsAre("first", "second"));
 }
 
+TEST_F(KeeperTest, WhatWaitsBehindAWriteThatFailsIsTriedAtOnce) {
+  make();
+  disk->set_full(true);
+  save(1);
+  run(1ms);
+  save(2);
+  say_when_safe("stopped");  // its write begins when the one before has failed
+  run(10ms);
+  EXPECT_THAT(said, ElementsAre("stopped"));
+}
+
 TEST_F(KeeperTest, StatesThatComeWhileItWritesAreOneMoreWrite) {
   make();
   for (std::uint32_t goal = 1; goal <= 50; ++goal) {

@@ -1,9 +1,6 @@
 // Every rule, broken on purpose in the agent: the checker fires; without the defect, on the same scenario, it
 // does not.
-#include <gtest/gtest.h>
-
-#include "sim/rehearsal/rehearsal.hpp"
-#include "sim/rehearsal/scenario_file.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
@@ -29,15 +26,7 @@ struct Broken {
 };
 
 RunReport run(const Broken& broken, const std::string& defect) {
-  auto scenario = parse_scenario(std::string(head) + broken.script + broken.rest, "defect.yaml");
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  auto factory = make_agent_factory(defect);
-  EXPECT_TRUE(factory.ok());
-  RunParams params;
-  params.make_agent = *factory;
-  auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
-  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
-  return outcome->report;
+  return run_text(std::string(head) + broken.script + broken.rest, "defect.yaml", defect);
 }
 
 class Defects : public testing::TestWithParam<Broken> {};

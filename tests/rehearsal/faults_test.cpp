@@ -1,8 +1,5 @@
 // Faults of the scenario file as they happen in a run: what each does, and that each ends only itself.
-#include <gtest/gtest.h>
-
-#include "sim/rehearsal/rehearsal.hpp"
-#include "sim/rehearsal/scenario_file.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
@@ -22,14 +19,9 @@ script:
 )";
 
 RunReport run(const std::string& rest) {
-  const auto scenario = parse_scenario(head + rest, "faults.yaml");
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  RunParams params;
-  params.make_agent = *make_agent_factory();
-  auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
-  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
-  for (const RuleResult& rule : outcome->report.rules) EXPECT_EQ(rule.violations, 0U) << rule.title;
-  return outcome->report;
+  const RunReport report = run_text(head + rest, "faults.yaml");
+  for (const RuleResult& rule : report.rules) EXPECT_EQ(rule.violations, 0U) << rule.title;
+  return report;
 }
 
 /// That the expectations hold with the faults, and not without. `script`: further lines of it.

@@ -1,9 +1,6 @@
 // The collision monitor against a planner that drives into a wall on purpose, and a manual drive without a
 // lidar, in the simulated world.
-#include <gtest/gtest.h>
-
-#include "sim/rehearsal/rehearsal.hpp"
-#include "sim/rehearsal/scenario_file.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
@@ -23,15 +20,7 @@ script:
 RunReport run(const std::string& platform, const std::string& rest, const std::string& defect) {
   std::string text = head;
   text.replace(text.find("PLATFORM"), 8, platform);
-  auto scenario = parse_scenario(text + rest, "monitor.yaml");
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  auto factory = make_agent_factory(defect);
-  EXPECT_TRUE(factory.ok());
-  RunParams params;
-  params.make_agent = *factory;
-  auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
-  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
-  return outcome->report;
+  return run_text(text + rest, "monitor.yaml", defect);
 }
 
 /// At the wall straight ahead, then at the low crate from beside it.
