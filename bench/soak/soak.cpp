@@ -82,7 +82,9 @@ class Soak {
   }
   bool command(std::vector<std::string> words) {
     words.insert(words.begin(), {"basestation", "--name", "op1"});
-    return adit::live::run(words, folder_.environment()).exit_code == 0;
+    const auto ended = adit::live::run(words, folder_.environment());
+    if (ended.exit_code != 0) refusal_ = ended.out + ended.err;
+    return ended.exit_code == 0;
   }
   pid_t child(std::size_t agent) const {
     const auto found = children(parents_[agent]->pid());
@@ -129,7 +131,10 @@ class Soak {
     const std::string x = turn_ % 2 == 0 ? "3" : "0", y = std::to_string(3 * (agent + 1));
     const bool drives = eventually([&] { return command({"goto", name, x, y}); }, kPatience);
     drives_after_.push_back(since(killed));
-    if (!back || !drives) ++missing_;
+    if (!back || !drives) {
+      ++missing_;
+      std::fprintf(stderr, "restart %zu, %s: %s", restarts_, name.c_str(), refusal_.c_str());
+    }
     if (drives_after_.back() > kLate) ++late_;
   }
 
@@ -176,6 +181,7 @@ class Soak {
   std::set<pid_t> killed_{};
   std::size_t restarts_{}, turn_{};
   int missing_{}, late_{}, by_themselves_{};
+  std::string refusal_{};  // the last
 };
 
 }  // namespace
