@@ -59,15 +59,18 @@ struct Rates {
   std::array<double, classes.size()> payload{};  // of samples, by class: each once, however many are sent it
 };
 
-/// What one has written of a class, bytes.
-double written(const wire::WireCounters& counters, wire::QosClass which) {
-  double bytes = 0.0;
+/// What one has written of each class, bytes.
+std::array<double, classes.size()> written(const wire::WireCounters& counters,
+                                           const std::vector<wire::Example>& examples) {
+  std::array<double, classes.size()> bytes{};
   for (const wire::TopicCount& count : counters.topics)
-    for (const wire::Example& example : wire::examples())
-      if (count.topic == example.topic.name && example.topic.qos == which)
-        bytes += static_cast<double>(count.bytes_out);
+    for (const wire::Example& example : examples)
+      for (std::size_t k = 0; k < classes.size(); ++k)
+        if (count.topic == example.topic.name && example.topic.qos == classes[k])
+          bytes[k] += static_cast<double>(count.bytes_out);
   return bytes;
 }
+
 template <class All>
 std::vector<wire::WireCounters> counters(const All& all) {
   std::vector<wire::WireCounters> result;
@@ -78,13 +81,14 @@ std::vector<wire::WireCounters> counters(const All& all) {
 Rates between(const std::vector<wire::WireCounters>& a, const std::vector<wire::WireCounters>& b,
               Duration time) {
   Rates rates;
+  const std::vector<wire::Example> examples = wire::examples();
   const double n = static_cast<double>(a.size()) * seconds(time);
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double discovery = static_cast<double>(b[i].discovery_out - a[i].discovery_out);
     rates.discovery += discovery / n;
     rates.other += (static_cast<double>(b[i].total_out - a[i].total_out) - discovery) / n;
-    for (std::size_t k = 0; k < classes.size(); ++k)
-      rates.payload[k] += (written(b[i], classes[k]) - written(a[i], classes[k])) / n;
+    const auto before = written(a[i], examples), after = written(b[i], examples);
+    for (std::size_t k = 0; k < classes.size(); ++k) rates.payload[k] += (after[k] - before[k]) / n;
   }
   return rates;
 }

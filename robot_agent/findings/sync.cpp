@@ -101,6 +101,7 @@ std::vector<const Finding*> FindingSync::due(const std::vector<StationId>& heard
   };
   // Who is heard again waits for nothing: the pauses grew while its link was going.
   const std::vector<StationId> before_this = std::exchange(heard_, heard);
+  if (heard.empty()) return out;
   const bool anew =
       std::any_of(heard.begin(), heard.end(), [&](const StationId& s) { return !contains(before_this, s); });
   for (const auto& [key, finding] : shelf_.all()) {
