@@ -45,7 +45,7 @@ std::size_t number(double speed) { return static_cast<std::size_t>(std::lround(s
 std::unique_ptr<wire::Wire> join(unsigned domain, bool inner) {
   wire::FastDdsParams params;
   params.domain = domain;
-  params.shared_memory = inner;
+  params.large_samples = inner;
   auto opened = wire::open_fastdds(params);
   if (!opened) {
     std::fprintf(stderr, "%s\n", opened.error().text.c_str());

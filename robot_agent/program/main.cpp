@@ -91,7 +91,7 @@ wire::FastDdsParams robot_wire(const RobotConfig& config) {
   wire::FastDdsParams params{};
   params.domain = config.robot_domain;
   params.name = config.name;
-  params.shared_memory = config.shared_memory;
+  params.large_samples = true;
   return params;
 }
 

@@ -82,7 +82,6 @@ int Parent::reap() {
   close_fd(pidfd_);
   close_fd(report_);
   child_ = -1;
-  shared_memory_.clean();
   return exit_code(status);
 }
 
@@ -90,7 +89,6 @@ void Parent::hear() {
   char bytes[64];
   const ssize_t got = ::read(report_, bytes, sizeof bytes);
   if (got <= 0) return close_fd(report_);
-  if (!commands_) looked_ = {};  // at once: now it has all that it will have
   commands_ = true;
   heard_ = Clock::now();
 }
@@ -98,7 +96,6 @@ void Parent::hear() {
 int Parent::wait_for_end() {
   auto killed_at = Clock::time_point::max();
   heard_ = Clock::now();
-  looked_ = {};
   auto turned = heard_;
   for (;;) {
     pollfd wait[3] = {{pidfd_, POLLIN, 0}, {signals_, POLLIN, 0}, {report_, POLLIN, 0}};
@@ -117,11 +114,6 @@ int Parent::wait_for_end() {
     // Where we ourselves got no processor, the child's silence tells nothing.
     heard_ += std::max(now - turned - 2 * kTurn, Clock::duration{});
     turned = now;
-    // Often while it starts: it may die at any moment, and again.
-    if (now - looked_ > (commands_ ? params_.look : Duration(kTurn))) {
-      looked_ = now;
-      shared_memory_.watch(child_);
-    }
     const bool silent = report_ >= 0 && now - heard_ > (commands_ ? params_.pulse : params_.start);
     if (silent && !ending_) {
       std::fprintf(stderr, "robot_agent: the agent hangs; ending it\n");

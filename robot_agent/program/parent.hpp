@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/time/time.hpp"
-#include "robot_agent/program/shared_memory.hpp"
 
 namespace adit::agent {
 
@@ -17,7 +16,6 @@ struct ParentParams {
   Duration good_run{10s};  ///< a child that lived so long starts the pauses anew
   Duration patience{5s};   ///< from SIGTERM to SIGKILL
   Duration start{30s};     ///< a child that does not command the driver after so long is killed
-  Duration look{1s};       ///< how often it is seen what the child keeps in shared memory
   Duration pulse{3s};      ///< a child that was silent for so long hangs, and is killed
 };
 
@@ -52,8 +50,7 @@ class Parent {
   int signals_{-1};
   int child_{-1}, pidfd_{-1}, report_{-1};
   bool prepared_{}, commands_{}, ending_{};
-  std::chrono::steady_clock::time_point heard_{}, looked_{};
-  SharedMemory shared_memory_{};
+  std::chrono::steady_clock::time_point heard_{};
 };
 
 }  // namespace adit::agent

@@ -76,7 +76,6 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.velocity = velocity == "twist" ? VelocityType::twist : VelocityType::twist_stamped;
   if (velocity != "twist" && velocity != "twist_stamped")
     root->child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
-  c.shared_memory = root->flag("shared_memory", c.shared_memory);
   c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));
   c.memory_limit = root->number("memory_limit", config::within(0.0, 1e6), c.memory_limit);
   c.tree = root->text("tree", c.tree);

@@ -20,7 +20,6 @@ struct RobotConfig {
   wire::FastDdsParams radio{};    ///< radio domain
   std::uint32_t robot_domain{0};  ///< of the driver, on loopback, [0, 232]
   VelocityType velocity{};        ///< `cmd_vel: twist` or `twist_stamped`
-  bool shared_memory{true};       ///< towards the driver, when it runs on the same machine
   Duration lock_lease{300s};      ///< 0: never
   std::string tree{"trees/robot.xml"};
   std::string state{};              ///< folder of what survives a restart; empty: the usual one; "none"

@@ -77,7 +77,7 @@ Result<std::unique_ptr<LiveWorld>> LiveWorld::open(const Scenario& scenario,
     wire::FastDdsParams dds;
     dds.domain = params.domain_base + 1 + static_cast<std::uint32_t>(i);
     dds.name = out->simulation_.id(i) + " driver";
-    dds.shared_memory = true;
+    dds.large_samples = true;
     auto opened = wire::open_fastdds(dds);
     if (!opened) return opened.error();
     out->wires_.push_back(std::move(*opened));

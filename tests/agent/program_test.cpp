@@ -1,7 +1,5 @@
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -15,7 +13,6 @@
 #include "robot_agent/program/parent.hpp"
 #include "robot_agent/program/robot_config.hpp"
 #include "robot_agent/program/service.hpp"
-#include "robot_agent/program/shared_memory.hpp"
 #include "tests/folders/folders.hpp"
 #include "tests/live/process.hpp"
 
@@ -171,29 +168,6 @@ TEST_F(ParentTest, AChildThatPulsesIsLeftAlone) {
   Parent parent(
       params, [] {}, [] {});
   EXPECT_EQ(parent.run(), 0);
-}
-
-TEST(SharedMemory, TakesAwayWhatADeadProcessLeftAndNothingElse) {
-  const live::Folder folder;
-  for (const char* name : {"fastrtps_1", "fastrtps_1_el", "fastrtps_port7_sl", "sem.fastrtps_port7_mutex",
-                           "fastrtps_2", "fastrtps_2_el", "fastrtps_3", "fastrtps_3_el"})
-    folder.write(name, "x");
-  const auto held = [&](const char* name) {
-    const int fd = ::open((folder.path() + "/" + name).c_str(), O_RDONLY);
-    ::flock(fd, LOCK_SH);
-    return fd;
-  };
-  const int dead = held("fastrtps_1_el"), port = held("fastrtps_port7_sl"), living = held("fastrtps_2_el");
-  SharedMemory memory(folder.path());
-  memory.watch(::getpid());
-  ::close(dead);
-  ::close(port);
-  memory.clean();
-  std::set<std::string> left;
-  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
-    left.insert(entry.path().filename());
-  EXPECT_THAT(left, testing::ElementsAre("fastrtps_2", "fastrtps_2_el", "fastrtps_3", "fastrtps_3_el"));
-  ::close(living);
 }
 
 TEST(Service, TellsWhoListens) {

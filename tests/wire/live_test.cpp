@@ -126,9 +126,9 @@ TEST(LiveWire, PeersAreFoundWithoutMulticast) {
   EXPECT_TRUE(net.until([&] { return writer->matched() == 1; }));
 }
 
-TEST(LiveWire, LargeScansPassThroughSharedMemory) {
+TEST(LiveWire, LargeScansPassWhole) {
   LiveNet net;
-  FastDdsParams params{.domain = live::domain(2), .shared_memory = true};
+  FastDdsParams params{.domain = live::domain(2), .large_samples = true};
   const auto strand = net.strand("test");
   const auto sim = std::move(open_fastdds(params)).value(), agent = std::move(open_fastdds(params)).value();
   Seen<std::size_t> seen;

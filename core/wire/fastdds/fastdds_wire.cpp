@@ -105,7 +105,7 @@ class FastDdsWire final : public Wire {
     const std::vector<std::string> loopback{"127.0.0.1"};
     const auto& interfaces = params.interfaces.empty() ? loopback : params.interfaces;
     for (const std::string& address : interfaces) traffic_->own_addresses.insert(inet_addr(address.c_str()));
-    if (!params.shared_memory) traffic_->outlet = std::make_shared<Outlet>(interfaces);
+    if (!params.large_samples) traffic_->outlet = std::make_shared<Outlet>(interfaces);
     if (params.link) {
       traffic_->link = std::make_shared<LiveLink>(
           *params.link, params.link_seed, interfaces,

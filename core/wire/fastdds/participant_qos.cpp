@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <ifaddrs.h>
 #include <net/if.h>
@@ -23,8 +22,8 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace {
 
 constexpr std::uint32_t loopback_datagram = 65000;
-constexpr std::uint32_t segment =
-    8 << 20;  // the default of 512 kB makes samples of 1 MiB take 22 ms instead of 1 ms
+/// Whole scans must wait here until they are read; the kernel gives at most net.core.rmem_max.
+constexpr std::uint32_t scan_buffer = 4 << 20;
 constexpr std::uint32_t participants_per_host = 16;  // ports tried at an address that is named without one
 constexpr std::uint32_t udp_and_ip = 28;
 constexpr std::uint32_t send_buffer = 212992;  // B, as Linux has it
@@ -120,7 +119,8 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   // Without a size the library takes the buffer for full after each sample, and a heartbeat goes with each
   // fragment and each repair to every reader, which every reader acknowledges.
   udp->sendBufferSize = send_buffer;
-  udp->maxMessageSize = params.shared_memory ? loopback_datagram : WireCost::frame + never_sent;
+  udp->maxMessageSize = params.large_samples ? loopback_datagram : WireCost::frame + never_sent;
+  if (params.large_samples) udp->receiveBufferSize = scan_buffer;
   if (params.link) {
     udp->maxMessageSize = std::min(udp->maxMessageSize, params.link->frame_bytes() - udp_and_ip + never_sent);
     const Budget budget;
@@ -130,12 +130,6 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   udp->maxInitialPeersRange = participants_per_host;
   qos.transport().user_transports.push_back(
       std::make_shared<CountingTransportDescriptor>(udp, std::move(traffic)));
-  if (params.shared_memory) {
-    auto shared = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
-    shared->segment_size(segment);
-    shared->max_message_size(loopback_datagram);
-    qos.transport().user_transports.push_back(shared);
-  }
 
   auto& builtin = qos.wire_protocol().builtin;
   auto& discovery = builtin.discovery_config;
