@@ -93,18 +93,23 @@ Rates between(const std::vector<wire::WireCounters>& a, const std::vector<wire::
   return rates;
 }
 
-void print_classes(const char* when, int agents, const Rates& rates) {
-  std::printf("by class, %d agents, %s:", agents, when);
+void print_classes(int agents, const char* when, const Rates& rates) {
+  std::printf("| %2d | %s |", agents, when);
   double samples = 0.0;
   for (const double bytes : rates.payload) {
-    std::printf(" %.0f", bytes);
+    std::printf(" %.0f |", bytes);
     samples += bytes;
   }
-  std::printf(" and %.0f of headers, copies and acknowledgements\n", rates.other - samples);
+  std::printf(" %.0f |\n", rates.other - samples);
 }
 
-/// `agents`: robots but one, a station; alone it is a robot.
-void measure(int agents, Duration time) {
+struct Measured {
+  int agents{};
+  Rates rest{}, drive{};
+};
+
+/// Prints a row. `agents`: robots but one, a station; alone it is a robot.
+Measured measure(int agents, Duration time) {
   wire::LiveNet net;
   const int robots = std::max(1, agents - 1);
   std::vector<std::unique_ptr<Idle>> ours;
@@ -152,10 +157,9 @@ void measure(int agents, Duration time) {
   std::printf("| %2d | %6.1f | %6.1f | %5.3f | %6.0f | %6.0f | %7.0f | %7.0f | %5.2f |\n", agents,
               rest.discovery, defaults.discovery, rest.discovery / std::max(1e-9, defaults.discovery),
               rest.other, drive.other, start_ours, start_bare, 100.0 * cpu / seconds(time) / agents);
-  print_classes("at rest", agents, rest);
-  print_classes("one driven", agents, drive);
   std::fflush(stdout);
   for (auto& one : ours) one->timers.clear();
+  return {agents, rest, drive};
 }
 
 }  // namespace
@@ -164,10 +168,17 @@ void measure(int agents, Duration time) {
 int main(int argc, char** argv) {
   using namespace adit;
   const Duration time = std::chrono::seconds(argc > 1 ? std::atoi(argv[1]) : 60);
-  std::printf("Bytes a second sent by each agent; start-up in bytes; processor in %% of a core for each.\n");
-  std::printf("By class: samples of urgent, stream, state, status, bulk, video\n\n");
+  std::printf("Bytes a second sent by each agent; start-up in bytes; processor in %% of a core for each.\n\n");
   std::printf("| agents | discovery | default | ratio | at rest | driven | start-up | default | CPU |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
-  if (argc > 2) return bench::measure(std::atoi(argv[2]), time), 0;
-  for (const int agents : {1, 2, 4, 8, 16}) bench::measure(agents, time);
+  std::vector<bench::Measured> all;
+  const std::vector<int> sizes = argc > 2 ? std::vector{std::atoi(argv[2])} : std::vector{1, 2, 4, 8, 16};
+  for (const int agents : sizes) all.push_back(bench::measure(agents, time));
+  std::printf("\nOf it the samples of each class, and what they bring with them.\n\n");
+  std::printf("| agents | | urgent | stream | state | status | bulk | video | headers, copies, acknowledgements |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  for (const auto& one : all) {
+    bench::print_classes(one.agents, "at rest", one.rest);
+    bench::print_classes(one.agents, "one driven", one.drive);
+  }
 }

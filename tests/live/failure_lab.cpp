@@ -41,7 +41,7 @@ FailureLab::FailureLab()
   op_ = std::make_unique<Operator>(*net_, "op1");
   ::setenv("XDG_RUNTIME_DIR", folder_.environment().at("XDG_RUNTIME_DIR").c_str(), 1);  // of the console
   parent_ = std::make_unique<Process>(
-      std::vector<std::string>{"robot_agent", "--supervised", "--allow-faults", "--good-run", "0.1",
+      std::vector<std::string>{"robot_agent", "--supervised", "--allow-faults", "--good-run", "0",
                                "--config", "robots/r1.yaml", "--log", "error", "--domain",
                                std::to_string(domain()), "--robot-domain", std::to_string(domain(1))},
       folder_.environment());
@@ -77,9 +77,8 @@ bool FailureLab::enter(const std::string& mode) {
   if (mode == "hold") return true;
   if (mode == "waypoint" && !eventually([&] { return op_->ask("goto r1 9000 0").exit_code == 0; }))
     return false;
-  if (mode == "smart_joystick" &&
-      !eventually([&] { return op_->ask("mode r1 smart_joystick").exit_code == 0; }))
-    return false;
+  // Refused while the agent that was just started has not heard its driver yet.
+  if (mode != "waypoint" && !eventually([&] { return op_->ask("mode r1 " + mode).exit_code == 0; })) return false;
   if (mode != "waypoint") op_->type("drive r1 0.4 0 0 --for 60");
   return eventually([&] { return driver_.told().last > 0.1; });
 }

@@ -13,9 +13,10 @@ struct FastDdsParams {
   std::vector<std::string> interfaces{};  ///< addresses to use; empty: 127.0.0.1 alone
   std::vector<std::string> peers{};  ///< ADDRESS or ADDRESS:PORT of others, for networks without multicast
   bool multicast{true};              ///< ask for others by multicast
-  /// Robot domain: scans pass between processes of one robot in datagrams of up to 65 kB, and there is room for them at
-  /// the receiver; without it datagrams stay below 1400 bytes, as a radio wants them. Never through the library's
-  /// shared memory: after a process was killed, who wrote to it may write into the dead one's for ever (Fast-DDS #4728).
+  /// Robot domain: scans pass between processes of one robot in datagrams of up to 65 kB, and there is room
+  /// for them at the receiver; without it datagrams stay below 1400 bytes, as a radio wants them. Never
+  /// through the library's shared memory: after a process was killed, who wrote to it may write into the dead
+  /// one's for ever (Fast-DDS #4728).
   bool large_samples{false};
   /// A link that all that is sent passes: its bandwidth, priorities and budgets, and, where it says so, its
   /// latency and losses. Without one datagrams go straight to the sockets.
