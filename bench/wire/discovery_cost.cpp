@@ -168,14 +168,16 @@ Measured measure(int agents, Duration time) {
 int main(int argc, char** argv) {
   using namespace adit;
   const Duration time = std::chrono::seconds(argc > 1 ? std::atoi(argv[1]) : 60);
-  std::printf("Bytes a second sent by each agent; start-up in bytes; processor in %% of a core for each.\n\n");
+  std::printf(
+      "Bytes a second sent by each agent; start-up in bytes; processor in %% of a core for each.\n\n");
   std::printf("| agents | discovery | default | ratio | at rest | driven | start-up | default | CPU |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   std::vector<bench::Measured> all;
   const std::vector<int> sizes = argc > 2 ? std::vector{std::atoi(argv[2])} : std::vector{1, 2, 4, 8, 16};
   for (const int agents : sizes) all.push_back(bench::measure(agents, time));
   std::printf("\nOf it the samples of each class, and what they bring with them.\n\n");
-  std::printf("| agents | | urgent | stream | state | status | bulk | video | headers, copies, acknowledgements |\n");
+  std::printf(
+      "| agents | | urgent | stream | state | status | bulk | video | headers, copies, acknowledgements |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& one : all) {
     bench::print_classes(one.agents, "at rest", one.rest);

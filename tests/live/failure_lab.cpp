@@ -41,9 +41,9 @@ FailureLab::FailureLab()
   op_ = std::make_unique<Operator>(*net_, "op1");
   ::setenv("XDG_RUNTIME_DIR", folder_.environment().at("XDG_RUNTIME_DIR").c_str(), 1);  // of the console
   parent_ = std::make_unique<Process>(
-      std::vector<std::string>{"robot_agent", "--supervised", "--allow-faults", "--good-run", "0",
-                               "--config", "robots/r1.yaml", "--log", "error", "--domain",
-                               std::to_string(domain()), "--robot-domain", std::to_string(domain(1))},
+      std::vector<std::string>{"robot_agent", "--supervised", "--allow-faults", "--good-run", "0", "--config",
+                               "robots/r1.yaml", "--log", "error", "--domain", std::to_string(domain()),
+                               "--robot-domain", std::to_string(domain(1))},
       folder_.environment());
 }
 
@@ -78,7 +78,8 @@ bool FailureLab::enter(const std::string& mode) {
   if (mode == "waypoint" && !eventually([&] { return op_->ask("goto r1 9000 0").exit_code == 0; }))
     return false;
   // Refused while the agent that was just started has not heard its driver yet.
-  if (mode != "waypoint" && !eventually([&] { return op_->ask("mode r1 " + mode).exit_code == 0; })) return false;
+  if (mode != "waypoint" && !eventually([&] { return op_->ask("mode r1 " + mode).exit_code == 0; }))
+    return false;
   if (mode != "waypoint") op_->type("drive r1 0.4 0 0 --for 60");
   return eventually([&] { return driver_.told().last > 0.1; });
 }

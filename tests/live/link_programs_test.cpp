@@ -31,10 +31,10 @@ TEST_F(Programs, CommandsPassOverALinkThatIsGiven) {
   EXPECT_TRUE(eventually([&] { return listed("op1", "r1").value("locked", false); }));
   const auto status = json("op1", {"status"});
   EXPECT_EQ(status.value("link", ""), "mesh_500k");
-  // 50 ms each way: without the link an answer is there within a few, whatever the machine does.
+  // 50 ms each way.
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(station({"stop", "r1"}).exit_code, 0);
-  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(50));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(100));
 }
 
 }  // namespace

@@ -1,6 +1,10 @@
 // What only the real wire has: other processes, sockets, foreign writers.
 #include <gtest/gtest.h>
 
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <csignal>
 
 #include "core/wire/fastdds/fastdds_wire.hpp"
@@ -124,6 +128,33 @@ TEST(LiveWire, PeersAreFoundWithoutMulticast) {
   const auto strand = net.strand("test");
   const auto reader = b->make_reader(ping, "", *strand, [](auto, const SampleInfo&) { return true; });
   EXPECT_TRUE(net.until([&] { return writer->matched() == 1; }));
+}
+
+// Another process has the ports that this participant would take first: what goes there is for it, and
+// counted.
+TEST(LiveWire, PortsThatWereTakenAreNotItsOwn) {
+  LiveNet net;
+  const std::uint32_t domain = live::domain(3);
+  std::vector<int> taken;
+  std::uint16_t port = 0;
+  for (int i = 0; i < 3; ++i) {
+    port = static_cast<std::uint16_t>(7411 + 250 * domain + 2 * i);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    taken.push_back(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+    ASSERT_EQ(::bind(taken.back(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  {
+    const FastDdsParams params{
+        .domain = domain, .peers = {"127.0.0.1:" + std::to_string(port)}, .multicast = false};
+    const auto wire = std::move(open_fastdds(params)).value();
+    char datagram[2048];
+    EXPECT_TRUE(net.until([&] { return ::recv(taken.back(), datagram, sizeof datagram, MSG_DONTWAIT) > 0; }));
+    EXPECT_GT(wire->counters().total_out, 0u);
+  }
+  for (const int fd : taken) ::close(fd);
 }
 
 TEST(LiveWire, LargeScansPassWhole) {

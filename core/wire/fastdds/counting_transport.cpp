@@ -53,9 +53,11 @@ eprosima::fastdds::rtps::TransportDescriptorInterface* CountingTransport::get_co
 bool CountingTransport::OpenInputChannel(const rtps::Locator_t& locator,
                                          eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                                          std::uint32_t largest) {
+  // One that somebody else has is asked for, too, before the next: not ours.
+  if (!ChainingTransport::OpenInputChannel(locator, receiver, largest)) return false;
   if (!rtps::IPLocator::isMulticast(locator))
     traffic_->own_ports.add(rtps::IPLocator::getPhysicalPort(locator));
-  return ChainingTransport::OpenInputChannel(locator, receiver, largest);
+  return true;
 }
 
 void CountingTransport::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
