@@ -45,6 +45,8 @@ Kind kind_of(Verb verb) {
       return Kind::restart;
     case Verb::policy:
       return Kind::policy;
+    case Verb::plan:
+      return Kind::plan;
     default:
       return Kind::query;
   }
@@ -70,6 +72,8 @@ std::string done_text(const Request& request) {
     case Verb::go_to:
       return (request.wait ? "arrived at " : "on its way to ") + fixed(request.numbers[0], 2) + " " +
              fixed(request.numbers[1], 2);
+    case Verb::plan:
+      return "a way";
     case Verb::teleop:
       return "let go";
     case Verb::stop:

@@ -40,6 +40,9 @@ Result<void> Agent::start() {
   if (std::find(planners.begin(), planners.end(), params_.platform.planner) == planners.end())
     return {Reason::bad_argument,
             "platform " + params_.platform.name + ": " + nav::no_planner(params_.platform.planner).text};
+  if (params_.platform.router != "none" && params_.platform.router != "graph")
+    return {Reason::bad_argument, "platform " + params_.platform.name + ": no router '" +
+                                      params_.platform.router + "': expected graph or none"};
   const auto tree = config::find_file(params_.tree);
   if (!tree) return tree.error();
   // Here as well as in each instance of the command component: who starts an agent is told at once.

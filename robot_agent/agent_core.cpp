@@ -60,7 +60,7 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       edges_(edges),
       lease_(std::move(lease)),
       localisation_(params.start),
-      navigation_(navigation_params(params), command, log(), localisation_, *edges.planner,
+      navigation_(navigation_params(params), command, log(), localisation_, *edges.planner, edges.router,
                   navigation_outputs()),
       mux_(navigation_, mux_params(params)),
       external_(mux_),
@@ -109,6 +109,39 @@ void Agent::Core::rival(const wire::ParticipantId& writer) {
 
 void Agent::Core::commands(const std::function<void(CommandInterface&)>& use) {
   protect([&] { use(commands_); });
+}
+
+void Agent::Core::find_route(const Eigen::Vector3d& goal,
+                             std::function<void(const Result<std::string>&)> done) {
+  struct Question {
+    std::function<void(const Result<std::string>&)> done{};
+    Timer patience{};
+  };
+  protect([&] {
+    if (!goal.head<2>().allFinite() || std::isinf(goal.z()))
+      return done({Reason::out_of_range, "a place has finite coordinates"});
+    if (!edges_.router)
+      return done({Reason::not_supported, "this robot has no router: its platform says none"});
+    if (!localisation_.initialised())
+      return done({Reason::no_localisation, "the robot does not know where it is"});
+    auto question = std::make_shared<Question>();
+    question->done = std::move(done);
+    // Answered once, by whichever comes first.
+    const auto answer = [question](const Result<std::string>& text) {
+      question->patience.cancel();
+      if (const auto tell = std::exchange(question->done, {})) tell(text);
+    };
+    question->patience = after(500ms, [answer] {
+      answer({Reason::no_answer, "the router does not answer; see health"});
+    });
+    const Pose2 pose = localisation_.odom().planar();
+    const Eigen::Vector2d to = localisation_.to_odom(goal.head<2>());
+    auto query = std::make_shared<RouteQuery>();
+    query->from = {pose.x, pose.y, localisation_.z()};
+    query->to = {to.x(), to.y(), goal.z()};
+    edges_.router->find(query,
+                        guard([this, query, answer] { answer(describe(query->route, params_.start)); }));
+  });
 }
 
 void Agent::Core::restore() {

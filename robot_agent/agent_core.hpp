@@ -38,6 +38,7 @@ struct Agent::Edges {
   std::unique_ptr<StateKeeper> keeper{};  ///< what the component gave last, here and on the disk
   std::unique_ptr<FindingSync> findings{};
   PlanService* planner{};     ///< from any thread
+  RouteService* router{};     ///< from any thread; null: this robot has none
   Watch* watch{};             ///< from any thread
   Core* core{};               ///< null while the command component is away
   std::uint32_t instances{};  ///< of the command component so far
@@ -60,6 +61,8 @@ class Agent::Core : public Component {
   /// Somebody else writes velocities to this robot's driver.
   void rival(const wire::ParticipantId& writer);
   void commands(const std::function<void(CommandInterface&)>& use);
+  /// The way to a place (map frame, m), in words: `done` is called once, within half a second.
+  void find_route(const Eigen::Vector3d& goal, std::function<void(const Result<std::string>&)> done);
   std::string at_console(const std::string& line);
   /// What must survive, as it is now.
   void keep();

@@ -11,20 +11,44 @@ KeeperParams keeper_params(const AgentParams& params) {
   return k;
 }
 
-}  // namespace
-
-void PlannerUnit::plan(std::shared_ptr<PlanJob> job, Task done) {
-  const auto seat = unit_.seat();
+/// Has `use` ask the component of that unit, on its strand, and calls `done` back on the caller's while the
+/// component counts.
+template <class Part, class Use>
+void ask(Unit& unit, Executor& caller, Use use, Task done) {
+  const auto seat = unit.seat();
   // The seat outlives its strand's tasks.
-  seat->strand->post([seat = seat.get(), job = std::move(job), done = std::move(done), caller = &caller_] {
-    auto* planner = static_cast<Planner*>(seat->component.get());
-    if (!planner) return;
-    planner->plan(job, [lease = seat->lease, done, caller] {
+  seat->strand->post([seat = seat.get(), use = std::move(use), done = std::move(done), caller = &caller] {
+    auto* part = static_cast<Part*>(seat->component.get());
+    if (!part) return;
+    use(*part, [lease = seat->lease, done, caller] {
       caller->post([lease, done] {
         if (lease->valid()) done();
       });
     });
   });
+}
+
+}  // namespace
+
+void PlannerUnit::plan(std::shared_ptr<PlanJob> job, Task done) {
+  ask<Planner>(
+      unit_, caller_,
+      [job = std::move(job)](Planner& planner, Task back) { planner.plan(job, std::move(back)); },
+      std::move(done));
+}
+
+void RouterUnit::step(std::shared_ptr<RouteJob> job, Task done) {
+  ask<Router>(
+      unit_, caller_,
+      [job = std::move(job)](Router& router, Task back) { router.step(job, std::move(back)); },
+      std::move(done));
+}
+
+void RouterUnit::find(std::shared_ptr<RouteQuery> query, Task done) {
+  ask<Router>(
+      unit_, caller_,
+      [query = std::move(query)](Router& router, Task back) { router.find(query, std::move(back)); },
+      std::move(done));
 }
 
 Agent::Parts::Parts(const AgentParams& agent_params, std::string tree_file, Runtime& agent_runtime)
@@ -33,12 +57,13 @@ Agent::Parts::Parts(const AgentParams& agent_params, std::string tree_file, Runt
       tree(std::move(tree_file)),
       command(agent_runtime, command_unit()),
       planner(agent_runtime, planner_unit()),
+      router(agent_runtime, router_unit()),
       sensors(agent_runtime, sensors_unit()),
       watch_strand(agent_runtime.strand("supervisor")) {}
 
 Agent::Parts::~Parts() {
   watch_strand->end();
-  for (Unit* unit : {&command, &sensors, &planner}) unit->end();
+  for (Unit* unit : {&command, &sensors, &planner, &router}) unit->end();
   if (disk_strand) disk_strand->end();
   if (watch) watch->stop();
   if (edges && edges->radio) edges->radio->close();
@@ -66,6 +91,19 @@ UnitParams Agent::Parts::planner_unit() {
     return std::unique_ptr<Component>(
         std::make_unique<Planner>(PlannerParams{params.platform, params.planning, params.defects}, strand,
                                   Log(params.log, params.name), library()));
+  };
+  return unit;
+}
+
+UnitParams Agent::Parts::router_unit() {
+  UnitParams unit{};
+  unit.name = "router";
+  unit.heavy = true;
+  unit.make = [this](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
+    RouterParams router_params{};
+    router_params.platform = params.platform;
+    return std::unique_ptr<Component>(
+        std::make_unique<Router>(std::move(router_params), strand, Log(params.log, params.name)));
   };
   return unit;
 }
@@ -140,10 +178,14 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   if (!driver) return driver.error();
   e.driver = std::move(*driver);
 
-  for (Unit* unit : {&planner, &sensors})
-    if (const auto opened = unit->open(); !opened) return opened.error();
+  const bool routes_it = params.platform.router != "none";
+  for (Unit* unit : {&planner, &router, &sensors})
+    if (unit != &router || routes_it)
+      if (const auto opened = unit->open(); !opened) return opened.error();
   plans = std::make_unique<PlannerUnit>(planner, strand);
   e.planner = plans.get();
+  if (routes_it) routes = std::make_unique<RouterUnit>(router, strand);
+  e.router = routes.get();
   auto opened =
       Watch::open({params.name, params.supervision, Log(params.log, params.name), params.end, params.alive},
                   *watch_strand, radio, robot, *e.notifier);
@@ -152,6 +194,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   e.watch = watch.get();
   watch->watch(command, {.name = "command", .replaceable = false, .always = true});
   watch->watch(planner, {.name = "planner"});
+  if (routes_it) watch->watch(router, {.name = "router"});
   watch->watch(sensors, {.name = "sensors"});
   if (params.disk) watch->note({.name = "store"});
   return e.radio->listen({e.directory,
@@ -161,6 +204,9 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
                           [&e](Task task) {
                             if (e.core) e.core->keep();
                             e.keeper->when_safe(std::move(task));
+                          },
+                          [with_core](const Eigen::Vector3d& goal, const auto& done) {
+                            with_core([&](Core& core) { core.find_route(goal, done); });
                           },
                           [&e, &strand](const Id& station, std::span<const std::uint64_t> ids) {
                             e.findings->acknowledged(station, ids, strand.now());
@@ -208,8 +254,8 @@ FindingSync::Outputs Agent::Parts::findings_outputs() {
 }
 
 Unit* Agent::Parts::find(const std::string& component) {
-  for (Unit* unit : {&command, &planner, &sensors})
-    if (unit->name() == component) return unit;
+  for (Unit* unit : {&command, &planner, &router, &sensors})
+    if (unit->name() == component && (unit != &router || routes)) return unit;
   return nullptr;
 }
 

@@ -22,7 +22,20 @@ class PlannerUnit final : public PlanService {
   Executor& caller_;
 };
 
-/// The parts of an agent, composed: three units on strands of their own, what they share, and who watches
+/// The same for the router.
+class RouterUnit final : public RouteService {
+ public:
+  RouterUnit(Unit& unit, Executor& caller) : unit_(unit), caller_(caller) {}
+  std::uint64_t instance() const override { return unit_.instance(); }
+  void step(std::shared_ptr<RouteJob> job, Task done) override;
+  void find(std::shared_ptr<RouteQuery> query, Task done) override;
+
+ private:
+  Unit& unit_;
+  Executor& caller_;
+};
+
+/// The parts of an agent, composed: four units on strands of their own, what they share, and who watches
 /// them. Private to agent.cpp.
 struct Agent::Parts {
   Parts(const AgentParams& agent_params, std::string tree_file, Runtime& agent_runtime);
@@ -40,10 +53,11 @@ struct Agent::Parts {
   std::string tree;  ///< the file found
   wire::Wire* robot_wire{};
   std::unique_ptr<Edges> edges{};
-  Unit command, planner, sensors;
+  Unit command, planner, router, sensors;
   std::shared_ptr<Executor> watch_strand;
   std::shared_ptr<Executor> disk_strand{};  ///< null: there is no disk, or one that takes no time
   std::unique_ptr<PlannerUnit> plans{};
+  std::unique_ptr<RouterUnit> routes{};  ///< null: the platform has no router
   std::unique_ptr<Watch> watch{};
 
  private:
@@ -55,6 +69,7 @@ struct Agent::Parts {
   FindingSync::Outputs findings_outputs();
   UnitParams command_unit();
   UnitParams planner_unit();
+  UnitParams router_unit();
   UnitParams sensors_unit();
 };
 

@@ -76,8 +76,9 @@ std::vector<std::string> candidates(const std::vector<std::string>& all_words,
   if (command->robots_max != 1 || first) out = robots;
   if (command->verb == Verb::stop && first) out.push_back("all");
   if (command->verb == Verb::mode && !first) out.insert(out.end(), mode_names().begin(), mode_names().end());
-  if (command->verb == Verb::restart && words.size() == 3) out = {"agent", "command", "planner", "sensors"};
-  if (command->verb == Verb::policy && words.size() == 3) out = {"planner", "sensors"};
+  if (command->verb == Verb::restart && words.size() == 3)
+    out = {"agent", "command", "planner", "router", "sensors"};
+  if (command->verb == Verb::policy && words.size() == 3) out = {"planner", "router", "sensors"};
   if (command->verb == Verb::policy && words.size() == 4) out = {"auto", "manual"};
   if (command->verb == Verb::drive && words.size() > 5) out = {"--for"};
   if (command->verb == Verb::go_to && words.size() > 4) out = {"--wait"};

@@ -160,6 +160,7 @@ Result<Request> parse(const std::vector<std::string>& all_words) {
       break;
     case Verb::drive:
     case Verb::go_to:
+    case Verb::plan:
       if (auto done = take_numbers(*command, words, request); !done) return done.error();
       break;
     case Verb::grant:

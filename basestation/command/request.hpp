@@ -27,6 +27,7 @@ enum class Verb {
   mode,
   drive,
   go_to,
+  plan,
   teleop,
   stop,
   reset,
@@ -40,7 +41,8 @@ struct Request {
   std::vector<std::string> robots{};  ///< in the order typed, each once
   bool all{false};                    ///< stop: every robot that is known
   std::string word{};  ///< mode: its name; grant: the operator; run: the file; restart, policy: the component
-  /// goto: x y z in the map frame, m (z NaN when not given); drive: vx vy in m/s, wz in rad/s, body frame
+  /// goto, plan: x y z in the map frame, m (z NaN when not given); drive: vx vy in m/s, wz in rad/s, body
+  /// frame
   std::array<double, 3> numbers{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};
   double duration{1.0};       ///< drive --for: s, (0, 3600]
   bool wait{false};           ///< goto --wait

@@ -22,6 +22,7 @@ class Judge {
     const bool assisted = robot_.mode == "smart_joystick";
     add("drive", steering(assisted));
     go_to();
+    add("plan", Action{.valid = true});
     add("teleop", steering(assisted));
     add("stop", Action{.valid = true});
     reset();

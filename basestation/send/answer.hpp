@@ -22,7 +22,8 @@ enum class Kind : std::uint8_t {
   go_to,
   query,
   restart,
-  policy
+  policy,
+  plan
 };
 const char* to_string(Kind kind);
 
@@ -30,7 +31,8 @@ struct Order {
   std::string robot{};
   Kind kind{Kind::query};
   std::string text{};  ///< mode: its name; grant: the operator; restart, policy: the component
-  std::array<double, 3> position{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};  ///< goto: map frame, m
+  std::array<double, 3> position{0.0, 0.0,
+                                 std::numeric_limits<double>::quiet_NaN()};  ///< goto, plan: map frame, m
   bool flag{};  ///< reset: override; policy: automatic
 };
 

@@ -37,6 +37,8 @@ const char* to_string(Kind kind) {
       return "restart";
     case Kind::policy:
       return "policy";
+    case Kind::plan:
+      return "plan";
   }
   return "unknown";
 }

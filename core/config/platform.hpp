@@ -27,6 +27,7 @@ struct Platform {
   double step{0.08};                  ///< highest step it climbs, m, [0, 1]
   double lidar_height{0.5};           ///< above the ground, m, (0, 5]
   bool stairs{false};
+  std::string router{"none"};           ///< that leads it round what the planner does not see: none or graph
   std::string planner{"trajectories"};  ///< that finds the way to a goal: nav/make_planner.hpp
   std::string controller{"ilqr"};       ///< that tracks the planner's paths: nav/control/controller.hpp
   /// In manual mode the collision monitor stops the robot; false: it slows it and warns the operator.

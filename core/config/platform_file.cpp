@@ -52,6 +52,7 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.step = root.number("step", within(0, 1));
   p.lidar_height = root.number("lidar_height", above(0, 5));
   p.stairs = root.flag("stairs", false);
+  p.router = root.text("router", p.router);
   p.planner = root.text("planner", p.planner);
   p.controller = root.text("controller", p.controller);
   p.manual_collision_stop = root.flag("manual_collision_stop", p.manual_collision_stop);

@@ -85,13 +85,15 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
   bool kept = route_.found();
   if (kept) advance(place);
   watch_blocked(planner, place, blocked, stamp_s);
-  Route other = planner.plan(place, goal);
-  if (kept) kept = planner.measure(route_);
-  if (other.found() &&
-      (!kept || (other.cost < route_.cost * params_.momentum && other.cost < route_.cost - params_.gain)))
-    route_ = std::move(other);
-  else if (!kept && !other.found())
-    route_ = std::move(other);
+  const bool lost = kept && !planner.measure(route_);
+  kept = kept && !lost;
+  if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
+    looked_ = stamp_s;
+    Route other = planner.plan(place, goal);
+    const bool better =
+        other.cost < route_.cost * params_.momentum && other.cost < route_.cost - params_.gain;
+    if (!kept || (other.found() && better)) route_ = std::move(other);
+  }
   if (route_.found()) {
     lost_since_.reset();
     return along(planner, place);

@@ -8,6 +8,7 @@ namespace adit::nav {
 struct RouteKeeperParams {
   double momentum{
       0.85};          ///< another route is taken when it costs less than this part of the one kept, (0, 1]
+  double look{0.5};   ///< another route than the one kept is looked for this often, s, [0, 10]
   double gain{0.5};   ///< and so much less, m, [0, 10]
   double ahead{4.0};  ///< the local planner is given the point of the route this far ahead, m, [1, 10]
   double least_ahead{1.2};  ///< and never a nearer one but the goal, m, [0.3, 5]
@@ -52,6 +53,7 @@ class RouteKeeper {
   std::optional<Eigen::Vector3d> goal_{};
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
+  std::optional<double> looked_{};
 };
 
 }  // namespace adit::nav

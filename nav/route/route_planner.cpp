@@ -13,7 +13,7 @@ constexpr double kOwnGoal = 0.1;     // m: a goal that was moved by more is a le
 
 RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
     : params_(params),
-      map_(params),
+      map_(params, ScanProfile::most_wrong(platform, params)),
       profile_(platform, params),
       builder_(platform, params),
       line_(map_, builder_),

@@ -26,6 +26,12 @@ ScanProfile::ScanProfile(const Platform& platform, const RouteParams& params)
       drop_(static_cast<float>(std::max(params.drop, 2 * platform.step))),
       slope_(static_cast<float>(params.slope)) {}
 
+float ScanProfile::most_wrong(const Platform& platform, const RouteParams& params) {
+  constexpr double noise = 0.05;
+  const double rise = platform.step + params.step_margin + noise;
+  return static_cast<float>(std::max({rise, params.drop, 2 * platform.step}) + params.slope * double{kRun});
+}
+
 void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& body) {
   const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f at = body.position.cast<float>();

@@ -17,6 +17,8 @@ namespace adit::nav {
 class ScanProfile {
  public:
   ScanProfile(const Platform& platform, const RouteParams& params);
+  /// So much higher or lower than the ground before it something may pass for ground, m.
+  static float most_wrong(const Platform& platform, const RouteParams& params);
 
   /// `points`: in base_link, m, not finite or on the own body where nothing was hit. `body`: in the map's
   /// frame.

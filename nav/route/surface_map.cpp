@@ -10,7 +10,6 @@ constexpr int kBlocked = 5;  // two returns
 constexpr int kMost = 12;    // as many rays, and no more, free it again
 constexpr int kFree = 0;
 constexpr int kLeast = -4;
-constexpr float kSame = 0.4f;  // m: heights of one cell that are one ground
 constexpr std::size_t kPlaces = 32;
 constexpr double kSamePlace = 0.6;  // m
 constexpr int kMostTimes = 4;
@@ -18,7 +17,6 @@ constexpr float kTopUnit = 0.02f;  // m
 constexpr std::array<int, 8> kAroundX{1, 0, -1, 0, 1, -1, -1, 1};
 constexpr std::array<int, 8> kAroundY{0, 1, 0, -1, 1, 1, -1, -1};
 constexpr std::array<std::size_t, 8> kOpposite{2, 3, 0, 1, 6, 7, 4, 5};
-constexpr float kLeadsOn = 0.25f;  // m: from a cell to one two cells away
 
 // The least difference of height to the known cells around; -1 when there are none.
 float step_around(const Tile& tile, int x, int y, float z) {
@@ -68,7 +66,7 @@ int SurfaceMap::at(int tx, int ty, double z) const {
 int SurfaceMap::sheet(int ix, int iy, float z) {
   const int tx = tile_of(ix), ty = tile_of(iy);
   const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
-  const auto same = [&](const Tile& t) { return t.cells[c].known && std::abs(t.cells[c].z - z) <= kSame; };
+  const auto same = [&](const Tile& t) { return t.cells[c].known && std::abs(t.cells[c].z - z) <= same_; };
   if (last_ >= 0 && tile(last_).tx == tx && tile(last_).ty == ty && same(tile(last_))) return last_;
   int best = -1;
   float least = kSheetReach;
@@ -77,9 +75,9 @@ int SurfaceMap::sheet(int ix, int iy, float z) {
     if (same(t)) return last_ = i;
     if (t.cells[c].known) continue;
     const float step = step_around(t, ix & 15, iy & 15, z);
-    if (step > kLeadsOn) continue;
+    if (step > same_) continue;
     // Cells around that lead there count before all that is merely near.
-    const float d = step >= 0 ? step - 2 * kLeadsOn : std::abs(t.z - z);
+    const float d = step >= 0 ? step - 2 * same_ : std::abs(t.z - z);
     if (d <= least) {
       least = d;
       best = i;

@@ -23,7 +23,9 @@ struct BlockedPlace {
 /// queue of tiles whose part of the graph is to be made anew; of bounded size.
 class SurfaceMap {
  public:
-  explicit SurfaceMap(const RouteParams& params) : params_(params) {}
+  /// `same`: heights at one place that differ by no more are one ground, m. It must be more than what a scan
+  /// can take for ground too high by, and less than the height of a robot.
+  SurfaceMap(const RouteParams& params, float same) : params_(params), same_(same) {}
 
   /// A ray passed over the ground of a cell. `height` of the ray above the ground, m: what is lower than it
   /// may still be there. `certain`: the robot stands there.
@@ -77,6 +79,7 @@ class SurfaceMap {
   void mark_place(const BlockedPlace& place);
 
   RouteParams params_;
+  float same_;
   std::vector<std::unique_ptr<Tile>> tiles_{};
   std::vector<int> free_{};
   std::unordered_map<std::uint64_t, int> heads_{};  // looked up only

@@ -184,7 +184,7 @@ void Behaviour::feed_waypoint(Time now) {
   if (goal_.reached)
     waypoint_.write(Stand{}, now);
   else
-    waypoint_.write(GoTo{goal_.place.head<2>()}, now);
+    waypoint_.write(GoTo{goal_.place}, now);
 }
 
 void Behaviour::watch(Time now) {
@@ -195,7 +195,12 @@ void Behaviour::watch(Time now) {
     outputs_.tell_holder(
         {{}, Severity::info, "idle", Reason::none, "idle in " + std::string(decision_.mode->name)});
   }
-  if (goal_state() != GoalState::blocked) {
+  const bool unreachable = goal_state() == GoalState::blocked && progress_.unreachable;
+  if (unreachable && !unreachable_told_)
+    outputs_.tell_holder(
+        {{}, Severity::warning, "unreachable", Reason::goal_unreachable, "no way leads to the goal"});
+  unreachable_told_ = unreachable;
+  if (goal_state() != GoalState::blocked || unreachable) {
     free_since_ = now;
     blocked_told_ = false;
   } else if (!blocked_told_ && now - free_since_ >= params_.blocked_after) {
@@ -220,11 +225,12 @@ BehaviourView Behaviour::view() const {
   v.goal_state = goal_state();
   v.goal_id = goal_.id;
   v.goal = goal_.place;
-  v.reason = stopped_                             ? Reason::stopped
-             : v.goal_state == GoalState::blocked ? Reason::blocked
-             : v.moving_allowed                   ? Reason::none
-             : decision_.reason != Reason::none   ? decision_.reason
-                                                  : fell_because_;
+  v.reason = stopped_ ? Reason::stopped
+             : v.goal_state == GoalState::blocked
+                 ? (progress_.unreachable ? Reason::goal_unreachable : Reason::blocked)
+             : v.moving_allowed                 ? Reason::none
+             : decision_.reason != Reason::none ? decision_.reason
+                                                : fell_because_;
   return v;
 }
 

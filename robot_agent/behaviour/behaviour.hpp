@@ -17,7 +17,8 @@ enum class GoalState : std::uint8_t { none, kept, active, blocked, reached };
 /// How navigation gets on with the goal.
 struct Progress {
   bool arrived{};
-  bool blocked{};  ///< every way is blocked
+  bool blocked{};      ///< every way is blocked
+  bool unreachable{};  ///< no way leads there, not even through what was not seen yet; then `blocked`, too
   bool operator==(const Progress&) const = default;
 };
 
@@ -126,7 +127,7 @@ class Behaviour : public Requests {
   Progress progress_{};
   BehaviourView told_{};  ///< when changed() was called last
   Time idle_since_{}, free_since_{};
-  bool idle_told_{}, blocked_told_{}, begun_{};
+  bool idle_told_{}, blocked_told_{}, unreachable_told_{}, begun_{};
 };
 
 }  // namespace adit::agent

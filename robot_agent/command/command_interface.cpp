@@ -21,15 +21,16 @@ Line line_of(CommandKind kind) {
     case CommandKind::query:
     case CommandKind::restart:
     case CommandKind::policy:
+    case CommandKind::plan:
     case CommandKind::unknown:
       break;
   }
   return Line::none;
 }
-/// Take, stop and query need neither holder nor epoch.
+/// Take, stop and questions need neither holder nor epoch.
 bool open_to_all(CommandKind kind) {
   return kind == CommandKind::take || kind == CommandKind::stop || kind == CommandKind::query ||
-         kind == CommandKind::unknown;
+         kind == CommandKind::plan || kind == CommandKind::unknown;
 }
 
 }  // namespace
@@ -150,6 +151,7 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       outputs_.changed();
       return {};
     case CommandKind::query:
+    case CommandKind::plan:  // who asks the global planner puts its words into the answer
       return {};
     case CommandKind::restart:
     case CommandKind::policy:

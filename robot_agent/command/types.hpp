@@ -45,6 +45,7 @@ enum class CommandKind : std::uint8_t {
   query,
   restart,
   policy,
+  plan,
   unknown
 };
 
@@ -55,7 +56,7 @@ struct Command {
   std::uint64_t seq{};
   CommandKind kind{CommandKind::query};
   std::string text{};  ///< mode: its name; grant: the operator's; restart, policy: the component
-  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  ///< goto: map frame, m; z may be NaN
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  ///< goto, plan: map frame, m; z may be NaN
   bool flag{};                                        ///< reset: override; policy: automatic
 };
 

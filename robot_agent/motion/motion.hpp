@@ -1,5 +1,7 @@
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
+#include <limits>
 #include <variant>
 
 #include "core/geometry/pose.hpp"
@@ -22,10 +24,14 @@ struct Guidance {
   Twist2 stick{};
   bool operator==(const Guidance&) const = default;
 };
-/// A place for the local planner: map frame, m.
+/// A place to drive to: map frame, m; z NaN: the floor that the robot is on.
 struct GoTo {
-  Eigen::Vector2d goal{0.0, 0.0};
-  bool operator==(const GoTo& other) const { return goal == other.goal; }
+  Eigen::Vector3d goal{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};
+  bool operator==(const GoTo& other) const {
+    const bool same_floor =
+        goal.z() == other.goal.z() || (std::isnan(goal.z()) && std::isnan(other.goal.z()));
+    return goal.head<2>() == other.goal.head<2>() && same_floor;
+  }
 };
 
 /// What a source asks of navigation.

@@ -15,11 +15,12 @@ constexpr double kHeldWithin = 0.3;     // m: who came further is not held, only
 }  // namespace
 
 Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
-                       PlanService& planner, Outputs outputs)
+                       PlanService& planner, RouteService* router, Outputs outputs)
     : Component("navigation", strand, std::move(log)),
       params_(std::move(params)),
       localisation_(localisation),
       planner_(planner),
+      router_(router),
       outputs_(std::move(outputs)),
       controller_(nav::make_controller(params_.platform.controller, params_.platform).value()),
       monitor_(params_.platform) {}
@@ -28,6 +29,8 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
   if (motion == motion_) return;
   const bool other_kind = motion.index() != motion_.index();
   if (std::holds_alternative<GoTo>(motion)) ++goal_generation_;
+  step_.reset();
+  blocked_ = false;
   motion_ = motion;
   held_since_.reset();
   if (other_kind) {
@@ -96,7 +99,12 @@ void Navigation::watch_held(bool stopped, Time now) {
 }
 
 nav::Target Navigation::target() const {
-  if (const auto* go = std::get_if<GoTo>(&motion_)) return nav::Target::to(localisation_.to_odom(go->goal));
+  if (const auto* go = std::get_if<GoTo>(&motion_)) {
+    const auto* step = step_on(now());
+    if (!step) return nav::Target::to(localisation_.to_odom(go->goal.head<2>()));
+    if (step->state == nav::RouteStep::State::unreachable) return {};
+    return nav::Target::to(step->target.head<2>());
+  }
   const auto* guidance = std::get_if<Guidance>(&motion_);
   if (!guidance || guidance->stick.zero()) return {};
   const Twist2& stick = guidance->stick;
@@ -124,9 +132,45 @@ void Navigation::add_scan(std::shared_ptr<Scan> scan, Time now) {
   scanned_ = now;
   monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
   if (planning(now))
-    waiting_ = std::move(scan);
+    waiting_ = scan;
   else
-    plan(std::move(scan), now);
+    plan(scan, now);
+  ask_route(scan, now);
+}
+
+const nav::RouteStep* Navigation::step_on(Time now) const {
+  const Defects& defects = params_.defects;  // who plans blindly is not led either
+  if (defects.has(Defect::blind_planner) || defects.has(Defect::blind_and_unwatched)) return nullptr;
+  return step_ && now - step_made_ < params_.step_age ? &*step_ : nullptr;
+}
+
+void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
+  if (!router_) return;
+  if (routing_ && router_instance_ == router_->instance() && now - *routing_ < kCycleLost) return;
+  auto job = std::make_shared<RouteJob>();
+  job->scan = scan;
+  const Pose2 pose = localisation_.odom().planar();
+  job->place = {pose.x, pose.y, localisation_.z()};
+  if (const auto* go = std::get_if<GoTo>(&motion_)) {
+    const Eigen::Vector2d goal = localisation_.to_odom(go->goal.head<2>());
+    job->goal = {goal.x(), goal.y(), go->goal.z()};
+    job->blocked = blocked_;
+  }
+  job->generation = goal_generation_;
+  job->made = now;
+  routing_ = now;
+  router_instance_ = router_->instance();
+  router_->step(job, guard([this, job] { routed(*job); }));
+}
+
+void Navigation::routed(const RouteJob& job) {
+  routing_.reset();
+  if (!job.goal || job.generation != goal_generation_ || !std::holds_alternative<GoTo>(motion_)) return;
+  step_ = job.step;
+  step_made_ = job.made;
+  if (job.step.state != nav::RouteStep::State::unreachable) return;
+  has_plan_ = false;  // it stands: every way would be a wrong one
+  outputs_.progress({.blocked = true, .unreachable = true});
 }
 
 // A cycle of a planner that failed or hung never reports back.
@@ -138,6 +182,8 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   auto job = std::make_shared<PlanJob>();
   job->scan = std::move(scan);
   job->target = target();
+  const auto* step = step_on(now);
+  job->last = !step || step->last;
   job->pose = localisation_.odom().planar();
   job->generation = goal_generation_;
   job->made = now;
@@ -158,7 +204,12 @@ void Navigation::planned(const PlanJob& job) {
     has_plan_ = true;
     plan_made_ = job.made;
     const bool held = held_since_ && now() - *held_since_ >= params_.held_after;
-    if (for_goal) outputs_.progress({job.plan.arrived, job.plan.blocked || held});
+    if (!for_goal) {
+      // nothing to report
+    } else {
+      blocked_ = job.plan.blocked || held;
+      outputs_.progress({.arrived = job.plan.arrived && job.last, .blocked = blocked_});
+    }
   }
   if (waiting_) plan(std::exchange(waiting_, nullptr), now());
 }

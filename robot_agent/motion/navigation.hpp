@@ -12,6 +12,7 @@
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/motion.hpp"
 #include "robot_agent/motion/planner.hpp"
+#include "robot_agent/motion/router.hpp"
 
 namespace adit::agent {
 
@@ -19,6 +20,7 @@ struct NavigationParams {
   Platform platform{};
   Duration period{50ms};        ///< of step(): the driver's rate, [20 ms, 50 ms]
   Duration plan_age{500ms};     ///< an older plan moves nothing
+  Duration step_age{2s};        ///< after an older step of the route the goal itself is headed for
   Duration scan_age{500ms};     ///< older points: the terrain is not known
   Duration held_after{1500ms};  ///< a robot that its collision monitor keeps on the spot this long is blocked
   Duration warned_for{2s};      ///< a warning is told anew when its cause was away for longer
@@ -29,9 +31,10 @@ struct NavigationParams {
 enum class Warning { obstacle_near, lidar_silent };
 
 /// Turns what the mux passes into velocities within the platform's limits: as they are, or along the local
-/// planner's paths. Has the planner plan once per scan, on another strand, and follows on its own. The
-/// collision monitor has the last word on each velocity: in autonomous modes and smart joystick it stops the
-/// robot, in manual mode it slows it down and has the operator warned.
+/// planner's paths. Has the planner plan once per scan, on another strand, and follows on its own. To a goal
+/// it is led by the router, which sees every scan, too; while there is none (`router` null, or away) the goal
+/// is headed for as it is. The collision monitor has the last word on each velocity: in autonomous modes and
+/// smart joystick it stops the robot, in manual mode it slows it down and has the operator warned.
 class Navigation : public Component, public NavigationInput {
  public:
   struct Outputs {
@@ -41,7 +44,7 @@ class Navigation : public Component, public NavigationInput {
   };
 
   Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
-             PlanService& planner, Outputs outputs);
+             PlanService& planner, RouteService* router, Outputs outputs);
 
   /// Velocities and zero go to the driver within the call.
   void accept(MuxKey, const Motion& motion, Time now) override;
@@ -55,6 +58,10 @@ class Navigation : public Component, public NavigationInput {
 
  private:
   nav::Target target() const;
+  /// Where the route leads next; nothing while there is none.
+  const nav::RouteStep* step_on(Time now) const;
+  void ask_route(const std::shared_ptr<Scan>& scan, Time now);
+  void routed(const RouteJob& job);
   Twist2 along_plan(Time now);
   void watch_held(bool stopped, Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
@@ -68,6 +75,7 @@ class Navigation : public Component, public NavigationInput {
   NavigationParams params_;
   const Localisation& localisation_;
   PlanService& planner_;
+  RouteService* router_;  // null: there is none
   Outputs outputs_;
   std::unique_ptr<nav::Controller> controller_;
   nav::CollisionMonitor monitor_;
@@ -79,10 +87,15 @@ class Navigation : public Component, public NavigationInput {
   std::array<std::optional<Time>, 2> warned_{};  // by Warning: when its cause was there last
   std::optional<Time> held_since_{};  // the monitor stops the robot, with no more than short breaks
   Time held_last_{};
-  Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
-  std::optional<Time> planning_{};     // since when a cycle is under way
-  std::uint64_t planner_instance_{};   // of the planner that was asked
-  std::shared_ptr<Scan> waiting_{};    // the newest scan that came while planning
+  Eigen::Vector2d held_at_{0.0, 0.0};     // odometry frame
+  std::optional<Time> planning_{};        // since when a cycle is under way
+  std::uint64_t planner_instance_{};      // of the planner that was asked
+  std::shared_ptr<Scan> waiting_{};       // the newest scan that came while planning
+  std::optional<Time> routing_{};         // since when a step is being looked for
+  std::uint64_t router_instance_{};       // of the router that was asked
+  std::optional<nav::RouteStep> step_{};  // of the goal asked for last
+  Time step_made_{};
+  bool blocked_{};  // the last plan towards the goal was
   std::optional<Time> scanned_{};
   std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // odometry frame
 };

@@ -18,6 +18,7 @@ struct Scan {
 struct PlanJob {
   std::shared_ptr<Scan> scan{};
   nav::Target target{};        ///< kind none: the scan enters the map, nothing is planned
+  bool last{true};             ///< `target` is the goal itself, no place on the way there
   Pose2 pose{};                ///< odometry frame
   std::uint64_t generation{};  ///< of the goal, for whoever asked
   Time made{};

@@ -41,6 +41,8 @@ CommandKind from_radio(radio::CommandKind kind) {
       return CommandKind::restart;
     case radio::CMD_POLICY:
       return CommandKind::policy;
+    case radio::CMD_PLAN:
+      return CommandKind::plan;
   }
   return CommandKind::unknown;
 }

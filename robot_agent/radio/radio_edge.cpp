@@ -116,9 +116,19 @@ Result<void> RadioEdge::listen(Parts parts) {
                   }),
            e.read(
                topics::command,
-               [&e, commands, answer](const radio::Command&c, const wire::SampleInfo&info) {
+               [&e, commands, answer, find_route = parts.find_route](const radio::Command&c,
+                                                                     const wire::SampleInfo&info) {
                  commands([&](CommandInterface& interface) {
-                   answer(interface.handle(from_radio(c, info.sender), e.strand.now()));
+                   const Command command = from_radio(c, info.sender);
+                   const auto given = interface.handle(command, e.strand.now());
+                   if (!given || !given->accepted() || command.kind != CommandKind::plan)
+                     return answer(given);
+                   find_route(command.position, [answer, given = *given](const Result<std::string>& route) {
+                     Answer told = given;
+                     told.reason = route ? Reason::none : route.reason();
+                     told.text = route ? *route : route.error().text;
+                     answer(told);
+                   });
                  });
                },
                e.robot),

@@ -6,6 +6,12 @@
 namespace adit::sim {
 namespace {
 
+/// Components that can be drawn: robots without a router there are, too.
+const std::vector<std::string>& of_every_robot() {
+  static const std::vector<std::string> names{"command", "planner", "sensors"};
+  return names;
+}
+
 // Written with three decimals, and read as the same again.
 double round_ms(double value) { return std::round(value * 1000.0) / 1000.0; }
 
@@ -67,9 +73,9 @@ class Draw {
     if (kind == "crash") {
       out.what = Crash{random_.chance(0.7) ? robot() : station(), {}};
     } else if (kind == "crash_component") {
-      out.what = Crash{robot(), pick(component_names(), random_)};
+      out.what = Crash{robot(), pick(of_every_robot(), random_)};
     } else if (kind == "hang") {
-      out.what = Hang{robot(), pick(component_names(), random_)};
+      out.what = Hang{robot(), pick(of_every_robot(), random_)};
     } else if (kind == "cut") {
       const auto [a, b] = two();
       const bool turned = random_.chance(0.5);
@@ -119,7 +125,7 @@ const std::vector<std::string>& random_fault_kinds() {
 }
 
 const std::vector<std::string>& component_names() {
-  static const std::vector<std::string> names{"command", "planner", "sensors"};
+  static const std::vector<std::string> names{"command", "planner", "router", "sensors"};
   return names;
 }
 

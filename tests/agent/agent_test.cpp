@@ -7,6 +7,7 @@ namespace {
 
 using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 
 class AgentTest : public testing::Test {
  protected:
@@ -138,6 +139,58 @@ TEST_F(AgentTest, GoalInAnObstacleIsRefused) {
   take();
   EXPECT_EQ(bench.ask(op1, radio::CMD_GOTO, {}, 3.0, 0.0), Reason::goal_unreachable);
   EXPECT_THAT(op1.told(), Contains("mode_refused"));
+}
+
+class RoutedAgentTest : public testing::Test {
+ protected:
+  static AgentParams params() {
+    AgentParams p{};
+    p.platform.router = "graph";
+    return p;
+  }
+  RoutedAgentTest() { bench.run(1500ms); }
+  AgentBench bench{params()};
+  AgentBench::Operator& op1 = bench.join("op1");
+};
+
+TEST_F(RoutedAgentTest, TellsTheWayToAnybodyAndStays) {
+  const auto way = [&](double x, double y) {
+    op1.answers.clear();
+    EXPECT_EQ(bench.ask(op1, radio::CMD_PLAN, {}, x, y), Reason::none);
+    return op1.answers.empty() ? "" : op1.answers.back().text();
+  };
+  EXPECT_THAT(way(3.0, 0.0), testing::StartsWith("3.0 m"));
+  EXPECT_THAT(way(60.0, 0.0), testing::AllOf(HasSubstr("not seen yet: "), testing::EndsWith("60.0 0.0")));
+  EXPECT_EQ(bench.ask(op1, radio::CMD_PLAN, {}, std::nan(""), 0.0), Reason::out_of_range);
+  bench.run(1s);
+  EXPECT_EQ(bench.command, Twist2{});
+  EXPECT_EQ(op1.behaviour.mode(), "hold");
+}
+
+TEST_F(RoutedAgentTest, SaysWhenItsRouterDoesNotAnswer) {
+  ASSERT_TRUE(bench.agent().inject("router", ComponentFault::hang));
+  bench.run(50ms);
+  bench.send(op1, radio::CMD_PLAN, {}, 3.0, 0.0);
+  bench.run(600ms);
+  ASSERT_FALSE(op1.answers.empty());
+  EXPECT_EQ(op1.answers.back().reason(), static_cast<std::uint16_t>(Reason::no_answer));
+  EXPECT_THAT(op1.answers.back().text(), HasSubstr("router"));
+}
+
+TEST_F(AgentTest, WithoutARouterThereIsNoWayToTell) {
+  EXPECT_EQ(bench.ask(op1, radio::CMD_PLAN, {}, 3.0, 0.0), Reason::not_supported);
+  EXPECT_FALSE(bench.agent().inject("router", ComponentFault::crash));
+}
+
+TEST(AgentPlatform, ARouterThatThereIsNotIsAnError) {
+  AgentParams params{};
+  params.platform.router = "magic";
+  try {
+    AgentBench bench(params);
+    FAIL() << "it started";
+  } catch (const std::runtime_error& refused) {
+    EXPECT_THAT(refused.what(), testing::AllOf(HasSubstr("magic"), HasSubstr("graph")));
+  }
 }
 
 TEST_F(AgentTest, SilentLidarStopsTheWayAndItGoesOn) {

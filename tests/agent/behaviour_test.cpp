@@ -156,7 +156,7 @@ TEST_F(BehaviourTest, StopIsZeroWithinTheCallAndResetMovesNothing) {
 TEST_F(BehaviourTest, GoalIsKeptOverAStopAndGoesOnByRequest) {
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
   run(100ms);
-  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1, 0}}}));
   EXPECT_EQ(behaviour.view().goal_state, GoalState::active);
   behaviour.stop_changed(true, now);
   EXPECT_EQ(nav.last, Motion{Stand{}});
@@ -166,7 +166,7 @@ TEST_F(BehaviourTest, GoalIsKeptOverAStopAndGoesOnByRequest) {
   EXPECT_EQ(nav.last, Motion{Stand{}});
   ASSERT_TRUE(behaviour.request_mode("waypoint", now));
   run(100ms);
-  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1, 0}}}));
   EXPECT_EQ(behaviour.view().goal_id, 1u);
 }
 
@@ -208,6 +208,19 @@ TEST_F(BehaviourTest, ArrivalEndsTheMotionNotTheMode) {
   EXPECT_EQ(behaviour.view().goal_state, GoalState::active);
 }
 
+TEST_F(BehaviourTest, WhoCannotGetThereSaysSoOnceAndGoesOnWhenThereIsAWay) {
+  ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
+  run(100ms);
+  behaviour.set_progress({.blocked = true, .unreachable = true});
+  run(20s);
+  EXPECT_THAT(codes(), testing::ElementsAre("unreachable")) << "and not blocked as well";
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
+  EXPECT_EQ(behaviour.view().reason, Reason::goal_unreachable);
+  behaviour.set_progress({});
+  run(100ms);
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::active);
+}
+
 TEST_F(BehaviourTest, HandoverEndsManualModesOnly) {
   enter_manual();
   behaviour.holder_changed(now);
@@ -216,7 +229,7 @@ TEST_F(BehaviourTest, HandoverEndsManualModesOnly) {
   behaviour.holder_changed(now);
   run(100ms);
   EXPECT_EQ(mode(), "waypoint");
-  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1, 0}}}));
 }
 
 TEST_F(BehaviourTest, StickOfTheFormerHolderDoesNotCount) {
@@ -236,7 +249,7 @@ TEST_F(BehaviourTest, SilentDriverPausesAutonomousModesAndEndsManualOnes) {
   EXPECT_EQ(nav.last, Motion{Stand{}});
   facts.driver_alive = true;
   run(100ms);
-  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1}}}));
+  EXPECT_EQ(nav.last, (Motion{GoTo{{5, 1, 0}}}));
   enter_manual();
   facts.driver_alive = false;
   run(50ms);

@@ -21,6 +21,24 @@ class NearPlanner final : public PlanService {
   Planner planner_;
 };
 
+/// A router whose answers the test gives.
+class ToldRouter final : public RouteService {
+ public:
+  std::uint64_t instance() const override { return 1; }
+  void step(std::shared_ptr<RouteJob> job, Task done) override {
+    if (!answers) return;
+    last = job;
+    job->step =
+        job->goal && tells ? *tells : nav::RouteStep{.target = job->goal.value_or(Eigen::Vector3d{0, 0, 0})};
+    done();
+  }
+  void find(std::shared_ptr<RouteQuery>, Task) override {}
+
+  bool answers{true};
+  std::optional<nav::RouteStep> tells{};  ///< none: straight to the goal
+  std::shared_ptr<RouteJob> last{};
+};
+
 /// Navigation on a virtual strand: a scan every 100 ms, a step every 50 ms, with odometry and points given by
 /// the test.
 class NavigationTest : public testing::Test {
@@ -33,7 +51,7 @@ class NavigationTest : public testing::Test {
     go({6, 0});
   }
   void go(const Eigen::Vector2d& goal) {
-    goal_writer.write(GoTo{goal}, strand->now());
+    goal_writer.write(GoTo{{goal.x(), goal.y(), 0}}, strand->now());
     run(100ms);
   }
   void run(Duration time) {
@@ -72,12 +90,14 @@ class NavigationTest : public testing::Test {
   Twist2 velocity{};
   Progress progress{};
   NearPlanner planner{*strand};
+  ToldRouter router{};
   Navigation navigation{
       NavigationParams{},
       *strand,
       {},
       localisation,
       planner,
+      &router,
       {[this](const Twist2& v) { velocity = v; }, [this](const Progress& p) { progress = p; }}};
   Mux mux{navigation};
   Mux::Output goal_writer{mux.connect("goal", 10s)};
@@ -109,6 +129,52 @@ TEST_F(NavigationTest, AnotherGoalBeginsUnheld) {
   go({6, 0.5});
   cycle(planned, actual);
   EXPECT_FALSE(progress.blocked);
+}
+
+TEST_F(NavigationTest, IsLedByTheRouteNotByTheGoal) {
+  router.tells = nav::RouteStep{nav::RouteStep::State::along, {-3, 3, 0}, false};
+  go({6, 0});
+  for (int i = 0; i < 10; ++i) cycle({}, {});
+  EXPECT_GT(velocity.wz, 0.1) << "the route leads back and to the left";
+}
+
+TEST_F(NavigationTest, APlaceOnTheWayIsNoArrival) {
+  router.tells = nav::RouteStep{nav::RouteStep::State::along, {0.05, 0, 0}, false};
+  go({6, 0});
+  for (int i = 0; i < 5; ++i) cycle({}, {});
+  EXPECT_FALSE(progress.arrived);
+  router.tells->last = true;
+  for (int i = 0; i < 5; ++i) cycle({}, {});
+  EXPECT_TRUE(progress.arrived);
+}
+
+TEST_F(NavigationTest, WhatCannotBeReachedIsStoodBeforeAndTold) {
+  for (int i = 0; i < 10; ++i) cycle({}, {});
+  ASSERT_GT(velocity.vx, 0.3);
+  router.tells = nav::RouteStep{nav::RouteStep::State::unreachable, {6, 0, 0}, true};
+  for (int i = 0; i < 3; ++i) cycle({}, {});
+  EXPECT_TRUE(velocity.zero());
+  EXPECT_TRUE(progress.blocked && progress.unreachable);
+  router.tells.reset();
+  for (int i = 0; i < 10; ++i) cycle({}, {});
+  EXPECT_FALSE(progress.unreachable) << "a way was found";
+  EXPECT_GT(velocity.vx, 0.3);
+}
+
+TEST_F(NavigationTest, WithoutARouterItHeadsForTheGoal) {
+  router.tells = nav::RouteStep{nav::RouteStep::State::along, {-3, 3, 0}, false};
+  go({6, 0});
+  for (int i = 0; i < 5; ++i) cycle({}, {});
+  router.answers = false;
+  for (int i = 0; i < 45; ++i) cycle({}, {});
+  EXPECT_GT(velocity.vx, 0.3);
+}
+
+TEST_F(NavigationTest, TheRouterIsToldOfWhatIsBlocked) {
+  for (int i = 0; i < 25; ++i) cycle(planned, actual);
+  ASSERT_TRUE(progress.blocked);
+  EXPECT_TRUE(router.last->blocked);
+  EXPECT_EQ(router.last->goal->head<2>(), Eigen::Vector2d(6, 0));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadFile{"bad_name", "name: r 1\nplatform: wheeled\n", "r.yaml:1"},
                     BadFile{"short_pose", "name: r1\nplatform: wheeled\npose: [1, 2]\n", "r.yaml:3"},
                     BadFile{"unknown_platform", "name: r1\nplatform: hovercraft\n",
-                            "no 'hovercraft' in config/platforms; there are: legged, tracked, wheeled"},
+                            "no 'hovercraft' in config/platforms; there are: legged, scout, tracked, wheeled"},
                     BadFile{"missing_tree", "name: r1\nplatform: wheeled\ntree: oak.xml\n", "r.yaml:3"},
                     BadFile{"radio_key", "name: r1\nplatform: wheeled\nradio: {domian: 3}\n", "domian"},
                     BadFile{"domain_range", "name: r1\nplatform: wheeled\nrobot_domain: 500\n", "r.yaml:3"},

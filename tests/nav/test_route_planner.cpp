@@ -27,6 +27,25 @@ TEST(RoutePlanner, StraightOverOpenGround) {
   EXPECT_EQ(route.points.back().head<2>(), Eigen::Vector2d(18.5, 4));
 }
 
+// What passed for ground a step and a slope up, once, makes no floor of its own between the robot and the
+// rest.
+TEST(RoutePlanner, WhatPassesForGroundIsNoFloorOfItsOwn) {
+  RoutePlanner planner(wheeled());
+  const auto tell = [&planner](int x, int y, double z) { planner.set_ground(middle(x, y, z)); };
+  for (int y = 0; y < 96; y += 16)
+    for (int x = 0; x < 160; x += 16) tell(x, y, 0.41);
+  for (int y = 0; y < 96; ++y)
+    for (int x = 0; x < 160; ++x)
+      if (x % 16 > 2 || y % 16 > 2) tell(x, y, 0.0);
+  for (int y = 0; y < 96; y += 16)
+    for (int x = 0; x < 160; x += 16) tell(x, y, 0.0);
+  planner.finish();
+  const Route route = planner.plan({0.8, 4.0, 0}, {15.2, 4.0, 0});
+  ASSERT_TRUE(route.found());
+  EXPECT_EQ(route.unknown_length, 0.0);
+  EXPECT_LT(route.length, 16.0);
+}
+
 // Against brute force: found when and only when there is a way, hardly longer, never through a wall.
 TEST(RoutePlanner, NearlyShortestInRandomWorlds) {
   int found = 0, proven = 0;

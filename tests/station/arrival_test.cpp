@@ -71,6 +71,17 @@ TEST_F(ArrivalTest, BlockedForFiveSecondsIsAnEndAMomentIsNot) {
   EXPECT_NEAR(seconds(scheduler_.elapsed() - before), 15.0, 0.3);
 }
 
+TEST_F(ArrivalTest, NoWayThereEndsItAtOnce) {
+  r1().behaviour.reason(static_cast<std::uint16_t>(Reason::goal_unreachable));
+  goal_later(2s, radio::GOAL_BLOCKED);
+  const Duration before = scheduler_.elapsed();
+  const Outcome outcome = execute("goto r1 12 0.5 --wait");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.error, HasSubstr("no way leads to the goal"));
+  EXPECT_THAT(outcome.error, HasSubstr("[goal_unreachable]"));
+  EXPECT_LT(seconds(scheduler_.elapsed() - before), 2.5);
+}
+
 TEST_F(ArrivalTest, StoppedEndsIt) {
   begin("goto r1 12 0.5 --wait");
   run_for(2s);

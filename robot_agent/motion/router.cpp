@@ -1,0 +1,71 @@
+#include "robot_agent/motion/router.hpp"
+
+#include <cstdio>
+
+namespace adit::agent {
+
+struct Router::Maps {
+  explicit Maps(const RouterParams& params) : planner(params.platform, params.route) {}
+  nav::RoutePlanner planner;
+  nav::RouteKeeper keeper{};
+};
+
+Router::Router(RouterParams params, Executor& strand, Log log)
+    : Component("router", strand, std::move(log), {.beat = 100ms}),
+      params_(std::move(params)),
+      maps_(std::make_shared<Maps>(params_)) {}
+
+void Router::step(std::shared_ptr<RouteJob> job, Task done) {
+  if (!running()) return;
+  const bool takes = !taken_ || job->made - *taken_ >= params_.least;
+  if (takes) taken_ = job->made;
+  compute(
+      params_.modelled,
+      [job, takes, maps = maps_] {
+        const double stamp = seconds(job->made.time_since_epoch());
+        if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp);
+        if (job->goal)
+          job->step = maps->keeper.step(maps->planner, job->place, *job->goal, job->blocked, stamp);
+        else
+          maps->keeper.clear();
+      },
+      std::move(done));
+}
+
+void Router::find(std::shared_ptr<RouteQuery> query, Task done) {
+  if (!running()) return;
+  compute(
+      params_.modelled, [query, maps = maps_] { query->route = maps->planner.plan(query->from, query->to); },
+      std::move(done));
+}
+
+Result<std::string> describe(const nav::Route& route, const Pose2& start) {
+  switch (route.status) {
+    case nav::RouteStatus::found:
+      break;
+    case nav::RouteStatus::unreachable:
+      return {Reason::goal_unreachable, "no way leads there, not even through what was not seen yet"};
+    case nav::RouteStatus::start_blocked:
+      return {Reason::goal_unreachable, "the robot stands where nothing around it is passable"};
+    case nav::RouteStatus::too_far:
+      return {Reason::goal_unreachable, "too far: the search ended before it came there"};
+  }
+  constexpr std::size_t most = 12;  // corners told
+  char text[64];
+  std::snprintf(text, sizeof text, "%.1f m", route.length);
+  std::string told = text;
+  if (route.attempt()) {
+    std::snprintf(text, sizeof text, ", %.1f m of it not seen yet", route.unknown_length);
+    told += text;
+  }
+  told += ": ";
+  for (std::size_t i = 1; i < route.points.size(); ++i) {
+    if (i > most) return told + " ...";
+    const Eigen::Vector2d corner = start * Eigen::Vector2d(route.points[i].head<2>());
+    std::snprintf(text, sizeof text, "%s%.1f %.1f", i > 1 ? ", " : "", corner.x(), corner.y());
+    told += text;
+  }
+  return told;
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,68 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "core/component/component.hpp"
+#include "nav/route/route_keeper.hpp"
+#include "robot_agent/motion/planner.hpp"
+
+namespace adit::agent {
+
+/// A scan for the map of the global planner, which takes some of them, and where to drive next. Odometry
+/// frame, m.
+struct RouteJob {
+  std::shared_ptr<const Scan> scan{};
+  std::optional<Eigen::Vector3d> goal{};  ///< none: the scan enters the map, no route is asked for
+  Eigen::Vector3d place{0, 0, 0};         ///< of the body
+  bool blocked{};                         ///< the local planner found no way along the step before
+  std::uint64_t generation{};             ///< of the goal, for whoever asked
+  Time made{};
+  nav::RouteStep step{};
+};
+
+/// A question to the global planner. Odometry frame, m.
+struct RouteQuery {
+  Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
+  nav::Route route{};
+};
+
+struct RouterParams {
+  Platform platform{};
+  nav::RouteParams route{};
+  Duration least{200ms};    ///< between two scans that enter the map
+  Duration modelled{20ms};  ///< what a job takes in rehearsal
+};
+
+/// The global planner, on a strand of its own: a graph of the free space that was seen, and the route that is
+/// kept to. When it is made anew its map is empty; the next scans fill it.
+class Router : public Component {
+ public:
+  Router(RouterParams params, Executor& strand, Log log);
+  /// On its strand. `done` runs there when the job's step is known.
+  void step(std::shared_ptr<RouteJob> job, Task done);
+  /// The same for a route of which nothing is kept.
+  void find(std::shared_ptr<RouteQuery> query, Task done);
+
+ private:
+  struct Maps;
+  RouterParams params_;
+  std::shared_ptr<Maps> maps_;
+  std::optional<Time> taken_{};  ///< when the last scan entered the map
+};
+
+/// The way to whatever router there is.
+class RouteService {
+ public:
+  virtual ~RouteService() = default;
+  /// Rises when the router is made anew: jobs from before are lost.
+  virtual std::uint64_t instance() const = 0;
+  /// `done` runs on the caller's strand; never when the router fails or hangs.
+  virtual void step(std::shared_ptr<RouteJob> job, Task done) = 0;
+  virtual void find(std::shared_ptr<RouteQuery> query, Task done) = 0;
+};
+
+/// A route for people, its corners in the map frame; goal_unreachable, with why, when there is none.
+/// `start`: origin of the route's frame in the map.
+Result<std::string> describe(const nav::Route& route, const Pose2& start);
+
+}  // namespace adit::agent

@@ -1,0 +1,53 @@
+// The global planner in the agent: out of dead ends, round what turns out blocked, and what cannot be reached
+// told as such.
+#include "tests/rehearsal/run_text.hpp"
+
+namespace adit::sim {
+namespace {
+
+RunReport run(const std::string& boxes, int duration, const std::string& script,
+              const std::string& rest = "") {
+  return run_text(
+      "world: {boxes: [" + boxes + "], floor: 0, ceiling: 3}\nduration: " + std::to_string(duration) +
+          "\nlink: wifi\nlidar: planar\nrobots:\n  - {id: r1, platform: scout, pose: [0, 0, 0]}\n"
+          "basestations:\n  - {id: op1, pose: [0, 0]}\nscript:\n  - {at: 2, by: op1, do: take r1}\n" +
+          script + rest,
+      "route.yaml");
+}
+void expect_ok(const RunReport& report) {
+  for (const std::string& line : report.complaints()) ADD_FAILURE() << line;
+  for (const TimedEvent& event : report.events)
+    if (testing::Test::HasFailure())
+      std::printf("%6.1f %s %s\n", seconds(event.at), event.robot.c_str(), event.text.c_str());
+}
+
+// A pocket that is open behind the robot, and walls around it all.
+constexpr const char* pocket =
+    "[4, 4.3, -3, 3, 0, 2], [-3, 4.3, 3, 3.3, 0, 2], [-3, 4.3, -3.3, -3, 0, 2], "
+    "[-9, 13, -8, -7.7, 0, 2], [-9, 13, 7.7, 8, 0, 2], [-9, -8.7, -8, 8, 0, 2], [12.7, 13, -8, 8, 0, 2]";
+
+TEST(Route, LeavesADeadEnd) {
+  expect_ok(run(pocket, 60, "  - {at: 3, by: op1, do: goto r1 8 0}\n",
+                "expect:\n  - {by: 55, robot: r1, near: [8, 0, 0.5]}\n  - {always: no_collision}\n"));
+}
+
+TEST(Route, AHungRouterIsMadeAnewOnTheWayAndLeadsOutAllTheSame) {
+  expect_ok(run(pocket, 70, "  - {at: 3, by: op1, do: goto r1 8 0}\n",
+                "faults:\n  - {at: 6, hang: r1/router}\n  - {at: 15, crash: r1/router}\n"
+                "expect:\n  - {by: 65, robot: r1, near: [8, 0, 0.5]}\n  - {always: no_collision}\n"));
+}
+
+TEST(Route, AClosedRoomIsUnreachableAndToldWithinTenSeconds) {
+  const RunReport report = run(
+      "[-9, 13, -8, -7.7, 0, 2], [-9, 13, 7.7, 8, 0, 2], [-9, -8.7, -8, 8, 0, 2], [12.7, 13, -8, 8, 0, 2]",
+      20, "  - {at: 3, by: op1, do: goto r1 20 0}\n",
+      "expect:\n  - {at: 13, robot: r1, mode: waypoint}\n  - {always: no_collision}\n");
+  expect_ok(report);
+  bool told = false;
+  for (const TimedEvent& event : report.events)
+    told = told || (event.text == "no way to its goal" && event.at < 13s);
+  EXPECT_TRUE(told);
+}
+
+}  // namespace
+}  // namespace adit::sim
