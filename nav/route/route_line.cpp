@@ -107,17 +107,19 @@ void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) const {
 }
 
 bool RouteLine::measure(Route& route) const {
+  bool passable = true;
   route.length = route.unknown_length = route.cost = 0;
   route.unknown.clear();
   for (std::size_t i = 0; i + 1 < route.points.size(); ++i) {
     const LineCost leg = line(route.points[i], route.points[i + 1]);
-    if (!leg.passable) return false;
-    route.cost += leg.cost;
-    route.unknown.push_back(leg.unknown > 2 * kRouteCell);
-    route.unknown_length += leg.unknown > 2 * kRouteCell ? leg.unknown : 0.0;
-    route.length += (route.points[i + 1] - route.points[i]).norm();
+    const double length = (route.points[i + 1] - route.points[i]).norm();
+    passable = passable && leg.passable;
+    route.cost += leg.passable ? leg.cost : length;
+    route.unknown.push_back(leg.passable && leg.unknown > 2 * kRouteCell);
+    route.unknown_length += route.unknown.back() ? leg.unknown : 0.0;
+    route.length += length;
   }
-  return true;
+  return passable;
 }
 
 }  // namespace adit::nav

@@ -26,7 +26,7 @@ class RouteLine {
   /// Replaces parts of a way by straight lines, where those are passable and cost no more. Each leg of
   /// `points` must be passable.
   void shorten(std::vector<Eigen::Vector3d>& points) const;
-  /// Fills in lengths, unknown legs and cost. False when a leg is not passable.
+  /// Fills in lengths, unknown legs and cost of all legs. False when one of them is not passable.
   bool measure(Route& route) const;
 
  private:

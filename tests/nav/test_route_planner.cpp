@@ -75,6 +75,11 @@ TEST(RoutePlanner, NearlyShortestInRandomWorlds) {
       }
       ++found;
       EXPECT_GE(route_clearance(world, route), kHard - 0.1) << "seed " << seed;
+      double length = 0;
+      for (std::size_t k = 0; k + 1 < route.points.size(); ++k)
+        length += (route.points[k + 1] - route.points[k]).norm();
+      EXPECT_NEAR(route.length, length, 1e-6) << "of every leg, also one that a line does not pass";
+      EXPECT_EQ(route.unknown.size() + 1, route.points.size());
       if (!std::isfinite(surely)) continue;
       const double ratio = route.length / std::max(surely, 1.0);
       worst = std::max(worst, ratio);
