@@ -85,14 +85,17 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
   bool kept = route_.found();
   if (kept) advance(place);
   watch_blocked(planner, place, blocked, stamp_s);
-  const bool lost = kept && !planner.measure(route_);
+  const bool lost = kept && !planner.measure(route_) && straight_;
   kept = kept && !lost;
   if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
     looked_ = stamp_s;
     Route other = planner.plan(place, goal);
     const bool better =
         other.cost < route_.cost * params_.momentum && other.cost < route_.cost - params_.gain;
-    if (!kept || (other.found() && better)) route_ = std::move(other);
+    if (!kept || !straight_ || (other.found() && better)) {
+      route_ = std::move(other);
+      straight_ = route_.found() && planner.measure(route_);
+    }
   }
   if (route_.found()) {
     lost_since_.reset();

@@ -54,6 +54,8 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
+  bool straight_{};  // the route's legs were passable as lines when it was taken; the graph knows ways that
+                     // are not
 };
 
 }  // namespace adit::nav
