@@ -85,7 +85,7 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
   bool kept = route_.found();
   if (kept) advance(place);
   watch_blocked(planner, place, blocked, stamp_s);
-  const bool lost = kept && !planner.measure(route_) && straight_;
+  const bool lost = kept && straight_ && !planner.measure(route_);
   kept = kept && !lost;
   if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
     looked_ = stamp_s;

@@ -131,7 +131,7 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
 void Navigation::add_scan(std::shared_ptr<Scan> scan, Time now) {
   scanned_ = now;
   monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
-  if (planning(now))
+  if (planning_.under_way(planner_.instance(), now))
     waiting_ = scan;
   else
     plan(scan, now);
@@ -146,7 +146,7 @@ const nav::RouteStep* Navigation::step_on(Time now) const {
 
 void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
   if (!router_) return;
-  if (routing_ && router_instance_ == router_->instance() && now - *routing_ < kCycleLost) return;
+  if (routing_.under_way(router_->instance(), now)) return;
   auto job = std::make_shared<RouteJob>();
   job->scan = scan;
   const Pose2 pose = localisation_.odom().planar();
@@ -158,13 +158,12 @@ void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
   }
   job->generation = goal_generation_;
   job->made = now;
-  routing_ = now;
-  router_instance_ = router_->instance();
+  routing_ = {now, router_->instance()};
   router_->step(job, guard([this, job] { routed(*job); }));
 }
 
 void Navigation::routed(const RouteJob& job) {
-  routing_.reset();
+  routing_ = {};
   if (!job.goal || job.generation != goal_generation_ || !std::holds_alternative<GoTo>(motion_)) return;
   step_ = job.step;
   step_made_ = job.made;
@@ -173,9 +172,8 @@ void Navigation::routed(const RouteJob& job) {
   outputs_.progress({.blocked = true, .unreachable = true});
 }
 
-// A cycle of a planner that failed or hung never reports back.
-bool Navigation::planning(Time now) const {
-  return planning_ && planner_instance_ == planner_.instance() && now - *planning_ < kCycleLost;
+bool Navigation::Cycle::under_way(std::uint64_t current, Time now) const {
+  return since && instance == current && now - *since < kCycleLost;
 }
 
 void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
@@ -187,14 +185,13 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->pose = localisation_.odom().planar();
   job->generation = goal_generation_;
   job->made = now;
-  planning_ = now;
-  planner_instance_ = planner_.instance();
+  planning_ = {now, planner_.instance()};
   waiting_.reset();
   planner_.plan(job, guard([this, job] { planned(*job); }));
 }
 
 void Navigation::planned(const PlanJob& job) {
-  planning_.reset();
+  planning_ = {};
   obstacles_ = std::make_shared<const std::vector<Eigen::Vector2f>>(job.obstacles);
   const bool for_goal = job.target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_);
   const bool for_stick =
@@ -204,9 +201,7 @@ void Navigation::planned(const PlanJob& job) {
     has_plan_ = true;
     plan_made_ = job.made;
     const bool held = held_since_ && now() - *held_since_ >= params_.held_after;
-    if (!for_goal) {
-      // nothing to report
-    } else {
+    if (for_goal) {
       blocked_ = job.plan.blocked || held;
       outputs_.progress({.arrived = job.plan.arrived && job.last, .blocked = blocked_});
     }

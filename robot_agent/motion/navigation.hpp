@@ -57,6 +57,12 @@ class Navigation : public Component, public NavigationInput {
   bool goal_free(const Eigen::Vector2d& place) const;
 
  private:
+  /// What is asked of another component; one that failed or hung never reports back.
+  struct Cycle {
+    std::optional<Time> since{};
+    std::uint64_t instance{};  ///< of the component that was asked
+    bool under_way(std::uint64_t current, Time now) const;
+  };
   nav::Target target() const;
   /// Where the route leads next; nothing while there is none.
   const nav::RouteStep* step_on(Time now) const;
@@ -69,7 +75,6 @@ class Navigation : public Component, public NavigationInput {
   void pass_on(const Velocity& wanted);
   nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;
   void plan(std::shared_ptr<Scan> scan, Time now);
-  bool planning(Time now) const;
   void planned(const PlanJob& job);
 
   NavigationParams params_;
@@ -87,12 +92,10 @@ class Navigation : public Component, public NavigationInput {
   std::array<std::optional<Time>, 2> warned_{};  // by Warning: when its cause was there last
   std::optional<Time> held_since_{};  // the monitor stops the robot, with no more than short breaks
   Time held_last_{};
-  Eigen::Vector2d held_at_{0.0, 0.0};     // odometry frame
-  std::optional<Time> planning_{};        // since when a cycle is under way
-  std::uint64_t planner_instance_{};      // of the planner that was asked
-  std::shared_ptr<Scan> waiting_{};       // the newest scan that came while planning
-  std::optional<Time> routing_{};         // since when a step is being looked for
-  std::uint64_t router_instance_{};       // of the router that was asked
+  Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
+  Cycle planning_{};
+  std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning
+  Cycle routing_{};
   std::optional<nav::RouteStep> step_{};  // of the goal asked for last
   Time step_made_{};
   bool blocked_{};  // the last plan towards the goal was
