@@ -95,8 +95,8 @@ int main(int argc, char** argv) {
     for (const char* mode : {"hold", "manual", "smart_joystick", "waypoint"}) kills(lab, mode, times);
   lab.calm();
   if (asked("crash"))
-    for (const char* component : {"planner", "sensors", "command"}) crashes(lab, component, times);
+    for (const char* component : {"planner", "router", "sensors", "command"}) crashes(lab, component, times);
   if (asked("hang"))
-    for (const char* component : {"planner", "sensors", "command"}) hangs(lab, component, times);
+    for (const char* component : {"planner", "router", "sensors", "command"}) hangs(lab, component, times);
   return lab.end();
 }

@@ -64,7 +64,7 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
 }
 
 // The farthest point of the route, up to `ahead`, that is in a straight line from here.
-RouteStep RouteKeeper::along(const RoutePlanner& planner, const Eigen::Vector3d& place) const {
+RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) const {
   RouteStep step{RouteStep::State::along, {}, false};
   const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};
   for (double ahead = params_.ahead; ahead >= params_.least_ahead; ahead -= kSampling) {

@@ -46,7 +46,7 @@ class RouteKeeper {
  private:
   void advance(const Eigen::Vector3d& place);
   void watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked, double stamp_s);
-  RouteStep along(const RoutePlanner& planner, const Eigen::Vector3d& place) const;
+  RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place) const;
 
   RouteKeeperParams params_;
   Route route_{};

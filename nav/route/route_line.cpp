@@ -12,7 +12,7 @@ constexpr int kGiveUp = 3;         // corners in a row that are not seen
 
 }  // namespace
 
-LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector2d way = to.head<2>() - from.head<2>();
   const double length = way.norm();
   const int steps = std::max(1, static_cast<int>(std::ceil(length / kRouteCell)));
@@ -43,7 +43,7 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
       was_known = false;
       continue;
     }
-    const Tile& tile = map_.tile(index);
+    const Tile& tile = builder_.current(map_, index);
     const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
     if (tile.cost[c] == 0) return {};
     result.cost += weight * tile.cost[c] / 16.0;
@@ -60,7 +60,7 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
   return result;
 }
 
-void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) const {
+void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) {
   if (points.size() < 3) return;
   std::vector<double> before(points.size(), 0.0);
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -85,7 +85,7 @@ void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) const {
   points = std::move(result);
 }
 
-void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) const {
+void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) {
   shorten_once(points);
   std::vector<Eigen::Vector3d> dense;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -106,7 +106,7 @@ void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) const {
   shorten_once(points);
 }
 
-bool RouteLine::measure(Route& route) const {
+bool RouteLine::measure(Route& route) {
   bool passable = true;
   route.length = route.unknown_length = route.cost = 0;
   route.unknown.clear();

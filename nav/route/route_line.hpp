@@ -18,21 +18,22 @@ struct LineCost {
 /// Walks lines over the map's ground, and shortens ways with them.
 class RouteLine {
  public:
-  RouteLine(const SurfaceMap& map, const TileBuilder& builder) : map_(map), builder_(builder) {}
+  RouteLine(SurfaceMap& map, TileBuilder& builder) : map_(map), builder_(builder) {}
 
   /// From one point of the ground to another, both within 1.2 m of it; not passable where the ground is
   /// not, where a step is, or where the floor does not lead to `to`'s height.
-  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   /// Replaces parts of a way by straight lines, where those are passable and cost no more. Each leg of
   /// `points` must be passable.
-  void shorten(std::vector<Eigen::Vector3d>& points) const;
+  void shorten(std::vector<Eigen::Vector3d>& points);
   /// Fills in lengths, unknown legs and cost of all legs. False when one of them is not passable.
-  bool measure(Route& route) const;
+  bool measure(Route& route);
 
  private:
-  void shorten_once(std::vector<Eigen::Vector3d>& points) const;
-  const SurfaceMap& map_;
-  const TileBuilder& builder_;
+  void shorten_once(std::vector<Eigen::Vector3d>& points);
+
+  SurfaceMap& map_;
+  TileBuilder& builder_;
 };
 
 }  // namespace adit::nav

@@ -42,16 +42,6 @@ void RoutePlanner::finish() {
   for (int index = map_.next_dirty(); index >= 0; index = map_.next_dirty()) builder_.build(map_, index);
 }
 
-bool RoutePlanner::refresh(const std::vector<int>& tiles) {
-  bool any = false;
-  for (const int index : tiles)
-    if (map_.tile(index).dirty) {
-      builder_.build(map_, index);
-      any = true;
-    }
-  return any;
-}
-
 void RoutePlanner::block(const Eigen::Vector3d& place, double stamp_s) {
   map_.block(place.x(), place.y(), place.z(), stamp_s);
 }
@@ -77,7 +67,7 @@ double RoutePlanner::goal_height(const Eigen::Vector3d& from, const Eigen::Vecto
 }
 
 // The passable cell nearest to a place; unknown space without a tile is passable as it is.
-std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, double reach) const {
+std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, double reach) {
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
   if (map_.at(tile_of(cx), tile_of(cy), place.z()) < 0) return RouteEnd{place, -1, 0};
   const int cells = static_cast<int>(reach / kRouteCell);
@@ -89,7 +79,7 @@ std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, dou
       if (d >= least) continue;
       const int index = map_.at(tile_of(ix), tile_of(iy), place.z());
       if (index < 0) continue;
-      const Tile& tile = map_.tile(index);
+      const Tile& tile = builder_.current(map_, index);
       const int c = cell_in_tile(ix, iy);
       if (tile.cost[static_cast<std::size_t>(c)] == 0) continue;
       least = d;
@@ -131,19 +121,14 @@ std::size_t RoutePlanner::memory() const {
 Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Route route;
   const Eigen::Vector3d goal_place{to.x(), to.y(), goal_height(from, to)};
-  // A search over tiles that are not up to date is repeated when it leads through them, or proves something.
-  for (;;) {
-    const auto start = find_end(from, kStartReach);
-    const auto goal = find_end(goal_place, params_.snap);
-    if (!start)
-      route.status = RouteStatus::start_blocked;
-    else if (!goal)
-      route.status = RouteStatus::unreachable;
-    else
-      route.status = search_.search(*start, *goal, route.points);
-    if (route.found() ? !refresh(search_.tiles()) : map_.dirty() == 0) break;
-    if (!route.found()) finish();
-  }
+  const auto start = find_end(from, kStartReach);
+  const auto goal = find_end(goal_place, params_.snap);
+  if (!start)
+    route.status = RouteStatus::start_blocked;
+  else if (!goal)
+    route.status = RouteStatus::unreachable;
+  else
+    route.status = search_.search(*start, *goal, route.points);
   if (!route.found()) return route;
   line_.shorten(route.points);
   line_.measure(route);

@@ -18,7 +18,7 @@ class RoutePlanner {
   RoutePlanner(const RoutePlanner&) = delete;
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
-  /// Takes a scan and brings the graph up to date, RouteParams::rebuilds tiles at most. `points`: in
+  /// Takes a scan and brings RouteParams::rebuilds tiles of the graph up to date, at most. `points`: in
   /// base_link, m, not finite where nothing was hit. `body`: base_link, which is on the ground, at the scan's
   /// time; `stamp_s`: that time, s, not decreasing.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
@@ -36,9 +36,9 @@ class RoutePlanner {
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;
 
-  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const { return line_.line(from, to); }
+  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) { return line_.line(from, to); }
   /// Brings costs, lengths and unknown legs of a route up to date; false when it is not passable any more.
-  bool measure(Route& route) const { return line_.measure(route); }
+  bool measure(Route& route) { return line_.measure(route); }
   /// Height of the ground there, of the floor nearest to z; nothing when it is not known.
   std::optional<double> ground(double x, double y, double z) const;
   const SurfaceMap& map() const { return map_; }
@@ -50,9 +50,8 @@ class RoutePlanner {
   void clear() { map_.clear(); }
 
  private:
-  std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach) const;
+  std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
   double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
-  bool refresh(const std::vector<int>& tiles);
   void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   RouteParams params_;

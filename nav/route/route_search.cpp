@@ -32,7 +32,7 @@ float straight_cost(const Tile& tile, int from, int to) {
 
 }  // namespace
 
-RouteSearch::RouteSearch(const SurfaceMap& map, TileBuilder& builder, const RouteParams& params)
+RouteSearch::RouteSearch(SurfaceMap& map, TileBuilder& builder, const RouteParams& params)
     : map_(map), builder_(builder), params_(params) {}
 
 std::size_t RouteSearch::memory() const {
@@ -69,8 +69,8 @@ Eigen::Vector3d RouteSearch::place(Id id) const {
     return {(g.tx + 0.5 + kSideX[side] * 0.47) * kTile, (g.ty + 0.5 + kSideY[side] * 0.47) * kTile,
             level_z(g.level)};
   }
-  const Tile& tile = map_.tile(static_cast<int>(id / kTileNodes));
-  return cell_place(tile, tile.nodes[id % kTileNodes].cell);
+  const TileNode& node = map_.tile(static_cast<int>(id / kTileNodes)).nodes[id % kTileNodes];
+  return {node.x, node.y, node.z};
 }
 
 // The box of unknown space that may be used, and the numbers of its nodes.
@@ -127,7 +127,7 @@ void RouteSearch::reach(Id id, float cost, Id from) {
 void RouteSearch::begin(const RouteEnd& start) {
   states_[start_id_] = {0, start_id_, search_, true};
   if (start.tile >= 0) {
-    const Tile& tile = map_.tile(start.tile);
+    const Tile& tile = builder_.current(map_, start.tile);
     builder_.spread(tile, start.cell);
     for (int n = 0; n < tile.node_count; ++n)
       if (const float d = builder_.distance(tile.nodes[static_cast<std::size_t>(n)].cell); d < kUnreached)
@@ -150,11 +150,10 @@ void RouteSearch::begin(const RouteEnd& start) {
 RouteStatus RouteSearch::search(const RouteEnd& start, const RouteEnd& goal,
                                 std::vector<Eigen::Vector3d>& points) {
   points.clear();
-  through_.clear();
   if (!prepare(start, goal)) return RouteStatus::too_far;
   to_goal_.fill(kUnreached);
   if (goal.tile >= 0) {
-    const Tile& tile = map_.tile(goal.tile);
+    const Tile& tile = builder_.current(map_, goal.tile);
     builder_.spread(tile, goal.cell);
     for (int n = 0; n < tile.node_count; ++n)
       to_goal_[static_cast<std::size_t>(n)] = builder_.distance(tile.nodes[static_cast<std::size_t>(n)].cell);
@@ -186,8 +185,9 @@ void RouteSearch::expand(Id id, float cost) {
 
 void RouteSearch::expand_tile(int index, int node, float cost, Id id) {
   const Tile& tile = map_.tile(index);
+  const auto distances = builder_.distances(map_, index, node);
   for (int m = 0; m < tile.node_count; ++m) {
-    const float d = tile.distance[static_cast<std::size_t>(node * kTileNodes + m)];
+    const float d = distances[static_cast<std::size_t>(m)];
     if (m != node && d < kUnreached) reach(static_cast<Id>(index * kTileNodes + m), cost + d, id);
   }
   if (index == goal_.tile)
@@ -224,6 +224,7 @@ void RouteSearch::cross(const Tile& tile, const TileNode& node, float cost, Id i
     const Tile& other = map_.tile(i);
     if (std::abs(other.z - node.z) > kSheetReach) continue;
     met = true;
+    builder_.current(map_, i);
     for (int m = 0; m < other.node_count; ++m) {
       const TileNode& to = other.nodes[static_cast<std::size_t>(m)];
       if (!meets(tile, node, other, to)) continue;
@@ -250,6 +251,7 @@ void RouteSearch::enter_from_ghost(const Ghost& g, float cost, Id id) {
     const Tile& other = map_.tile(i);
     if (std::abs(other.z - z) > kSheetReach) continue;
     met = true;
+    builder_.current(map_, i);
     for (int m = 0; m < other.node_count; ++m) {
       const TileNode& to = other.nodes[static_cast<std::size_t>(m)];
       if (to.side != opposite(g.side) || std::abs(to.z - z) > kSheetReach) continue;
@@ -326,7 +328,6 @@ void RouteSearch::write_leg(Id from, Id to, std::vector<Eigen::Vector3d>& points
   } else {
     points.push_back(place(to));
   }
-  if (b >= 0 && (through_.empty() || through_.back() != b)) through_.push_back(b);
 }
 
 void RouteSearch::write(std::vector<Eigen::Vector3d>& points) {
@@ -335,7 +336,6 @@ void RouteSearch::write(std::vector<Eigen::Vector3d>& points) {
   ids.push_back(start_id_);
   std::reverse(ids.begin(), ids.end());
   points.push_back(start_.place);
-  if (start_.tile >= 0) through_.push_back(start_.tile);
   for (std::size_t i = 0; i + 1 < ids.size(); ++i) write_leg(ids[i], ids[i + 1], points);
   points.back() = goal_.place;
 }

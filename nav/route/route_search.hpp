@@ -21,12 +21,10 @@ struct RouteEnd {
 /// on the heights of the start and, through unknown space too, of a goal on another floor.
 class RouteSearch {
  public:
-  RouteSearch(const SurfaceMap& map, TileBuilder& builder, const RouteParams& params);
+  RouteSearch(SurfaceMap& map, TileBuilder& builder, const RouteParams& params);
 
-  /// The way as points of the ground, each leg passable as far as the tiles are up to date; and the tiles
-  /// it leads through.
+  /// The way as points of the ground, each leg passable. Tiles that it comes to are brought up to date.
   RouteStatus search(const RouteEnd& start, const RouteEnd& goal, std::vector<Eigen::Vector3d>& points);
-  const std::vector<int>& tiles() const { return through_; }
   /// Nodes that the last search looked at.
   std::size_t expanded() const { return expanded_; }
   /// Of its buffers, bytes.
@@ -74,7 +72,7 @@ class RouteSearch {
   /// `cost`: of the way that was found, m.
   void write_within(int index, int from, int to, float cost, std::vector<Eigen::Vector3d>& points);
 
-  const SurfaceMap& map_;
+  SurfaceMap& map_;
   TileBuilder& builder_;
   RouteParams params_;
   RouteEnd start_{}, goal_{};
@@ -85,7 +83,6 @@ class RouteSearch {
   std::vector<Open> open_{};
   std::uint32_t search_{0};
   std::array<float, kTileNodes> to_goal_{};  // from the nodes of the goal's tile
-  std::vector<int> through_{};
   std::size_t expanded_{0};
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace adit::nav {
 namespace {
@@ -12,7 +13,6 @@ constexpr float kCellF = static_cast<float>(kRouteCell);
 constexpr float kRun = 0.8f;       // m: over more than this nobody knows how the ground goes on
 constexpr float kWallGap = 1.5f;   // m
 constexpr float kStraight = 0.1f;  // m
-constexpr float kDense = 8.0f;     // m
 constexpr float kGap = 0.5f;       // m
 constexpr float kFirst = 1.5f;     // m: nothing is known of the ground this far around a lidar of few rings
 
@@ -24,7 +24,9 @@ ScanProfile::ScanProfile(const Platform& platform, const RouteParams& params)
       clear_(static_cast<float>(std::max(platform.height, platform.lidar_height) + params.height_margin)),
       step_(static_cast<float>(platform.step + params.step_margin)),
       drop_(static_cast<float>(std::max(params.drop, 2 * platform.step))),
-      slope_(static_cast<float>(params.slope)) {}
+      slope_(static_cast<float>(params.slope)) {
+  list_sectors();
+}
 
 float ScanProfile::most_wrong(const Platform& platform, const RouteParams& params) {
   constexpr double noise = 0.05;
@@ -140,22 +142,42 @@ void ScanProfile::close_gaps(SurfaceMap& map) const {
   }
 }
 
+// Each cell within range belongs to the one direction that its middle lies in.
+void ScanProfile::list_sectors() {
+  const int reach = static_cast<int>(params_.range / kRouteCell);
+  std::array<std::vector<SectorCell>, kQuarter> sectors;
+  for (int dx = 1; dx <= reach; ++dx)
+    for (int dy = 0; dy <= reach; ++dy) {
+      const double range = std::hypot(dx, dy) * kRouteCell;
+      const int sector = static_cast<int>(std::atan2(dy, dx) * (kDirections / (2 * M_PI)));
+      if (range <= params_.range && sector < kQuarter)
+        sectors[static_cast<std::size_t>(sector)].push_back(
+            {static_cast<std::int16_t>(dx), static_cast<std::int16_t>(dy), static_cast<float>(range)});
+    }
+  for (std::size_t d = 0; d < kQuarter; ++d) {
+    std::sort(sectors[d].begin(), sectors[d].end(),
+              [](const SectorCell& a, const SectorCell& b) { return a.range < b.range; });
+    quarter_.insert(quarter_.end(), sectors[d].begin(), sectors[d].end());
+    first_[d + 1] = quarter_.size();
+  }
+}
+
 void ScanProfile::write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const {
-  // Four lines a direction where two would leave cells between them.
-  for (const auto& [offset, begin] : std::array<std::pair<float, float>, 4>{
-           {{0.125f, kDense}, {0.25f, 0.0f}, {0.625f, kDense}, {0.75f, 0.0f}}}) {
-    const float angle =
-        (static_cast<float>(direction) + offset) * (2 * static_cast<float>(M_PI) / kDirections) -
-        static_cast<float>(M_PI);
-    const float c = std::cos(angle), s = std::sin(angle);
-    for (const Piece& p : pieces) {
-      const float run = std::max(p.to - p.from, 1e-3f);
-      for (float r = std::ceil(std::max(p.from, begin) / kCellF) * kCellF; r <= p.to; r += kCellF) {
-        const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
-        const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
-        map.see_free(route_cell(sensor_.x() + r * c), route_cell(sensor_.y() + r * s), z,
-                     std::max(0.0f, ray - z));
-      }
+  const auto sector = static_cast<std::size_t>(direction % kQuarter);
+  const int turns = direction / kQuarter + 2;  // of a quarter: direction 0 is -x
+  const int cx = route_cell(sensor_.x()), cy = route_cell(sensor_.y());
+  std::size_t i = first_[sector];
+  for (const Piece& p : pieces) {
+    const float run = std::max(p.to - p.from, 1e-3f);
+    while (i < first_[sector + 1] && quarter_[i].range < p.from) ++i;
+    for (; i < first_[sector + 1] && quarter_[i].range <= p.to; ++i) {
+      int dx = quarter_[i].dx, dy = quarter_[i].dy;
+      if (turns & 1) dx = -std::exchange(dy, dx);
+      if (turns & 2) dx = -dx, dy = -dy;
+      const float r = quarter_[i].range;
+      const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
+      const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
+      map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z));
     }
   }
 }

@@ -26,6 +26,7 @@ class ScanProfile {
 
  private:
   static constexpr int kDirections = 360;
+  static constexpr int kQuarter = kDirections / 4;
   struct Return {
     float range, z;
     int ix, iy;
@@ -38,8 +39,14 @@ class ScanProfile {
   struct Hit {
     float range{0}, x{0}, y{0}, base{0}, top{0};
   };
+  /// A cell by its distance from the sensor's.
+  struct SectorCell {
+    std::int16_t dx, dy;
+    float range;  ///< of its middle, m
+  };
   void sort(std::span<const Eigen::Vector3f> points, const Pose3& body);
   void walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit);
+  void list_sectors();
   void write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const;
   void close_gaps(SurfaceMap& map) const;
   void stand(const Pose3& body, SurfaceMap& map) const;
@@ -55,6 +62,8 @@ class ScanProfile {
   std::vector<int> begin_{};
   std::vector<Piece> pieces_{};
   std::array<Hit, kDirections> hits_{};
+  std::vector<SectorCell> quarter_{};  ///< of the first 90 directions from +x on, by direction, nearest first
+  std::array<std::size_t, kQuarter + 1> first_{};  ///< of each of these
 };
 
 }  // namespace adit::nav

@@ -7,7 +7,8 @@ namespace {
 
 constexpr int kHit = 3;      // evidence of a return
 constexpr int kBlocked = 5;  // two returns
-constexpr int kMost = 12;    // as many rays, and no more, free it again
+constexpr int kRay = 2;      // and of a scan that saw through
+constexpr int kMost = 12;    // half as many scans, and no more, free it again
 constexpr int kFree = 0;
 constexpr int kLeast = -4;
 constexpr std::size_t kPlaces = 32;
@@ -67,10 +68,12 @@ int SurfaceMap::sheet(int ix, int iy, float z) {
   const int tx = tile_of(ix), ty = tile_of(iy);
   const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
   const auto same = [&](const Tile& t) { return t.cells[c].known && std::abs(t.cells[c].z - z) <= same_; };
-  if (last_ >= 0 && tile(last_).tx == tx && tile(last_).ty == ty && same(tile(last_))) return last_;
+  const bool again = last_ >= 0 && tile(last_).tx == tx && tile(last_).ty == ty;
+  if (again && same(tile(last_))) return last_;
+  if (!again) last_first_ = first(tx, ty);
   int best = -1;
   float least = kSheetReach;
-  for (int i = first(tx, ty); i >= 0; i = tile(i).next) {
+  for (int i = last_first_; i >= 0; i = tile(i).next) {
     const Tile& t = tile(i);
     if (same(t)) return last_ = i;
     if (t.cells[c].known) continue;
@@ -109,7 +112,7 @@ int SurfaceMap::create(int tx, int ty, float z) {
     tile(i).next = index;
     t.beside = tile(head).beside;
   } else {
-    heads_[key(tx, ty)] = index;
+    heads_[key(tx, ty)] = last_first_ = index;
     link(index);
   }
   if (extent_.empty())
@@ -202,7 +205,7 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, bool certain) {
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
   if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;
   if (cell.blocked && height > static_cast<float>(cell.top) * kTopUnit + 0.05f) return;
-  --cell.evidence;
+  cell.evidence = static_cast<std::int8_t>(cell.evidence - kRay);
   if (!cell.blocked || cell.evidence > kFree) return;
   cell.blocked = false;
   cell.top = 0;

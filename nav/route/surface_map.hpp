@@ -90,7 +90,8 @@ class SurfaceMap {
   std::uint64_t version_{0};
   std::uint32_t scan_{0};
   double x_{0}, y_{0};
-  int last_{-1};  // tile that was written last
+  int last_{-1};        // tile that was written last
+  int last_first_{-1};  // first one at its place
 };
 
 }  // namespace adit::nav

@@ -45,8 +45,8 @@ inline constexpr int side_cell(int side, int i) {
 /// An opening in a side of a tile: a run of passable cells. A node of the graph.
 struct TileNode {
   std::uint8_t side{0}, first{0}, last{0};
-  std::uint8_t cell{0};  ///< the one in its middle
-  float z{0};            ///< there, m
+  std::uint8_t cell{0};    ///< the one in its middle
+  float x{0}, y{0}, z{0};  ///< of that, m
 };
 
 /// A square piece of one floor, with the part of the graph that lies in it. Several floors at one place are
@@ -61,7 +61,9 @@ struct Tile {
   std::array<std::uint8_t, kTileArea> cost{};  ///< of a cell, 1/16 per length; 0: not passable
   int node_count{0};
   std::array<TileNode, kTileNodes> nodes{};
-  std::array<float, kTileNodes * kTileNodes> distance{};  ///< between nodes, within the tile, m
+  std::uint16_t measured{0};  ///< the nodes, as bits, whose distances are known
+  std::array<float, kTileNodes * kTileNodes>
+      distance{};  ///< from such a node to the others, within the tile, m
 
   double cell_x(int c) const { return (tx * kTileSide + c % kTileSide + 0.5) * kRouteCell; }
   double cell_y(int c) const { return (ty * kTileSide + c / kTileSide + 0.5) * kRouteCell; }

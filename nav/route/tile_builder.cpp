@@ -128,9 +128,13 @@ void TileBuilder::add_node(Tile& tile, int side, int first, int last) {
     place = static_cast<int>(narrowest - tile.nodes.begin());
   }
   const int cell = side_cell(side, (first + last) / 2);
-  tile.nodes[static_cast<std::size_t>(place)] = {
-      static_cast<std::uint8_t>(side), static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(last),
-      static_cast<std::uint8_t>(cell), tile.cell_z(cell)};
+  tile.nodes[static_cast<std::size_t>(place)] = {static_cast<std::uint8_t>(side),
+                                                 static_cast<std::uint8_t>(first),
+                                                 static_cast<std::uint8_t>(last),
+                                                 static_cast<std::uint8_t>(cell),
+                                                 static_cast<float>(tile.cell_x(cell)),
+                                                 static_cast<float>(tile.cell_y(cell)),
+                                                 tile.cell_z(cell)};
 }
 
 void TileBuilder::open_sides(Tile& tile) {
@@ -181,24 +185,25 @@ void TileBuilder::spread(const Tile& tile, int cell) {
   }
 }
 
-void TileBuilder::connect(Tile& tile) {
+void TileBuilder::connect(Tile& tile, int node) {
   // In a tile that costs the same everywhere ways are straight.
   const bool even = std::all_of(tile.cost.begin(), tile.cost.end(),
                                 [&](std::uint8_t c) { return c == tile.cost[0] && c > 0; });
-  for (int a = 0; a < tile.node_count; ++a) {
-    const TileNode& from = tile.nodes[static_cast<std::size_t>(a)];
-    if (!even && a + 1 < tile.node_count) spread(tile, from.cell);
-    for (int b = a; b < tile.node_count; ++b) {
-      const TileNode& to = tile.nodes[static_cast<std::size_t>(b)];
-      const float dx = static_cast<float>(to.cell % kTileSide - from.cell % kTileSide);
-      const float dy = static_cast<float>(to.cell / kTileSide - from.cell / kTileSide);
-      tile.distance[static_cast<std::size_t>(a * kTileNodes + b)] =
-          tile.distance[static_cast<std::size_t>(b * kTileNodes + a)] =
-              a == b ? 0.0f
-              : even ? std::hypot(dx, dy) * kCellF * static_cast<float>(tile.cost[0]) / kUnit
-                     : distance(to.cell);
-    }
+  const TileNode& from = tile.nodes[static_cast<std::size_t>(node)];
+  if (!even) spread(tile, from.cell);
+  for (int b = 0; b < tile.node_count; ++b) {
+    const TileNode& to = tile.nodes[static_cast<std::size_t>(b)];
+    tile.distance[static_cast<std::size_t>(node * kTileNodes + b)] =
+        even ? std::hypot(to.x - from.x, to.y - from.y) * static_cast<float>(tile.cost[0]) / kUnit
+             : distance(to.cell);
   }
+  tile.measured = static_cast<std::uint16_t>(tile.measured | 1u << node);
+}
+
+std::span<const float, kTileNodes> TileBuilder::distances(SurfaceMap& map, int index, int node) {
+  Tile& tile = map.tile(index);
+  if (!(tile.measured >> node & 1u)) connect(tile, node);
+  return std::span<const float, kTileNodes>(tile.distance.data() + node * kTileNodes, kTileNodes);
 }
 
 void TileBuilder::build(SurfaceMap& map, int index) {
@@ -208,7 +213,7 @@ void TileBuilder::build(SurfaceMap& map, int index) {
   find_steps();
   measure(tile);
   open_sides(tile);
-  connect(tile);
+  tile.measured = 0;
   map.changed();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <span>
 
 #include "core/config/platform.hpp"
 #include "nav/route/surface_map.hpp"
@@ -13,8 +14,16 @@ class TileBuilder {
  public:
   TileBuilder(const Platform& platform, const RouteParams& params);
 
-  /// From the map's evidence; 10 to 60 us.
+  /// From the map's evidence: cells and openings; the ways between these are measured when they are asked
+  /// for.
   void build(SurfaceMap& map, int index);
+  /// The tile, made anew first when it is not up to date.
+  const Tile& current(SurfaceMap& map, int index) {
+    if (map.tile(index).dirty) build(map, index);
+    return map.tile(index);
+  }
+  /// From one node of a tile to all of its nodes, within it, m.
+  std::span<const float, kTileNodes> distances(SurfaceMap& map, int index, int node);
   /// Ways from a cell to all others of its tile, m; see distance() and trace().
   void spread(const Tile& tile, int cell);
   float distance(int cell) const { return distance_[static_cast<std::size_t>(cell)]; }
@@ -34,7 +43,7 @@ class TileBuilder {
   void measure(Tile& tile);
   void open_sides(Tile& tile);
   void add_node(Tile& tile, int side, int first, int last);
-  void connect(Tile& tile);
+  void connect(Tile& tile, int node);
 
   float rise_, unknown_cost_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells

@@ -3,6 +3,11 @@
 #include <cstdio>
 
 namespace adit::agent {
+namespace {
+
+constexpr double kMoved = 0.1;  // m
+
+}  // namespace
 
 struct Router::Maps {
   explicit Maps(const RouterParams& params) : planner(params.platform, params.route) {}
@@ -17,8 +22,13 @@ Router::Router(RouterParams params, Executor& strand, Log log)
 
 void Router::step(std::shared_ptr<RouteJob> job, Task done) {
   if (!running()) return;
-  const bool takes = !taken_ || job->made - *taken_ >= params_.least;
-  if (takes) taken_ = job->made;
+  // What a robot sees that stands and goes nowhere is the same again.
+  const bool stands = !job->goal && (job->place - taken_at_).norm() < kMoved;
+  const bool takes = !taken_ || job->made - *taken_ >= (stands ? params_.least_standing : params_.least);
+  if (takes) {
+    taken_ = job->made;
+    taken_at_ = job->place;
+  }
   compute(
       params_.modelled,
       [job, takes, maps = maps_] {

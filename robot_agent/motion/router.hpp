@@ -29,8 +29,9 @@ struct RouteQuery {
 struct RouterParams {
   Platform platform{};
   nav::RouteParams route{};
-  Duration least{200ms};    ///< between two scans that enter the map
-  Duration modelled{20ms};  ///< what a job takes in rehearsal
+  Duration least{200ms};        ///< between two scans that enter the map
+  Duration least_standing{1s};  ///< the same while the robot stands and has no goal
+  Duration modelled{20ms};      ///< what a job takes in rehearsal
 };
 
 /// The global planner, on a strand of its own: a graph of the free space that was seen, and the route that is
@@ -48,6 +49,7 @@ class Router : public Component {
   RouterParams params_;
   std::shared_ptr<Maps> maps_;
   std::optional<Time> taken_{};  ///< when the last scan entered the map
+  Eigen::Vector3d taken_at_{0, 0, 0};
 };
 
 /// The way to whatever router there is.

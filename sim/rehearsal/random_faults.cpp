@@ -8,7 +8,7 @@ namespace {
 
 /// Components that can be drawn: robots without a router there are, too.
 const std::vector<std::string>& of_every_robot() {
-  static const std::vector<std::string> names{"command", "planner", "sensors"};
+  static const std::vector<std::string> names{"command", "planner", "router", "sensors"};
   return names;
 }
 

@@ -27,7 +27,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, Killed, testing::Values("hold", "manual", "smart
 TEST(Components, ACrashIsBackSoonAndAHangIsFoundWithinASecond) {
   FailureLab lab;
   ASSERT_TRUE(lab.ready()) << lab.err();
-  for (const char* component : {"planner", "sensors", "command"}) {
+  for (const char* component : {"planner", "router", "sensors", "command"}) {
     const auto crashed = lab.crash(component);
     ASSERT_TRUE(crashed.told && crashed.back) << component << ": " << lab.err();
     EXPECT_LT(*crashed.back, 500.0) << component;

@@ -9,7 +9,7 @@ RunReport run(const std::string& boxes, int duration, const std::string& script,
               const std::string& rest = "") {
   return run_text(
       "world: {boxes: [" + boxes + "], floor: 0, ceiling: 3}\nduration: " + std::to_string(duration) +
-          "\nlink: wifi\nlidar: planar\nrobots:\n  - {id: r1, platform: scout, pose: [0, 0, 0]}\n"
+          "\nlink: wifi\nlidar: planar\nrobots:\n  - {id: r1, platform: wheeled, pose: [0, 0, 0]}\n"
           "basestations:\n  - {id: op1, pose: [0, 0]}\nscript:\n  - {at: 2, by: op1, do: take r1}\n" +
           script + rest,
       "route.yaml");
