@@ -32,6 +32,16 @@ void read_footprint(const Node& root, Platform& p) {
               "expected 3 to 16 corners [x, y], convex, counter-clockwise, around base_link");
 }
 
+/// What only some drives have; elsewhere such a key is an unknown one.
+void read_drive(const Node& root, Platform& p) {
+  static const std::vector<std::string> names{"differential", "tracked", "holonomic"};
+  p.drive = static_cast<Drive>(root.choice("drive", names));
+  if (p.drive == Drive::tracked) {
+    p.turn_slip = root.number("turn_slip", within(0, 0.8), p.turn_slip);
+    p.turn_error = root.number("turn_error", within(0, 0.5), p.turn_error);
+  }
+}
+
 }  // namespace
 
 Result<Platform> load_platform_file(const std::string& path) {
@@ -40,7 +50,7 @@ Result<Platform> load_platform_file(const std::string& path) {
   const Node& root = *file;
   Platform p;
   p.name = root.text("name");
-  p.drive = root.choice("drive", {"differential", "holonomic"}) == 0 ? Drive::differential : Drive::holonomic;
+  read_drive(root, p);
   p.length = root.number("length", above(0, 5));
   p.width = root.number("width", above(0, 5));
   read_footprint(root, p);

@@ -16,16 +16,44 @@ double stepped(double from, double to, double step) { return from + std::clamp(t
 }  // namespace
 
 Controller::Controller(const Platform& platform, const ControllerParams& params)
-    : platform_(platform), params_(params) {}
+    : platform_(platform), params_(params), grip_(1.0 - platform.turn_slip) {}
 
 Twist2 Controller::stop_now() {
   plan_ = {};
   turning_ = false;
   rest();
+  sent_turn_ = 0;
+  yaw_before_.reset();
   return last_ = {};
 }
 
-Twist2 Controller::follow(const Pose2& odom, double dt) { return last_ = towards(desired(odom, dt), dt); }
+Twist2 Controller::follow(const Pose2& odom, double dt) {
+  if (platform_.drive == Drive::tracked) learn_grip(odom, dt);
+  last_ = towards(desired(odom, dt), dt);
+  return against_slip(last_);
+}
+
+void Controller::sent(const Twist2& velocity) {
+  last_ = velocity;
+  sent_turn_ = velocity.wz;
+  last_.wz *= grip_;
+}
+
+void Controller::learn_grip(const Pose2& odom, double dt) {
+  constexpr double kEnough = 0.05;  // rad2/s: less says nothing
+  if (yaw_before_) {
+    const double keep = std::exp(-dt / params_.grip_memory);
+    asked_ = keep * asked_ + sent_turn_ * sent_turn_ * dt;
+    come_ = keep * come_ + sent_turn_ * wrap_angle(odom.yaw - *yaw_before_);
+    if (asked_ > kEnough) grip_ = std::clamp(come_ / asked_, 0.2, 1.0);
+  }
+  yaw_before_ = odom.yaw;
+}
+
+Twist2 Controller::against_slip(const Twist2& body) {
+  sent_turn_ = std::clamp(body.wz / grip_, -platform_.max_turn, platform_.max_turn);
+  return {body.vx, body.vy, sent_turn_};
+}
 
 Twist2 Controller::desired(const Pose2& odom, double dt) {
   const auto path = plan_.path();

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ struct ControllerParams {
   double turn_from{0.45};     ///< turns on the spot when the path starts off by more, rad, [0.1, 3]
   double turn_until{0.12};    ///< and until it is off by less, rad, [0.02, turn_from]
   double braking_share{0.7};  ///< share of the platform's acceleration that is planned with, (0, 1]
+  double grip_memory{3.0};    ///< tracked: over so long it learns how much of a turn arrives, s, [0.5, 60]
 };
 
 /// Turns a plan into velocities. What all controllers share is here: turning on the spot where the path
@@ -30,9 +32,10 @@ class Controller {
   /// Zero, at once, and no plan.
   Twist2 stop_now();
 
+  /// The body's velocity as the controller reckons it; of tracks that skid more turn was asked for.
   const Twist2& command() const { return last_; }
   /// What became of the last command on its way to the driver, when that was something else.
-  void sent(const Twist2& velocity) { last_ = velocity; }
+  void sent(const Twist2& velocity);
 
  protected:
   /// Where the robot is on the path.
@@ -54,12 +57,18 @@ class Controller {
   Twist2 desired(const Pose2& odom, double dt);
   Twist2 turn_on_spot(double error) const;
   Twist2 towards(const Twist2& wanted, double dt) const;
+  void learn_grip(const Pose2& odom, double dt);
+  Twist2 against_slip(const Twist2& body);
 
   Platform platform_;
   ControllerParams params_;
   Plan plan_{};
   Twist2 last_{};
   bool turning_{false};
+  /// Of tracks: the share of a turn that arrives. The platform's file tells it first, then what was asked for
+  /// and what came, by least squares.
+  double grip_{1}, asked_{0}, come_{0}, sent_turn_{0};
+  std::optional<double> yaw_before_{};
 };
 
 /// Every controller there is, for configuration files and help.

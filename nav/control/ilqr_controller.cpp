@@ -135,7 +135,7 @@ class IlqrController final : public Controller {
 }  // namespace
 
 std::unique_ptr<Controller> make_ilqr_controller(const Platform& p, const IlqrControllerParams& params) {
-  if (p.drive == Drive::holonomic) {
+  if (p.sideways()) {
     const Ilqr<model::Holonomic>::Limits limits{
         {p.max_speed, p.max_speed, p.max_turn},
         {p.max_acceleration, p.max_acceleration, p.max_turn_acceleration}};

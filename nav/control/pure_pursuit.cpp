@@ -23,7 +23,7 @@ Twist2 PurePursuit::track(const Pose2& odom, const Place& place, double) {
   double speed = std::min({plan().max_speed, platform().max_speed, std::sqrt(2 * share * place.remaining)});
   if (distance < kShortest && place.remaining < kShortest) return {};
 
-  if (platform().drive == Drive::holonomic) {
+  if (platform().sideways()) {
     const double yaw_error = wrap_angle(path[(place.nearest + aim) / 2].yaw - odom.yaw);
     const double turn = std::clamp(params_.yaw_gain * yaw_error, -platform().max_turn, platform().max_turn);
     speed *= std::max(0.3, std::cos(std::min(M_PI / 2, 1.5 * std::fabs(yaw_error))));

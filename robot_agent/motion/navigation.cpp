@@ -118,7 +118,7 @@ nav::Target Navigation::target() const {
 Twist2 Navigation::limited(const Twist2& wanted) const {
   const Platform& p = params_.platform;
   Twist2 t = wanted;
-  if (p.drive == Drive::differential) t.vy = 0.0;
+  if (!p.sideways()) t.vy = 0.0;
   const double speed = std::hypot(t.vx, t.vy);
   if (speed > p.max_speed) {
     t.vx *= p.max_speed / speed;

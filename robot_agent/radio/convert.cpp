@@ -225,7 +225,7 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   out.protocol(protocol);
   out.software(ADIT_VERSION);
   out.platform(platform.name);
-  out.holonomic(platform.drive == Drive::holonomic);
+  out.holonomic(platform.sideways());
   out.length(static_cast<float>(platform.length));
   out.width(static_cast<float>(platform.width));
   out.height(static_cast<float>(platform.height));

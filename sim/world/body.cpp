@@ -8,7 +8,7 @@ namespace adit::sim {
 void Body::command(const Twist2& wanted) {
   const auto finite = [](double v) { return std::isfinite(v) ? v : 0.0; };
   wanted_ = {finite(wanted.vx), finite(wanted.vy), finite(wanted.wz)};
-  if (platform_.drive == Drive::differential) wanted_.vy = 0.0;
+  if (!platform_.sideways()) wanted_.vy = 0.0;
   const double speed = std::hypot(wanted_.vx, wanted_.vy);
   if (speed > platform_.max_speed) {
     wanted_.vx *= platform_.max_speed / speed;
@@ -30,9 +30,11 @@ Pose2 Body::advance(double dt) {
   twist_.vy = part < 1.0 ? twist_.vy + part * dvy : wanted_.vy;
   twist_.wz += std::clamp(wanted_.wz - twist_.wz, -turn_limit, turn_limit);
   // The chord of the arc that the body describes: exact for a constant velocity up to second order.
-  const double half = 0.5 * twist_.wz * dt, c = std::cos(half), s = std::sin(half);
-  return pose_ *
-         Pose2{(twist_.vx * c - twist_.vy * s) * dt, (twist_.vx * s + twist_.vy * c) * dt, twist_.wz * dt};
+  const Twist2 v = twist();
+  const double half = 0.5 * v.wz * dt, c = std::cos(half), s = std::sin(half);
+  return pose_ * Pose2{(v.vx * c - v.vy * s) * dt, (v.vx * s + v.vy * c) * dt, v.wz * dt};
 }
+
+Twist2 Body::twist() const { return {twist_.vx, twist_.vy, (1.0 - platform_.turn_slip) * twist_.wz}; }
 
 }  // namespace adit::sim

@@ -23,12 +23,13 @@ class Body {
 
   const Platform& platform() const { return platform_; }
   const Pose2& pose() const { return pose_; }
-  const Twist2& twist() const { return twist_; }
+  /// Of the body. Tracks skid: less of their turn arrives.
+  Twist2 twist() const;
 
  private:
   Platform platform_;
   Pose2 pose_;
-  Twist2 twist_{};
+  Twist2 twist_{};  ///< of the drive
   Twist2 wanted_{};
   double watchdog_;
   double silence_{0.0};  ///< since the last command, s

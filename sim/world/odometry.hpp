@@ -11,12 +11,14 @@ struct OdometryParams {
   double scale{0.01};       ///< deviation of the error of the driven distance, fraction of it, [0, 0.5]
   double drift{0.2};        ///< deviation of the error of the heading, degrees a metre, [0, 45]
   double correlation{1.0};  ///< way over which the heading's error rate keeps its value, m, (0, 1000]
+  double turn{0.0};         ///< deviation of the error of a turn, fraction of it, [0, 0.5]
 };
 
 /// Dead reckoning with errors. A constant factor, drawn once, multiplies every distance (wheels worn, feet
 /// slipping): 1 % of distance. The heading drifts by a rate per metre that wanders around zero (a
 /// Gauss-Markov process over the driven way with the given deviation and correlation): 0.2 degrees per metre,
-/// nearly independent from one metre to the next. A robot that stands or turns on the spot gains no error.
+/// nearly independent from one metre to the next. A robot that stands or turns on the spot gains no error, but
+/// where it skids: there a constant factor multiplies every turn, too.
 class Odometry {
  public:
   Odometry(const OdometryParams& params, std::uint64_t seed);
@@ -32,7 +34,8 @@ class Odometry {
   OdometryParams params_;
   Random random_;
   double scale_;
-  double rate_;  ///< rad a metre
+  double rate_;       ///< rad a metre
+  double turn_{1.0};  ///< measured of each radian turned
   Pose2 pose_{};
   Twist2 twist_{};
 };

@@ -62,7 +62,9 @@ Result<void> Simulation::add(const RobotStart& start) {
     if (overlap(body, footprint(robot.body.platform(), robot.body.pose())))
       return {Reason::bad_argument, where() + " overlaps " + robot.id};
   const std::uint64_t seed = derive_seed(params_.seed, 2 * robots_.size() + 1);
-  robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(params_.odometry, seed),
+  OdometryParams odometry = params_.odometry;
+  odometry.turn = std::max(odometry.turn, platform.turn_error);
+  robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(odometry, seed),
                      std::move(ground), std::move(seen)});
   Robot& robot = robots_.back();
   robot.truth.pose = Pose3::level(start.pose, robot.ground->ground(start.pose.x, start.pose.y));

@@ -97,11 +97,13 @@ inline Platform wheeled() {
 }
 inline Platform tracked() {
   return {.name = "tracked",
+          .drive = Drive::tracked,
           .length = 0.80,
           .width = 0.60,
           .max_speed = 1.0,
           .max_turn = 1.0,
           .max_acceleration = 1.0,
+          .turn_slip = 0.15,
           .step = 0.15,
           .lidar_height = 0.55};
 }

@@ -136,6 +136,18 @@ TEST_P(EveryPlatform, GetsBySomebodyWhoComesTowardsIt) {
 INSTANTIATE_TEST_SUITE_P(Nav, EveryPlatform, ::testing::Values(wheeled(), tracked(), legged()),
                          [](const auto& one) { return one.param.name; });
 
+TEST(ClosedLoopSlip, ATrackedRobotThatLosesMuchOfEachTurnArrives) {
+  Platform slippery = tracked();
+  slippery.turn_slip = 0.35;
+  for (const std::string& tracks : controller_names()) {
+    BoxWorld world = corridor(-6, 10);
+    world.boxes.push_back({3, 3.4, -0.9, -0.4});
+    ClosedLoop run(slippery, world, {0, 0, M_PI}, tracks);
+    EXPECT_TRUE(run.drive(Target::to({7, 0}), 40)) << tracks;
+    EXPECT_GT(run.least_clearance, 0.03) << tracks;
+  }
+}
+
 TEST(ClosedLoopNoise, ArrivesWithNoisyRanges) {
   ClosedLoop run(wheeled(), corridor(-2, 16), {0, 0, 0});
   run.noise = 0.03;

@@ -28,11 +28,11 @@ Pose2 run(Controller& follower, const Platform& p, Pose2 pose, double seconds) {
     EXPECT_LE(std::hypot(v.vx, v.vy), p.max_speed + 1e-9);
     EXPECT_LE(std::fabs(v.wz), p.max_turn + 1e-9);
     EXPECT_LE(std::hypot(v.vx - before.vx, v.vy - before.vy), p.max_acceleration * kDt + 1e-9);
-    EXPECT_LE(std::fabs(v.wz - before.wz), p.max_turn_acceleration * kDt + 1e-9);
-    if (p.drive == Drive::differential) {
+    EXPECT_LE(std::fabs(follower.command().wz - before.wz), p.max_turn_acceleration * kDt + 1e-9);
+    if (!p.sideways()) {
       EXPECT_EQ(v.vy, 0.0);
     }
-    pose = pose * Pose2{v.vx * kDt, v.vy * kDt, v.wz * kDt};
+    pose = pose * Pose2{v.vx * kDt, v.vy * kDt, (1 - p.turn_slip) * v.wz * kDt};
   }
   return pose;
 }
@@ -51,6 +51,28 @@ TEST(Controllers, AnUnknownNameIsAnError) {
   const auto made = make_controller("mppi", wheeled());
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().text, "no controller 'mppi': ilqr or pure_pursuit");
+}
+
+TEST_P(ControllerTest, LearnsHowMuchOfATurnTheGroundSwallows) {
+  Platform told = tracked();
+  told.turn_slip = 0.0;  // and the ground takes a third
+  const auto follower = make(told);
+  Plan circle;
+  circle.max_speed = 0.6;
+  circle.pose_count = Plan::kMaxPath;
+  circle.length = 0.05 * (Plan::kMaxPath - 1);
+  Pose2 pose;
+  for (double t = 0; t < 5.0; t += kDt) {
+    Pose2 ahead = pose;
+    for (Pose2& p : circle.poses) p = ahead, ahead = ahead * Pose2{0.05, 0, 0.05};
+    follower->set_plan(circle);
+    const Twist2 v = follower->follow(pose, kDt);
+    const double turn = v.wz * 2 / 3;
+    if (t > 3.0) {
+      EXPECT_NEAR(turn, follower->command().wz, 0.02) << t;
+    }
+    pose = pose * Pose2{v.vx * kDt, v.vy * kDt, turn * kDt};
+  }
 }
 
 TEST_P(ControllerTest, StopsAtTheEndOfAPath) {

@@ -51,6 +51,19 @@ TEST(Body, keeps_the_limits_of_its_platform) {
   EXPECT_NEAR(legs.pose().x, legs.pose().y, 1e-9);
 }
 
+TEST(Body, tracks_swallow_a_part_of_each_turn) {
+  Platform p = platform(Drive::tracked);
+  p.turn_slip = 0.2;
+  Body body(p, {}, 0.5);
+  run(body, {1, 0.5, 1}, 1.0);
+  const double yaw = body.pose().yaw;
+  run(body, {1, 0.5, 1}, 1.0);
+  EXPECT_NEAR(body.pose().yaw - yaw, 0.8, 1e-9);
+  EXPECT_NEAR(body.twist().wz, 0.8, 1e-9);
+  EXPECT_EQ(body.twist().vx, 1.0);
+  EXPECT_EQ(body.twist().vy, 0.0) << "not sideways";
+}
+
 TEST(Body, stops_when_nothing_is_commanded) {
   Body body(platform(Drive::differential), {}, 0.5);
   run(body, {1, 0, 0}, 2.0);
@@ -106,6 +119,17 @@ TEST(Odometry, without_noise_it_is_the_truth) {
   EXPECT_NEAR(odometry.pose().x, 0.1, 1e-12) << "odom begins at the start pose";
   EXPECT_NEAR(odometry.twist().vx, 1.0, 1e-9);
   EXPECT_NEAR(odometry.twist().wz, 0.2, 1e-9);
+}
+
+TEST(Odometry, misjudges_turns_where_it_skids) {
+  double off = 0;
+  constexpr int runs = 200;
+  for (int n = 0; n < runs; ++n) {
+    Odometry odometry({.turn = 0.05}, n);
+    for (int i = 0; i < 100; ++i) odometry.move({1, 1, 0.01 * i}, {1, 1, 0.01 * (i + 1)}, dt);
+    off += std::pow(odometry.pose().yaw - 1.0, 2) / runs;
+  }
+  EXPECT_NEAR(std::sqrt(off), 0.05, 0.01);
 }
 
 TEST(Odometry, same_seed_same_error) {
