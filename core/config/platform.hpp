@@ -27,9 +27,9 @@ struct Platform {
   /// tracked: share of each turn that the ground swallows, [0, 0.8]; the controller begins with it, and
   /// learns; the simulated ground keeps to it.
   double turn_slip{0.0};
-  double turn_error{0.0};  ///< tracked: share by which odometry misjudges turns, its deviation, [0, 0.5]
-  double step{0.08};                  ///< highest step it climbs, m, [0, 1]
-  double lidar_height{0.5};           ///< above the ground, m, (0, 5]
+  double turn_error{0.0};    ///< tracked: share by which odometry misjudges turns, its deviation, [0, 0.5]
+  double step{0.08};         ///< highest step it climbs, m, [0, 1]
+  double lidar_height{0.5};  ///< above the ground, m, (0, 5]
   bool stairs{false};
   std::string router{"none"};           ///< that leads it round what the planner does not see: none or graph
   std::string planner{"trajectories"};  ///< that finds the way to a goal: nav/make_planner.hpp

@@ -17,8 +17,8 @@ struct OdometryParams {
 /// Dead reckoning with errors. A constant factor, drawn once, multiplies every distance (wheels worn, feet
 /// slipping): 1 % of distance. The heading drifts by a rate per metre that wanders around zero (a
 /// Gauss-Markov process over the driven way with the given deviation and correlation): 0.2 degrees per metre,
-/// nearly independent from one metre to the next. A robot that stands or turns on the spot gains no error, but
-/// where it skids: there a constant factor multiplies every turn, too.
+/// nearly independent from one metre to the next. A robot that stands or turns on the spot gains no error,
+/// but where it skids: there a constant factor multiplies every turn, too.
 class Odometry {
  public:
   Odometry(const OdometryParams& params, std::uint64_t seed);

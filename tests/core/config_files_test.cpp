@@ -93,9 +93,9 @@ TEST(Platforms, wrong_files_name_file_line_and_what_was_expected) {
 TEST(Platforms, slip_is_a_matter_of_tracks) {
   const Folder folder;
   const auto load = [&](const std::string& drive, const std::string& more) {
-    return config::load_platform_file(
-        folder.write("p.yaml", "name: x\ndrive: " + drive + "\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n" +
-                                   "max_acceleration: 1\nstep: 0\nlidar_height: 1\n" + more));
+    return config::load_platform_file(folder.write(
+        "p.yaml", "name: x\ndrive: " + drive + "\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n" +
+                      "max_acceleration: 1\nstep: 0\nlidar_height: 1\n" + more));
   };
   const auto tracked = load("tracked", "turn_slip: 0.3\nturn_error: 0.02\n");
   ASSERT_TRUE(tracked) << tracked.error().text;
@@ -104,7 +104,8 @@ TEST(Platforms, slip_is_a_matter_of_tracks) {
   EXPECT_EQ(tracked->turn_error, 0.02);
   EXPECT_EQ(load("tracked", "")->turn_slip, 0.0);
   EXPECT_THAT(load("tracked", "turn_slip: 0.9\n").error().text, HasSubstr("p.yaml:10: turn_slip: expected"));
-  EXPECT_THAT(load("differential", "turn_slip: 0.1\n").error().text, HasSubstr("p.yaml:10: unknown key 'turn_slip'"));
+  EXPECT_THAT(load("differential", "turn_slip: 0.1\n").error().text,
+              HasSubstr("p.yaml:10: unknown key 'turn_slip'"));
 }
 
 TEST(Platforms, a_footprint_is_a_convex_polygon_around_base_link) {
