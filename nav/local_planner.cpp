@@ -56,9 +56,11 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
          body.symmetric() ? CorrespondenceGrid() : CorrespondenceGrid(tree, grown.turned()),
          std::min(speed, platform.max_speed), least_stage});
   };
-  // A narrow passage is seen from afar: the long tight library comes before the short ones, so that the robot
-  // lines up for the passage in time.
+  // First whatever keeps well away, and so is the fastest. A narrow passage is seen from afar: the long tight
+  // library comes before the short ones, so that the robot lines up for the passage in time.
   const double wide = std::max(params.front_margin, turn_needs);
+  add(long_tree, wide, params.roomy_margin, platform.max_speed, 6);
+  library->options.back().roomy = true;
   add(long_tree, wide, params.side_margin, platform.max_speed, 5);
   add(long_tree, turn_needs, params.tight_margin, params.tight_speed, 5);
   add(short_tree, wide, params.side_margin, platform.max_speed, 1);
@@ -380,7 +382,10 @@ bool LocalPlanner::choose(const Goal& goal, Choice& best) {
   for (const Option& option : library_->options) {
     block_paths(option, goal);
     const int need = option.tree.stage_for(goal.distance);
-    if (vote(option, goal, need, goal.spread, best)) return true;
+    const double spread = option.roomy ? std::min(goal.spread, params_.roomy_spread) : goal.spread;
+    if (vote(option, goal, need, spread, best) &&
+        (!option.roomy || ease(best.heading, best.stage, best.node) >= 1.0f))
+      return true;
     for (int stage = need - 1; stage >= option.least_stage; --stage)
       if (vote(option, goal, stage, detour, best)) return true;
   }

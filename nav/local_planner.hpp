@@ -15,13 +15,15 @@ namespace adit::nav {
 
 struct LocalPlannerParams {
   PathTreeParams tree{};
-  double side_margin{0.09};   ///< kept free beside the footprint, m, [0, 1]
+  double roomy_margin{0.5};   ///< kept free beside the footprint where there is room, m, [0, 1]
+  double side_margin{0.09};   ///< the same where there is less, m, [0, 1]
   double front_margin{0.20};  ///< kept free before and behind it, m, [0, 1]; never less than a turn needs
   double tight_margin{0.05};  ///< on the sides, where nothing else is left, m, [0.02, 0.5]
   double short_scale{0.5};    ///< of the second, shorter and more curved library, [0.2, 1]
   double tight_speed{0.5};    ///< where only the tight margin is left, m/s, (0, 2]
   double tolerance{0.25};     ///< arrived within this distance of the goal, m, [0.02, 2]
   double goal_spread{95.0};   ///< paths may lead away from the goal's bearing by this, degrees, [10, 120]
+  double roomy_spread{35.0};  ///< the same for a way that keeps well away, degrees, [10, 120]
   double stick_spread{45.0};  ///< the same for a direction, degrees, [10, 120]
   double detour_spread{
       60.0};             ///< the same for paths that are free for a part of the way only, degrees, [10, 120]
@@ -45,6 +47,7 @@ struct PlannerLibrary {
     CorrespondenceGrid back;  ///< of the body driving backwards; empty: the same
     double max_speed;         ///< m/s, with such margins
     int least_stage;          ///< a shorter way than this is left to the next library
+    bool roomy{};             ///< and one over rough ground, or hardly towards the goal
   };
   std::vector<Option> options{};
   RotationTable rotation{};

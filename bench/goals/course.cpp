@@ -61,7 +61,7 @@ Result<Course> draw_course(const std::string& kind, const std::string& platform,
   const sim::StandingMap map(*world, body->height, body->step);
   Ground ground(*made, map, 0.5 * std::hypot(body->length, body->width) + 0.1, 0.5 * body->width + 0.05);
   Random random(seed * 7919 + 17);
-  const bool apart = seed % 10 == 0;
+  const bool apart = random.chance(0.1);
   for (int attempt = 0; attempt < 20000; ++attempt) {
     const int i = static_cast<int>(random.below(static_cast<std::uint64_t>(ground.nx())));
     const int j = static_cast<int>(random.below(static_cast<std::uint64_t>(ground.ny())));

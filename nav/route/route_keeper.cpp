@@ -9,6 +9,8 @@ namespace {
 constexpr double kSameGoal = 0.05;   // m
 constexpr double kReachAhead = 0.9;  // m: a route that is blocked is so this far ahead
 constexpr double kSampling = 0.5;    // m
+constexpr double kNextCorner = 5.0;  // m
+constexpr double kDetour = 1.03;     // a straight line that costs more than this much of the route is none
 
 // The point of a way at a length from its beginning, and whether that is its end.
 Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double length, bool& end) {
@@ -26,8 +28,8 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double leng
 }  // namespace
 
 // The route from the point of it that is nearest, over the first metres: a way that comes back beside
-// itself is not cut.
-void RouteKeeper::advance(const Eigen::Vector3d& place) {
+// itself is not cut. A corner that was passed at some distance is none any more.
+void RouteKeeper::advance(RoutePlanner& planner, const Eigen::Vector3d& place) {
   auto& points = route_.points;
   double least = std::numeric_limits<double>::infinity(), passed = 0;
   std::size_t leg = 0;
@@ -47,6 +49,14 @@ void RouteKeeper::advance(const Eigen::Vector3d& place) {
   }
   points.erase(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(leg));
   points.front() = {place.x(), place.y(), nearest.z()};
+  while (points.size() > 2 && (points[1] - points[0]).norm() < kNextCorner) {
+    const LineEnds goal{.let_in = points.size() == 3};
+    const LineCost direct = planner.line(points[0], points[2], {.let_out = true, .let_in = goal.let_in});
+    const double round = planner.line(points[0], points[1], {.let_out = true}).cost +
+                         planner.line(points[1], points[2], goal).cost;
+    if (!direct.passable || direct.cost > round) break;
+    points.erase(points.begin() + 1);
+  }
 }
 
 void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked,
@@ -63,13 +73,30 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
   if (!end) planner.block({there.x(), there.y(), place.z()}, stamp_s);
 }
 
-// The farthest point of the route, up to `ahead`, that is in a straight line from here.
+// Of the route's first part, which ends at a length from its beginning.
+double RouteKeeper::cost_to(RoutePlanner& planner, double length) const {
+  double cost = 0;
+  for (std::size_t i = 0; i + 1 < route_.points.size() && length > 0; ++i) {
+    const Eigen::Vector3d way = route_.points[i + 1] - route_.points[i];
+    const double leg = way.norm(), share = leg > length ? length / leg : 1.0;
+    cost += planner
+                .line(route_.points[i], route_.points[i] + share * way,
+                      {.let_out = i == 0, .let_in = i + 2 == route_.points.size()})
+                .cost;
+    length -= leg;
+  }
+  return cost;
+}
+
+// The farthest point of the route, up to `ahead`, that is in a straight line from here: one that keeps as far
+// from what stands there as the route does.
 RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) const {
   RouteStep step{RouteStep::State::along, {}, false};
   const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};
   for (double ahead = params_.ahead; ahead >= params_.least_ahead; ahead -= kSampling) {
     step.target = point_at(route_.points, ahead, step.last);
-    if (planner.line(from, step.target).passable) return step;
+    const LineCost direct = planner.line(from, step.target, {.let_out = true, .let_in = step.last});
+    if (direct.passable && direct.cost <= kDetour * cost_to(planner, ahead) + kRouteCell) return step;
   }
   step.target = point_at(route_.points, params_.least_ahead, step.last);
   return step;
@@ -83,19 +110,16 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
   }
   if (planner.map().used() == 0) return {RouteStep::State::straight, goal, true};
   bool kept = route_.found();
-  if (kept) advance(place);
+  if (kept) advance(planner, place);
   watch_blocked(planner, place, blocked, stamp_s);
-  const bool lost = kept && straight_ && !planner.measure(route_);
+  const bool lost = kept && !planner.measure(route_);
   kept = kept && !lost;
   if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
     looked_ = stamp_s;
     Route other = planner.plan(place, goal);
     const bool better =
         other.cost < route_.cost * params_.momentum && other.cost < route_.cost - params_.gain;
-    if (!kept || !straight_ || (other.found() && better)) {
-      route_ = std::move(other);
-      straight_ = route_.found() && planner.measure(route_);
-    }
+    if (!kept || (other.found() && better)) route_ = std::move(other);
   }
   if (route_.found()) {
     lost_since_.reset();

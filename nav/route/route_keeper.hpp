@@ -44,8 +44,9 @@ class RouteKeeper {
   void clear() { *this = RouteKeeper(params_); }
 
  private:
-  void advance(const Eigen::Vector3d& place);
+  void advance(RoutePlanner& planner, const Eigen::Vector3d& place);
   void watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked, double stamp_s);
+  double cost_to(RoutePlanner& planner, double length) const;
   RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place) const;
 
   RouteKeeperParams params_;
@@ -54,8 +55,6 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
-  bool straight_{};  // the route's legs were passable as lines when it was taken; the graph knows ways that
-                     // are not
 };
 
 }  // namespace adit::nav

@@ -9,10 +9,11 @@ namespace {
 constexpr double kResample = 0.5;  // m
 constexpr double kLongest = 40.0;  // m: of a leg
 constexpr int kGiveUp = 3;         // corners in a row that are not seen
+constexpr double kLetOut = 0.5;    // m: of a way's ends, where it is too narrow but nothing stands
 
 }  // namespace
 
-LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends) {
   const Eigen::Vector2d way = to.head<2>() - from.head<2>();
   const double length = way.norm();
   const int steps = std::max(1, static_cast<int>(std::ceil(length / kRouteCell)));
@@ -20,7 +21,7 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
   LineCost result;
   double z = from.z();
   int index = -1, tx = 0, ty = 0;
-  bool have = false, was_known = false;
+  bool have = false, was_known = false, letting_out = ends.let_out, letting_in = false;
   for (int i = 0; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
     const int ix = route_cell(from.x() + t * way.x()), iy = route_cell(from.y() + t * way.y());
@@ -40,14 +41,23 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
     if (index < 0) {
       result.cost += weight * builder_.unknown_cost();
       result.unknown += weight;
-      was_known = false;
+      was_known = letting_out = false;
       continue;
     }
     const Tile& tile = builder_.current(map_, index);
     const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
-    if (tile.cost[c] == 0) return {};
-    result.cost += weight * tile.cost[c] / 16.0;
     const GroundCell& cell = tile.cells[c];
+    if (tile.cost[c] == 0) {
+      letting_out = letting_out && t * length <= kLetOut;
+      letting_in = ends.let_in && (1 - t) * length <= kLetOut;
+      if (cell.blocked || !(letting_out || letting_in)) return {};
+      result.cost += weight * builder_.unknown_cost();
+    } else if (letting_in) {
+      return {};
+    } else {
+      letting_out = false;
+      result.cost += weight * tile.cost[c] / 16.0;
+    }
     if (!cell.known) {
       result.unknown += weight;
     } else {
@@ -102,8 +112,11 @@ void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) {
       if (cell.known && std::abs(cell.z - p.z()) < kSheetReach / 2) p.z() = cell.z;
     }
   }
+  shorten_once(dense);
+  // A part of a line is rounded to other cells than the line: along a wall it may not be passable.
+  for (std::size_t i = 0; i + 1 < dense.size(); ++i)
+    if (!line(dense[i], dense[i + 1]).passable) return;
   points = std::move(dense);
-  shorten_once(points);
 }
 
 bool RouteLine::measure(Route& route) {
@@ -111,7 +124,8 @@ bool RouteLine::measure(Route& route) {
   route.length = route.unknown_length = route.cost = 0;
   route.unknown.clear();
   for (std::size_t i = 0; i + 1 < route.points.size(); ++i) {
-    const LineCost leg = line(route.points[i], route.points[i + 1]);
+    const LineCost leg = line(route.points[i], route.points[i + 1],
+                              {.let_out = i == 0, .let_in = i + 2 == route.points.size()});
     const double length = (route.points[i + 1] - route.points[i]).norm();
     passable = passable && leg.passable;
     route.cost += leg.passable ? leg.cost : length;

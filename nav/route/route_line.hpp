@@ -15,6 +15,12 @@ struct LineCost {
   double unknown{0};  ///< of its length, m
 };
 
+/// A robot may stand, and a goal lie, nearer to something than a way leads: an end of a line that is let out
+/// or in may be too narrow for half a metre, as long as nothing stands there.
+struct LineEnds {
+  bool let_out{false}, let_in{false};
+};
+
 /// Walks lines over the map's ground, and shortens ways with them.
 class RouteLine {
  public:
@@ -22,7 +28,7 @@ class RouteLine {
 
   /// From one point of the ground to another, both within 1.2 m of it; not passable where the ground is
   /// not, where a step is, or where the floor does not lead to `to`'s height.
-  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {});
   /// Replaces parts of a way by straight lines, where those are passable and cost no more. Each leg of
   /// `points` must be passable.
   void shorten(std::vector<Eigen::Vector3d>& points);

@@ -6,7 +6,7 @@ struct RouteParams {
   double range{20.0};          ///< of a scan, what it says farther away is not used, m, [2, 60]
   double comfort{0.4};         ///< kept beside the body where there is room, m, [0, 0.5]
   double narrow_cost{2.0};     ///< a metre without that room costs so many more, [0, 4]
-  double unknown_cost{1.4};    ///< a metre of unknown space costs this many known ones, [1, 3]
+  double unknown_cost{1.2};    ///< a metre of unknown space costs this many known ones, [1, 3]
   double slope{0.35};          ///< steepest ground, rise per run, [0, 1]
   double drop{0.20};           ///< lower ground than this is a hole (at least twice the step), m, [0.05, 2]
   double step_margin{0.025};   ///< more than the platform's step by this is an obstacle, m, [0, 0.1]

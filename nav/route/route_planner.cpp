@@ -66,7 +66,22 @@ double RoutePlanner::goal_height(const Eigen::Vector3d& from, const Eigen::Vecto
   return ground(to.x(), to.y(), from.z()).value_or(from.z());
 }
 
-// The passable cell nearest to a place; unknown space without a tile is passable as it is.
+bool RoutePlanner::stands_between(const Eigen::Vector3d& place, int ix, int iy) const {
+  const Eigen::Vector2d way =
+      Eigen::Vector2d((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell) - place.head<2>();
+  const int steps = static_cast<int>(way.norm() / (kRouteCell / 2)) + 1;
+  for (int i = 0; i <= steps; ++i) {
+    const Eigen::Vector2d p = place.head<2>() + way * i / steps;
+    const int x = route_cell(p.x()), y = route_cell(p.y());
+    const int index = map_.at(tile_of(x), tile_of(y), place.z());
+    if (index >= 0 && map_.tile(index).cells[static_cast<std::size_t>(cell_in_tile(x, y))].blocked)
+      return true;
+  }
+  return false;
+}
+
+// The passable cell nearest to a place, with nothing between; unknown space without a tile is passable as it
+// is.
 std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, double reach) {
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
   if (map_.at(tile_of(cx), tile_of(cy), place.z()) < 0) return RouteEnd{place, -1, 0};
@@ -81,7 +96,7 @@ std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, dou
       if (index < 0) continue;
       const Tile& tile = builder_.current(map_, index);
       const int c = cell_in_tile(ix, iy);
-      if (tile.cost[static_cast<std::size_t>(c)] == 0) continue;
+      if (tile.cost[static_cast<std::size_t>(c)] == 0 || stands_between(place, ix, iy)) continue;
       least = d;
       best = RouteEnd{{tile.cell_x(c), tile.cell_y(c), tile.cell_z(c)}, index, c};
     }

@@ -36,7 +36,9 @@ class RoutePlanner {
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;
 
-  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to) { return line_.line(from, to); }
+  LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {}) {
+    return line_.line(from, to, ends);
+  }
   /// Brings costs, lengths and unknown legs of a route up to date; false when it is not passable any more.
   bool measure(Route& route) { return line_.measure(route); }
   /// Height of the ground there, of the floor nearest to z; nothing when it is not known.
@@ -50,6 +52,7 @@ class RoutePlanner {
   void clear() { map_.clear(); }
 
  private:
+  bool stands_between(const Eigen::Vector3d& place, int ix, int iy) const;
   std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
   double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
   void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace adit::nav {
 namespace {
@@ -15,19 +16,25 @@ Eigen::Vector3d cell_place(const Tile& tile, int cell) {
   return {tile.cell_x(cell), tile.cell_y(cell), tile.cell_z(cell)};
 }
 
-// Of the straight line between two cells of a tile, m; infinite when it is not passable.
+// Of the straight line between two cells of a tile, m; infinite when it is not passable. At the same places
+// as RouteLine looks, and on both sides where these lie between cells.
 float straight_cost(const Tile& tile, int from, int to) {
   const int dx = to % kTileSide - from % kTileSide, dy = to / kTileSide - from / kTileSide;
-  const int steps = std::max({std::abs(dx), std::abs(dy), 1});
+  const double length = std::hypot(dx, dy);
+  const int steps = std::max(1, static_cast<int>(std::ceil(length)));
   int sum = 0;
   for (int i = 1; i <= steps; ++i) {
-    const int x = from % kTileSide + (2 * i * dx + steps) / (2 * steps);
-    const int y = from / kTileSide + (2 * i * dy + steps) / (2 * steps);
-    const int cost = tile.cost[static_cast<std::size_t>(y * kTileSide + x)];
-    if (cost == 0) return kUnreached;
+    const double t = static_cast<double>(i) / steps;
+    int cost = 0;
+    for (const auto& [ex, ey] : {std::pair{-1e-6, -1e-6}, {1e-6, -1e-6}, {-1e-6, 1e-6}, {1e-6, 1e-6}}) {
+      const int x = static_cast<int>(from % kTileSide + 0.5 + t * dx + ex);
+      const int y = static_cast<int>(from / kTileSide + 0.5 + t * dy + ey);
+      cost = tile.cost[static_cast<std::size_t>(y * kTileSide + x)];
+      if (cost == 0) return kUnreached;
+    }
     sum += cost;
   }
-  return static_cast<float>(std::hypot(dx, dy) * kRouteCell * sum / (16.0 * steps));
+  return static_cast<float>(length * kRouteCell * sum / (16.0 * steps));
 }
 
 }  // namespace
@@ -326,6 +333,14 @@ void RouteSearch::write_leg(Id from, Id to, std::vector<Eigen::Vector3d>& points
     points.push_back(cell_place(q, side_cell(in.side, i)));
     points.push_back(cell_place(q, in.cell));
   } else {
+    // Straight across the tile's side: its opening may be no wider.
+    const auto beyond = [this](Id id) {
+      const TileNode& node = map_.tile(static_cast<int>(id / kTileNodes)).nodes[id % kTileNodes];
+      return Eigen::Vector3d(node.x + kSideX[node.side] * kRouteCell, node.y + kSideY[node.side] * kRouteCell,
+                             node.z);
+    };
+    if (is_ghost(to) && to < start_id_ && a >= 0 && from != start_id_) points.push_back(beyond(from));
+    if (is_ghost(from) && from < start_id_ && b >= 0 && to != goal_id_) points.push_back(beyond(to));
     points.push_back(place(to));
   }
 }

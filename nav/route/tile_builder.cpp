@@ -172,6 +172,11 @@ void TileBuilder::spread(const Tile& tile, int cell) {
         const int next = ny * kTileSide + nx;
         const int cost = tile.cost[static_cast<std::size_t>(next)];
         if (cost == 0) continue;
+        // Not across a corner: a straight line would touch it.
+        if (dx != 0 && dy != 0 &&
+            (tile.cost[static_cast<std::size_t>(y * kTileSide + nx)] == 0 ||
+             tile.cost[static_cast<std::size_t>(ny * kTileSide + x)] == 0))
+          continue;
         const float step = kCellF * (dx != 0 && dy != 0 ? 1.41421356f : 1.0f);
         const float d =
             e.distance +

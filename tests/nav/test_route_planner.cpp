@@ -284,6 +284,37 @@ TEST(RoutePlanner, BoundedMemory) {
   EXPECT_TRUE(planner.plan({399.5, 0, 0}, {390, 0, 0}).found());
 }
 
+// Who keeps to a route measures it with each scan; one that is no line would be lost at once.
+TEST(RoutePlanner, EachLegOfAWayIsPassableAsALine) {
+  int found = 0, attempts = 0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    const GridWorld world = GridWorld::random(200, 200, 60, seed);
+    RoutePlanner planner(wheeled());
+    std::mt19937 draw(seed);
+    const auto upto = [&](int n) { return static_cast<int>(draw() % static_cast<std::uint32_t>(n)); };
+    const int known_x = 40 + upto(160), known_y = 40 + upto(160);  // the rest nobody has seen
+    for (int y = 0; y < known_y; ++y)
+      for (int x = 0; x < known_x; ++x) {
+        if (world.at(x, y))
+          planner.set_obstacle(middle(x, y, 0), 2.0);
+        else
+          planner.set_ground(middle(x, y, 0));
+      }
+    for (int i = 0; i < 10; ++i) {
+      const Eigen::Vector3d from = middle(upto(known_x), upto(known_y), 0);
+      const Eigen::Vector3d to = middle(upto(200), upto(200), 0);
+      if (!planner.line(from, from).passable || !planner.line(to, to).passable) continue;
+      Route route = planner.plan(from, to);
+      if (!route.found()) continue;
+      ++found;
+      attempts += route.attempt();
+      EXPECT_TRUE(planner.measure(route)) << seed << " " << i;
+    }
+  }
+  EXPECT_GT(found, 200);
+  EXPECT_GT(attempts, 40);
+}
+
 TEST(RoutePlanner, SameInputsSameRoute) {
   const auto run = [] {
     const GridWorld world = GridWorld::random(200, 200, 60, 4);
