@@ -14,8 +14,6 @@ constexpr double kNoTurn = 12.0;         ///< degrees: the follower steers that 
 constexpr double kEitherSide = 140.0;    ///< degrees: beyond, the side of a turn is kept once chosen
 constexpr double kTurnSlack = 0.06;      ///< m kept free before the body beyond what a turn needs
 constexpr double kTurnMargin = 0.04;     ///< m around the footprint while it turns
-constexpr double kStraightStick = 15.0;  ///< degrees: a stick within this of ahead or back holds the course
-constexpr double kSteadyStick = 4.0;     ///< degrees: a stick that moves more sets a new course
 constexpr float kSmooth = 0.1f;          ///< cost of ground that is as good as any
 constexpr float kVeryRough = 0.5f;       ///< cost of ground that is avoided where there is another way
 constexpr std::array<float, 2> kEase{0.4f, 0.05f};  ///< weight of a path across rough and very rough ground
@@ -41,13 +39,17 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
                                                             const LocalPlannerParams& params) {
   const Footprint body(platform);
   const double turn_needs = body.radius() - body.front() + kTurnSlack;
-  PathTreeParams small = params.tree;
+  PathTreeParams large = params.tree;
+  if (platform.path_segment > 0) large.segment = platform.path_segment;
+  if (platform.path_curvature > 0)
+    for (double& c : large.curvature) c *= platform.path_curvature / params.tree.curvature.front();
+  PathTreeParams small = large;
   small.segment *= params.short_scale;
   small.blend *= params.short_scale;
   small.spacing *= params.short_scale;
   for (double& c : small.curvature) c /= params.short_scale;
 
-  const PathTree long_tree(params.tree), short_tree(small);
+  const PathTree long_tree(large), short_tree(small);
   auto library = std::make_shared<PlannerLibrary>();
   const auto add = [&](const PathTree& tree, double front, double side, double speed, int least_stage) {
     const Footprint grown = body.grown(front, side);
@@ -209,18 +211,11 @@ LocalPlanner::Goal LocalPlanner::goal_of(const Target& target, const Pose2& pose
     goal.spread = params_.goal_spread;
   }
   goal.headings = static_cast<int>(goal.spread / kHeadingStep);
-  const bool straight = target.kind == Target::Kind::direction && target.speed > 0.0 &&
-                        std::fabs(std::sin(goal.bearing)) < std::sin(kStraightStick * kDegree);
-  if (!straight) {
-    on_course_ = false;
+  if (target.kind == Target::Kind::direction) {
+    goal.bearing = course_.bearing(target, pose);
+    goal.backwards = course_.held() && std::cos(target.direction) < 0;
   } else {
-    goal.backwards = std::cos(goal.bearing) < 0;
-    if (!on_course_ || std::fabs(wrap_angle(course_stick_ - goal.bearing)) > kSteadyStick * kDegree) {
-      course_stick_ = goal.bearing;
-      course_ = wrap_angle(pose.yaw + goal.bearing);
-      on_course_ = true;
-    }
-    goal.bearing = wrap_angle(course_ - pose.yaw);
+    course_.forget();
   }
   return goal;
 }

@@ -6,6 +6,7 @@
 
 #include "core/config/platform.hpp"
 #include "nav/correspondence.hpp"
+#include "nav/course.hpp"
 #include "nav/path_speed.hpp"
 #include "nav/path_tree.hpp"
 #include "nav/planner.hpp"
@@ -147,9 +148,7 @@ class LocalPlanner final : public Planner {
   Footprint body_;
   int rings_{0};  ///< of the largest grid
   int last_turn_{0};
-  double course_{0};        ///< of a stick held ahead or back, odometry frame, rad
-  double course_stick_{0};  ///< the stick's direction that set it
-  bool on_course_{false};
+  Course course_{};
   Eigen::Vector2d goal_{0, 0};  ///< that the following are about
   double nearest_{0};           ///< to it so far, m, in steps of half a metre
   double closest_{0};           ///< the same in finer steps

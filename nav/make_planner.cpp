@@ -1,11 +1,14 @@
 #include "nav/make_planner.hpp"
 
+#include <algorithm>
+
+#include "nav/lattice/lattice_planner.hpp"
 #include "nav/vfh_planner.hpp"
 
 namespace adit::nav {
 
 const std::vector<std::string>& planner_names() {
-  static const std::vector<std::string> names{"trajectories", "vfh"};
+  static const std::vector<std::string> names{"trajectories", "vfh", "lattice"};
   return names;
 }
 
@@ -15,12 +18,23 @@ Error no_planner(const std::string& name) {
   return {Reason::bad_argument, "no planner '" + name + "': " + all};
 }
 
+Result<void> fits(const Platform& platform) {
+  const auto& names = planner_names();
+  if (std::find(names.begin(), names.end(), platform.planner) == names.end())
+    return no_planner(platform.planner);
+  if (!platform.turns_on_spot() && platform.planner != "lattice")
+    return {Reason::bad_argument,
+            "planner '" + platform.planner + "' turns on the spot, which a car cannot: lattice does without"};
+  return {};
+}
+
 Result<std::unique_ptr<Planner>> make_planner(const Platform& platform, const LocalPlannerParams& params,
                                               std::shared_ptr<const PlannerLibrary> library) {
+  if (const auto checked = fits(platform); !checked) return checked.error();
   if (platform.planner == "trajectories")
     return std::unique_ptr<Planner>(std::make_unique<LocalPlanner>(platform, params, std::move(library)));
   if (platform.planner == "vfh") return std::unique_ptr<Planner>(std::make_unique<VfhPlanner>(platform));
-  return no_planner(platform.planner);
+  return std::unique_ptr<Planner>(std::make_unique<LatticePlanner>(platform));
 }
 
 }  // namespace adit::nav

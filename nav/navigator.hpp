@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+
+#include "nav/air_map.hpp"
 #include "nav/make_planner.hpp"
 #include "nav/obstacle_map.hpp"
 
@@ -20,11 +23,14 @@ class Navigator {
   Plan plan(const Target& target, const Pose2& pose, double stamp_s);
 
   const ObstacleMap& obstacles() const { return map_; }
+  /// What cannot be passed: middles of cells, odometry frame, m.
+  std::span<const Eigen::Vector2f> cells() const { return air_ ? air_->cells() : map_.cells(); }
   /// Forgets what was seen, as after a jump of the odometry.
   void clear();
 
  private:
   ObstacleMap map_;
+  std::optional<AirMap> air_{};  ///< of what flies, in place of the former
   std::unique_ptr<Planner> planner_;
   std::vector<ObstaclePoint> obstacles_{};  ///< of one plan
   bool has_scan_{false};

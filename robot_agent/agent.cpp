@@ -36,13 +36,14 @@ Result<void> Agent::start() {
     return {Reason::bad_argument, "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + params_.name + "'"};
   if (const auto known = nav::make_controller(params_.platform.controller, params_.platform); !known)
     return {known.error().reason, "platform " + params_.platform.name + ": " + known.error().text};
-  const auto& planners = nav::planner_names();
-  if (std::find(planners.begin(), planners.end(), params_.platform.planner) == planners.end())
-    return {Reason::bad_argument,
-            "platform " + params_.platform.name + ": " + nav::no_planner(params_.platform.planner).text};
+  if (const auto known = nav::fits(params_.platform); !known)
+    return {known.error().reason, "platform " + params_.platform.name + ": " + known.error().text};
   if (params_.platform.router != "none" && params_.platform.router != "graph")
     return {Reason::bad_argument, "platform " + params_.platform.name + ": no router '" +
                                       params_.platform.router + "': expected graph or none"};
+  if (params_.platform.router != "none" && params_.platform.flies())
+    return {Reason::bad_argument, "platform " + params_.platform.name + ": router '" +
+                                      params_.platform.router + "' leads over ground: none for what flies"};
   const auto tree = config::find_file(params_.tree);
   if (!tree) return tree.error();
   // Here as well as in each instance of the command component: who starts an agent is told at once.

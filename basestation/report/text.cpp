@@ -85,7 +85,8 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
            fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
   if (robot.described)
     out += "  limits   " + fixed(robot.max_speed, 1) + " m/s, " + fixed(robot.max_turn, 1) +
-           " rad/s\n  sensors  " + joined(robot.sensors, "-") + "\n";
+           " rad/s\n  sensors  " + joined(robot.sensors, "-") + "\n  can      " +
+           joined(robot.services, "-") + "\n";
   out += "  battery  " + battery_text(robot) + "\n";
   for (const ModeChoice& choice : robot.choices) {
     std::string row = "  can " + choice.mode;

@@ -34,11 +34,20 @@ void read_footprint(const Node& root, Platform& p) {
 
 /// What only some drives have; elsewhere such a key is an unknown one.
 void read_drive(const Node& root, Platform& p) {
-  static const std::vector<std::string> names{"differential", "tracked", "holonomic"};
+  static const std::vector<std::string> names{"differential", "tracked", "car", "holonomic", "aerial"};
   p.drive = static_cast<Drive>(root.choice("drive", names));
   if (p.drive == Drive::tracked) {
     p.turn_slip = root.number("turn_slip", within(0, 0.8), p.turn_slip);
     p.turn_error = root.number("turn_error", within(0, 0.5), p.turn_error);
+  }
+  if (p.drive == Drive::car) {
+    p.wheelbase = root.number("wheelbase", above(0, 5));
+    p.max_steering = root.number("max_steering", above(0, 1.2));
+    p.steering_rate = root.number("steering_rate", above(0, 10), p.steering_rate);
+  }
+  if (p.drive == Drive::aerial) {
+    p.hover_height = root.number("hover_height", above(0, 50), p.hover_height);
+    p.max_climb = root.number("max_climb", above(0, 5), p.max_climb);
   }
 }
 
@@ -65,6 +74,8 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.router = root.text("router", p.router);
   p.planner = root.text("planner", p.planner);
   p.controller = root.text("controller", p.controller);
+  p.path_curvature = root.number("path_curvature", above(0, 4), p.path_curvature);
+  p.path_segment = root.number("path_segment", within(0.2, 2), p.path_segment);
   p.manual_collision_stop = root.flag("manual_collision_stop", p.manual_collision_stop);
   if (auto done = root.finish(); !done) return done.error();
   return p;

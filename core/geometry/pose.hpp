@@ -60,13 +60,14 @@ struct Pose3 {
   }
 };
 
-/// A velocity in the body frame: m/s forward, m/s to the left, rad/s counter-clockwise.
+/// A velocity in the body frame: m/s forward, m/s to the left, rad/s counter-clockwise; m/s up, of what flies.
 struct Twist2 {
   double vx{};
   double vy{};
   double wz{};
+  double vz{};
   bool operator==(const Twist2&) const = default;
-  bool zero() const { return vx == 0.0 && vy == 0.0 && wz == 0.0; }
+  bool zero() const { return vx == 0.0 && vy == 0.0 && wz == 0.0 && vz == 0.0; }
 };
 
 /// Points in metres, in the frame the holder states.

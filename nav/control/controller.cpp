@@ -10,6 +10,10 @@ namespace adit::nav {
 namespace {
 
 constexpr double kStanding = 0.12;  ///< m/s: slow enough to begin to turn on the spot
+constexpr double kNoWay = 1e-3;     ///< m/s: slower says nothing about where a car's wheels shall point
+constexpr double kFarOff = 0.15;    ///< rad: a car drives slowly while its wheels are farther from where they shall be
+constexpr double kSteers = 0.15;    ///< m/s: so slowly
+constexpr double kSteerShare = 0.9;  ///< of the steering's rate is counted on
 
 double stepped(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
 
@@ -27,7 +31,16 @@ Twist2 Controller::stop_now() {
   return last_ = {};
 }
 
+void Controller::set_plan(const Plan& plan) {
+  plan_ = plan;
+  if (platform_.turns_on_spot()) return;
+  const Pose2 axle{-platform_.rear_axle(), 0, 0};
+  for (std::size_t i = 0; i < plan_.pose_count; ++i) plan_.poses[i] = plan_.poses[i] * axle;
+}
+
 Twist2 Controller::follow(const Pose2& odom, double dt) {
+  if (!platform_.turns_on_spot())
+    return last_ = steered(desired(odom * Pose2{-platform_.rear_axle(), 0, 0}, dt), dt);
   if (platform_.drive == Drive::tracked) learn_grip(odom, dt);
   last_ = towards(desired(odom, dt), dt);
   return against_slip(last_);
@@ -35,6 +48,7 @@ Twist2 Controller::follow(const Pose2& odom, double dt) {
 
 void Controller::sent(const Twist2& velocity) {
   last_ = velocity;
+  if (std::fabs(velocity.vx) < kNoWay) steering_ = steering_before_;  // a car was not told to steer
   sent_turn_ = velocity.wz;
   last_.wz *= grip_;
 }
@@ -52,7 +66,7 @@ void Controller::learn_grip(const Pose2& odom, double dt) {
 
 Twist2 Controller::against_slip(const Twist2& body) {
   sent_turn_ = std::clamp(body.wz / grip_, -platform_.max_turn, platform_.max_turn);
-  return {body.vx, body.vy, sent_turn_};
+  return {body.vx, body.vy, sent_turn_, body.vz};
 }
 
 Twist2 Controller::desired(const Pose2& odom, double dt) {
@@ -76,7 +90,7 @@ Twist2 Controller::desired(const Pose2& odom, double dt) {
 
   double error = wrap_angle(path[place.nearest].yaw - odom.yaw);
   const double off = std::fabs(error);
-  turning_ = off > (turning_ ? params_.turn_until : params_.turn_from);
+  turning_ = platform_.turns_on_spot() && off > (turning_ ? params_.turn_until : params_.turn_from);
   if (turning_) {
     rest();
     // The planner may have found that only the long way round is free.
@@ -100,6 +114,22 @@ Twist2 Controller::towards(const Twist2& wanted, double dt) const {
   if (change.norm() > most) change *= most / change.norm();
   const Eigen::Vector2d v = from + change;
   return {v.x(), v.y(), stepped(last_.wz, wanted.wz, platform_.max_turn_acceleration * dt)};
+}
+
+Twist2 Controller::steered(const Twist2& wanted, double dt) {
+  const Platform& p = platform_;
+  const double most = p.max_steering;
+  const double target = std::fabs(wanted.vx) < kNoWay
+                            ? steering_
+                            : std::clamp(std::atan(p.wheelbase * wanted.wz / wanted.vx), -most, most);
+  steering_before_ = steering_;
+  steering_ = stepped(steering_, target, kSteerShare * p.steering_rate * dt);
+  double speed = wanted.vx;
+  if (std::fabs(target - steering_) > kFarOff) speed = std::clamp(speed, -kSteers, kSteers);
+  const double bend = std::tan(steering_) / p.wheelbase;
+  if (std::fabs(bend * speed) > p.max_turn) speed = std::copysign(p.max_turn / std::fabs(bend), speed);
+  speed = stepped(last_.vx, speed, p.max_acceleration * dt);
+  return {speed, 0, speed * bend};
 }
 
 const std::vector<std::string>& controller_names() {

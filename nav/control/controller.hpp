@@ -18,7 +18,7 @@ struct ControllerParams {
 };
 
 /// Turns a plan into velocities. What all controllers share is here: turning on the spot where the path
-/// starts to the side, and the platform's limits of acceleration. How the path is tracked is each one's own.
+/// starts to the side, and the platform's limits of acceleration; of a car its steering instead. How the path is tracked is each one's own.
 /// Obstacles are the planner's matter and, after all else, the CollisionMonitor's.
 class Controller {
  public:
@@ -26,7 +26,7 @@ class Controller {
   virtual ~Controller() = default;
 
   /// The plan to follow from now on (copied). An empty one brings the robot to a smooth stop.
-  void set_plan(const Plan& plan) { plan_ = plan; }
+  void set_plan(const Plan& plan);
   /// The velocity for the next `dt` seconds, (0, 0.5], of a robot that is at `odom` (odometry frame).
   Twist2 follow(const Pose2& odom, double dt);
   /// Zero, at once, and no plan.
@@ -45,9 +45,13 @@ class Controller {
   };
   /// The velocity wanted next along plan().path(), which has two poses at least; limits of acceleration are
   /// applied afterwards.
+  /// Poses are those of what does not move sideways: a car's rear axle, base_link of others.
   virtual Twist2 track(const Pose2& odom, const Place& place, double dt) = 0;
   /// The robot stands, or turns on the spot: what was tracked is over.
   virtual void rest() {}
+
+  /// Of a car: the angle of its front wheels as far as is known, rad.
+  double steering() const { return steering_; }
 
   const Platform& platform() const { return platform_; }
   const ControllerParams& params() const { return params_; }
@@ -57,6 +61,7 @@ class Controller {
   Twist2 desired(const Pose2& odom, double dt);
   Twist2 turn_on_spot(double error) const;
   Twist2 towards(const Twist2& wanted, double dt) const;
+  Twist2 steered(const Twist2& wanted, double dt);
   void learn_grip(const Pose2& odom, double dt);
   Twist2 against_slip(const Twist2& body);
 
@@ -65,6 +70,7 @@ class Controller {
   Plan plan_{};
   Twist2 last_{};
   bool turning_{false};
+  double steering_{0}, steering_before_{0};  ///< of a car, rad
   /// Of tracks: the share of a turn that arrives. The platform's file tells it first, then what was asked for
   /// and what came, by least squares.
   double grip_{1}, asked_{0}, come_{0}, sent_turn_{0};

@@ -29,7 +29,8 @@ struct IlqrParams {
 
 /// Iterative LQR with box limits on the controls: control-limited DDP with Gauss-Newton Hessians (W. Li and
 /// E. Todorov 2004; Y. Tassa, N. Mansard and E. Todorov, "Control-limited differential dynamic programming",
-/// ICRA 2014). Limits of the velocity states are soft. Fixed sizes, nothing is allocated; a solve starts from
+/// ICRA 2014). Limits of the velocity states are soft, or hard
+/// where asked for: then they narrow the controls' box. Fixed sizes, nothing is allocated; a solve starts from
 /// the last one, moved on by one step.
 template <class Model, int Horizon = 50>
 class Ilqr {
@@ -44,6 +45,8 @@ class Ilqr {
   struct Limits {
     V velocity{V::Ones()};
     V rate{V::Ones()};
+    /// 1 where a velocity state stays within its limit come what may, as a car's steering; 0: at a cost.
+    V hard{V::Zero()};
   };
   struct Report {
     double cost{};
@@ -119,6 +122,20 @@ class Ilqr {
                    std::sin(r.pose.yaw),
                    model_.inverse(r.twist)};
     }
+  }
+
+  /// The controls' box where the velocity states are `v`.
+  V least(const V& v) const {
+    V box = -limits_.rate;
+    for (int i = 0; i < kV; ++i)
+      if (limits_.hard[i] > 0) box[i] = std::clamp((-limits_.velocity[i] - v[i]) / dt_, box[i], limits_.rate[i]);
+    return box;
+  }
+  V most(const V& v) const {
+    V box = limits_.rate;
+    for (int i = 0; i < kV; ++i)
+      if (limits_.hard[i] > 0) box[i] = std::clamp((limits_.velocity[i] - v[i]) / dt_, -limits_.rate[i], box[i]);
+    return box;
   }
 
   /// The velocity states take the control's effect first, the pose moves with them, along the mean heading.
@@ -227,7 +244,8 @@ class Ilqr {
       quu.diagonal() += weight + V::Constant(damping);
       V change;
       Gain gain;
-      if (!limited(quu, qu, qux, -limits_.rate - u, limits_.rate - u, change, gain)) return false;
+      const V now = x.template tail<kV>();
+      if (!limited(quu, qu, qux, least(now) - u, most(now) - u, change, gain)) return false;
       open_[k] = change;
       gains_[k] = gain;
       const X by_x = a.transpose() * value;
@@ -283,8 +301,8 @@ class Ilqr {
         X off = trial_states_[k] - states_[k];
         off[2] = wrap_angle(off[2]);
         trial_controls_[k] = (controls_[k] + share * open_[k] + gains_[k] * off)
-                                 .cwiseMax(-limits_.rate)
-                                 .cwiseMin(limits_.rate);
+                                 .cwiseMax(least(trial_states_[k].template tail<kV>()))
+                                 .cwiseMin(most(trial_states_[k].template tail<kV>()));
         trial_states_[k + 1] = next(trial_states_[k], trial_controls_[k]);
         sum += stage_cost(trial_states_[k + 1], trial_controls_[k], k);
         if (!(sum < cost)) break;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace adit::nav {
 namespace {
@@ -40,11 +41,17 @@ class Walk {
   }
   /// How fast the path may be driven at each of its poses: its bends within `max_turn` (rad/s), its end, and
   /// braking in time for both with `braking` (m/s2).
-  void speeds(double cruise, double max_turn, double braking, std::array<double, Plan::kMaxPath>& top) const {
+  /// `max_swing`: how fast curvature may change, rad/m/s; 0: at will.
+  void speeds(double cruise, double max_turn, double max_swing, double braking,
+              std::array<double, Plan::kMaxPath>& top) const {
     double next = 0.0;  // squared
     for (std::size_t i = path_.size(); i-- > 0;) {
       const double bent = i + 1 < path_.size() ? std::fabs(bend(i)) : 0.0;
       double own = bent * cruise > max_turn ? max_turn / bent : cruise;
+      if (max_swing > 0 && i + 2 < path_.size()) {
+        const double swing = std::fabs(bend(i + 1) - bend(i)) / spacing_;
+        if (swing * own > max_swing) own = max_swing / swing;
+      }
       if (i + 1 == path_.size()) own = 0.0;
       const double squared = std::min(own * own, next + 2 * braking * spacing_);
       top[i] = std::sqrt(squared);
@@ -93,6 +100,8 @@ class IlqrController final : public Controller {
     typename Solver::X start;
     start.template head<3>() << odom.x, odom.y, odom.yaw;
     start.template tail<Model::kVelocities>() = model_.inverse(command());
+    // Of a car that stands the velocity does not tell where its wheels point.
+    if constexpr (std::is_same_v<Model, model::Car>) start[4] = steering();
     solver_.solve(start, references_);
     const typename Solver::V first =
         start.template tail<Model::kVelocities>() + dt * solver_.controls().front();
@@ -112,7 +121,10 @@ class IlqrController final : public Controller {
     Walk walk(plan(), place.nearest, odom);
     const double sign = plan().reverse ? -1.0 : 1.0;
     const double cruise = std::min(plan().max_speed, platform().max_speed);
-    walk.speeds(cruise, params_.turn_share * platform().max_turn,
+    // While a car's wheels turn at their rate, the curvature changes by at least rate / wheelbase a second.
+    const double swing =
+        platform().drive == Drive::car ? platform().steering_rate / platform().wheelbase : 0.0;
+    walk.speeds(cruise, params_.turn_share * platform().max_turn, swing,
                 params().braking_share * platform().max_acceleration, top_);
     double speed = std::min(cruise, std::hypot(command().vx, command().vy));
     for (Reference& r : references_) {
@@ -140,6 +152,11 @@ std::unique_ptr<Controller> make_ilqr_controller(const Platform& p, const IlqrCo
         {p.max_speed, p.max_speed, p.max_turn},
         {p.max_acceleration, p.max_acceleration, p.max_turn_acceleration}};
     return std::make_unique<IlqrController<model::Holonomic>>(p, model::Holonomic{}, limits, params);
+  }
+  if (p.drive == Drive::car) {
+    const Ilqr<model::Car>::Limits limits{
+        {p.max_speed, p.max_steering}, {p.max_acceleration, p.steering_rate}, {0.0, 1.0}};
+    return std::make_unique<IlqrController<model::Car>>(p, model::Car{p.wheelbase}, limits, params);
   }
   const Ilqr<model::Unicycle>::Limits limits{{p.max_speed, p.max_turn},
                                              {p.max_acceleration, p.max_turn_acceleration}};

@@ -30,8 +30,10 @@ Twist2 PurePursuit::track(const Pose2& odom, const Place& place, double) {
     const Eigen::Vector2d v = to * (speed / std::max(distance, kShortest)) * (plan().reverse ? -1.0 : 1.0);
     return {v.x(), v.y(), turn};
   }
-  const double curvature = 2 * to.y() / std::max(distance * distance, kShortest * kShortest);
+  double curvature = 2 * to.y() / std::max(distance * distance, kShortest * kShortest);
   if (to.x() <= 0) return {};
+  if (!platform().turns_on_spot())
+    curvature = std::clamp(curvature, -1 / platform().least_radius(), 1 / platform().least_radius());
   if (std::fabs(curvature) * speed > 0.8 * platform().max_turn)
     speed = 0.8 * platform().max_turn / std::fabs(curvature);
   return {plan().reverse ? -speed : speed, 0, speed * curvature};

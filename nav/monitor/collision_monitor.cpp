@@ -10,7 +10,7 @@ constexpr int kMostStrides = 160;  ///< of one sweep
 constexpr float kDeeper = 0.002f;  ///< m: less is not "deeper": sliding along a wall is allowed
 constexpr double kCreep = 0.02;    ///< m/s: less than this is standing
 
-Twist2 scaled(const Twist2& t, double by) { return {by * t.vx, by * t.vy, by * t.wz}; }
+Twist2 scaled(const Twist2& t, double by) { return {by * t.vx, by * t.vy, by * t.wz, t.vz}; }
 
 double speed_of(const Twist2& t) { return std::hypot(t.vx, t.vy); }
 
@@ -19,13 +19,28 @@ double reach_of(const Platform& p, const CollisionMonitorParams& m) {
          p.max_speed * p.max_speed / (2 * m.braking_share * p.max_acceleration) + 0.1;
 }
 
+/// Below and above what flies there is air, not ground: all in the band that the body needs is an obstacle.
+Platform without_ground(Platform platform) {
+  if (platform.flies()) platform.step = 0.0;
+  return platform;
+}
+
+NearPointsParams without_ground(const Platform& platform, NearPointsParams points) {
+  constexpr double kBelow = 0.1;  // m
+  if (platform.flies()) {
+    points.slope = 0.0;
+    points.rise = -kBelow;
+  }
+  return points;
+}
+
 }  // namespace
 
 CollisionMonitor::CollisionMonitor(const Platform& platform, const CollisionMonitorParams& params)
     : platform_(platform),
       params_(params),
       body_(Footprint(platform).grown(params.margin, params.margin)),
-      near_(platform, reach_of(platform, params), params.points) {}
+      near_(without_ground(platform), reach_of(platform, params), without_ground(platform, params.points)) {}
 
 void CollisionMonitor::look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   near_.take(points, body, stamp_s);
@@ -83,10 +98,12 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
   if (count == 0) return horizon;
 
   Pose2 pose{};
+  // A car turns about its rear axle, so that base_link goes sideways, too.
+  const double sideways = velocity.vy + platform_.rear_axle() * velocity.wz;
   const Pose2 half{0, 0, velocity.wz * dt / 2};
   const auto reach = static_cast<float>(radius * radius);
   for (int i = 0; i < steps; ++i) {
-    pose = pose * half * Pose2{velocity.vx * dt, velocity.vy * dt, 0} * half;
+    pose = pose * half * Pose2{velocity.vx * dt, sideways * dt, 0} * half;
     const auto pc = static_cast<float>(std::cos(pose.yaw)), ps = static_cast<float>(std::sin(pose.yaw));
     const auto px = static_cast<float>(pose.x), py = static_cast<float>(pose.y);
     for (std::size_t j = 0; j < count; ++j) {

@@ -19,7 +19,8 @@ std::uint64_t stamp_of(const std_msgs::msg::Header& header) {
 bool usable(const Pose3& pose, const Twist2& twist) {
   const double turn = pose.orientation.norm();
   return pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() < 1e6 && turn > 1e-6 &&
-         turn < 1e6 && std::isfinite(twist.vx) && std::isfinite(twist.vy) && std::isfinite(twist.wz);
+         turn < 1e6 && std::isfinite(twist.vx) && std::isfinite(twist.vy) && std::isfinite(twist.wz) &&
+         std::isfinite(twist.vz);
 }
 
 }  // namespace
@@ -55,7 +56,7 @@ Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command
         const auto& q = o.pose().pose().orientation();
         Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
         const auto& v = o.twist().twist();
-        const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z()};
+        const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
         if (!usable(pose, twist)) return;  // as good as silence: the robot stops when it goes on
         pose.orientation.normalize();
         odometry(pose, twist, stamp_of(o.header()));
@@ -73,7 +74,7 @@ Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command
   auto external = wire::make_reader(
       wire, wire::topics::external_cmd_vel, command,
       [external = std::move(handlers.external)](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
-        external({t.linear().x(), t.linear().y(), t.angular().z()});
+        external({t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()});
       });
   if (!external) return external.error();
   e.external = std::move(*external);

@@ -84,7 +84,25 @@ Twist2 Navigation::along_plan(Time now) {
   const auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
   if (verdict.cause != nav::CollisionMonitor::Cause::none) controller_->sent(verdict.velocity);
   watch_held(verdict.cause == nav::CollisionMonitor::Cause::stopped, now);
-  return verdict.velocity;
+  Twist2 velocity = verdict.velocity;
+  if (terrain_fresh(now)) velocity.vz = climb();
+  return velocity;
+}
+
+double Navigation::climb() const {
+  constexpr double kThere = 0.05;  // m
+  const auto* go = std::get_if<GoTo>(&motion_);
+  if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return 0.0;
+  const double off = go->goal.z() - localisation_.z();
+  const double most = params_.platform.max_climb;
+  return std::fabs(off) < kThere ? 0.0 : std::clamp(off, -most, most);
+}
+
+bool Navigation::at_height() const {
+  constexpr double kThere = 0.2;  // m
+  const auto* go = std::get_if<GoTo>(&motion_);
+  if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return true;
+  return std::fabs(go->goal.z() - localisation_.z()) < kThere;
 }
 
 void Navigation::watch_held(bool stopped, Time now) {
@@ -109,6 +127,7 @@ nav::Target Navigation::target() const {
   if (!guidance || guidance->stick.zero()) return {};
   const Twist2& stick = guidance->stick;
   const double speed = std::hypot(stick.vx, stick.vy);
+  if (speed < kTurningSpeed && !params_.platform.turns_on_spot()) return {};
   if (speed < kTurningSpeed) return nav::Target::along(std::copysign(M_PI / 2, stick.wz), kTurningSpeed);
   const double turn = std::clamp(stick.wz * kTurnLooksAhead, -M_PI / 2, M_PI / 2);
   return nav::Target::along(wrap_angle(std::atan2(stick.vy, stick.vx) + turn),
@@ -125,6 +144,11 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
     t.vy *= p.max_speed / speed;
   }
   t.wz = std::clamp(t.wz, -p.max_turn, p.max_turn);
+  t.vz = p.flies() ? std::clamp(t.vz, -p.max_climb, p.max_climb) : 0.0;
+  if (!p.turns_on_spot()) {
+    const double most = std::fabs(t.vx) / p.least_radius();
+    t.wz = std::clamp(t.wz, -most, most);
+  }
   return t;
 }
 
@@ -203,7 +227,7 @@ void Navigation::planned(const PlanJob& job) {
     const bool held = held_since_ && now() - *held_since_ >= params_.held_after;
     if (for_goal) {
       blocked_ = job.plan.blocked || held;
-      outputs_.progress({.arrived = job.plan.arrived && job.last, .blocked = blocked_});
+      outputs_.progress({.arrived = job.plan.arrived && job.last && at_height(), .blocked = blocked_});
     }
   }
   if (waiting_) plan(std::exchange(waiting_, nullptr), now());

@@ -71,6 +71,9 @@ class Navigation : public Component, public NavigationInput {
   Twist2 along_plan(Time now);
   void watch_held(bool stopped, Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
+  /// Of what flies to a goal with a height: the velocity upwards, m/s, and whether it is there.
+  double climb() const;
+  bool at_height() const;
   Twist2 limited(const Twist2& wanted) const;
   void pass_on(const Velocity& wanted);
   nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;

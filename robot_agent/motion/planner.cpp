@@ -42,7 +42,7 @@ void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
               params.defects.has(Defect::blind_planner) || params.defects.has(Defect::blind_and_unwatched)
                   ? straight(*job, params.platform)
                   : navigator->plan(job->target, job->pose, stamp);
-        const auto cells = navigator->obstacles().cells();
+        const auto cells = navigator->cells();
         job->obstacles.assign(cells.begin(), cells.end());
       },
       std::move(done));

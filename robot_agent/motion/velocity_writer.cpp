@@ -11,6 +11,7 @@ namespace {
 void fill(const Twist2& velocity, geometry_msgs::msg::Twist& twist) {
   twist.linear().x(velocity.vx);
   twist.linear().y(velocity.vy);
+  twist.linear().z(velocity.vz);
   twist.angular().z(velocity.wz);
 }
 

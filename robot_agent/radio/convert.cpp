@@ -235,6 +235,10 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   out.step(static_cast<float>(platform.step));
   out.stairs(platform.stairs);
   out.sensors({"lidar", "odometry", "battery"});
+  if (platform.router != "none") out.services().push_back("route");
+  if (platform.turns_on_spot()) out.services().push_back("turn_on_spot");
+  if (platform.stairs) out.services().push_back("stairs");
+  if (platform.flies()) out.services().push_back("flight");
   for (const ModeRow& row : mode_table()) out.modes().push_back(std::string(row.name));
   return out;
 }

@@ -78,7 +78,7 @@ Result<void> RobotDriver::start() {
   auto cmd_vel = wire::make_reader<geometry_msgs::msg::Twist>(
       wire_, wire::topics::cmd_vel, strand_,
       [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
-        simulation_.command(robot_, {t.linear().x(), t.linear().y(), t.angular().z()});
+        simulation_.command(robot_, {t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()});
       });
   if (!cmd_vel) return cmd_vel.error();
   endpoints_->odom = std::move(*odom);
@@ -110,6 +110,7 @@ void RobotDriver::send_odom() {
   auto& pose = odom.pose().pose();
   pose.position().x(measured.pose().x);
   pose.position().y(measured.pose().y);
+  pose.position().z(simulation_.altitude(robot_));
   pose.orientation().z(std::sin(measured.pose().yaw / 2.0));
   pose.orientation().w(std::cos(measured.pose().yaw / 2.0));
   auto& twist = odom.twist().twist();

@@ -4,10 +4,15 @@
 #include <cmath>
 
 namespace adit::sim {
+namespace {
+
+constexpr double kNoWay = 1e-3;  // m/s: a slower command says nothing about a car's wheels
+
+}  // namespace
 
 void Body::command(const Twist2& wanted) {
   const auto finite = [](double v) { return std::isfinite(v) ? v : 0.0; };
-  wanted_ = {finite(wanted.vx), finite(wanted.vy), finite(wanted.wz)};
+  wanted_ = {finite(wanted.vx), finite(wanted.vy), finite(wanted.wz), finite(wanted.vz)};
   if (!platform_.sideways()) wanted_.vy = 0.0;
   const double speed = std::hypot(wanted_.vx, wanted_.vy);
   if (speed > platform_.max_speed) {
@@ -15,6 +20,11 @@ void Body::command(const Twist2& wanted) {
     wanted_.vy *= platform_.max_speed / speed;
   }
   wanted_.wz = std::clamp(wanted_.wz, -platform_.max_turn, platform_.max_turn);
+  wanted_.vz = platform_.flies() ? std::clamp(wanted_.vz, -platform_.max_climb, platform_.max_climb) : 0.0;
+  // Of a car that shall stand the wheels stay as they are.
+  if (platform_.drive == Drive::car && std::abs(wanted_.vx) > kNoWay)
+    wheels_wanted_ = std::clamp(std::atan(platform_.wheelbase * wanted_.wz / wanted_.vx),
+                                -platform_.max_steering, platform_.max_steering);
   silence_ = 0.0;
 }
 
@@ -29,12 +39,28 @@ Pose2 Body::advance(double dt) {
   twist_.vx = part < 1.0 ? twist_.vx + part * dvx : wanted_.vx;
   twist_.vy = part < 1.0 ? twist_.vy + part * dvy : wanted_.vy;
   twist_.wz += std::clamp(wanted_.wz - twist_.wz, -turn_limit, turn_limit);
+  if (platform_.drive == Drive::car) {
+    const double steer_limit = platform_.steering_rate * dt;
+    wheels_ += std::clamp(wheels_wanted_ - wheels_, -steer_limit, steer_limit);
+    twist_.wz = twist_.vx * std::tan(wheels_) / platform_.wheelbase;
+  }
   // The chord of the arc that the body describes: exact for a constant velocity up to second order.
   const Twist2 v = twist();
   const double half = 0.5 * v.wz * dt, c = std::cos(half), s = std::sin(half);
   return pose_ * Pose2{(v.vx * c - v.vy * s) * dt, (v.vx * s + v.vy * c) * dt, v.wz * dt};
 }
 
-Twist2 Body::twist() const { return {twist_.vx, twist_.vy, (1.0 - platform_.turn_slip) * twist_.wz}; }
+double Body::climb(double z, double ground, double ceiling, double dt) {
+  constexpr double kLowest = 0.3, kUnder = 0.2;  // m: above the ground, below the ceiling
+  above_ += wanted_.vz * dt;
+  const double highest = ceiling - platform_.height - kUnder - ground;
+  above_ = std::max(std::min(above_, highest), std::min(kLowest, platform_.hover_height));
+  return z + std::clamp(ground + above_ - z, -platform_.max_climb * dt, platform_.max_climb * dt);
+}
+
+Twist2 Body::twist() const {
+  // What a car turns about is its rear axle.
+  return {twist_.vx, twist_.vy + platform_.rear_axle() * twist_.wz, (1.0 - platform_.turn_slip) * twist_.wz};
+}
 
 }  // namespace adit::sim

@@ -9,13 +9,16 @@ class Body {
  public:
   /// `watchdog`: seconds after which a command that is not repeated counts as zero.
   Body(const Platform& platform, const Pose2& start, double watchdog)
-      : platform_(platform), pose_(start), watchdog_(watchdog) {}
+      : platform_(platform), pose_(start), above_(platform.hover_height), watchdog_(watchdog) {}
 
   /// A new cmd_vel; values that are not finite count as zero, others are brought within the platform's
   /// limits.
   void command(const Twist2& wanted);
   /// Velocity and pose after `dt` seconds, if nothing is in the way; changes only the velocity.
   Pose2 advance(double dt);
+  /// What flies: the height of base_link after `dt` seconds, m, over that ground and under that ceiling. It
+  /// keeps its height above the ground, which a velocity upwards changes, and stays away from the ceiling.
+  double climb(double z, double ground, double ceiling, double dt);
   /// Takes the pose that advance() proposed.
   void take(const Pose2& pose) { pose_ = pose; }
   /// Contact: the body stands.
@@ -23,7 +26,7 @@ class Body {
 
   const Platform& platform() const { return platform_; }
   const Pose2& pose() const { return pose_; }
-  /// Of the body. Tracks skid: less of their turn arrives.
+  /// Of base_link. Tracks skid: less of their turn arrives. A car turns about its rear axle.
   Twist2 twist() const;
 
  private:
@@ -31,6 +34,8 @@ class Body {
   Pose2 pose_;
   Twist2 twist_{};  ///< of the drive
   Twist2 wanted_{};
+  double wheels_{0.0}, wheels_wanted_{0.0};  ///< of a car: the angle of its front wheels, rad
+  double above_{0.0};  ///< what flies: height above the ground to be kept, m
   double watchdog_;
   double silence_{0.0};  ///< since the last command, s
 };

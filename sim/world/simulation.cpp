@@ -10,7 +10,9 @@
 namespace adit::sim {
 
 Simulation::Simulation(std::shared_ptr<const World> world, const SimulationParams& params)
-    : world_(std::move(world)), params_(params), lidar_(std::make_shared<const LidarPattern>(params.lidar)) {}
+    : world_(std::move(world)),
+      space_(world_),
+      params_(params), lidar_(std::make_shared<const LidarPattern>(params.lidar)) {}
 
 Result<Simulation> Simulation::create(std::shared_ptr<const World> world, std::vector<RobotStart> robots,
                                       const SimulationParams& params) {
@@ -47,16 +49,23 @@ Result<void> Simulation::add(const RobotStart& start) {
   std::shared_ptr<const StandingMap> ground;
   std::shared_ptr<const World> seen = world_;
   for (const Robot& robot : robots_)
-    if (robot.body.platform().height == platform.height && robot.body.platform().step == platform.step) {
+    if (robot.body.platform().height == platform.height && robot.body.platform().step == platform.step &&
+        robot.body.platform().flies() == platform.flies()) {
       ground = robot.ground;
       seen = robot.seen;
     }
   if (!ground) {
-    ground = std::make_shared<const StandingMap>(*world_, platform.height, platform.step);
-    if (params_.lidar.profile) seen = std::make_shared<const World>(world_->name(), ground->profile());
+    // Whatever rises or falls below it does not stop what flies.
+    constexpr double any_step = 1e6;
+    ground = std::make_shared<const StandingMap>(*world_, platform.height,
+                                                 platform.flies() ? any_step : platform.step);
+    if (params_.lidar.profile && !platform.flies()) seen = std::make_shared<const World>(world_->name(), ground->profile());
   }
   const Rectangle body = footprint(platform, start.pose);
-  if (ground->touches(body) || std::isnan(ground->ground(start.pose.x, start.pose.y)))
+  const double floor = ground->ground(start.pose.x, start.pose.y);
+  const double z = floor + (platform.flies() ? platform.hover_height : 0.0);
+  if (std::isnan(floor) ||
+      (platform.flies() ? space_.touches(body, z, z + platform.height) : ground->touches(body)))
     return {Reason::bad_argument, where() + " is in a wall or has no ground; choose a free place"};
   for (const Robot& robot : robots_)
     if (overlap(body, footprint(robot.body.platform(), robot.body.pose())))
@@ -67,7 +76,8 @@ Result<void> Simulation::add(const RobotStart& start) {
   robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(odometry, seed),
                      std::move(ground), std::move(seen)});
   Robot& robot = robots_.back();
-  robot.truth.pose = Pose3::level(start.pose, robot.ground->ground(start.pose.x, start.pose.y));
+  robot.truth.pose = Pose3::level(start.pose, z);
+  robot.start_ground = floor;
   return {};
 }
 
@@ -77,12 +87,49 @@ std::optional<std::size_t> Simulation::find(const std::string& id) const {
   return std::nullopt;
 }
 
+double Simulation::altitude(std::size_t robot) const {
+  const Robot& r = robots_[robot];
+  return r.body.platform().flies() ? r.truth.pose.position.z() - r.start_ground : 0.0;
+}
+
+bool Simulation::level(std::size_t a, std::size_t b) const {
+  const Platform &pa = robots_[a].body.platform(), &pb = robots_[b].body.platform();
+  if (!pa.flies() && !pb.flies()) return true;
+  const double za = robots_[a].truth.pose.position.z(), zb = robots_[b].truth.pose.position.z();
+  return za < zb + pb.height && zb < za + pa.height;
+}
+
+bool Simulation::level(std::size_t robot, const Person& person) const {
+  const Robot& r = robots_[robot];
+  if (!r.body.platform().flies()) return true;
+  const Pose2 at = person.body().pose;
+  const double floor = r.ground->ground(at.x, at.y);
+  return std::isnan(floor) || r.truth.pose.position.z() < floor + Person::height;
+}
+
+bool Simulation::touches_world(const Robot& robot, const Rectangle& body) const {
+  const Platform& platform = robot.body.platform();
+  const double z = robot.truth.pose.position.z();
+  return platform.flies() ? space_.touches(body, z, z + platform.height) : robot.ground->touches(body);
+}
+
+void Simulation::lift(Robot& robot) {
+  const Pose2 at = robot.body.pose();
+  Eigen::Vector3d& position = robot.truth.pose.position;
+  const Rectangle body = footprint(robot.body.platform(), at);
+  const double ground = robot.ground->ground(at.x, at.y);
+  if (std::isnan(ground)) return;
+  position.z() = robot.body.climb(position.z(), ground, space_.ceiling(body, position.z()), seconds(params_.step));
+}
+
 std::optional<std::size_t> Simulation::contact(std::size_t robot, const Rectangle& body) const {
-  if (robots_[robot].ground->touches(body)) return robots_.size();
+  if (touches_world(robots_[robot], body)) return robots_.size();
   for (std::size_t n = 0; n < robots_.size(); ++n)
-    if (n != robot && overlap(body, footprint(robots_[n].body.platform(), robots_[n].body.pose()))) return n;
+    if (n != robot && level(robot, n) &&
+        overlap(body, footprint(robots_[n].body.platform(), robots_[n].body.pose())))
+      return n;
   for (const Person& person : people_)
-    if (overlap(body, person.body())) return robots_.size() + 1;
+    if (level(robot, person) && overlap(body, person.body())) return robots_.size() + 1;
   return std::nullopt;
 }
 
@@ -118,6 +165,7 @@ void Simulation::walk(Person& person) {
 void Simulation::move(std::size_t index) {
   Robot& robot = robots_[index];
   const double dt = seconds(params_.step);
+  if (robot.body.platform().flies()) lift(robot);
   const Pose2 before = robot.body.pose();
   Pose2 after = robot.body.advance(dt);
   if (robot.jams > 0) {
@@ -147,18 +195,26 @@ void Simulation::move(std::size_t index) {
   if (std::hypot(truth.twist.vx, truth.twist.vy) > 0.05 || std::abs(truth.twist.wz) > 0.1)
     truth.moving += params_.step;
   const double ground = robot.ground->ground(now.x, now.y);
-  truth.pose = Pose3::level(now, std::isnan(ground) ? truth.pose.position.z() : ground);
+  const bool stays = robot.body.platform().flies() || std::isnan(ground);
+  truth.pose = Pose3::level(now, stays ? truth.pose.position.z() : ground);
 }
 
 void Simulation::measure(std::size_t index) {
   Robot& robot = robots_[index];
   const Rectangle body = footprint(robot.body.platform(), robot.body.pose());
-  double clearance = std::min(robot.truth.min_clearance, robot.ground->clearance(body));
+  constexpr double far = 2.0;  // m: what is farther from a flying body is not looked for
+  const Platform& platform = robot.body.platform();
+  const double z = robot.truth.pose.position.z(), least = robot.truth.min_clearance;
+  double clearance =
+      platform.flies() ? space_.clearance(body, z, z + platform.height, std::min(least, far))
+                       : robot.ground->clearance(body);
+  clearance = platform.flies() && clearance >= far ? least : std::min(least, clearance);
   for (std::size_t n = 0; n < robots_.size(); ++n)
-    if (n != index)
+    if (n != index && level(index, n))
       clearance =
           std::min(clearance, distance(body, footprint(robots_[n].body.platform(), robots_[n].body.pose())));
-  for (const Person& person : people_) clearance = std::min(clearance, distance(body, person.body()));
+  for (const Person& person : people_)
+    if (level(index, person)) clearance = std::min(clearance, distance(body, person.body()));
   robot.truth.min_clearance = clearance;
 }
 

@@ -7,6 +7,7 @@
 #include "core/config/platform.hpp"
 #include "core/time/time.hpp"
 #include "sim/world/body.hpp"
+#include "sim/world/flight_space.hpp"
 #include "sim/world/lidar.hpp"
 #include "sim/world/odometry.hpp"
 #include "sim/world/person.hpp"
@@ -41,7 +42,7 @@ struct Collision {
 
 /// What is true of a robot, whatever it believes.
 struct Truth {
-  Pose3 pose{};               ///< base_link on the ground, world
+  Pose3 pose{};               ///< base_link, on the ground or where it flies, world
   Twist2 twist{};             ///< body frame
   double distance{0.0};       ///< driven, m
   Duration moving{};          ///< time with more than 0.05 m/s or 0.1 rad/s
@@ -78,6 +79,8 @@ class Simulation {
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
   /// Pose in `odom` (which begins at the start pose) and measured velocity.
   const Odometry& odometry(std::size_t robot) const { return robots_[robot].odometry; }
+  /// What flies measures its height above the ground where it started, m; 0 of what drives.
+  double altitude(std::size_t robot) const;
   /// In the order they began; the first 1000 of them.
   const std::vector<Collision>& collisions() const { return collisions_; }
 
@@ -106,6 +109,7 @@ class Simulation {
     std::optional<std::size_t> partner{};  ///< of the contact that lasts, see contact()
     Pose2 contact{};                       ///< where it began
     int jams{};                            ///< of its drive, that last
+    double start_ground{};                 ///< m, world
   };
   Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
 
@@ -116,10 +120,16 @@ class Simulation {
   std::string partner_name(std::size_t partner) const;
   /// What the footprint would touch: a robot's index, size() for the world, size() + 1 for a person, nothing.
   std::optional<std::size_t> contact(std::size_t robot, const Rectangle& footprint) const;
+  /// Whether two robots' bodies share a height; a flying one passes over another.
+  bool level(std::size_t a, std::size_t b) const;
+  bool level(std::size_t robot, const Person& person) const;
+  bool touches_world(const Robot& robot, const Rectangle& footprint) const;
+  void lift(Robot& robot);
   void record(std::size_t robot, std::size_t partner);
   void measure(std::size_t robot);
 
   std::shared_ptr<const World> world_;
+  FlightSpace space_;
   SimulationParams params_;
   std::shared_ptr<const LidarPattern> lidar_;
   Duration now_{};

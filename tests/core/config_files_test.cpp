@@ -87,7 +87,7 @@ TEST(Platforms, wrong_files_name_file_line_and_what_was_expected) {
   const auto drive = config::load_platform_file(folder.write("d.yaml", "drive: hover\n"));
   ASSERT_FALSE(drive);
   EXPECT_THAT(drive.error().text,
-              HasSubstr("d.yaml:1: drive: expected one of differential, tracked, holonomic; got 'hover'"));
+              HasSubstr("d.yaml:1: drive: expected one of differential, tracked, car, holonomic, aerial; got 'hover'"));
 }
 
 TEST(Platforms, slip_is_a_matter_of_tracks) {

@@ -27,7 +27,7 @@ TEST(Planners, AnUnknownNameIsAnError) {
   const auto made = make_planner(with(wheeled(), "dijkstra"));
   ASSERT_FALSE(made);
   EXPECT_EQ(made.error().reason, Reason::bad_argument);
-  EXPECT_EQ(made.error().text, "no planner 'dijkstra': trajectories or vfh");
+  EXPECT_EQ(made.error().text, "no planner 'dijkstra': trajectories or vfh or lattice");
 }
 
 TEST(Planners, EveryNameMakesOne) {

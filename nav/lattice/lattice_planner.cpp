@@ -1,0 +1,207 @@
+#include "nav/lattice/lattice_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kMoving = 0.08;           ///< m/s: slower is standing
+constexpr double kTurned = 0.13;           ///< m before the end of a part: near enough, when nearly standing
+constexpr double kOver = 0.04;             ///< m: the part is over
+constexpr double kSteersAtOnce = 0.35;     ///< m/s: no faster, wheels are where they shall be after a motion
+constexpr double kSlow = 0.25;             ///< m/s: nearly standing
+constexpr double kAhead = 4.2;             ///< m: a direction becomes a place so far off
+constexpr float kHysteresis = 0.02f;       ///< m of the margin that a path which is kept may lose
+
+}  // namespace
+
+LatticePlanner::LatticePlanner(const Platform& platform, const LatticePlannerParams& params)
+    : platform_(platform),
+      params_(params),
+      body_(platform),
+      rear_(platform.rear_axle()),
+      search_(platform, params.search) {}
+
+Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+                          double stamp_s) {
+  Plan plan;
+  plan.stamp_s = stamp_s;
+  const Pose2 rear = pose * Pose2{-rear_, 0, 0};
+  watch_motion(rear, stamp_s);
+  plan.clearance = take_obstacles(obstacles);
+  const bool nowhere = target.kind == Target::Kind::none ||
+                       (target.kind == Target::Kind::direction && target.speed <= 0.0);
+  const double distance = (target.goal - pose.position()).norm();
+  const bool goal = target.kind == Target::Kind::goal;
+  plan.arrived = goal && distance <= params_.tolerance;
+  if (nowhere || plan.arrived) {
+    kept_.count = 0;
+    course_.forget();
+    plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
+    return plan;
+  }
+
+  const LatticeTask task = task_of(target, pose, rear);
+  way_.fill(clear_, task.target, static_cast<float>(platform_.width / 2 + params_.search.margin));
+  const bool keeps = follows_on(rear) && kept_for_.kind == target.kind &&
+                     (!goal || (kept_for_.goal - target.goal).norm() < 1.0) && passable(rear);
+  const bool finds = search_.find(clear_, way_, task, found_);
+  bool takes = finds;
+  if (keeps && finds) {
+    const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
+    if (other || changes_ahead() || !found_.straight_on()) {
+      const Eigen::Vector2d end =
+          rear.inverse() * (kept_.spots[kept_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
+      const double left = way_.at(static_cast<float>(end.x()), static_cast<float>(end.y()));
+      const double cost = kept_.cost() - static_cast<double>(kept_.spots[at_].cost) + left;
+      takes = found_.cost() + found_.left + params_.better < cost;
+    }
+  }
+  if (takes) {
+    adopt(rear);
+    kept_for_ = target;
+  }
+  const bool drives = takes || keeps;
+  const bool tired = given_up(target, distance, drives, stamp_s);
+  if (!drives || tired) {
+    kept_.count = 0;
+    plan.blocked = true;
+    plan.reason = Reason::blocked;
+    return plan;
+  }
+  write(target, pose, obstacles, plan);
+  return plan;
+}
+
+void LatticePlanner::watch_motion(const Pose2& rear, double stamp_s) {
+  if (before_ && stamp_s > before_s_) {
+    const Pose2 moved = before_->inverse() * rear;
+    const double way = std::copysign(std::hypot(moved.x, moved.y), moved.x);
+    speed_ = way / (stamp_s - before_s_);
+    if (std::fabs(way) > 0.02) curvature_ = moved.yaw / way;
+  }
+  before_ = rear;
+  before_s_ = stamp_s;
+}
+
+float LatticePlanner::take_obstacles(std::span<const ObstaclePoint> obstacles) {
+  float clearance = 2.0f;
+  for (const ObstaclePoint& o : obstacles)
+    if (o.cost >= 1.0f) clearance = std::min(clearance, std::max(0.0f, -body_.depth(o.x, o.y)));
+  clear_.fill(obstacles, static_cast<float>(rear_));
+  return clearance;
+}
+
+LatticeTask LatticePlanner::task_of(const Target& target, const Pose2& pose, const Pose2& rear) {
+  LatticeTask task{};
+  if (std::fabs(speed_) > kSteersAtOnce) task.level = search_.motions().level(curvature_);
+  if (std::fabs(speed_) > kMoving) task.direction = speed_ > 0 ? 1 : -1;
+  if (target.kind == Target::Kind::goal) {
+    task.target = rear.inverse() * target.goal;
+    course_.forget();
+    return task;
+  }
+  const double bearing = course_.bearing(target, pose);
+  task.goal = false;
+  task.target = Eigen::Vector2d(rear_ + kAhead * std::cos(bearing), kAhead * std::sin(bearing));
+  // Ahead or back as the stick points; held straight back the body's way is the other one.
+  task.only = std::fabs(wrap_angle(target.direction)) <= M_PI / 2 ? 1 : -1;
+  task.heading = bearing;
+  const double now = std::fabs(wrap_angle((task.only > 0 ? 0.0 : M_PI) - bearing));
+  task.spread = std::max(params_.stick_spread * M_PI / 180.0, now + 0.05);
+  return task;
+}
+
+void LatticePlanner::adopt(const Pose2& rear) {
+  kept_ = found_;
+  for (std::size_t i = 0; i < kept_.count; ++i) kept_.spots[i].pose = rear * kept_.spots[i].pose;
+  end_ = 0;
+  next_part();
+}
+
+void LatticePlanner::next_part() {
+  at_ = end_;
+  std::size_t i = at_ + 1;
+  while (i + 1 < kept_.count && kept_.spots[i + 1].direction == kept_.spots[at_ + 1].direction) ++i;
+  end_ = i;
+}
+
+bool LatticePlanner::changes_ahead() const { return end_ + 1 < kept_.count; }
+
+bool LatticePlanner::follows_on(const Pose2& rear) {
+  if (kept_.count < 2) return false;
+  const auto nearest = [&] {
+    double best = std::numeric_limits<double>::infinity();
+    std::size_t where = at_;
+    for (std::size_t i = at_; i <= end_; ++i) {
+      const double d = (kept_.spots[i].pose.position() - rear.position()).squaredNorm();
+      if (d < best) best = d, where = i;
+    }
+    return where;
+  };
+  at_ = nearest();
+  const double left = search_.motions().spacing() * static_cast<double>(end_ - at_);
+  if (left < kOver || (left < kTurned && std::fabs(speed_) < kSlow)) {
+    if (!changes_ahead()) return false;
+    next_part();
+    at_ = nearest();
+  }
+  const Pose2& spot = kept_.spots[at_].pose;
+  return (spot.position() - rear.position()).norm() < params_.off_path &&
+         std::fabs(wrap_angle(spot.yaw - rear.yaw)) < params_.off_heading;
+}
+
+bool LatticePlanner::passable(const Pose2& rear) const {
+  const Pose2 back = rear.inverse();
+  // What it stands in already it may leave.
+  const std::size_t first = at_ + 8;
+  for (std::size_t i = first; i < kept_.count; i += 2)
+    if (!search_.free(clear_, back * kept_.spots[i].pose, kHysteresis)) return false;
+  return true;
+}
+
+bool LatticePlanner::given_up(const Target& target, double distance, bool drives, double stamp_s) {
+  constexpr double kSameGoal = 0.1, kCloser = 0.1, kLongest = 0.5;  // m, m, s: what is longer was a break
+  if (target.kind != Target::Kind::goal) return false;
+  if ((target.goal - goal_).norm() > kSameGoal || distance < closest_ - kCloser) {
+    goal_ = target.goal;
+    closest_ = distance;
+    effort_ = 0;
+    rest_until_ = -std::numeric_limits<double>::infinity();
+  }
+  if (drives) effort_ += std::clamp(stamp_s - last_s_, 0.0, kLongest);
+  last_s_ = stamp_s;
+  if (effort_ > params_.effort) {
+    effort_ = 0;
+    rest_until_ = stamp_s + params_.rest;
+  }
+  return stamp_s < rest_until_;
+}
+
+void LatticePlanner::write(const Target& target, const Pose2& pose,
+                           std::span<const ObstaclePoint> obstacles, Plan& plan) const {
+  const std::size_t last = std::min(end_, at_ + Plan::kMaxPath - 1);
+  for (std::size_t i = at_; i <= last; ++i)
+    plan.poses[plan.pose_count++] = kept_.spots[i].pose * Pose2{rear_, 0, 0};
+  plan.length = static_cast<double>(plan.pose_count - 1) * search_.motions().spacing();
+  plan.reverse = kept_.spots[end_].direction < 0;
+  const Eigen::Vector2d end = plan.poses[plan.pose_count - 1].position();
+  plan.ends_at_goal =
+      target.kind == Target::Kind::goal && (end - target.goal).norm() <= params_.tolerance;
+  plan.option = 0;
+  double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
+  if (plan.reverse) limit = std::min(limit, params_.reverse_speed);
+  // Ground that costs is driven slowly.
+  float rough = 0.0f;
+  const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();
+  for (std::size_t i = at_; i <= last; i += 2) {
+    const Pose2 at = back * kept_.spots[i].pose;
+    rough = std::max(rough, clear_.cost(static_cast<float>(at.x), static_cast<float>(at.y)));
+  }
+  limit = std::min(limit, platform_.max_speed * (1.0 - params_.rough_slows * static_cast<double>(rough)));
+  plan.max_speed = target.speed > 0.0 ? std::min(limit, target.speed) : limit;
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,69 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+#include "nav/course.hpp"
+#include "nav/lattice/lattice_search.hpp"
+#include "nav/path_speed.hpp"
+#include "nav/planner.hpp"
+
+namespace adit::nav {
+
+struct LatticePlannerParams {
+  LatticeSearchParams search{};
+  double tolerance{0.25};      ///< arrived within this distance of the goal, m, [0.02, 2]
+  double better{0.6};          ///< another path must be so much cheaper where directions change, m, [0, 5]
+  double off_path{0.25};       ///< a robot farther from its path is not on it any more, m, [0.05, 1]
+  double off_heading{0.4};     ///< the same for the heading, rad, [0.05, 1.5]
+  double stick_spread{50.0};   ///< paths may leave a stick's direction by so much, degrees, [10, 120]
+  double reverse_speed{1.0};   ///< backwards no faster, m/s, (0, 10]
+  double rough_slows{0.75};    ///< share of the speed that ground of cost 1 takes, [0, 0.95]
+  double effort{25.0};  ///< drives this long without coming nearer to a goal, then it is blocked, s, [1, 600]
+  double rest{30.0};    ///< and stays blocked this long before it tries again, s, [0, 3600]
+  PathSpeedParams speed{};
+};
+
+/// The local planner of what cannot turn on the spot: searches a path of short motions, ahead and backwards,
+/// for the next metres (LatticeSearch), from the curvature that the robot has. So it turns round in as many
+/// moves as the place needs. A path whose directions change is kept to until another one is clearly better or
+/// something is in its way; a plan is what is driven in one direction. For every drive.
+class LatticePlanner final : public Planner {
+ public:
+  explicit LatticePlanner(const Platform& platform, const LatticePlannerParams& params = {});
+
+  Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+            double stamp_s) override;
+
+ private:
+  void watch_motion(const Pose2& rear, double stamp_s);
+  LatticeTask task_of(const Target& target, const Pose2& pose, const Pose2& rear);
+  float take_obstacles(std::span<const ObstaclePoint> obstacles);
+  bool follows_on(const Pose2& rear);
+  bool passable(const Pose2& rear) const;
+  void adopt(const Pose2& rear);
+  void next_part();
+  bool changes_ahead() const;
+  bool given_up(const Target& target, double distance, bool drives, double stamp_s);
+  void write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+             Plan& plan) const;
+
+  Platform platform_;
+  LatticePlannerParams params_;
+  Footprint body_;
+  double rear_;  ///< axle behind base_link, m
+  LatticeSearch search_;
+  ClearField clear_{};
+  WayField way_{};
+  LatticePath found_{}, kept_{};  ///< kept: odometry frame
+  std::size_t at_{0}, end_{0};  ///< of the kept path: where the robot is, and where its direction changes next
+  Target kept_for_{};
+  std::optional<Pose2> before_{};  ///< of the rear axle, odometry frame
+  double before_s_{0};
+  double speed_{0};      ///< m/s, negative backwards
+  double curvature_{0};  ///< of the way driven, rad/m
+  Course course_{};
+  Eigen::Vector2d goal_{0, 0};  ///< that the effort is about
+  double closest_{0}, effort_{0}, last_s_{0}, rest_until_{0};
+};
+
+}  // namespace adit::nav

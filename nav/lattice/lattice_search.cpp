@@ -1,0 +1,193 @@
+#include "nav/lattice/lattice_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr float kLed = 1.25f;      ///< weight of the way that is left: fewer states, a little longer paths
+constexpr float kLeaving = 0.8f;   ///< m: a body that starts within its margin may be in it so far
+constexpr float kDeeper = 0.01f;   ///< m: cells are not finer
+
+}  // namespace
+
+LatticeSearch::LatticeSearch(const Platform& platform, const LatticeSearchParams& params)
+    : params_(params),
+      motions_(platform, params.motions),
+      base_(platform.rear_axle()),
+      closed_(static_cast<std::size_t>(kCells) * kCells * kHeadings * 2, 0) {
+  const double count = std::ceil(3.0 * platform.length / platform.width);
+  disc_count_ = std::clamp<std::size_t>(static_cast<std::size_t>(count), 1, kMostDiscs);
+  const double half = platform.length / 2 / static_cast<double>(disc_count_);
+  for (std::size_t i = 0; i < disc_count_; ++i)
+    discs_[i] = static_cast<float>(base_ - platform.length / 2 + half * static_cast<double>(2 * i + 1));
+  radius_ = static_cast<float>(std::max(platform.width / 2 + params.margin,
+                                        std::hypot(half, platform.width / 2) + params.margin / 2));
+  nodes_.reserve(kMostNodes);
+  open_.reserve(kMostNodes);
+}
+
+bool LatticeSearch::free(const ClearField& clear, const Pose2& pose, float less) const {
+  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
+  const auto x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
+  for (std::size_t i = 0; i < disc_count_; ++i)
+    if (clear.clearance(x + c * discs_[i], y + s * discs_[i]) < radius_ - less) return false;
+  return true;
+}
+
+float LatticeSearch::price(const ClearField& clear, const Pose2& pose, bool leaving) const {
+  const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
+  const auto x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
+  float room = ClearField::kFar, rough = 0.0f;
+  for (std::size_t i = 0; i < disc_count_; ++i) {
+    const float px = x + c * discs_[i], py = y + s * discs_[i];
+    const float here = clear.clearance(px, py);
+    if (here < (leaving ? std::min(radius_, least_[i]) : radius_)) return -1.0f;
+    room = std::min(room, here - radius_);
+    rough = std::max(rough, clear.cost(px, py));
+  }
+  const auto comfort = static_cast<float>(std::max(1e-3, params_.comfort));
+  return 1.0f + static_cast<float>(params_.crowded) * (1.0f - std::clamp(room / comfort, 0.0f, 1.0f)) +
+         static_cast<float>(params_.rough) * rough;
+}
+
+std::int32_t LatticeSearch::state(const Pose2& pose, int direction) const {
+  constexpr float kHalf = kCell * kCells / 2;
+  const int i = static_cast<int>(std::floor((static_cast<float>(pose.x) + kHalf) / kCell));
+  const int j = static_cast<int>(std::floor((static_cast<float>(pose.y) + kHalf) / kCell));
+  if (i < 0 || j < 0 || i >= kCells || j >= kCells) return -1;
+  const int turn = static_cast<int>(std::lround(pose.yaw / (2 * M_PI) * kHeadings) + kHeadings) % kHeadings;
+  return ((turn * kCells + j) * kCells + i) * 2 + (direction > 0);
+}
+
+bool LatticeSearch::ends(const WayField& way, const LatticeTask& task, const Node& node) const {
+  const Eigen::Vector2d base = node.pose * Eigen::Vector2d(base_, 0.0);
+  const Eigen::Vector2d start(base_, 0.0);
+  if (task.goal && (base - task.target).norm() <= params_.goal_radius) return true;
+  if (way.least() > 0 && node.way < way.least() + static_cast<float>(params_.least_gain)) return true;
+  return (base - start).norm() >= params_.reach;
+}
+
+void LatticeSearch::expand(const ClearField& clear, const WayField& way, const LatticeTask& task,
+                           std::int32_t index) {
+  for (const int direction : {1, -1}) {
+    if (task.only != 0 && direction != task.only) continue;
+    for (int level = 0; level < MotionSet::kLevels; ++level) {
+      const Node& from = nodes_[static_cast<std::size_t>(index)];
+      const bool on = from.direction == direction && from.level >= 0;
+      if (on && std::abs(level - from.level) > 1) continue;
+      const bool changes = from.direction == -direction;
+      const MotionSet::Motion& motion = motions_.motion(on ? from.level : level, level, direction);
+      const bool leaving = from.length < kLeaving;
+      const Pose2 middle = from.pose * motion.poses[MotionSet::kPoses / 2];
+      const Pose2 end = from.pose * motion.poses[MotionSet::kPoses - 1];
+      const double along = direction > 0 ? end.yaw : end.yaw + M_PI;
+      if (std::fabs(wrap_angle(along - task.heading)) > task.spread) continue;
+      const std::int32_t there = state(end, direction);
+      if (there < 0 || closed_[static_cast<std::size_t>(there)] == round_) continue;
+      const float half = price(clear, middle, leaving), whole = price(clear, end, leaving);
+      if (half < 0 || whole < 0) continue;
+      const Eigen::Vector2d base = end * Eigen::Vector2d(base_, 0.0);
+      const float left = way.at(static_cast<float>(base.x()), static_cast<float>(base.y()));
+      if (left >= WayField::kNoWay || nodes_.size() == kMostNodes || open_.size() == kMostNodes) continue;
+      const auto step = static_cast<float>(motions_.step());
+      float cost = 0.5f * (half + whole) * step;
+      if (direction < 0) cost *= static_cast<float>(params_.reverse_cost);
+      if (changes) cost += static_cast<float>(params_.change_cost);
+      if (on) cost += static_cast<float>(params_.steer_cost * std::abs(level - from.level));
+      Node next{};
+      next.pose = end;
+      next.cost = from.cost + cost;
+      next.way = left;
+      next.length = from.length + step;
+      next.parent = index;
+      next.level = static_cast<std::int8_t>(level);
+      next.direction = static_cast<std::int8_t>(direction);
+      next.from = on ? from.level : static_cast<std::int8_t>(level);
+      open_.push_back({next.cost + kLed * left, static_cast<std::int32_t>(nodes_.size())});
+      std::push_heap(open_.begin(), open_.end());
+      nodes_.push_back(next);
+    }
+  }
+}
+
+bool LatticeSearch::find(const ClearField& clear, const WayField& way, const LatticeTask& task,
+                         LatticePath& path) {
+  path.count = 0;
+  path.complete = false;
+  if (++round_ == 0) {  // the marks of the last time that it had this number are gone by then
+    std::fill(closed_.begin(), closed_.end(), 0);
+    round_ = 1;
+  }
+  nodes_.clear();
+  open_.clear();
+  for (std::size_t i = 0; i < disc_count_; ++i) least_[i] = clear.clearance(discs_[i], 0.0f) - kDeeper;
+  Node start{};
+  start.way = way.at(static_cast<float>(base_), 0.0f);
+  start.level = static_cast<std::int8_t>(task.level);
+  start.direction = static_cast<std::int8_t>(task.direction);
+  if (start.way >= WayField::kNoWay) return false;
+  if (way.least() > 0 && start.way < way.least() + 2 * static_cast<float>(params_.least_gain)) return false;
+  nodes_.push_back(start);
+  open_.push_back({kLed * start.way, 0});
+  std::int32_t best = -1;
+  float nearest = start.way - static_cast<float>(params_.least_gain);
+  for (int n = 0; n < params_.expansions && !open_.empty();) {
+    std::pop_heap(open_.begin(), open_.end());
+    const std::int32_t index = open_.back().node;
+    open_.pop_back();
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (node.parent >= 0) {
+      const auto there = static_cast<std::size_t>(state(node.pose, node.direction));
+      if (closed_[there] == round_) continue;
+      closed_[there] = round_;
+      if (ends(way, task, node)) {
+        path.complete = true;
+        write(index, path);
+        return path.count > 1;
+      }
+      if (node.way < nearest) {
+        nearest = node.way;
+        best = index;
+      }
+    }
+    expand(clear, way, task, index);
+    ++n;
+  }
+  if (best < 0) return false;
+  write(best, path);
+  return path.count > 1;
+}
+
+void LatticeSearch::write(std::int32_t index, LatticePath& path) const {
+  path.left = nodes_[static_cast<std::size_t>(index)].way;
+  std::array<std::int32_t, LatticePath::kMost> chain;
+  std::size_t length = 0;
+  for (std::int32_t i = index; nodes_[static_cast<std::size_t>(i)].parent >= 0;
+       i = nodes_[static_cast<std::size_t>(i)].parent) {
+    if (length == chain.size()) break;
+    chain[length++] = i;
+  }
+  path.spots[0] = {{}, 0.0f, 0};
+  path.count = 1;
+  path.direction_changes = 0;
+  while (length-- > 0) {
+    const Node& node = nodes_[static_cast<std::size_t>(chain[length])];
+    const Node& before = nodes_[static_cast<std::size_t>(node.parent)];
+    if (path.count + MotionSet::kPoses > LatticePath::kMost) {
+      path.complete = false;  // so long is none but one of many manoeuvres; the rest is planned later
+      break;
+    }
+    if (path.count > 1 && path.spots[path.count - 1].direction != node.direction) ++path.direction_changes;
+    const MotionSet::Motion& motion = motions_.motion(node.from, node.level, node.direction);
+    for (int i = 0; i < MotionSet::kPoses; ++i) {
+      const float share = static_cast<float>(i + 1) / MotionSet::kPoses;
+      path.spots[path.count++] = {before.pose * motion.poses[static_cast<std::size_t>(i)],
+                                  before.cost + share * (node.cost - before.cost), node.direction};
+    }
+  }
+  if (path.count > 1) path.spots[0].direction = path.spots[1].direction;
+}
+
+}  // namespace adit::nav
