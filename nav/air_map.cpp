@@ -6,10 +6,7 @@
 namespace adit::nav {
 
 AirMap::AirMap(const Platform& platform, const AirMapParams& params)
-    : platform_(platform),
-      params_(params),
-      body_(platform),
-      grid_(static_cast<std::size_t>(kSide) * kSide) {
+    : platform_(platform), params_(params), body_(platform), grid_(static_cast<std::size_t>(kSide) * kSide) {
   cells_.reserve(kMost);
 }
 

@@ -11,12 +11,12 @@
 namespace adit::nav {
 
 struct AirMapParams {
-  double margin{0.12};       ///< above and below the body that is kept free, too, m, [0, 1]
-  double reach{5.0};         ///< what is farther from the robot does not matter, m, [1, 6]
-  double own{0.03};          ///< returns so close around the footprint are the body itself, m, [0, 0.5]
-  double memory{0.7};        ///< what the lidar should see again is kept so long, s, [0.1, 10]
+  double margin{0.12};        ///< above and below the body that is kept free, too, m, [0, 1]
+  double reach{5.0};          ///< what is farther from the robot does not matter, m, [1, 6]
+  double own{0.03};           ///< returns so close around the footprint are the body itself, m, [0, 0.5]
+  double memory{0.7};         ///< what the lidar should see again is kept so long, s, [0.1, 10]
   double hidden_memory{8.0};  ///< what it cannot, above or below its rays or too near, s, [0.1, 60]
-  double shortest{0.4};      ///< nearer to the lidar nothing may be seen, m, [0, 1]
+  double shortest{0.4};       ///< nearer to the lidar nothing may be seen, m, [0, 1]
 };
 
 /// The obstacles of what flies: whatever was seen at the height of its body, as cells of 5 cm; what is below

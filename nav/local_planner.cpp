@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr int kAngles = CorrespondenceGrid::kAngles;
-constexpr double kHeadingStep = 10.0;    ///< degrees
-constexpr double kNoTurn = 12.0;         ///< degrees: the follower steers that much out while driving
-constexpr double kEitherSide = 140.0;    ///< degrees: beyond, the side of a turn is kept once chosen
-constexpr double kTurnSlack = 0.06;      ///< m kept free before the body beyond what a turn needs
-constexpr double kTurnMargin = 0.04;     ///< m around the footprint while it turns
-constexpr float kSmooth = 0.1f;          ///< cost of ground that is as good as any
-constexpr float kVeryRough = 0.5f;       ///< cost of ground that is avoided where there is another way
+constexpr double kHeadingStep = 10.0;  ///< degrees
+constexpr double kNoTurn = 12.0;       ///< degrees: the follower steers that much out while driving
+constexpr double kEitherSide = 140.0;  ///< degrees: beyond, the side of a turn is kept once chosen
+constexpr double kTurnSlack = 0.06;    ///< m kept free before the body beyond what a turn needs
+constexpr double kTurnMargin = 0.04;   ///< m around the footprint while it turns
+constexpr float kSmooth = 0.1f;        ///< cost of ground that is as good as any
+constexpr float kVeryRough = 0.5f;     ///< cost of ground that is avoided where there is another way
 constexpr std::array<float, 2> kEase{0.4f, 0.05f};  ///< weight of a path across rough and very rough ground
 constexpr double kSlowest = 0.25;                   ///< of the speed is left on ground that weighs nothing
 constexpr float kSecondChoice = 0.3f;  ///< weight of driving the other way round than was asked for

@@ -29,20 +29,20 @@ struct Platform {
   /// tracked: share of each turn that the ground swallows, [0, 0.8]; the controller begins with it, and
   /// learns; the simulated ground keeps to it.
   double turn_slip{0.0};
-  double turn_error{0.0};    ///< tracked: share by which odometry misjudges turns, its deviation, [0, 0.5]
+  double turn_error{0.0};     ///< tracked: share by which odometry misjudges turns, its deviation, [0, 0.5]
   double wheelbase{0.0};      ///< car: between its axles, which lie evenly around base_link, m, (0, 5]
   double max_steering{0.0};   ///< car: of the front wheels, rad, (0, 1.2]
   double steering_rate{1.0};  ///< car: rad/s, (0, 10]
   double hover_height{1.0};   ///< aerial: base_link above the ground where no height is asked for, m, (0, 50]
   double max_climb{0.5};      ///< aerial: m/s up and down, (0, 5]
-  double step{0.08};         ///< highest step it climbs, m, [0, 1]
-  double lidar_height{0.5};  ///< above the ground, m, (0, 5]
+  double step{0.08};          ///< highest step it climbs, m, [0, 1]
+  double lidar_height{0.5};   ///< above the ground, m, (0, 5]
   bool stairs{false};
   std::string router{"none"};           ///< that leads it round what the planner does not see: none or graph
   std::string planner{"trajectories"};  ///< that finds the way to a goal: nav/make_planner.hpp
   double path_curvature{0.0};  ///< largest of the planner's paths, rad/m, (0, 4]; 0: the planner's own choice
   double path_segment{0.0};    ///< of its trajectory library, m, [0.2, 2]; 0: the same
-  std::string controller{"ilqr"};       ///< that tracks the planner's paths: nav/control/controller.hpp
+  std::string controller{"ilqr"};  ///< that tracks the planner's paths: nav/control/controller.hpp
   /// In manual mode the collision monitor stops the robot; false: it slows it and warns the operator.
   bool manual_collision_stop{false};
 

@@ -60,7 +60,8 @@ struct Pose3 {
   }
 };
 
-/// A velocity in the body frame: m/s forward, m/s to the left, rad/s counter-clockwise; m/s up, of what flies.
+/// A velocity in the body frame: m/s forward, m/s to the left, rad/s counter-clockwise; m/s up, of what
+/// flies.
 struct Twist2 {
   double vx{};
   double vy{};

@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kStanding = 0.12;  ///< m/s: slow enough to begin to turn on the spot
 constexpr double kNoWay = 1e-3;     ///< m/s: slower says nothing about where a car's wheels shall point
-constexpr double kFarOff = 0.15;    ///< rad: a car drives slowly while its wheels are farther from where they shall be
-constexpr double kSteers = 0.15;    ///< m/s: so slowly
+constexpr double kFarOff =
+    0.15;  ///< rad: a car drives slowly while its wheels are farther from where they shall be
+constexpr double kSteers = 0.15;     ///< m/s: so slowly
 constexpr double kSteerShare = 0.9;  ///< of the steering's rate is counted on
 
 double stepped(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }

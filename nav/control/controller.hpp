@@ -18,8 +18,9 @@ struct ControllerParams {
 };
 
 /// Turns a plan into velocities. What all controllers share is here: turning on the spot where the path
-/// starts to the side, and the platform's limits of acceleration; of a car its steering instead. How the path is tracked is each one's own.
-/// Obstacles are the planner's matter and, after all else, the CollisionMonitor's.
+/// starts to the side, and the platform's limits of acceleration; of a car its steering instead. How the path
+/// is tracked is each one's own. Obstacles are the planner's matter and, after all else, the
+/// CollisionMonitor's.
 class Controller {
  public:
   Controller(const Platform& platform, const ControllerParams& params);

@@ -30,8 +30,8 @@ struct IlqrParams {
 /// Iterative LQR with box limits on the controls: control-limited DDP with Gauss-Newton Hessians (W. Li and
 /// E. Todorov 2004; Y. Tassa, N. Mansard and E. Todorov, "Control-limited differential dynamic programming",
 /// ICRA 2014). Limits of the velocity states are soft, or hard
-/// where asked for: then they narrow the controls' box. Fixed sizes, nothing is allocated; a solve starts from
-/// the last one, moved on by one step.
+/// where asked for: then they narrow the controls' box. Fixed sizes, nothing is allocated; a solve starts
+/// from the last one, moved on by one step.
 template <class Model, int Horizon = 50>
 class Ilqr {
  public:
@@ -128,13 +128,15 @@ class Ilqr {
   V least(const V& v) const {
     V box = -limits_.rate;
     for (int i = 0; i < kV; ++i)
-      if (limits_.hard[i] > 0) box[i] = std::clamp((-limits_.velocity[i] - v[i]) / dt_, box[i], limits_.rate[i]);
+      if (limits_.hard[i] > 0)
+        box[i] = std::clamp((-limits_.velocity[i] - v[i]) / dt_, box[i], limits_.rate[i]);
     return box;
   }
   V most(const V& v) const {
     V box = limits_.rate;
     for (int i = 0; i < kV; ++i)
-      if (limits_.hard[i] > 0) box[i] = std::clamp((limits_.velocity[i] - v[i]) / dt_, -limits_.rate[i], box[i]);
+      if (limits_.hard[i] > 0)
+        box[i] = std::clamp((limits_.velocity[i] - v[i]) / dt_, -limits_.rate[i], box[i]);
     return box;
   }
 

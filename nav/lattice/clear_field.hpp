@@ -12,9 +12,9 @@ namespace adit::nav {
 class ClearField {
  public:
   static constexpr int kSide = 192;
-  static constexpr float kCell = 0.05f;           ///< m
+  static constexpr float kCell = 0.05f;              ///< m
   static constexpr float kHalf = kCell * kSide / 2;  ///< m from the middle to the border
-  static constexpr float kFar = 3.0f;             ///< m: so far or farther
+  static constexpr float kFar = 3.0f;                ///< m: so far or farther
 
   ClearField();
 

@@ -7,13 +7,13 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kMoving = 0.08;           ///< m/s: slower is standing
-constexpr double kTurned = 0.13;           ///< m before the end of a part: near enough, when nearly standing
-constexpr double kOver = 0.04;             ///< m: the part is over
-constexpr double kSteersAtOnce = 0.35;     ///< m/s: no faster, wheels are where they shall be after a motion
-constexpr double kSlow = 0.25;             ///< m/s: nearly standing
-constexpr double kAhead = 4.2;             ///< m: a direction becomes a place so far off
-constexpr float kHysteresis = 0.02f;       ///< m of the margin that a path which is kept may lose
+constexpr double kMoving = 0.08;        ///< m/s: slower is standing
+constexpr double kTurned = 0.13;        ///< m before the end of a part: near enough, when nearly standing
+constexpr double kOver = 0.04;          ///< m: the part is over
+constexpr double kSteersAtOnce = 0.35;  ///< m/s: no faster, wheels are where they shall be after a motion
+constexpr double kSlow = 0.25;          ///< m/s: nearly standing
+constexpr double kAhead = 4.2;          ///< m: a direction becomes a place so far off
+constexpr float kHysteresis = 0.02f;    ///< m of the margin that a path which is kept may lose
 
 }  // namespace
 
@@ -31,8 +31,8 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   const Pose2 rear = pose * Pose2{-rear_, 0, 0};
   watch_motion(rear, stamp_s);
   plan.clearance = take_obstacles(obstacles);
-  const bool nowhere = target.kind == Target::Kind::none ||
-                       (target.kind == Target::Kind::direction && target.speed <= 0.0);
+  const bool nowhere =
+      target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
   const double distance = (target.goal - pose.position()).norm();
   const bool goal = target.kind == Target::Kind::goal;
   plan.arrived = goal && distance <= params_.tolerance;
@@ -180,16 +180,15 @@ bool LatticePlanner::given_up(const Target& target, double distance, bool drives
   return stamp_s < rest_until_;
 }
 
-void LatticePlanner::write(const Target& target, const Pose2& pose,
-                           std::span<const ObstaclePoint> obstacles, Plan& plan) const {
+void LatticePlanner::write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+                           Plan& plan) const {
   const std::size_t last = std::min(end_, at_ + Plan::kMaxPath - 1);
   for (std::size_t i = at_; i <= last; ++i)
     plan.poses[plan.pose_count++] = kept_.spots[i].pose * Pose2{rear_, 0, 0};
   plan.length = static_cast<double>(plan.pose_count - 1) * search_.motions().spacing();
   plan.reverse = kept_.spots[end_].direction < 0;
   const Eigen::Vector2d end = plan.poses[plan.pose_count - 1].position();
-  plan.ends_at_goal =
-      target.kind == Target::Kind::goal && (end - target.goal).norm() <= params_.tolerance;
+  plan.ends_at_goal = target.kind == Target::Kind::goal && (end - target.goal).norm() <= params_.tolerance;
   plan.option = 0;
   double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
   if (plan.reverse) limit = std::min(limit, params_.reverse_speed);

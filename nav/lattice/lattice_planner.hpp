@@ -11,13 +11,13 @@ namespace adit::nav {
 
 struct LatticePlannerParams {
   LatticeSearchParams search{};
-  double tolerance{0.25};      ///< arrived within this distance of the goal, m, [0.02, 2]
-  double better{0.6};          ///< another path must be so much cheaper where directions change, m, [0, 5]
-  double off_path{0.25};       ///< a robot farther from its path is not on it any more, m, [0.05, 1]
-  double off_heading{0.4};     ///< the same for the heading, rad, [0.05, 1.5]
-  double stick_spread{50.0};   ///< paths may leave a stick's direction by so much, degrees, [10, 120]
-  double reverse_speed{1.0};   ///< backwards no faster, m/s, (0, 10]
-  double rough_slows{0.75};    ///< share of the speed that ground of cost 1 takes, [0, 0.95]
+  double tolerance{0.25};     ///< arrived within this distance of the goal, m, [0.02, 2]
+  double better{0.6};         ///< another path must be so much cheaper where directions change, m, [0, 5]
+  double off_path{0.25};      ///< a robot farther from its path is not on it any more, m, [0.05, 1]
+  double off_heading{0.4};    ///< the same for the heading, rad, [0.05, 1.5]
+  double stick_spread{50.0};  ///< paths may leave a stick's direction by so much, degrees, [10, 120]
+  double reverse_speed{1.0};  ///< backwards no faster, m/s, (0, 10]
+  double rough_slows{0.75};   ///< share of the speed that ground of cost 1 takes, [0, 0.95]
   double effort{25.0};  ///< drives this long without coming nearer to a goal, then it is blocked, s, [1, 600]
   double rest{30.0};    ///< and stays blocked this long before it tries again, s, [0, 3600]
   PathSpeedParams speed{};
@@ -55,7 +55,8 @@ class LatticePlanner final : public Planner {
   ClearField clear_{};
   WayField way_{};
   LatticePath found_{}, kept_{};  ///< kept: odometry frame
-  std::size_t at_{0}, end_{0};  ///< of the kept path: where the robot is, and where its direction changes next
+  std::size_t at_{0},
+      end_{0};  ///< of the kept path: where the robot is, and where its direction changes next
   Target kept_for_{};
   std::optional<Pose2> before_{};  ///< of the rear axle, odometry frame
   double before_s_{0};

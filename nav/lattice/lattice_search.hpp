@@ -12,28 +12,28 @@ namespace adit::nav {
 
 struct LatticeSearchParams {
   MotionSetParams motions{};
-  double margin{0.06};        ///< kept free around the body, m, [0.02, 0.5]
-  double comfort{0.25};       ///< beyond the margin; nearer to obstacles a way costs more, m, [0, 2]
-  double crowded{2.0};        ///< by so much more at the margin, [0, 20]
-  double rough{5.0};          ///< by so much more on ground of cost 1, [0, 100]
-  double reach{3.5};          ///< the path to a far target ends so far from its start, m, [1, 4]
-  double goal_radius{0.15};   ///< a path to a goal ends so near to it, m, [0.05, 1]
-  double reverse_cost{1.6};   ///< of a metre backwards, in metres ahead, [1, 10]
-  double change_cost{0.8};    ///< of changing between ahead and backwards, m, [0, 10]
-  double steer_cost{0.04};    ///< of changing the curvature by a level, m, [0, 1]
-  double least_gain{0.3};     ///< a path that comes to no target must bring it nearer by this, m, [0, 2]
-  int expansions{3000};       ///< at most, [100, 20000]
+  double margin{0.06};       ///< kept free around the body, m, [0.02, 0.5]
+  double comfort{0.25};      ///< beyond the margin; nearer to obstacles a way costs more, m, [0, 2]
+  double crowded{2.0};       ///< by so much more at the margin, [0, 20]
+  double rough{5.0};         ///< by so much more on ground of cost 1, [0, 100]
+  double reach{3.5};         ///< the path to a far target ends so far from its start, m, [1, 4]
+  double goal_radius{0.15};  ///< a path to a goal ends so near to it, m, [0.05, 1]
+  double reverse_cost{1.6};  ///< of a metre backwards, in metres ahead, [1, 10]
+  double change_cost{0.8};   ///< of changing between ahead and backwards, m, [0, 10]
+  double steer_cost{0.04};   ///< of changing the curvature by a level, m, [0, 1]
+  double least_gain{0.3};    ///< a path that comes to no target must bring it nearer by this, m, [0, 2]
+  int expansions{3000};      ///< at most, [100, 20000]
 };
 
 /// What a search starts from and where it shall lead; the frame of the fields, m.
 struct LatticeTask {
-  int level{-1};                      ///< of the present curvature; -1: so slow that any comes at once
-  int direction{0};                   ///< in which it drives, 1 or -1; 0: stands, either is as good
+  int level{-1};     ///< of the present curvature; -1: so slow that any comes at once
+  int direction{0};  ///< in which it drives, 1 or -1; 0: stands, either is as good
   Eigen::Vector2d target{0, 0};
-  bool goal{true};       ///< the target is a place to come to, not only a direction
-  int only{0};           ///< may drive in this direction only, 1 or -1; 0: both
-  double heading{0};     ///< rad, of the way (not of the body) ...
-  double spread{M_PI};   ///< ... which paths may leave by so much
+  bool goal{true};      ///< the target is a place to come to, not only a direction
+  int only{0};          ///< may drive in this direction only, 1 or -1; 0: both
+  double heading{0};    ///< rad, of the way (not of the body) ...
+  double spread{M_PI};  ///< ... which paths may leave by so much
 };
 
 /// A path over motions: its start and kPoses poses of each motion.
@@ -41,7 +41,7 @@ struct LatticePath {
   static constexpr std::size_t kMost = 256;
   struct Spot {
     Pose2 pose{};
-    float cost{};            ///< from the start, m
+    float cost{};             ///< from the start, m
     std::int8_t direction{};  ///< in which it is driven to; the first one: in which it is left
   };
   std::array<Spot, kMost> spots{};
@@ -98,7 +98,7 @@ class LatticeSearch {
 
   LatticeSearchParams params_;
   MotionSet motions_;
-  double base_;  ///< base_link ahead of the poses' origin, m
+  double base_;                            ///< base_link ahead of the poses' origin, m
   std::array<float, kMostDiscs> discs_{};  ///< middles along the body's axis, from the poses' origin, m
   std::array<float, kMostDiscs> least_{};  ///< clearance of each where the search began, m
   std::size_t disc_count_{};

@@ -21,8 +21,8 @@ struct MotionSetParams {
 /// base_link otherwise.
 class MotionSet {
  public:
-  static constexpr int kLevels = 7;   ///< of curvature; the middle one is straight
-  static constexpr int kPoses = 5;    ///< of one motion, evenly spaced, its end the last
+  static constexpr int kLevels = 7;  ///< of curvature; the middle one is straight
+  static constexpr int kPoses = 5;   ///< of one motion, evenly spaced, its end the last
   struct Motion {
     std::array<Pose2, kPoses> poses{};  ///< from the motion's start
   };

@@ -6,10 +6,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kNearTarget = 1.2f;   ///< m: a target that stands in something is approached so near
-constexpr float kMissed = 3.0f;       ///< of each metre that is left to it
-constexpr float kComfort = 0.3f;      ///< m beyond what the body needs: nearer to obstacles a way is longer
-constexpr float kCrowded = 1.5f;      ///< by so much at the least distance
+constexpr float kNearTarget = 1.2f;  ///< m: a target that stands in something is approached so near
+constexpr float kMissed = 3.0f;      ///< of each metre that is left to it
+constexpr float kComfort = 0.3f;     ///< m beyond what the body needs: nearer to obstacles a way is longer
+constexpr float kCrowded = 1.5f;     ///< by so much at the least distance
 constexpr std::size_t kMostOpen = 8 * WayField::kSide * WayField::kSide + 8;
 
 }  // namespace
@@ -40,7 +40,8 @@ void WayField::fill(const ClearField& clear, const Eigen::Vector2d& target, floa
   for (int j = 0; j < kSide; ++j)
     for (int i = 0; i < kSide; ++i) {
       const float away = std::hypot(middle(i) - tx, middle(j) - ty);
-      if (beside && away < from && (i == 0 || j == 0 || i == kSide - 1 || j == kSide - 1)) offer(j * kSide + i, away);
+      if (beside && away < from && (i == 0 || j == 0 || i == kSide - 1 || j == kSide - 1))
+        offer(j * kSide + i, away);
       if (!beside && away < kCell) offer(j * kSide + i, away);
       if (!stands_in || away >= kNearTarget) continue;
       offer(j * kSide + i, kMissed * away);

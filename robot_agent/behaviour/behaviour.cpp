@@ -58,7 +58,8 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Time now) {
   f.goal_free = inputs_.goal_free(goal.head<2>());
   const Reason reason = entry_refusal(row, f);
   if (reason != Reason::none) return refuse(reason, "goto");
-  goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), std::isnan(goal.z()) ? 0.0 : goal.z()}};
+  const double height = !std::isnan(goal.z()) ? goal.z() : inputs_.height ? inputs_.height() : 0.0;
+  goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), height}};
   progress_ = {};
   enter(row, now);
   return {};

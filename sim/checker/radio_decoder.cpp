@@ -120,7 +120,8 @@ Decoded decode_sent(std::string_view topic, std::span<const std::uint8_t> cdr) {
   if (is(topic, topics::cmd_vel)) {
     const auto t = read<geometry_msgs::msg::Twist>(cdr);
     if (!t) return std::nullopt;
-    return DecodedSample{{}, VelocitySent{{t->linear().x(), t->linear().y(), t->angular().z(), t->linear().z()}}};
+    return DecodedSample{{},
+                         VelocitySent{{t->linear().x(), t->linear().y(), t->angular().z(), t->linear().z()}}};
   }
   if (is(topic, topics::robot_state)) {
     const auto s = read<radio::RobotState>(cdr);

@@ -35,7 +35,7 @@ class Body {
   Twist2 twist_{};  ///< of the drive
   Twist2 wanted_{};
   double wheels_{0.0}, wheels_wanted_{0.0};  ///< of a car: the angle of its front wheels, rad
-  double above_{0.0};  ///< what flies: height above the ground to be kept, m
+  double above_{0.0};                        ///< what flies: height above the ground to be kept, m
   double watchdog_;
   double silence_{0.0};  ///< since the last command, s
 };

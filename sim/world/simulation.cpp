@@ -12,7 +12,8 @@ namespace adit::sim {
 Simulation::Simulation(std::shared_ptr<const World> world, const SimulationParams& params)
     : world_(std::move(world)),
       space_(world_),
-      params_(params), lidar_(std::make_shared<const LidarPattern>(params.lidar)) {}
+      params_(params),
+      lidar_(std::make_shared<const LidarPattern>(params.lidar)) {}
 
 Result<Simulation> Simulation::create(std::shared_ptr<const World> world, std::vector<RobotStart> robots,
                                       const SimulationParams& params) {
@@ -59,7 +60,8 @@ Result<void> Simulation::add(const RobotStart& start) {
     constexpr double any_step = 1e6;
     ground = std::make_shared<const StandingMap>(*world_, platform.height,
                                                  platform.flies() ? any_step : platform.step);
-    if (params_.lidar.profile && !platform.flies()) seen = std::make_shared<const World>(world_->name(), ground->profile());
+    if (params_.lidar.profile && !platform.flies())
+      seen = std::make_shared<const World>(world_->name(), ground->profile());
   }
   const Rectangle body = footprint(platform, start.pose);
   const double floor = ground->ground(start.pose.x, start.pose.y);
@@ -119,7 +121,8 @@ void Simulation::lift(Robot& robot) {
   const Rectangle body = footprint(robot.body.platform(), at);
   const double ground = robot.ground->ground(at.x, at.y);
   if (std::isnan(ground)) return;
-  position.z() = robot.body.climb(position.z(), ground, space_.ceiling(body, position.z()), seconds(params_.step));
+  position.z() =
+      robot.body.climb(position.z(), ground, space_.ceiling(body, position.z()), seconds(params_.step));
 }
 
 std::optional<std::size_t> Simulation::contact(std::size_t robot, const Rectangle& body) const {
@@ -205,9 +208,8 @@ void Simulation::measure(std::size_t index) {
   constexpr double far = 2.0;  // m: what is farther from a flying body is not looked for
   const Platform& platform = robot.body.platform();
   const double z = robot.truth.pose.position.z(), least = robot.truth.min_clearance;
-  double clearance =
-      platform.flies() ? space_.clearance(body, z, z + platform.height, std::min(least, far))
-                       : robot.ground->clearance(body);
+  double clearance = platform.flies() ? space_.clearance(body, z, z + platform.height, std::min(least, far))
+                                      : robot.ground->clearance(body);
   clearance = platform.flies() && clearance >= far ? least : std::min(least, clearance);
   for (std::size_t n = 0; n < robots_.size(); ++n)
     if (n != index && level(index, n))

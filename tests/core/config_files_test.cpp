@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -86,8 +87,10 @@ TEST(Platforms, wrong_files_name_file_line_and_what_was_expected) {
   EXPECT_EQ(unknown.error().text, path + ":10: unknown key 'max_sped', did you mean 'max_speed'?");
   const auto drive = config::load_platform_file(folder.write("d.yaml", "drive: hover\n"));
   ASSERT_FALSE(drive);
-  EXPECT_THAT(drive.error().text,
-              HasSubstr("d.yaml:1: drive: expected one of differential, tracked, car, holonomic, aerial; got 'hover'"));
+  EXPECT_THAT(
+      drive.error().text,
+      HasSubstr(
+          "d.yaml:1: drive: expected one of differential, tracked, car, holonomic, aerial; got 'hover'"));
 }
 
 TEST(Platforms, slip_is_a_matter_of_tracks) {
@@ -106,6 +109,44 @@ TEST(Platforms, slip_is_a_matter_of_tracks) {
   EXPECT_THAT(load("tracked", "turn_slip: 0.9\n").error().text, HasSubstr("p.yaml:10: turn_slip: expected"));
   EXPECT_THAT(load("differential", "turn_slip: 0.1\n").error().text,
               HasSubstr("p.yaml:10: unknown key 'turn_slip'"));
+}
+
+TEST(Platforms, each_drive_has_its_own_keys) {
+  const Folder folder;
+  const auto load = [&](const std::string& drive, const std::string& more) {
+    return config::load_platform_file(folder.write(
+        "p.yaml", "name: x\ndrive: " + drive + "\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n" +
+                      "max_acceleration: 1\nstep: 0\nlidar_height: 1\n" + more));
+  };
+  const auto car = load("car", "wheelbase: 0.5\nmax_steering: 0.4\nsteering_rate: 2\n");
+  ASSERT_TRUE(car) << car.error().text;
+  EXPECT_FALSE(car->turns_on_spot());
+  EXPECT_NEAR(car->least_radius(), 0.5 / std::tan(0.4), 1e-12);
+  EXPECT_EQ(car->rear_axle(), 0.25);
+  EXPECT_EQ(car->steering_rate, 2.0);
+  EXPECT_THAT(load("car", "max_steering: 0.4\n").error().text, HasSubstr("wheelbase"));
+  EXPECT_THAT(load("car", "wheelbase: 0.5\nmax_steering: 1.5\n").error().text,
+              HasSubstr("p.yaml:11: max_steering: expected"));
+  EXPECT_THAT(load("differential", "wheelbase: 1\n").error().text, HasSubstr("unknown key 'wheelbase'"));
+  const auto aerial = load("aerial", "hover_height: 2\nmax_climb: 0.7\n");
+  ASSERT_TRUE(aerial) << aerial.error().text;
+  EXPECT_TRUE(aerial->flies() && aerial->sideways());
+  EXPECT_EQ(aerial->hover_height, 2.0);
+  EXPECT_EQ(aerial->max_climb, 0.7);
+  EXPECT_THAT(load("aerial", "hover_height: -1\n").error().text,
+              HasSubstr("p.yaml:10: hover_height: expected"));
+  EXPECT_THAT(load("holonomic", "max_climb: 1\n").error().text, HasSubstr("unknown key 'max_climb'"));
+  EXPECT_THAT(load("differential", "path_curvature: 9\n").error().text,
+              HasSubstr("p.yaml:10: path_curvature: expected"));
+}
+
+TEST(Platforms, those_that_come_along_can_be_read) {
+  for (const auto& [name, drive] : {std::pair{"car", Drive::car}, {"aerial", Drive::aerial}}) {
+    const auto p = config::load_platform(name);
+    ASSERT_TRUE(p) << p.error().text;
+    EXPECT_EQ(p->name, name);
+    EXPECT_EQ(p->drive, drive);
+  }
 }
 
 TEST(Platforms, a_footprint_is_a_convex_polygon_around_base_link) {

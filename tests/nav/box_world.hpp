@@ -120,4 +120,33 @@ inline Platform legged() {
           .stairs = true};
 }
 
+inline Platform car() {
+  return {.name = "car",
+          .drive = Drive::car,
+          .length = 1.0,
+          .width = 0.6,
+          .height = 0.6,
+          .max_speed = 2.0,
+          .max_turn = 1.5,
+          .max_acceleration = 1.5,
+          .wheelbase = 0.65,
+          .max_steering = 0.58,
+          .steering_rate = 1.2,
+          .step = 0.08,
+          .lidar_height = 0.6,
+          .planner = "lattice"};
+}
+inline Platform aerial() {
+  return {.name = "aerial",
+          .drive = Drive::aerial,
+          .length = 0.6,
+          .width = 0.6,
+          .height = 0.3,
+          .max_speed = 1.5,
+          .max_turn = 1.5,
+          .max_acceleration = 1.5,
+          .step = 0.0,
+          .lidar_height = 0.15};
+}
+
 }  // namespace adit::nav::test

@@ -62,8 +62,8 @@ struct ClosedLoop {
       fastest = std::max(fastest, std::hypot(v.vx, v.vy));
       driven += std::hypot(v.vx, v.vy) * kDt;
       const Pose2 axle{platform.rear_axle(), 0, 0};  // that a car turns about
-      truth = truth * axle.inverse() *
-              Pose2{v.vx * kDt, v.vy * kDt, (1 - platform.turn_slip) * v.wz * kDt} * axle;
+      truth = truth * axle.inverse() * Pose2{v.vx * kDt, v.vy * kDt, (1 - platform.turn_slip) * v.wz * kDt} *
+              axle;
       time += kDt;
       least_clearance = std::min(least_clearance, world.clearance(platform, truth));
     }

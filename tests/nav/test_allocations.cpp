@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "nav/air_map.hpp"
 #include "nav/control/controller.hpp"
 #include "nav/make_planner.hpp"
 #include "nav/monitor/collision_monitor.hpp"
@@ -31,22 +32,27 @@ TEST(Allocations, NoneInACycle) {
   std::vector<ObstaclePoint> cells;
   for (const auto& p : scan)
     if (p.z() > 0.1f && p.norm() < 4) cells.push_back({p.x(), p.y(), p.x() > 1 ? 1.0f : 0.4f});
+  std::vector<Platform> platforms{car(), aerial()};
   for (const std::string& name : planner_names()) {
-    Platform platform = wheeled();
-    platform.planner = name;
+    platforms.push_back(wheeled());
+    platforms.back().planner = name;
+  }
+  for (const Platform& platform : platforms) {
+    AirMap air(platform);
     const auto planner = make_planner(platform).value();
     const auto controller = make_controller(platform.controller, platform).value();
     CollisionMonitor monitor(platform);
     const auto cycle = [&](double time) {
       const Plan plan = planner->plan(Target::to({6, 0}), {}, cells, time);
       controller->set_plan(plan);
+      air.add_scan(scan, {}, time);
       monitor.look(scan, {}, time);
       return monitor.check(controller->follow({}, 0.05), {}, time, CollisionMonitor::Policy::stop).velocity;
     };
     cycle(0);
     const std::uint64_t before = allocations;
     for (int i = 1; i < 20; ++i) cycle(0.1 * i);
-    EXPECT_EQ(allocations, before) << name;
+    EXPECT_EQ(allocations, before) << platform.name << " " << platform.planner;
   }
 }
 

@@ -136,6 +136,90 @@ TEST_P(EveryPlatform, GetsBySomebodyWhoComesTowardsIt) {
 INSTANTIATE_TEST_SUITE_P(Nav, EveryPlatform, ::testing::Values(wheeled(), tracked(), legged()),
                          [](const auto& one) { return one.param.name; });
 
+/// A car with each controller.
+class EveryCar : public ::testing::TestWithParam<std::string> {
+ protected:
+  /// Drives to the goal; checks that it never turns tighter than its steering lets it.
+  bool drive(ClosedLoop& run, const Eigen::Vector2d& goal, double seconds) {
+    for (const double end = run.time + seconds; run.time < end;) {
+      const Pose2 before = run.truth * Pose2{-run.platform.rear_axle(), 0, 0};
+      run.cycle(Target::to(goal));
+      const Pose2 moved = before.inverse() * (run.truth * Pose2{-run.platform.rear_axle(), 0, 0});
+      const double way = std::hypot(moved.x, moved.y);
+      EXPECT_LE(std::fabs(moved.yaw), way / run.platform.least_radius() + 2e-3);
+      backwards_ |= run.follower.command().vx < -0.1;
+      if (run.last.arrived && run.follower.command().zero()) return true;
+    }
+    return false;
+  }
+  bool backwards_{false};
+};
+
+TEST_P(EveryCar, DrivesDownACorridor) {
+  ClosedLoop run(car(), corridor(-2, 16), {0, 0.3, 0.2}, GetParam());
+  EXPECT_TRUE(drive(run, {13, 0}, 40));
+  EXPECT_GT(run.least_clearance, 0.1);
+  EXPECT_GT(run.fastest, 0.9);
+  EXPECT_FALSE(backwards_);
+}
+
+TEST_P(EveryCar, GoesThroughADoorAndRoundCrates) {
+  BoxWorld world{{{-3, 12, 3, 3.2}, {-3, 12, -3.2, -3}, {-3.2, -3, -3, 3}, {12, 12.2, -3, 3}}};
+  add_door(world, 3.0, 0.0, 1.1);
+  world.boxes.push_back({6.5, 7.0, -0.6, 0.8, 0.0, 0.6});
+  ClosedLoop run(car(), world, {0, 0.6, 0.3}, GetParam());
+  EXPECT_TRUE(drive(run, {10, 0.3}, 60));
+  EXPECT_GT(run.least_clearance, 0.03);
+}
+
+TEST_P(EveryCar, ComesToGoalsBesideAndBehindIt) {
+  for (const Eigen::Vector2d& goal : {Eigen::Vector2d(0, 1), {0.3, -0.8}, {-1, 0.4}, {-3, 2}, {-6, 0}}) {
+    ClosedLoop run(car(), corridor(-10, 10), {0, 0, 0}, GetParam());
+    for (Box& wall : run.world.boxes) {  // widened to 7 m
+      if (wall.y0 == 1.0) wall.y0 = 3.5, wall.y1 = 3.7;
+      if (wall.y1 == -1.0) wall.y0 = -3.7, wall.y1 = -3.5;
+    }
+    EXPECT_TRUE(drive(run, goal, 40)) << goal.transpose();
+    EXPECT_LT(run.distance_to(goal.x(), goal.y()), 0.3);
+    EXPECT_GT(run.least_clearance, 0.1);
+  }
+  EXPECT_TRUE(backwards_);
+}
+
+TEST_P(EveryCar, BacksOutOfANiche) {
+  const double side = car().width / 2 + 0.12;
+  const BoxWorld world{{{-0.8, 1.5, side, side + 0.2},
+                        {-0.8, 1.5, -side - 0.2, -side},
+                        {1.3, 1.5, -side, side},
+                        {-8, -7.8, -3, 3}}};
+  ClosedLoop run(car(), world, {0.4, 0, 0}, GetParam());
+  EXPECT_TRUE(drive(run, {-5, 0}, 40));
+  EXPECT_GT(run.least_clearance, 0.02);
+}
+
+TEST_P(EveryCar, StandsBeforeAGoalInAWall) {
+  ClosedLoop run(car(), corridor(-2, 12), {0, 0, 0}, GetParam());
+  EXPECT_FALSE(drive(run, {5, 0.95}, 20));
+  EXPECT_TRUE(run.last.blocked);
+  EXPECT_TRUE(run.follower.command().zero());
+  EXPECT_GT(run.least_clearance, 0.03);
+  EXPECT_GT(run.truth.x, 3.5) << "as near as it can";
+}
+
+TEST_P(EveryCar, AStickLeadsItRoundACrateAndStopsItBeforeAWall) {
+  BoxWorld world{{{8, 8.2, -20, 20}, {3, 3.4, -0.3, 0.5}}};
+  ClosedLoop run(car(), world, {0, 0, 0}, GetParam());
+  run.drive(Target::along(0.0, 1.0), 30);
+  EXPECT_TRUE(run.last.blocked);
+  EXPECT_GT(run.truth.x, 5.5);
+  EXPECT_GT(run.least_clearance, 0.03);
+  run.drive(Target::along(M_PI, 0.5), 3);
+  EXPECT_LT(run.follower.command().vx, -0.2) << "back where the stick says so";
+}
+
+INSTANTIATE_TEST_SUITE_P(Nav, EveryCar, ::testing::ValuesIn(controller_names()),
+                         [](const auto& one) { return one.param; });
+
 TEST(ClosedLoopSlip, ATrackedRobotThatLosesMuchOfEachTurnArrives) {
   Platform slippery = tracked();
   slippery.turn_slip = 0.35;

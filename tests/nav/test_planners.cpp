@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "nav/lattice/motion_set.hpp"
 #include "tests/nav/closed_loop.hpp"
 
 namespace adit::nav::test {
@@ -33,6 +34,32 @@ TEST(Planners, AnUnknownNameIsAnError) {
 TEST(Planners, EveryNameMakesOne) {
   for (const std::string& name : planner_names()) EXPECT_TRUE(make_planner(with(wheeled(), name))) << name;
   EXPECT_EQ(planner_names().front(), Platform{}.planner);
+}
+
+TEST(Planners, ACarHasNoneThatTurnsOnTheSpot) {
+  for (const std::string& name : planner_names()) {
+    const auto made = make_planner(with(car(), name));
+    EXPECT_EQ(made.ok(), name == "lattice") << name;
+    if (!made) {
+      EXPECT_EQ(made.error().reason, Reason::bad_argument);
+    }
+  }
+}
+
+TEST(Planners, APlatformChoosesTheCurvatureOfItsPaths) {
+  Platform gentle = wheeled();
+  gentle.path_curvature = 0.5;
+  gentle.path_segment = 0.8;
+  const auto usual = PlannerLibrary::build(wheeled()), own = PlannerLibrary::build(gentle);
+  const PathTreeParams& params = own->options.front().tree.params();
+  EXPECT_NEAR(params.curvature[0], 0.5, 1e-9);
+  EXPECT_LT(params.curvature[2], params.curvature[0]);
+  EXPECT_EQ(params.segment, 0.8);
+  EXPECT_EQ(usual->options.front().tree.params().curvature, PathTreeParams{}.curvature);
+  Platform lattice = car();
+  lattice.path_curvature = 0.4;
+  EXPECT_NEAR(MotionSet(lattice).curvature(MotionSet::kLevels - 1), 0.4, 1e-9);
+  EXPECT_LT(MotionSet(car()).curvature(MotionSet::kLevels - 1), 1 / car().least_radius());
 }
 
 class EveryPlanner : public testing::TestWithParam<std::tuple<std::string, std::string>> {

@@ -64,6 +64,55 @@ TEST(Body, tracks_swallow_a_part_of_each_turn) {
   EXPECT_EQ(body.twist().vy, 0.0) << "not sideways";
 }
 
+TEST(Body, a_car_turns_about_its_rear_axle_and_steers_at_its_rate) {
+  Platform p = platform(Drive::car);
+  p.wheelbase = 0.6;
+  p.max_steering = 0.5;
+  p.steering_rate = 1.0;
+  Body body(p, {}, 0.5);
+  run(body, {0, 0, 1}, 1.0);
+  EXPECT_EQ(body.pose(), Pose2{}) << "no turn on the spot";
+  run(body, {0.5, 0.3, 0.1}, 0.1);
+  EXPECT_LT(body.twist().wz, 0.5 * std::tan(0.11) / 0.6) << "wheels are not steered at once";
+  run(body, {0.5, 0, 9}, 2.0);
+  const double radius = p.least_radius();
+  EXPECT_NEAR(body.twist().vx / body.twist().wz, radius, 1e-9);
+  EXPECT_NEAR(body.twist().vy, 0.3 * body.twist().wz, 1e-9) << "base_link is between the axles";
+  const Pose2 middle = body.pose() * Pose2{-0.3, radius, 0};
+  run(body, {0.5, 0, 9}, 2.0);
+  const Pose2 same = body.pose() * Pose2{-0.3, radius, 0};
+  EXPECT_NEAR((same.position() - middle.position()).norm(), 0.0, 1e-3) << "one circle";
+  run(body, {-0.5, 0, -0.5 / radius}, 2.0);
+  EXPECT_NEAR(body.twist().wz, -0.5 / radius, 1e-9) << "backwards on the same circle";
+}
+
+TEST(Body, what_flies_keeps_its_height_above_the_ground) {
+  Platform p = platform(Drive::aerial);
+  p.hover_height = 1.0;
+  p.max_climb = 0.5;
+  Body body(p, {}, 0.5);
+  double z = 1.0;
+  const auto fly = [&](double up, double ground, double ceiling, double time) {
+    for (int n = 0; n < std::lround(time / dt); ++n) {
+      body.command({0, 0, 0, up});
+      body.take(body.advance(dt));
+      const double before = z;
+      z = body.climb(z, ground, ceiling, dt);
+      EXPECT_LE(std::abs(z - before), 0.5 * dt + 1e-12);
+    }
+  };
+  fly(0, 0, 9, 1);
+  EXPECT_EQ(z, 1.0);
+  fly(0, 0.4, 9, 2);
+  EXPECT_NEAR(z, 1.4, 1e-9) << "the ground rose";
+  fly(2, 0.4, 9, 2);
+  EXPECT_NEAR(z, 2.4, 1e-9) << "no faster than it climbs";
+  fly(0.5, 0.4, 3.0, 5);
+  EXPECT_NEAR(z, 3.0 - p.height - 0.2, 1e-9) << "away from the ceiling";
+  fly(-0.5, 0.4, 9, 10);
+  EXPECT_NEAR(z, 0.4 + 0.3, 1e-9) << "and from the ground";
+}
+
 TEST(Body, stops_when_nothing_is_commanded) {
   Body body(platform(Drive::differential), {}, 0.5);
   run(body, {1, 0, 0}, 2.0);

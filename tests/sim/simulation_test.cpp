@@ -55,6 +55,35 @@ double ahead(const Box& box, std::vector<RobotStart> others = {}) {
   return 0.0;
 }
 
+TEST(Simulation, what_flies_passes_over_and_touches_what_is_at_its_height) {
+  Platform flyer = wheeled();
+  flyer.name = "aerial";
+  flyer.drive = Drive::aerial;
+  flyer.height = 0.3;
+  flyer.step = 0.0;
+  flyer.hover_height = 1.0;
+  const std::array<Box, 2> boxes{Box{1, 1.2, -1, 1, 0, 0.8}, Box{4, 4.2, -1, 1, 0, 1.1}};
+  const auto world = std::make_shared<const World>(*make_box_world(boxes, 0, 3));
+  SimulationParams params;
+  auto s = Simulation::create(world, {{"r1", flyer, {0, 0, 0}}, {"r2", wheeled(), {2.5, 0, 0}}}, params);
+  ASSERT_TRUE(s) << s.error().text;
+  EXPECT_NEAR(s->truth(0).pose.position.z(), 1.0, 1e-6);
+  EXPECT_NEAR(s->altitude(0), 1.0, 1e-6);
+  EXPECT_EQ(s->altitude(1), 0.0);
+  drive(*s, 0, {1, 0, 0}, 3.2);
+  EXPECT_TRUE(s->collisions().empty()) << "over the wall and over the other robot";
+  EXPECT_GT(s->truth(0).pose.position.x(), 2.0);
+  drive(*s, 0, {1, 0, 0}, 2.0);
+  ASSERT_EQ(s->collisions().size(), 1u) << "the second wall is as high as it flies";
+  EXPECT_EQ(s->collisions()[0].partner, "world");
+  drive(*s, 0, {-1, 0, 0}, 0.5);
+  drive(*s, 0, {0, 0, 0, 0.5}, 1.0);
+  drive(*s, 0, {1, 0, 0}, 2.0);
+  EXPECT_EQ(s->collisions().size(), 1u) << "higher up it passes";
+  EXPECT_GT(s->truth(0).pose.position.x(), 4.5);
+  EXPECT_EQ(s->truth(1).collisions, 0u);
+}
+
 TEST(Simulation, a_planar_lidar_sees_what_the_body_would_touch) {
   EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0, 3}), 2.0, 1e-3) << "a wall";
   EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0, 0.2}), 2.0, 1e-3) << "lower than the ring, higher than the step";
