@@ -124,7 +124,7 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
     plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
-  if (!retreating_ && goal.distance <= params_.tolerance) {
+  if (!retreating_ && goal.distance <= (target.tolerance > 0.0 ? target.tolerance : params_.tolerance)) {
     plan.arrived = true;
     return plan;
   }
@@ -365,26 +365,31 @@ bool LocalPlanner::vote(const Option& option, const Goal& goal, int stage, doubl
       sum *= way.weight;
       if (sum > best_score) {
         best_score = sum;
-        best = {&option, stage, h, top_node, g};
+        best = {&option, stage, h, top_node, g, ease(h, stage, top_node)};
       }
     }
   }
   return best_score > 0.0f;
 }
 
+// The first library in which a way over good ground leads about towards the target; else the first in which
+// any does.
 bool LocalPlanner::choose(const Goal& goal, Choice& best) {
+  const double direct = std::min(goal.spread, params_.direct_spread);
   const double detour = std::min(goal.spread, params_.detour_spread);
+  Choice other;
+  bool any = false;
   for (const Option& option : library_->options) {
     block_paths(option, goal);
     const int need = option.tree.stage_for(goal.distance);
-    const double spread = option.roomy ? std::min(goal.spread, params_.roomy_spread) : goal.spread;
-    if (vote(option, goal, need, spread, best) &&
-        (!option.roomy || ease(best.heading, best.stage, best.node) >= 1.0f))
-      return true;
-    for (int stage = need - 1; stage >= option.least_stage; --stage)
-      if (vote(option, goal, stage, detour, best)) return true;
+    if (vote(option, goal, need, direct, best) && best.ease >= 1.0f) return true;
+    if (any || option.roomy) continue;
+    any = vote(option, goal, need, goal.spread, other);
+    for (int stage = need - 1; !any && stage >= option.least_stage; --stage)
+      any = vote(option, goal, stage, detour, other);
   }
-  return false;
+  best = other;
+  return any;
 }
 
 void LocalPlanner::write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const {
@@ -414,8 +419,7 @@ double LocalPlanner::speed_limit(const Target& target, const Choice& choice, con
                                  const Plan& plan, std::span<const ObstaclePoint> obstacles) const {
   double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
   limit = std::min(limit, choice.option->max_speed);
-  limit = std::min(limit, platform_.max_speed *
-                              (kSlowest + (1 - kSlowest) * ease(choice.heading, choice.stage, choice.node)));
+  limit = std::min(limit, platform_.max_speed * (kSlowest + (1 - kSlowest) * choice.ease));
   return target.speed > 0.0 ? std::min(limit, target.speed) : limit;
 }
 

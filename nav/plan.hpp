@@ -19,6 +19,7 @@ struct Target {
   Eigen::Vector2d goal{0, 0};  ///< odometry frame, m
   double direction{0};         ///< in the body frame, rad, counter-clockwise from ahead
   double speed{0};             ///< not faster than this, m/s; 0 of a goal: the platform's speed
+  double tolerance{0};         ///< of a goal, m; 0: the planner's own
 
   static Target to(const Eigen::Vector2d& goal, double speed = 0.0) { return {Kind::goal, goal, 0.0, speed}; }
   static Target along(double direction, double speed) { return {Kind::direction, {0, 0}, direction, speed}; }

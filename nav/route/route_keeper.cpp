@@ -10,7 +10,12 @@ constexpr double kSameGoal = 0.05;   // m
 constexpr double kReachAhead = 0.9;  // m: a route that is blocked is so this far ahead
 constexpr double kSampling = 0.5;    // m
 constexpr double kNextCorner = 5.0;  // m
-constexpr double kDetour = 1.03;     // a straight line that costs more than this much of the route is none
+constexpr double kInGate = 0.3;      // m before its middle
+constexpr double kBeforeGate = 1.1;  // m: there the robot lines up
+constexpr double kBeyondGate = 0.9;  // m: so far it goes straight on
+constexpr double kLinedUp = 0.14;    // tangent of the angle off the gate's axis
+constexpr double kStaysLinedUp = 0.25;
+constexpr double kDetour = 1.03;  // a straight line that costs more than this much of the route is none
 
 // The point of a way at a length from its beginning, and whether that is its end.
 Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double length, bool& end) {
@@ -88,10 +93,40 @@ double RouteKeeper::cost_to(RoutePlanner& planner, double length) const {
   return cost;
 }
 
+// A robot that is to go through a gate lines up before it, and goes straight on behind it.
+std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, const Eigen::Vector3d& place) {
+  const auto gate = planner.gate(route_.points, params_.ahead);
+  const auto on_axis = [&](double s) {
+    return Eigen::Vector3d{gate->middle.x() + s * gate->axis.x(), gate->middle.y() + s * gate->axis.y(),
+                           gate->middle.z()};
+  };
+  const Eigen::Vector2d rest =
+      gate ? Eigen::Vector2d(gate->middle.head<2>() - place.head<2>()) : Eigen::Vector2d(0, 0);
+  const double before = gate ? rest.dot(gate->axis) : 0.0;
+  if (before < kInGate) {
+    lined_up_ = false;
+    return std::nullopt;
+  }
+  const double off = std::abs(gate->axis.x() * rest.y() - gate->axis.y() * rest.x()) / before;
+  lined_up_ = off < (lined_up_ ? kStaysLinedUp : kLinedUp);
+  if (lined_up_) {
+    const Eigen::Vector3d beyond = on_axis(kBeyondGate);
+    if (planner.line(gate->middle, beyond, {.let_out = true}).passable) return beyond;
+    return std::nullopt;
+  }
+  for (double s = kBeforeGate; s > kInGate; s -= kRouteCell)
+    if (planner.line(on_axis(-s), gate->middle, {.let_in = true}).passable) return on_axis(-s);
+  return std::nullopt;
+}
+
 // The farthest point of the route, up to `ahead`, that is in a straight line from here: one that keeps as far
 // from what stands there as the route does.
-RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) const {
+RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
   RouteStep step{RouteStep::State::along, {}, false};
+  if (const auto target = gate_step(planner, place)) {
+    step.target = *target;
+    return step;
+  }
   const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};
   for (double ahead = params_.ahead; ahead >= params_.least_ahead; ahead -= kSampling) {
     step.target = point_at(route_.points, ahead, step.last);

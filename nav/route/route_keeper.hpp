@@ -47,7 +47,8 @@ class RouteKeeper {
   void advance(RoutePlanner& planner, const Eigen::Vector3d& place);
   void watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked, double stamp_s);
   double cost_to(RoutePlanner& planner, double length) const;
-  RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place) const;
+  RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place);
+  std::optional<Eigen::Vector3d> gate_step(RoutePlanner& planner, const Eigen::Vector3d& place);
 
   RouteKeeperParams params_;
   Route route_{};
@@ -55,6 +56,7 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
+  bool lined_up_{false};  // with the gate ahead
 };
 
 }  // namespace adit::nav

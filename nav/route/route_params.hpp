@@ -14,9 +14,9 @@ struct RouteParams {
   double level_cost{8.0};  ///< of 1.2 m up or down through unknown space, towards a goal there, m, [0, 100]
   double snap{0.5};        ///< a start or goal is moved to a passable place this near, m, [0, 1.5]
   double margin{13.0};     ///< unknown space is used this far around what is known, m, [2, 100]
-  int rebuilds{16};  ///< tiles of the graph made anew with a scan, at most; the others when a search comes to
-                     ///< them, [0, 100000]
-  int tiles{12'288};          ///< of 1.6 x 1.6 m and 4.7 kB, at most; then the farthest go, [64, 20000]
+  int rebuilds{64};        ///< tiles of the graph made anew with a scan before a search, at most, [0, 100000]
+                           ///< them, [0, 100000]
+  int tiles{12'288};       ///< of 1.6 x 1.6 m and 4.7 kB, at most; then the farthest go, [64, 20000]
   double block_radius{0.30};  ///< of a place that was found blocked, m, [0.1, 1]
   double block_time{20.0};    ///< it counts so long, and twice that when found so again, s, [1, 3600]
 };

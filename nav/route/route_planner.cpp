@@ -6,26 +6,30 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStartReach = 1.5;  // m: a robot that stands close to something is let out
-constexpr double kOwnGoal = 0.1;     // m: a goal that was moved by more is a leg of its own
+constexpr double kStartReach = 1.5;   // m: a robot that stands close to something is let out
+constexpr double kGateMargin = 0.15;  // m
+constexpr double kOwnGoal = 0.1;      // m: a goal that was moved by more is a leg of its own
 
 }  // namespace
 
 RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
     : params_(params),
+      narrow_(std::hypot(platform.length, platform.width) / 2 + kGateMargin),
       map_(params, ScanProfile::most_wrong(platform, params)),
       profile_(platform, params),
       builder_(platform, params),
       line_(map_, builder_),
       search_(map_, builder_, params) {}
 
-void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
+                            bool search) {
   profile_.add(points, body, map_);
   map_.expire(stamp_s);
-  for (int i = 0; i < params_.rebuilds; ++i) {
+  for (int i = 0; search && i < params_.rebuilds; ++i) {
     const int index = map_.next_dirty();
     if (index < 0) break;
     builder_.build(map_, index);
+    builder_.connect(map_, index);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "core/geometry/pose.hpp"
+#include "nav/route/gate.hpp"
 #include "nav/route/route_line.hpp"
 #include "nav/route/route_search.hpp"
 #include "nav/route/scan_profile.hpp"
@@ -18,10 +19,12 @@ class RoutePlanner {
   RoutePlanner(const RoutePlanner&) = delete;
   RoutePlanner& operator=(const RoutePlanner&) = delete;
 
-  /// Takes a scan and brings RouteParams::rebuilds tiles of the graph up to date, at most. `points`: in
+  /// Takes a scan; when a `search` is to follow soon, brings RouteParams::rebuilds tiles of the graph up to
+  /// date, at most, which the search would do else where it comes to them. `points`: in
   /// base_link, m, not finite where nothing was hit. `body`: base_link, which is on the ground, at the scan's
   /// time; `stamp_s`: that time, s, not decreasing.
-  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
+                bool search = true);
   /// From a map that is known: ground, or an obstacle that stands `top` metres above the ground, m. An
   /// obstacle counts whatever else was said of its cell. To be followed by finish().
   void set_ground(const Eigen::Vector3d& place);
@@ -35,6 +38,10 @@ class RoutePlanner {
   /// That place was found blocked, whatever the scans say; it counts for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;
+  /// The first gate over a route's first `ahead` metres: hardly wider than the robot is long across.
+  std::optional<Gate> gate(std::span<const Eigen::Vector3d> points, double ahead) const {
+    return find_gate(map_, points, ahead, narrow_);
+  }
 
   LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {}) {
     return line_.line(from, to, ends);
@@ -58,6 +65,7 @@ class RoutePlanner {
   void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   RouteParams params_;
+  double narrow_;  // m: so near on both sides the robot is to go straight
   SurfaceMap map_;
   ScanProfile profile_;
   TileBuilder builder_;

@@ -205,6 +205,12 @@ void TileBuilder::connect(Tile& tile, int node) {
   tile.measured = static_cast<std::uint16_t>(tile.measured | 1u << node);
 }
 
+void TileBuilder::connect(SurfaceMap& map, int index) {
+  Tile& tile = map.tile(index);
+  for (int node = 0; node < tile.node_count; ++node)
+    if (!(tile.measured >> node & 1u)) connect(tile, node);
+}
+
 std::span<const float, kTileNodes> TileBuilder::distances(SurfaceMap& map, int index, int node) {
   Tile& tile = map.tile(index);
   if (!(tile.measured >> node & 1u)) connect(tile, node);

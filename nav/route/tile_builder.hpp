@@ -22,6 +22,8 @@ class TileBuilder {
     if (map.tile(index).dirty) build(map, index);
     return map.tile(index);
   }
+  /// Measures all of a tile's ways between openings.
+  void connect(SurfaceMap& map, int index);
   /// From one node of a tile to all of its nodes, within it, m.
   std::span<const float, kTileNodes> distances(SurfaceMap& map, int index, int node);
   /// Ways from a cell to all others of its tile, m; see distance() and trace().

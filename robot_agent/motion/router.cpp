@@ -33,7 +33,7 @@ void Router::step(std::shared_ptr<RouteJob> job, Task done) {
       params_.modelled,
       [job, takes, maps = maps_] {
         const double stamp = seconds(job->made.time_since_epoch());
-        if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp);
+        if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
         if (job->goal)
           job->step = maps->keeper.step(maps->planner, job->place, *job->goal, job->blocked, stamp);
         else

@@ -1,37 +1,11 @@
 // The global planner over scans, and the robot that follows it.
 #include <gtest/gtest.h>
 
-#include "nav/route/route_keeper.hpp"
-#include "tests/nav/closed_loop.hpp"
+#include "tests/nav/route_drive.hpp"
 #include "tests/nav/route_world.hpp"
 
 namespace adit::nav::test {
 namespace {
-
-/// A robot that follows the route keeper.
-struct Drive {
-  ClosedLoop loop;
-  RoutePlanner planner;
-  RouteKeeper keeper{};
-  RouteStep step{};
-
-  Drive(BoxWorld world, const Pose2& start) : loop(wheeled(), std::move(world), start), planner(wheeled()) {}
-
-  /// True when it stands at the goal; false after so many seconds, or when there is no way.
-  bool to(double x, double y, double seconds) {
-    const double end = loop.time + seconds;
-    while (loop.time < end) {
-      const Pose2 at = loop.odometry();
-      planner.add_scan(loop.world.scan(loop.truth, 0.5, loop.rings, loop.columns, loop.noise, loop.random),
-                       Pose3::level(at, 0.0), loop.time);
-      step = keeper.step(planner, {at.x, at.y, 0}, {x, y, std::nan("")}, loop.last.blocked, loop.time);
-      if (step.state == RouteStep::State::unreachable) return false;
-      loop.cycle(Target::to(step.target.head<2>()));
-      if (step.last && loop.last.arrived && loop.follower.command().zero()) return true;
-    }
-    return false;
-  }
-};
 
 TEST(RouteScans, SeesWallsAndGround) {
   BoxWorld world{
@@ -71,28 +45,31 @@ TEST(RouteScans, ObstacleThatWentAwayIsFreed) {
 }
 
 TEST(RouteScans, OutOfADeadEnd) {
-  Drive drive({{{4, 4.3, -3, 3},
-                {-3, 4.3, 3, 3.3},
-                {-3, 4.3, -3.3, -3},
-                {-8, 12, 8, 8.2},
-                {-8, 12, -8.2, -8},
-                {12, 12.2, -8, 8},
-                {-8.2, -8, -8, 8}}},
-              {0, 0, 0});
+  RouteDrive drive(wheeled(),
+                   {{{4, 4.3, -3, 3},
+                     {-3, 4.3, 3, 3.3},
+                     {-3, 4.3, -3.3, -3},
+                     {-8, 12, 8, 8.2},
+                     {-8, 12, -8.2, -8},
+                     {12, 12.2, -8, 8},
+                     {-8.2, -8, -8, 8}}},
+                   {0, 0, 0});
   EXPECT_TRUE(drive.to(8, 0, 60));
   EXPECT_GT(drive.loop.least_clearance, 0.0);
 }
 
 TEST(RouteScans, ClosedRoomIsUnreachable) {
-  Drive drive({{{4, 4.3, -3, 3}, {-3, 4.3, 3, 3.3}, {-3, 4.3, -3.3, -3}, {-3.3, -3, -3.3, 3.3}}}, {0, 0, 0});
+  RouteDrive drive(wheeled(),
+                   {{{4, 4.3, -3, 3}, {-3, 4.3, 3, 3.3}, {-3, 4.3, -3.3, -3}, {-3.3, -3, -3.3, 3.3}}},
+                   {0, 0, 0});
   EXPECT_FALSE(drive.to(8, 0, 60));
   EXPECT_EQ(drive.step.state, RouteStep::State::unreachable);
   EXPECT_LT(drive.loop.time, 10.0);
 }
 
-// The world: FAR planner drives 60 m in it.
+// FAR planner drives 60 m in this world.
 TEST(RouteScans, CornerToCornerOfAnUnknownCity) {
-  Drive drive(city(3, 8, 3.2), {1.6, 1.6, 0});
+  RouteDrive drive(wheeled(), city(3, 8, 3.2), {1.6, 1.6, 0});
   EXPECT_TRUE(drive.to(35.2, 35.2, 60));
   RecordProperty("seconds", std::to_string(drive.loop.time));
   EXPECT_LT(drive.loop.driven, 66.0);

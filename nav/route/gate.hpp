@@ -1,0 +1,21 @@
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "nav/route/surface_map.hpp"
+
+namespace adit::nav {
+
+/// A place on a route that is hardly wider than the robot: a door, a gap in a wall, the mouth of a passage.
+struct Gate {
+  Eigen::Vector3d middle{0, 0, 0};  ///< between what stands on both sides, m
+  Eigen::Vector2d axis{1, 0};       ///< through it, the way that the route leads; of length one
+};
+
+/// The first gate of a route over its first `ahead` metres: where something stands nearer than `narrow` (m)
+/// on both sides. One that the route begins in is none. Nothing when there is none, or the map does not know.
+std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vector3d> points, double ahead,
+                              double narrow);
+
+}  // namespace adit::nav

@@ -1,0 +1,49 @@
+#pragma once
+#include <cmath>
+
+#include "nav/route/route_keeper.hpp"
+#include "tests/nav/closed_loop.hpp"
+
+namespace adit::nav::test {
+
+/// A robot that is led by the route keeper, as the agent does it.
+struct RouteDrive {
+  ClosedLoop loop;
+  RoutePlanner planner;
+  RouteKeeper keeper{};
+  RouteStep step{};
+
+  RouteDrive(const Platform& platform, BoxWorld world, const Pose2& start)
+      : loop(platform, std::move(world), start), planner(platform) {}
+
+  /// The map takes a scan, and the keeper says where to drive next.
+  void look(const Eigen::Vector2d& goal) {
+    const Pose2 at = loop.odometry();
+    planner.add_scan(loop.world.scan(loop.truth, loop.platform.lidar_height, loop.rings, loop.columns,
+                                     loop.noise, loop.random),
+                     Pose3::level(at, 0.0), loop.time);
+    step = keeper.step(planner, {at.x, at.y, 0}, {goal.x(), goal.y(), std::nan("")}, loop.last.blocked,
+                       loop.time);
+  }
+  /// Drives there for a tenth of a second.
+  void drive() {
+    Target target = Target::to(step.target.head<2>());
+    if (!step.last) target.tolerance = 0.1;
+    loop.cycle(target);
+  }
+  bool arrived() const { return step.last && loop.last.arrived && loop.follower.command().zero(); }
+
+  /// True when it stands at the goal; false after so many seconds, or when there is no way.
+  bool to(double x, double y, double seconds) {
+    const double end = loop.time + seconds;
+    while (loop.time < end) {
+      look({x, y});
+      if (step.state == RouteStep::State::unreachable) return false;
+      drive();
+      if (arrived()) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace adit::nav::test

@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include "tests/nav/route_drive.hpp"
+#include "tests/nav/route_world.hpp"
+
+namespace adit::nav::test {
+namespace {
+
+/// A hall of 10 x 6 m; a wall across it at x = 5 m with a gap from y = `low` to `high`, cells of 0.1 m.
+void tell_hall(RoutePlanner& planner, int low, int high) {
+  GridWorld world(100, 60);
+  world.border();
+  world.fill(50, 52, 0, 60);
+  world.fill(50, 52, low, high, false);
+  world.tell(planner);
+}
+
+TEST(Gate, IsTheMiddleOfAGapAndPointsThroughIt) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 27, 34);
+  for (const bool back : {false, true}) {
+    const Eigen::Vector3d a{3.5, 1.5, 0}, b{6.5, 4.5, 0};
+    const Route route = back ? planner.plan(b, a) : planner.plan(a, b);
+    ASSERT_TRUE(route.found());
+    const auto gate = planner.gate(route.points, 5.0);
+    ASSERT_TRUE(gate);
+    EXPECT_NEAR(gate->middle.x(), 5.1, 0.15);
+    EXPECT_NEAR(gate->middle.y(), 3.05, 0.06);
+    EXPECT_NEAR(gate->axis.x(), back ? -1 : 1, 0.05);
+  }
+}
+
+TEST(Gate, AWideOpeningAndOneWallAreNone) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 20, 40);
+  const Route through = planner.plan({3.5, 1.5, 0}, {6.5, 4.5, 0});
+  ASSERT_TRUE(through.found());
+  EXPECT_FALSE(planner.gate(through.points, 5.0));
+  const Route along = planner.plan({1, 0.5, 0}, {4, 0.5, 0});
+  ASSERT_TRUE(along.found());
+  EXPECT_FALSE(planner.gate(along.points, 5.0)) << "a wall on one side";
+}
+
+TEST(Gate, FartherThanAskedForOrWhereTheRouteBeginsItIsNone) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 27, 34);
+  const Route far = planner.plan({1, 3, 0}, {9, 3, 0});
+  ASSERT_TRUE(far.found());
+  EXPECT_FALSE(planner.gate(far.points, 2.0));
+  const Route within = planner.plan({5.1, 3.05, 0}, {9, 3, 0});
+  ASSERT_TRUE(within.found());
+  EXPECT_FALSE(planner.gate(within.points, 4.0));
+}
+
+TEST(Gate, TheKeeperLinesUpBeforeItAndGoesStraightOnBehindIt) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 27, 34);
+  RouteKeeper keeper;
+  const Eigen::Vector3d goal{8, 1.5, 0};
+  const RouteStep aside = keeper.step(planner, {4.2, 1.5, 0}, goal, false, 0.0);
+  EXPECT_NEAR(aside.target.y(), 3.05, 0.1);
+  EXPECT_NEAR(aside.target.x(), 4.0, 0.2) << "before it, on its axis";
+  const RouteStep lined_up = keeper.step(planner, {4.0, 3.05, 0}, goal, false, 1.0);
+  EXPECT_NEAR(lined_up.target.y(), 3.05, 0.1);
+  EXPECT_GT(lined_up.target.x(), 5.5) << "behind it, on its axis";
+  const RouteStep behind = keeper.step(planner, {5.9, 3.05, 0}, goal, false, 2.0);
+  EXPECT_LT(behind.target.y(), 2.5) << "and on along the route";
+}
+
+/// Gaps 20 cm wider than the robot, started from aside.
+TEST(Gate, ARobotPassesAGapTwentyCentimetresWiderThanItself) {
+  for (const auto& [platform, low, high] :
+       {std::tuple{wheeled(), 2.7, 3.4}, std::tuple{legged(), 2.7, 3.35}}) {
+    for (const double y : {1.0, 3.0, 5.0}) {
+      BoxWorld world{{{-0.2, 0, 0, 6},
+                      {10, 10.2, 0, 6},
+                      {0, 10, -0.2, 0},
+                      {0, 10, 6, 6.2},
+                      {5, 5.2, 0, low},
+                      {5, 5.2, high, 6}}};
+      RouteDrive drive(platform, world, {2, y, 0});
+      EXPECT_TRUE(drive.to(8, 2, 60)) << platform.name << " from y = " << y;
+      EXPECT_GT(drive.loop.least_clearance, 0.0) << platform.name << " from y = " << y;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::nav::test
