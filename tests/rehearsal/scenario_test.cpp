@@ -191,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"ceiling_below_floor", "ceiling: 3", "ceiling: -1", 1, "above the floor"},
         Bad{"unknown_link", "link: mesh_500k", "link: string_and_tins", 3, "string_and_tins"},
         Bad{"unknown_platform", "platform: wheeled", "platform: winged", 6,
-            "there are: legged, tracked, wheeled"},
+            "there are: aerial, car, legged, tracked, wheeled"},
         Bad{"unknown_lidar", "lidar: planar", "lidar: round", 4, "planar"},
         Bad{"robot_without_pose", ", pose: [1, 0, 0]", "", 6, "pose"},
         Bad{"robot_twice", "id: r2", "id: r1", 7, "taken"},
