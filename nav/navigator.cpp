@@ -5,18 +5,18 @@
 
 namespace adit::nav {
 
-Navigator::Navigator(const Platform& platform, const ObstacleMapParams& map,
+Navigator::Navigator(const Platform& platform, const TerrainParams& terrain,
                      const LocalPlannerParams& planner, std::shared_ptr<const PlannerLibrary> library)
-    : map_(platform, map), planner_(make_planner(platform, planner, std::move(library)).value()) {
+    : terrain_(platform, terrain), planner_(make_planner(platform, planner, std::move(library)).value()) {
   if (platform.flies()) air_.emplace(platform);
-  obstacles_.reserve(std::max<std::size_t>(ObstacleMap::kMaxCells, AirMap::kMost));
+  obstacles_.reserve(std::max<std::size_t>(TerrainMap::kMaxCells, AirMap::kMost));
 }
 
 void Navigator::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   if (air_)
     air_->add_scan(points, body, stamp_s);
   else
-    map_.add_scan(points, body, stamp_s);
+    terrain_.add_scan(points, body, stamp_s);
   has_scan_ = true;
 }
 
@@ -31,15 +31,29 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
   const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
   const auto x0 = static_cast<float>(pose.x), y0 = static_cast<float>(pose.y);
   obstacles_.clear();
-  for (const Eigen::Vector2f& cell : cells()) {
-    const float dx = cell.x() - x0, dy = cell.y() - y0;
-    obstacles_.push_back({c * dx + s * dy, c * dy - s * dx, 1.0f});
-  }
+  const auto add = [&](float x, float y, float cost) {
+    const float dx = x - x0, dy = y - y0;
+    obstacles_.push_back({c * dx + s * dy, c * dy - s * dx, cost});
+  };
+  if (air_)
+    for (const Eigen::Vector2f& cell : air_->cells()) add(cell.x(), cell.y(), 1.0f);
+  else
+    for (const TerrainCell& cell : terrain_.cells()) add(cell.x, cell.y, cell.cost);
   return planner_->plan(target, pose, obstacles_, stamp_s);
 }
 
+void Navigator::blocked(std::vector<Eigen::Vector2f>& cells) const {
+  cells.clear();
+  if (air_) {
+    cells.assign(air_->cells().begin(), air_->cells().end());
+    return;
+  }
+  for (const TerrainCell& cell : terrain_.cells())
+    if (cell.cost >= 1.0f) cells.emplace_back(cell.x, cell.y);
+}
+
 void Navigator::clear() {
-  map_.clear();
+  terrain_.clear();
   if (air_) air_->clear();
   has_scan_ = false;
 }

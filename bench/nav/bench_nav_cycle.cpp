@@ -1,6 +1,7 @@
-// The planner cycle: a lidar scan into the height map and obstacle cells, and a plan. Thread-CPU time, median
-// and 99th percentile, in ms and in units of the calibration loop of the same run; allocations a cycle.
-// Goals: a fifth of what Falco takes, 0.36 units a cycle and 4 units with everything blocked.
+// The planner cycle: a lidar scan into the terrain map, and a plan. Thread-CPU time, median and 99th
+// percentile, in ms and in units of the calibration loop of the same run; allocations a cycle. Goals: a fifth
+// of what Falco and its terrain analysis take, 5, 8 and 11 units with 16, 32 and 64 beams; and 2 units with
+// everything blocked, where it takes 20 with 10 000 points and 88 with 50 000.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -38,28 +39,28 @@ struct Case {
 };
 
 /// A drive of 24 cycles at 1 m/s down a 4 m wide corridor.
-Case drive(const char* name, std::vector<Box> crates) {
+Case drive(const char* name, double goal_units, int rings, int columns, const std::vector<Box>& crates) {
   BoxWorld world{{{-10, 40, 2, 2.2}, {-10, 40, -2.2, -2}, {39, 40, -2, 2}, {-10, -9, -2, 2}}};
   world.boxes.insert(world.boxes.end(), crates.begin(), crates.end());
-  Case c{name, 0.36};
+  Case c{name, goal_units};
   std::mt19937 random(3);
   for (int i = 0; i < 24; ++i) {
     c.poses.push_back({0.1 * i, 0, 0.02 * (i % 3)});
-    c.scans.push_back(world.scan(c.poses.back(), 0.5, 16, 900, 0.01, random));
+    c.scans.push_back(world.scan(c.poses.back(), 0.5, rings, columns, 0.01, random));
   }
   return c;
 }
 
-/// 10 000 obstacle points all around, 0.5 to 3.5 m off: no path is free.
-Case all_blocked() {
-  Case c{"all blocked, 10 000 points", 4.0};
+/// So many obstacle points all around, 0.5 to 3.5 m off: no path is free.
+Case all_blocked(const char* name, int points) {
+  Case c{name, 2.0};
   c.expect_blocked = true;
   std::mt19937 random(5);
   std::uniform_real_distribution<float> square(0.25f, 12.25f), turn(-3.14f, 3.14f), height(0.15f, 0.5f);
   for (int i = 0; i < 8; ++i) {
     c.poses.push_back({});
     auto& scan = c.scans.emplace_back();
-    for (int j = 0; j < 10000; ++j) {
+    for (int j = 0; j < points; ++j) {
       const float r = std::sqrt(square(random)), a = turn(random);
       scan.emplace_back(r * std::cos(a), r * std::sin(a), height(random));
     }
@@ -94,7 +95,7 @@ bool run(const Case& c) {
     total_ms.push_back(t2 - t0);
     cpu += t2 - t0;
     points += c.scans[k].size();
-    cells += navigator.obstacles().cells().size();
+    cells += navigator.terrain().cells().size();
     blocked += plan.blocked;
   }
   std::sort(scan_ms.begin(), scan_ms.end());
@@ -124,8 +125,12 @@ int main() {
     const double x = 1.6 + 0.9 * (i / 3), y = -1.3 + 1.3 * (i % 3) + 0.25 * (i / 3 % 2);
     crates.push_back({x, x + 0.3, y - 0.15, y + 0.15, 0.0, 0.3 + 0.1 * (i % 4)});
   }
-  bool good = run(drive("free corridor, 16 x 900", {}));
-  good &= run(drive("cluttered, 16 x 900", crates));
-  good &= run(all_blocked());
+  bool good = run(drive("free corridor, 16 x 900", 1.0, 16, 900, {}));
+  good &= run(drive("cluttered, 16 x 900", 1.0, 16, 900, crates));
+  good &= run(drive("cluttered, 16 x 1800", 1.0, 16, 1800, crates));
+  good &= run(drive("cluttered, 32 x 1800", 1.6, 32, 1800, crates));
+  good &= run(drive("cluttered, 64 x 1800", 2.2, 64, 1800, crates));
+  good &= run(all_blocked("all blocked, 10 000 points", 10000));
+  good &= run(all_blocked("all blocked, 50 000 points", 50000));
   return good ? 0 : 1;
 }

@@ -36,6 +36,7 @@ struct Platform {
   double hover_height{1.0};   ///< aerial: base_link above the ground where no height is asked for, m, (0, 50]
   double max_climb{0.5};      ///< aerial: m/s up and down, (0, 5]
   double step{0.08};          ///< highest step it climbs, m, [0, 1]
+  double max_slope{0.35};     ///< steepest ground it drives on, rise per run, [0.05, 1.5]
   double lidar_height{0.5};   ///< above the ground, m, (0, 5]
   bool stairs{false};
   std::string router{"none"};           ///< that leads it round what the planner does not see: none or graph

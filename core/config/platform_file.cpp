@@ -69,6 +69,7 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.max_acceleration = root.number("max_acceleration", above(0, 20));
   p.max_turn_acceleration = root.number("max_turn_acceleration", above(0, 50), p.max_turn_acceleration);
   p.step = root.number("step", within(0, 1));
+  p.max_slope = root.number("max_slope", within(0.05, 1.5), p.max_slope);
   p.lidar_height = root.number("lidar_height", above(0, 5));
   p.stairs = root.flag("stairs", false);
   p.router = root.text("router", p.router);

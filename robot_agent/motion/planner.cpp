@@ -27,7 +27,7 @@ Planner::Planner(PlannerParams params, Executor& strand, Log log,
                  std::shared_ptr<const nav::PlannerLibrary> library)
     : Component("planner", strand, std::move(log), {.beat = 100ms}),
       params_(std::move(params)),
-      navigator_(std::make_shared<nav::Navigator>(params_.platform, nav::ObstacleMapParams{},
+      navigator_(std::make_shared<nav::Navigator>(params_.platform, nav::TerrainParams{},
                                                   nav::LocalPlannerParams{}, std::move(library))) {}
 
 void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
@@ -42,8 +42,7 @@ void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
               params.defects.has(Defect::blind_planner) || params.defects.has(Defect::blind_and_unwatched)
                   ? straight(*job, params.platform)
                   : navigator->plan(job->target, job->pose, stamp);
-        const auto cells = navigator->cells();
-        job->obstacles.assign(cells.begin(), cells.end());
+        navigator->blocked(job->obstacles);
       },
       std::move(done));
 }

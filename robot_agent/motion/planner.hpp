@@ -23,7 +23,7 @@ struct PlanJob {
   std::uint64_t generation{};  ///< of the goal, for whoever asked
   Time made{};
   nav::Plan plan{};
-  std::vector<Eigen::Vector2f> obstacles{};  ///< odometry frame
+  std::vector<Eigen::Vector2f> obstacles{};  ///< what cannot be passed, odometry frame
 };
 
 struct PlannerParams {
@@ -32,7 +32,7 @@ struct PlannerParams {
   Defects defects{};
 };
 
-/// The planning work: obstacle map and local planner, on a strand of its own. When it is made anew its map
+/// The planning work: terrain map and local planner, on a strand of its own. When it is made anew its map
 /// is empty; the next scans fill it.
 class Planner : public Component {
  public:

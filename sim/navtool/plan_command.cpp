@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -57,8 +58,34 @@ void print(const PlanOptions& options, std::size_t cycle, double terrain_ms, dou
   std::printf("%s\n", line.dump().c_str());
 }
 
+/// The layers of the terrain, paler where they cost less.
+void draw_terrain(Canvas& canvas, std::span<const nav::TerrainCell> cells, const Eigen::Vector2d& at) {
+  struct Look {
+    const char* name;
+    Colour colour;
+    double pixels;
+  };
+  static const std::array<Look, 5> looks{{{"obstacle", {0.75, 0.10, 0.12}, 2.5},
+                                          {"drop", {0.45, 0.15, 0.60}, 5.0},
+                                          {"slope", {0.93, 0.55, 0.10}, 8.0},
+                                          {"step", {0.80, 0.70, 0.10}, 8.0},
+                                          {"roughness", {0.30, 0.60, 0.25}, 8.0}}};
+  // Obstacles last: they are the smallest.
+  for (std::size_t layer = looks.size(); layer-- > 0;)
+    for (const nav::TerrainCell& cell : cells) {
+      const Eigen::Vector2d q(cell.x, cell.y);
+      if (static_cast<std::size_t>(cell.layer) != layer || (q - at).cwiseAbs().maxCoeff() >= 5.0) continue;
+      const Look& look = looks[layer];
+      const double share = 0.25 + 0.75 * static_cast<double>(cell.cost);
+      const auto pale = [share](double c) { return 0.98 + share * (c - 0.98); };
+      canvas.dot(q, look.pixels, {pale(look.colour.r), pale(look.colour.g), pale(look.colour.b)});
+    }
+  for (const Look& look : looks) canvas.legend(look.name, look.colour);
+}
+
 Result<void> draw(const PlanOptions& options, const Platform& platform, const nav::Plan& plan,
-                  const PcdFile& cloud, const Pose3& to_map, const Pose3& body) {
+                  std::span<const nav::TerrainCell> terrain, const PcdFile& cloud, const Pose3& to_map,
+                  const Pose3& body) {
   const Eigen::Vector2d at = body.position.head<2>();
   Canvas canvas(at - Eigen::Vector2d(6, 5), at + Eigen::Vector2d(6, 5), "Local plan: " + options.clouds);
   constexpr Colour points{0.6, 0.64, 0.68}, path{0.0, 0.45, 0.7}, goal{0.84, 0.37, 0.0};
@@ -67,6 +94,7 @@ Result<void> draw(const PlanOptions& options, const Platform& platform, const na
     const Eigen::Vector2d q = (to_map * p.cast<double>()).head<2>();
     if ((q - at).cwiseAbs().maxCoeff() < 5.0) canvas.dot(q, 1.0, points);
   }
+  draw_terrain(canvas, terrain, at);
   std::vector<Eigen::Vector2d> line;
   for (const Pose2& p : plan.path()) line.push_back(p.position());
   canvas.line(line, 4, path);
@@ -105,8 +133,8 @@ int plan(const PlanOptions& options) {
     const nav::Plan plan = navigator.plan(nav::Target::to(options.goal), body.planar(), stamp);
     print(options, cycle, t1 - t0, cpu_ms() - t1, plan);
     if (!options.picture.empty() && cycle + 1 == files->size())
-      if (const auto drawn =
-              draw(options, *platform, plan, *cloud, registered ? Pose3{} : cloud->viewpoint, body);
+      if (const auto drawn = draw(options, *platform, plan, navigator.terrain().cells(), *cloud,
+                                  registered ? Pose3{} : cloud->viewpoint, body);
           !drawn)
         return complain("navtool", drawn.error());
   }

@@ -105,6 +105,7 @@ inline Platform tracked() {
           .max_acceleration = 1.0,
           .turn_slip = 0.15,
           .step = 0.15,
+          .max_slope = 0.5,
           .lidar_height = 0.55};
 }
 inline Platform legged() {
@@ -116,6 +117,7 @@ inline Platform legged() {
           .max_turn = 1.2,
           .max_acceleration = 1.5,
           .step = 0.22,
+          .max_slope = 0.6,
           .lidar_height = 0.65,
           .stairs = true};
 }

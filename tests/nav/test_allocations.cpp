@@ -1,4 +1,5 @@
-// A planning cycle, a controller's step and the collision monitor allocate nothing once they are made.
+// A cycle of terrain and plan, a controller's step and the collision monitor allocate nothing once they are
+// made.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,6 +9,7 @@
 #include "nav/control/controller.hpp"
 #include "nav/make_planner.hpp"
 #include "nav/monitor/collision_monitor.hpp"
+#include "nav/navigator.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace {
@@ -54,6 +56,28 @@ TEST(Allocations, NoneInACycle) {
     for (int i = 1; i < 20; ++i) cycle(0.1 * i);
     EXPECT_EQ(allocations, before) << platform.name << " " << platform.planner;
   }
+}
+
+TEST(Allocations, NoneInATerrainCycle) {
+  // Crates, a kerb and an edge come and go as the robot drives.
+  const BoxWorld world{{{3, 3.3, -1, 1}, {-3, 9, 2, 2.2}, {4, 9, -2.2, -1, 0.0, 0.06}, {-3, 9, -2.2, -2}}};
+  std::mt19937 random(4);
+  Navigator navigator(wheeled());
+  std::vector<std::vector<Eigen::Vector3f>> scans;
+  for (int i = 0; i < 30; ++i) {
+    scans.push_back(world.scan({0.05 * i, 0, 0}, 0.5, 16, 360, 0.01, random));
+    if (i % 3 == 0)
+      for (Eigen::Vector3f& p : scans.back())
+        if (p.x() > 2) p.z() -= 1.0f;
+  }
+  std::uint64_t before = 0;
+  for (int i = 0; i < 30; ++i) {
+    if (i == 5) before = allocations;
+    const Pose2 pose{0.05 * i, 0, 0};
+    navigator.add_scan(scans[static_cast<std::size_t>(i)], Pose3::level(pose, 0), 0.1 * i);
+    navigator.plan(Target::to({6, 0}), pose, 0.1 * i);
+  }
+  EXPECT_EQ(allocations, before);
 }
 
 }  // namespace

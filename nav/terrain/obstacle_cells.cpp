@@ -1,0 +1,106 @@
+#include "nav/terrain/obstacle_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr int kMany = 8;               ///< a surface has this many times the hits of the noise before it
+constexpr double kForgetBeyond = 0.3;  ///< m beyond the range
+constexpr float kInside = 0.05f;       ///< m within the body's outline
+
+}  // namespace
+
+ObstacleCells::ObstacleCells(const Footprint& body, const TerrainParams& params)
+    : body_(body), params_(params), slots_(kTorus * kTorus, 0) {
+  entries_.reserve(kMaxCells);
+}
+
+void ObstacleCells::clear() {
+  entries_.clear();
+  std::fill(slots_.begin(), slots_.end(), std::uint16_t{0});
+}
+
+void ObstacleCells::mark(float x, float y, float z) {
+  const int ix = cell(x), iy = cell(y);
+  std::uint16_t& index = slots_[slot(ix, iy)];
+  if (index != 0) {
+    Entry& e = entries_[index - 1u];
+    if (e.ix == ix && e.iy == iy) {
+      e.z_low = std::min(e.z_low, z);
+      e.z_high = std::max(e.z_high, z);
+      e.hits = e.scan == scan_ ? e.hits + 1 : 1;
+      e.scan = scan_;
+      e.again = true;
+      return;
+    }
+    // Left behind on the other side of the torus: its place is taken.
+    e = {ix, iy, z, z, scan_, 1, 0, false, false, now_, now_};
+    return;
+  }
+  if (entries_.size() >= kMaxCells) return;
+  entries_.push_back({ix, iy, z, z, scan_, 1, 0, false, false, now_, now_});
+  index = static_cast<std::uint16_t>(entries_.size());
+}
+
+void ObstacleCells::keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step) {
+  std::size_t kept = 0;
+  for (Entry& entry : entries_) {
+    const bool passable = entry.scan != scan_ && ground.measured(entry.x(), entry.y()) &&
+                          entry.z_high - ground.before(entry.x(), entry.y()) <= step;
+    if (!stays(entry, view, rays, passable)) {
+      slots_[slot(entry.ix, entry.iy)] = 0;
+      continue;
+    }
+    entries_[kept] = entry;
+    slots_[slot(entry.ix, entry.iy)] = static_cast<std::uint16_t>(++kept);
+  }
+  entries_.resize(kept);
+}
+
+bool ObstacleCells::stray(const Entry& entry, float dx, float dy, float range) const {
+  if (entry.hits >= kMany || range < 0.05f) return false;
+  for (int further = 1; further <= 2; ++further) {
+    const float along = static_cast<float>(further) / range;
+    const int ix = entry.ix + floor_int(along * dx + 0.5f), iy = entry.iy + floor_int(along * dy + 0.5f);
+    const std::uint16_t index = slots_[slot(ix, iy)];
+    if (index == 0) continue;
+    const Entry& behind = entries_[index - 1u];
+    if (behind.ix == ix && behind.iy == iy && behind.scan == scan_ && behind.hits >= kMany * entry.hits)
+      return true;
+  }
+  return false;
+}
+
+bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, bool passable) const {
+  const float dx = entry.x() - view.sensor.x(), dy = entry.y() - view.sensor.y();
+  const float range = std::sqrt(dx * dx + dy * dy);
+  const auto memory = static_cast<float>(params_.memory);
+  if (entry.scan == scan_) {
+    entry.misses = 0;
+    if (stray(entry, dx, dy, range)) return entry.solid && now_ - entry.stamp <= memory;
+    entry.solid = true;
+    entry.stamp = now_;
+    return true;
+  }
+  if (range > params_.range + kForgetBeyond) return false;
+  const Eigen::Vector3f low = view.seen(entry.x(), entry.y(), entry.z_low);
+  const Eigen::Vector3f high = low + view.up(entry.z_high - entry.z_low);
+  // Where the robot stands nothing else does.
+  if (body_.depth(low.x(), low.y()) >= kInside) return false;
+  if (passable && ++entry.misses >= params_.misses) return false;
+  if (range < 0.05f || high.z() < (rays.lowest() - 0.01f) * range) {
+    entry.stamp = now_;  // in the blind spot: nothing can be said against it
+    return true;
+  }
+  if (rays.saw_through(low, high, 3.0f * kCell)) {
+    if (++entry.misses >= params_.misses) return false;
+  } else if (!passable) {
+    entry.misses = 0;
+  }
+  // A lidar has a shortest range, too: what came so close is not gone because it is no longer seen.
+  return range < params_.blind_range || now_ - entry.stamp <= memory;
+}
+
+}  // namespace adit::nav

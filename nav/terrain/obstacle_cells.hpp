@@ -1,0 +1,66 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "nav/footprint.hpp"
+#include "nav/terrain/ground_grid.hpp"
+#include "nav/terrain/terrain_params.hpp"
+#include "nav/terrain/view.hpp"
+
+namespace adit::nav {
+
+/// What stands in the way, as 5 cm cells. A cell stays until rays went through it in several scans (a robot
+/// that moved on leaves no ghost), until the ground there turns out to be passable, until it was hidden for
+/// `memory`, or until the robot leaves it behind; a cell below the lowest ray (the blind spot of a spinning
+/// lidar) is remembered as long as it is near.
+class ObstacleCells {
+ public:
+  static constexpr float kCell = 0.05f;             ///< m
+  static constexpr std::size_t kMaxCells = 50'000;  ///< every cell within the largest range fits
+  struct Entry {
+    int ix, iy;
+    float z_low, z_high;
+    std::uint32_t scan;
+    std::int32_t hits;  ///< of the newest scan that hit it
+    std::int32_t misses;
+    bool solid;          ///< once hit by more than stray returns
+    bool again;          ///< hit more than once: a single return is noise
+    float since, stamp;  ///< hit first and last, s
+    float x() const { return (static_cast<float>(ix) + 0.5f) * kCell; }
+    float y() const { return (static_cast<float>(iy) + 0.5f) * kCell; }
+  };
+
+  ObstacleCells(const Footprint& body, const TerrainParams& params);
+  void clear();
+
+  void begin_scan(float now) {
+    ++scan_;
+    now_ = now;
+  }
+  /// A return from an obstacle.
+  void mark(float x, float y, float z);
+  /// Drops what is free by now, or no more than a `step` (m) above the ground as it is known by now.
+  void keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step);
+
+  std::span<const Entry> entries() const { return entries_; }
+
+ private:
+  static constexpr int kTorus = 256;  ///< 12.8 m: more than twice the range
+
+  static int cell(float v) { return floor_int(v * (1.0f / kCell)); }
+  static std::size_t slot(int ix, int iy) {
+    return static_cast<std::size_t>((ix & (kTorus - 1)) * kTorus + (iy & (kTorus - 1)));
+  }
+  bool stays(Entry& entry, const View& view, const RayImage& rays, bool passable) const;
+  bool stray(const Entry& entry, float dx, float dy, float range) const;
+
+  Footprint body_;
+  TerrainParams params_;
+  std::vector<std::uint16_t> slots_;  ///< index into entries_ plus one, or 0
+  std::vector<Entry> entries_{};
+  std::uint32_t scan_{0};
+  float now_{0};
+};
+
+}  // namespace adit::nav

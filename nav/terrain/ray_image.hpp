@@ -1,0 +1,68 @@
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace adit::nav {
+
+/// The whole number below: without SSE 4.1, which the build does not assume, std::floor is a call, and this
+/// runs for every point.
+inline int floor_int(float v) {
+  const int i = static_cast<int>(v);
+  return i - (v < static_cast<float>(i));
+}
+
+/// How far one scan saw in each direction of the lidar: what it saw through is free. Directions are binned
+/// by a bearing that needs no trigonometry (the "diamond angle") and by the tangent of the elevation; a bin
+/// keeps its shortest range, so that a ray which ended near wins over one that slipped past.
+class RayImage {
+ public:
+  static constexpr int kColumns = 256;
+  static constexpr int kRows = 100;
+
+  RayImage();
+  void clear();
+
+  /// A return at (dx, dy, dz) from the lidar, in its frame; `range` is sqrt(dx^2 + dy^2). All in metres.
+  void add(float dx, float dy, float dz, float range) {
+    const float tangent = dz / range;
+    if (tangent < lowest_) lowest_ = tangent;
+    const int row = row_of(tangent);
+    if (row < 0 || row >= kRows) return;
+    std::uint16_t& bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(dx, dy))];
+    const float centimetres = range * 100.0f;
+    const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
+    if (value < bin) bin = value;
+  }
+
+  /// Whether a ray went through the line from `low` to `high` (in the lidar's frame, about upright), and at
+  /// least `beyond` metres further.
+  bool saw_through(const Eigen::Vector3f& low, const Eigen::Vector3f& high, float beyond) const;
+
+  /// The tangent of the lowest ray of this scan: what stands lower at some range cannot be seen there.
+  float lowest() const { return lowest_; }
+  bool empty_at(int row, int column) const {
+    return bins_[static_cast<std::size_t>(row * kColumns + (column & (kColumns - 1)))] == kEmpty;
+  }
+  /// The tangent in the middle of a row.
+  static float tangent_of(int row) { return (static_cast<float>(row) - 50.0f) * 0.02f; }
+  /// A direction in the middle of a column, of length one.
+  static Eigen::Vector2f direction_of(int column);
+
+ private:
+  static constexpr std::uint16_t kEmpty = 0xffff;
+  static constexpr std::uint16_t kFar = 0xfffe;
+
+  static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 50.5f); }  // 0.02 a row
+  static int column_of(float dx, float dy) {
+    const float ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
+    const float t = dy / (ax + ay);            // -1 .. 1
+    const float turn = dx < 0 ? 2.0f - t : t;  // -1 .. 3, monotone in the bearing
+    return static_cast<int>(turn * (kColumns / 4) + kColumns) & (kColumns - 1);
+  }
+
+  std::vector<std::uint16_t> bins_;
+  float lowest_{};
+};
+
+}  // namespace adit::nav

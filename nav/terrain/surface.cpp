@@ -1,0 +1,108 @@
+#include "nav/terrain/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr float kCell = GroundGrid::kCell;
+constexpr float kFewest = 8;       ///< measured cells that tell a plane
+constexpr float kSpread = 0.006f;  ///< m2: variance of their places in the direction in which it is less
+constexpr float kCertain = 18;     ///< and one that is too steep
+constexpr float kCertainSpread = 0.02f;
+constexpr float kLeastCost = 0.1f;   ///< what costs less is as good as any
+constexpr float kOverSlope = 1.08f;  ///< of the steepest ground: more is too steep, for sure
+constexpr float kMostCost = 0.9f;    ///< of what can be passed
+
+}  // namespace
+
+Surface::Surface(const SurfaceParams& params) : params_(params), weight_(kSide * kSide, 0.0f) {
+  places_.reserve(kSide * kSide / 4);
+}
+
+float Surface::cost(float share) const {
+  if (share <= params_.easy) return 0.0f;
+  return std::min(kMostCost,
+                  kLeastCost + (params_.hard - kLeastCost) * (share - params_.easy) / (1 - params_.easy));
+}
+
+void Surface::work_out(const GroundGrid& ground, std::span<const std::uint8_t> solid) {
+  places_.clear();
+  const std::uint8_t* gaps = ground.gaps();
+  for (std::size_t k = 0; k < weight_.size(); ++k) weight_[k] = gaps[k] == 0 && solid[k] == 0 ? 1.0f : 0.0f;
+  for (int i = kReach; i < kSide - kReach; i += 2) {
+    add_rows(ground, i);
+    for (int j = kReach; j < kSide - kReach; j += 2) judge(ground, i, j);
+  }
+}
+
+void Surface::add_rows(const GroundGrid& ground, int i) {
+  sums_ = {};
+  // Heights from that under the robot, so that squares stay small.
+  const float level = ground.height(GroundGrid::kHalf * kSide + GroundGrid::kHalf);
+  for (int di = -kReach; di <= kReach; ++di) {
+    const float x = static_cast<float>(di) * kCell;
+    const float* w = &weight_[static_cast<std::size_t>((i + di) * kSide)];
+    const float* h = ground.heights() + (i + di) * kSide;
+    for (std::size_t j = 0; j < kSide; ++j) {
+      const float wx = w[j] * x, z = h[j] - level, wz = w[j] * z;
+      sums_.n[j] += w[j];
+      sums_.x[j] += wx;
+      sums_.xx[j] += wx * x;
+      sums_.z[j] += wz;
+      sums_.xz[j] += wx * z;
+      sums_.zz[j] += wz * z;
+    }
+  }
+}
+
+void Surface::judge(const GroundGrid& ground, int i, int j) {
+  float n = 0, x = 0, xx = 0, z = 0, xz = 0, zz = 0, y = 0, yy = 0, xy = 0, yz = 0;
+  for (int dj = -kReach; dj <= kReach; ++dj) {
+    const auto k = static_cast<std::size_t>(j + dj);
+    const float at = static_cast<float>(dj) * kCell;
+    n += sums_.n[k];
+    x += sums_.x[k];
+    xx += sums_.xx[k];
+    z += sums_.z[k];
+    xz += sums_.xz[k];
+    zz += sums_.zz[k];
+    y += at * sums_.n[k];
+    yy += at * at * sums_.n[k];
+    xy += at * sums_.x[k];
+    yz += at * sums_.z[k];
+  }
+  if (n < kFewest) return;
+  const float sxx = xx - x * x / n, syy = yy - y * y / n, sxy = xy - x * y / n;
+  const float sxz = xz - x * z / n, syz = yz - y * z / n, szz = zz - z * z / n;
+  const float det = sxx * syy - sxy * sxy;
+  if (!(det > kSpread * n * (sxx + syy))) return;
+  const float gx = (sxz * syy - syz * sxy) / det, gy = (syz * sxx - sxz * sxy) / det;
+  const float slope = std::sqrt(gx * gx + gy * gy) / params_.slope;
+  const float rms = std::sqrt(std::max(0.0f, szz - gx * sxz - gy * syz) / n);
+
+  constexpr float kRun = 2 * kCell, kShare = 1 - kRun * 1.5f / ((2 * kReach + 1) * kCell);
+  float step = 0;
+  const int middle = i * kSide + j;
+  const auto edge = [&](int before, int after, float gradient) {
+    if (weight_[static_cast<std::size_t>(before)] == 0 || weight_[static_cast<std::size_t>(after)] == 0)
+      return;
+    const float jump = ground.height(after) - ground.height(before) - kRun * gradient;
+    const float seen = std::fabs(ground.height(after) - ground.height(before));
+    step = std::max(step, std::min(std::fabs(jump) / kShare, seen));
+  };
+  edge(middle - kSide, middle + kSide, gx);
+  edge(middle - 1, middle + 1, gy);
+
+  const bool certain = n >= kCertain && det > kCertainSpread * n * (sxx + syy);
+  Place place{static_cast<std::uint16_t>(middle), Layer::slope,
+              certain && slope > kOverSlope ? 1.0f : cost(slope)};
+  const float step_cost = step > params_.blocking_step ? 1.0f : cost(step / params_.step);
+  if (step_cost > place.cost) place = {place.index, Layer::step, step_cost};
+  const float rough = cost(rms / (params_.rough * params_.step));
+  if (rough > place.cost) place = {place.index, Layer::roughness, rough};
+  if (place.cost >= kLeastCost) places_.push_back(place);
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,37 @@
+#pragma once
+#include <Eigen/Core>
+
+#include "core/geometry/pose.hpp"
+
+namespace adit::nav {
+
+/// From where a scan was taken: the lidar, upright on a body that stands at `body`.
+struct View {
+  Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};  ///< from base_link's axes to the map's
+  Eigen::Vector3f sensor{0, 0, 0};                    ///< in the map, m
+  Eigen::Vector3f base{0, 0, 0};                      ///< base_link in the map, m
+
+  View() = default;
+  View(const Pose3& body, double lidar_height)
+      : turn(body.orientation.toRotationMatrix().cast<float>()),
+        sensor((body * Eigen::Vector3d(0, 0, lidar_height)).cast<float>()),
+        base(body.position.cast<float>()) {}
+  void raise(float by) {
+    sensor.z() += by;
+    base.z() += by;
+  }
+  /// A place of the map, in the lidar's frame.
+  Eigen::Vector3f seen(float x, float y, float z) const {
+    return turn.transpose() * (Eigen::Vector3f(x, y, z) - sensor);
+  }
+  /// A way straight up in the map, in the lidar's frame.
+  Eigen::Vector3f up(float height) const { return height * turn.row(2).transpose(); }
+  /// How the body leans: rise per metre along the map's x and y.
+  Eigen::Vector2f tilt() const {
+    const Eigen::Vector3f up = turn.col(2);
+    if (up.z() < 0.5f) return {0, 0};
+    return {-up.x() / up.z(), -up.y() / up.z()};
+  }
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,124 @@
+#include "nav/terrain/ground_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace adit::nav {
+namespace {
+
+using Height = std::function<float(float, float)>;
+
+void see(GroundGrid& grid, const Height& height, float x, float y, float now, float raised = 0) {
+  grid.begin_scan(x, y, now);
+  for (float i = -4.4f; i < 4.4f; i += 0.03f)
+    for (float j = -4.4f; j < 4.4f; j += 0.03f) grid.add(x + i, y + j, height(x + i, y + j) + raised);
+}
+
+/// A grid over heights given by a function, seen once, grown around the origin.
+GroundGrid grid_of(const Height& height, const GroundParams& params = {}) {
+  GroundGrid grid(params);
+  see(grid, height, 0, 0, 0);
+  grid.grow(0, height(0, 0), {0, 0});
+  return grid;
+}
+
+TEST(GroundGrid, FollowsASlope) {
+  const GroundGrid grid = grid_of([](float x, float) { return 0.2f * x; });
+  for (float x = -4; x <= 4; x += 0.5f) EXPECT_NEAR(grid.at(x, 1.0f), 0.2f * x, 0.03f) << x;
+}
+
+TEST(GroundGrid, AWallIsNotGround) {
+  const GroundGrid grid = grid_of([](float x, float) { return x > 2 ? 1.0f : 0.0f; });
+  EXPECT_NEAR(grid.at(1.5f, 0), 0.0f, 1e-6f);
+  EXPECT_NEAR(grid.at(3.0f, 0), 0.0f, 1e-6f);
+  EXPECT_TRUE(grid.measured(1.5f, 0));
+  EXPECT_FALSE(grid.measured(3.0f, 0));
+}
+
+TEST(GroundGrid, ACliffIsNotGround) {
+  const GroundGrid grid = grid_of([](float x, float) { return x > 2 ? -1.0f : 0.0f; });
+  EXPECT_NEAR(grid.at(3.0f, 0), 0.0f, 1e-6f);
+}
+
+TEST(GroundGrid, SmallRisesAddUp) {
+  // 4 cm every 0.4 m, as of a floor in an OctoMap: each one is ground.
+  const GroundGrid grid =
+      grid_of([](float x, float) { return 0.04f * std::floor(std::max(0.0f, x) / 0.4f); });
+  EXPECT_NEAR(grid.at(3.05f, 0), 0.28f, 0.01f);
+}
+
+TEST(GroundGrid, StairsAreGroundToWhoClimbsThem) {
+  const Height stairs = [](float x, float) { return x > 1 ? 0.17f * std::ceil((x - 1) / 0.3f) : 0.0f; };
+  EXPECT_GT(grid_of(stairs, {.rise = 0.245f}).at(3.0f, 0), 1.0f);
+  EXPECT_LT(grid_of(stairs).at(3.0f, 0), 0.01f);
+}
+
+TEST(GroundGrid, ARampSeenByFarRingsIsGround) {
+  // A ring every half metre: between them nothing is measured.
+  GroundGrid grid({.slope = 0.35f});
+  grid.begin_scan(0, 0, 0);
+  for (float x = 0.45f; x < 4; x += 0.5f)
+    for (float y = -2; y < 2; y += 0.05f) grid.add(x, y, 0.25f * (x - 0.45f));
+  grid.grow(0, 0, {0, 0});
+  EXPECT_NEAR(grid.at(3.45f, 0), 0.75f, 0.01f);
+}
+
+TEST(GroundGrid, WhatALevelRingSeesIsNoGround) {
+  GroundGrid grid({.slope = 0.6f, .rise = 0.245f, .most = 0.45f});
+  grid.begin_scan(0, 0, 0);
+  for (float y = -2; y < 2; y += 0.05f) grid.add(2.0f, y, 0.65f);
+  grid.grow(0, 0, {0, 0});
+  EXPECT_NEAR(grid.at(2.0f, 0), 0.0f, 1e-6f);
+}
+
+TEST(GroundGrid, WhereNothingWasSeenTheGroundLiesAsTheBodyDoes) {
+  GroundGrid grid;
+  grid.begin_scan(0, 0, 0);
+  grid.grow(0, 0.7f, {0.1f, 0});
+  EXPECT_NEAR(grid.at(3.05f, -2.0f), 0.7f + 0.3f, 0.01f);
+}
+
+TEST(GroundGrid, RollsAndForgetsWhatItWrapsOver) {
+  GroundGrid grid;
+  grid.begin_scan(0, 0, 0);
+  for (float j = -1; j < 1; j += 0.05f) grid.add(0.95f, j, 0.05f);
+  grid.grow(0, 0, {0, 0});
+  EXPECT_NEAR(grid.at(0.95f, 0), 0.05f, 1e-6f);
+  // One torus further the same memory holds other places.
+  for (float x = 0; x < 12.85f; x += 0.4f) grid.begin_scan(x, 0, 1);
+  grid.begin_scan(12.8f, 0, 1);
+  grid.grow(0, 0, {0, 0});
+  EXPECT_NEAR(grid.at(13.75f, 0), 0.0f, 1e-6f);
+}
+
+TEST(GroundGrid, ForgetsOldHeights) {
+  GroundGrid grid({.memory = 5.0f});
+  grid.begin_scan(0, 0, 0);
+  grid.add(0.5f, 0.1f, 0.05f);
+  grid.grow(0, 0, {0, 0});
+  EXPECT_NEAR(grid.at(0.5f, 0.1f), 0.05f, 1e-6f);
+  grid.begin_scan(0, 0, 6);
+  grid.grow(0, 0, {0, 0});
+  EXPECT_NEAR(grid.at(0.5f, 0.1f), 0.0f, 1e-6f);
+}
+
+TEST(GroundGrid, TellsByHowMuchAScanLiesBesideTheMap) {
+  const Height waves = [](float x, float y) { return 0.05f * std::sin(x) * std::cos(y); };
+  GroundGrid grid = grid_of(waves);
+  see(grid, waves, 0.1f, 0, 0.1f, -0.04f);  // an odometry that does not know of its robot's climb of 4 cm
+  EXPECT_NEAR(grid.disagreement(), 0.04f, 0.006f);
+  see(grid, waves, 0.1f, 0, 0.2f, 0.002f);
+  EXPECT_EQ(grid.disagreement(), 0.0f);
+}
+
+TEST(FloorInt, RoundsDownOnBothSides) {
+  EXPECT_EQ(floor_int(1.9f), 1);
+  EXPECT_EQ(floor_int(-0.1f), -1);
+  EXPECT_EQ(floor_int(-3.0f), -3);
+  EXPECT_EQ(floor_int(0.0f), 0);
+}
+
+}  // namespace
+}  // namespace adit::nav
