@@ -78,6 +78,14 @@ TEST(TerrainMap, PassesUnderWhatHangsHigh) {
   }
 }
 
+TEST(TerrainMap, ACeilingIsNoObstacle) {
+  Looker robot;
+  robot.world.ceiling = 0.9;
+  robot.world.boxes = {{6, 6.2, -5, 5}};
+  robot.look(5);
+  EXPECT_EQ(robot.map.cells().size(), 0u);
+}
+
 TEST(TerrainMap, ARampIsGroundAndAWallOnItIsNot) {
   // The world is level; the robot's own height and the points are what a ramp would give.
   TerrainMap map(wheeled());
@@ -111,6 +119,21 @@ TEST(TerrainMap, SomebodyWhoWentLeavesNoGhost) {
   EXPECT_GT(robot.count(1.9, 2.7, -0.4, 0.4), 0);  // two scans could be bad luck
   robot.look(8);
   EXPECT_EQ(robot.count(1.9, 2.7, -0.4, 0.4), 0);
+}
+
+TEST(TerrainMap, TellsHowLongAnObstacleHasStoodThere) {
+  Looker robot;
+  robot.world.boxes = {{2.0, 2.2, -0.3, 0.3}, {6, 6.2, -5, 5}};
+  robot.look(20);
+  robot.world.boxes.push_back({1.5, 1.7, 0.6, 1.0});  // a team mate comes
+  robot.look(3);
+  float oldest = 0, youngest = 1e9f;
+  for (const auto& c : robot.map.cells()) {
+    oldest = std::max(oldest, c.age);
+    youngest = std::min(youngest, c.age);
+  }
+  EXPECT_NEAR(oldest, 2.2f, 0.15f);
+  EXPECT_LT(youngest, 0.25f);
 }
 
 TEST(TerrainMap, WhatTheBlindSpotHidesIsRemembered) {
@@ -150,6 +173,17 @@ TEST(TerrainMap, SurvivesBadPoints) {
   map.add_scan(bad, Pose3{}, 0.0);
   map.add_scan({}, Pose3{}, 0.1);
   EXPECT_EQ(map.cells().size(), 0u);
+}
+
+TEST(TerrainMap, TakesScansLargerThanAnyLidars) {
+  TerrainMap map(wheeled());
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> at(-6, 6), z(-2, 2);
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 500'000; ++i) points.emplace_back(at(random), at(random), z(random));
+  for (int i = 0; i < 3; ++i) map.add_scan(points, Pose3{}, 0.1 * i);
+  EXPECT_GT(map.cells().size(), 10'000u);
+  EXPECT_LE(map.cells().size(), TerrainMap::kMaxCells);
 }
 
 TEST(TerrainMap, KeepsToItsRangeAndForgetsWhatIsLeftBehind) {
