@@ -18,6 +18,7 @@ constexpr float kSmooth = 0.1f;        ///< cost of ground that is as good as an
 constexpr float kVeryRough = 0.5f;     ///< cost of ground that is avoided where there is another way
 constexpr std::array<float, 2> kEase{0.4f, 0.05f};  ///< weight of a path across rough and very rough ground
 constexpr double kSlowest = 0.25;                   ///< of the speed is left on ground that weighs nothing
+constexpr double kLongestRetreat = 8.0;             ///< s: then something holds it there, too
 constexpr float kSecondChoice = 0.3f;  ///< weight of driving the other way round than was asked for
 
 /// Degrees in [0, 360), whole, of an angle in radians.
@@ -113,7 +114,7 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
   Goal goal = goal_of(target, pose);
   watch_progress(target, goal.distance);
   if (retreating_) {
-    const Goal back = retreat_goal(pose);
+    const Goal back = retreat_goal(pose, stamp_s);
     if (retreating_) goal = back;
   }
   project(goal, obstacles, plan);
@@ -130,14 +131,16 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
   }
   judge_headings(goal);
   Choice choice;
-  const bool found = choose(goal, choice);
+  // What it would choose is what it is held from; on the way back it is let go.
+  const bool held = target.held && target.kind == Target::Kind::goal && !retreating_;
+  const bool found = !held && choose(goal, choice);
   if (found && !retreating_) free_stamp_ = stamp_s;
   const bool tired = target.kind == Target::Kind::goal && given_up(found && !retreating_, stamp_s);
   if (!found || tired) {
     plan.blocked = true;
     plan.reason = Reason::blocked;
     last_turn_ = 0;
-    if (target.kind == Target::Kind::goal && !tired) consider_retreat(pose, stamp_s);
+    if (target.kind == Target::Kind::goal && !tired) consider_retreat(pose, stamp_s, held);
     return plan;
   }
   write_path(choice, goal, pose, plan);
@@ -177,26 +180,27 @@ bool LocalPlanner::given_up(bool drives, double stamp_s) {
   return stamp_s < rest_until_;
 }
 
-LocalPlanner::Goal LocalPlanner::retreat_goal(const Pose2& pose) {
+LocalPlanner::Goal LocalPlanner::retreat_goal(const Pose2& pose, double stamp_s) {
   const Eigen::Vector2d to = pose.inverse() * retreat_to_;
   constexpr double kSpread = 45.0;
   Goal goal{to.norm(), std::atan2(to.y(), to.x()), kSpread, static_cast<int>(kSpread / kHeadingStep), false};
   goal.backwards = std::fabs(goal.bearing) > M_PI / 2;
-  if (goal.distance <= params_.tolerance) retreating_ = false;
+  if (goal.distance <= params_.tolerance || stamp_s > retreat_until_) retreating_ = false;
   return goal;
 }
 
-void LocalPlanner::consider_retreat(const Pose2& pose, double stamp_s) {
+void LocalPlanner::consider_retreat(const Pose2& pose, double stamp_s, bool at_once) {
   if (retreating_ || retreats_left_ == 0) {
     retreating_ = false;
     return;
   }
   free_stamp_ = std::min(free_stamp_, stamp_s);
-  if (stamp_s - free_stamp_ < params_.patience) return;
+  if (!at_once && stamp_s - free_stamp_ < params_.patience) return;
   // Straight back, or ahead when that leads away from the goal.
   const Eigen::Vector2d to = pose.inverse() * goal_;
   retreat_to_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
   retreating_ = true;
+  retreat_until_ = stamp_s + kLongestRetreat;
   free_stamp_ = std::numeric_limits<double>::infinity();
   --retreats_left_;
 }

@@ -4,12 +4,20 @@
 #include <cmath>
 
 namespace adit::nav {
+namespace {
+
+constexpr std::size_t kMostPredicted = 8192;  ///< places of what moves
+
+}  // namespace
 
 Navigator::Navigator(const Platform& platform, const TerrainParams& terrain,
                      const LocalPlannerParams& planner, std::shared_ptr<const PlannerLibrary> library)
-    : terrain_(platform, terrain), planner_(make_planner(platform, planner, std::move(library)).value()) {
+    : platform_(platform),
+      terrain_(platform, terrain),
+      tracker_(platform),
+      planner_(make_planner(platform, planner, std::move(library)).value()) {
   if (platform.flies()) air_.emplace(platform);
-  obstacles_.reserve(std::max<std::size_t>(TerrainMap::kMaxCells, AirMap::kMost));
+  obstacles_.reserve(std::max<std::size_t>(TerrainMap::kMaxCells, AirMap::kMost) + kMostPredicted);
 }
 
 void Navigator::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
@@ -17,6 +25,7 @@ void Navigator::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& b
     air_->add_scan(points, body, stamp_s);
   else
     terrain_.add_scan(points, body, stamp_s);
+  tracker_.look(points, body, stamp_s);
   has_scan_ = true;
 }
 
@@ -39,7 +48,20 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
     for (const Eigen::Vector2f& cell : air_->cells()) add(cell.x(), cell.y(), 1.0f);
   else
     for (const TerrainCell& cell : terrain_.cells()) add(cell.x, cell.y, cell.cost);
-  return planner_->plan(target, pose, obstacles_, stamp_s);
+  const double moves = speed(pose, stamp_s);
+  const double age = std::max(0.0, stamp_s - tracker_.stamp_s());
+  predict(tracker_.movers(), age, pose, moves, platform_, obstacles_);
+  Plan plan = planner_->plan(target, pose, obstacles_, stamp_s);
+  plan.max_speed = std::min(plan.max_speed, speed_beside(tracker_.movers(), age, plan, platform_));
+  return plan;
+}
+
+double Navigator::speed(const Pose2& pose, double stamp_s) {
+  constexpr double kShortest = 0.02, kLongest = 0.5;  // s: else nothing is known
+  const double dt = stamp_s - last_stamp_s_, way = (pose.position() - last_pose_.position()).norm();
+  last_pose_ = pose;
+  last_stamp_s_ = stamp_s;
+  return dt > kShortest && dt < kLongest ? std::min(way / dt, platform_.max_speed) : 0.0;
 }
 
 void Navigator::blocked(std::vector<Eigen::Vector2f>& cells) const {
@@ -55,6 +77,7 @@ void Navigator::blocked(std::vector<Eigen::Vector2f>& cells) const {
 void Navigator::clear() {
   terrain_.clear();
   if (air_) air_->clear();
+  tracker_.clear();
   has_scan_ = false;
 }
 

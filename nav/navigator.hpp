@@ -1,14 +1,17 @@
 #pragma once
+#include <limits>
 #include <optional>
 
 #include "nav/air_map.hpp"
+#include "nav/dynamic/prediction.hpp"
 #include "nav/make_planner.hpp"
 #include "nav/terrain/terrain_map.hpp"
 
 namespace adit::nav {
 
-/// The heavy half of navigation, a scan in and a plan out: terrain map and local planner. Has no thread and
-/// no clock; calls must not overlap. The light half, a Controller, shares nothing with it but the plan.
+/// The heavy half of navigation, a scan in and a plan out: terrain map, what moves, and local planner. Has no
+/// thread and no clock; calls must not overlap. The light half, a Controller, shares nothing with it but the
+/// plan.
 class Navigator {
  public:
   /// Throws when the platform names a planner that there is not: see make_planner.
@@ -25,15 +28,23 @@ class Navigator {
   const TerrainMap& terrain() const { return terrain_; }
   /// What cannot be passed, into `cells`: their middles, odometry frame, m.
   void blocked(std::vector<Eigen::Vector2f>& cells) const;
+  std::span<const Mover> movers() const { return tracker_.movers(); }
   /// Forgets what was seen, as after a jump of the odometry.
   void clear();
 
  private:
+  /// Of the robot between the last two plans, m/s.
+  double speed(const Pose2& pose, double stamp_s);
+
+  Platform platform_;
   TerrainMap terrain_;
   std::optional<AirMap> air_{};  ///< of what flies, in place of the former
+  Tracker tracker_;
   std::unique_ptr<Planner> planner_;
   std::vector<ObstaclePoint> obstacles_{};  ///< of one plan
   bool has_scan_{false};
+  Pose2 last_pose_{};
+  double last_stamp_s_{-std::numeric_limits<double>::infinity()};
 };
 
 }  // namespace adit::nav

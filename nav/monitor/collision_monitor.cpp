@@ -9,6 +9,9 @@ constexpr double kStride = 0.03;   ///< m between the poses of a sweep
 constexpr int kMostStrides = 160;  ///< of one sweep
 constexpr float kDeeper = 0.002f;  ///< m: less is not "deeper": sliding along a wall is allowed
 constexpr double kCreep = 0.02;    ///< m/s: less than this is standing
+constexpr int kShares = 10;        ///< of a velocity that are tried against what moves
+constexpr double kTick = 0.06;     ///< s between the looks at where it is then
+constexpr std::size_t kMostMoving = Tracker::kMost * Mover::kMost;
 
 Twist2 scaled(const Twist2& t, double by) { return {by * t.vx, by * t.vy, by * t.wz, t.vz}; }
 
@@ -40,10 +43,13 @@ CollisionMonitor::CollisionMonitor(const Platform& platform, const CollisionMoni
     : platform_(platform),
       params_(params),
       body_(Footprint(platform).grown(params.margin, params.margin)),
-      near_(without_ground(platform), reach_of(platform, params), without_ground(platform, params.points)) {}
+      wide_(Footprint(platform).grown(params.mover_margin, params.mover_margin)),
+      near_(without_ground(platform), reach_of(platform, params), without_ground(platform, params.points)),
+      tracker_(platform, params.tracker) {}
 
 void CollisionMonitor::look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
-  near_.take(points, body, stamp_s);
+  tracker_.look(points, body, stamp_s);
+  near_.take(points, body, stamp_s, tracker_.newest());
   stamp_s_ = stamp_s;
 }
 
@@ -62,10 +68,12 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
                std::fabs(wanted.wz) / (params_.braking_share * platform_.max_turn_acceleration));
   const double horizon = params_.reaction + brake / 2;
   const double free = free_time(wanted, odom, horizon);
-  if (free >= horizon) return {wanted, Cause::none};
+  double k = share_before_movers(wanted, odom, now_s, brake);
   // The share k whose way to a stop, k reaction + k^2 brake / 2 (s of driving all of it), ends there.
-  const double k =
-      (std::sqrt(params_.reaction * params_.reaction + 2 * brake * free) - params_.reaction) / brake;
+  if (free < horizon)
+    k = std::min(
+        k, (std::sqrt(params_.reaction * params_.reaction + 2 * brake * free) - params_.reaction) / brake);
+  if (k >= 1) return {wanted, Cause::none};
   const bool stands = k * std::max(speed_of(wanted), std::fabs(wanted.wz) * body_.radius()) < kCreep;
   const Cause cause = stands ? Cause::stopped : Cause::slowed;
   const Twist2 allowed = stands ? Twist2{} : scaled(wanted, k);
@@ -83,7 +91,8 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
 
   const auto c = static_cast<float>(std::cos(odom.yaw)), s = static_cast<float>(std::sin(odom.yaw));
   const auto x0 = static_cast<float>(odom.x), y0 = static_cast<float>(odom.y);
-  const auto far = static_cast<float>(radius + speed_of(velocity) * horizon);
+  const double wide = radius + params_.points.most_doubt;
+  const auto far = static_cast<float>(wide + speed_of(velocity) * horizon);
   struct Point {
     float x, y, depth;
   };
@@ -93,7 +102,8 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
     const float dx = place.x - x0, dy = place.y - y0;
     if (dx * dx + dy * dy > far * far) continue;
     const float x = c * dx + s * dy, y = c * dy - s * dx;
-    points[count++] = {x, y, std::max(0.0f, body_.depth(x, y)) + kDeeper};
+    // What few noisy returns showed is kept farther off.
+    points[count++] = {x, y, std::max(0.0f, body_.depth(x, y) + place.doubt) + kDeeper - place.doubt};
   }
   if (count == 0) return horizon;
 
@@ -101,7 +111,7 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
   // A car turns about its rear axle, so that base_link goes sideways, too.
   const double sideways = velocity.vy + platform_.rear_axle() * velocity.wz;
   const Pose2 half{0, 0, velocity.wz * dt / 2};
-  const auto reach = static_cast<float>(radius * radius);
+  const auto reach = static_cast<float>(wide * wide);
   for (int i = 0; i < steps; ++i) {
     pose = pose * half * Pose2{velocity.vx * dt, sideways * dt, 0} * half;
     const auto pc = static_cast<float>(std::cos(pose.yaw)), ps = static_cast<float>(std::sin(pose.yaw));
@@ -113,6 +123,71 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
     }
   }
   return horizon;
+}
+
+double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& odom, double now_s,
+                                             double brake) const {
+  struct Point {
+    float x, y, vx, vy;  // in the robot's frame now
+  };
+  std::array<Point, kMostMoving> points;
+  std::size_t count = 0;
+  const auto c = static_cast<float>(std::cos(odom.yaw)), s = static_cast<float>(std::sin(odom.yaw));
+  const auto x0 = static_cast<float>(odom.x), y0 = static_cast<float>(odom.y);
+  const auto age = static_cast<float>(now_s - tracker_.stamp_s());
+  const double longest = params_.reaction + brake;
+  const auto own_way = static_cast<float>(wide_.radius() + speed_of(wanted) * longest);
+  for (const Mover& mover : tracker_.movers()) {
+    if (!mover.moves) continue;  // where it stands the scan shows it
+    const Eigen::Vector2f& v = mover.velocity;
+    const float far = own_way + v.norm() * static_cast<float>(longest);
+    for (const Eigen::Vector2f& p : mover.surface()) {
+      const float dx = p.x() + age * v.x() - x0, dy = p.y() + age * v.y() - y0;
+      if (dx * dx + dy * dy > far * far) continue;
+      points[count++] = {c * dx + s * dy, c * dy - s * dx, c * v.x() + s * v.y(), c * v.y() - s * v.x()};
+    }
+  }
+  if (count == 0) return 1;
+  const double sideways = wanted.vy + platform_.rear_axle() * wanted.wz;  // of a car, as above
+  const auto met = [&](double share) {
+    const double braking = share * brake, end = params_.reaction + braking;
+    const int steps = static_cast<int>(std::ceil(end / kTick));
+    const auto radius2 = static_cast<float>(wide_.radius() * wide_.radius());
+    const auto through = static_cast<float>(params_.mover_margin);
+    std::array<bool, kMostMoving> gone{};
+    Pose2 before{};
+    for (int i = 1; i <= steps; ++i) {
+      const double t = end * i / steps, late = std::max(0.0, t - params_.reaction);
+      // s of driving all of `wanted`: at the share, then slower and slower.
+      const double way = share * (t - late * late / (2 * std::max(braking, 1e-6)));
+      const double half = wanted.wz * way / 2;
+      const double chord = std::fabs(half) > 1e-6 ? way * std::sin(half) / half : way;
+      const Pose2 pose =
+          Pose2{0, 0, half} * Pose2{wanted.vx * chord, sideways * chord, 0} * Pose2{0, 0, half};
+      const auto depth = [this](const Pose2& at, float x, float y) {
+        const auto pc = static_cast<float>(std::cos(at.yaw)), ps = static_cast<float>(std::sin(at.yaw));
+        const float dx = x - static_cast<float>(at.x), dy = y - static_cast<float>(at.y);
+        return wide_.depth(pc * dx + ps * dy, pc * dy - ps * dx);
+      };
+      for (std::size_t j = 0; j < count; ++j) {
+        if (gone[j]) continue;
+        const Point& p = points[j];
+        const float x = p.x + static_cast<float>(t) * p.vx, y = p.y + static_cast<float>(t) * p.vy;
+        const float dx = x - static_cast<float>(pose.x), dy = y - static_cast<float>(pose.y);
+        if (dx * dx + dy * dy > radius2) continue;
+        const float inside = depth(pose, x, y);
+        if (inside <= 0) continue;
+        // Who walks into a robot that comes no nearer by itself is not helped by its standing still.
+        if (inside - depth(before, x, y) > kCreep * end / steps) return true;
+        gone[j] = inside > through;
+      }
+      before = pose;
+    }
+    return false;
+  };
+  for (int i = kShares; i > 0; --i)
+    if (!met(static_cast<double>(i) / kShares)) return static_cast<double>(i) / kShares;
+  return 0;
 }
 
 }  // namespace adit::nav

@@ -2,13 +2,16 @@
 #include <cstdint>
 #include <limits>
 
+#include "nav/dynamic/tracker.hpp"
 #include "nav/monitor/near_points.hpp"
 
 namespace adit::nav {
 
 struct CollisionMonitorParams {
   NearPointsParams points{};
+  TrackerParams tracker{};
   double margin{0.02};         ///< kept around the footprint, m, [0, 0.2]
+  double mover_margin{0.10};   ///< the same towards what moves, m, [0, 0.5]
   double reaction{0.15};       ///< a velocity goes on this long before braking begins, s, [0, 1]
   double braking_share{0.75};  ///< of the platform's acceleration, that slowing down counts on, (0, 1]
   double stale{0.5};           ///< an older scan shows nothing, s, (0, 10]
@@ -21,6 +24,9 @@ struct CollisionMonitorParams {
 /// less (the slow zone), at the margin nothing (the stop zone). Both zones grow with the speed and
 /// bend with the arc. What is inside the margin already may not come deeper: a robot that touches something
 /// can leave it, and what stands behind it does not matter to one that drives ahead.
+///
+/// What moves (it has a tracker of its own) is taken to go on as it does: the robot brakes in time to stand when
+/// they meet, and may always drive away from it, or be where it does not come.
 ///
 /// After Nav2's collision monitor, with fixed polygons replaced: they stop a robot for what it is driving
 /// away from, and hold it there (ros-navigation/navigation2, issues 3313 and 3748).
@@ -50,12 +56,16 @@ class CollisionMonitor {
  private:
   /// How long `velocity` can be driven until the body touches something, s, at most `horizon`.
   double free_time(const Twist2& velocity, const Pose2& odom, double horizon) const;
+  /// How much of `wanted`, 0 to 1, can be driven and braked (which takes `brake` s from all of it) before the
+  /// body, by its own motion, touches something that moves.
+  double share_before_movers(const Twist2& wanted, const Pose2& odom, double now_s, double brake) const;
   Twist2 limited(const Twist2& wanted) const;
 
   Platform platform_;
   CollisionMonitorParams params_;
-  Footprint body_;
+  Footprint body_, wide_;  ///< with the margins towards what stands and what moves
   NearPoints near_;
+  Tracker tracker_;
   double stamp_s_{-std::numeric_limits<double>::infinity()};
 };
 

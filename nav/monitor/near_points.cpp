@@ -1,6 +1,7 @@
 #include "nav/monitor/near_points.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace adit::nav {
 namespace {
@@ -8,6 +9,7 @@ namespace {
 constexpr float kEdge = 0.06f;        ///< of the fan of rays: what lies that near to its edge may be missed
 constexpr float kLevel = 1e-3f;       ///< rise per metre that is none
 constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far within a 10 cm cell
+constexpr float kPast = 0.15f;        ///< m: rays that went so much farther show that nothing is there
 constexpr int kFewest = 2;            ///< returns in a cell and those around it; one alone is noise
 
 }  // namespace
@@ -107,7 +109,13 @@ bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
   return rise < fan.lowest + edge || rise > fan.highest - edge;
 }
 
-void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s) {
+bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body, const Panorama& seen) const {
+  const Eigen::Vector3f d =
+      (body.orientation * (local - Eigen::Vector3d(0, 0, platform_.lidar_height))).cast<float>();
+  return seen.saw_past(d.x(), d.y(), d.z(), d.head<2>().norm(), kPast);
+}
+
+void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s, const Panorama& seen) {
   kept_.clear();
   const Pose2 back = body.planar().inverse();
   for (Place& place : places_) {
@@ -115,13 +123,16 @@ void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s) {
     const Eigen::Vector2d at = back * Eigen::Vector2d(place.x, place.y);
     const bool again = seen_again(at.cast<float>());
     if (again) place.seen = stamp_s;
-    if (again || hidden({at.x(), at.y(), place.z}, fan)) kept_.push_back(place);
+    const Eigen::Vector3d local(at.x(), at.y(), place.z);
+    // What is nearer than the lidar sees would be in the way of the rays that went on.
+    if (again || (hidden(local, fan) && !seen_past(local, body, seen))) kept_.push_back(place);
   }
 }
 
-void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
+                      const Panorama& seen) {
   const Fan fan = sort_in(points);
-  remember(body, fan, stamp_s);
+  remember(body, fan, stamp_s, seen);
   std::swap(places_, kept_);
   // Nearest first, should there be more than are kept.
   const auto rank = [this](std::uint32_t i) {
@@ -146,7 +157,9 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
       }
     if (around < kFewest) continue;
     const Eigen::Vector3d at = body * Eigen::Vector3d(cells_[i].x, cells_[i].y, cells_[i].z);
-    places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()), cells_[i].z, stamp_s});
+    const double doubt = std::min(params_.most_doubt, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
+    places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()), cells_[i].z,
+                       static_cast<float>(doubt), stamp_s});
   }
 }
 

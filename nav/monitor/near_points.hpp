@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/pose.hpp"
+#include "nav/dynamic/panorama.hpp"
 #include "nav/footprint.hpp"
 
 namespace adit::nav {
@@ -16,6 +17,8 @@ struct NearPointsParams {
   double body_margin{0.02};  ///< returns this close around the footprint are the own body, m, [0, 0.5]
   double shortest{0.35};     ///< nearer to the lidar nothing may be seen, m, [0, 1]
   double memory{10.0};       ///< what no newer scan can show is kept so long, s, [0, 60]
+  double noise{0.02};        ///< of one return's range, m, standard deviation, [0, 0.2]
+  double most_doubt{0.05};   ///< a place is nearer than seen by no more, m, [0, 0.2]
 };
 
 /// What stands near the robot by its newest scan, and nothing else: no map, no ground model. A return is an
@@ -29,15 +32,17 @@ class NearPoints {
   /// Where something stands, m, odometry frame: the mean of the returns of one 5 cm cell.
   struct Place {
     float x{}, y{};
-    float z{};  ///< of the highest one, above base_link
+    float z{};      ///< of the highest one, above base_link
+    float doubt{};  ///< it may be so much nearer than it was seen: three standard deviations of the mean
     double seen{};
   };
 
   /// `reach`: how far around base_link it looks, m, (0, 4].
   NearPoints(const Platform& platform, double reach, const NearPointsParams& params = {});
 
-  /// One scan: points in base_link, m, the body in the odometry frame then, and the time, s.
-  void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  /// One scan: points in base_link, m, the body in the odometry frame then, and the time, s; and what it saw by
+  /// direction.
+  void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s, const Panorama& seen);
   std::span<const Place> places() const { return {places_.data(), places_.size()}; }
 
  private:
@@ -57,8 +62,9 @@ class NearPoints {
   static std::size_t fine(float x, float y);
   Fan sort_in(std::span<const Eigen::Vector3f> points);
   bool seen_again(const Eigen::Vector2f& local) const;
-  void remember(const Pose3& body, const Fan& fan, double stamp_s);
+  void remember(const Pose3& body, const Fan& fan, double stamp_s, const Panorama& seen);
   bool hidden(const Eigen::Vector3d& local, const Fan& fan) const;
+  bool seen_past(const Eigen::Vector3d& local, const Pose3& body, const Panorama& seen) const;
 
   Platform platform_;
   NearPointsParams params_;

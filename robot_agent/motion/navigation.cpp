@@ -61,8 +61,8 @@ nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
 
 void Navigation::pass_on(const Velocity& wanted) {
   using Policy = nav::CollisionMonitor::Policy;
-  const bool stops = wanted.by_program || params_.platform.manual_collision_stop;
-  const auto verdict = guarded(limited(wanted.twist), stops ? Policy::stop_seen : Policy::limit);
+  const Policy by_hand = params_.platform.manual_collision_stop ? Policy::stop_seen : Policy::limit;
+  const auto verdict = guarded(limited(wanted.twist), wanted.by_program ? Policy::stop : by_hand);
   watch_warning(verdict.cause, now());
   outputs_.velocity(verdict.velocity);
 }
@@ -207,6 +207,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   auto job = std::make_shared<PlanJob>();
   job->scan = std::move(scan);
   job->target = target();
+  job->target.held = held_since_ && now - *held_since_ >= params_.held_after;
   const auto* step = step_on(now);
   job->last = !step || step->last;
   job->pose = localisation_.odom().planar();

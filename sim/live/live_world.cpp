@@ -135,6 +135,7 @@ Evidence LiveWorld::evidence() const {
   Evidence out;
   out.pose = [truth](const std::string& robot) { return truth(robot).pose.planar(); };
   out.collisions = [truth](const std::string& robot) { return static_cast<int>(truth(robot).collisions); };
+  out.caused = [truth](const std::string& robot) { return static_cast<int>(truth(robot).caused); };
   return out;
 }
 
@@ -153,6 +154,7 @@ RunOutcome LiveWorld::finish() {
       const Truth& truth = simulation_.truth(i);
       report.robots[simulation_.id(i)] = {truth.distance,
                                           static_cast<int>(truth.collisions),
+                                          static_cast<int>(truth.caused),
                                           truth.min_clearance,
                                           seconds(truth.moving) / std::max(report.virtual_s, 1e-3),
                                           {}};

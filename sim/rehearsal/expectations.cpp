@@ -49,9 +49,11 @@ std::string mismatch(const FindingsExpectation& e, const Evidence& evidence) {
   return it->second == e.findings ? std::string() : "it has " + std::to_string(it->second);
 }
 
-std::string collisions(const Scenario& scenario, const Evidence& evidence) {
-  for (const RobotSpec& robot : scenario.robots)
-    if (evidence.collisions(robot.id) > 0) return robot.id + " touched something";
+std::string collisions(const NoCollision& e, const Scenario& scenario, const Evidence& evidence) {
+  for (const RobotSpec& robot : scenario.robots) {
+    if (e.caused && evidence.caused(robot.id) > 0) return robot.id + " ran into something";
+    if (!e.caused && evidence.collisions(robot.id) > 0) return robot.id + " touched something";
+  }
   return {};
 }
 
@@ -109,7 +111,8 @@ std::vector<ExpectationResult> Expectations::finish(const Evidence& evidence, co
     const Expectation& e = scenario_.expectations[i];
     ExpectationResult result = states_[i].result;
     if (e.when == When::always) {
-      if (std::holds_alternative<NoCollision>(e.what)) result.found = collisions(scenario_, evidence);
+      if (const auto* none = std::get_if<NoCollision>(&e.what))
+        result.found = collisions(*none, scenario_, evidence);
       if (const auto* least = std::get_if<AtLeast>(&e.what)) result.found = shortfall(*least, report);
       result.ok = result.found.empty();
     } else if (!states_[i].settled) {

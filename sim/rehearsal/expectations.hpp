@@ -13,6 +13,7 @@ struct Evidence {
   std::function<const RobotWord&(const std::string& robot)> word{};
   std::function<Pose2(const std::string& robot)> pose{};  ///< true, world frame
   std::function<int(const std::string& robot)> collisions{};
+  std::function<int(const std::string& robot)> caused{};  ///< of them, by the robot itself
   std::map<std::string, Reason> last_answer{};    ///< by operator
   std::map<std::string, std::size_t> findings{};  ///< by operator whose station runs
 };

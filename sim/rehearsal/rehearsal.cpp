@@ -48,6 +48,12 @@ VirtualParams scheduler_params(const RunParams& params) {
   return out;
 }
 
+TimedEvent event_of(const Collision& contact) {
+  return {contact.at, contact.robot,
+          (contact.caused ? "runs into " : "is touched by ") + contact.partner +
+              (contact.caused && contact.by_partner ? " that comes towards it" : "")};
+}
+
 /// One run: the stage, the machines on it, and the loop through virtual time.
 class Run {
  public:
@@ -160,6 +166,7 @@ class Run {
     out.word = [this](const std::string& robot) -> const RobotWord& { return witness_.word(robot); };
     out.pose = [this](const std::string& robot) { return truth(robot).pose.planar(); };
     out.collisions = [this](const std::string& robot) { return static_cast<int>(truth(robot).collisions); };
+    out.caused = [this](const std::string& robot) { return static_cast<int>(truth(robot).caused); };
     for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
       if (const auto findings = station->findings()) out.findings[id] = *findings;
@@ -189,6 +196,9 @@ class Run {
     out.topics = witness_.topics();
     out.commands = witness_.commands();
     out.events = witness_.events();
+    for (const Collision& contact : simulation_.collisions()) out.events.push_back(event_of(contact));
+    std::stable_sort(out.events.begin(), out.events.end(),
+                     [](const TimedEvent& a, const TimedEvent& b) { return a.at < b.at; });
     out.faults = faults_.counts();
     out.failures = scheduler_.failures();
     for (const int rule : Checker::numbers) {
@@ -199,8 +209,12 @@ class Run {
     }
     for (const RobotSpec& robot : scenario_.robots) {
       const Truth& is = truth(robot.id);
-      out.robots[robot.id] = {is.distance, static_cast<int>(is.collisions), is.min_clearance,
-                              seconds(is.moving) / out.virtual_s, mode_seconds_[robot.id]};
+      out.robots[robot.id] = {is.distance,
+                              static_cast<int>(is.collisions),
+                              static_cast<int>(is.caused),
+                              is.min_clearance,
+                              seconds(is.moving) / out.virtual_s,
+                              mode_seconds_[robot.id]};
     }
     out.expectations = expectations_.finish(evidence(), out);
     return out;

@@ -41,6 +41,7 @@ ordered_json robots_json(const RunReport& report) {
         robot.min_clearance < far_away ? ordered_json(robot.min_clearance) : ordered_json();
     out[id] = {{"distance", robot.distance},
                {"collisions", robot.collisions},
+               {"caused", robot.caused},
                {"min_clearance", clearance},
                {"moving", robot.moving},
                {"modes", robot.mode_seconds}};

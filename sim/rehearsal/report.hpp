@@ -27,6 +27,7 @@ struct RuleResult {
 struct RobotResult {
   double distance{};       ///< driven, m, truth
   int collisions{};        ///< contacts that began
+  int caused{};            ///< of them, by the robot itself (sim/world/simulation.hpp, Collision)
   double min_clearance{};  ///< m; to anything, over the run
   double moving{};         ///< part of the time in motion, 0..1
   std::map<std::string, double> mode_seconds{};

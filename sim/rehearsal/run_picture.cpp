@@ -24,7 +24,8 @@ std::string event_text(Duration at, const std::string& robot, const std::string&
 
 // Changes of mode are many and the trails show most of what they mean.
 bool worth_drawing(const TimedEvent& event) {
-  return event.text != "mode manual" && event.text != "mode hold" && event.text != "agent started";
+  return event.text != "mode manual" && event.text != "mode hold" && event.text != "agent started" &&
+         !event.text.starts_with("runs into ") && !event.text.starts_with("is touched by ");
 }
 
 }  // namespace

@@ -89,7 +89,9 @@ struct FindingsExpectation {
   std::string by{};
   std::size_t findings{};
 };
-struct NoCollision {};
+struct NoCollision {
+  bool caused{};  ///< those alone that a robot caused, see Collision
+};
 /// Counted over the whole run.
 struct AtLeast {
   std::string what{};  ///< commands, refusals, faults, or distance and moving (of every robot)

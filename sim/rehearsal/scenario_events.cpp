@@ -52,8 +52,7 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
     return out;
   }
   if (node.has("always")) {
-    node.choice("always", {"no_collision"});
-    out.what = NoCollision{};
+    out.what = NoCollision{node.choice("always", {"no_collision", "no_collision_caused"}) == 1};
     return out;
   }
   const bool at = node.has("at");

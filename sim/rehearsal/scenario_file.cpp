@@ -111,6 +111,7 @@ void read_people(const Node& root, Scenario& out) {
     if (spec.path.size() < 2 || spec.path.size() > 100)
       person.fail(Reason::bad_argument, "expected a path of 2 to 100 places [x, y]");
     spec.speed = person.number("speed", config::above(0.0, 3.0), spec.speed);
+    spec.yields = person.flag("yields", spec.yields);
     out.people.push_back(std::move(spec));
   }
   if (out.people.size() > 100) root.child("people").fail(Reason::out_of_range, "expected at most 100 people");

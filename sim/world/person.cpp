@@ -27,7 +27,16 @@ Rectangle Person::next(double dt) const {
   return length_ > 0.0 ? at(std::fmod(way_ + spec_.speed * dt, 2.0 * length_)) : body();
 }
 
+void Person::lean(double dt) {
+  wait();
+  leant_ += dt;
+  if (leant_ < patience) return;
+  leant_ = 0.0;
+  before_ = way_ = 2.0 * length_ - way_;
+}
+
 void Person::take(double dt) {
+  before_ = way_;
   if (length_ > 0.0) way_ = std::fmod(way_ + spec_.speed * dt, 2.0 * length_);
 }
 

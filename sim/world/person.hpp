@@ -10,21 +10,30 @@ namespace adit::sim {
 struct PersonSpec {
   std::vector<Eigen::Vector2d> path{};  ///< world, m; 2 to 100 places
   double speed{1.5};                    ///< m/s, (0, 3]
+  bool yields{true};                    ///< waits rather than come near a robot
 };
 
-/// A person in the true world: a box of 0.45 m that lidars see and robots can hit. People look where they go:
-/// they wait rather than come near a robot, so a contact is a robot's fault.
+/// A person in the true world: a box of 0.45 m that lidars see and robots can hit. Those who yield look where
+/// they go; the others walk into whatever stands in their way, lean on it, and turn about after a while.
 class Person {
  public:
   static constexpr double size{0.45};    ///< m
   static constexpr double height{1.75};  ///< m
-  static constexpr double respect{0.4};  ///< they come no nearer to a robot, m
+  static constexpr double respect{0.4};  ///< those who yield come no nearer to a robot, m
+  static constexpr double patience{2.0};  ///< the others lean so long, s
 
   explicit Person(PersonSpec spec);
   /// Where the body would be after `dt` seconds; the person stays until take().
   Rectangle next(double dt) const;
   void take(double dt);
+  /// Stays where it is for this step.
+  void wait() { before_ = way_; }
+  /// Somebody is in the way of one who does not yield: leans on him for this step.
+  void lean(double dt);
   Rectangle body() const { return at(way_); }
+  /// Where the body was a step ago.
+  Rectangle before() const { return at(before_); }
+  bool yields() const { return spec_.yields; }
 
  private:
   Rectangle at(double way) const;
@@ -32,6 +41,8 @@ class Person {
   PersonSpec spec_;
   double length_{};  ///< of the path, m
   double way_{};     ///< walked, of there and back, m
+  double before_{};  ///< the same a step ago
+  double leant_{};   ///< s
 };
 
 }  // namespace adit::sim

@@ -5,13 +5,13 @@
 namespace adit::sim {
 namespace {
 
-/// Whether one of the axes of `a` separates it from `b`.
-bool separated(const Rectangle& a, const Rectangle& b) {
+/// How far one of the axes of `a` separates it from `b`, m.
+double along_axes(const Rectangle& a, const Rectangle& b) {
   const Pose2 between = a.pose.inverse() * b.pose;
   const double c = std::abs(std::cos(between.yaw)), s = std::abs(std::sin(between.yaw));
   const double reach_x = 0.5 * (a.length + b.length * c + b.width * s);
   const double reach_y = 0.5 * (a.width + b.length * s + b.width * c);
-  return std::abs(between.x) >= reach_x || std::abs(between.y) >= reach_y;
+  return std::max(std::abs(between.x) - reach_x, std::abs(between.y) - reach_y);
 }
 
 /// Distance from a point to a rectangle that does not hold it.
@@ -30,7 +30,11 @@ std::array<Eigen::Vector2d, 4> Rectangle::corners() const {
 
 bool overlap(const Rectangle& a, const Rectangle& b) {
   if ((a.pose.position() - b.pose.position()).norm() >= a.radius() + b.radius()) return false;
-  return !separated(a, b) && !separated(b, a);
+  return separation(a, b) < 0.0;
+}
+
+double separation(const Rectangle& a, const Rectangle& b) {
+  return std::max(along_axes(a, b), along_axes(b, a));
 }
 
 double distance(const Rectangle& a, const Rectangle& b) {

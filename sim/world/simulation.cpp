@@ -8,6 +8,11 @@
 #include "sim/world/noise.hpp"
 
 namespace adit::sim {
+namespace {
+
+constexpr double kStands = 0.05;  // m/s: who comes nearer no faster than that stands
+
+}  // namespace
 
 Simulation::Simulation(std::shared_ptr<const World> world, const SimulationParams& params)
     : world_(std::move(world)),
@@ -27,6 +32,7 @@ Result<Simulation> Simulation::create(std::shared_ptr<const World> world, std::v
       return {Reason::bad_argument, "people: expected a path of 2 to 100 places and a speed of 0 to 3 m/s"};
     simulation.people_.emplace_back(person);
   }
+  simulation.touching_.resize(simulation.people_.size());
   for (std::size_t n = 0; n < simulation.size(); ++n) {
     simulation.robots_[n].truth.min_clearance = std::numeric_limits<double>::infinity();
     simulation.measure(n);
@@ -131,22 +137,61 @@ std::optional<std::size_t> Simulation::contact(std::size_t robot, const Rectangl
     if (n != robot && level(robot, n) &&
         overlap(body, footprint(robots_[n].body.platform(), robots_[n].body.pose())))
       return n;
-  for (const Person& person : people_)
-    if (level(robot, person) && overlap(body, person.body())) return robots_.size() + 1;
+  for (std::size_t n = 0; n < people_.size(); ++n)
+    if (level(robot, people_[n]) && overlap(body, people_[n].body())) return robots_.size() + 1 + n;
   return std::nullopt;
 }
 
-void Simulation::record(std::size_t robot, std::size_t partner) {
+double Simulation::approach(std::size_t robot, const Rectangle& body) const {
+  const Body& own = robots_[robot].body;
+  const double dt = seconds(params_.step);
+  const Twist2& twist = own.twist();
+  const Pose2 next = own.pose() * Pose2{twist.vx * dt, twist.vy * dt, twist.wz * dt};
+  return (separation(footprint(own.platform(), own.pose()), body) -
+          separation(footprint(own.platform(), next), body)) /
+         dt;
+}
+
+double Simulation::approach(const Person& person, const Rectangle& body) const {
+  // Of one who would walk on what his step would do, though he is held.
+  const double dt = seconds(params_.step);
+  const double walked = separation(person.before(), body) - separation(person.body(), body);
+  const double would = separation(person.body(), body) - separation(person.next(dt), body);
+  return (person.yields() ? walked : std::max(walked, would)) / dt;
+}
+
+void Simulation::record(std::size_t index, std::size_t partner) {
   constexpr std::size_t limit = 1000;
-  robots_[robot].contact = robots_[robot].body.pose();
-  robots_[robot].truth.collisions++;
+  Robot& robot = robots_[index];
+  const Rectangle body = footprint(robot.body.platform(), robot.body.pose());
+  double own = std::numeric_limits<double>::infinity(), other = 0.0;  // a wall does nothing
   if (partner < robots_.size()) {
-    robots_[partner].truth.collisions++;
-    robots_[partner].truth.min_clearance = 0.0;
+    own = approach(index, footprint(robots_[partner].body.platform(), robots_[partner].body.pose()));
+    other = approach(partner, body);
+  } else if (partner > robots_.size()) {
+    const Person& person = people_[partner - robots_.size() - 1];
+    own = approach(index, person.body());
+    other = approach(person, body);
   }
-  robots_[robot].truth.min_clearance = 0.0;
+  const bool caused = own > kStands || own >= other, by_partner = other > kStands || other > own;
+  robot.truth.collisions++;
+  robot.truth.caused += caused;
+  robot.truth.min_clearance = 0.0;
+  // It is one contact for both, and for as long as it lasts.
+  robot.partner = partner;
+  robot.contact = robot.body.pose();
+  if (partner > robots_.size()) touching_[partner - robots_.size() - 1] = index;
+  if (partner < robots_.size()) {
+    robots_[partner].partner = index;
+    robots_[partner].contact = robots_[partner].body.pose();
+    Truth& truth = robots_[partner].truth;
+    truth.collisions++;
+    truth.caused += by_partner;
+    truth.min_clearance = 0.0;
+  }
   if (collisions_.size() < limit)
-    collisions_.push_back({now_, robots_[robot].id, partner_name(partner), robots_[robot].body.pose()});
+    collisions_.push_back(
+        {now_, robot.id, partner_name(partner), robot.body.pose(), caused, by_partner});
 }
 
 std::string Simulation::partner_name(std::size_t partner) const {
@@ -154,13 +199,26 @@ std::string Simulation::partner_name(std::size_t partner) const {
   return partner == robots_.size() ? "world" : "a person";
 }
 
-void Simulation::walk(Person& person) {
+void Simulation::walk(std::size_t index) {
+  constexpr double apart = 0.05;  // m: the contact is over
   const double dt = seconds(params_.step);
+  Person& person = people_[index];
+  std::optional<std::size_t>& touching = touching_[index];
+  if (touching) {
+    const Body& body = robots_[*touching].body;
+    if (distance(person.body(), footprint(body.platform(), body.pose())) > apart) touching.reset();
+  }
   const Rectangle next = person.next(dt);
-  for (const Robot& robot : robots_) {
-    const Rectangle body = footprint(robot.body.platform(), robot.body.pose());
+  for (std::size_t n = 0; n < robots_.size(); ++n) {
+    const Rectangle body = footprint(robots_[n].body.platform(), robots_[n].body.pose());
     const double then = distance(next, body);
-    if (then < Person::respect && then <= distance(person.body(), body)) return;
+    if (person.yields() && then < Person::respect && then <= distance(person.body(), body))
+      return person.wait();
+    if (!person.yields() && overlap(next, body)) {
+      const std::size_t self = robots_.size() + 1 + index;
+      if (touching != n && robots_[n].partner != self) record(n, self);
+      return person.lean(dt);
+    }
   }
   person.take(dt);
 }
@@ -182,9 +240,8 @@ void Simulation::move(std::size_t index) {
   }
   const std::optional<std::size_t> partner = contact(index, footprint(robot.body.platform(), after));
   if (partner) {
-    robot.body.halt();
     if (robot.partner != partner) record(index, *partner);
-    robot.partner = partner;
+    robot.body.halt();
   } else {
     robot.body.take(after);
     const Pose2 away = robot.contact.inverse() * after;
@@ -223,7 +280,7 @@ void Simulation::measure(std::size_t index) {
 void Simulation::step() {
   now_ += params_.step;
   ++steps_;
-  for (Person& person : people_) walk(person);
+  for (std::size_t n = 0; n < people_.size(); ++n) walk(n);
   for (std::size_t n = 0; n < robots_.size(); ++n) move(n);
   for (std::size_t n = 0; n < robots_.size(); ++n) measure(n);
 }

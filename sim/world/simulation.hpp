@@ -32,12 +32,18 @@ struct RobotStart {
   Pose2 pose{};  ///< world
 };
 
-/// A contact; it lasts until the robot has moved 0.05 m or 0.1 rad away from where it was held.
+/// A contact; it lasts until the robot has moved 0.05 m or 0.1 rad away from where it was held, or the person
+/// who walked into it 0.05 m.
+///
+/// Whoever comes nearer to the other by his own motion, at more than 0.05 m/s where they touch, caused it: both
+/// of them, perhaps; when neither is that fast, the faster one. What stands still causes nothing.
 struct Collision {
   Duration at{};
-  std::string robot{};    ///< the one that moved
+  std::string robot{};    ///< the one that moved, or that a person walked into
   std::string partner{};  ///< another robot's id, "world", or "a person"
   Pose2 pose{};           ///< of `robot`, where it was held, world
+  bool caused{};          ///< by `robot`
+  bool by_partner{};      ///< by `partner`
 };
 
 /// What is true of a robot, whatever it believes.
@@ -47,6 +53,7 @@ struct Truth {
   double distance{0.0};       ///< driven, m
   Duration moving{};          ///< time with more than 0.05 m/s or 0.1 rad/s
   std::size_t collisions{0};  ///< contacts it was part of
+  std::size_t caused{0};      ///< those that it caused, see Collision
   double min_clearance{0.0};  ///< smallest distance ever to the world or a robot, m; infinite: nothing there
 };
 
@@ -116,9 +123,10 @@ class Simulation {
   static Rectangle footprint(const Platform& platform, const Pose2& pose);
   Result<void> add(const RobotStart& start);
   void move(std::size_t robot);
-  void walk(Person& person);
+  void walk(std::size_t person);
   std::string partner_name(std::size_t partner) const;
-  /// What the footprint would touch: a robot's index, size() for the world, size() + 1 for a person, nothing.
+  /// What the footprint would touch: a robot's index, size() for the world, from size() + 1 on a person, or
+  /// nothing.
   std::optional<std::size_t> contact(std::size_t robot, const Rectangle& footprint) const;
   /// Whether two robots' bodies share a height; a flying one passes over another.
   bool level(std::size_t a, std::size_t b) const;
@@ -126,6 +134,9 @@ class Simulation {
   bool touches_world(const Robot& robot, const Rectangle& footprint) const;
   void lift(Robot& robot);
   void record(std::size_t robot, std::size_t partner);
+  /// How fast a robot and a person come nearer to `body` by their own motion, m/s.
+  double approach(std::size_t robot, const Rectangle& body) const;
+  double approach(const Person& person, const Rectangle& body) const;
   void measure(std::size_t robot);
 
   std::shared_ptr<const World> world_;
@@ -137,6 +148,7 @@ class Simulation {
   std::vector<Robot> robots_{};
   std::vector<Collision> collisions_{};
   std::vector<Person> people_{};
+  std::vector<std::optional<std::size_t>> touching_{};  ///< by person: the robot that he walked into
 };
 
 }  // namespace adit::sim

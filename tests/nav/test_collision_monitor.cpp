@@ -190,6 +190,130 @@ TEST(CollisionMonitor, PassesAGapThatIsTenCentimetresWider) {
   }
 }
 
+/// A person who walks, and a robot that drives with that wish as far as the monitor lets it.
+struct Meeting {
+  BoxWorld hall{{{-9, 9, 6, 6.2}, {-9, 9, -6.2, -6}, {9, 9.2, -6, 6}, {-9.2, -9, -6, 6}}};
+  Platform platform{wheeled()};
+  CollisionMonitor monitor{platform};
+  std::mt19937 random{3};
+  Pose2 pose{};
+  Eigen::Vector2d person{0, 0}, walks{0, 0};
+  Twist2 v{};
+  double time{0};
+
+  double apart() const {
+    return BoxWorld{{{person.x() - 0.225, person.x() + 0.225, person.y() - 0.225, person.y() + 0.225, 0, 1.75}}}
+        .clearance(platform, pose);
+  }
+  /// Until they touch, or for so long; true when they touched.
+  bool touch(const Twist2& wish, double seconds) {
+    constexpr double kDt = 0.02;
+    for (int i = 0; i < static_cast<int>(seconds / kDt); ++i, time += kDt) {
+      if (i % 5 == 0) {
+        BoxWorld world = hall;
+        world.boxes.push_back(
+            {person.x() - 0.225, person.x() + 0.225, person.y() - 0.225, person.y() + 0.225, 0, 1.75});
+        monitor.look(world.scan(pose, platform.lidar_height, 1, 360, 0.02, random), Pose3::level(pose, 0), time);
+      }
+      const Twist2 allowed = monitor.check(wish, pose, time, Policy::stop).velocity;
+      const auto step = [](double from, double to, double most) {
+        return from + std::clamp(to - from, -most, most);
+      };
+      v = {step(v.vx, allowed.vx, platform.max_acceleration * kDt), 0,
+           step(v.wz, allowed.wz, platform.max_turn_acceleration * kDt)};
+      pose = pose * Pose2{v.vx * kDt, 0, v.wz * kDt};
+      person += kDt * walks;
+      if (apart() <= 0) return true;
+    }
+    return false;
+  }
+};
+
+TEST(CollisionMonitor, StandsWhenSomebodyWalksIntoIt) {
+  for (const double speed : {0.6, 1.0, 1.5})
+    for (const double wish : {0.5, 1.0, 2.0}) {
+      Meeting m;
+      m.person = {7.5, 0.1};
+      m.pose.x = -2;
+      EXPECT_FALSE(m.touch({wish, 0, 0}, 0.6));
+      m.walks = {-speed, 0};
+      EXPECT_TRUE(m.touch({wish, 0, 0}, 20));
+      EXPECT_LT(m.v.vx, 0.05) << "he at " << speed << ", it at " << wish;
+    }
+}
+
+TEST(CollisionMonitor, WithoutItsTrackerItWouldStillMove) {
+  // What the test before would say of a monitor that takes him to stand.
+  Meeting m;
+  CollisionMonitorParams blind;
+  blind.tracker.slowest = 100;
+  m.monitor = CollisionMonitor(m.platform, blind);
+  m.person = {7.5, 0.1};
+  m.pose.x = -2;
+  m.touch({2, 0, 0}, 0.6);
+  m.walks = {-1.5, 0};
+  EXPECT_TRUE(m.touch({2, 0, 0}, 20));
+  EXPECT_GT(m.v.vx, 0.3);
+}
+
+TEST(CollisionMonitor, LetsItDriveAwayFromWhoCatchesItUp) {
+  Meeting m;
+  m.person = {-4, 0};
+  m.touch({}, 0.6);
+  m.walks = {1.5, 0};
+  m.touch({}, 1.2);
+  EXPECT_FALSE(m.touch({1.8, 0, 0}, 3.0)) << "faster than he is";
+  EXPECT_GT(m.v.vx, 1.7);
+}
+
+TEST(CollisionMonitor, WaitsForWhoCrossesAndGoesOn) {
+  Meeting m;
+  m.pose.x = -2;
+  m.person = {1.5, -3.5};
+  m.touch({}, 0.6);
+  m.walks = {0, 1.3};
+  EXPECT_FALSE(m.touch({1.2, 0, 0}, 5.0));
+  EXPECT_GT(m.pose.x, 1.5) << "behind him it went on";
+}
+
+TEST(CollisionMonitor, AnObstacleOfFewNoisyReturnsIsKeptFartherOff) {
+  // At a blunt wall end and a corner, for a long time: one ring of 360 with 2 cm of noise, many seeds.
+  for (const Platform& p : {wheeled(), tracked(), legged()})
+    for (unsigned seed = 1; seed <= 6; ++seed)
+      for (const double yaw : {0.0, 0.5, -0.9}) {
+        Seen seen({{1.2, 1.5, 0.1, 3}, {0.9, 1.1, -1.6, -0.5}}, p, {0, 0, yaw});
+        seen.random.seed(seed);
+        const Twist2 wish{0.6, 0, yaw == 0.0 ? 0.3 : -0.2};
+        double least = 10;
+        for (int i = 0; i < 1500; ++i) {
+          if (i % 5 == 0)
+            seen.monitor.look(seen.world.scan(seen.pose, p.lidar_height, 1, 360, 0.02, seen.random),
+                              Pose3::level(seen.pose, 0), 0.02 * i);
+          const Twist2 v = seen.monitor.check(wish, seen.pose, 0.02 * i, Policy::stop).velocity;
+          seen.pose = seen.pose * Pose2{0.02 * v.vx, 0, 0.02 * v.wz};
+          least = std::min(least, seen.world.clearance(p, seen.pose));
+        }
+        EXPECT_GT(least, 0.0) << p.name << " seed " << seed << " yaw " << yaw;
+      }
+}
+
+TEST(CollisionMonitor, WhatRaysPassedIsNotRememberedHoweverNear) {
+  // Somebody who stood at the nose, nearer than the lidar sees, and left.
+  Platform p = wheeled();
+  CollisionMonitor monitor(p);
+  std::mt19937 random{1};
+  BoxWorld world{{{3, 3.2, -3, 3}, {0.33, 0.6, -0.2, 0.2}}};
+  const auto look = [&](double time) {
+    std::vector<Eigen::Vector3f> points = world.scan({}, p.lidar_height, 1, 360, 0.0, random);
+    monitor.look(points, {}, time);
+  };
+  look(0.0);
+  EXPECT_TRUE(monitor.check({0.5, 0, 0}, {}, 0.0, Policy::stop).velocity.zero());
+  world.boxes.pop_back();
+  for (int i = 1; i < 4; ++i) look(0.1 * i);
+  EXPECT_EQ(monitor.check({0.5, 0, 0}, {}, 0.3, Policy::stop).cause, Cause::none);
+}
+
 TEST(CollisionMonitor, GarbageIsNoObstacleAndHarmsNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   CollisionMonitor monitor(wheeled());

@@ -15,6 +15,7 @@ struct Case {
     evidence.word = [this](const std::string&) -> const RobotWord& { return word; };
     evidence.pose = [this](const std::string&) { return pose; };
     evidence.collisions = [this](const std::string&) { return collisions; };
+    evidence.caused = [this](const std::string&) { return caused; };
   }
   ExpectationResult finish() { return expectations->finish(evidence, report).at(0); }
 
@@ -23,7 +24,7 @@ struct Case {
   Evidence evidence{};
   RobotWord word{};
   Pose2 pose{};
-  int collisions{};
+  int collisions{}, caused{};
   RunReport report{};
 };
 
@@ -117,6 +118,14 @@ TEST(Expectations, CollisionFailsAtTheEnd) {
   Case c({When::always, 0s, NoCollision{}, 1, ""});
   EXPECT_TRUE(c.finish().ok);
   c.collisions = 1;
+  EXPECT_FALSE(c.finish().ok);
+}
+
+TEST(Expectations, CausedCollisionsAreThoseOfTheRobotAlone) {
+  Case c({When::always, 0s, NoCollision{true}, 1, ""});
+  c.collisions = 1;
+  EXPECT_TRUE(c.finish().ok) << "somebody walked into it";
+  c.caused = 1;
   EXPECT_FALSE(c.finish().ok);
 }
 

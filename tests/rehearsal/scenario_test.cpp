@@ -89,6 +89,27 @@ TEST(Scenario, PlaceAndStateInOneExpectation) {
   EXPECT_DOUBLE_EQ(state.near->x, 12.0);
 }
 
+TEST(Scenario, PeopleYieldUnlessToldOtherwise) {
+  const auto s = parse_scenario(
+      with("expect:", "people:\n  - {path: [[0, 1], [2, 1]]}\n  - {path: [[0, 1], [2, 1]], speed: 1.2, yields: "
+                      "false}\nexpect:"),
+      "b.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().text;
+  ASSERT_EQ(s->people.size(), 2u);
+  EXPECT_TRUE(s->people[0].yields);
+  EXPECT_EQ(s->people[0].speed, 1.5);
+  EXPECT_FALSE(s->people[1].yields);
+  EXPECT_EQ(s->people[1].speed, 1.2);
+}
+
+TEST(Scenario, WhatIsAlwaysExpectedOfCollisionsIsAllOrThoseCaused) {
+  const auto all = parse_scenario(good, "b.yaml");
+  const auto caused = parse_scenario(with("no_collision", "no_collision_caused"), "b.yaml");
+  ASSERT_TRUE(all.ok() && caused.ok());
+  EXPECT_FALSE(std::get<NoCollision>(all->expectations[3].what).caused);
+  EXPECT_TRUE(std::get<NoCollision>(caused->expectations[3].what).caused);
+}
+
 TEST(Scenario, EveryModeThereIsMayBeExpected) {
   for (const char* mode :
        {"hold", "manual", "smart_joystick", "waypoint", "explore", "convoy_follow", "get_out"}) {

@@ -54,6 +54,60 @@ TEST(Person, IsHitByARobotThatDoesNotLook) {
   EXPECT_EQ(s.collisions()[0].partner, "a person");
 }
 
+void run(Simulation& s, double seconds, const Twist2& velocity = {}) {
+  for (int n = 0; n < 100 * seconds; ++n) {
+    s.command(0, velocity);
+    s.step();
+  }
+}
+
+TEST(Person, WhoYieldsToNobodyCausesTheContactWithARobotThatStands) {
+  Simulation s = with({{{{5, 0}, {-5, 0}}, 1.5, false}});
+  run(s, 10);
+  ASSERT_EQ(s.collisions().size(), 1u) << "he leans on it, once";
+  EXPECT_FALSE(s.collisions()[0].caused);
+  EXPECT_TRUE(s.collisions()[0].by_partner);
+  EXPECT_EQ(s.truth(0).collisions, 1u);
+  EXPECT_EQ(s.truth(0).caused, 0u);
+  EXPECT_EQ(s.truth(0).min_clearance, 0.0);
+  EXPECT_NEAR(x(s), 0.3 + Person::size / 2, 0.02) << "he does not pass through it";
+}
+
+TEST(Person, WhoCatchesARobotUpThatDrivesAwayCausesTheContact) {
+  Simulation s = with({{{{5, 0}, {-15, 0}}, 1.5, false}});
+  run(s, 10, {-0.8, 0, 0});
+  ASSERT_GE(s.collisions().size(), 1u);
+  for (const Collision& contact : s.collisions()) {
+    EXPECT_FALSE(contact.caused);
+    EXPECT_TRUE(contact.by_partner);
+  }
+}
+
+TEST(Person, AndARobotThatComesTowardsHimBothCauseIt) {
+  Simulation s = with({{{{5, 0}, {-5, 0}}, 1.5, false}});
+  run(s, 3, {0.5, 0, 0});
+  ASSERT_EQ(s.collisions().size(), 1u);
+  EXPECT_TRUE(s.collisions()[0].caused);
+  EXPECT_TRUE(s.collisions()[0].by_partner);
+  EXPECT_EQ(s.truth(0).caused, 1u);
+}
+
+TEST(Person, IsHitByARobotThatTurnsIntoHim) {
+  // Beside the robot, out of its way unless it turns: the corners reach 0.39 m.
+  Simulation s = with({{{{0, 0.56}, {0.001, 0.56}}, 0.001, false}});
+  run(s, 2, {0, 0, 1});
+  ASSERT_GE(s.collisions().size(), 1u);
+  EXPECT_TRUE(s.collisions()[0].caused);
+  EXPECT_FALSE(s.collisions()[0].by_partner);
+}
+
+TEST(Person, WhoRunsIntoTheSideOfARobotThatPassesCausesIt) {
+  Simulation s = with({{{{2, 3}, {2, -3}}, 1.5, false}}, {0.3, 0, 0});
+  run(s, 4, {1, 0, 0});
+  ASSERT_GE(s.collisions().size(), 1u);
+  EXPECT_FALSE(s.collisions()[0].caused) << "its way led past him";
+}
+
 TEST(Person, IsSeen) {
   Simulation s = with({{{{3, 0}, {3, 0.01}}, 0.01}});
   float nearest = 100.0f;

@@ -136,6 +136,10 @@ TEST(Simulation, robots_hit_each_other) {
   ASSERT_EQ(s.collisions().size(), 1u);
   EXPECT_EQ(s.collisions()[0].robot, "r1");
   EXPECT_EQ(s.collisions()[0].partner, "r2");
+  EXPECT_TRUE(s.collisions()[0].caused);
+  EXPECT_FALSE(s.collisions()[0].by_partner) << "it stood";
+  EXPECT_EQ(s.truth(0).caused, 1u);
+  EXPECT_EQ(s.truth(1).caused, 0u);
   EXPECT_EQ(s.truth(0).collisions, 1u);
   EXPECT_EQ(s.truth(1).collisions, 1u);
   EXPECT_EQ(s.truth(1).min_clearance, 0.0);

@@ -1,0 +1,57 @@
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace adit::nav {
+
+/// How far one scan saw, by direction from the sensor with the vertical upright: bins of about 1.2 degrees of
+/// bearing (by the "diamond angle", which needs no trigonometry) and of 0.02 of the elevation's tangent. After
+/// spread() each bin holds the nearest return of itself and its neighbours, so that "it saw past that
+/// place" needs every ray around to have gone past: edges, the grain of the rings, and small errors of the
+/// odometry do not count.
+class Panorama {
+ public:
+  static constexpr int kColumns = 288;
+
+  void clear() { bins_.fill(kNothing); }
+  /// A return at (dx, dy, dz) from the sensor; `range` is its horizontal distance. Metres.
+  void add(float dx, float dy, float dz, float range) {
+    const int row = row_of(dz / range);
+    if (row < 0 || row >= kRows) return;
+    std::uint16_t& bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(dx, dy))];
+    const float centimetres = range * 100.0f;
+    const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
+    if (value < bin) bin = value;
+  }
+  /// Once, after the last add().
+  void spread();
+  /// Whether rays went past the place at (dx, dy, dz) from the sensor, at `range`, by `beyond` at least. Where
+  /// nothing came back nothing is known: false.
+  bool saw_past(float dx, float dy, float dz, float range, float beyond) const {
+    const int row = row_of(dz / range);
+    if (row < 0 || row >= kRows) return false;
+    const std::uint16_t bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(dx, dy))];
+    return bin != kNothing && bin > (range + beyond) * 100.0f;
+  }
+  static int column_of(float dx, float dy) {
+    const float ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
+    const float t = dy / (ax + ay);            // -1 .. 1
+    const float turn = dx < 0 ? 2.0f - t : t;  // -1 .. 3, monotone in the bearing
+    const int column = static_cast<int>((turn + 1.0f) * (kColumns / 4));
+    return column < kColumns ? column : 0;
+  }
+
+ private:
+  static constexpr int kRows = 32;
+  static constexpr std::uint16_t kNothing = 0xffff;
+  static constexpr std::uint16_t kFar = 0xfffe;
+  static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 116.5f) - 100; }
+
+  std::array<std::uint16_t, kColumns * kRows> bins_ = [] {
+    std::array<std::uint16_t, kColumns * kRows> nothing{};
+    nothing.fill(kNothing);
+    return nothing;
+  }();
+};
+
+}  // namespace adit::nav

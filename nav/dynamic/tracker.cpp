@@ -1,0 +1,246 @@
+#include "nav/dynamic/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nav/footprint.hpp"
+
+namespace adit::nav {
+namespace {
+
+constexpr double kLeastPeriod = 0.08;  // s between the images that are kept
+constexpr double kBreak = 1.0;         // s without a scan: nothing of before counts
+constexpr int kGap = 2;                // columns without a return within one thing
+constexpr float kStep = 0.45f;         // m between neighbouring columns of one thing
+constexpr int kFewest = 2;             // columns; and returns
+constexpr int kJump = 4;               // a part of all directions, as a divisor
+constexpr int kConfirmed = 3;          // times; of what moved before, one less
+constexpr float kSlowing = 0.5f;       // of the velocity is left after each scan that does not show it
+constexpr double kGate = 0.5;          // m: an observation so far off is another's
+constexpr double kFirstDoubt = 1.2;    // m/s of a velocity of which nothing is known
+constexpr double kLostDoubt = 0.4;     // m of the place of what stands
+
+}  // namespace
+
+Tracker::Tracker(const Platform& platform, const TrackerParams& params)
+    : platform_(platform), params_(params), images_(kImages) {}
+
+void Tracker::clear() {
+  for (Image& image : images_) image.stamp_s = -1e9;
+  track_count_ = mover_count_ = 0;
+  stamp_s_ = -1e9;
+}
+
+const Tracker::Image* Tracker::reference(double stamp_s, double wanted) const {
+  const Image* best = nullptr;
+  for (const Image& image : images_) {
+    const double age = stamp_s - image.stamp_s;
+    if (age < params_.youngest || age > 2 * params_.age) continue;
+    const bool enough = age >= wanted, has = best && stamp_s - best->stamp_s >= wanted;
+    if (!best || (enough && !has) || (enough == has && (image.stamp_s > best->stamp_s) == enough))
+      best = &image;
+  }
+  return best;
+}
+
+void Tracker::look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+  if (stamp_s - stamp_s_ > kBreak) clear();
+  const double dt = std::min(stamp_s - stamp_s_, kBreak);
+  const Image *before = reference(stamp_s, params_.age), *lately = reference(stamp_s, params_.age / 2);
+  Image& now = images_[next_];
+  newest_ = next_;
+  const std::size_t last = (next_ + kImages - 1) % kImages;
+  if (stamp_s - images_[last].stamp_s >= kLeastPeriod) next_ = (next_ + 1) % kImages;
+  compare(points, body, before == &now ? nullptr : before, lately == &now ? nullptr : lately, now);
+  now.stamp_s = stamp_s;
+  stamp_s_ = stamp_s;
+  observe();
+  follow(dt);
+  show();
+}
+
+void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
+                      const Image* lately, Image& now) {
+  const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
+  now.sensor = body.position.cast<float>() + turn * lidar;
+  now.seen.clear();
+  columns_.fill({});
+  const Footprint own = Footprint(platform_).grown(params_.body_margin, params_.body_margin);
+  const auto low = static_cast<float>(platform_.step + params_.lowest);
+  const auto high = static_cast<float>(std::max(platform_.height, platform_.lidar_height) + 0.5);
+  const auto reach2 = static_cast<float>(params_.reach * params_.reach);
+  const auto beyond = static_cast<float>(params_.beyond);
+  const auto radius2 = static_cast<float>(own.radius() * own.radius());
+  const auto was_free = [beyond](const Image* image, const Eigen::Vector3f& at) {
+    if (!image) return false;
+    const Eigen::Vector3f from = at - image->sensor;
+    const float range = std::hypot(from.x(), from.y());
+    return range > 0.1f && image->seen.saw_past(from.x(), from.y(), from.z(), range, beyond);
+  };
+  for (const Eigen::Vector3f& p : points) {
+    const Eigen::Vector3f d = turn * (p - lidar);
+    const float flat2 = d.x() * d.x() + d.y() * d.y();
+    // Written so that a NaN fails.
+    if (!(flat2 > 1e-2f && flat2 < 1e6f && std::fabs(d.z()) < 1e3f)) continue;
+    const float range = std::sqrt(flat2);
+    now.seen.add(d.x(), d.y(), d.z(), range);
+    if (flat2 > reach2 || p.z() < low || p.z() > high) continue;
+    const Eigen::Vector3f at = now.sensor + d;
+    if (!was_free(before, at) && !was_free(lately, at)) continue;
+    if (p.x() * p.x() + p.y() * p.y() < radius2 && own.depth(p.x(), p.y()) > 0) continue;
+    Column& column = columns_[static_cast<std::size_t>(Panorama::column_of(d.x(), d.y()))];
+    if (column.returns++ > 0 && column.range <= range) continue;
+    column.range = range;
+    column.at = at.head<2>();
+  }
+  now.seen.spread();
+}
+
+void Tracker::observe() {
+  observation_count_ = 0;
+  int filled = 0, start = -1;  // begins behind a gap, so that nothing is cut at the seam
+  for (int c = 0; c < Panorama::kColumns; ++c) {
+    filled += columns_[c].returns > 0;
+    bool gap = true;
+    for (int k = 0; k <= kGap; ++k)
+      gap &= columns_[(c + Panorama::kColumns - k) % Panorama::kColumns].returns == 0;
+    if (gap && start < 0) start = c;
+  }
+  // When so much of the world has come, it is the odometry that jumped.
+  if (filled > Panorama::kColumns / kJump) {
+    const double stamp = images_[newest_].stamp_s;
+    clear();
+    images_[newest_].stamp_s = stamp_s_ = stamp;
+  }
+  if (start < 0 || filled > Panorama::kColumns / kJump) return;
+  int first = -1, last = -1;
+  for (int k = 0; k <= Panorama::kColumns; ++k) {
+    const int c = (start + k) % Panorama::kColumns;
+    const bool there = k < Panorama::kColumns && columns_[c].returns > 0;
+    if (first >= 0) {
+      const auto& at = columns_[(start + last) % Panorama::kColumns].at;
+      const auto& begin = columns_[(start + first) % Panorama::kColumns].at;
+      const bool apart = there && ((columns_[c].at - at).norm() > kStep ||
+                                   (columns_[c].at - begin).norm() > static_cast<float>(params_.largest));
+      if (k - last > kGap + 1 || apart || k == Panorama::kColumns) {
+        add_observation((start + first) % Panorama::kColumns, last - first + 1);
+        first = -1;
+      }
+    }
+    if (!there) continue;
+    if (first < 0) first = k;
+    last = k;
+  }
+}
+
+void Tracker::add_observation(int first, int columns) {
+  Observation seen{{0, 0}, first, columns, false};
+  int filled = 0, returns = 0;
+  for (int k = 0; k < columns; ++k) {
+    const Column& column = columns_[(first + k) % Panorama::kColumns];
+    if (column.returns == 0) continue;
+    ++filled;
+    returns += column.returns;
+    seen.middle += column.at;
+  }
+  if (filled < kFewest || returns < kFewest || observation_count_ == kTracks) return;
+  seen.middle /= static_cast<float>(filled);
+  observations_[observation_count_++] = seen;
+}
+
+void Tracker::follow(double dt) {
+  const double q = params_.agility * params_.agility;
+  const auto step = static_cast<float>(dt);
+  for (std::size_t i = 0; i < track_count_; ++i) {
+    Track& t = tracks_[i];
+    t.mover.position += step * t.mover.velocity;
+    for (std::uint32_t k = 0; k < t.mover.count; ++k) t.mover.points[k] += step * t.mover.velocity;
+    t.place += 2 * dt * t.both + dt * dt * t.speed + q * dt * dt * dt * dt / 4;
+    t.both += dt * t.speed + q * dt * dt * dt / 2;
+    t.speed += q * dt * dt;
+  }
+  // The nearest pair first, until none is near enough.
+  std::array<bool, kTracks> followed{};
+  while (true) {
+    double best = 1.0;
+    std::size_t track = kTracks, observation = kTracks;
+    for (std::size_t i = 0; i < track_count_; ++i)
+      for (std::size_t k = 0; k < observation_count_ && !followed[i]; ++k) {
+        if (observations_[k].taken) continue;
+        const double gate = kGate + 2 * std::sqrt(tracks_[i].place);
+        const double off = (observations_[k].middle - tracks_[i].mover.position).norm() / gate;
+        if (off >= best) continue;
+        best = off;
+        track = i;
+        observation = k;
+      }
+    if (track == kTracks) break;
+    followed[track] = observations_[observation].taken = true;
+    confirm(tracks_[track], observations_[observation]);
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < track_count_; ++i) {
+    Track& t = tracks_[i];
+    const double silent = stamp_s_ - t.seen_s;
+    // Not found where it should be: it slows down, or turns about, over ground that it stood on a moment ago.
+    if (silent > 0) t.mover.velocity *= kSlowing;
+    if (silent > params_.lost) {
+      if (!t.moved || silent > params_.memory) continue;
+      // It stands, or was lost from sight: where it was seen last, until it is seen to move.
+      t.mover.velocity.setZero();
+      t.confirmed = 0;
+      t.both = 0;
+      t.speed = kFirstDoubt * kFirstDoubt;
+      t.place = std::min(t.place, kLostDoubt * kLostDoubt);
+    }
+    if (kept != i) tracks_[kept] = t;
+    ++kept;
+  }
+  track_count_ = kept;
+  for (std::size_t k = 0; k < observation_count_ && track_count_ < kTracks; ++k) {
+    if (observations_[k].taken) continue;
+    Track& t = tracks_[track_count_++];
+    t = {};
+    t.mover.position = observations_[k].middle;
+    t.place = params_.noise * params_.noise;
+    t.speed = kFirstDoubt * kFirstDoubt;
+    confirm(t, observations_[k]);
+  }
+}
+
+void Tracker::confirm(Track& t, const Observation& seen) {
+  const double noise = params_.noise * params_.noise;
+  const double gain = t.place / (t.place + noise), speed_gain = t.both / (t.place + noise);
+  const Eigen::Vector2f off = seen.middle - t.mover.position;
+  t.mover.position += static_cast<float>(gain) * off;
+  t.mover.velocity += static_cast<float>(speed_gain) * off;
+  t.speed -= speed_gain * t.both;
+  t.both *= 1 - gain;
+  t.place *= 1 - gain;
+  t.seen_s = stamp_s_;
+  ++t.confirmed;
+  t.mover.count = 0;
+  const int stride = (seen.columns - 1) / static_cast<int>(Mover::kMost) + 1;
+  for (int k = 0; k < seen.columns; k += stride) {
+    const Column& column = columns_[(seen.first + k) % Panorama::kColumns];
+    if (column.returns > 0) t.mover.points[t.mover.count++] = column.at;
+  }
+}
+
+void Tracker::show() {
+  mover_count_ = 0;
+  for (std::size_t i = 0; i < track_count_ && mover_count_ < kMost; ++i) {
+    Track& t = tracks_[i];
+    Mover& mover = t.mover;
+    mover.doubt = static_cast<float>(std::sqrt(std::max(0.0, t.speed)));
+    const float speed = mover.velocity.norm();
+    // Of what moved before less is asked.
+    mover.moves = t.confirmed >= kConfirmed - t.moved && speed >= static_cast<float>(params_.slowest) &&
+                  speed >= (t.moved ? 1 : 2) * mover.doubt;
+    t.moved |= mover.moves;
+    if (t.moved) movers_[mover_count_++] = mover;
+  }
+}
+
+}  // namespace adit::nav

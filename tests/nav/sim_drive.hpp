@@ -1,0 +1,98 @@
+#pragma once
+#include <deque>
+#include <memory>
+#include <optional>
+
+#include "nav/control/controller.hpp"
+#include "nav/monitor/collision_monitor.hpp"
+#include "nav/navigator.hpp"
+#include "sim/world/simulation.hpp"
+#include "tests/nav/box_world.hpp"
+
+namespace adit::nav::test {
+
+/// Robots in the simulated world, noisy odometry and lidar, people who walk: scan and plan at 10 Hz, velocities
+/// at 20 Hz, each as late as in the agent. What a rehearsal shows, without the agents.
+class SimDrive {
+ public:
+  struct Robot {
+    Navigator navigator;
+    std::unique_ptr<Controller> controller;
+    CollisionMonitor monitor;
+    Pose2 start{};
+    std::optional<Eigen::Vector2d> goal{};  ///< world, m
+    bool arrived{false};
+    Plan plan{};
+    std::size_t moving{0};  ///< movers that were told, over all scans
+    sim::Simulation::ScanJob job{};
+    Pose2 scanned{};  ///< where it says it was
+    std::optional<double> held_since{};  ///< by the monitor, s, as the agent reckons
+    double held_last{};
+    Eigen::Vector2d held_at{0, 0};
+  };
+
+  SimDrive(std::shared_ptr<const sim::World> world, const std::vector<sim::RobotStart>& starts,
+           const sim::SimulationParams& params)
+      : simulation(sim::Simulation::create(std::move(world), starts, params).value()) {
+    for (const sim::RobotStart& start : starts)
+      robots.push_back({Navigator(start.platform), make_controller("ilqr", start.platform).value(),
+                        CollisionMonitor(start.platform), start.pose});
+  }
+
+  void step() {
+    simulation.step();
+    ++ticks;
+    const double now = seconds(simulation.now());
+    for (std::size_t n = 0; n < robots.size(); ++n) {
+      Robot& r = robots[n];
+      const std::size_t phase = (ticks + 3 * n) % 10;
+      const Pose2 odom = simulation.odometry(n).pose();
+      if (phase == 0) {
+        r.job = simulation.scan(n);
+        r.scanned = odom;
+      }
+      if (phase == 2 && r.job.world) {
+        const auto points = r.job.compute();
+        const Pose3 body = Pose3::level(r.scanned, 0.0);
+        r.monitor.look(points, body, now);
+        r.navigator.add_scan(points, body, now);
+        r.moving += r.navigator.movers().size();
+        if (!r.goal) continue;
+        Target target = Target::to(r.start.inverse() * *r.goal);
+        target.held = r.held_since && now - *r.held_since >= 1.5;
+        r.plan = r.navigator.plan(target, odom, now);
+      }
+      if (phase == 4 && r.goal) {
+        r.controller->set_plan(r.plan);
+        r.arrived = r.arrived || r.plan.arrived;
+      }
+      if ((ticks + n) % 5 != 0) continue;
+      const auto verdict =
+          r.monitor.check(r.controller->follow(odom, 0.05), odom, now, CollisionMonitor::Policy::stop);
+      if (verdict.cause != CollisionMonitor::Cause::none) r.controller->sent(verdict.velocity);
+      simulation.command(n, verdict.velocity);
+      if (r.held_since && (now - r.held_last > 0.5 || (odom.position() - r.held_at).norm() > 0.3))
+        r.held_since.reset();
+      if (verdict.cause != CollisionMonitor::Cause::stopped) continue;
+      r.held_last = now;
+      if (!r.held_since) r.held_at = odom.position();
+      if (!r.held_since) r.held_since = now;
+    }
+  }
+  /// Until all that have a goal have arrived, or for so long.
+  bool drive(double seconds) {
+    for (int n = 0; n < 100 * seconds; ++n) {
+      step();
+      bool all = true;
+      for (const Robot& r : robots) all &= !r.goal || r.arrived;
+      if (all) return true;
+    }
+    return false;
+  }
+
+  sim::Simulation simulation;
+  std::vector<Robot> robots{};
+  std::size_t ticks{0};
+};
+
+}  // namespace adit::nav::test
