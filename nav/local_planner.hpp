@@ -68,7 +68,8 @@ struct PlannerLibrary {
 ///   (or, failing that, when the robot can get into it backwards);
 /// - a stick held straight ahead (or back) holds the course that the robot had: it goes round an obstacle and
 ///   on, and stops at a wall; turning with each detour it would follow the wall;
-/// - on the way to a goal, a robot that stood blocked (or that the collision monitor holds) backs away a little and tries again, a few times: in a
+/// - on the way to a goal, a robot that stood blocked (or that the collision monitor holds) backs away a
+/// little and tries again, a few times: in a
 ///   passage it cannot turn, and so cannot take the way beside the one that it tried;
 /// - a robot that drives to and fro without coming nearer to its goal (it stands in something, or behind it)
 ///   gives up for a while and says so;
@@ -159,7 +160,7 @@ class LocalPlanner final : public Planner {
   double free_stamp_{0};        ///< when a way was last free or it began to be blocked, s; or infinite
   int retreats_left_{0};
   bool retreating_{false};
-  double retreat_until_{0};  ///< s
+  double retreat_until_{0};           ///< s
   Eigen::Vector2d retreat_to_{0, 0};  ///< odometry frame
 
   // Of one cycle.

@@ -5,8 +5,8 @@
 namespace adit::nav {
 
 /// How far one scan saw, by direction from the sensor with the vertical upright: bins of about 1.2 degrees of
-/// bearing (by the "diamond angle", which needs no trigonometry) and of 0.02 of the elevation's tangent. After
-/// spread() each bin holds the nearest return of itself and its neighbours, so that "it saw past that
+/// bearing (by the "diamond angle", which needs no trigonometry) and of 0.02 of the elevation's tangent.
+/// After spread() each bin holds the nearest return of itself and its neighbours, so that "it saw past that
 /// place" needs every ray around to have gone past: edges, the grain of the rings, and small errors of the
 /// odometry do not count.
 class Panorama {
@@ -25,8 +25,8 @@ class Panorama {
   }
   /// Once, after the last add().
   void spread();
-  /// Whether rays went past the place at (dx, dy, dz) from the sensor, at `range`, by `beyond` at least. Where
-  /// nothing came back nothing is known: false.
+  /// Whether rays went past the place at (dx, dy, dz) from the sensor, at `range`, by `beyond` at least.
+  /// Where nothing came back nothing is known: false.
   bool saw_past(float dx, float dy, float dz, float range, float beyond) const {
     const int row = row_of(dz / range);
     if (row < 0 || row >= kRows) return false;
@@ -47,7 +47,7 @@ class Panorama {
   static constexpr std::uint16_t kFar = 0xfffe;
   static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 116.5f) - 100; }
 
-  std::array<std::uint16_t, kColumns * kRows> bins_ = [] {
+  std::array<std::uint16_t, kColumns* kRows> bins_ = [] {
     std::array<std::uint16_t, kColumns * kRows> nothing{};
     nothing.fill(kNothing);
     return nothing;

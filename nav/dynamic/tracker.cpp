@@ -13,7 +13,6 @@ constexpr double kBreak = 1.0;         // s without a scan: nothing of before co
 constexpr int kGap = 2;                // columns without a return within one thing
 constexpr float kStep = 0.45f;         // m between neighbouring columns of one thing
 constexpr int kFewest = 2;             // columns; and returns
-constexpr int kJump = 4;               // a part of all directions, as a divisor
 constexpr int kConfirmed = 3;          // times; of what moved before, one less
 constexpr float kSlowing = 0.5f;       // of the velocity is left after each scan that does not show it
 constexpr double kGate = 0.5;          // m: an observation so far off is another's
@@ -44,7 +43,8 @@ const Tracker::Image* Tracker::reference(double stamp_s, double wanted) const {
 }
 
 void Tracker::look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
-  if (stamp_s - stamp_s_ > kBreak) clear();
+  if (stamp_s - stamp_s_ > kBreak || jumped(body.planar(), stamp_s - stamp_s_)) clear();
+  body_ = body.planar();
   const double dt = std::min(stamp_s - stamp_s_, kBreak);
   const Image *before = reference(stamp_s, params_.age), *lately = reference(stamp_s, params_.age / 2);
   Image& now = images_[next_];
@@ -57,6 +57,14 @@ void Tracker::look(std::span<const Eigen::Vector3f> points, const Pose3& body, d
   observe();
   follow(dt);
   show();
+}
+
+bool Tracker::jumped(const Pose2& body, double dt) const {
+  constexpr double kMore = 1.5;                 // than its best a robot does not do
+  constexpr double kMetres = 0.2, kTurn = 0.3;  // rad; of what comes late or is told roughly
+  const Pose2 by = body_.inverse() * body;
+  return std::hypot(by.x, by.y) > kMore * platform_.max_speed * dt + kMetres ||
+         std::fabs(by.yaw) > kMore * platform_.max_turn * dt + kTurn;
 }
 
 void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
@@ -99,21 +107,14 @@ void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body
 
 void Tracker::observe() {
   observation_count_ = 0;
-  int filled = 0, start = -1;  // begins behind a gap, so that nothing is cut at the seam
+  int start = -1;  // begins behind a gap, so that nothing is cut at the seam
   for (int c = 0; c < Panorama::kColumns; ++c) {
-    filled += columns_[c].returns > 0;
     bool gap = true;
     for (int k = 0; k <= kGap; ++k)
       gap &= columns_[(c + Panorama::kColumns - k) % Panorama::kColumns].returns == 0;
     if (gap && start < 0) start = c;
   }
-  // When so much of the world has come, it is the odometry that jumped.
-  if (filled > Panorama::kColumns / kJump) {
-    const double stamp = images_[newest_].stamp_s;
-    clear();
-    images_[newest_].stamp_s = stamp_s_ = stamp;
-  }
-  if (start < 0 || filled > Panorama::kColumns / kJump) return;
+  if (start < 0) return;
   int first = -1, last = -1;
   for (int k = 0; k <= Panorama::kColumns; ++k) {
     const int c = (start + k) % Panorama::kColumns;

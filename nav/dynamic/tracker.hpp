@@ -29,9 +29,9 @@ struct TrackerParams {
 struct Mover {
   static constexpr std::size_t kMost = 24;      ///< points
   bool moves{false};                            ///< false: it stands, or is gone; its velocity is zero
-  Eigen::Vector2f position{0, 0};           ///< middle of what is seen of it, m
-  Eigen::Vector2f velocity{0, 0};           ///< m/s
-  float doubt{};                            ///< standard deviation of each part of the velocity, m/s
+  Eigen::Vector2f position{0, 0};               ///< middle of what is seen of it, m
+  Eigen::Vector2f velocity{0, 0};               ///< m/s
+  float doubt{};                                ///< standard deviation of each part of the velocity, m/s
   std::array<Eigen::Vector2f, kMost> points{};  ///< of its side that is seen, m
   std::uint32_t count{};
 
@@ -39,12 +39,12 @@ struct Mover {
 };
 
 /// Finds what moves in the newest scan, and how fast. Where something is now and half a second ago rays went
-/// through, something has come: returns in seen free space, after Wang and Thorpe's DATMO (ICRA 2002). Nothing
-/// else counts: a wall that comes into sight was hidden and not seen free, one that is driven along has always
-/// been there, whatever piece of it is seen; trackers that cluster all returns and take the wandering of
-/// their middles for motion report such walls as moving (tysik/obstacle_detector, issue 3;
-/// praveen-palanisamy/multiple-object-tracking-lidar, issue 41). Those returns, side by side, are an observation;
-/// a Kalman filter of constant velocity follows each, and what was confirmed three times and is
+/// through, something has come: returns in seen free space, after Wang and Thorpe's DATMO (ICRA 2002).
+/// Nothing else counts: a wall that comes into sight was hidden and not seen free, one that is driven along
+/// has always been there, whatever piece of it is seen; trackers that cluster all returns and take the
+/// wandering of their middles for motion report such walls as moving (tysik/obstacle_detector, issue 3;
+/// praveen-palanisamy/multiple-object-tracking-lidar, issue 41). Those returns, side by side, are an
+/// observation; a Kalman filter of constant velocity follows each, and what was confirmed three times and is
 /// faster than its doubt moves.
 ///
 /// What moves straight away from the robot is not found: its place was hidden by itself. Fixed sizes; nothing
@@ -64,7 +64,7 @@ class Tracker {
   const Panorama& newest() const { return images_[newest_].seen; }
   /// Of the newest scan, s.
   double stamp_s() const { return stamp_s_; }
-  /// Forgets everything, as after a jump of the odometry.
+  /// Forgets everything; happens by itself when the odometry jumps.
   void clear();
 
  private:
@@ -96,6 +96,8 @@ class Tracker {
 
   /// The youngest image that is so old; when none is, the oldest that is not too young; or null.
   const Image* reference(double stamp_s, double age) const;
+  /// The odometry, that is: no robot moves so far in `dt` s.
+  bool jumped(const Pose2& body, double dt) const;
   void compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
                const Image* lately, Image& now);
   void observe();
@@ -115,6 +117,7 @@ class Tracker {
   std::size_t track_count_{0};
   std::array<Mover, kMost> movers_{};
   std::size_t mover_count_{0};
+  Pose2 body_{};  ///< at the newest scan, odometry frame
   double stamp_s_{-1e9};
 };
 

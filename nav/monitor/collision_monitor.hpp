@@ -25,8 +25,8 @@ struct CollisionMonitorParams {
 /// bend with the arc. What is inside the margin already may not come deeper: a robot that touches something
 /// can leave it, and what stands behind it does not matter to one that drives ahead.
 ///
-/// What moves (it has a tracker of its own) is taken to go on as it does: the robot brakes in time to stand when
-/// they meet, and may always drive away from it, or be where it does not come.
+/// What moves (it has a tracker of its own) is taken to go on as it does: the robot brakes in time to stand
+/// when they meet, and may always drive away from it, or be where it does not come.
 ///
 /// After Nav2's collision monitor, with fixed polygons replaced: they stop a robot for what it is driving
 /// away from, and hold it there (ros-navigation/navigation2, issues 3313 and 3748).

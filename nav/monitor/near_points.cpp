@@ -157,7 +157,8 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
       }
     if (around < kFewest) continue;
     const Eigen::Vector3d at = body * Eigen::Vector3d(cells_[i].x, cells_[i].y, cells_[i].z);
-    const double doubt = std::min(params_.most_doubt, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
+    const double doubt =
+        std::min(params_.most_doubt, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
     places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()), cells_[i].z,
                        static_cast<float>(doubt), stamp_s});
   }

@@ -40,8 +40,8 @@ class NearPoints {
   /// `reach`: how far around base_link it looks, m, (0, 4].
   NearPoints(const Platform& platform, double reach, const NearPointsParams& params = {});
 
-  /// One scan: points in base_link, m, the body in the odometry frame then, and the time, s; and what it saw by
-  /// direction.
+  /// One scan: points in base_link, m, the body in the odometry frame then, and the time, s; and what it saw
+  /// by direction.
   void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s, const Panorama& seen);
   std::span<const Place> places() const { return {places_.data(), places_.size()}; }
 

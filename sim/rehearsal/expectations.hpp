@@ -14,8 +14,8 @@ struct Evidence {
   std::function<Pose2(const std::string& robot)> pose{};  ///< true, world frame
   std::function<int(const std::string& robot)> collisions{};
   std::function<int(const std::string& robot)> caused{};  ///< of them, by the robot itself
-  std::map<std::string, Reason> last_answer{};    ///< by operator
-  std::map<std::string, std::size_t> findings{};  ///< by operator whose station runs
+  std::map<std::string, Reason> last_answer{};            ///< by operator
+  std::map<std::string, std::size_t> findings{};          ///< by operator whose station runs
 };
 
 /// Judges a scenario's expectations as time goes on.

@@ -209,12 +209,9 @@ class Run {
     }
     for (const RobotSpec& robot : scenario_.robots) {
       const Truth& is = truth(robot.id);
-      out.robots[robot.id] = {is.distance,
-                              static_cast<int>(is.collisions),
-                              static_cast<int>(is.caused),
-                              is.min_clearance,
-                              seconds(is.moving) / out.virtual_s,
-                              mode_seconds_[robot.id]};
+      out.robots[robot.id] = {
+          is.distance,      static_cast<int>(is.collisions),    static_cast<int>(is.caused),
+          is.min_clearance, seconds(is.moving) / out.virtual_s, mode_seconds_[robot.id]};
     }
     out.expectations = expectations_.finish(evidence(), out);
     return out;

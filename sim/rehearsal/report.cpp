@@ -39,12 +39,8 @@ ordered_json robots_json(const RunReport& report) {
     // Far from everything: how far is not known, and of no interest.
     const ordered_json clearance =
         robot.min_clearance < far_away ? ordered_json(robot.min_clearance) : ordered_json();
-    out[id] = {{"distance", robot.distance},
-               {"collisions", robot.collisions},
-               {"caused", robot.caused},
-               {"min_clearance", clearance},
-               {"moving", robot.moving},
-               {"modes", robot.mode_seconds}};
+    out[id] = {{"distance", robot.distance}, {"collisions", robot.collisions}, {"caused", robot.caused},
+               {"min_clearance", clearance}, {"moving", robot.moving},         {"modes", robot.mode_seconds}};
   }
   return out;
 }

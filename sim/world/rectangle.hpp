@@ -18,8 +18,8 @@ struct Rectangle {
 
 /// Whether two rectangles share more than their border: separating axes.
 bool overlap(const Rectangle& a, const Rectangle& b);
-/// How far apart two rectangles are along the axis, of their sides' four, that separates them most, m; negative
-/// when they overlap: how deep. Never more than distance().
+/// How far apart two rectangles are along the axis, of their sides' four, that separates them most, m;
+/// negative when they overlap: how deep. Never more than distance().
 double separation(const Rectangle& a, const Rectangle& b);
 /// Shortest distance between two rectangles, m; 0 when they overlap.
 double distance(const Rectangle& a, const Rectangle& b);

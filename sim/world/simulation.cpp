@@ -190,8 +190,7 @@ void Simulation::record(std::size_t index, std::size_t partner) {
     truth.min_clearance = 0.0;
   }
   if (collisions_.size() < limit)
-    collisions_.push_back(
-        {now_, robot.id, partner_name(partner), robot.body.pose(), caused, by_partner});
+    collisions_.push_back({now_, robot.id, partner_name(partner), robot.body.pose(), caused, by_partner});
 }
 
 std::string Simulation::partner_name(std::size_t partner) const {

@@ -35,8 +35,8 @@ struct RobotStart {
 /// A contact; it lasts until the robot has moved 0.05 m or 0.1 rad away from where it was held, or the person
 /// who walked into it 0.05 m.
 ///
-/// Whoever comes nearer to the other by his own motion, at more than 0.05 m/s where they touch, caused it: both
-/// of them, perhaps; when neither is that fast, the faster one. What stands still causes nothing.
+/// Whoever comes nearer to the other by his own motion, at more than 0.05 m/s where they touch, caused it:
+/// both of them, perhaps; when neither is that fast, the faster one. What stands still causes nothing.
 struct Collision {
   Duration at{};
   std::string robot{};    ///< the one that moved, or that a person walked into

@@ -11,8 +11,8 @@
 
 namespace adit::nav::test {
 
-/// Robots in the simulated world, noisy odometry and lidar, people who walk: scan and plan at 10 Hz, velocities
-/// at 20 Hz, each as late as in the agent. What a rehearsal shows, without the agents.
+/// Robots in the simulated world, noisy odometry and lidar, people who walk: scan and plan at 10 Hz,
+/// velocities at 20 Hz, each as late as in the agent. What a rehearsal shows, without the agents.
 class SimDrive {
  public:
   struct Robot {
@@ -25,7 +25,7 @@ class SimDrive {
     Plan plan{};
     std::size_t moving{0};  ///< movers that were told, over all scans
     sim::Simulation::ScanJob job{};
-    Pose2 scanned{};  ///< where it says it was
+    Pose2 scanned{};                     ///< where it says it was
     std::optional<double> held_since{};  ///< by the monitor, s, as the agent reckons
     double held_last{};
     Eigen::Vector2d held_at{0, 0};

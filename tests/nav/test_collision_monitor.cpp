@@ -202,7 +202,8 @@ struct Meeting {
   double time{0};
 
   double apart() const {
-    return BoxWorld{{{person.x() - 0.225, person.x() + 0.225, person.y() - 0.225, person.y() + 0.225, 0, 1.75}}}
+    return BoxWorld{
+        {{person.x() - 0.225, person.x() + 0.225, person.y() - 0.225, person.y() + 0.225, 0, 1.75}}}
         .clearance(platform, pose);
   }
   /// Until they touch, or for so long; true when they touched.
@@ -213,7 +214,8 @@ struct Meeting {
         BoxWorld world = hall;
         world.boxes.push_back(
             {person.x() - 0.225, person.x() + 0.225, person.y() - 0.225, person.y() + 0.225, 0, 1.75});
-        monitor.look(world.scan(pose, platform.lidar_height, 1, 360, 0.02, random), Pose3::level(pose, 0), time);
+        monitor.look(world.scan(pose, platform.lidar_height, 1, 360, 0.02, random), Pose3::level(pose, 0),
+                     time);
       }
       const Twist2 allowed = monitor.check(wish, pose, time, Policy::stop).velocity;
       const auto step = [](double from, double to, double most) {

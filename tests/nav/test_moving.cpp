@@ -18,15 +18,16 @@ sim::SimulationParams planar(std::uint64_t seed, std::vector<sim::PersonSpec> pe
 /// 40 m long, along x, its middle at y = 0.
 std::shared_ptr<const sim::World> corridor(double width) {
   const double y = width / 2;
-  const std::array<sim::Box, 4> walls{sim::Box{-4, 36, y, y + 0.2, 0, 2}, sim::Box{-4, 36, -y - 0.2, -y, 0, 2},
-                                      sim::Box{-4.2, -4, -y, y, 0, 2}, sim::Box{36, 36.2, -y, y, 0, 2}};
+  const std::array<sim::Box, 4> walls{sim::Box{-4, 36, y, y + 0.2, 0, 2},
+                                      sim::Box{-4, 36, -y - 0.2, -y, 0, 2}, sim::Box{-4.2, -4, -y, y, 0, 2},
+                                      sim::Box{36, 36.2, -y, y, 0, 2}};
   return std::make_shared<const sim::World>(*sim::make_box_world(walls, 0, 3));
 }
 
 void expect_none_caused(const SimDrive& d, std::uint64_t seed) {
   for (const sim::Collision& contact : d.simulation.collisions())
-    EXPECT_FALSE(contact.caused) << "seed " << seed << ": " << contact.robot << " ran into " << contact.partner
-                                 << " at " << seconds(contact.at) << " s";
+    EXPECT_FALSE(contact.caused) << "seed " << seed << ": " << contact.robot << " ran into "
+                                 << contact.partner << " at " << seconds(contact.at) << " s";
 }
 
 class StaticWorld : public testing::TestWithParam<const char*> {};
@@ -52,10 +53,10 @@ INSTANTIATE_TEST_SUITE_P(All, StaticWorld, testing::Values("corridor", "cave", "
 
 TEST(Moving, AmongPeopleWhoYieldTwoRobotsReachTheirGoalsAndTouchNobody) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    SimDrive d(corridor(4.0), {{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {30, 0, M_PI}}},
-               planar(seed, {{{{8, -1.5}, {8, 1.5}}, 1.5},
-                             {{{12, 1.5}, {19, -1.5}}, 1.2},
-                             {{{28, 1.3}, {3, 1.3}}, 1.5}}));
+    SimDrive d(
+        corridor(4.0), {{"r1", wheeled(), {0, 0, 0}}, {"r2", wheeled(), {30, 0, M_PI}}},
+        planar(seed,
+               {{{{8, -1.5}, {8, 1.5}}, 1.5}, {{{12, 1.5}, {19, -1.5}}, 1.2}, {{{28, 1.3}, {3, 1.3}}, 1.5}}));
     d.robots[0].goal = Eigen::Vector2d(29, -0.8);
     d.robots[1].goal = Eigen::Vector2d(1, -0.8);
     EXPECT_TRUE(d.drive(120)) << seed;
@@ -79,7 +80,9 @@ TEST(Moving, RobotsHeadOnPassEachOther) {
     double width;
     Platform a, b;
   };
-  for (const Case& c : {Case{4.0, wheeled(), wheeled()}, {2.2, wheeled(), wheeled()}, {2.2, wheeled(), legged()},
+  for (const Case& c : {Case{4.0, wheeled(), wheeled()},
+                        {2.2, wheeled(), wheeled()},
+                        {2.2, wheeled(), legged()},
                         {2.4, tracked(), tracked()}})
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       SimDrive d(corridor(c.width), {{"r1", c.a, {0, 0, 0}}, {"r2", c.b, {16, 0, M_PI}}}, planar(seed));

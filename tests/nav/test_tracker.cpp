@@ -48,8 +48,9 @@ TEST_P(TrackerOf, FindsWhoWalksWithinASecondAndHowFast) {
     Eigen::Vector2d from, walks;
     Twist2 drives;
   };
-  for (const Case& c : {Case{{5, 1}, {-1.5, 0}, {}}, Case{{3, -2}, {0, 1.2}, {}}, Case{{5, 0.3}, {-1.5, 0}, {1.5, 0, 0}},
-                        Case{{3, 3}, {0.5, -1}, {0.5, 0, 0.5}}, Case{{-4, 2}, {1, -0.6}, {}}}) {
+  for (const Case& c :
+       {Case{{5, 1}, {-1.5, 0}, {}}, Case{{3, -2}, {0, 1.2}, {}}, Case{{5, 0.3}, {-1.5, 0}, {1.5, 0, 0}},
+        Case{{3, 3}, {0.5, -1}, {0.5, 0, 0.5}}, Case{{-4, 2}, {1, -0.6}, {}}}) {
     Watch w;
     w.rings = GetParam();
     w.person = c.from;
@@ -136,8 +137,8 @@ TEST(Tracker, GarbageIsNothing) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   Tracker tracker(wheeled());
   for (int scan = 0; scan < 10; ++scan)
-    tracker.look(std::vector<Eigen::Vector3f>{{nan, 0, 0.5f}, {2, nan, 0.5f}, {2, 0, nan}, {inf, inf, inf}}, {},
-                 0.1 * scan);
+    tracker.look(std::vector<Eigen::Vector3f>{{nan, 0, 0.5f}, {2, nan, 0.5f}, {2, 0, nan}, {inf, inf, inf}},
+                 {}, 0.1 * scan);
   EXPECT_EQ(tracker.movers().size(), 0u);
 }
 

@@ -91,8 +91,9 @@ TEST(Scenario, PlaceAndStateInOneExpectation) {
 
 TEST(Scenario, PeopleYieldUnlessToldOtherwise) {
   const auto s = parse_scenario(
-      with("expect:", "people:\n  - {path: [[0, 1], [2, 1]]}\n  - {path: [[0, 1], [2, 1]], speed: 1.2, yields: "
-                      "false}\nexpect:"),
+      with("expect:",
+           "people:\n  - {path: [[0, 1], [2, 1]]}\n  - {path: [[0, 1], [2, 1]], speed: 1.2, yields: "
+           "false}\nexpect:"),
       "b.yaml");
   ASSERT_TRUE(s.ok()) << s.error().text;
   ASSERT_EQ(s->people.size(), 2u);

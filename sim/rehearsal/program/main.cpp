@@ -48,8 +48,9 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
               static_cast<unsigned long long>(report.seed), report.ok() ? "ok" : "FAILED", report.virtual_s,
               report.wall_s, report.virtual_s / report.wall_s, report.digest.c_str());
   for (const auto& [id, robot] : report.robots)
-    std::printf("  %s: %.1f m, moving %.0f %% of the time, %d collisions (%d caused), %s\n", id.c_str(), robot.distance,
-                100.0 * robot.moving, robot.collisions, robot.caused, robot.clearance().c_str());
+    std::printf("  %s: %.1f m, moving %.0f %% of the time, %d collisions (%d caused), %s\n", id.c_str(),
+                robot.distance, 100.0 * robot.moving, robot.collisions, robot.caused,
+                robot.clearance().c_str());
   std::printf("  commands: %llu sent, %llu accepted, %llu refused\n",
               static_cast<unsigned long long>(report.commands.sent),
               static_cast<unsigned long long>(report.commands.accepted),

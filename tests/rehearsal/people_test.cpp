@@ -1,0 +1,71 @@
+// Whole agents among people who walk and robots that come towards them: nobody is run into, and the goals are
+// reached.
+#include <gtest/gtest.h>
+
+#include "sim/rehearsal/rehearsal.hpp"
+#include "sim/rehearsal/scenario_file.hpp"
+#include "tests/folders/folders.hpp"
+
+namespace adit::sim {
+namespace {
+
+Scenario load(const std::string& name) {
+  auto scenario = load_scenario(source_folder() + "/config/scenarios/" + name);
+  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
+  return *scenario;
+}
+
+RunReport run(const Scenario& scenario, std::uint64_t seed) {
+  RunParams params;
+  params.seed = seed;
+  params.make_agent = *make_agent_factory();
+  auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
+  return std::move(outcome->report);
+}
+
+void expect_ok(const RunReport& report) {
+  for (const std::string& line : report.complaints()) ADD_FAILURE() << "seed " << report.seed << ": " << line;
+}
+
+TEST(People, TwoRobotsPassThemAndEachOther) {
+  const Scenario scenario = load("people.yaml");
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_ok(run(scenario, seed));
+}
+
+TEST(People, SixteenRingsShowThemAsWell) {
+  Scenario scenario = load("people.yaml");
+  scenario.lidar = LidarKind::full;
+  expect_ok(run(scenario, 1));
+}
+
+TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
+  Scenario scenario = load("people.yaml");
+  // One walks up and down the way of r1, which stands at the end of its way.
+  scenario.people = {{{{20, 2}, {-1, 2}}, 1.5, false}};
+  scenario.robots.pop_back();
+  std::erase_if(scenario.script, [](const ScriptLine& line) { return line.command.find("goto") == 0; });
+  scenario.script.front().command = "take r1";
+  scenario.expectations.clear();
+  scenario.duration = 30s;
+  const RunReport report = run(scenario, 1);
+  EXPECT_GT(report.robots.at("r1").collisions, 0);
+  EXPECT_EQ(report.robots.at("r1").caused, 0);
+  bool told = false;
+  for (const TimedEvent& event : report.events) told = told || event.text == "is touched by a person";
+  EXPECT_TRUE(told);
+}
+
+TEST(HeadOn, InACorridorOfTwoMetresTwentyTheyPass) {
+  const Scenario scenario = load("head_on.yaml");
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_ok(run(scenario, seed));
+}
+
+TEST(HeadOn, TwoOfAKindPassToo) {
+  Scenario scenario = load("head_on.yaml");
+  scenario.robots[1].platform = "wheeled";
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_ok(run(scenario, seed));
+}
+
+}  // namespace
+}  // namespace adit::sim
