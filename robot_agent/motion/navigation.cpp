@@ -207,7 +207,8 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   auto job = std::make_shared<PlanJob>();
   job->scan = std::move(scan);
   job->target = target();
-  job->target.held = held_since_ && now - *held_since_ >= params_.held_after;
+  // The router, where there is one, has half of that time to lead another way first.
+  job->target.held = held_since_ && now - *held_since_ >= 2 * params_.held_after;
   const auto* step = step_on(now);
   job->last = !step || step->last;
   job->pose = localisation_.odom().planar();

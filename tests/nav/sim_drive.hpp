@@ -59,7 +59,7 @@ class SimDrive {
         r.moving += r.navigator.movers().size();
         if (!r.goal) continue;
         Target target = Target::to(r.start.inverse() * *r.goal);
-        target.held = r.held_since && now - *r.held_since >= 1.5;
+        target.held = r.held_since && now - *r.held_since >= 3.0;
         r.plan = r.navigator.plan(target, odom, now);
       }
       if (phase == 4 && r.goal) {
