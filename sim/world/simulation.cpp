@@ -209,6 +209,7 @@ void Simulation::walk(std::size_t index) {
   }
   const Rectangle next = person.next(dt);
   for (std::size_t n = 0; n < robots_.size(); ++n) {
+    if (!level(n, person)) continue;
     const Rectangle body = footprint(robots_[n].body.platform(), robots_[n].body.pose());
     const double then = distance(next, body);
     if (person.yields() && then < Person::respect && then <= distance(person.body(), body))
