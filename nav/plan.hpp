@@ -22,8 +22,12 @@ struct Target {
   double tolerance{0};         ///< of a goal, m; 0: the planner's own
   bool held{false};            ///< the collision monitor keeps the robot from driving what was planned
 
-  static Target to(const Eigen::Vector2d& goal, double speed = 0.0) { return {.kind = Kind::goal, .goal = goal, .speed = speed}; }
-  static Target along(double direction, double speed) { return {.kind = Kind::direction, .direction = direction, .speed = speed}; }
+  static Target to(const Eigen::Vector2d& goal, double speed = 0.0) {
+    return {.kind = Kind::goal, .goal = goal, .speed = speed};
+  }
+  static Target along(double direction, double speed) {
+    return {.kind = Kind::direction, .direction = direction, .speed = speed};
+  }
 };
 
 /// What the local planner found. Of bounded size, without pointers: copied at no more than a memcpy.
