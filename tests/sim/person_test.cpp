@@ -63,7 +63,7 @@ void run(Simulation& s, double seconds, const Twist2& velocity = {}) {
 
 TEST(Person, WhoYieldsToNobodyCausesTheContactWithARobotThatStands) {
   Simulation s = with({{{{5, 0}, {-5, 0}}, 1.5, false}});
-  run(s, 10);
+  run(s, 4);
   ASSERT_EQ(s.collisions().size(), 1u) << "he leans on it, once";
   EXPECT_FALSE(s.collisions()[0].caused);
   EXPECT_TRUE(s.collisions()[0].by_partner);
