@@ -19,6 +19,10 @@
 #include "robot_agent/safeguard/battery_watch.hpp"
 #include "robot_agent/safeguard/link_loss.hpp"
 
+namespace adit::nav {
+struct PlannerLibrary;
+}
+
 namespace adit::agent {
 
 struct AgentParams {
@@ -32,6 +36,8 @@ struct AgentParams {
   Duration planning{20ms};              ///< what a planning cycle takes in rehearsal
   Defects defects{};                    ///< effective in adit::agent_defects only
   std::shared_ptr<LogSink> log{};
+  /// What the local planner of that platform looks up, when several robots share it; empty: made here.
+  std::function<std::shared_ptr<const nav::PlannerLibrary>(const Platform&)> library{};
   std::shared_ptr<store::Disk> disk{};  ///< what outlives the agent; null: nothing is kept
   std::uint64_t
       boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known

@@ -219,7 +219,8 @@ std::shared_ptr<const nav::PlannerLibrary> Agent::Parts::library() {
     const std::lock_guard lock(mutex_);
     if (library_) return library_;
   }
-  auto made = nav::PlannerLibrary::build(params.platform, {});
+  auto made =
+      params.library ? params.library(params.platform) : nav::PlannerLibrary::build(params.platform, {});
   const std::lock_guard lock(mutex_);
   return library_ = std::move(made);
 }

@@ -153,7 +153,14 @@ void TileBuilder::open_sides(Tile& tile) {
     }
 }
 
-void TileBuilder::spread(const Tile& tile, int cell) {
+void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
+  std::array<bool, kTileArea> wanted{};
+  int left = 0;
+  for (int n = 0; to_nodes && n < tile.node_count; ++n) {
+    bool& node = wanted[tile.nodes[static_cast<std::size_t>(n)].cell];
+    left += !node;
+    node = true;
+  }
   distance_.fill(kUnreached);
   before_.fill(-1);
   heap_.clear();
@@ -164,6 +171,7 @@ void TileBuilder::spread(const Tile& tile, int cell) {
     const Entry e = heap_.back();
     heap_.pop_back();
     if (e.distance > distance_[static_cast<std::size_t>(e.cell)]) continue;
+    if (wanted[static_cast<std::size_t>(e.cell)] && --left == 0) return;
     const int x = e.cell % kTileSide, y = e.cell / kTileSide;
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
@@ -195,7 +203,7 @@ void TileBuilder::connect(Tile& tile, int node) {
   const bool even = std::all_of(tile.cost.begin(), tile.cost.end(),
                                 [&](std::uint8_t c) { return c == tile.cost[0] && c > 0; });
   const TileNode& from = tile.nodes[static_cast<std::size_t>(node)];
-  if (!even) spread(tile, from.cell);
+  if (!even) spread(tile, from.cell, true);
   for (int b = 0; b < tile.node_count; ++b) {
     const TileNode& to = tile.nodes[static_cast<std::size_t>(b)];
     tile.distance[static_cast<std::size_t>(node * kTileNodes + b)] =

@@ -27,7 +27,8 @@ class TileBuilder {
   /// From one node of a tile to all of its nodes, within it, m.
   std::span<const float, kTileNodes> distances(SurfaceMap& map, int index, int node);
   /// Ways from a cell to all others of its tile, m; see distance() and trace().
-  void spread(const Tile& tile, int cell);
+  /// `to_nodes`: only as far as the tile's nodes.
+  void spread(const Tile& tile, int cell, bool to_nodes = false);
   float distance(int cell) const { return distance_[static_cast<std::size_t>(cell)]; }
   /// The cell before that one on the way from where spread() began; -1 at its beginning.
   int before(int cell) const { return before_[static_cast<std::size_t>(cell)]; }

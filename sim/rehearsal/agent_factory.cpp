@@ -1,5 +1,10 @@
 #include "sim/rehearsal/agent_factory.hpp"
 
+#include <map>
+#include <mutex>
+#include <vector>
+
+#include "nav/local_planner.hpp"
 #include "robot_agent/agent.hpp"
 
 namespace adit::sim {
@@ -22,6 +27,25 @@ class ProductAgent final : public RehearsedAgent {
   agent::Agent agent_;
 };
 
+/// The planner libraries of all robots of all runs: agents are started often, and a library takes 70 ms.
+class Libraries {
+ public:
+  std::shared_ptr<const nav::PlannerLibrary> of(const Platform& p) {
+    Key key{p.length, p.width, p.max_speed, p.path_curvature, p.path_segment};
+    for (const Eigen::Vector2d& corner : p.footprint) key.insert(key.end(), {corner.x(), corner.y()});
+    const std::lock_guard lock(mutex_);
+    auto& library = made_[key];
+    if (!library) library = nav::PlannerLibrary::build(p, {});
+    return library;
+  }
+
+ private:
+  /// All of a platform that PlannerLibrary::build looks at.
+  using Key = std::vector<double>;
+  std::mutex mutex_;
+  std::map<Key, std::shared_ptr<const nav::PlannerLibrary>> made_{};
+};
+
 }  // namespace
 
 Result<AgentFactory> make_agent_factory(const std::string& defect) {
@@ -31,7 +55,8 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     if (!known) return Error{Reason::bad_argument, "no defect of that name: " + defect};
     defects.active = *known;
   }
-  return AgentFactory([defects](const AgentContext& context) -> Result<std::unique_ptr<RehearsedAgent>> {
+  return AgentFactory([defects, libraries = std::make_shared<Libraries>()](
+                          const AgentContext& context) -> Result<std::unique_ptr<RehearsedAgent>> {
     agent::AgentParams params;
     params.name = context.spec.id;
     params.platform = context.platform;
@@ -40,6 +65,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     params.lock_lease = context.lock_lease;
     params.link_loss = context.spec.link_loss;
     params.defects = defects;
+    params.library = [libraries](const Platform& platform) { return libraries->of(platform); };
     params.disk = context.disk;
     params.end = context.end;
     auto agent = std::make_unique<ProductAgent>(std::move(params), context);
