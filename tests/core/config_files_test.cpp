@@ -93,13 +93,15 @@ TEST(Platforms, wrong_files_name_file_line_and_what_was_expected) {
           "d.yaml:1: drive: expected one of differential, tracked, car, holonomic, aerial; got 'hover'"));
 }
 
-TEST(Platforms, slip_is_a_matter_of_tracks) {
+/// A platform file of nine lines and `more`.
+Result<Platform> load(const std::string& drive, const std::string& more) {
   const Folder folder;
-  const auto load = [&](const std::string& drive, const std::string& more) {
-    return config::load_platform_file(folder.write(
-        "p.yaml", "name: x\ndrive: " + drive + "\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n" +
-                      "max_acceleration: 1\nstep: 0\nlidar_height: 1\n" + more));
-  };
+  return config::load_platform_file(folder.write(
+      "p.yaml", "name: x\ndrive: " + drive + "\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n" +
+                    "max_acceleration: 1\nstep: 0\nlidar_height: 1\n" + more));
+}
+
+TEST(Platforms, slip_is_a_matter_of_tracks) {
   const auto tracked = load("tracked", "turn_slip: 0.3\nturn_error: 0.02\n");
   ASSERT_TRUE(tracked) << tracked.error().text;
   EXPECT_EQ(tracked->drive, Drive::tracked);
@@ -112,12 +114,6 @@ TEST(Platforms, slip_is_a_matter_of_tracks) {
 }
 
 TEST(Platforms, each_drive_has_its_own_keys) {
-  const Folder folder;
-  const auto load = [&](const std::string& drive, const std::string& more) {
-    return config::load_platform_file(folder.write(
-        "p.yaml", "name: x\ndrive: " + drive + "\nlength: 1\nwidth: 1\nmax_speed: 1\nmax_turn: 1\n" +
-                      "max_acceleration: 1\nstep: 0\nlidar_height: 1\n" + more));
-  };
   const auto car = load("car", "wheelbase: 0.5\nmax_steering: 0.4\nsteering_rate: 2\n");
   ASSERT_TRUE(car) << car.error().text;
   EXPECT_FALSE(car->turns_on_spot());

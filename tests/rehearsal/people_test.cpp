@@ -4,16 +4,10 @@
 
 #include "sim/rehearsal/rehearsal.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
-#include "tests/folders/folders.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
-
-Scenario load(const std::string& name) {
-  auto scenario = load_scenario(source_folder() + "/config/scenarios/" + name);
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  return *scenario;
-}
 
 RunReport run(const Scenario& scenario, std::uint64_t seed) {
   RunParams params;
@@ -29,18 +23,18 @@ void expect_ok(const RunReport& report) {
 }
 
 TEST(People, TwoRobotsPassThemAndEachOther) {
-  const Scenario scenario = load("people.yaml");
+  const Scenario scenario = load_shipped("people.yaml");
   for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_ok(run(scenario, seed));
 }
 
 TEST(People, SixteenRingsShowThemAsWell) {
-  Scenario scenario = load("people.yaml");
+  Scenario scenario = load_shipped("people.yaml");
   scenario.lidar = LidarKind::full;
   expect_ok(run(scenario, 1));
 }
 
 TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
-  Scenario scenario = load("people.yaml");
+  Scenario scenario = load_shipped("people.yaml");
   // One walks up and down the way of r1, which stands at the end of its way.
   scenario.people = {{{{20, 2}, {-1, 2}}, 1.5, false}};
   scenario.robots.pop_back();
@@ -57,12 +51,12 @@ TEST(People, WhoYieldToNobodyAreTheOnesWhoRunIntoTheRobot) {
 }
 
 TEST(HeadOn, InACorridorOfTwoMetresTwentyTheyPass) {
-  const Scenario scenario = load("head_on.yaml");
+  const Scenario scenario = load_shipped("head_on.yaml");
   for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_ok(run(scenario, seed));
 }
 
 TEST(HeadOn, TwoOfAKindPassToo) {
-  Scenario scenario = load("head_on.yaml");
+  Scenario scenario = load_shipped("head_on.yaml");
   scenario.robots[1].platform = "wheeled";
   for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_ok(run(scenario, seed));
 }

@@ -6,16 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "sim/rehearsal/scenario_file.hpp"
-#include "tests/folders/folders.hpp"
+#include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
 namespace {
-
-Scenario load(const std::string& name) {
-  auto scenario = load_scenario(source_folder() + "/config/scenarios/" + name);
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  return *scenario;
-}
 
 RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2) {
   RunParams params;
@@ -28,24 +22,24 @@ RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2) {
 }
 
 TEST(Rehearse, SameSeedSameDigestWhateverTheWorkers) {
-  const Scenario scenario = load("handover.yaml");
+  const Scenario scenario = load_shipped("handover.yaml");
   const std::string digest = run(scenario, 3).report.digest;
   EXPECT_EQ(run(scenario, 3).report.digest, digest);
   EXPECT_EQ(run(scenario, 3, 1).report.digest, digest);
 }
 
 TEST(Rehearse, AnotherSeedAnotherDigest) {
-  const Scenario scenario = load("handover.yaml");
+  const Scenario scenario = load_shipped("handover.yaml");
   EXPECT_NE(run(scenario, 3).report.digest, run(scenario, 4).report.digest);
 }
 
 TEST(Rehearse, SameSeedSameDigestThroughACrash) {
-  const Scenario scenario = load("agent_crash.yaml");
+  const Scenario scenario = load_shipped("agent_crash.yaml");
   EXPECT_EQ(run(scenario, 1).report.digest, run(scenario, 1).report.digest);
 }
 
 TEST(Rehearse, FailedExpectationsFailTheRun) {
-  Scenario scenario = load("locked.yaml");
+  Scenario scenario = load_shipped("locked.yaml");
   scenario.expectations.push_back(
       {Expectation::When::at, 10s, StateExpectation{"r1", "waypoint", {}, {}, {}}, 99, "x"});
   const RunReport report = run(scenario, 1).report;
@@ -55,7 +49,7 @@ TEST(Rehearse, FailedExpectationsFailTheRun) {
 }
 
 TEST(Rehearse, RobotsThatOverlapAreAnError) {
-  Scenario scenario = load("locked.yaml");
+  Scenario scenario = load_shipped("locked.yaml");
   scenario.robots.push_back({"r2", "wheeled", {0.2, 0.0, 0.0}});
   RunParams params;
   params.make_agent = *make_agent_factory();
@@ -66,7 +60,7 @@ TEST(Rehearse, RobotsThatOverlapAreAnError) {
 }
 
 TEST(Rehearse, ReportHasEveryField) {
-  const RunOutcome outcome = run(load("handover.yaml"), 1);
+  const RunOutcome outcome = run(load_shipped("handover.yaml"), 1);
   const auto json = nlohmann::json::parse(to_json(outcome.report));
   for (const char* key : {"digest", "seed", "ok", "virtual_s", "wall_s", "speedup", "expectations", "rules",
                           "robots", "topics", "commands"})
@@ -85,7 +79,7 @@ TEST(Rehearse, ReportHasEveryField) {
 class Scenarios : public testing::TestWithParam<const char*> {};
 
 TEST_P(Scenarios, EverythingHolds) {
-  const Scenario scenario = load(std::string(GetParam()) + ".yaml");
+  const Scenario scenario = load_shipped(std::string(GetParam()) + ".yaml");
   for (std::uint64_t seed : {1, 2, 3}) {
     const RunReport report = run(scenario, seed).report;
     for (const std::string& line : report.complaints()) ADD_FAILURE() << "seed " << seed << ": " << line;
@@ -103,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
                          [](const auto& which) { return std::string(which.param); });
 
 TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {
-  Scenario scenario = load("demo.yaml");
+  Scenario scenario = load_shipped("demo.yaml");
   scenario.lidar = LidarKind::planar;
   for (std::uint64_t seed : {1, 2, 3, 4})
     for (const std::string& line : run(scenario, seed).report.complaints())
@@ -114,7 +108,7 @@ TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {
 class Storm : public testing::TestWithParam<int> {};
 
 TEST_P(Storm, EveryRuleHolds) {
-  const Scenario scenario = load("authority_storm.yaml");
+  const Scenario scenario = load_shipped("authority_storm.yaml");
   for (int i = 0; i < 5; ++i) {
     const RunReport report = run(scenario, static_cast<std::uint64_t>(GetParam() + i), 1).report;
     for (const std::string& line : report.complaints())
@@ -126,7 +120,7 @@ TEST_P(Storm, EveryRuleHolds) {
 
 // The same with crashes, cuts, a hanging stick and a forger.
 TEST_P(Storm, EveryRuleHoldsUnderFaults) {
-  const Scenario scenario = load("fault_storm.yaml");
+  const Scenario scenario = load_shipped("fault_storm.yaml");
   for (int i = 0; i < 5; ++i) {
     const RunReport report = run(scenario, static_cast<std::uint64_t>(GetParam() + i), 1).report;
     for (const std::string& line : report.complaints())

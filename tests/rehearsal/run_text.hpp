@@ -5,19 +5,25 @@
 
 #include "sim/rehearsal/rehearsal.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
+#include "tests/folders/folders.hpp"
 
 namespace adit::sim {
 
+/// A scenario of config/scenarios.
+inline Scenario load_shipped(const std::string& file) {
+  auto scenario = load_scenario(source_folder() + "/config/scenarios/" + file);
+  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
+  return *scenario;
+}
+
 /// What a scenario written in a test comes to; `defect`: one that is compiled into the agent, none when
 /// empty.
-inline RunReport run_text(const std::string& yaml, const char* file, const std::string& defect = "",
-                          std::uint64_t seed = 1) {
+inline RunReport run_text(const std::string& yaml, const char* file, const std::string& defect = "") {
   auto scenario = parse_scenario(yaml, file);
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
   auto factory = make_agent_factory(defect);
   EXPECT_TRUE(factory.ok());
   RunParams params;
-  params.seed = seed;
   params.make_agent = *factory;
   auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
   EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
