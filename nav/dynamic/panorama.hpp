@@ -12,17 +12,25 @@ namespace adit::nav {
 class Panorama {
  public:
   static constexpr int kColumns = 288;
+  static constexpr int kRows = 32;
+  static constexpr int kBins = kColumns * kRows;
 
   void clear() { bins_.fill(kNothing); }
   /// A return at (dx, dy, dz) from the sensor; `range` is its horizontal distance. Metres.
-  void add(float dx, float dy, float dz, float range) {
+  /// The bin of which it is the nearest so far (column and row: kColumns to a row), else -1.
+  int add(float dx, float dy, float dz, float range) {
     const int row = row_of(dz / range);
-    if (row < 0 || row >= kRows) return;
-    std::uint16_t& bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(dx, dy))];
+    if (row < 0 || row >= kRows) return -1;
+    const int index = row * kColumns + column_of(dx, dy);
+    std::uint16_t& bin = bins_[static_cast<std::size_t>(index)];
     const float centimetres = range * 100.0f;
     const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
-    if (value < bin) bin = value;
+    if (value >= bin) return -1;
+    bin = value;
+    return index;
   }
+  /// Whether a bin has a return, before spread().
+  bool filled(int bin) const { return bins_[static_cast<std::size_t>(bin)] != kNothing; }
   /// Once, after the last add().
   void spread();
   /// Whether rays went past the place at (dx, dy, dz) from the sensor, at `range`, by `beyond` at least.
@@ -42,13 +50,12 @@ class Panorama {
   }
 
  private:
-  static constexpr int kRows = 32;
   static constexpr std::uint16_t kNothing = 0xffff;
   static constexpr std::uint16_t kFar = 0xfffe;
   static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 116.5f) - 100; }
 
-  std::array<std::uint16_t, kColumns* kRows> bins_ = [] {
-    std::array<std::uint16_t, kColumns * kRows> nothing{};
+  std::array<std::uint16_t, kBins> bins_ = [] {
+    std::array<std::uint16_t, kBins> nothing{};
     nothing.fill(kNothing);
     return nothing;
   }();

@@ -51,7 +51,9 @@ void Tracker::look(std::span<const Eigen::Vector3f> points, const Pose3& body, d
   newest_ = next_;
   const std::size_t last = (next_ + kImages - 1) % kImages;
   if (stamp_s - images_[last].stamp_s >= kLeastPeriod) next_ = (next_ + 1) % kImages;
+  take_in(points, body, now);
   compare(points, body, before == &now ? nullptr : before, lately == &now ? nullptr : lately, now);
+  now.seen.spread();
   now.stamp_s = stamp_s;
   stamp_s_ = stamp_s;
   observe();
@@ -67,42 +69,50 @@ bool Tracker::jumped(const Pose2& body, double dt) const {
          std::fabs(by.yaw) > kMore * platform_.max_turn * dt + kTurn;
 }
 
-void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
-                      const Image* lately, Image& now) {
+void Tracker::take_in(std::span<const Eigen::Vector3f> points, const Pose3& body, Image& now) {
   const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
   now.sensor = body.position.cast<float>() + turn * lidar;
   now.seen.clear();
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Eigen::Vector3f d = turn * (points[n] - lidar);
+    const float flat2 = d.x() * d.x() + d.y() * d.y();
+    // Written so that a NaN fails.
+    if (!(flat2 > 1e-2f && flat2 < 1e6f && std::fabs(d.z()) < 1e3f)) continue;
+    const int bin = now.seen.add(d.x(), d.y(), d.z(), std::sqrt(flat2));
+    if (bin >= 0) nearest_[static_cast<std::size_t>(bin)] = static_cast<std::uint32_t>(n);
+  }
+}
+
+void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
+                      const Image* lately, Image& now) {
+  const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
   columns_.fill({});
   const Footprint own = Footprint(platform_).grown(params_.body_margin, params_.body_margin);
   const auto low = static_cast<float>(platform_.step + params_.lowest);
   const auto high = static_cast<float>(std::max(platform_.height, platform_.lidar_height) + 0.5);
-  const auto reach2 = static_cast<float>(params_.reach * params_.reach);
-  const auto beyond = static_cast<float>(params_.beyond);
+  const auto reach = static_cast<float>(params_.reach), beyond = static_cast<float>(params_.beyond);
   const auto radius2 = static_cast<float>(own.radius() * own.radius());
   const auto was_free = [beyond](const Image* image, const Eigen::Vector3f& at) {
     if (!image) return false;
     const Eigen::Vector3f from = at - image->sensor;
-    const float range = std::hypot(from.x(), from.y());
+    const float range = std::sqrt(from.x() * from.x() + from.y() * from.y());
     return range > 0.1f && image->seen.saw_past(from.x(), from.y(), from.z(), range, beyond);
   };
-  for (const Eigen::Vector3f& p : points) {
-    const Eigen::Vector3f d = turn * (p - lidar);
-    const float flat2 = d.x() * d.x() + d.y() * d.y();
-    // Written so that a NaN fails.
-    if (!(flat2 > 1e-2f && flat2 < 1e6f && std::fabs(d.z()) < 1e3f)) continue;
-    const float range = std::sqrt(flat2);
-    now.seen.add(d.x(), d.y(), d.z(), range);
-    if (flat2 > reach2 || p.z() < low || p.z() > high) continue;
-    const Eigen::Vector3f at = now.sensor + d;
-    if (!was_free(before, at) && !was_free(lately, at)) continue;
+  for (int bin = 0; bin < Panorama::kBins; ++bin) {
+    if (!now.seen.filled(bin)) continue;
+    const Eigen::Vector3f& p = points[nearest_[static_cast<std::size_t>(bin)]];
+    if (p.z() < low || p.z() > high) continue;
+    const Eigen::Vector3f d = turn * (p - lidar), at = now.sensor + d;
+    const float range = std::sqrt(d.x() * d.x() + d.y() * d.y());
+    if (range > reach || (!was_free(before, at) && !was_free(lately, at))) continue;
     if (p.x() * p.x() + p.y() * p.y() < radius2 && own.depth(p.x(), p.y()) > 0) continue;
-    Column& column = columns_[static_cast<std::size_t>(Panorama::column_of(d.x(), d.y()))];
+    Column& column = columns_[static_cast<std::size_t>(bin % Panorama::kColumns)];
     if (column.returns++ > 0 && column.range <= range) continue;
     column.range = range;
     column.at = at.head<2>();
   }
-  now.seen.spread();
 }
 
 void Tracker::observe() {

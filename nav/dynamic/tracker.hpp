@@ -48,7 +48,7 @@ struct Mover {
 /// faster than its doubt moves.
 ///
 /// What moves straight away from the robot is not found: its place was hidden by itself. Fixed sizes; nothing
-/// is allocated after construction; about 160 kB.
+/// is allocated after construction; about 200 kB.
 class Tracker {
  public:
   static constexpr std::size_t kMost = 16;  ///< movers
@@ -75,7 +75,7 @@ class Tracker {
     Eigen::Vector3f sensor{0, 0, 0};  ///< odometry frame
     double stamp_s{-1e9};
   };
-  /// The nearest return of a column that is where nothing was.
+  /// The nearest return of a column that is where nothing was, and in how many of its bins there is one.
   struct Column {
     Eigen::Vector2f at{0, 0};
     float range{};
@@ -98,6 +98,9 @@ class Tracker {
   const Image* reference(double stamp_s, double age) const;
   /// The odometry, that is: no robot moves so far in `dt` s.
   bool jumped(const Pose2& body, double dt) const;
+  /// Puts the returns into `now`, and the nearest of each bin into nearest_.
+  void take_in(std::span<const Eigen::Vector3f> points, const Pose3& body, Image& now);
+  /// Looks which of the nearest returns are where something was seen through.
   void compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
                const Image* lately, Image& now);
   void observe();
@@ -110,6 +113,7 @@ class Tracker {
   TrackerParams params_;
   std::vector<Image> images_;
   std::size_t next_{0}, newest_{0};
+  std::array<std::uint32_t, Panorama::kBins> nearest_{};  ///< the point that each filled bin has its range of
   std::array<Column, Panorama::kColumns> columns_{};
   std::array<Observation, kTracks> observations_{};
   std::size_t observation_count_{0};

@@ -57,6 +57,7 @@ struct Tile {
   int next{-1};                                               ///< the tile of another floor at this place
   std::array<int, 8> beside{-1, -1, -1, -1, -1, -1, -1, -1};  ///< first tiles of the places around
   bool used{false}, dirty{false};
+  bool built{false};  ///< costs and nodes were worked out
   std::array<GroundCell, kTileArea> cells{};
   std::array<std::uint8_t, kTileArea> cost{};  ///< of a cell, 1/16 per length; 0: not passable
   int node_count{0};

@@ -230,8 +230,13 @@ void TileBuilder::build(SurfaceMap& map, int index) {
   tile.dirty = false;
   gather(map, tile);
   find_steps();
+  const std::array<std::uint8_t, kTileArea> before = tile.cost;
   measure(tile);
+  // Most of what is told of a tile changes no cell's cost: what was measured holds, but for heights.
+  const bool same = tile.built && before == tile.cost;
   open_sides(tile);
+  if (same) return;
+  tile.built = true;
   tile.measured = 0;
   map.changed();
 }
