@@ -2,10 +2,12 @@
 #include <array>
 #include <cstdint>
 
+#include "nav/ray.hpp"
+
 namespace adit::nav {
 
 /// How far one scan saw, by direction from the sensor with the vertical upright: bins of about 1.2 degrees of
-/// bearing (by the "diamond angle", which needs no trigonometry) and of 0.02 of the elevation's tangent.
+/// bearing (by the diamond angle) and of 0.02 of the elevation's tangent.
 /// After spread() each bin holds the nearest return of itself and its neighbours, so that "it saw past that
 /// place" needs every ray around to have gone past: edges, the grain of the rings, and small errors of the
 /// odometry do not count.
@@ -16,14 +18,13 @@ class Panorama {
   static constexpr int kBins = kColumns * kRows;
 
   void clear() { bins_.fill(kNothing); }
-  /// A return at (dx, dy, dz) from the sensor; `range` is its horizontal distance. Metres.
-  /// The bin of which it is the nearest so far (column and row: kColumns to a row), else -1.
-  int add(float dx, float dy, float dz, float range) {
-    const int row = row_of(dz / range);
+  /// A return. The bin of which it is the nearest so far (column and row: kColumns to a row), else -1.
+  int add(const Ray& ray) {
+    const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return -1;
-    const int index = row * kColumns + column_of(dx, dy);
+    const int index = row * kColumns + column_of(ray.bearing);
     std::uint16_t& bin = bins_[static_cast<std::size_t>(index)];
-    const float centimetres = range * 100.0f;
+    const float centimetres = ray.range * 100.0f;
     const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
     if (value >= bin) return -1;
     bin = value;
@@ -33,19 +34,16 @@ class Panorama {
   bool filled(int bin) const { return bins_[static_cast<std::size_t>(bin)] != kNothing; }
   /// Once, after the last add().
   void spread();
-  /// Whether rays went past the place at (dx, dy, dz) from the sensor, at `range`, by `beyond` at least.
+  /// Whether rays went past the place that `ray` leads to, by `beyond` metres at least.
   /// Where nothing came back nothing is known: false.
-  bool saw_past(float dx, float dy, float dz, float range, float beyond) const {
-    const int row = row_of(dz / range);
+  bool saw_past(const Ray& ray, float beyond) const {
+    const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return false;
-    const std::uint16_t bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(dx, dy))];
-    return bin != kNothing && bin > (range + beyond) * 100.0f;
+    const std::uint16_t bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(ray.bearing))];
+    return bin != kNothing && bin > (ray.range + beyond) * 100.0f;
   }
-  static int column_of(float dx, float dy) {
-    const float ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
-    const float t = dy / (ax + ay);            // -1 .. 1
-    const float turn = dx < 0 ? 2.0f - t : t;  // -1 .. 3, monotone in the bearing
-    const int column = static_cast<int>((turn + 1.0f) * (kColumns / 4));
+  static int column_of(float bearing) {
+    const int column = static_cast<int>((bearing + 1.0f) * (kColumns / 4));
     return column < kColumns ? column : 0;
   }
 

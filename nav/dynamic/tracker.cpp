@@ -8,6 +8,9 @@
 namespace adit::nav {
 namespace {
 
+constexpr float kNearest = 0.1f;       // m from the lidar; what is nearer is the own body
+constexpr float kFarthest = 1e3f;      // m
+constexpr float kSteepest = 1e2f;      // of a ray's elevation, tangent
 constexpr double kLeastPeriod = 0.08;  // s between the images that are kept
 constexpr double kBreak = 1.0;         // s without a scan: nothing of before counts
 constexpr int kGap = 2;                // columns without a return within one thing
@@ -74,13 +77,15 @@ void Tracker::take_in(std::span<const Eigen::Vector3f> points, const Pose3& body
   const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
   now.sensor = body.position.cast<float>() + turn * lidar;
   now.seen.clear();
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    const Eigen::Vector3f d = turn * (points[n] - lidar);
-    const float flat2 = d.x() * d.x() + d.y() * d.y();
-    // Written so that a NaN fails.
-    if (!(flat2 > 1e-2f && flat2 < 1e6f && std::fabs(d.z()) < 1e3f)) continue;
-    const int bin = now.seen.add(d.x(), d.y(), d.z(), std::sqrt(flat2));
-    if (bin >= 0) nearest_[static_cast<std::size_t>(bin)] = static_cast<std::uint32_t>(n);
+  for (std::size_t first = 0; first < points.size(); first += block_.count()) {
+    block_.take(points.subspan(first), lidar, turn);
+    for (std::size_t n = 0; n < block_.count(); ++n) {
+      const Ray ray = block_[n];
+      // Written so that what is not finite fails.
+      if (!(ray.range > kNearest && ray.range < kFarthest && std::fabs(ray.tangent) < kSteepest)) continue;
+      const int bin = now.seen.add(ray);
+      if (bin >= 0) nearest_[static_cast<std::size_t>(bin)] = static_cast<std::uint32_t>(first + n);
+    }
   }
 }
 
@@ -97,8 +102,8 @@ void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body
   const auto was_free = [beyond](const Image* image, const Eigen::Vector3f& at) {
     if (!image) return false;
     const Eigen::Vector3f from = at - image->sensor;
-    const float range = std::sqrt(from.x() * from.x() + from.y() * from.y());
-    return range > 0.1f && image->seen.saw_past(from.x(), from.y(), from.z(), range, beyond);
+    const Ray ray = Ray::to(from.x(), from.y(), from.z());
+    return ray.range > kNearest && image->seen.saw_past(ray, beyond);
   };
   for (int bin = 0; bin < Panorama::kBins; ++bin) {
     if (!now.seen.filled(bin)) continue;

@@ -113,6 +113,7 @@ class Tracker {
   TrackerParams params_;
   std::vector<Image> images_;
   std::size_t next_{0}, newest_{0};
+  RayBlock block_{};
   std::array<std::uint32_t, Panorama::kBins> nearest_{};  ///< the point that each filled bin has its range of
   std::array<Column, Panorama::kColumns> columns_{};
   std::array<Observation, kTracks> observations_{};

@@ -112,7 +112,7 @@ bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
 bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body, const Panorama& seen) const {
   const Eigen::Vector3f d =
       (body.orientation * (local - Eigen::Vector3d(0, 0, platform_.lidar_height))).cast<float>();
-  return seen.saw_past(d.x(), d.y(), d.z(), d.head<2>().norm(), kPast);
+  return seen.saw_past(Ray::to(d.x(), d.y(), d.z()), kPast);
 }
 
 void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s, const Panorama& seen) {

@@ -15,7 +15,7 @@ void RayImage::clear() {
 bool RayImage::saw_through(const Eigen::Vector3f& low, const Eigen::Vector3f& high, float beyond) const {
   const float x = 0.5f * (low.x() + high.x()), y = 0.5f * (low.y() + high.y());
   const float range = std::sqrt(x * x + y * y);
-  const int column = column_of(x, y);
+  const int column = column_of(diamond_angle(x, y));
   const int first = std::max(0, row_of(low.z() / range));
   const int last = std::min(kRows - 1, row_of(high.z() / range));
   const auto need = static_cast<std::uint16_t>(std::min(60000.0f, (range + beyond) * 100.0f));

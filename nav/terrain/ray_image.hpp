@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "nav/ray.hpp"
+
 namespace adit::nav {
 
 /// The whole number below: without SSE 4.1, which the build does not assume, std::floor is a call, and this
@@ -13,8 +15,7 @@ inline int floor_int(float v) {
 }
 
 /// How far one scan saw in each direction of the lidar: what it saw through is free. Directions are binned
-/// by a bearing that needs no trigonometry (the "diamond angle") and by the tangent of the elevation; a bin
-/// keeps its shortest range, so that a ray which ended near wins over one that slipped past.
+/// by the diamond angle of their bearing and by the tangent of the elevation; a bin keeps its shortest range, so that a ray which ended near wins over one that slipped past.
 class RayImage {
  public:
   static constexpr int kColumns = 256;
@@ -23,14 +24,13 @@ class RayImage {
   RayImage();
   void clear();
 
-  /// A return at (dx, dy, dz) from the lidar, in its frame; `range` is sqrt(dx^2 + dy^2). All in metres.
-  void add(float dx, float dy, float dz, float range) {
-    const float tangent = dz / range;
-    if (tangent < lowest_) lowest_ = tangent;
-    const int row = row_of(tangent);
+  /// A return, from the lidar in its frame.
+  void add(const Ray& ray) {
+    if (ray.tangent < lowest_) lowest_ = ray.tangent;
+    const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return;
-    std::uint16_t& bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(dx, dy))];
-    const float centimetres = range * 100.0f;
+    std::uint16_t& bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(ray.bearing))];
+    const float centimetres = ray.range * 100.0f;
     const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
     if (value < bin) bin = value;
   }
@@ -54,11 +54,8 @@ class RayImage {
   static constexpr std::uint16_t kFar = 0xfffe;
 
   static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 50.5f); }  // 0.02 a row
-  static int column_of(float dx, float dy) {
-    const float ax = dx < 0 ? -dx : dx, ay = dy < 0 ? -dy : dy;
-    const float t = dy / (ax + ay);            // -1 .. 1
-    const float turn = dx < 0 ? 2.0f - t : t;  // -1 .. 3, monotone in the bearing
-    return static_cast<int>(turn * (kColumns / 4) + kColumns) & (kColumns - 1);
+  static int column_of(float bearing) {
+    return static_cast<int>(bearing * (kColumns / 4) + kColumns) & (kColumns - 1);
   }
 
   std::vector<std::uint16_t> bins_;

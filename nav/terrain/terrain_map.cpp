@@ -113,21 +113,26 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
   const auto reach2 = static_cast<float>(std::pow(body_.radius() + params_.body_margin, 2));
   const auto own = static_cast<float>(-params_.body_margin);
   const auto deep = -lidar / static_cast<float>(params_.range);
-  for (const Eigen::Vector3f& p : points) {
-    const float dz = p.z() - lidar;
-    const float flat2 = p.x() * p.x() + p.y() * p.y();
-    const float full2 = flat2 + dz * dz;
-    // Written so that a NaN fails; straight up and down says nothing about the way.
-    if (!(full2 > min2 && flat2 > 1e-4f && full2 < 1e6f)) continue;
-    const float range = std::sqrt(flat2);
-    rays_.add(p.x(), p.y(), dz, range);
-    if (flat2 <= range2) {
-      if (flat2 < reach2 && body_.depth(p.x(), p.y()) >= own) continue;
-      const Eigen::Vector3f world = view.base + view.turn * p;
-      ground_.add(world.x(), world.y(), world.z());
-      near_.push_back(world);
-    } else if (dz < deep * range && deep_.size() < kMostDeep) {
-      deep_.push_back(view.base + view.turn * p);
+  const Eigen::Vector3f sensor(0.0f, 0.0f, lidar);
+  const Eigen::Matrix3f straight = Eigen::Matrix3f::Identity();
+  for (std::size_t first = 0; first < points.size(); first += block_.count()) {
+    block_.take(points.subspan(first), sensor, straight);
+    for (std::size_t n = 0; n < block_.count(); ++n) {
+      const Eigen::Vector3f& p = points[first + n];
+      const Ray ray = block_[n];
+      const float flat2 = ray.range * ray.range, dz = p.z() - lidar;
+      const float full2 = flat2 + dz * dz;
+      // Written so that a NaN fails; straight up and down says nothing about the way.
+      if (!(full2 > min2 && flat2 > 1e-4f && full2 < 1e6f)) continue;
+      rays_.add(ray);
+      if (flat2 <= range2) {
+        if (flat2 < reach2 && body_.depth(p.x(), p.y()) >= own) continue;
+        const Eigen::Vector3f world = view.base + view.turn * p;
+        ground_.add(world.x(), world.y(), world.z());
+        near_.push_back(world);
+      } else if (dz < deep * ray.range && deep_.size() < kMostDeep) {
+        deep_.push_back(view.base + view.turn * p);
+      }
     }
   }
 }

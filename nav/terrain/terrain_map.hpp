@@ -48,6 +48,7 @@ class TerrainMap {
   ObstacleCells obstacles_;
   Drops drops_;
   Surface surface_;
+  RayBlock block_{};
   RayImage rays_{};
   std::vector<Eigen::Vector3f> near_{};  ///< returns within range, in the map
   std::vector<Eigen::Vector3f> deep_{};  ///< those farther away that lie lower than level ground would

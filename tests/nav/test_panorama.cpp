@@ -14,7 +14,7 @@ std::unique_ptr<Panorama> ring(float range, float near = 0.0f, int near_degree =
   out->clear();
   for (int degree = 0; degree < 360; ++degree) {
     const float r = degree == near_degree ? near : range, a = static_cast<float>(degree * M_PI / 180);
-    out->add(r * std::cos(a), r * std::sin(a), 0.0f, r);
+    out->add(Ray::to(r * std::cos(a), r * std::sin(a), 0.0f));
   }
   out->spread();
   return out;
@@ -22,7 +22,7 @@ std::unique_ptr<Panorama> ring(float range, float near = 0.0f, int near_degree =
 
 bool past(const Panorama& p, float range, float degree, float dz = 0.0f) {
   const float a = degree * static_cast<float>(M_PI) / 180;
-  return p.saw_past(range * std::cos(a), range * std::sin(a), dz, range, 0.15f);
+  return p.saw_past(Ray::to(range * std::cos(a), range * std::sin(a), dz), 0.15f);
 }
 
 TEST(Panorama, SawPastWhatIsNearerAllAround) {
@@ -59,12 +59,12 @@ TEST(Panorama, TheRingsAboveAndBelowCountToo) {
   Panorama p;
   for (int degree = 0; degree < 360; ++degree) {
     const float a = static_cast<float>(degree * M_PI / 180), c = std::cos(a), s = std::sin(a);
-    p.add(8 * c, 8 * s, 0.5f, 8.0f);
-    p.add(3 * c, 3 * s, -0.06f, 3.0f);
+    p.add(Ray::to(8 * c, 8 * s, 0.5f));
+    p.add(Ray::to(3 * c, 3 * s, -0.06f));
   }
   p.spread();
-  EXPECT_FALSE(p.saw_past(4.0f, 0.0f, 0.0f, 4.0f, 0.15f));
-  EXPECT_TRUE(p.saw_past(4.0f, 0.0f, 0.28f, 4.0f, 0.15f)) << "far above the lower ring";
+  EXPECT_FALSE(p.saw_past(Ray::to(4.0f, 0.0f, 0.0f), 0.15f));
+  EXPECT_TRUE(p.saw_past(Ray::to(4.0f, 0.0f, 0.28f), 0.15f)) << "far above the lower ring";
 }
 
 }  // namespace

@@ -1,0 +1,65 @@
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace adit::nav {
+
+/// A bearing that needs no trigonometry, monotone in the angle: -1 .. 3, from -y over +x to -y. The "diamond
+/// angle".
+inline float diamond_angle(float dx, float dy) {
+  const float t = dy / (std::fabs(dx) + std::fabs(dy));  // -1 .. 1
+  return dx < 0 ? 2.0f - t : t;
+}
+
+/// Where a return lies from its sensor.
+struct Ray {
+  float range{};    ///< horizontal distance, m
+  float tangent{};  ///< of the elevation
+  float bearing{};  ///< diamond angle
+
+  static Ray to(float dx, float dy, float dz) {
+    const float range = std::sqrt(dx * dx + dy * dy);
+    return {range, dz / range, diamond_angle(dx, dy)};
+  }
+};
+
+/// The rays to a few points at once. What runs for every return of a scan is written so that the compiler
+/// does four at a time.
+class RayBlock {
+ public:
+  static constexpr std::size_t kSize = 128;
+
+  /// To as many of the points as fit in, from a sensor at `lidar`, along axes turned by `turn`; points that are
+  /// not finite give rays that are not.
+  void take(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& lidar,
+            const Eigen::Matrix3f& turn) {
+    count_ = points.size() < kSize ? points.size() : kSize;
+    for (std::size_t n = 0; n < count_; ++n) {
+      x_[n] = points[n].x() - lidar.x();
+      y_[n] = points[n].y() - lidar.y();
+      z_[n] = points[n].z() - lidar.z();
+    }
+    const float a = turn(0, 0), b = turn(0, 1), c = turn(0, 2), d = turn(1, 0), e = turn(1, 1),
+                f = turn(1, 2), g = turn(2, 0), h = turn(2, 1), i = turn(2, 2);
+    for (std::size_t n = 0; n < kSize; ++n) {
+      const float dx = a * x_[n] + b * y_[n] + c * z_[n];
+      const float dy = d * x_[n] + e * y_[n] + f * z_[n];
+      const float dz = g * x_[n] + h * y_[n] + i * z_[n];
+      const float range = std::sqrt(dx * dx + dy * dy);
+      range_[n] = range;
+      tangent_[n] = dz / range;
+      bearing_[n] = diamond_angle(dx, dy);
+    }
+  }
+  std::size_t count() const { return count_; }
+  Ray operator[](std::size_t n) const { return {range_[n], tangent_[n], bearing_[n]}; }
+
+ private:
+  std::size_t count_{0};
+  std::array<float, kSize> x_{}, y_{}, z_{}, range_{}, tangent_{}, bearing_{};
+};
+
+}  // namespace adit::nav
