@@ -16,16 +16,18 @@ namespace adit::nav {
 
 struct LocalPlannerParams {
   PathTreeParams tree{};
-  double roomy_margin{0.5};    ///< kept free beside the footprint where there is room, m, [0, 1]
-  double side_margin{0.09};    ///< the same where there is less, m, [0, 1]
-  double front_margin{0.20};   ///< kept free before and behind it, m, [0, 1]; never less than a turn needs
-  double tight_margin{0.05};   ///< on the sides, where nothing else is left, m, [0.02, 0.5]
-  double short_scale{0.5};     ///< of the second, shorter and more curved library, [0.2, 1]
-  double tight_speed{0.5};     ///< where only the tight margin is left, m/s, (0, 2]
-  double tolerance{0.25};      ///< arrived within this distance of the goal, m, [0.02, 2]
-  double goal_spread{95.0};    ///< paths may lead away from the goal's bearing by this, degrees, [10, 120]
-  double direct_spread{35.0};  ///< before one farther off a tighter way is taken, degrees, [10, 120]
-  double stick_spread{45.0};   ///< the same for a direction, degrees, [10, 120]
+  double roomy_margin{0.5};     ///< kept free beside the footprint where there is room, m, [0, 1]
+  double side_margin{0.09};     ///< the same where there is less, m, [0, 1]
+  double front_margin{0.20};    ///< kept free before and behind it, m, [0, 1]; never less than a turn needs
+  double tight_margin{0.05};    ///< on the sides, where there is no more, m, [0.02, 0.5]
+  double squeeze_margin{0.02};  ///< the same where nothing else is left, m, [0, 0.5]
+  double short_scale{0.5};      ///< of the second, shorter and more curved library, [0.2, 1]
+  double tight_speed{0.5};      ///< where only the tight margin is left, m/s, (0, 2]
+  double squeeze_speed{0.25};   ///< and where less is, m/s, (0, 2]
+  double tolerance{0.25};       ///< arrived within this distance of the goal, m, [0.02, 2]
+  double goal_spread{95.0};     ///< paths may lead away from the goal's bearing by this, degrees, [10, 120]
+  double direct_spread{35.0};   ///< before one farther off a tighter way is taken, degrees, [10, 120]
+  double stick_spread{45.0};    ///< the same for a direction, degrees, [10, 120]
   double detour_spread{
       60.0};             ///< the same for paths that are free for a part of the way only, degrees, [10, 120]
   double patience{3.0};  ///< stands blocked this long before it backs away, s, [0, 60]

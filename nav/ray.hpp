@@ -32,8 +32,8 @@ class RayBlock {
  public:
   static constexpr std::size_t kSize = 128;
 
-  /// To as many of the points as fit in, from a sensor at `lidar`, along axes turned by `turn`; points that are
-  /// not finite give rays that are not.
+  /// To as many of the points as fit in, from a sensor at `lidar`, along axes turned by `turn`; points that
+  /// are not finite give rays that are not.
   void take(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& lidar,
             const Eigen::Matrix3f& turn) {
     count_ = points.size() < kSize ? points.size() : kSize;

@@ -12,7 +12,10 @@ constexpr double kSampling = 0.5;    // m
 constexpr double kNextCorner = 5.0;  // m
 constexpr double kInGate = 0.3;      // m before its middle
 constexpr double kBeforeGate = 1.1;  // m: there the robot lines up
+constexpr double kAtGate = 1.5;      // m: from farther off no path of the local planner leads through
 constexpr double kBeyondGate = 0.9;  // m: so far it goes straight on
+constexpr double kThrough = 0.6;     // m behind its middle a robot has left it
+constexpr double kAside = 0.25;      // m: farther off its axis a robot is not in it
 constexpr double kLinedUp = 0.14;    // tangent of the angle off the gate's axis
 constexpr double kStaysLinedUp = 0.25;
 constexpr double kDetour = 1.03;  // a straight line that costs more than this much of the route is none
@@ -28,6 +31,12 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double leng
   }
   end = true;
   return points.back();
+}
+
+// A place on the axis of a gate, so far behind its middle.
+Eigen::Vector3d on_axis(const Gate& gate, double behind) {
+  return {gate.middle.x() + behind * gate.axis.x(), gate.middle.y() + behind * gate.axis.y(),
+          gate.middle.z()};
 }
 
 }  // namespace
@@ -93,13 +102,26 @@ double RouteKeeper::cost_to(RoutePlanner& planner, double length) const {
   return cost;
 }
 
+// In a gate there is no room to turn: until the robot has left it, it goes straight on, as long as the route
+// still leads that way.
+std::optional<Eigen::Vector3d> RouteKeeper::straight_on(const Eigen::Vector3d& place) {
+  if (!inside_) return std::nullopt;
+  const Eigen::Vector2d past = place.head<2>() - inside_->middle.head<2>();
+  const double along = past.dot(inside_->axis);
+  const double aside = std::abs(inside_->axis.x() * past.y() - inside_->axis.y() * past.x());
+  bool end = false;
+  const Eigen::Vector2d next = point_at(route_.points, kBeyondGate, end).head<2>() - place.head<2>();
+  if (along < -kBeforeGate || along > kThrough || aside > kAside || next.dot(inside_->axis) <= 0) {
+    inside_.reset();
+    return std::nullopt;
+  }
+  return on_axis(*inside_, kBeyondGate);
+}
+
 // A robot that is to go through a gate lines up before it, and goes straight on behind it.
 std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, const Eigen::Vector3d& place) {
+  if (const auto on = straight_on(place)) return on;
   const auto gate = planner.gate(route_.points, params_.ahead);
-  const auto on_axis = [&](double s) {
-    return Eigen::Vector3d{gate->middle.x() + s * gate->axis.x(), gate->middle.y() + s * gate->axis.y(),
-                           gate->middle.z()};
-  };
   const Eigen::Vector2d rest =
       gate ? Eigen::Vector2d(gate->middle.head<2>() - place.head<2>()) : Eigen::Vector2d(0, 0);
   const double before = gate ? rest.dot(gate->axis) : 0.0;
@@ -108,14 +130,15 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
     return std::nullopt;
   }
   const double off = std::abs(gate->axis.x() * rest.y() - gate->axis.y() * rest.x()) / before;
-  lined_up_ = off < (lined_up_ ? kStaysLinedUp : kLinedUp);
+  lined_up_ = before < kAtGate && off < (lined_up_ ? kStaysLinedUp : kLinedUp);
   if (lined_up_) {
-    const Eigen::Vector3d beyond = on_axis(kBeyondGate);
-    if (planner.line(gate->middle, beyond, {.let_out = true}).passable) return beyond;
-    return std::nullopt;
+    const Eigen::Vector3d beyond = on_axis(*gate, kBeyondGate);
+    if (!planner.line(gate->middle, beyond, {.let_out = true}).passable) return std::nullopt;
+    if (before < kThrough) inside_ = gate;
+    return beyond;
   }
   for (double s = kBeforeGate; s > kInGate; s -= kRouteCell)
-    if (planner.line(on_axis(-s), gate->middle, {.let_in = true}).passable) return on_axis(-s);
+    if (planner.line(on_axis(*gate, -s), gate->middle, {.let_in = true}).passable) return on_axis(*gate, -s);
   return std::nullopt;
 }
 

@@ -48,6 +48,7 @@ class RouteKeeper {
   void watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked, double stamp_s);
   double cost_to(RoutePlanner& planner, double length) const;
   RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place);
+  std::optional<Eigen::Vector3d> straight_on(const Eigen::Vector3d& place);
   std::optional<Eigen::Vector3d> gate_step(RoutePlanner& planner, const Eigen::Vector3d& place);
 
   RouteKeeperParams params_;
@@ -56,7 +57,8 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
-  bool lined_up_{false};  // with the gate ahead
+  bool lined_up_{false};          // with the gate ahead
+  std::optional<Gate> inside_{};  // the gate that it goes through
 };
 
 }  // namespace adit::nav

@@ -21,9 +21,9 @@ float bearing(float y, float x) {
   const float ax = std::abs(x), ay = std::abs(y), most = std::max(ax, ay);
   if (most == 0.0f) return 0.0f;
   const float t = std::min(ax, ay) / most, u = t * t;
-  float angle = t * (0.99997726f +
-                     u * (-0.33262347f +
-                          u * (0.19354346f + u * (-0.11643287f + u * (0.05265332f - u * 0.01172120f)))));
+  float angle =
+      t * (0.99997726f +
+           u * (-0.33262347f + u * (0.19354346f + u * (-0.11643287f + u * (0.05265332f - u * 0.01172120f)))));
   constexpr auto kPi = static_cast<float>(M_PI);
   if (ay > ax) angle = kPi / 2 - angle;
   if (x < 0) angle = kPi - angle;

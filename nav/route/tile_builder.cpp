@@ -36,7 +36,8 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
     for (int x = x0; x < x1; ++x) {
       const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
       if (!cell.known || std::abs(cell.z - z) > 2 * kSheetReach) continue;
-      height_[in_window(x, y)] = cell.z;
+      // The ground under what stands there is a guess, and no step.
+      height_[in_window(x, y)] = cell.blocked ? kNan : cell.z;
       solid_[in_window(x, y)] = cell.blocked;
     }
 }

@@ -7,6 +7,7 @@ namespace adit::nav {
 namespace {
 
 constexpr int kMany = 8;               ///< a surface has this many times the hits of the noise before it
+constexpr int kMeanOver = 32;          ///< returns: older ones fade, odometry drifts
 constexpr double kForgetBeyond = 0.3;  ///< m beyond the range
 constexpr float kInside = 0.05f;       ///< m within the body's outline
 
@@ -24,6 +25,7 @@ void ObstacleCells::clear() {
 
 void ObstacleCells::mark(float x, float y, float z) {
   const int ix = cell(x), iy = cell(y);
+  const Entry fresh{ix, iy, z, z, scan_, 1, 0, false, false, now_, now_, x, y, 1};
   std::uint16_t& index = slots_[slot(ix, iy)];
   if (index != 0) {
     Entry& e = entries_[index - 1u];
@@ -33,14 +35,17 @@ void ObstacleCells::mark(float x, float y, float z) {
       e.hits = e.scan == scan_ ? e.hits + 1 : 1;
       e.scan = scan_;
       e.again = true;
+      e.weight = std::min(e.weight + 1, kMeanOver);
+      e.mean_x += (x - e.mean_x) / static_cast<float>(e.weight);
+      e.mean_y += (y - e.mean_y) / static_cast<float>(e.weight);
       return;
     }
     // Left behind on the other side of the torus: its place is taken.
-    e = {ix, iy, z, z, scan_, 1, 0, false, false, now_, now_};
+    e = fresh;
     return;
   }
   if (entries_.size() >= kMaxCells) return;
-  entries_.push_back({ix, iy, z, z, scan_, 1, 0, false, false, now_, now_});
+  entries_.push_back(fresh);
   index = static_cast<std::uint16_t>(entries_.size());
 }
 

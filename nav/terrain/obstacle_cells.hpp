@@ -24,9 +24,11 @@ class ObstacleCells {
     std::uint32_t scan;
     std::int32_t hits;  ///< of the newest scan that hit it
     std::int32_t misses;
-    bool solid;          ///< once hit by more than stray returns
-    bool again;          ///< hit more than once: a single return is noise
-    float since, stamp;  ///< hit first and last, s
+    bool solid;            ///< once hit by more than stray returns
+    bool again;            ///< hit more than once: a single return is noise
+    float since, stamp;    ///< hit first and last, s
+    float mean_x, mean_y;  ///< of the newest returns, m: where in the cell the surface is
+    std::int32_t weight;   ///< of them
     float x() const { return (static_cast<float>(ix) + 0.5f) * kCell; }
     float y() const { return (static_cast<float>(iy) + 0.5f) * kCell; }
   };

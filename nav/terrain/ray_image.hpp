@@ -15,7 +15,8 @@ inline int floor_int(float v) {
 }
 
 /// How far one scan saw in each direction of the lidar: what it saw through is free. Directions are binned
-/// by the diamond angle of their bearing and by the tangent of the elevation; a bin keeps its shortest range, so that a ray which ended near wins over one that slipped past.
+/// by the diamond angle of their bearing and by the tangent of the elevation; a bin keeps its shortest range,
+/// so that a ray which ended near wins over one that slipped past.
 class RayImage {
  public:
   static constexpr int kColumns = 256;

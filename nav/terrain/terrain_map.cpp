@@ -157,7 +157,7 @@ void TerrainMap::classify(const View& view) {
 void TerrainMap::write_cells() {
   cells_.clear();
   for (const auto& e : obstacles_.entries())
-    if (e.again) cells_.push_back({e.x(), e.y(), 1.0f, now_ - e.since});
+    if (e.again) cells_.push_back({e.mean_x, e.mean_y, 1.0f, now_ - e.since});
   for (const std::uint16_t index : drops_.cells()) {
     const Eigen::Vector2f at = ground_.middle(index);
     cells_.push_back({at.x(), at.y(), 1.0f, 0.0f, Layer::drop});

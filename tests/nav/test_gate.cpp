@@ -67,22 +67,56 @@ TEST(Gate, TheKeeperLinesUpBeforeItAndGoesStraightOnBehindIt) {
   EXPECT_LT(behind.target.y(), 2.5) << "and on along the route";
 }
 
-/// Gaps 20 cm wider than the robot, started from aside.
-TEST(Gate, ARobotPassesAGapTwentyCentimetresWiderThanItself) {
-  for (const auto& [platform, low, high] :
-       {std::tuple{wheeled(), 2.7, 3.4}, std::tuple{legged(), 2.7, 3.35}}) {
-    for (const double y : {1.0, 3.0, 5.0}) {
-      BoxWorld world{{{-0.2, 0, 0, 6},
-                      {10, 10.2, 0, 6},
-                      {0, 10, -0.2, 0},
-                      {0, 10, 6, 6.2},
-                      {5, 5.2, 0, low},
-                      {5, 5.2, high, 6}}};
-      RouteDrive drive(platform, world, {2, y, 0});
-      EXPECT_TRUE(drive.to(8, 2, 60)) << platform.name << " from y = " << y;
-      EXPECT_GT(drive.loop.least_clearance, 0.0) << platform.name << " from y = " << y;
+TEST(Gate, AWallWhoseFootWasTakenTooHighIsNoStep) {
+  RoutePlanner planner(tracked());  // it climbs 15 cm
+  for (int x = 0; x < 60; ++x)
+    for (int y = 0; y < 60; ++y) {
+      const bool wall = x == 0 || y == 0 || x == 59 || y == 59 || (x == 30 && (y < 27 || y > 32));
+      const Eigen::Vector3d place(0.1 * x + 0.05, 0.1 * y + 0.05, wall ? 0.25 : 0.0);
+      if (wall)
+        planner.set_obstacle(place, 0.5);
+      else
+        planner.set_ground(place);
     }
+  planner.finish();
+  EXPECT_TRUE(planner.plan({1.5, 3, 0}, {4.5, 3, 0}).found());
+}
+
+/// A hall with a wall across it, and a gap in that, so much wider than the robot; started from aside.
+void expect_passed(const Platform& platform, double wider) {
+  const double half = (platform.width + wider) / 2;
+  for (const double y : {1.0, 2.0, 3.0, 4.0, 5.0}) {
+    BoxWorld world{{{-0.2, 0, 0, 6},
+                    {10, 10.2, 0, 6},
+                    {0, 10, -0.2, 0},
+                    {0, 10, 6, 6.2},
+                    {5, 5.2, 0, 3 - half},
+                    {5, 5.2, 3 + half, 6}}};
+    RouteDrive drive(platform, world, {2, y, 0});
+    EXPECT_TRUE(drive.to(8, 2, 60)) << platform.name << ", " << wider << " m wider, from y = " << y;
+    EXPECT_GT(drive.loop.least_clearance, 0.0)
+        << platform.name << ", " << wider << " m wider, from y = " << y;
   }
+}
+
+TEST(Gate, ARobotPassesAGapTenCentimetresWiderThanItself) {
+  expect_passed(wheeled(), 0.10);
+  expect_passed(legged(), 0.10);
+}
+
+TEST(Gate, ALongRobotPassesAGapFifteenCentimetresWiderThanItself) { expect_passed(tracked(), 0.15); }
+
+TEST(Gate, ItGoesStraightOnUntilItHasLeftIt) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 27, 34);
+  RouteKeeper keeper;
+  const Eigen::Vector3d goal{8, 1.0, 0};
+  for (const double x : {4.0, 4.6, 5.1, 5.5}) {
+    const RouteStep step = keeper.step(planner, {x, 3.05, 0}, goal, false, x);
+    EXPECT_NEAR(step.target.x(), 6.0, 0.2) << x;
+    EXPECT_GT(step.target.y(), 2.6) << x << ": the goal lies aside";
+  }
+  EXPECT_LT(keeper.step(planner, {5.8, 3.05, 0}, goal, false, 6.0).target.y(), 2.4);
 }
 
 }  // namespace
