@@ -39,15 +39,18 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   if (nowhere || plan.arrived) {
     kept_.count = 0;
     course_.forget();
+    retreat_.reset();
     plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
 
-  const LatticeTask task = task_of(target, pose, rear);
-  way_.fill(clear_, task.target, static_cast<float>(platform_.width / 2 + params_.search.margin));
-  const bool keeps = follows_on(rear) && kept_for_.kind == target.kind &&
-                     (!goal || (kept_for_.goal - target.goal).norm() < 1.0) && passable(rear);
-  const bool finds = search_.find(clear_, way_, task, found_);
+  const Target aim = aim_of(target, pose, stamp_s);
+  const LatticeTask task = task_of(aim, pose, rear);
+  // What it would drive is what it is held from; backing away it is let go.
+  const bool held = target.held && goal && !retreat_;
+  const bool keeps = !held && follows_on(rear) && kept_for_.kind == aim.kind &&
+                     (!goal || (kept_for_.goal - aim.goal).norm() < 1.0) && passable(rear);
+  const bool finds = !held && find(task);
   bool takes = finds;
   if (keeps && finds) {
     const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
@@ -61,7 +64,7 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   }
   if (takes) {
     adopt(rear);
-    kept_for_ = target;
+    kept_for_ = aim;
   }
   const bool drives = takes || keeps;
   const bool tired = given_up(target, distance, drives, stamp_s);
@@ -69,10 +72,45 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
     kept_.count = 0;
     plan.blocked = true;
     plan.reason = Reason::blocked;
+    if (!tired) consider_retreat(target, pose, stamp_s);
     return plan;
   }
-  write(target, pose, obstacles, plan);
+  if (!retreat_) blocked_since_.reset();
+  write(aim, pose, obstacles, plan);
+  if (retreat_) plan.ends_at_goal = false;
   return plan;
+}
+
+Target LatticePlanner::aim_of(const Target& target, const Pose2& pose, double stamp_s) {
+  constexpr double kSameGoal = 0.1, kProgress = 0.5, kThere = 0.3;  // m
+  const double distance = (target.goal - pose.position()).norm();
+  const bool other = target.kind != Target::Kind::goal || (target.goal - goal_).norm() > kSameGoal;
+  if (other) retreat_.reset();
+  if (other || distance < nearest_ - kProgress) {
+    nearest_ = distance;
+    retreats_left_ = params_.retreats;
+  }
+  if (retreat_ && ((*retreat_ - pose.position()).norm() < kThere || stamp_s > retreat_until_)) {
+    retreat_.reset();
+    kept_.count = 0;
+  }
+  return retreat_ ? Target::to(*retreat_) : target;
+}
+
+void LatticePlanner::consider_retreat(const Target& target, const Pose2& pose, double stamp_s) {
+  constexpr double kLongest = 8.0;  // s
+  if (retreat_ || target.kind != Target::Kind::goal || retreats_left_ == 0) {
+    retreat_.reset();
+    return;
+  }
+  if (!blocked_since_) blocked_since_ = stamp_s;
+  if (!target.held && stamp_s - *blocked_since_ < params_.patience) return;
+  // Back the way that it came; ahead where that leads away from the goal.
+  const Eigen::Vector2d to = pose.inverse() * target.goal;
+  retreat_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
+  retreat_until_ = stamp_s + kLongest;
+  blocked_since_.reset();
+  --retreats_left_;
 }
 
 void LatticePlanner::watch_motion(const Pose2& rear, double stamp_s) {
@@ -112,6 +150,18 @@ LatticeTask LatticePlanner::task_of(const Target& target, const Pose2& pose, con
   const double now = std::fabs(wrap_angle((task.only > 0 ? 0.0 : M_PI) - bearing));
   task.spread = std::max(params_.stick_spread * M_PI / 180.0, now + 0.05);
   return task;
+}
+
+// A path that keeps the margin; where there is none, one that keeps the tight one.
+bool LatticePlanner::find(LatticeTask task) {
+  const auto& search = params_.search;
+  for (const bool tight : {false, true}) {
+    task.tight = tight;
+    const double margin = tight ? search.tight_margin : search.margin;
+    way_.fill(clear_, task.target, static_cast<float>(platform_.width / 2 + margin));
+    if (search_.find(clear_, way_, task, found_)) return true;
+  }
+  return false;
 }
 
 void LatticePlanner::adopt(const Pose2& rear) {
@@ -158,7 +208,8 @@ bool LatticePlanner::passable(const Pose2& rear) const {
   // What it stands in already it may leave.
   const std::size_t first = at_ + 8;
   for (std::size_t i = first; i < kept_.count; i += 2)
-    if (!search_.free(clear_, back * kept_.spots[i].pose, kHysteresis)) return false;
+    if (!search_.free(clear_, back * kept_.spots[i].pose, kept_.tight, kept_.tight ? 0.0f : kHysteresis))
+      return false;
   return true;
 }
 
@@ -192,6 +243,7 @@ void LatticePlanner::write(const Target& target, const Pose2& pose, std::span<co
   plan.option = 0;
   double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
   if (plan.reverse) limit = std::min(limit, params_.reverse_speed);
+  if (kept_.tight) limit = std::min(limit, params_.tight_speed);
   // Ground that costs is driven slowly.
   float rough = 0.0f;
   const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();

@@ -17,16 +17,21 @@ struct LatticePlannerParams {
   double off_heading{0.4};    ///< the same for the heading, rad, [0.05, 1.5]
   double stick_spread{50.0};  ///< paths may leave a stick's direction by so much, degrees, [10, 120]
   double reverse_speed{1.0};  ///< backwards no faster, m/s, (0, 10]
+  double tight_speed{0.3};    ///< where only the tight margin is left, m/s, (0, 2]
   double rough_slows{0.75};   ///< share of the speed that ground of cost 1 takes, [0, 0.95]
   double effort{25.0};  ///< drives this long without coming nearer to a goal, then it is blocked, s, [1, 600]
   double rest{30.0};    ///< and stays blocked this long before it tries again, s, [0, 3600]
+  double patience{2.0};  ///< blocked for so long on the way to a goal it backs away, s, [0, 60]
+  double retreat{1.5};   ///< by so much, m, [0.3, 3]
+  int retreats{3};       ///< times, until that brings it nearer to the goal, [0, 100]
   PathSpeedParams speed{};
 };
 
 /// The local planner of what cannot turn on the spot: searches a path of short motions, ahead and backwards,
 /// for the next metres (LatticeSearch), from the curvature that the robot has. So it turns round in as many
 /// moves as the place needs. A path whose directions change is kept to until another one is clearly better or
-/// something is in its way; a plan is what is driven in one direction. For every drive.
+/// something is in its way; a plan is what is driven in one direction. Where no path leads on it backs away
+/// and tries again from there. For every drive.
 class LatticePlanner final : public Planner {
  public:
   explicit LatticePlanner(const Platform& platform, const LatticePlannerParams& params = {});
@@ -40,9 +45,13 @@ class LatticePlanner final : public Planner {
   float take_obstacles(std::span<const ObstaclePoint> obstacles);
   bool follows_on(const Pose2& rear);
   bool passable(const Pose2& rear) const;
+  bool find(LatticeTask task);
   void adopt(const Pose2& rear);
   void next_part();
   bool changes_ahead() const;
+  /// What is driven to now: the target, or a place to back away to.
+  Target aim_of(const Target& target, const Pose2& pose, double stamp_s);
+  void consider_retreat(const Target& target, const Pose2& pose, double stamp_s);
   bool given_up(const Target& target, double distance, bool drives, double stamp_s);
   void write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
              Plan& plan) const;
@@ -65,6 +74,10 @@ class LatticePlanner final : public Planner {
   Course course_{};
   Eigen::Vector2d goal_{0, 0};  ///< that the effort is about
   double closest_{0}, effort_{0}, last_s_{0}, rest_until_{0};
+  std::optional<Eigen::Vector2d> retreat_{};  ///< odometry frame
+  std::optional<double> blocked_since_{};
+  double retreat_until_{0}, nearest_{0};  ///< nearest_: to the goal, when retreats were counted anew
+  int retreats_left_{0};
 };
 
 }  // namespace adit::nav

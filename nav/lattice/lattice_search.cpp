@@ -17,22 +17,27 @@ LatticeSearch::LatticeSearch(const Platform& platform, const LatticeSearchParams
       motions_(platform, params.motions),
       base_(platform.rear_axle()),
       closed_(static_cast<std::size_t>(kCells) * kCells * kHeadings * 2, 0) {
-  const double count = std::ceil(3.0 * platform.length / platform.width);
+  const double count = std::ceil(6.0 * platform.length / platform.width);
   disc_count_ = std::clamp<std::size_t>(static_cast<std::size_t>(count), 1, kMostDiscs);
   const double half = platform.length / 2 / static_cast<double>(disc_count_);
   for (std::size_t i = 0; i < disc_count_; ++i)
     discs_[i] = static_cast<float>(base_ - platform.length / 2 + half * static_cast<double>(2 * i + 1));
-  radius_ = static_cast<float>(
-      std::max(platform.width / 2 + params.margin, std::hypot(half, platform.width / 2) + params.margin / 2));
+  const auto radius = [&](double margin) {
+    return static_cast<float>(
+        std::max(platform.width / 2 + margin, std::hypot(half, platform.width / 2) + margin / 2));
+  };
+  wide_ = radius_ = radius(params.margin);
+  tight_ = radius(params.tight_margin);
   nodes_.reserve(kMostNodes);
   open_.reserve(kMostNodes);
 }
 
-bool LatticeSearch::free(const ClearField& clear, const Pose2& pose, float less) const {
+bool LatticeSearch::free(const ClearField& clear, const Pose2& pose, bool tight, float less) const {
+  const float radius = (tight ? tight_ : wide_) - less;
   const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
   const auto x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
   for (std::size_t i = 0; i < disc_count_; ++i)
-    if (clear.clearance(x + c * discs_[i], y + s * discs_[i]) < radius_ - less) return false;
+    if (clear.clearance(x + c * discs_[i], y + s * discs_[i]) < radius) return false;
   return true;
 }
 
@@ -116,6 +121,8 @@ bool LatticeSearch::find(const ClearField& clear, const WayField& way, const Lat
                          LatticePath& path) {
   path.count = 0;
   path.complete = false;
+  path.tight = task.tight;
+  radius_ = task.tight ? tight_ : wide_;
   if (++round_ == 0) {  // the marks of the last time that it had this number are gone by then
     std::fill(closed_.begin(), closed_.end(), 0);
     round_ = 1;

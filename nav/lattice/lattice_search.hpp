@@ -13,6 +13,7 @@ namespace adit::nav {
 struct LatticeSearchParams {
   MotionSetParams motions{};
   double margin{0.06};       ///< kept free around the body, m, [0.02, 0.5]
+  double tight_margin{0.0};  ///< the same where nothing else is left, m, [0, 0.5]
   double comfort{0.25};      ///< beyond the margin; nearer to obstacles a way costs more, m, [0, 2]
   double crowded{2.0};       ///< by so much more at the margin, [0, 20]
   double rough{5.0};         ///< by so much more on ground of cost 1, [0, 100]
@@ -31,6 +32,7 @@ struct LatticeTask {
   int direction{0};  ///< in which it drives, 1 or -1; 0: stands, either is as good
   Eigen::Vector2d target{0, 0};
   bool goal{true};      ///< the target is a place to come to, not only a direction
+  bool tight{false};    ///< only the tight margin is kept
   int only{0};          ///< may drive in this direction only, 1 or -1; 0: both
   double heading{0};    ///< rad, of the way (not of the body) ...
   double spread{M_PI};  ///< ... which paths may leave by so much
@@ -47,6 +49,7 @@ struct LatticePath {
   std::array<Spot, kMost> spots{};
   std::size_t count{0};
   int direction_changes{0};
+  bool tight{false};     ///< keeps only the tight margin
   bool complete{false};  ///< ends at the goal, or at the reach of the search
   double left{0};        ///< way from its end to the target, m
 
@@ -65,8 +68,8 @@ class LatticeSearch {
 
   /// The cheapest path that it finds; false when none leads nearer to the target.
   bool find(const ClearField& clear, const WayField& way, const LatticeTask& task, LatticePath& path);
-  /// Whether the body stands free there, with all but `less` of its margin (m).
-  bool free(const ClearField& clear, const Pose2& pose, float less = 0.0f) const;
+  /// Whether the body stands free there, with all but `less` of its margin, or of the tight one, m.
+  bool free(const ClearField& clear, const Pose2& pose, bool tight, float less) const;
   const MotionSet& motions() const { return motions_; }
   const LatticeSearchParams& params() const { return params_; }
 
@@ -102,7 +105,8 @@ class LatticeSearch {
   std::array<float, kMostDiscs> discs_{};  ///< middles along the body's axis, from the poses' origin, m
   std::array<float, kMostDiscs> least_{};  ///< clearance of each where the search began, m
   std::size_t disc_count_{};
-  float radius_{};
+  float wide_{}, tight_{};  ///< radius of the discs with the one margin and the other, m
+  float radius_{};          ///< of the search under way
   std::vector<Node> nodes_{};
   std::vector<Open> open_{};
   std::vector<std::uint32_t> closed_;

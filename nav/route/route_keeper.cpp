@@ -146,7 +146,7 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
 // from what stands there as the route does.
 RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
   RouteStep step{RouteStep::State::along, {}, false};
-  if (const auto target = gate_step(planner, place)) {
+  if (const auto target = params_.gates ? gate_step(planner, place) : std::nullopt) {
     step.target = *target;
     return step;
   }

@@ -10,9 +10,10 @@ constexpr double kMoved = 0.1;  // m
 }  // namespace
 
 struct Router::Maps {
-  explicit Maps(const RouterParams& params) : planner(params.platform, params.route) {}
+  explicit Maps(const RouterParams& params)
+      : planner(params.platform, params.route), keeper(params.platform) {}
   nav::RoutePlanner planner;
-  nav::RouteKeeper keeper{};
+  nav::RouteKeeper keeper;
 };
 
 Router::Router(RouterParams params, Executor& strand, Log log)

@@ -10,11 +10,11 @@ namespace adit::nav::test {
 struct RouteDrive {
   ClosedLoop loop;
   RoutePlanner planner;
-  RouteKeeper keeper{};
+  RouteKeeper keeper;
   RouteStep step{};
 
   RouteDrive(const Platform& platform, BoxWorld world, const Pose2& start)
-      : loop(platform, std::move(world), start), planner(platform) {}
+      : loop(platform, std::move(world), start), planner(platform), keeper(platform) {}
 
   /// The map takes a scan, and the keeper says where to drive next.
   void look(const Eigen::Vector2d& goal) {

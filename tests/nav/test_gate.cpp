@@ -106,6 +106,8 @@ TEST(Gate, ARobotPassesAGapTenCentimetresWiderThanItself) {
 
 TEST(Gate, ALongRobotPassesAGapFifteenCentimetresWiderThanItself) { expect_passed(tracked(), 0.15); }
 
+TEST(Gate, ACarPassesAGapThirtyCentimetresWiderThanItself) { expect_passed(car(), 0.30); }
+
 TEST(Gate, ItGoesStraightOnUntilItHasLeftIt) {
   RoutePlanner planner(wheeled());
   tell_hall(planner, 27, 34);

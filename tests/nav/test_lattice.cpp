@@ -85,7 +85,7 @@ TEST(LatticeSearch, PathsAreContinuousAndKeepClear) {
     const Pose2 moved = path.spots[i - 1].pose.inverse() * path.spots[i].pose;
     EXPECT_NEAR(std::hypot(moved.x, moved.y), search.motions().spacing(), 1e-3);
     EXPECT_GE(path.spots[i].cost, path.spots[i - 1].cost);
-    EXPECT_TRUE(search.free(clear, path.spots[i].pose, 0.06f)) << i;
+    EXPECT_TRUE(search.free(clear, path.spots[i].pose, false, 0.06f)) << i;
     const double bend = moved.yaw / search.motions().spacing();
     if (path.spots[i].direction == path.spots[i - 1].direction) {
       EXPECT_LT(std::fabs(bend - bend_before), 0.35) << "steering takes its way";
