@@ -13,7 +13,8 @@
 namespace adit::bench {
 namespace {
 
-constexpr double kCell = 0.1;  // m
+constexpr double kCell = 0.1;     // m
+constexpr double kBeside = 0.04;  // m beside a robot in the narrowest gap that counts as one: 10 cm in all
 
 /// Which cells of 0.1 m a disc can be in, and which of them it gets to from the start.
 class Ground {
@@ -59,7 +60,7 @@ Result<Course> draw_course(const std::string& kind, const std::string& platform,
   const auto world = sim::make_box_world(made->boxes, 0.0, 3.0);
   if (!world) return world.error();
   const sim::StandingMap map(*world, body->height, body->step);
-  Ground ground(*made, map, 0.5 * std::hypot(body->length, body->width) + 0.1, 0.5 * body->width + 0.05);
+  Ground ground(*made, map, 0.5 * std::hypot(body->length, body->width) + 0.1, 0.5 * body->width + kBeside);
   Random random(seed * 7919 + 17);
   const bool apart = random.chance(0.1);
   for (int attempt = 0; attempt < 20000; ++attempt) {

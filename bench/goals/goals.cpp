@@ -89,7 +89,7 @@ struct Row {
 int main(int argc, char** argv) {
   CLI::App app{"Random goals in closed loop: generated worlds, every platform, noisy odometry and lidar."};
   std::vector<std::string> kinds(sim::world_kinds().begin(), sim::world_kinds().end());
-  std::vector<std::string> platforms{"wheeled", "tracked", "legged"};
+  std::vector<std::string> platforms{"wheeled", "tracked", "legged", "car"};
   int goals = 500;
   std::uint64_t first = 1;
   double slowness = 4.0;
@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   app.add_option("--goals", goals, "how many (default 500)")->check(CLI::Range(1, 100000));
   app.add_option("--first", first, "the first seed (default 1)");
   app.add_option("--kinds", kinds, "worlds (default all)")->check(CLI::IsMember(kinds));
-  app.add_option("--platforms", platforms, "platforms (default wheeled tracked legged)");
+  app.add_option("--platforms", platforms, "platforms (default wheeled tracked legged car)");
   app.add_option("--slowness", slowness, "time allowed, in straight drives at half speed (default 4)");
   app.add_flag("--planar", planar, "one ring instead of the full lidar: faster");
   app.add_flag("--each", each, "a line for each goal that was not as it should be");

@@ -13,7 +13,7 @@ constexpr float kCellF = static_cast<float>(kRouteCell);
 }  // namespace
 
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
-    : rise_(static_cast<float>(platform.step + params.step_margin + params.slope * kRouteCell)),
+    : rise_(static_cast<float>(std::max(platform.step, params.slope * kRouteCell) + params.step_margin)),
       unknown_cost_(static_cast<float>(params.unknown_cost)) {
   // Half a cell less than the body needs: obstacles fill whole cells. The local planner knows better, and
   // tells when it does not get through.

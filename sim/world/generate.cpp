@@ -122,10 +122,10 @@ GeneratedWorld cave(Random random) {
   return b.take();
 }
 
-/// Stairs of 17 cm up to a landing, and down again; and a way around for who cannot climb.
+/// Stairs of 20 cm up to a landing, and down again; and a way around for who cannot climb.
 GeneratedWorld stairs(Random) {
   Builder b(24.0, 10.0, {2.0, 2.5});
-  constexpr double rise = 0.17, run = 0.3;
+  constexpr double rise = 0.20, run = 0.3;
   constexpr int steps = 6;
   b.wall(6.0, 18.0, 5.0, 5.2);
   for (int n = 0; n < steps; ++n) {
