@@ -16,7 +16,7 @@ constexpr double kAtGate = 1.5;      // m: from farther off no path of the local
 constexpr double kBeyondGate = 0.9;  // m: so far it goes straight on
 constexpr double kThrough = 0.6;     // m behind its middle a robot has left it
 constexpr double kAside = 0.25;      // m: farther off its axis a robot is not in it
-constexpr double kLinedUp = 0.14;    // tangent of the angle off the gate's axis
+constexpr double kLinedUp = 0.10;    // tangent of the angle off the gate's axis
 constexpr double kStaysLinedUp = 0.25;
 constexpr double kDetour = 1.03;  // a straight line that costs more than this much of the route is none
 

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kTurnLooksAhead = 0.6;  // s: how far a stick's turn rate shifts the direction asked for
 constexpr double kTurningSpeed = 0.05;   // m/s: of a stick that only turns
-constexpr double kOnTheWay = 0.1;  // m: so near a robot comes to a point of its route, should it stop there
+constexpr double kOnTheWay = 0.08;  // m: so near a robot comes to a point of its route, should it stop there
 constexpr Duration kCycleLost = 2s;
 constexpr Duration kFreeAgain = 500ms;  // without a cut velocity: no longer held
 constexpr double kHeldWithin = 0.3;     // m: who came further is not held, only slow

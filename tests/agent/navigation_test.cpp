@@ -163,7 +163,7 @@ TEST_F(NavigationTest, WhatCannotBeReachedIsStoodBeforeAndTold) {
 
 TEST_F(NavigationTest, WithoutARouterItHeadsForTheGoal) {
   router.tells = nav::RouteStep{nav::RouteStep::State::along, {-3, 3, 0}, false};
-  go({1.2, 0});
+  go({1, 0});
   for (int i = 0; i < 5; ++i) cycle({}, {});
   router.answers = false;
   for (int i = 0; i < 45; ++i) cycle({}, {});

@@ -199,7 +199,7 @@ TEST_P(EveryCar, BacksOutOfANiche) {
 
 TEST_P(EveryCar, StandsBeforeAGoalInAWall) {
   ClosedLoop run(car(), corridor(-2, 12), {0, 0, 0}, GetParam());
-  EXPECT_FALSE(drive(run, {5, 0.95}, 20));
+  EXPECT_FALSE(drive(run, {5, 0.95}, 60));
   EXPECT_TRUE(run.last.blocked);
   EXPECT_TRUE(run.follower.command().zero());
   EXPECT_GT(run.least_clearance, 0.03);

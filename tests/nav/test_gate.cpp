@@ -101,10 +101,10 @@ void expect_passed(const Platform& platform, double wider) {
 
 TEST(Gate, ARobotPassesAGapTenCentimetresWiderThanItself) {
   expect_passed(wheeled(), 0.10);
-  expect_passed(legged(), 0.10);
+  expect_passed(tracked(), 0.10);
 }
 
-TEST(Gate, ALongRobotPassesAGapFifteenCentimetresWiderThanItself) { expect_passed(tracked(), 0.15); }
+TEST(Gate, AWalkingRobotPassesAGapFifteenCentimetresWiderThanItself) { expect_passed(legged(), 0.15); }
 
 TEST(Gate, ACarPassesAGapThirtyCentimetresWiderThanItself) { expect_passed(car(), 0.30); }
 
