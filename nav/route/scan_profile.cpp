@@ -191,7 +191,9 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
       const float r = quarter_[i].range;
       const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
       const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
-      map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z));
+      const bool there = p.to - r < kCellF;
+      map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z),
+                   there ? SurfaceMap::Seen::measured : SurfaceMap::Seen::between);
     }
   }
 }
@@ -204,7 +206,7 @@ void ScanProfile::stand(const Pose3& body, SurfaceMap& map) const {
     for (int x = cx - reach; x <= cx + reach; ++x)
       if (std::hypot((x + 0.5) * kRouteCell - body.position.x(),
                      (y + 0.5) * kRouteCell - body.position.y()) <= radius)
-        map.see_free(x, y, ground_, 0.0f, true);
+        map.see_free(x, y, ground_, 0.0f, SurfaceMap::Seen::stood_on);
 }
 
 void ScanProfile::add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map) {

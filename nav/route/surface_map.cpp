@@ -188,19 +188,25 @@ void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
   }
 }
 
-void SurfaceMap::see_free(int ix, int iy, float z, float height, bool certain) {
+void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
+  const bool certain = seen == Seen::stood_on, measured = seen != Seen::between;
   const int index = sheet(ix, iy, z);
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {z, 0, 0, true, false, 0};
+    cell = {z, 0, 0, true, measured, false, 0};
     mark_dirty(index);
     // A step between two cells is known with the second.
     if (const int x = ix & 15, y = iy & 15; x == 0 || y == 0 || x == 15 || y == 15) mark_around(t, ix, iy);
     return;
   }
   const float before = cell.z;
-  cell.z += 0.25f * (z - cell.z);
+  // From afar stairs look like a ramp: that takes nothing from what was measured.
+  if (measured && !cell.measured)
+    cell.z = z;
+  else if (measured == cell.measured)
+    cell.z += 0.25f * (z - cell.z);
+  cell.measured |= measured;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
   if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;
@@ -218,7 +224,7 @@ void SurfaceMap::see_obstacle(int ix, int iy, float z, float top, bool sure) {
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {z, 0, 0, true, false, 0};
+    cell = {z, 0, 0, true, false, false, 0};
     mark_dirty(index);
   }
   cell.top = std::max(cell.top, static_cast<std::uint8_t>(std::clamp(top / kTopUnit, 0.0f, 255.0f)));

@@ -27,9 +27,11 @@ class SurfaceMap {
   /// can take for ground too high by, and less than the height of a robot.
   SurfaceMap(const RouteParams& params, float same) : params_(params), same_(same) {}
 
+  /// How the height of the ground is known: drawn between two returns, by a return, or by the robot's feet.
+  enum class Seen : std::uint8_t { between, measured, stood_on };
   /// A ray passed over the ground of a cell. `height` of the ray above the ground, m: what is lower than it
-  /// may still be there. `certain`: the robot stands there.
-  void see_free(int ix, int iy, float z, float height, bool certain = false);
+  /// may still be there.
+  void see_free(int ix, int iy, float z, float height, Seen seen = Seen::measured);
   /// A return at `top` metres above the ground of a cell; `sure`: one is enough.
   void see_obstacle(int ix, int iy, float z, float top, bool sure = false);
   /// Begins a scan from there; the tiles farthest from it go when there are too many.

@@ -20,6 +20,7 @@ struct GroundCell {
   std::int8_t evidence{0};  ///< of an obstacle; rises with each hit, falls with each ray through it
   std::uint8_t top{0};      ///< of the obstacle above the ground, 2 cm
   bool known{false};
+  bool measured{false};  ///< its height; else that was drawn between the returns around it
   bool blocked{false};
   std::uint32_t scan{0};  ///< the last one that hit it
 };
