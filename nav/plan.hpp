@@ -46,7 +46,7 @@ struct Plan {
   double clearance{0};  ///< from the footprint to the nearest obstacle, m, at most 2
   int heading{0};       ///< which of the 36 headings, degrees from the body's x
   int group{-1};        ///< which group of the library
-  int option{-1};       ///< which of the planner's libraries: 0 long and wide ... last short and tight
+  int option{-1};       ///< which of the planner's libraries: 0 long and wide ... last short and a squeeze
 
   std::array<Pose2, kMaxPath> poses{};  ///< odometry frame, from the robot on
   std::uint32_t pose_count{0};

@@ -15,7 +15,7 @@ constexpr double kLeastPeriod = 0.08;  // s between the images that are kept
 constexpr double kBreak = 1.0;         // s without a scan: nothing of before counts
 constexpr int kGap = 2;                // columns without a return within one thing
 constexpr float kStep = 0.45f;         // m between neighbouring columns of one thing
-constexpr int kFewest = 2;             // columns; and returns
+constexpr int kFewest = 2;             // columns
 constexpr int kConfirmed = 3;          // times; of what moved before, one less
 constexpr float kSlowing = 0.5f;       // of the velocity is left after each scan that does not show it
 constexpr double kGate = 0.5;          // m: an observation so far off is another's
@@ -90,7 +90,7 @@ void Tracker::take_in(std::span<const Eigen::Vector3f> points, const Pose3& body
 }
 
 void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
-                      const Image* lately, Image& now) {
+                      const Image* lately, const Image& now) {
   const Eigen::Matrix3f turn = body.orientation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f lidar(0.0f, 0.0f, static_cast<float>(platform_.lidar_height));
   columns_.fill({});
@@ -152,15 +152,14 @@ void Tracker::observe() {
 
 void Tracker::add_observation(int first, int columns) {
   Observation seen{{0, 0}, first, columns, false};
-  int filled = 0, returns = 0;
+  int filled = 0;
   for (int k = 0; k < columns; ++k) {
     const Column& column = columns_[(first + k) % Panorama::kColumns];
     if (column.returns == 0) continue;
     ++filled;
-    returns += column.returns;
     seen.middle += column.at;
   }
-  if (filled < kFewest || returns < kFewest || observation_count_ == kTracks) return;
+  if (filled < kFewest || observation_count_ == kTracks) return;
   seen.middle /= static_cast<float>(filled);
   observations_[observation_count_++] = seen;
 }

@@ -102,7 +102,7 @@ class Tracker {
   void take_in(std::span<const Eigen::Vector3f> points, const Pose3& body, Image& now);
   /// Looks which of the nearest returns are where something was seen through.
   void compare(std::span<const Eigen::Vector3f> points, const Pose3& body, const Image* before,
-               const Image* lately, Image& now);
+               const Image* lately, const Image& now);
   void observe();
   void add_observation(int first, int columns);
   void follow(double dt);

@@ -39,7 +39,7 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   if (nowhere || plan.arrived) {
     kept_.count = 0;
     course_.forget();
-    retreat_.reset();
+    forget_retreat();
     plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
     return plan;
   }
@@ -54,7 +54,9 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   bool takes = finds;
   if (keeps && finds) {
     const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
-    if (other || changes_ahead() || !found_.straight_on()) {
+    if (found_.tight && !kept_.tight) {
+      takes = false;
+    } else if (other || changes_ahead() || !found_.straight_on()) {
       const Eigen::Vector2d end =
           rear.inverse() * (kept_.spots[kept_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
       const double left = way_.at(static_cast<float>(end.x()), static_cast<float>(end.y()));
@@ -84,8 +86,10 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
 Target LatticePlanner::aim_of(const Target& target, const Pose2& pose, double stamp_s) {
   constexpr double kSameGoal = 0.1, kProgress = 0.5, kThere = 0.3;  // m
   const double distance = (target.goal - pose.position()).norm();
-  const bool other = target.kind != Target::Kind::goal || (target.goal - goal_).norm() > kSameGoal;
-  if (other) retreat_.reset();
+  // A point of a route is so far ahead of the robot: it goes back with it.
+  const double same = retreat_ ? params_.retreat + kProgress : kSameGoal;
+  const bool other = target.kind != Target::Kind::goal || !goal_ || (target.goal - *goal_).norm() > same;
+  if (other) forget_retreat();
   if (other || distance < nearest_ - kProgress) {
     nearest_ = distance;
     retreats_left_ = params_.retreats;
@@ -94,18 +98,23 @@ Target LatticePlanner::aim_of(const Target& target, const Pose2& pose, double st
     retreat_.reset();
     kept_.count = 0;
   }
-  return retreat_ ? Target::to(*retreat_) : target;
+  return retreat_ ? Target::to(*retreat_, target.speed) : target;
+}
+
+void LatticePlanner::forget_retreat() {
+  retreat_.reset();
+  blocked_since_.reset();
 }
 
 void LatticePlanner::consider_retreat(const Target& target, const Pose2& pose, double stamp_s) {
   constexpr double kLongest = 8.0;  // s
   if (retreat_ || target.kind != Target::Kind::goal || retreats_left_ == 0) {
-    retreat_.reset();
+    forget_retreat();
     return;
   }
   if (!blocked_since_) blocked_since_ = stamp_s;
   if (!target.held && stamp_s - *blocked_since_ < params_.patience) return;
-  // Back the way that it came; ahead where that leads away from the goal.
+  // Straight back; ahead where that leads away from the goal.
   const Eigen::Vector2d to = pose.inverse() * target.goal;
   retreat_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
   retreat_until_ = stamp_s + kLongest;
@@ -215,8 +224,15 @@ bool LatticePlanner::passable(const Pose2& rear) const {
 
 bool LatticePlanner::given_up(const Target& target, double distance, bool drives, double stamp_s) {
   constexpr double kSameGoal = 0.1, kCloser = 0.1, kLongest = 0.5;  // m, m, s: what is longer was a break
-  if (target.kind != Target::Kind::goal) return false;
-  if ((target.goal - goal_).norm() > kSameGoal || distance < closest_ - kCloser) {
+  if (target.kind != Target::Kind::goal) {
+    goal_.reset();
+    return false;
+  }
+  if (retreat_) {  // it shall not come nearer
+    last_s_ = stamp_s;
+    return false;
+  }
+  if (!goal_ || (target.goal - *goal_).norm() > kSameGoal || distance < closest_ - kCloser) {
     goal_ = target.goal;
     closest_ = distance;
     effort_ = 0;

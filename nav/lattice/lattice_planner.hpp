@@ -51,6 +51,7 @@ class LatticePlanner final : public Planner {
   bool changes_ahead() const;
   /// What is driven to now: the target, or a place to back away to.
   Target aim_of(const Target& target, const Pose2& pose, double stamp_s);
+  void forget_retreat();
   void consider_retreat(const Target& target, const Pose2& pose, double stamp_s);
   bool given_up(const Target& target, double distance, bool drives, double stamp_s);
   void write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
@@ -72,7 +73,7 @@ class LatticePlanner final : public Planner {
   double speed_{0};      ///< m/s, negative backwards
   double curvature_{0};  ///< of the way driven, rad/m
   Course course_{};
-  Eigen::Vector2d goal_{0, 0};  ///< that the effort is about
+  std::optional<Eigen::Vector2d> goal_{};  ///< that the effort and the retreats are about
   double closest_{0}, effort_{0}, last_s_{0}, rest_until_{0};
   std::optional<Eigen::Vector2d> retreat_{};  ///< odometry frame
   std::optional<double> blocked_since_{};

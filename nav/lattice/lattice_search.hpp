@@ -12,18 +12,19 @@ namespace adit::nav {
 
 struct LatticeSearchParams {
   MotionSetParams motions{};
-  double margin{0.06};       ///< kept free around the body, m, [0.02, 0.5]
-  double tight_margin{0.0};  ///< the same where nothing else is left, m, [0, 0.5]
-  double comfort{0.25};      ///< beyond the margin; nearer to obstacles a way costs more, m, [0, 2]
-  double crowded{2.0};       ///< by so much more at the margin, [0, 20]
-  double rough{5.0};         ///< by so much more on ground of cost 1, [0, 100]
-  double reach{3.5};         ///< the path to a far target ends so far from its start, m, [1, 4]
-  double goal_radius{0.15};  ///< a path to a goal ends so near to it, m, [0.05, 1]
-  double reverse_cost{1.6};  ///< of a metre backwards, in metres ahead, [1, 10]
-  double change_cost{0.8};   ///< of changing between ahead and backwards, m, [0, 10]
-  double steer_cost{0.04};   ///< of changing the curvature by a level, m, [0, 1]
-  double least_gain{0.3};    ///< a path that comes to no target must bring it nearer by this, m, [0, 2]
-  int expansions{3000};      ///< at most, [100, 20000]
+  double margin{0.06};        ///< kept free around the body, m, [0.02, 0.5]
+  double tight_margin{0.03};  ///< the same where nothing else is left; half a cell of the ClearField is no
+                              ///< room at all, m, [0.025, 0.5]
+  double comfort{0.25};       ///< beyond the margin; nearer to obstacles a way costs more, m, [0, 2]
+  double crowded{2.0};        ///< by so much more at the margin, [0, 20]
+  double rough{5.0};          ///< by so much more on ground of cost 1, [0, 100]
+  double reach{3.5};          ///< the path to a far target ends so far from its start, m, [1, 4]
+  double goal_radius{0.15};   ///< a path to a goal ends so near to it, m, [0.05, 1]
+  double reverse_cost{1.6};   ///< of a metre backwards, in metres ahead, [1, 10]
+  double change_cost{0.8};    ///< of changing between ahead and backwards, m, [0, 10]
+  double steer_cost{0.04};    ///< of changing the curvature by a level, m, [0, 1]
+  double least_gain{0.3};     ///< a path that comes to no target must bring it nearer by this, m, [0, 2]
+  int expansions{3000};       ///< at most, [100, 20000]
 };
 
 /// What a search starts from and where it shall lead; the frame of the fields, m.

@@ -14,7 +14,9 @@ constexpr double kInGate = 0.3;      // m before its middle
 constexpr double kBeforeGate = 1.1;  // m: there the robot lines up
 constexpr double kAtGate = 1.5;      // m: from farther off no path of the local planner leads through
 constexpr double kBeyondGate = 0.9;  // m: so far it goes straight on
-constexpr double kThrough = 0.6;     // m behind its middle a robot has left it
+constexpr double kEnters = 0.6;      // m before its middle a robot that is lined up is in it
+constexpr double kLeft = 0.6;        // m behind its middle it has left it
+constexpr double kThere = 0.1;       // m from where it lines up: nearer no planner comes
 constexpr double kAside = 0.25;      // m: farther off its axis a robot is not in it
 constexpr double kLinedUp = 0.10;    // tangent of the angle off the gate's axis
 constexpr double kStaysLinedUp = 0.25;
@@ -111,8 +113,9 @@ std::optional<Eigen::Vector3d> RouteKeeper::straight_on(const Eigen::Vector3d& p
   const double aside = std::abs(inside_->axis.x() * past.y() - inside_->axis.y() * past.x());
   bool end = false;
   const Eigen::Vector2d next = point_at(route_.points, kBeyondGate, end).head<2>() - place.head<2>();
-  if (along < -kBeforeGate || along > kThrough || aside > kAside || next.dot(inside_->axis) <= 0) {
+  if (along < -kBeforeGate || along > kLeft || aside > kAside || next.dot(inside_->axis) <= 0) {
     inside_.reset();
+    lined_up_ = false;
     return std::nullopt;
   }
   return on_axis(*inside_, kBeyondGate);
@@ -131,15 +134,19 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
   }
   const double off = std::abs(gate->axis.x() * rest.y() - gate->axis.y() * rest.x()) / before;
   lined_up_ = before < kAtGate && off < (lined_up_ ? kStaysLinedUp : kLinedUp);
-  if (lined_up_) {
-    const Eigen::Vector3d beyond = on_axis(*gate, kBeyondGate);
-    if (!planner.line(gate->middle, beyond, {.let_out = true}).passable) return std::nullopt;
-    if (before < kThrough) inside_ = gate;
-    return beyond;
+  if (!lined_up_) {
+    double s = kBeforeGate;
+    while (s > kInGate && !planner.line(on_axis(*gate, -s), gate->middle, {.let_in = true}).passable)
+      s -= kRouteCell;
+    if (s <= kInGate) return std::nullopt;
+    const Eigen::Vector3d here = on_axis(*gate, -s);
+    if ((here - place).head<2>().norm() > kThere) return here;
+    lined_up_ = true;
   }
-  for (double s = kBeforeGate; s > kInGate; s -= kRouteCell)
-    if (planner.line(on_axis(*gate, -s), gate->middle, {.let_in = true}).passable) return on_axis(*gate, -s);
-  return std::nullopt;
+  const Eigen::Vector3d beyond = on_axis(*gate, kBeyondGate);
+  if (!planner.line(gate->middle, beyond, {.let_out = true}).passable) return std::nullopt;
+  if (before < kEnters) inside_ = gate;
+  return beyond;
 }
 
 // The farthest point of the route, up to `ahead`, that is in a straight line from here: one that keeps as far

@@ -12,7 +12,7 @@ struct RouteKeeperParams {
   double gain{0.5};   ///< and so much less, m, [0, 10]
   double ahead{4.0};  ///< the local planner is given the point of the route this far ahead, m, [1, 10]
   double least_ahead{1.2};  ///< and never a nearer one but the goal, m, [0.3, 5]
-  bool gates{true};         ///< lines up before gaps; not for who plans headings by himself, as a car must
+  bool gates{true};         ///< lines up before gaps: for a planner that comes as near to a point as is asked
   double proof{2.0};        ///< a goal is unreachable when that was so all this time, s, [0, 10]
   double blocked{1.0};      ///< a route is blocked when the local planner says so for this long, s, [0, 30]
 };
@@ -36,7 +36,7 @@ class RouteKeeper {
  public:
   explicit RouteKeeper(const RouteKeeperParams& params = {}) : params_(params) {}
   /// With what suits the platform.
-  explicit RouteKeeper(const Platform& platform) { params_.gates = platform.turns_on_spot(); }
+  explicit RouteKeeper(const Platform& platform) { params_.gates = platform.planner == "trajectories"; }
 
   /// After a scan: the next step from `place` to `goal` (z NaN: the floor of `place`). `blocked`: the local
   /// planner found no way along the step before.

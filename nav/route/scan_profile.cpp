@@ -191,7 +191,7 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
       const float r = quarter_[i].range;
       const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
       const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
-      const bool there = p.to - r < kCellF;
+      const bool there = p.to - r < kCellF;  // at a return, or at the foot of what stands there
       map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z),
                    there ? SurfaceMap::Seen::measured : SurfaceMap::Seen::between);
     }

@@ -43,7 +43,6 @@ void SurfaceMap::clear() {
   extent_ = {};
   used_ = 0;
   last_ = -1;
-  ++version_;
 }
 
 int SurfaceMap::first(int tx, int ty) const {
@@ -160,7 +159,6 @@ void SurfaceMap::evict() {
   }
   std::erase_if(queue_, [this](int i) { return !tile(i).used; });
   last_ = -1;
-  ++version_;
 }
 
 void SurfaceMap::begin_scan(double x, double y) {
@@ -202,10 +200,12 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   }
   const float before = cell.z;
   // From afar stairs look like a ramp: that takes nothing from what was measured.
-  if (measured && !cell.measured)
+  if (measured && !cell.measured) {
     cell.z = z;
-  else if (measured == cell.measured)
+    if (std::abs(z - before) > 0.02f) mark_around(t, ix, iy);  // it may be a step now
+  } else if (measured == cell.measured) {
     cell.z += 0.25f * (z - cell.z);
+  }
   cell.measured |= measured;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
@@ -260,7 +260,6 @@ void SurfaceMap::block(double x, double y, double z, double now) {
   place.until = now + params_.block_time * std::exp2(place.times - 1);
   places_.push_back(place);
   mark_place(place);
-  ++version_;
 }
 
 void SurfaceMap::expire(double now) {

@@ -63,8 +63,6 @@ class SurfaceMap {
   };
   const Extent& extent() const { return extent_; }
   /// Changes with every change of what is passable.
-  std::uint64_t version() const { return version_; }
-  void changed() { ++version_; }
   void clear();
 
  private:
@@ -89,7 +87,6 @@ class SurfaceMap {
   std::vector<BlockedPlace> places_{};
   Extent extent_{};
   int used_{0};
-  std::uint64_t version_{0};
   std::uint32_t scan_{0};
   double x_{0}, y_{0};
   int last_{-1};        // tile that was written last

@@ -19,9 +19,9 @@ struct GroundCell {
   float z{0};               ///< of the ground, m
   std::int8_t evidence{0};  ///< of an obstacle; rises with each hit, falls with each ray through it
   std::uint8_t top{0};      ///< of the obstacle above the ground, 2 cm
-  bool known{false};
-  bool measured{false};  ///< its height; else that was drawn between the returns around it
-  bool blocked{false};
+  bool known : 1 {false};
+  bool measured : 1 {false};  ///< its height; else that was drawn between the returns around it
+  bool blocked : 1 {false};
   std::uint32_t scan{0};  ///< the last one that hit it
 };
 

@@ -239,7 +239,6 @@ void TileBuilder::build(SurfaceMap& map, int index) {
   if (same) return;
   tile.built = true;
   tile.measured = 0;
-  map.changed();
 }
 
 }  // namespace adit::nav
