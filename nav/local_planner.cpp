@@ -66,7 +66,6 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
   library->options.back().roomy = true;
   add(long_tree, wide, params.side_margin, platform.max_speed, 5);
   add(long_tree, turn_needs, params.tight_margin, params.tight_speed, 5);
-  add(long_tree, turn_needs, params.squeeze_margin, params.squeeze_speed, 5);
   add(short_tree, wide, params.side_margin, platform.max_speed, 1);
   add(short_tree, turn_needs, params.tight_margin, params.tight_speed, 1);
   add(short_tree, turn_needs, params.squeeze_margin, params.squeeze_speed, 1);

@@ -20,7 +20,7 @@ struct LocalPlannerParams {
   double side_margin{0.09};     ///< the same where there is less, m, [0, 1]
   double front_margin{0.20};    ///< kept free before and behind it, m, [0, 1]; never less than a turn needs
   double tight_margin{0.05};    ///< on the sides, where there is no more, m, [0.02, 0.5]
-  double squeeze_margin{0.02};  ///< the same where there is still less, m, [0, 0.5]
+  double squeeze_margin{0.02};  ///< the same where nothing else is left, m, [0, 0.5]
   double short_scale{0.5};      ///< of the second, shorter and more curved library, [0.2, 1]
   double tight_speed{0.5};      ///< where only the tight margin is left, m/s, (0, 2]
   double squeeze_speed{0.25};   ///< and where less is, m/s, (0, 2]
@@ -55,7 +55,7 @@ struct PlannerLibrary {
   std::vector<Option> options{};
   RotationTable rotation{};
 
-  /// Builds it (about 60 ms, 10 MB).
+  /// Builds it (about 60 ms, 8 MB).
   static std::shared_ptr<const PlannerLibrary> build(const Platform& platform,
                                                      const LocalPlannerParams& params = {});
 };
