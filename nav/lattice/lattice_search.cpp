@@ -26,7 +26,7 @@ LatticeSearch::LatticeSearch(const Platform& platform, const LatticeSearchParams
     return static_cast<float>(
         std::max(platform.width / 2 + margin, std::hypot(half, platform.width / 2) + margin / 2));
   };
-  wide_ = radius_ = radius(params.margin);
+  wide_ = radius(params.margin);
   tight_ = radius(params.tight_margin);
   nodes_.reserve(kMostNodes);
   open_.reserve(kMostNodes);

@@ -25,6 +25,9 @@ struct RouteStep {
     unreachable,  ///< proven
     blocked,      ///< no way round the places that were found blocked
   };
+  /// So near a robot comes to a target that is not the goal, should it stop there, m.
+  static constexpr double kTolerance = 0.08;
+
   State state{State::straight};
   Eigen::Vector3d target{0, 0, 0};  ///< m
   bool last{true};                  ///< `target` is the goal

@@ -8,7 +8,6 @@ namespace {
 
 constexpr double kTurnLooksAhead = 0.6;  // s: how far a stick's turn rate shifts the direction asked for
 constexpr double kTurningSpeed = 0.05;   // m/s: of a stick that only turns
-constexpr double kOnTheWay = 0.08;  // m: so near a robot comes to a point of its route, should it stop there
 constexpr Duration kCycleLost = 2s;
 constexpr Duration kFreeAgain = 500ms;  // without a cut velocity: no longer held
 constexpr double kHeldWithin = 0.3;     // m: who came further is not held, only slow
@@ -123,7 +122,7 @@ nav::Target Navigation::target() const {
     if (!step) return nav::Target::to(localisation_.to_odom(go->goal.head<2>()));
     if (step->state == nav::RouteStep::State::unreachable) return {};
     nav::Target target = nav::Target::to(step->target.head<2>());
-    if (!step->last) target.tolerance = kOnTheWay;
+    if (!step->last) target.tolerance = nav::RouteStep::kTolerance;
     return target;
   }
   const auto* guidance = std::get_if<Guidance>(&motion_);

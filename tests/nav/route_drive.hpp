@@ -28,7 +28,7 @@ struct RouteDrive {
   /// Drives there for a tenth of a second.
   void drive() {
     Target target = Target::to(step.target.head<2>());
-    if (!step.last) target.tolerance = 0.08;
+    if (!step.last) target.tolerance = RouteStep::kTolerance;
     loop.cycle(target);
   }
   bool arrived() const { return step.last && loop.last.arrived && loop.follower.command().zero(); }
