@@ -230,8 +230,7 @@ void Agent::Core::listen_first(Time at) {
   constexpr Duration least = 1s, heard_for = 300ms, most = 3s;
   if (!behaviour_.listens()) return;
   const auto& authority = commands_.authority();
-  if (!holder_heard_ && authority.holder() && commands_.stations().heard(authority.holder_name(), at))
-    holder_heard_ = at;
+  if (!holder_heard_ && authority.holder() && authority.heard() > started_) holder_heard_ = at;
   const bool heard = !authority.holder() || (holder_heard_ && at - *holder_heard_ >= heard_for);
   if (at - started_ >= (heard ? least : most)) behaviour_.go_on(at);
 }

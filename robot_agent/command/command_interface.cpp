@@ -41,9 +41,18 @@ CommandInterface::CommandInterface(CommandParams params, Requests& requests, Out
       outputs_(std::move(outputs)),
       authority_(params_.epoch_start, params_.lock_lease) {}
 
+KeptAuthority CommandInterface::kept() const {
+  KeptAuthority kept{authority_.epoch(), authority_.holder(), {}, authority_.locked(), stops_.all()};
+  if (!kept.holder) return kept;
+  if (const Station* s = stations_.find(kept.holder->name); s && s->id == kept.holder->id)
+    kept.speaker = s->binding.kept();
+  return kept;
+}
+
 void CommandInterface::restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now) {
   const bool locked = kept.locked && !params_.defects.has(Defect::lock_forgotten);
   authority_.restore(kept.holder, locked, kept.epoch.counter, now);
+  if (kept.holder && kept.speaker) stations_.restore(kept.holder->name, kept.holder->id, *kept.speaker, now);
   if (params_.defects.has(Defect::epoch_kept_at_restart)) authority_.keep_epoch(kept.epoch);
   for (const Party& stopper : kept.stops) stops_.set(stopper);
   memory_.restore(answers, now);

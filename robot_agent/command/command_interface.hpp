@@ -54,9 +54,7 @@ class CommandInterface {
   bool unlock_at_console();
 
   /// What must survive a restart of the agent.
-  KeptAuthority kept() const {
-    return {authority_.epoch(), authority_.holder(), authority_.locked(), stops_.all()};
-  }
+  KeptAuthority kept() const;
   std::vector<KeptAnswers> kept_answers() const { return memory_.kept(); }
   /// Commands accepted since the start of this agent.
   std::uint64_t accepted() const { return memory_.accepted(); }

@@ -42,6 +42,12 @@ Station* StationTable::add(const Sender& from, Time now) {
   return &stations_.back();
 }
 
+void StationTable::restore(const std::string& name, const Id& id, const Binding::Kept& speaker, Time now) {
+  Station station{name, id, Binding(speaker, now)};
+  station.holds = true;
+  stations_.push_back(std::move(station));
+}
+
 void StationTable::announce(const std::string& name, std::uint16_t protocol) {
   for (Station& s : stations_)
     if (s.name == name) s.protocol = protocol;

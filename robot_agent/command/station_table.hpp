@@ -38,6 +38,9 @@ class StationTable {
 
   /// Judges a sign of life and records it when it is genuine. `holds`: name and id are the holder's.
   Verdict hear(const Sender& from, Sign sign, bool holds, Time now);
+  /// After a restart, before anything was heard: `name` and `id` are the holder's, and this is who speaks for
+  /// them.
+  void restore(const std::string& name, const Id& id, const Binding::Kept& speaker, Time now);
   void announce(const std::string& name, std::uint16_t protocol);
   /// A participant left, or its lease ran out.
   void leave(const wire::ParticipantId& participant);

@@ -14,6 +14,20 @@ using store::Unpacker;
 constexpr std::size_t kName = 32;
 
 void put(Packer& out, const Party& party) { out.text(party.name).put(party.id); }
+void put(Packer& out, const std::optional<Binding::Kept>& speaker) {
+  out.flag(speaker.has_value());
+  if (!speaker) return;
+  out.put(speaker->participant).flag(speaker->former.has_value());
+  if (speaker->former) out.put(*speaker->former);
+}
+std::optional<Binding::Kept> speaker(Unpacker& in) {
+  if (!in.flag()) return std::nullopt;
+  Binding::Kept kept{};
+  kept.participant = in.array<12>();
+  if (in.flag()) kept.former = in.array<12>();
+  return kept;
+}
+
 Party party(Unpacker& in) {
   Party p{};
   p.name = in.text(kName);
@@ -57,7 +71,7 @@ bool sane(const KeptAnswers& from) {
 
 bool sane(const Snapshot& s) {
   if (s.authority.holder && !valid_name(s.authority.holder->name)) return false;
-  if (s.authority.locked && !s.authority.holder) return false;
+  if ((s.authority.locked || s.authority.speaker) && !s.authority.holder) return false;
   for (const Party& stopper : s.authority.stops)
     if (!valid_name(stopper.name)) return false;
   if (!std::all_of(s.answers.begin(), s.answers.end(), [](const KeptAnswers& a) { return sane(a); }))
@@ -71,6 +85,7 @@ store::Bytes encode(const Snapshot& s) {
   Packer out;
   out.put(s.authority.epoch.start).put(s.authority.epoch.counter).flag(s.authority.holder.has_value());
   if (s.authority.holder) put(out, *s.authority.holder);
+  put(out, s.authority.speaker);
   out.flag(s.authority.locked);
   const std::size_t stops = std::min(s.authority.stops.size(), Snapshot::kStops);
   out.put(static_cast<std::uint16_t>(stops));
@@ -94,6 +109,7 @@ std::optional<Snapshot> decode_snapshot(std::span<const std::uint8_t> bytes) {
   s.authority.epoch.start = in.get<std::uint64_t>();
   s.authority.epoch.counter = in.get<std::uint32_t>();
   if (in.flag()) s.authority.holder = party(in);
+  s.authority.speaker = speaker(in);
   s.authority.locked = in.flag();
   for (std::size_t left = in.count(Snapshot::kStops); left > 0; --left)
     s.authority.stops.push_back(party(in));

@@ -9,6 +9,7 @@
 #include "core/store/state_file.hpp"
 #include "robot_agent/command/authority.hpp"
 #include "robot_agent/command/types.hpp"
+#include "robot_agent/discovery/binding.hpp"
 
 namespace adit::agent {
 
@@ -36,6 +37,7 @@ struct KeptAnswers {
 struct KeptAuthority {
   Epoch epoch{};  ///< the counter goes on; the start is drawn anew
   std::optional<Party> holder{};
+  std::optional<Binding::Kept> speaker{};  ///< for the holder
   bool locked{};
   std::vector<Party> stops{};
   bool operator==(const KeptAuthority&) const = default;
@@ -68,7 +70,7 @@ struct Snapshot {
   bool operator==(const Snapshot&) const = default;
 };
 
-inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 1, 16 * 1024};
+inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 2, 16 * 1024};
 
 /// At most 16 kB: what is beyond the bounds above is left out.
 store::Bytes encode(const Snapshot& snapshot);

@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -20,7 +21,9 @@ class CommandBench {
     bool up{true};
   };
 
-  explicit CommandBench(CommandParams params = {}) : interface_(with_name(params), requests, outputs()) {
+  explicit CommandBench(CommandParams params = {})
+      : params_(with_name(params)),
+        interface_(std::make_unique<CommandInterface>(params_, requests, outputs())) {
     for (const char* op : {"op1", "op2", "op3"}) start(op);
   }
 
@@ -30,14 +33,22 @@ class CommandBench {
     if (stations_.contains(op)) now += Binding::kQuiet;
     Station& s = stations_[op];
     s = {{op, id_of(op), next_participant()}, 0, true};
-    interface_.hear(s.sender, 1, now);
+    interface_->hear(s.sender, 1, now);
+  }
+  /// The component is made anew with what it kept, under another start.
+  void restart() {
+    const KeptAuthority kept = interface_->kept();
+    const std::vector<KeptAnswers> answers = interface_->kept_answers();
+    ++params_.epoch_start;
+    interface_ = std::make_unique<CommandInterface>(params_, requests, outputs());
+    interface_->restore(kept, answers, now);
   }
   void kill(const std::string& op) { stations_.at(op).up = false; }
   void wait(Duration time) {
     for (const Time end = now + time; now < end; now += 500ms) {
       for (auto& [op, s] : stations_)
-        if (s.up && op.find(':') == std::string::npos) interface_.hear(s.sender, 1, now);
-      interface_.tick(now);
+        if (s.up && op.find(':') == std::string::npos) interface_->hear(s.sender, 1, now);
+      interface_->tick(now);
     }
   }
 
@@ -46,7 +57,7 @@ class CommandBench {
     Command c{};
     c.robot = "r1";
     c.from = s.sender;
-    c.epoch = interface_.authority().epoch();
+    c.epoch = interface_->authority().epoch();
     c.seq = ++s.seq;
     std::istringstream words(line);
     std::string verb;
@@ -64,12 +75,12 @@ class CommandBench {
     return c;
   }
   Answer say(const std::string& by, const std::string& line) { return send(command(by, line)); }
-  Answer send(const Command& c) { return interface_.handle(c, now).value(); }
+  Answer send(const Command& c) { return interface_->handle(c, now).value(); }
 
   StickSample stick(const std::string& by, Twist2 twist = {}) {
     Station& s = station(by);
-    interface_.sent_stamp(to_stamp(now));
-    return {"r1",          s.sender.id, s.sender.participant, interface_.authority().epoch(), ++stick_seq_,
+    interface_->sent_stamp(to_stamp(now));
+    return {"r1",          s.sender.id, s.sender.participant, interface_->authority().epoch(), ++stick_seq_,
             to_stamp(now), twist};
   }
 
@@ -82,7 +93,7 @@ class CommandBench {
     }
     return stations_.at(by);
   }
-  CommandInterface& interface() { return interface_; }
+  CommandInterface& interface() { return *interface_; }
 
   FakeRequests requests{};
   std::vector<Notice> notices{};
@@ -112,7 +123,8 @@ class CommandBench {
   std::map<std::string, Station> stations_{};
   std::uint8_t participants_{};
   std::uint64_t stick_seq_{};
-  CommandInterface interface_;
+  CommandParams params_;
+  std::unique_ptr<CommandInterface> interface_;
 };
 
 }  // namespace adit::agent

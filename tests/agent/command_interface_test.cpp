@@ -219,6 +219,44 @@ TEST(CommandInterface, AKilledStationIsBackWhenItsLastWordIsASignOfLifeOld) {
   EXPECT_TRUE(bench.notices.empty()) << "nobody is an intruder";
 }
 
+TEST(CommandInterface, AfterARestartTheHoldersPlaceIsNotForTheFirstToSpeak) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.restart();
+  for (int i = 0; i < 30; ++i) {  // the real one's presence is due within a second
+    for (const char* line : {"mode waypoint", "goto 1 0", "release"})
+      EXPECT_EQ(bench.say("forger:op1", line).reason, Reason::identity_mismatch) << line << " at " << i;
+    if (i % 10 == 9) bench.interface().hear(bench.station("op1").sender, 1, bench.now);
+    bench.now += 100ms;
+  }
+  EXPECT_TRUE(bench.say("op1", "lock").accepted()) << "and the real one needs no presence";
+}
+
+TEST(CommandInterface, ARestartWhileAForgerHasThePlaceDoesNotLeaveItToHim) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.now += Binding::kQuiet;  // the holder's words are lost for a moment
+  const Sender forger = bench.station("forger:op1").sender;
+  bench.interface().hear(forger, 1, bench.now);
+  bench.restart();
+  bench.now += Binding::kGrace;
+  bench.interface().hear(bench.station("op1").sender, 1, bench.now);
+  EXPECT_EQ(bench.say("forger:op1", "release").reason, Reason::identity_mismatch);
+  EXPECT_TRUE(bench.say("op1", "lock").accepted());
+}
+
+TEST(CommandInterface, AStationRestartedTogetherWithTheRobotIsBackByItsPresence) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.kill("op1");
+  bench.restart();
+  const Sender again = bench.station("forger:op1").sender;
+  bench.interface().hear(again, 1, bench.now);
+  EXPECT_EQ(bench.say("forger:op1", "mode hold").reason, Reason::identity_mismatch);
+  bench.now += Binding::kQuiet;
+  EXPECT_TRUE(bench.say("forger:op1", "mode hold").accepted());
+}
+
 TEST(CommandInterface, AStationThatLeftIsBackAtOnce) {
   CommandBench bench;
   bench.say("op1", "take");

@@ -67,6 +67,22 @@ TEST_F(Restore, HolderLockAndGoalComeBackUnderANewEpoch) {
   EXPECT_EQ(bench->ask(*op1, CMD_UNLOCK), Reason::none) << "the holder goes on with the new epoch";
 }
 
+TEST_F(Restore, AForgerWhoSpeaksFirstAfterAKillIsNotTheHolder) {
+  take_lock_and_go();
+  AgentBench::Operator& forger = bench->join("op3");
+  bench->run(1s);
+  forger.beat = {};  // no presence: only the holder's name and id in its commands
+  forger.name = "op1";
+  forger.id = op1->id;
+  forger.seq = 100;
+  op1->beat = {};
+  crash();
+  bench->run(100ms);
+  forger.authority = op1->authority;
+  EXPECT_EQ(bench->ask(forger, CMD_RELEASE), Reason::identity_mismatch);
+  EXPECT_EQ(bench->ask(*op1, CMD_UNLOCK), Reason::none) << "the real one is still the holder";
+}
+
 TEST_F(Restore, TheOldEpochNoLongerCounts) {
   take_lock_and_go();
   const auto before = op1->authority;

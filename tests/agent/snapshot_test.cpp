@@ -21,7 +21,11 @@ Id id_of(char c) {
 
 Snapshot full() {
   Snapshot s;
-  s.authority = {{77, 12}, Party{"op1", id_of('a')}, true, {{"op2", id_of('b')}, {"others", Id{}}}};
+  s.authority = {{77, 12},
+                 Party{"op1", id_of('a')},
+                 Binding::Kept{{1, 2, 3}, wire::ParticipantId{4, 5, 6}},
+                 true,
+                 {{"op2", id_of('b')}, {"others", Id{}}}};
   s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}};
   s.boot = 0x1122334455667788;
   s.battery = 2;
