@@ -1,8 +1,11 @@
 // How long a stick's movement takes from the operator's station to the robot's wheels: three processes
 // (station, agent, driver) over Fast DDS on loopback, beside one and two hops of bare Fast DDS with a payload
-// of the same size between the same processes in the same run.
+// of the same size between the same processes in the same run. Each twice, in turns: with cores that fall
+// asleep between two samples, as on a machine at rest (a wake-up from there is the hypervisor's or the
+// processor's, 100 us and more on a virtual machine), and awake, as on a robot that has work.
 #include <benchmark/benchmark.h>
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/mman.h>
@@ -11,6 +14,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -139,6 +143,42 @@ pid_t start(const char* role, int fd, unsigned radio) {
   return child;
 }
 
+/// Sample k is one of those that are taken while the cores are kept awake.
+bool awake(std::size_t k) {
+  constexpr std::size_t kTurn = 75;
+  return k / kTurn % 2 == 1;
+}
+
+/// Threads that take what nobody else wants of each core: it does not sleep, and wakes for others at once.
+class Spinners {
+ public:
+  Spinners() {
+    for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
+      threads_.emplace_back([this] {
+        const sched_param none{};
+        if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) std::perror("SCHED_IDLE");
+        for (;;) {
+          on_.wait(kOff);
+          if (on_ == kEnd) return;
+        }
+      });
+  }
+  ~Spinners() {
+    set(kEnd);
+    for (std::thread& thread : threads_) thread.join();
+  }
+  void turn(bool on) { set(on ? kOn : kOff); }
+
+ private:
+  static constexpr int kOff = 0, kOn = 1, kEnd = 2;
+  void set(int state) {
+    on_ = state;
+    on_.notify_all();
+  }
+  std::atomic<int> on_{kOff};
+  std::vector<std::thread> threads_{};
+};
+
 void station_process(Stamps& stamps, unsigned radio) {
   auto air = join(radio, false);
   TappedWire tapped(*air, wire::topics::joystick.name,
@@ -172,7 +212,9 @@ void station_process(Stamps& stamps, unsigned radio) {
   });
   // Until the mode is entered the stick stays centred.
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  Spinners spinners;
   for (std::size_t k = 1; k < Stamps::kSamples; ++k) {
+    spinners.turn(awake(k));
     strand->post([&, k] { station->stick(handle, {static_cast<double>(k) * kStep, 0.0, 0.0}); });
     std::this_thread::sleep_for(std::chrono::milliseconds(37));
     Stamps::note(stamps.bare_written, k);
@@ -188,10 +230,11 @@ void station_process(Stamps& stamps, unsigned radio) {
   wait_until([&] { return gone.load(); }, "the station's end");
 }
 
-std::vector<double> hops(const Stamps::Column& from, const Stamps::Column& to) {
+std::vector<double> hops(const Stamps::Column& from, const Stamps::Column& to, bool while_awake) {
   std::vector<double> seconds;
   for (std::size_t k = 1; k < Stamps::kSamples; ++k)
-    if (from[k] != 0 && to[k] > from[k]) seconds.push_back(static_cast<double>(to[k] - from[k]) * 1e-9);
+    if (awake(k) == while_awake && from[k] != 0 && to[k] > from[k])
+      seconds.push_back(static_cast<double>(to[k] - from[k]) * 1e-9);
   std::sort(seconds.begin(), seconds.end());
   return seconds;
 }
@@ -239,12 +282,16 @@ int main(int argc, char** argv) {
   stamps->stop = true;
   for (const pid_t pid : children) waitpid(pid, nullptr, 0);
 
-  const auto one = hops(stamps->bare_written, stamps->bare_called);
-  const auto two = hops(stamps->bare_written, stamps->second_called);
-  report("bare_fastdds/one_hop", one, one);
-  report("joystick/to_cmd_vel_written", hops(stamps->stick_written, stamps->cmd_written), one);
-  report("bare_fastdds/two_hops", two, two);
-  report("joystick/to_driver_callback", hops(stamps->stick_written, stamps->driver_called), two);
+  for (const bool on : {true, false}) {
+    const auto one = hops(stamps->bare_written, stamps->bare_called, on);
+    const auto two = hops(stamps->bare_written, stamps->second_called, on);
+    const std::string cores = on ? "/cores_awake" : "/cores_asleep";
+    report("bare_fastdds/one_hop" + cores, one, one);
+    report("joystick/to_cmd_vel_written" + cores, hops(stamps->stick_written, stamps->cmd_written, on), one);
+    report("bare_fastdds/two_hops" + cores, two, two);
+    report("joystick/to_driver_callback" + cores, hops(stamps->stick_written, stamps->driver_called, on),
+           two);
+  }
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }
