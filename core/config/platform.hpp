@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -48,6 +49,11 @@ struct Platform {
   bool manual_collision_stop{false};
 
   bool sideways() const { return drive == Drive::holonomic || drive == Drive::aerial; }
+  /// Steepest ground it goes on, rise per run: stairs of its highest step are as steep.
+  double steepest() const {
+    constexpr double kTread = 0.28;  // m: of the steepest stairs
+    return stairs ? std::max(max_slope, step / kTread) : max_slope;
+  }
   bool turns_on_spot() const { return drive != Drive::car; }
   bool flies() const { return drive == Drive::aerial; }
   /// Behind base_link, m: what does not move sideways on a car. 0: base_link itself.

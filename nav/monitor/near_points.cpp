@@ -59,7 +59,8 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   const auto lidar = static_cast<float>(platform_.lidar_height);
   const auto own = static_cast<float>(-params_.body_margin);
   const auto step = static_cast<float>(platform_.step + params_.rise);
-  const auto slope = static_cast<float>(params_.slope);
+  const auto slope =
+      static_cast<float>(platform_.stairs ? std::max(params_.slope, platform_.steepest()) : params_.slope);
   const auto inside = [this](const Eigen::Vector3f& p) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
   };
@@ -86,7 +87,9 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     if (!inside(p) || p.z() > top || p.z() <= step) continue;
     const float depth = body_.depth(p.x(), p.y());
     if (depth > own) continue;
-    if (p.z() <= step - slope * depth && p.z() <= lowest_[coarse(p.x(), p.y())] + step + slope * kWithinCell)
+    // Who climbs stairs stands on them with its middle: they rise from there.
+    const float away = platform_.stairs ? std::sqrt(p.x() * p.x() + p.y() * p.y()) : -depth;
+    if (p.z() <= step + slope * away && p.z() <= lowest_[coarse(p.x(), p.y())] + step + slope * kWithinCell)
       continue;
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     Cell& cell = cells_[index];

@@ -11,7 +11,8 @@
 namespace adit::nav {
 
 struct NearPointsParams {
-  double slope{0.35};        ///< ground may rise so much per metre from the footprint on, [0, 1]
+  double slope{0.35};        ///< ground may rise so much per metre from the footprint on, [0, 1]; for who
+                             ///< climbs stairs as much as those, from its middle on
   double rise{0.025};        ///< and be higher than the platform's step by this, m, [0, 0.2]
   double overhang{0.15};     ///< what hangs so much above body and lidar is passed under, m, [0, 1]
   double body_margin{0.02};  ///< returns this close around the footprint are the own body, m, [0, 0.5]

@@ -6,14 +6,17 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kUnit = 16.0f;  // of a cell's cost
+constexpr float kUnit = 16.0f;   // of a cell's cost
+constexpr double kRiser = 0.06;  // m: from below, the lowest return of a riser lies above its foot
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kCellF = static_cast<float>(kRouteCell);
 
 }  // namespace
 
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
-    : rise_(static_cast<float>(std::max(platform.step, params.slope * kRouteCell) + params.step_margin)),
+    : rise_(static_cast<float>(
+          std::max(platform.step, std::max(params.slope, platform.steepest()) * kRouteCell) +
+          params.step_margin + (platform.stairs ? kRiser : 0.0))),
       unknown_cost_(static_cast<float>(params.unknown_cost)) {
   // Half a cell less than the body needs: obstacles fill whole cells. The local planner knows better, and
   // tells when it does not get through.

@@ -8,15 +8,9 @@ namespace {
 
 constexpr std::size_t kUsualReturns = 32768;  ///< within range
 constexpr std::size_t kMostDeep = 32768;
-constexpr double kTread = 0.28;      ///< m: of the steepest stairs
 constexpr double kRiser = 0.06;      ///< m
 constexpr double kStood = 0.005;     ///< m: a robot that moved less stands
 constexpr double kLidarShare = 0.7;  ///< of the lidar's height: a first return as high as this may be ground
-
-/// Stairs of the platform's highest step are as steep.
-double steepest(const Platform& platform) {
-  return platform.stairs ? std::max(platform.max_slope, platform.step / kTread) : platform.max_slope;
-}
 
 double drop_of(const Platform& platform, const TerrainParams& params) {
   return std::max(params.drop, 1.5 * platform.step);
@@ -26,8 +20,8 @@ GroundParams ground_params(const Platform& platform, const TerrainParams& params
   // From below, the lowest return of a stair's riser lies above its foot.
   const double rise = std::max(0.03, platform.step) + (platform.stairs ? params.step_margin + kRiser : 0.0);
   GroundParams ground;
-  ground.slope = static_cast<float>(steepest(platform));
-  ground.rise = static_cast<float>(std::max(rise, steepest(platform) * double{GroundGrid::kCell} + 0.02));
+  ground.slope = static_cast<float>(platform.steepest());
+  ground.rise = static_cast<float>(std::max(rise, platform.steepest() * double{GroundGrid::kCell} + 0.02));
   ground.drop = static_cast<float>(drop_of(platform, params));
   ground.most = static_cast<float>(kLidarShare * platform.lidar_height);
   ground.memory = static_cast<float>(params.ground_memory);
@@ -36,7 +30,7 @@ GroundParams ground_params(const Platform& platform, const TerrainParams& params
 
 SurfaceParams surface_params(const Platform& platform, const TerrainParams& params) {
   SurfaceParams surface;
-  surface.slope = static_cast<float>(steepest(platform));
+  surface.slope = static_cast<float>(platform.steepest());
   surface.step = static_cast<float>(std::max(platform.step, 0.02));
   // On stairs the edges seen from below are uncertain; what is too high for legs stands in the way anyway.
   if (!platform.stairs) surface.blocking_step = static_cast<float>(platform.step + 1.5 * params.step_margin);

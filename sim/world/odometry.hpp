@@ -25,6 +25,10 @@ class Odometry {
 
   /// Takes the true motion of one step: from one pose to the next, over `dt` seconds.
   void move(const Pose2& from, const Pose2& to, double dt);
+  /// The ground under the robot rose by so much, m: measured by how the body leaned on the way.
+  void rise(double by) { height_ += scale_ * by; }
+  /// Above the start, m.
+  double height() const { return height_; }
   /// Pose in the frame `odom`, which begins at the start pose.
   const Pose2& pose() const { return pose_; }
   /// Velocity as it was measured over the last step, body frame.
@@ -37,6 +41,7 @@ class Odometry {
   double rate_;       ///< rad a metre
   double turn_{1.0};  ///< measured of each radian turned
   Pose2 pose_{};
+  double height_{};
   Twist2 twist_{};
 };
 

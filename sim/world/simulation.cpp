@@ -97,7 +97,7 @@ std::optional<std::size_t> Simulation::find(const std::string& id) const {
 
 double Simulation::altitude(std::size_t robot) const {
   const Robot& r = robots_[robot];
-  return r.body.platform().flies() ? r.truth.pose.position.z() - r.start_ground : 0.0;
+  return r.body.platform().flies() ? r.truth.pose.position.z() - r.start_ground : r.odometry.height();
 }
 
 bool Simulation::level(std::size_t a, std::size_t b) const {
@@ -254,9 +254,10 @@ void Simulation::move(std::size_t index) {
   truth.distance += (now.position() - before.position()).norm();
   if (std::hypot(truth.twist.vx, truth.twist.vy) > 0.05 || std::abs(truth.twist.wz) > 0.1)
     truth.moving += params_.step;
-  const double ground = robot.ground->ground(now.x, now.y);
+  const double ground = robot.ground->ground(now.x, now.y), height = truth.pose.position.z();
   const bool stays = robot.body.platform().flies() || std::isnan(ground);
-  truth.pose = Pose3::level(now, stays ? truth.pose.position.z() : ground);
+  if (!stays) robot.odometry.rise(ground - height);
+  truth.pose = Pose3::level(now, stays ? height : ground);
 }
 
 void Simulation::measure(std::size_t index) {
