@@ -61,6 +61,8 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   const auto step = static_cast<float>(platform_.step + params_.rise);
   const auto slope =
       static_cast<float>(platform_.stairs ? std::max(params_.slope, platform_.steepest()) : params_.slope);
+  // Stairs rise by one step within a cell, and a face that is higher is a wall.
+  const float within = platform_.stairs ? 0.0f : slope * kWithinCell;
   const auto inside = [this](const Eigen::Vector3f& p) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
   };
@@ -89,8 +91,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     if (depth > own) continue;
     // Who climbs stairs stands on them with its middle: they rise from there.
     const float away = platform_.stairs ? std::sqrt(p.x() * p.x() + p.y() * p.y()) : -depth;
-    if (p.z() <= step + slope * away && p.z() <= lowest_[coarse(p.x(), p.y())] + step + slope * kWithinCell)
-      continue;
+    if (p.z() <= step + slope * away && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     Cell& cell = cells_[index];
     if (cell.count == 0) used_.push_back(index);

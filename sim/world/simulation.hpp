@@ -86,7 +86,7 @@ class Simulation {
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
   /// Pose in `odom` (which begins at the start pose) and measured velocity.
   const Odometry& odometry(std::size_t robot) const { return robots_[robot].odometry; }
-  /// What flies measures its height above the ground where it started, m; 0 of what drives.
+  /// Height above where it started as odometry has it, m; of what flies as it measures it.
   double altitude(std::size_t robot) const;
   /// In the order they began; the first 1000 of them.
   const std::vector<Collision>& collisions() const { return collisions_; }

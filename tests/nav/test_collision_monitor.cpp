@@ -72,6 +72,16 @@ TEST(CollisionMonitor, SlowsHeadOnAndStopsAtTheMargin) {
   }
 }
 
+TEST(CollisionMonitor, LegsMayWalkUpToStairsAndNotIntoAWallBehindThem) {
+  std::vector<Box> stairs;
+  for (int n = 0; n < 4; ++n) stairs.push_back({0.6 + 0.3 * n, 3, -3, 3, 0, 0.2 * (n + 1)});
+  const Seen legs(stairs, legged());
+  EXPECT_EQ(legs.ask({1.2, 0, 0}).cause, Cause::none);
+  EXPECT_NE(Seen(stairs, tracked()).ask({1.2, 0, 0}).cause, Cause::none);
+  Seen wall({{1.5, 3, -3, 3, 0, 0.6}}, legged());
+  EXPECT_GT(wall.drive({1.2, 0, 0}, 6), 0.0) << "as high as three steps, and none";
+}
+
 TEST(CollisionMonitor, TheSlowZoneGrowsWithTheSpeed) {
   const Seen seen({{1.5, 1.7, -3, 3}});
   EXPECT_EQ(seen.ask({0.5, 0, 0}).cause, Cause::none);

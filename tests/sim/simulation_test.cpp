@@ -108,6 +108,18 @@ TEST(Simulation, drives_and_keeps_the_books) {
   EXPECT_NEAR(s.odometry(0).pose().x, truth.distance, 0.2);
 }
 
+TEST(Simulation, odometry_measures_how_far_the_ground_rose) {
+  const std::array<Box, 2> boxes{Box{1, 2, -2, 2, 0, 0.07}, Box{2, 9, -2, 2, 0, 0.14}};
+  const auto world = std::make_shared<const World>(*make_box_world(boxes, 0, 3));
+  auto s = Simulation::create(world, {{"r1", wheeled(), {0, 0, 0}}}, {});
+  ASSERT_TRUE(s) << s.error().text;
+  drive(*s, 0, {1, 0, 0}, 4);
+  EXPECT_NEAR(s->truth(0).pose.position.z(), 0.14, 1e-6);
+  EXPECT_NEAR(s->altitude(0), 0.14, 0.14 * 0.05);
+  drive(*s, 0, {-1, 0, 0}, 7);
+  EXPECT_NEAR(s->altitude(0), 0.0, 1e-6) << "down again";
+}
+
 TEST(Simulation, a_wall_stops_the_body_and_is_recorded_once) {
   Simulation s = make({{"r1", wheeled(), {3, 0, 0}}});
   drive(s, 0, {2, 0, 0}, 4.0);
