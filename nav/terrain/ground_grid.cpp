@@ -87,15 +87,18 @@ void GroundGrid::roll(int x, int y) {
   if (placed_ && x == old_x && y == old_y) return;
   const bool all = !placed_ || std::abs(x - old_x) > kSide || std::abs(y - old_y) > kSide;
   placed_ = true;
-  for (int i = x - kHalf; i <= x + kHalf; ++i) {
-    const bool new_row = all || std::abs(i - old_x) > kHalf;
-    if (!new_row && y == old_y) continue;
-    for (int j = y - kHalf; j <= y + kHalf; ++j)
-      if (new_row || std::abs(j - old_y) > kHalf) {
-        stamp_[slot(i, j)] = kLongAgo;
-        entered_.push_back(slot(i, j));
-      }
-  }
+  // Calls `each` for the cells of a square around the robot that were not in it before.
+  const auto entering = [&](int half, const auto& each) {
+    for (int i = x - half; i <= x + half; ++i) {
+      const bool new_row = all || std::abs(i - old_x) > half;
+      if (!new_row && y == old_y) continue;
+      for (int j = y - half; j <= y + half; ++j)
+        if (new_row || std::abs(j - old_y) > half) each(slot(i, j));
+    }
+  };
+  // Who turns round on a landing has to know the stairs that he came up, which cannot be seen from there.
+  entering(kKept, [&](std::size_t s) { stamp_[s] = kLongAgo; });
+  entering(kHalf, [&](std::size_t s) { entered_.push_back(s); });
 }
 
 void GroundGrid::begin_scan(float x, float y, float now) {

@@ -33,6 +33,8 @@ class GroundGrid {
   static constexpr int kHalf = 48;             ///< known this many cells around the robot
   static constexpr int kSide = 2 * kHalf + 1;  ///< of the window
   static constexpr int kTorus = 128;           ///< more than a window
+  static constexpr int kKept =
+      kTorus / 2 - 1;                          ///< what was measured is kept this many cells around the robot
   static constexpr std::uint8_t kNever = 200;  ///< gap of a cell with no measured one on the way to it
 
   explicit GroundGrid(const GroundParams& params = {});
