@@ -337,10 +337,12 @@ CommandInterface::Outputs Agent::Core::command_outputs() {
 }
 
 Behaviour::Inputs Agent::Core::behaviour_inputs() {
-  return {[this](Time at) { return sense(at); },
-          [this](const Eigen::Vector2d& place) { return navigation_.goal_free(place); },
-          // What flies keeps the height that it has.
-          [this] { return params_.platform.flies() ? localisation_.z() : 0.0; }};
+  Behaviour::Inputs inputs{[this](Time at) { return sense(at); },
+                           [this](const Eigen::Vector2d& place) { return navigation_.goal_free(place); },
+                           {}};
+  // What flies keeps the height that it has.
+  if (params_.platform.flies()) inputs.height = [this] { return localisation_.z(); };
+  return inputs;
 }
 
 Behaviour::Outputs Agent::Core::behaviour_outputs() {

@@ -25,28 +25,38 @@ class Ground {
     for (int j = 0; j < ny_; ++j)
       for (int i = 0; i < nx_; ++i)
         if (map.distance(x(i), x(j)) >= stand) at(i, j) = State::apart;
-    std::deque<std::pair<int, int>> open{
-        {static_cast<int>(made.start.x() / kCell), static_cast<int>(made.start.y() / kCell)}};
-    std::vector<std::uint8_t> seen(state_.size());
+    struct Step {
+      int i, j, cells;
+    };
+    std::deque<Step> open{
+        {static_cast<int>(made.start.x() / kCell), static_cast<int>(made.start.y() / kCell), 0}};
+    cells_.assign(state_.size(), kUnseen);
     while (!open.empty()) {
-      const auto [i, j] = open.front();
+      const auto [i, j, cells] = open.front();
       open.pop_front();
       if (i < 0 || j < 0 || i >= nx_ || j >= ny_) continue;
-      auto& mark = seen[static_cast<std::size_t>(j) * nx_ + i];
-      if (mark || map.distance(x(i), x(j)) < pass) continue;
-      mark = 1;
+      int& mark = cells_[static_cast<std::size_t>(j) * nx_ + i];
+      if (mark != kUnseen || map.distance(x(i), x(j)) < pass) continue;
+      mark = cells;
       if (at(i, j) == State::apart) at(i, j) = State::reachable;
-      for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) open.emplace_back(i + a, j + b);
+      for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+        open.push_back({i + a, j + b, cells + 1});
     }
   }
   enum class State : std::uint8_t { blocked, apart, reachable };
+  /// Of the shortest way there, m; that of none where there is no way.
+  double way(int i, int j) const {
+    return std::max(0, cells_[static_cast<std::size_t>(j) * nx_ + i]) * kCell;
+  }
   State& at(int i, int j) { return state_[static_cast<std::size_t>(j) * nx_ + i]; }
   static double x(int i) { return (i + 0.5) * kCell; }
   int nx() const { return nx_; }
   int ny() const { return ny_; }
 
  private:
+  static constexpr int kUnseen = -1;
   int nx_, ny_;
+  std::vector<int> cells_{};
   std::vector<State> state_{};
 };
 
@@ -77,23 +87,26 @@ Result<Course> draw_course(const std::string& kind, const std::string& platform,
                   made->start,
                   goal,
                   straight,
+                  ground.way(i, j),
                   body->max_speed,
                   wanted == Ground::State::reachable};
   }
   return {Reason::out_of_range, fmt::format("{} seed {}: no place for a goal", kind, seed)};
 }
 
+std::string scenario_text(const Course& course, double slowness, bool planar) {
+  const double duration = 30.0 + slowness * std::max(course.straight, course.way) / (0.5 * course.speed);
+  return fmt::format(
+      "world: {{generate: {}, seed: {}}}\nduration: {:.0f}\nlink: mesh_500k\nlidar: {}\n"
+      "robots:\n  - {{id: r1, platform: {}, pose: [{}, {}, 0]}}\nbasestations:\n  - {{id: op1, pose: [0, "
+      "0]}}\n"
+      "script:\n  - {{at: 3, by: op1, do: take r1}}\n  - {{at: 4, by: op1, do: goto r1 {:.2f} {:.2f}}}\n",
+      course.kind, course.seed, duration, planar ? "planar" : "full", course.platform, course.start.x(),
+      course.start.y(), course.goal.x(), course.goal.y());
+}
+
 Result<sim::Scenario> scenario_of(const Course& course, double slowness, bool planar) {
-  const double duration = 30.0 + slowness * course.straight / (0.5 * course.speed);
-  return sim::parse_scenario(
-      fmt::format(
-          "world: {{generate: {}, seed: {}}}\nduration: {:.0f}\nlink: mesh_500k\nlidar: {}\n"
-          "robots:\n  - {{id: r1, platform: {}, pose: [{}, {}, 0]}}\nbasestations:\n  - {{id: op1, pose: [0, "
-          "0]}}\n"
-          "script:\n  - {{at: 3, by: op1, do: take r1}}\n  - {{at: 4, by: op1, do: goto r1 {:.2f} {:.2f}}}\n",
-          course.kind, course.seed, duration, planar ? "planar" : "full", course.platform, course.start.x(),
-          course.start.y(), course.goal.x(), course.goal.y()),
-      course.kind + ".yaml");
+  return sim::parse_scenario(scenario_text(course, slowness, planar), course.kind + ".yaml");
 }
 
 }  // namespace adit::bench

@@ -12,6 +12,7 @@ struct Course {
   std::uint64_t seed{};
   Eigen::Vector2d start{0, 0}, goal{0, 0};  ///< world, m
   double straight{};                        ///< from start to goal, m
+  double way{};                             ///< the same along what is free, between cells side by side, m
   double speed{1.0};                        ///< the platform's highest, m/s
   bool reachable{};                         ///< by a disc as wide as the platform
 };
@@ -21,8 +22,10 @@ struct Course {
 /// platform's file.
 Result<Course> draw_course(const std::string& kind, const std::string& platform, std::uint64_t seed);
 
-/// The rehearsal of a course: full lidar, noisy odometry; as long as `slowness` straight drives at half the
-/// platform's speed, and half a minute. Errors of the scenario.
+/// The rehearsal of a course, as a scenario's file has it: full lidar, noisy odometry; as long as `slowness`
+/// drives of the whole way at half the platform's speed, and half a minute.
+std::string scenario_text(const Course& course, double slowness, bool planar);
+/// The same, read. Errors of the scenario.
 Result<sim::Scenario> scenario_of(const Course& course, double slowness, bool planar);
 
 }  // namespace adit::bench

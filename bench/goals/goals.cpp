@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <thread>
 
@@ -25,7 +27,7 @@ struct Outcome {
 };
 
 constexpr double kArrived = 0.35;  // m: the goal's tolerance, and what a scan is off by
-constexpr double kDrift = 0.02;    // of the way: what dead reckoning is off by
+constexpr double kDrift = 0.03;    // of the way: what dead reckoning is off by, three deviations
 constexpr double kSent = 4.0;      // s: when the goal is sent
 
 Outcome run(const Course& course, const sim::AgentFactory& agents, double slowness, bool planar) {
@@ -94,12 +96,16 @@ int main(int argc, char** argv) {
   std::uint64_t first = 1;
   double slowness = 4.0;
   bool planar = false, each = false;
+  std::string save;
   app.add_option("--goals", goals, "how many (default 500)")->check(CLI::Range(1, 100000));
   app.add_option("--first", first, "the first seed (default 1)");
   app.add_option("--kinds", kinds, "worlds (default all)")->check(CLI::IsMember(kinds));
   app.add_option("--platforms", platforms, "platforms (default wheeled tracked legged car)");
-  app.add_option("--slowness", slowness, "time allowed, in straight drives at half speed (default 4)");
+  app.add_option("--slowness", slowness,
+                 "time allowed, in drives of the shortest way at half speed (default 4)");
   app.add_flag("--planar", planar, "one ring instead of the full lidar: faster");
+  app.add_option("--save", save,
+                 "folder for the scenarios of those goals: KIND.yaml in one named after the seed");
   app.add_flag("--each", each, "a line for each goal that was not as it should be");
   app.footer("Examples:\n  goals --goals 500\n  goals --goals 20 --kinds cave maze --each");
   CLI11_PARSE(app, argc, argv);
@@ -116,7 +122,7 @@ int main(int argc, char** argv) {
       if (course)
         outcomes[n] = run(*course, *agents, slowness, planar);
       else
-        outcomes[n] = {.course = {kind, platform, first + n, {0, 0}, {0, 0}, 0, 1, true},
+        outcomes[n] = {.course = {kind, platform, first + n, {0, 0}, {0, 0}, 0, 0, 1, true},
                        .error = course.error().text};
       std::fprintf(stderr, "\r%zu of %zu ", n + 1, outcomes.size());
     }
@@ -131,6 +137,11 @@ int main(int argc, char** argv) {
   for (const Outcome& o : outcomes) {
     for (Row* row : {&by_kind[o.course.kind], &by_platform[o.course.platform], &all}) row->add(o);
     const bool good = o.error.empty() && o.collisions == 0 && (o.course.reachable ? o.arrived : o.told);
+    if (!good && !save.empty()) {
+      const std::filesystem::path folder = std::filesystem::path(save) / std::to_string(o.course.seed);
+      std::filesystem::create_directories(folder);
+      std::ofstream(folder / (o.course.kind + ".yaml")) << scenario_text(o.course, slowness, planar);
+    }
     if (each && !good)
       fmt::print("{} {} seed {}: ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}){}{}{} {}\n", o.course.kind,
                  o.course.platform, o.course.seed, o.course.start.x(), o.course.start.y(), o.course.goal.x(),

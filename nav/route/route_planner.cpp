@@ -58,9 +58,14 @@ bool RoutePlanner::has_blocked_places() const {
 std::optional<double> RoutePlanner::ground(double x, double y, double z) const {
   const int ix = route_cell(x), iy = route_cell(y);
   std::optional<double> best;
+  bool free = false;
   for (int i = map_.first(tile_of(ix), tile_of(iy)); i >= 0; i = map_.tile(i).next) {
     const GroundCell& cell = map_.tile(i).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-    if (cell.known && (!best || std::abs(cell.z - z) < std::abs(*best - z))) best = cell.z;
+    // The side of a ramp stands on the floor below it: what is free counts before that.
+    if (!cell.known || (free && cell.blocked)) continue;
+    const bool better = !best || free == cell.blocked || std::abs(cell.z - z) < std::abs(*best - z);
+    if (better) best = cell.z;
+    free = !cell.blocked;
   }
   return best;
 }
@@ -141,7 +146,10 @@ Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
   Route route;
   const Eigen::Vector3d goal_place{to.x(), to.y(), goal_height(from, to)};
   const auto start = find_end(from, kStartReach);
-  const auto goal = find_end(goal_place, params_.snap);
+  auto goal = find_end(goal_place, params_.snap);
+  // Nobody knows the ground there nor said how high it is: it may as well be on a deck whose side is seen.
+  const bool any_floor = !std::isfinite(to.z()) && !ground(to.x(), to.y(), from.z());
+  if (any_floor && (!goal || goal->tile < 0)) goal = RouteEnd{goal_place, -1, 0, true};
   if (!start)
     route.status = RouteStatus::start_blocked;
   else if (!goal)

@@ -32,8 +32,8 @@ class RoutePlanner {
   /// Brings all of the graph up to date.
   void finish();
 
-  /// The way from one place to another. Goal: z NaN is the floor nearest to the start's. Never through a
-  /// known obstacle.
+  /// The way from one place to another. Goal: z NaN is the floor nearest to the start's, and
+  /// where none is known any. Never through a known obstacle.
   Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   /// That place was found blocked, whatever the scans say; it counts for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
@@ -48,7 +48,8 @@ class RoutePlanner {
   }
   /// Brings costs, lengths and unknown legs of a route up to date; false when it is not passable any more.
   bool measure(Route& route) { return line_.measure(route); }
-  /// Height of the ground there, of the floor nearest to z; nothing when it is not known.
+  /// Height of the ground there, of the floor nearest to z on which nothing stands; nothing when it is not
+  /// known.
   std::optional<double> ground(double x, double y, double z) const;
   const SurfaceMap& map() const { return map_; }
   /// Nodes that the last search looked at.

@@ -149,7 +149,7 @@ void RouteSearch::begin(const RouteEnd& start) {
     reach(id, static_cast<float>((place(id) - start.place).norm()) * builder_.unknown_cost(), start_id_);
   }
   if (goal_.tile < 0 && tx == tile_of(route_cell(goal_.place.x())) &&
-      ty == tile_of(route_cell(goal_.place.y())) && level_of(goal_.place.z()) == 0)
+      ty == tile_of(route_cell(goal_.place.y())) && (goal_.any_floor || level_of(goal_.place.z()) == 0))
     reach(goal_id_, static_cast<float>((goal_.place - start.place).norm()) * builder_.unknown_cost(),
           start_id_);
 }
@@ -281,9 +281,11 @@ void RouteSearch::expand_ghost(const Ghost& g, float cost, Id id) {
     reach(to, cost + static_cast<float>((place(to) - here).norm()) * builder_.unknown_cost(), id);
   }
   const int goal_level = level_of(goal_.place.z());
-  if (goal_.tile < 0 && g.level == goal_level && g.tx == tile_of(route_cell(goal_.place.x())) &&
-      g.ty == tile_of(route_cell(goal_.place.y())))
+  if (goal_.tile < 0 && (goal_.any_floor || g.level == goal_level) &&
+      g.tx == tile_of(route_cell(goal_.place.x())) && g.ty == tile_of(route_cell(goal_.place.y()))) {
+    if (goal_.any_floor) goal_.place.z() = here.z();
     reach(goal_id_, cost + static_cast<float>((goal_.place - here).norm()) * builder_.unknown_cost(), id);
+  }
   // Nobody knows where it goes up or down: anywhere, at a price, but only towards a goal that is not here.
   if (g.level != goal_level) {
     const int level = g.level + (goal_level > g.level ? 1 : -1);

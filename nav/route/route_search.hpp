@@ -15,6 +15,7 @@ struct RouteEnd {
   Eigen::Vector3d place{0, 0, 0};  ///< m
   int tile{-1};                    ///< -1: in unknown space without a tile
   int cell{0};                     ///< of the tile, passable
+  bool any_floor{false};           ///< of an unknown goal: whichever floor leads there first
 };
 
 /// A* over the openings of the tiles. Where there is no tile, unknown space is as if there were open ones:

@@ -84,6 +84,21 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
               });
 }
 
+// Behind the first obstacle: of something that stands there, and not of ground higher up that is looked down
+// on, like a ramp from beside it, where a robot may well drive.
+bool ScanProfile::is_face(std::span<const Return> returns, std::size_t which) const {
+  constexpr float kBelow = 0.05f;  // m below the lidar: no ground is seen from there
+  const Return& r = returns[which];
+  if (r.z > sensor_.z() - kBelow) return true;
+  const auto near = [&](const Return& other) { return std::abs(other.range - r.range) < kStack; };
+  const auto stands = [&](const Return& other) { return std::abs(other.z - r.z) > kStack; };
+  for (std::size_t i = which; i-- > 0 && near(returns[i]);)
+    if (stands(returns[i])) return true;
+  for (std::size_t i = which + 1; i < returns.size() && near(returns[i]); ++i)
+    if (stands(returns[i])) return true;
+  return false;
+}
+
 // Hits are marked; the free pieces before the first of them are kept for write_free().
 void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit) {
   hit = {};
@@ -97,7 +112,8 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
     const float rise = r.z - z;
     if (rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
     if (ended) {
-      if (rise > step_) map.see_obstacle(r.ix, r.iy, z, rise);
+      if (rise > step_ && is_face(returns, static_cast<std::size_t>(&r - returns.data())))
+        map.see_obstacle(r.ix, r.iy, z, rise);
       continue;
     }
     if (rise > step_ + slope_ * run) {

@@ -58,15 +58,16 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Time now) {
   f.goal_free = inputs_.goal_free(goal.head<2>());
   const Reason reason = entry_refusal(row, f);
   if (reason != Reason::none) return refuse(reason, "goto");
-  const double height = !std::isnan(goal.z()) ? goal.z() : inputs_.height ? inputs_.height() : 0.0;
-  goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), height}};
+  const bool given = !std::isnan(goal.z()), on_floor = !given && !inputs_.height;
+  const double height = given ? goal.z() : on_floor ? 0.0 : inputs_.height();
+  goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), height}, on_floor};
   progress_ = {};
   enter(row, now);
   return {};
 }
 
 void Behaviour::enter(const ModeRow& row, Time now) {
-  if (row.accepts != Accepts::goal) goal_ = {false, false, goal_.id, Eigen::Vector3d::Zero()};
+  if (row.accepts != Accepts::goal) goal_ = {false, false, goal_.id, Eigen::Vector3d::Zero(), false};
   requested_ = &row;
   listens_ = false;
   fell_because_ = Reason::none;
@@ -126,13 +127,19 @@ void Behaviour::hold(Reason reason, Time now) {
 }
 
 KeptBehaviour Behaviour::kept() const {
-  return {std::string(requested_->name), fell_because_, goal_.known, goal_.reached, goal_.id, goal_.place};
+  return {std::string(requested_->name),
+          fell_because_,
+          goal_.known,
+          goal_.reached,
+          goal_.id,
+          goal_.place,
+          goal_.on_floor};
 }
 
 void Behaviour::restore(const KeptBehaviour& kept, bool stopped, bool resume, bool listens) {
   const ModeRow* row = find_mode(kept.mode);
   const bool autonomous = row && row->accepts == Accepts::goal && kept.goal_known;
-  goal_ = {kept.goal_known, kept.goal_reached, kept.goal_id, kept.goal};
+  goal_ = {kept.goal_known, kept.goal_reached, kept.goal_id, kept.goal, kept.goal_on_floor};
   requested_ = autonomous && resume ? row : &mode_table().front();
   fell_because_ = kept.reason;
   stopped_ = stopped;
@@ -185,7 +192,8 @@ void Behaviour::feed_waypoint(Time now) {
   if (goal_.reached)
     waypoint_.write(Stand{}, now);
   else
-    waypoint_.write(GoTo{goal_.place}, now);
+    waypoint_.write(GoTo{{goal_.place.x(), goal_.place.y(), goal_.on_floor ? std::nan("") : goal_.place.z()}},
+                    now);
 }
 
 void Behaviour::watch(Time now) {

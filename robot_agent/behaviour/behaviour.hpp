@@ -57,7 +57,7 @@ class Behaviour : public Requests {
     std::function<Facts(Time)> sense{};
     /// No known obstacle covers that place (map frame, m).
     std::function<bool(const Eigen::Vector2d&)> goal_free{};
-    std::function<double()> height{};  ///< of a goal that was given none, m; empty: 0, the floor
+    std::function<double()> height{};  ///< of a goal that was given none, m; empty: it is on the floor
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.
@@ -109,6 +109,7 @@ class Behaviour : public Requests {
     bool reached{};
     std::uint32_t id{};
     Eigen::Vector3d place{Eigen::Vector3d::Zero()};
+    bool on_floor{};  ///< it was given no height
   };
 
   BehaviourParams params_;

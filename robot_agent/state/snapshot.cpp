@@ -95,6 +95,7 @@ store::Bytes encode(const Snapshot& s) {
   out.text(b.mode.substr(0, kName)).put(static_cast<std::uint16_t>(b.reason));
   out.flag(b.goal_known).flag(b.goal_reached).put(b.goal_id);
   for (const double value : {b.goal.x(), b.goal.y(), b.goal.z()}) out.put(value);
+  out.flag(b.goal_on_floor);
   out.put(s.boot).put(s.battery);
 
   const std::size_t participants = std::min(s.answers.size(), Snapshot::kParticipants);
@@ -121,6 +122,7 @@ std::optional<Snapshot> decode_snapshot(std::span<const std::uint8_t> bytes) {
   b.goal_reached = in.flag();
   b.goal_id = in.get<std::uint32_t>();
   for (int axis = 0; axis < 3; ++axis) b.goal[axis] = in.number();
+  b.goal_on_floor = in.flag();
   s.boot = in.get<std::uint64_t>();
   s.battery = in.get<std::uint8_t>();
 

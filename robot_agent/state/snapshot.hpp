@@ -50,6 +50,7 @@ struct KeptBehaviour {
   bool goal_known{}, goal_reached{};
   std::uint32_t goal_id{};
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< map frame, m
+  bool goal_on_floor{};                           ///< it was given no height
   bool operator==(const KeptBehaviour&) const = default;
 };
 

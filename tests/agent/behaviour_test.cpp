@@ -153,6 +153,19 @@ TEST_F(BehaviourTest, StopIsZeroWithinTheCallAndResetMovesNothing) {
   EXPECT_EQ(nav.last, Motion{Stand{}});
 }
 
+TEST_F(BehaviourTest, AGoalWithoutAHeightIsOnWhateverFloorIsThere) {
+  const Eigen::Vector3d no_height{5, 1, std::nan("")};
+  ASSERT_TRUE(behaviour.request_goal(no_height, now));
+  run(100ms);
+  EXPECT_EQ(nav.last, (Motion{GoTo{no_height}}));
+  EXPECT_TRUE(behaviour.view().goal.allFinite()) << "operators are told a number";
+  const KeptBehaviour kept = behaviour.kept();
+  EXPECT_EQ(kept, behaviour.kept()) << "else it would be written again and again";
+  behaviour.restore(kept, false, true, false);
+  run(100ms);
+  EXPECT_EQ(nav.last, (Motion{GoTo{no_height}})) << "also after a restart";
+}
+
 TEST_F(BehaviourTest, GoalIsKeptOverAStopAndGoesOnByRequest) {
   ASSERT_TRUE(behaviour.request_goal({5, 1, 0}, now));
   run(100ms);

@@ -26,7 +26,7 @@ Snapshot full() {
                  Binding::Kept{{1, 2, 3}, wire::ParticipantId{4, 5, 6}},
                  true,
                  {{"op2", id_of('b')}, {"others", Id{}}}};
-  s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}};
+  s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}, true};
   s.boot = 0x1122334455667788;
   s.battery = 2;
   KeptAnswers a;

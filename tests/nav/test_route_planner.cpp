@@ -246,6 +246,14 @@ TEST(RoutePlanner, TwoFloorsWithARamp) {
   EXPECT_NEAR(level.length, 16, 0.2);
 }
 
+TEST(RoutePlanner, WhatStandsOnTheFloorBelowARampIsNotItsGround) {
+  RoutePlanner planner(wheeled());
+  planner.set_ground({1, 1, 0.7});
+  planner.set_obstacle({1, 1, 0}, 0.7);  // its side, seen from the floor
+  planner.finish();
+  EXPECT_NEAR(planner.ground(1, 1, 0).value(), 0.7, 1e-3);
+}
+
 TEST(RoutePlanner, NoRampNoWayUp) {
   TwoFloors floors(false);
   EXPECT_EQ(floors.planner.plan({2, 2, 0}, {2, 2, 3}).status, RouteStatus::unreachable);
