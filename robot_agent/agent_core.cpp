@@ -150,7 +150,7 @@ void Agent::Core::restore() {
     edges_.restored = {decode_snapshot(encode(*last)), false, {}, 0};
   if (!edges_.restored.snapshot) return;
   const Snapshot& s = *edges_.restored.snapshot;
-  commands_.restore(s.authority, s.answers, now());
+  commands_.restore(s.authority, s.answers, started_);  // listen_first asks who was heard since
   // Where its driver's odometry began anew, the goal's place is no longer known for sure.
   const bool resume = params_.resume_after_restart && s.boot == params_.boot;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);

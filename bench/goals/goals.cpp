@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
   for (const Outcome& o : outcomes) {
     for (Row* row : {&by_kind[o.course.kind], &by_platform[o.course.platform], &all}) row->add(o);
     const bool good = o.error.empty() && o.collisions == 0 && (o.course.reachable ? o.arrived : o.told);
-    if (!good && !save.empty()) {
+    if (!good && o.error.empty() && !save.empty()) {
       const std::filesystem::path folder = std::filesystem::path(save) / std::to_string(o.course.seed);
       std::filesystem::create_directories(folder);
       std::ofstream(folder / (o.course.kind + ".yaml")) << scenario_text(o.course, slowness, planar);

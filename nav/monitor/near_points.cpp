@@ -10,6 +10,7 @@ constexpr float kEdge = 0.06f;        ///< of the fan of rays: what lies that ne
 constexpr float kLevel = 1e-3f;       ///< rise per metre that is none
 constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far within a 10 cm cell
 constexpr float kPast = 0.15f;        ///< m: rays that went so much farther show that nothing is there
+constexpr float kLevelRay = 0.1f;     ///< m below the lidar
 constexpr int kFewest = 2;            ///< returns in a cell and those around it; one alone is noise
 
 }  // namespace
@@ -59,8 +60,8 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   const auto lidar = static_cast<float>(platform_.lidar_height);
   const auto own = static_cast<float>(-params_.body_margin);
   const auto step = static_cast<float>(platform_.step + params_.rise);
-  const auto slope =
-      static_cast<float>(platform_.stairs ? std::max(params_.slope, platform_.steepest()) : params_.slope);
+  const auto slope = static_cast<float>(params_.slope);
+  const auto stairs = static_cast<float>(std::max(params_.slope, platform_.steepest()));
   // Stairs rise by one step within a cell, and a face that is higher is a wall.
   const float within = platform_.stairs ? 0.0f : slope * kWithinCell;
   const auto inside = [this](const Eigen::Vector3f& p) {
@@ -89,9 +90,12 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     if (!inside(p) || p.z() > top || p.z() <= step) continue;
     const float depth = body_.depth(p.x(), p.y());
     if (depth > own) continue;
-    // Who climbs stairs stands on them with its middle: they rise from there.
-    const float away = platform_.stairs ? std::sqrt(p.x() * p.x() + p.y() * p.y()) : -depth;
-    if (p.z() <= step + slope * away && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
+    // Who climbs stairs stands on them with its middle: they rise from there. What is as high as the lidar is
+    // seen by a level ray: nothing lower need be there.
+    const bool riser = platform_.stairs && p.z() < lidar - kLevelRay;
+    const float ground =
+        riser ? step + stairs * std::sqrt(p.x() * p.x() + p.y() * p.y()) : step - slope * depth;
+    if (p.z() <= ground && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     Cell& cell = cells_[index];
     if (cell.count == 0) used_.push_back(index);

@@ -104,6 +104,7 @@ bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
   y0_ -= margin;
   const std::int64_t width = std::int64_t{x1} + margin - x0_ + 1, depth = std::int64_t{y1} + margin - y0_ + 1;
   level0_ = level_of(z0);
+  goal_level_ = level_of(goal.place.z());
   const std::int64_t levels = level_of(z1) - level0_ + 1;
   if (width > kMostGhosts || depth > kMostGhosts || width * depth * levels > kMostGhosts) return false;
   width_ = static_cast<int>(width);
@@ -280,15 +281,17 @@ void RouteSearch::expand_ghost(const Ghost& g, float cost, Id id) {
     const Id to = ghost_id({g.tx, g.ty, g.level, side});
     reach(to, cost + static_cast<float>((place(to) - here).norm()) * builder_.unknown_cost(), id);
   }
-  const int goal_level = level_of(goal_.place.z());
-  if (goal_.tile < 0 && (goal_.any_floor || g.level == goal_level) &&
+  if (goal_.tile < 0 && (goal_.any_floor || g.level == goal_level_) &&
       g.tx == tile_of(route_cell(goal_.place.x())) && g.ty == tile_of(route_cell(goal_.place.y()))) {
-    if (goal_.any_floor) goal_.place.z() = here.z();
-    reach(goal_id_, cost + static_cast<float>((goal_.place - here).norm()) * builder_.unknown_cost(), id);
+    const Eigen::Vector2d way = (goal_.place - here).head<2>();
+    const float total = cost + static_cast<float>(way.norm()) * builder_.unknown_cost();
+    const State& s = states_[goal_id_];
+    if (goal_.any_floor && !(s.search == search_ && s.cost <= total)) goal_.place.z() = here.z();
+    reach(goal_id_, total, id);
   }
   // Nobody knows where it goes up or down: anywhere, at a price, but only towards a goal that is not here.
-  if (g.level != goal_level) {
-    const int level = g.level + (goal_level > g.level ? 1 : -1);
+  if (g.level != goal_level_) {
+    const int level = g.level + (goal_level_ > g.level ? 1 : -1);
     if (in_box(g.tx, g.ty, level) && map_.at(g.tx, g.ty, level_z(level)) < 0)
       reach(ghost_id({g.tx, g.ty, level, g.side}), cost + static_cast<float>(params_.level_cost), id);
   }

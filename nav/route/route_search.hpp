@@ -78,7 +78,7 @@ class RouteSearch {
   RouteParams params_;
   RouteEnd start_{}, goal_{};
   double origin_z_{0};
-  int x0_{0}, y0_{0}, level0_{0}, width_{0}, depth_{0}, levels_{0};
+  int x0_{0}, y0_{0}, level0_{0}, goal_level_{0}, width_{0}, depth_{0}, levels_{0};
   Id ghosts_from_{0}, start_id_{0}, goal_id_{0};
   std::vector<State> states_{};
   std::vector<Open> open_{};

@@ -33,18 +33,18 @@ class Binding {
     std::optional<wire::ParticipantId> found_out{};  ///< the newcomer that was shown to be no restart
   };
 
-  /// Who has the place, and who had it before and may have it back: what a restart must not forget, or the
-  /// first to speak after it would have the place.
+  /// Who has the place, who had it before and may have it back, and who was found out: what a restart must
+  /// not forget, or the first to speak after it would have the place.
   struct Kept {
     wire::ParticipantId participant{};
-    std::optional<wire::ParticipantId> former{};
+    std::optional<wire::ParticipantId> former{}, rival{};
     bool operator==(const Kept&) const = default;
   };
 
   Binding(const wire::ParticipantId& participant, Time now) : participant_(participant), heard_(now) {}
   /// As if the participant had spoken just now.
   Binding(const Kept& kept, Time now)
-      : participant_(kept.participant), heard_(now), former_(kept.former), moved_(now) {}
+      : participant_(kept.participant), heard_(now), former_(kept.former), moved_(now), rival_(kept.rival) {}
 
   /// A sign of life. `announces`: it may claim the place; else it counts only for who has it.
   Verdict hear(const wire::ParticipantId& from, bool announces, Time now);
@@ -55,7 +55,7 @@ class Binding {
 
   const wire::ParticipantId& participant() const { return participant_; }
   Time heard() const { return heard_; }
-  Kept kept() const { return {participant_, former_}; }
+  Kept kept() const { return {participant_, former_, rival_}; }
   bool alive(Time now, Duration span) const { return !left_ && now - heard_ < span; }
   bool claimed_by(const wire::ParticipantId& participant) const { return claimant_ == participant; }
 

@@ -17,14 +17,18 @@ void put(Packer& out, const Party& party) { out.text(party.name).put(party.id); 
 void put(Packer& out, const std::optional<Binding::Kept>& speaker) {
   out.flag(speaker.has_value());
   if (!speaker) return;
-  out.put(speaker->participant).flag(speaker->former.has_value());
-  if (speaker->former) out.put(*speaker->former);
+  out.put(speaker->participant);
+  for (const auto& other : {speaker->former, speaker->rival}) {
+    out.flag(other.has_value());
+    if (other) out.put(*other);
+  }
 }
 std::optional<Binding::Kept> speaker(Unpacker& in) {
   if (!in.flag()) return std::nullopt;
   Binding::Kept kept{};
   kept.participant = in.array<12>();
   if (in.flag()) kept.former = in.array<12>();
+  if (in.flag()) kept.rival = in.array<12>();
   return kept;
 }
 

@@ -245,6 +245,19 @@ TEST(CommandInterface, ARestartWhileAForgerHasThePlaceDoesNotLeaveItToHim) {
   EXPECT_TRUE(bench.say("op1", "lock").accepted());
 }
 
+TEST(CommandInterface, WhoWasFoundOutIsStillShutOutAfterARestart) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  const Sender forger = bench.station("forger:op1").sender;
+  bench.interface().hear(forger, 1, bench.now);
+  bench.now += Binding::kGrace;
+  bench.interface().hear(bench.station("op1").sender, 1, bench.now);  // both live: he is found out
+  bench.restart();
+  bench.now += Binding::kQuiet;  // a presence of the real one is lost
+  bench.interface().hear(forger, 1, bench.now);
+  EXPECT_EQ(bench.say("forger:op1", "grant op2").reason, Reason::identity_mismatch);
+}
+
 TEST(CommandInterface, AStationRestartedTogetherWithTheRobotIsBackByItsPresence) {
   CommandBench bench;
   bench.say("op1", "take");

@@ -23,7 +23,7 @@ Snapshot full() {
   Snapshot s;
   s.authority = {{77, 12},
                  Party{"op1", id_of('a')},
-                 Binding::Kept{{1, 2, 3}, wire::ParticipantId{4, 5, 6}},
+                 Binding::Kept{{1, 2, 3}, wire::ParticipantId{4, 5, 6}, wire::ParticipantId{7, 8}},
                  true,
                  {{"op2", id_of('b')}, {"others", Id{}}}};
   s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}, true};
