@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <bit>
 
+#include "nav/riser.hpp"
+
 namespace adit::nav {
 namespace {
 
-constexpr float kUnit = 16.0f;   // of a cell's cost
-constexpr double kRiser = 0.06;  // m: from below, the lowest return of a riser lies above its foot
+constexpr float kUnit = 16.0f;  // of a cell's cost
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kCellF = static_cast<float>(kRouteCell);
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nav/riser.hpp"
+
 namespace adit::nav {
 namespace {
 
 constexpr std::size_t kUsualReturns = 32768;  ///< within range
 constexpr std::size_t kMostDeep = 32768;
-constexpr double kRiser = 0.06;      ///< m
 constexpr double kStood = 0.005;     ///< m: a robot that moved less stands
 constexpr double kLidarShare = 0.7;  ///< of the lidar's height: a first return as high as this may be ground
 
@@ -17,7 +18,6 @@ double drop_of(const Platform& platform, const TerrainParams& params) {
 }
 
 GroundParams ground_params(const Platform& platform, const TerrainParams& params) {
-  // From below, the lowest return of a stair's riser lies above its foot.
   const double rise = std::max(0.03, platform.step) + (platform.stairs ? params.step_margin + kRiser : 0.0);
   GroundParams ground;
   ground.slope = static_cast<float>(platform.steepest());
