@@ -43,10 +43,14 @@ CommandInterface::CommandInterface(CommandParams params, Requests& requests, Out
 
 KeptAuthority CommandInterface::kept() const {
   KeptAuthority kept{authority_.epoch(), authority_.holder(), {}, authority_.locked(), stops_.all()};
-  if (!kept.holder) return kept;
-  if (const Station* s = stations_.find(kept.holder->name); s && s->id == kept.holder->id)
-    kept.speaker = s->binding.kept();
+  if (const Station* station = holders_station()) kept.speaker = station->binding.kept();
   return kept;
+}
+
+const Station* CommandInterface::holders_station() const {
+  const auto& holder = authority_.holder();
+  const Station* known = holder ? stations_.find(holder->name) : nullptr;
+  return known && known->id == holder->id ? known : nullptr;
 }
 
 void CommandInterface::restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now) {
@@ -275,8 +279,8 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
   if (s.robot != params_.robot) return {Reason::wrong_robot};
   const auto& holder = authority_.holder();
   if (!holder) return {Reason::nobody_holds};
-  const Station* bound = stations_.find(holder->name);
-  const bool right_one = bound && bound->id == holder->id && bound->binding.participant() == s.participant;
+  const Station* bound = holders_station();
+  const bool right_one = bound && bound->binding.participant() == s.participant;
   if (!right_one && !params_.defects.has(Defect::obey_stranger)) {
     if (s.station_id != holder->id)
       return {Reason::not_holder, "held by " + holder->name + "; take it first"};

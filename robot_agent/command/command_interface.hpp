@@ -85,6 +85,8 @@ class CommandInterface {
   Outcome supervise(const Command& c) const;
   Outcome judge(const StickSample& s, Time now);
   Answer answer(const Command& c, const Outcome& outcome) const;
+  /// Null when nobody holds, or he was not heard.
+  const Station* holders_station() const;
   bool may_be_back(const Sender& from) const;
   void report_intruder(const std::string& name, const wire::ParticipantId& participant, Time now);
   void tell(const std::string& to, Severity severity, const char* code, Reason reason,
