@@ -27,6 +27,7 @@ void ClearField::fill(std::span<const ObstaclePoint> obstacles, float ahead) {
     else
       cost_[at] = std::max(cost_[at], o.cost);
   }
+  points_.fill(obstacles, ahead);
   for (int i = 0; i < kSide; ++i) transform(index(i, 0), kSide);
   for (int j = 0; j < kSide; ++j) transform(index(0, j), 1);
   for (float& d : distance_) d = std::min(kFar, kCell * std::sqrt(d));

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "nav/lattice/solid_points.hpp"
 #include "nav/terrain/obstacle_point.hpp"
 
 namespace adit::nav {
@@ -27,6 +28,8 @@ class ClearField {
     const int i = cell(x), j = cell(y);
     return inside(i) && inside(j) ? distance_[index(i, j)] : kFar;
   }
+  /// The solid obstacles themselves.
+  const SolidPoints& points() const { return points_; }
   /// What it costs to be there, [0, 1).
   float cost(float x, float y) const {
     const int i = cell(x), j = cell(y);
@@ -40,6 +43,7 @@ class ClearField {
   void transform(std::size_t first, std::size_t stride);
 
   std::vector<float> distance_, cost_;
+  SolidPoints points_{};
   std::array<float, kSide> row_{}, out_{};
   std::array<int, kSide> parabola_{};
   std::array<float, kSide + 1> border_{};

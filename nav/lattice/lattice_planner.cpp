@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "nav/lattice/gateway.hpp"
+
 namespace adit::nav {
 namespace {
 
@@ -14,6 +16,10 @@ constexpr double kSteersAtOnce = 0.35;  ///< m/s: no faster, wheels are where th
 constexpr double kSlow = 0.25;          ///< m/s: nearly standing
 constexpr double kAhead = 4.2;          ///< m: a direction becomes a place so far off
 constexpr float kHysteresis = 0.02f;    ///< m of the margin that a path which is kept may lose
+constexpr float kTightLoss = 0.015f;    ///< the same of the tight margin
+constexpr double kEasy = 0.12;          ///< m: a gap with so much more than the margins is a way like others
+constexpr double kLineUp = 1.7;         ///< m before a gap: about there a path gets onto its axis
+constexpr double kBehindGate = 0.4;     ///< m behind its middle a gap is left
 
 }  // namespace
 
@@ -45,14 +51,17 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   }
 
   const Target aim = aim_of(target, pose, stamp_s);
-  const LatticeTask task = task_of(aim, pose, rear);
+  LatticeTask task = task_of(aim, pose, rear);
+  if (goal && !retreat_) task.gate = gate_of(target, pose, obstacles);
   // What it would drive is what it is held from; backing away it is let go.
   const bool held = target.held && goal && !retreat_;
   const bool keeps = !held && follows_on(rear) && kept_for_.kind == aim.kind &&
                      (!goal || (kept_for_.goal - aim.goal).norm() < 1.0) && passable(rear);
-  const bool finds = !held && find(task);
+  // Through a gap there is one way: it is kept to.
+  const bool goes_through = keeps && kept_.through && task.gate;
+  const bool finds = !held && !goes_through && find(task);
   bool takes = finds;
-  if (keeps && finds) {
+  if (keeps && finds && !found_.through) {
     const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
     if (found_.tight && !kept_.tight) {
       takes = false;
@@ -161,13 +170,44 @@ LatticeTask LatticePlanner::task_of(const Target& target, const Pose2& pose, con
   return task;
 }
 
-// A path that keeps the margin; where there is none, one that keeps the tight one.
+// A path that keeps the margin; where there is none, one that keeps the tight one. Before a gap that cannot
+// be gone through from here, to a place from where it can.
 bool LatticePlanner::find(LatticeTask task) {
   const auto& search = params_.search;
+  if (task.gate) {
+    if (find_through(task)) return true;
+    task.target = (*task.gate * Pose2{rear_ - kLineUp, 0, 0}).position();
+    task.gate.reset();
+  }
   for (const bool tight : {false, true}) {
     task.tight = tight;
     const double margin = tight ? search.tight_margin : search.margin;
     way_.fill(clear_, task.target, static_cast<float>(platform_.width / 2 + margin));
+    if (search_.find(clear_, way_, task, found_)) return true;
+  }
+  return false;
+}
+
+std::optional<Pose2> LatticePlanner::gate_of(const Target& target, const Pose2& pose,
+                                             std::span<const ObstaclePoint> obstacles) const {
+  if (!target.gate) return std::nullopt;
+  const auto gateway = fit_gateway(pose.inverse() * *target.gate, obstacles);
+  const auto& search = params_.search;
+  if (!gateway || gateway->room < platform_.width + 2 * search.tight_margin ||
+      gateway->room > platform_.width + 2 * search.margin + kEasy ||
+      gateway->line.inverse().x > kBehindGate)
+    return std::nullopt;
+  return Pose2{rear_, 0, 0} * gateway->line;
+}
+
+// Onto the axis of the gap and straight on; before that with the margin where there is room for it.
+bool LatticePlanner::find_through(LatticeTask task) {
+  const auto& search = params_.search;
+  const Pose2 line_up = *task.gate * Pose2{-kLineUp, 0, 0};
+  for (const bool tight : {false, true}) {
+    task.tight = tight;
+    const double margin = tight ? search.tight_margin : search.margin;
+    way_.fill(clear_, line_up.position(), static_cast<float>(platform_.width / 2 + margin));
     if (search_.find(clear_, way_, task, found_)) return true;
   }
   return false;
@@ -217,7 +257,7 @@ bool LatticePlanner::passable(const Pose2& rear) const {
   // What it stands in already it may leave.
   const std::size_t first = at_ + 8;
   for (std::size_t i = first; i < kept_.count; i += 2)
-    if (!search_.free(clear_, back * kept_.spots[i].pose, kept_.tight, kept_.tight ? 0.0f : kHysteresis))
+    if (!search_.free(clear_, back * kept_.spots[i].pose, kept_.tight, kept_.tight ? kTightLoss : kHysteresis))
       return false;
   return true;
 }

@@ -9,6 +9,10 @@ namespace {
 constexpr float kLed = 1.25f;     ///< weight of the way that is left: fewer states, a little longer paths
 constexpr float kLeaving = 0.8f;  ///< m: a body that starts within its margin may be in it so far
 constexpr float kDeeper = 0.01f;  ///< m: cells are not finer
+constexpr float kCoarse = 0.05f;  ///< m: with so much more than the margin by the cells a body is free
+constexpr double kStraight = 0.25;  ///< m before a gap a body is straight on its axis
+constexpr double kBehind = 0.9;     ///< m behind a gap's middle the path ends
+constexpr double kSteepest = 1.0;   ///< rad off the axis
 
 }  // namespace
 
@@ -16,29 +20,32 @@ LatticeSearch::LatticeSearch(const Platform& platform, const LatticeSearchParams
     : params_(params),
       motions_(platform, params.motions),
       base_(platform.rear_axle()),
+      outline_(Footprint(platform).grown(params.tight_margin, params.tight_margin)),
+      front_(base_ + Footprint(platform).front()),
       closed_(static_cast<std::size_t>(kCells) * kCells * kHeadings * 2, 0) {
   const double count = std::ceil(6.0 * platform.length / platform.width);
   disc_count_ = std::clamp<std::size_t>(static_cast<std::size_t>(count), 1, kMostDiscs);
   const double half = platform.length / 2 / static_cast<double>(disc_count_);
   for (std::size_t i = 0; i < disc_count_; ++i)
     discs_[i] = static_cast<float>(base_ - platform.length / 2 + half * static_cast<double>(2 * i + 1));
-  const auto radius = [&](double margin) {
-    return static_cast<float>(
-        std::max(platform.width / 2 + margin, std::hypot(half, platform.width / 2) + margin / 2));
-  };
-  wide_ = radius(params.margin);
-  tight_ = radius(params.tight_margin);
+  wide_ = static_cast<float>(std::max(platform.width / 2 + params.margin,
+                                      std::hypot(half, platform.width / 2) + params.margin / 2));
   nodes_.reserve(kMostNodes);
   open_.reserve(kMostNodes);
 }
 
 bool LatticeSearch::free(const ClearField& clear, const Pose2& pose, bool tight, float less) const {
-  const float radius = (tight ? tight_ : wide_) - less;
+  if (tight) return outline_free(clear, pose, less);
+  const float radius = wide_ - less;
   const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
   const auto x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
   for (std::size_t i = 0; i < disc_count_; ++i)
     if (clear.clearance(x + c * discs_[i], y + s * discs_[i]) < radius) return false;
   return true;
+}
+
+bool LatticeSearch::outline_free(const ClearField& clear, const Pose2& pose, float allowed) const {
+  return clear.points().depth(outline_, pose * Pose2{base_, 0, 0}) <= std::max(0.0f, allowed);
 }
 
 float LatticeSearch::price(const ClearField& clear, const Pose2& pose, bool leaving) const {
@@ -48,10 +55,11 @@ float LatticeSearch::price(const ClearField& clear, const Pose2& pose, bool leav
   for (std::size_t i = 0; i < disc_count_; ++i) {
     const float px = x + c * discs_[i], py = y + s * discs_[i];
     const float here = clear.clearance(px, py);
-    if (here < (leaving ? std::min(radius_, least_[i]) : radius_)) return -1.0f;
-    room = std::min(room, here - radius_);
+    if (!tight_ && here < (leaving ? std::min(wide_, least_[i]) : wide_)) return -1.0f;
+    room = std::min(room, here - wide_);
     rough = std::max(rough, clear.cost(px, py));
   }
+  if (tight_ && room < kCoarse && !outline_free(clear, pose, leaving ? depth_ : 0.0f)) return -1.0f;
   const auto comfort = static_cast<float>(std::max(1e-3, params_.comfort));
   return 1.0f + static_cast<float>(params_.crowded) * (1.0f - std::clamp(room / comfort, 0.0f, 1.0f)) +
          static_cast<float>(params_.rough) * rough;
@@ -117,12 +125,80 @@ void LatticeSearch::expand(const ClearField& clear, const WayField& way, const L
   }
 }
 
+// Onto the axis before the gap; a body that stands in the gap already, over the next metre or so.
+bool LatticeSearch::shoot(const ClearField& clear, const LatticeTask& task, std::int32_t index,
+                          LatticePath& path) const {
+  const Pose2 at = task.gate->inverse() * nodes_[static_cast<std::size_t>(index)].pose;
+  const double end = kBehind - base_;
+  if (at.x > end - 0.3 || std::fabs(at.yaw) > kSteepest) return false;
+  const double before = -front_ - kStraight;
+  if (at.x < before - 0.4) return shoot_onto(clear, task, index, before, path);
+  for (const double length : {0.6, 1.0, 1.5})
+    if (at.x + length <= end && shoot_onto(clear, task, index, at.x + length, path)) return true;
+  return false;
+}
+
+bool LatticeSearch::shoot_onto(const ClearField& clear, const LatticeTask& task, std::int32_t index,
+                               double straight_from, LatticePath& path) const {
+  const Node& node = nodes_[static_cast<std::size_t>(index)];
+  const Pose2 at = task.gate->inverse() * node.pose;
+  const double length = straight_from - at.x, slope = std::tan(at.yaw);
+  const double bend = node.direction > 0 && node.level >= 0 ? motions_.curvature(node.level) : 0.0;
+  // y(u), u from 0 to 1: place, slope and curvature of the node, then none of any.
+  const double a0 = at.y, a1 = slope * length;
+  const double a2 = bend * std::pow(1 + slope * slope, 1.5) * length * length / 2;
+  const double a3 = -10 * a0 - 6 * a1 - 3 * a2, a4 = 15 * a0 + 8 * a1 + 3 * a2, a5 = -6 * a0 - 3 * a1 - a2;
+  const auto y = [&](double u) { return a0 + u * (a1 + u * (a2 + u * (a3 + u * (a4 + u * a5)))); };
+  const auto y1 = [&](double u) {
+    return (a1 + u * (2 * a2 + u * (3 * a3 + u * (4 * a4 + u * 5 * a5)))) / length;
+  };
+  const auto y2 = [&](double u) {
+    return (2 * a2 + u * (6 * a3 + u * (12 * a4 + u * 20 * a5))) / (length * length);
+  };
+  const double most = motions_.curvature(MotionSet::kLevels - 1);
+  constexpr int kLooks = 16;
+  for (int i = 1; i < kLooks; ++i) {
+    const double u = static_cast<double>(i) / kLooks, d = y1(u);
+    if (std::fabs(y2(u)) > most * std::pow(1 + d * d, 1.5)) return false;
+  }
+  if (node.parent >= 0) {
+    write(index, path);
+  } else {
+    path.spots[0] = {{}, 0.0f, 1};
+    path.count = 1;
+    path.direction_changes = 0;
+  }
+  if (path.spots[path.count - 1].direction < 0) ++path.direction_changes;
+  const double end = kBehind - base_, spacing = motions_.spacing();
+  float cost = node.cost;
+  for (double s = at.x; s + spacing / 2 < end;) {
+    const double before = std::atan(s < straight_from ? y1((s - at.x) / length) : 0.0);
+    s += spacing * std::cos(before);
+    const bool bends = s < straight_from;
+    const double u = (s - at.x) / length;
+    const Pose2 pose = *task.gate * Pose2{s, bends ? y(u) : 0.0, bends ? std::atan(y1(u)) : 0.0};
+    const bool leaving = node.parent < 0 && s - at.x < kLeaving;
+    if (path.count == LatticePath::kMost || !outline_free(clear, pose, leaving ? depth_ : 0.0f)) {
+      path.count = 0;
+      return false;
+    }
+    cost += static_cast<float>(spacing);
+    path.spots[path.count++] = {pose, cost, 1};
+  }
+  if (path.count > 1 && node.parent < 0) path.spots[0].direction = 1;
+  path.complete = path.through = path.tight = true;
+  path.left = 0;
+  return path.count > 1;
+}
+
 bool LatticeSearch::find(const ClearField& clear, const WayField& way, const LatticeTask& task,
                          LatticePath& path) {
   path.count = 0;
   path.complete = false;
   path.tight = task.tight;
-  radius_ = task.tight ? tight_ : wide_;
+  path.through = false;
+  tight_ = task.tight;
+  depth_ = tight_ || task.gate ? clear.points().depth(outline_, {base_, 0, 0}) + kDeeper / 2 : 0.0f;
   if (++round_ == 0) {  // the marks of the last time that it had this number are gone by then
     std::fill(closed_.begin(), closed_.end(), 0);
     round_ = 1;
@@ -137,6 +213,7 @@ bool LatticeSearch::find(const ClearField& clear, const WayField& way, const Lat
   if (start.way >= WayField::kNoWay) return false;
   if (way.least() > 0 && start.way < way.least() + 2 * static_cast<float>(params_.least_gain)) return false;
   nodes_.push_back(start);
+  if (task.gate && shoot(clear, task, 0, path)) return true;
   open_.push_back({kLed * start.way, 0});
   std::int32_t best = -1;
   float nearest = start.way - static_cast<float>(params_.least_gain);
@@ -149,7 +226,9 @@ bool LatticeSearch::find(const ClearField& clear, const WayField& way, const Lat
       const auto there = static_cast<std::size_t>(state(node.pose, node.direction));
       if (closed_[there] == round_) continue;
       closed_[there] = round_;
-      if (ends(way, task, node)) {
+      if (task.gate) {
+        if (shoot(clear, task, index, path)) return true;
+      } else if (ends(way, task, node)) {
         path.complete = true;
         write(index, path);
         return path.count > 1;
@@ -162,7 +241,7 @@ bool LatticeSearch::find(const ClearField& clear, const WayField& way, const Lat
     expand(clear, way, task, index);
     ++n;
   }
-  if (best < 0) return false;
+  if (best < 0 || task.gate) return false;
   write(best, path);
   return path.count > 1;
 }

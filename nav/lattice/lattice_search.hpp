@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,7 @@ namespace adit::nav {
 struct LatticeSearchParams {
   MotionSetParams motions{};
   double margin{0.06};        ///< kept free around the body, m, [0.02, 0.5]
-  double tight_margin{0.03};  ///< the same where nothing else is left; half a cell of the ClearField is no
-                              ///< room at all, m, [0.025, 0.5]
+  double tight_margin{0.02};  ///< the same where nothing else is left, from point to outline, m, [0.005, 0.5]
   double comfort{0.25};       ///< beyond the margin; nearer to obstacles a way costs more, m, [0, 2]
   double crowded{2.0};        ///< by so much more at the margin, [0, 20]
   double rough{5.0};          ///< by so much more on ground of cost 1, [0, 100]
@@ -37,6 +37,7 @@ struct LatticeTask {
   int only{0};          ///< may drive in this direction only, 1 or -1; 0: both
   double heading{0};    ///< rad, of the way (not of the body) ...
   double spread{M_PI};  ///< ... which paths may leave by so much
+  std::optional<Pose2> gate{};  ///< the path shall end behind a gap with this middle, straight through it
 };
 
 /// A path over motions: its start and kPoses poses of each motion.
@@ -51,6 +52,7 @@ struct LatticePath {
   std::size_t count{0};
   int direction_changes{0};
   bool tight{false};     ///< keeps only the tight margin
+  bool through{false};   ///< leads through a gap, as LatticeTask::gate asks
   bool complete{false};  ///< ends at the goal, or at the reach of the search
   double left{0};        ///< way from its end to the target, m
 
@@ -61,8 +63,10 @@ struct LatticePath {
 
 /// Hybrid A* (D. Dolgov et al., "Path planning for autonomous vehicles in unknown semi-structured
 /// environments", IJRR 2010) over a MotionSet in the few metres around the robot, led by a WayField. States
-/// are told apart by place, heading and direction. The body is a row of discs along its axis. Fixed size;
-/// nothing is allocated after construction.
+/// are told apart by place, heading and direction. The body is a row of discs along its axis; with the tight
+/// margin, its outline among the obstacles' points. To a gap it looks for a smooth curve onto the gap's axis
+/// from each state it comes to (the analytic expansion of the same authors; quintic polynomials), since none
+/// of its motions would ever meet so narrow a place. Fixed size; nothing is allocated after construction.
 class LatticeSearch {
  public:
   explicit LatticeSearch(const Platform& platform, const LatticeSearchParams& params = {});
@@ -95,6 +99,11 @@ class LatticeSearch {
 
   /// What driving there costs per metre; negative: it cannot be driven.
   float price(const ClearField& clear, const Pose2& pose, bool leaving) const;
+  bool outline_free(const ClearField& clear, const Pose2& pose, float allowed) const;
+  /// Appends the way from a node through the task's gate.
+  bool shoot(const ClearField& clear, const LatticeTask& task, std::int32_t index, LatticePath& path) const;
+  bool shoot_onto(const ClearField& clear, const LatticeTask& task, std::int32_t index, double straight_from,
+                  LatticePath& path) const;
   std::int32_t state(const Pose2& pose, int direction) const;
   void expand(const ClearField& clear, const WayField& way, const LatticeTask& task, std::int32_t index);
   bool ends(const WayField& way, const LatticeTask& task, const Node& node) const;
@@ -106,8 +115,11 @@ class LatticeSearch {
   std::array<float, kMostDiscs> discs_{};  ///< middles along the body's axis, from the poses' origin, m
   std::array<float, kMostDiscs> least_{};  ///< clearance of each where the search began, m
   std::size_t disc_count_{};
-  float wide_{}, tight_{};  ///< radius of the discs with the one margin and the other, m
-  float radius_{};          ///< of the search under way
+  float wide_{};              ///< radius of the discs with the margin, m
+  Footprint outline_;         ///< with the tight margin
+  double front_;              ///< from the poses' origin to the foremost point of the body, m
+  bool tight_{false};         ///< the search under way keeps no more
+  float depth_{0};            ///< of the deepest point in the outline where it began, m
   std::vector<Node> nodes_{};
   std::vector<Open> open_{};
   std::vector<std::uint32_t> closed_;

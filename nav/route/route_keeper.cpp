@@ -20,6 +20,7 @@ constexpr double kThere = 0.1;       // m from where it lines up: nearer no plan
 constexpr double kAside = 0.25;      // m: farther off its axis a robot is not in it
 constexpr double kLinedUp = 0.10;    // tangent of the angle off the gate's axis
 constexpr double kStaysLinedUp = 0.25;
+constexpr double kTold = 3.0;        // m before it a gap is told to who finds its own way
 constexpr double kDetour = 1.03;  // a straight line that costs more than this much of the route is none
 
 // The point of a way at a length from its beginning, and whether that is its end.
@@ -121,6 +122,15 @@ std::optional<Eigen::Vector3d> RouteKeeper::straight_on(const Eigen::Vector3d& p
   return on_axis(*inside_, kBeyondGate);
 }
 
+// The gate that it is in; else the next one.
+bool RouteKeeper::tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place) {
+  if (straight_on(place)) return true;
+  inside_ = planner.gate(route_.points, kTold);
+  if (inside_ && !planner.line(inside_->middle, on_axis(*inside_, kBeyondGate), {.let_out = true}).passable)
+    inside_.reset();
+  return inside_.has_value();
+}
+
 // A robot that is to go through a gate lines up before it, and goes straight on behind it.
 std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, const Eigen::Vector3d& place) {
   if (const auto on = straight_on(place)) return on;
@@ -153,8 +163,14 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
 // from what stands there as the route does.
 RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
   RouteStep step{RouteStep::State::along, {}, false};
-  if (const auto target = params_.gates ? gate_step(planner, place) : std::nullopt) {
+  if (const auto target =
+          params_.gates == GateUse::line_up ? gate_step(planner, place) : std::optional<Eigen::Vector3d>{}) {
     step.target = *target;
+    return step;
+  }
+  if (params_.gates == GateUse::tell && tell_gate(planner, place)) {
+    step.target = on_axis(*inside_, kBeyondGate);
+    step.gate = inside_;
     return step;
   }
   const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};

@@ -5,6 +5,13 @@
 
 namespace adit::nav {
 
+/// What is done about gaps that are hardly wider than the robot.
+enum class GateUse : std::uint8_t {
+  none,
+  line_up,  ///< leads to a place before it, then straight on: for planners that come as near as is asked
+  tell,     ///< says where it is: for planners that find their own way onto its axis
+};
+
 struct RouteKeeperParams {
   double momentum{
       0.85};          ///< another route is taken when it costs less than this part of the one kept, (0, 1]
@@ -12,7 +19,7 @@ struct RouteKeeperParams {
   double gain{0.5};   ///< and so much less, m, [0, 10]
   double ahead{4.0};  ///< the local planner is given the point of the route this far ahead, m, [1, 10]
   double least_ahead{1.2};  ///< and never a nearer one but the goal, m, [0.3, 5]
-  bool gates{true};         ///< lines up before gaps: for a planner that comes as near to a point as is asked
+  GateUse gates{GateUse::line_up};
   double proof{2.0};        ///< a goal is unreachable when that was so all this time, s, [0, 10]
   double blocked{1.0};      ///< a route is blocked when the local planner says so for this long, s, [0, 30]
 };
@@ -31,6 +38,7 @@ struct RouteStep {
   State state{State::straight};
   Eigen::Vector3d target{0, 0, 0};  ///< m
   bool last{true};                  ///< `target` is the goal
+  std::optional<Gate> gate{};       ///< that `target` lies behind, with GateUse::tell
 };
 
 /// Keeps to a route: another one is taken when it is clearly better or the old one is blocked, so that it
@@ -39,7 +47,11 @@ class RouteKeeper {
  public:
   explicit RouteKeeper(const RouteKeeperParams& params = {}) : params_(params) {}
   /// With what suits the platform.
-  explicit RouteKeeper(const Platform& platform) { params_.gates = platform.planner == "trajectories"; }
+  explicit RouteKeeper(const Platform& platform) {
+    params_.gates = platform.planner == "trajectories" ? GateUse::line_up
+                    : platform.planner == "lattice"    ? GateUse::tell
+                                                       : GateUse::none;
+  }
 
   /// After a scan: the next step from `place` to `goal` (z NaN: the floor of `place`). `blocked`: the local
   /// planner found no way along the step before.
@@ -55,6 +67,7 @@ class RouteKeeper {
   double cost_to(RoutePlanner& planner, double length) const;
   RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place);
   std::optional<Eigen::Vector3d> straight_on(const Eigen::Vector3d& place);
+  bool tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place);
   std::optional<Eigen::Vector3d> gate_step(RoutePlanner& planner, const Eigen::Vector3d& place);
 
   RouteKeeperParams params_{};

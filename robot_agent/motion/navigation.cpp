@@ -123,6 +123,10 @@ nav::Target Navigation::target() const {
     if (step->state == nav::RouteStep::State::unreachable) return {};
     nav::Target target = nav::Target::to(step->target.head<2>());
     if (!step->last) target.tolerance = nav::RouteStep::kTolerance;
+    if (step->gate) {
+      const Eigen::Vector2d& axis = step->gate->axis;
+      target.gate = {step->gate->middle.x(), step->gate->middle.y(), std::atan2(axis.y(), axis.x())};
+    }
     return target;
   }
   const auto* guidance = std::get_if<Guidance>(&motion_);

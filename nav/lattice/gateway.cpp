@@ -1,0 +1,52 @@
+#include "nav/lattice/gateway.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace adit::nav {
+namespace {
+
+constexpr int kTurns = 15;                      ///< to each side of the guess
+constexpr double kTurn = M_PI / 180.0;          ///< rad
+constexpr float kAlong = 0.5f, kAcross = 1.2f;  ///< m from the guess: what stands there is looked at
+
+}  // namespace
+
+std::optional<Gateway> fit_gateway(const Pose2& guess, std::span<const ObstaclePoint> obstacles) {
+  struct Strip {
+    float c, s, left{kAcross}, right{-kAcross};
+  };
+  std::array<Strip, 2 * kTurns + 1> strips;
+  for (int n = -kTurns; n <= kTurns; ++n)
+    strips[static_cast<std::size_t>(n + kTurns)] = {static_cast<float>(std::cos(n * kTurn)),
+                                                    static_cast<float>(std::sin(n * kTurn))};
+  const auto c = static_cast<float>(std::cos(guess.yaw)), s = static_cast<float>(std::sin(guess.yaw));
+  for (const ObstaclePoint& o : obstacles) {
+    if (o.cost < 1.0f) continue;
+    const float dx = o.x - static_cast<float>(guess.x), dy = o.y - static_cast<float>(guess.y);
+    const float x = c * dx + s * dy, y = c * dy - s * dx;
+    if (std::fabs(x) > kAlong || std::fabs(y) > kAcross) continue;
+    for (Strip& strip : strips) {
+      const float across = strip.c * y - strip.s * x;
+      if (y > 0)
+        strip.left = std::min(strip.left, across);
+      else
+        strip.right = std::max(strip.right, across);
+    }
+  }
+  // Of strips as wide the one in the middle of them: a gap in a thin wall has room to either side.
+  const auto width = [](const Strip& strip) { return strip.left - strip.right; };
+  std::size_t best = kTurns;
+  const auto off = [](std::size_t i) { return std::abs(static_cast<int>(i) - kTurns); };
+  for (std::size_t i = 0; i < strips.size(); ++i) {
+    const float more = width(strips[i]) - width(strips[best]);
+    if (more > 1e-3f || (more > -1e-3f && off(i) < off(best))) best = i;
+  }
+  const Strip& strip = strips[best];
+  if (strip.left >= kAcross || strip.right <= -kAcross || width(strip) <= 0) return std::nullopt;
+  const Pose2 turned = guess * Pose2{0, 0, (static_cast<int>(best) - kTurns) * kTurn};
+  return Gateway{turned * Pose2{0, double{strip.left + strip.right} / 2, 0}, double{width(strip)}};
+}
+
+}  // namespace adit::nav
