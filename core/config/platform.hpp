@@ -39,6 +39,9 @@ struct Platform {
   double step{0.08};          ///< highest step it climbs, m, [0, 1]
   double max_slope{0.35};     ///< steepest ground it drives on, rise per run, [0.05, 1.5]
   double lidar_height{0.5};   ///< above the ground, m, (0, 5]
+  int lidar_rings{16};        ///< beams one above the other, [2, 128]
+  double lidar_lowest{-15};   ///< elevation of the lowest, degrees, [-89, 0]
+  double lidar_highest{15};   ///< and of the highest, degrees, [0, 89]
   bool stairs{false};
   std::string router{"none"};           ///< that leads it round what the planner does not see: none or graph
   std::string planner{"trajectories"};  ///< that finds the way to a goal: nav/make_planner.hpp

@@ -71,6 +71,9 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.step = root.number("step", within(0, 1));
   p.max_slope = root.number("max_slope", within(0.05, 1.5), p.max_slope);
   p.lidar_height = root.number("lidar_height", above(0, 5));
+  p.lidar_rings = static_cast<int>(root.integer("lidar_rings", 2, 128, p.lidar_rings));
+  p.lidar_lowest = root.number("lidar_lowest", within(-89, 0), p.lidar_lowest);
+  p.lidar_highest = root.number("lidar_highest", within(0, 89), p.lidar_highest);
   p.stairs = root.flag("stairs", false);
   p.router = root.text("router", p.router);
   p.planner = root.text("planner", p.planner);

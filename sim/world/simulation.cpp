@@ -17,8 +17,7 @@ constexpr double kStands = 0.05;  // m/s: who comes nearer no faster than that s
 Simulation::Simulation(std::shared_ptr<const World> world, const SimulationParams& params)
     : world_(std::move(world)),
       space_(world_),
-      params_(params),
-      lidar_(std::make_shared<const LidarPattern>(params.lidar)) {}
+      params_(params) {}
 
 Result<Simulation> Simulation::create(std::shared_ptr<const World> world, std::vector<RobotStart> robots,
                                       const SimulationParams& params) {
@@ -82,7 +81,7 @@ Result<void> Simulation::add(const RobotStart& start) {
   OdometryParams odometry = params_.odometry;
   odometry.turn = std::max(odometry.turn, platform.turn_error);
   robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(odometry, seed),
-                     std::move(ground), std::move(seen)});
+                     std::move(ground), std::move(seen), lidar_of(platform)});
   Robot& robot = robots_.back();
   robot.truth.pose = Pose3::level(start.pose, z);
   robot.start_ground = floor;
@@ -278,6 +277,22 @@ void Simulation::measure(std::size_t index) {
   robot.truth.min_clearance = clearance;
 }
 
+// Robots with the same share its pattern.
+std::shared_ptr<const LidarPattern> Simulation::lidar_of(const Platform& platform) const {
+  LidarParams params = params_.lidar;
+  if (!params.profile) {
+    params.rings = platform.lidar_rings;
+    params.lowest = platform.lidar_lowest;
+    params.highest = platform.lidar_highest;
+  }
+  for (const Robot& robot : robots_) {
+    const LidarParams& other = robot.lidar->params();
+    if (other.rings == params.rings && other.lowest == params.lowest && other.highest == params.highest)
+      return robot.lidar;
+  }
+  return std::make_shared<const LidarPattern>(params);
+}
+
 void Simulation::step() {
   now_ += params_.step;
   ++steps_;
@@ -288,7 +303,7 @@ void Simulation::step() {
 
 Simulation::ScanJob Simulation::scan(std::size_t index) const {
   const double height = robots_[index].body.platform().lidar_height;
-  ScanJob job{robots_[index].seen, lidar_, {}, robots_[index].truth.pose, height, 0};
+  ScanJob job{robots_[index].seen, robots_[index].lidar, {}, robots_[index].truth.pose, height, 0};
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     if (n == index) continue;
     const Platform& platform = robots_[n].body.platform();

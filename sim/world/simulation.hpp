@@ -19,7 +19,7 @@ namespace adit::sim {
 struct SimulationParams {
   Duration step{10ms};   ///< of the true motion, (0, 100 ms]
   double watchdog{0.5};  ///< a driver stops without a command for this long, s, (0, 10]
-  LidarParams lidar{};
+  LidarParams lidar{};   ///< rings and their elevations: of each robot's platform, unless it is planar
   OdometryParams odometry{};
   std::uint64_t seed{1};
   std::vector<PersonSpec> people{};  ///< at most 100
@@ -112,6 +112,7 @@ class Simulation {
     Odometry odometry;
     std::shared_ptr<const StandingMap> ground;
     std::shared_ptr<const World> seen;  ///< by its lidar
+    std::shared_ptr<const LidarPattern> lidar;
     Truth truth{};
     std::optional<std::size_t> partner{};  ///< of the contact that lasts, see contact()
     Pose2 contact{};                       ///< where it began
@@ -122,6 +123,7 @@ class Simulation {
 
   static Rectangle footprint(const Platform& platform, const Pose2& pose);
   Result<void> add(const RobotStart& start);
+  std::shared_ptr<const LidarPattern> lidar_of(const Platform& platform) const;
   void move(std::size_t robot);
   void walk(std::size_t person);
   std::string partner_name(std::size_t partner) const;
@@ -142,7 +144,6 @@ class Simulation {
   std::shared_ptr<const World> world_;
   FlightSpace space_;
   SimulationParams params_;
-  std::shared_ptr<const LidarPattern> lidar_;
   Duration now_{};
   std::uint64_t steps_{0};
   std::vector<Robot> robots_{};
