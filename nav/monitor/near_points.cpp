@@ -11,6 +11,9 @@ constexpr float kLevel = 1e-3f;       ///< rise per metre that is none
 constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far within a 10 cm cell
 constexpr float kPast = 0.15f;        ///< m: rays that went so much farther show that nothing is there
 constexpr float kLevelRay = 0.1f;     ///< m below the lidar
+constexpr float kNotSeen = 1e9f;       ///< lowest return of a cell without one
+constexpr float kBefore = 0.12f;      ///< m: so far before a riser the tread is seen that leads to it
+constexpr float kSpread = 0.04f;      ///< m: the lowest and the highest of many returns lie so much apart by noise
 constexpr int kFewest = 2;            ///< returns in a cell and those around it; one alone is noise
 
 }  // namespace
@@ -63,11 +66,11 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   const auto slope = static_cast<float>(params_.slope);
   const auto stairs = static_cast<float>(std::max(params_.slope, platform_.steepest()));
   // Stairs rise by one step within a cell, and a face that is higher is a wall.
-  const float within = platform_.stairs ? 0.0f : slope * kWithinCell;
+  const float within = platform_.stairs ? kSpread : slope * kWithinCell;
   const auto inside = [this](const Eigen::Vector3f& p) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
   };
-  std::fill(lowest_.begin(), lowest_.end(), 1e9f);
+  std::fill(lowest_.begin(), lowest_.end(), kNotSeen);
   std::fill(highest_.begin(), highest_.end(), -1e9f);
   Fan fan{};
   for (const Eigen::Vector3f& p : points) {
@@ -80,23 +83,25 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     if (!inside(p)) continue;
     const std::size_t cell = coarse(p.x(), p.y());
     lowest_[cell] = std::min(lowest_[cell], p.z());
-    if (p.z() > top) continue;
-    float& high = highest_[fine(p.x(), p.y())];
-    high = std::max(high, p.z());
   }
   for (const std::uint32_t i : used_) cells_[i] = {};
   used_.clear();
   for (const Eigen::Vector3f& p : points) {
     if (!inside(p) || p.z() > top || p.z() <= step) continue;
+    const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
+    const float nearer = 1.0f - kBefore / std::max(range, kBefore);
+    const float tread = lowest_[coarse(nearer * p.x(), nearer * p.y())];
+    const bool led_to = platform_.stairs && tread < kNotSeen && p.z() <= tread + step + within;
+    // What was a wall from below is a riser when the tread before it is seen.
+    const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
+    if (!led_to) highest_[index] = std::max(highest_[index], p.z());
     const float depth = body_.depth(p.x(), p.y());
     if (depth > own) continue;
     // Who climbs stairs stands on them with its middle: they rise from there. What is as high as the lidar is
-    // seen by a level ray: nothing lower need be there.
-    const bool riser = platform_.stairs && p.z() < lidar - kLevelRay;
-    const float ground =
-        riser ? step + stairs * std::sqrt(p.x() * p.x() + p.y() * p.y()) : step - slope * depth;
+    // seen by a level ray: nothing lower need be there, unless the tread before it is seen.
+    const bool riser = platform_.stairs && (p.z() < lidar - kLevelRay || led_to);
+    const float ground = riser ? step + stairs * range : step - slope * depth;
     if (p.z() <= ground && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
-    const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     Cell& cell = cells_[index];
     if (cell.count == 0) used_.push_back(index);
     if (cell.count == 60000) continue;

@@ -25,7 +25,7 @@ void ObstacleCells::clear() {
 
 void ObstacleCells::mark(float x, float y, float z) {
   const int ix = cell(x), iy = cell(y);
-  const Entry fresh{ix, iy, z, z, scan_, 1, 0, false, false, now_, now_, x, y, 1};
+  const Entry fresh{ix, iy, z, z, scan_, 1, 0, false, false, now_, now_, x, y, 1, 0};
   std::uint16_t& index = slots_[slot(ix, iy)];
   if (index != 0) {
     Entry& e = entries_[index - 1u];
@@ -33,6 +33,7 @@ void ObstacleCells::mark(float x, float y, float z) {
       e.z_low = std::min(e.z_low, z);
       e.z_high = std::max(e.z_high, z);
       e.hits = e.scan == scan_ ? e.hits + 1 : 1;
+      if (e.scan != scan_) e.under = 0;
       e.scan = scan_;
       e.again = true;
       e.weight = std::min(e.weight + 1, kMeanOver);
@@ -47,6 +48,14 @@ void ObstacleCells::mark(float x, float y, float z) {
   if (entries_.size() >= kMaxCells) return;
   entries_.push_back(fresh);
   index = static_cast<std::uint16_t>(entries_.size());
+}
+
+void ObstacleCells::mark_under(float x, float y) {
+  const int ix = cell(x), iy = cell(y);
+  const std::uint16_t index = slots_[slot(ix, iy)];
+  if (index == 0) return;
+  Entry& e = entries_[index - 1u];
+  if (e.ix == ix && e.iy == iy && e.scan == scan_) ++e.under;
 }
 
 void ObstacleCells::keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step) {
@@ -83,6 +92,7 @@ bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, 
   const float range = std::sqrt(dx * dx + dy * dy);
   const auto memory = static_cast<float>(params_.memory);
   if (entry.scan == scan_) {
+    if (entry.under > entry.hits) return false;
     entry.misses = 0;
     if (stray(entry, dx, dy, range)) return entry.solid && now_ - entry.stamp <= memory;
     entry.solid = true;

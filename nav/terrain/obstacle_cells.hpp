@@ -29,6 +29,7 @@ class ObstacleCells {
     float since, stamp;    ///< hit first and last, s
     float mean_x, mean_y;  ///< of the newest returns, m: where in the cell the surface is
     std::int32_t weight;   ///< of them
+    std::int32_t under;    ///< returns of the newest scan from what may be climbed
     float x() const { return (static_cast<float>(ix) + 0.5f) * kCell; }
     float y() const { return (static_cast<float>(iy) + 0.5f) * kCell; }
   };
@@ -42,6 +43,9 @@ class ObstacleCells {
   }
   /// A return from an obstacle.
   void mark(float x, float y, float z);
+  /// A return from something that is no obstacle but nearly as high, after all that are from one: a cell with
+  /// more of these than of those holds a stair whose height was measured with noise.
+  void mark_under(float x, float y);
   /// Drops what is free by now, or no more than a `step` (m) above the ground as it is known by now.
   void keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step);
 

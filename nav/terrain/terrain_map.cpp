@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kUsualReturns = 32768;  ///< within range
 constexpr std::size_t kMostDeep = 32768;
+constexpr std::size_t kMostUnder = 16384;
 constexpr double kStood = 0.005;     ///< m: a robot that moved less stands
 constexpr double kLidarShare = 0.7;  ///< of the lidar's height: a first return as high as this may be ground
 
@@ -49,6 +50,7 @@ TerrainMap::TerrainMap(const Platform& platform, const TerrainParams& params)
       surface_(surface_params(platform, params)),
       solid_(GroundGrid::kSide * GroundGrid::kSide, 0) {
   near_.reserve(kUsualReturns);
+  under_.reserve(platform.stairs ? kMostUnder : 0);
   deep_.reserve(kMostDeep);
   cells_.reserve(kMaxCells);
 }
@@ -136,14 +138,18 @@ void TerrainMap::classify(const View& view) {
   const auto top =
       static_cast<float>(std::max(platform_.height, platform_.lidar_height) + params_.height_margin);
   const auto drop = static_cast<float>(-drop_of(platform_, params_));
+  under_.clear();
   for (const Eigen::Vector3f& p : near_) {
     const float climb = p.z() - ground_.before(p.x(), p.y());
     if (climb > step) {
       if (climb < top) obstacles_.mark(p.x(), p.y(), p.z());
+    } else if (climb > step / 2) {
+      if (under_.size() < under_.capacity()) under_.emplace_back(p.x(), p.y());
     } else if (climb < drop && p.z() - ground_.at(p.x(), p.y()) < drop) {
       drops_.below(view, p, ground_);
     }
   }
+  for (const Eigen::Vector2f& p : under_) obstacles_.mark_under(p.x(), p.y());
   for (const Eigen::Vector3f& p : deep_)
     if (p.z() - ground_.at(p.x(), p.y()) < drop) drops_.below(view, p, ground_);
 }
