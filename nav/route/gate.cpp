@@ -30,7 +30,7 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
       const double across = along.x() * away.y() - along.y() * away.x();
       if (d2 >= (across > 0 ? least_left : least_right) || across * across < kOpposite * kOpposite * d2)
         continue;
-      const int index = map.at(tile_of(ix), tile_of(iy), at.z());
+      const int index = map.at_cell(ix, iy, at.z());
       if (index < 0 || !map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))].blocked)
         continue;
       (across > 0 ? least_left : least_right) = d2;

@@ -28,13 +28,7 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     if (!have || tile_of(ix) != tx || tile_of(iy) != ty) {
       tx = tile_of(ix);
       ty = tile_of(iy);
-      index = map_.at(tx, ty, z);
-      // Of two floors within reach, the one whose ground goes on from here.
-      const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
-      for (int s = map_.first(tx, ty); s >= 0; s = map_.tile(s).next)
-        if (const GroundCell& cell = map_.tile(s).cells[c];
-            cell.known && std::abs(cell.z - z) <= (was_known ? builder_.rise() : kSheetReach / 2))
-          index = s;
+      index = map_.at_cell(ix, iy, z);
       have = true;
     }
     const double weight = i == 0 || i == steps ? share / 2 : share;
@@ -107,7 +101,7 @@ void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) {
   // A point between two on a slope takes its height from the ground's.
   for (Eigen::Vector3d& p : dense) {
     const int ix = route_cell(p.x()), iy = route_cell(p.y());
-    if (const int t = map_.at(tile_of(ix), tile_of(iy), p.z()); t >= 0) {
+    if (const int t = map_.at_cell(ix, iy, p.z()); t >= 0) {
       const GroundCell& cell = map_.tile(t).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
       if (cell.known && std::abs(cell.z - p.z()) < kSheetReach / 2) p.z() = cell.z;
     }

@@ -82,7 +82,7 @@ bool RoutePlanner::stands_between(const Eigen::Vector3d& place, int ix, int iy) 
   for (int i = 0; i <= steps; ++i) {
     const Eigen::Vector2d p = place.head<2>() + way * i / steps;
     const int x = route_cell(p.x()), y = route_cell(p.y());
-    const int index = map_.at(tile_of(x), tile_of(y), place.z());
+    const int index = map_.at_cell(x, y, place.z());
     if (index >= 0 && map_.tile(index).cells[static_cast<std::size_t>(cell_in_tile(x, y))].blocked)
       return true;
   }
@@ -93,7 +93,7 @@ bool RoutePlanner::stands_between(const Eigen::Vector3d& place, int ix, int iy) 
 // is.
 std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, double reach) {
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
-  if (map_.at(tile_of(cx), tile_of(cy), place.z()) < 0) return RouteEnd{place, -1, 0};
+  if (map_.at_cell(cx, cy, place.z()) < 0) return RouteEnd{place, -1, 0};
   const int cells = static_cast<int>(reach / kRouteCell);
   std::optional<RouteEnd> best;
   double least = reach + kRouteCell;
@@ -101,7 +101,7 @@ std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, dou
     for (int ix = cx - cells; ix <= cx + cells; ++ix) {
       const double d = std::hypot((ix + 0.5) * kRouteCell - place.x(), (iy + 0.5) * kRouteCell - place.y());
       if (d >= least) continue;
-      const int index = map_.at(tile_of(ix), tile_of(iy), place.z());
+      const int index = map_.at_cell(ix, iy, place.z());
       if (index < 0) continue;
       const Tile& tile = builder_.current(map_, index);
       const int c = cell_in_tile(ix, iy);

@@ -220,6 +220,12 @@ int RouteSearch::meeting_place(const Tile& a, const TileNode& from, const Tile& 
   return best;
 }
 
+bool RouteSearch::borders(const Tile& tile, int side, int first, int last, float z) const {
+  for (int i = first; i <= last; ++i)
+    if (std::abs(tile.cell_z(side_cell(side, i)) - z) <= kSheetReach) return true;
+  return false;
+}
+
 bool RouteSearch::meets(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const {
   return to.side == opposite(from.side) && meeting_place(a, from, b, to) >= 0;
 }
@@ -230,7 +236,7 @@ void RouteSearch::cross(const Tile& tile, const TileNode& node, float cost, Id i
   bool met = false;
   for (int i = tile.beside[node.side]; i >= 0; i = map_.tile(i).next) {
     const Tile& other = map_.tile(i);
-    if (std::abs(other.z - node.z) > kSheetReach) continue;
+    if (!borders(other, opposite(node.side), node.first, node.last, node.z)) continue;
     met = true;
     builder_.current(map_, i);
     for (int m = 0; m < other.node_count; ++m) {
@@ -257,7 +263,7 @@ void RouteSearch::enter_from_ghost(const Ghost& g, float cost, Id id) {
   bool met = false;
   for (int i = map_.first(tx, ty); i >= 0; i = map_.tile(i).next) {
     const Tile& other = map_.tile(i);
-    if (std::abs(other.z - z) > kSheetReach) continue;
+    if (!borders(other, opposite(g.side), 0, kTileSide - 1, z)) continue;
     met = true;
     builder_.current(map_, i);
     for (int m = 0; m < other.node_count; ++m) {

@@ -65,6 +65,8 @@ class RouteSearch {
   void expand_ghost(const Ghost& g, float cost, Id id);
   void cross(const Tile& tile, const TileNode& node, float cost, Id id);
   void enter_from_ghost(const Ghost& g, float cost, Id id);
+  /// Whether one of a side's cells is of the floor at z.
+  bool borders(const Tile& tile, int side, int first, int last, float z) const;
   bool meets(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const;
   int meeting_place(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const;
   void begin(const RouteEnd& start);

@@ -61,6 +61,54 @@ int SurfaceMap::at(int tx, int ty, double z) const {
   return best;
 }
 
+int SurfaceMap::at_cell(int ix, int iy, double z) const {
+  const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
+  int best = -1, beyond = -1;
+  double least = kSheetReach, near = kSheetReach;
+  for (int i = first(tile_of(ix), tile_of(iy)); i >= 0; i = tile(i).next) {
+    const GroundCell& cell = tile(i).cells[c];
+    if (const double d = std::abs(cell.z - z); cell.known && d <= least) {
+      least = d;
+      best = i;
+    }
+    if (const double d = std::abs(tile(i).z - z); !cell.known && d <= near) {
+      near = d;
+      beyond = i;
+    }
+  }
+  return best >= 0 ? best : beyond;
+}
+
+// By the heights along the side that both share; of a corner, or where nothing is known there, by those of
+// the tiles.
+int SurfaceMap::beside(const Tile& t, int dx, int dy) const {
+  const int only = first(t.tx + dx, t.ty + dy);
+  if (only < 0) return -1;
+  constexpr int last = kTileSide - 1;
+  int best = -1;
+  float least = kSheetReach;
+  for (int i = only; i >= 0; i = tile(i).next) {
+    const Tile& other = tile(i);
+    float sum = 0;
+    int count = 0;
+    for (int k = 0; k < kTileSide && (dx == 0 || dy == 0); ++k) {
+      const int x = dx == 0 ? k : dx > 0 ? last : 0, y = dy == 0 ? k : dy > 0 ? last : 0;
+      const int u = dx == 0 ? k : last - x, v = dy == 0 ? k : last - y;
+      const GroundCell& p = t.cells[static_cast<std::size_t>(y * kTileSide + x)];
+      const GroundCell& q = other.cells[static_cast<std::size_t>(v * kTileSide + u)];
+      if (!p.known || !q.known) continue;
+      sum += std::abs(p.z - q.z);
+      ++count;
+    }
+    const float d = count > 0 ? sum / static_cast<float>(count) : std::abs(other.z - t.z);
+    if (d <= least) {
+      least = d;
+      best = i;
+    }
+  }
+  return best;
+}
+
 // The floor that a height belongs to: the one whose cell there is at that height; else one that its cells
 // around lead to; else the nearest that has none around.
 int SurfaceMap::sheet(int ix, int iy, float z) {

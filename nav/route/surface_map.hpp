@@ -47,6 +47,11 @@ class SurfaceMap {
   int first(int tx, int ty) const;
   /// The tile of the floor nearest to z there, within reach; or -1.
   int at(int tx, int ty, double z) const;
+  /// The same of a cell: the tile whose ground there is nearest to z, within reach; where none knows the
+  /// ground, as at().
+  int at_cell(int ix, int iy, double z) const;
+  /// The tile beside one, (dx, dy) tiles away, that its ground goes on into; or -1.
+  int beside(const Tile& tile, int dx, int dy) const;
   const Tile& tile(int index) const { return *tiles_[static_cast<std::size_t>(index)]; }
   Tile& tile(int index) { return *tiles_[static_cast<std::size_t>(index)]; }
   int size() const { return static_cast<int>(tiles_.size()); }

@@ -11,7 +11,7 @@ inline constexpr int kTileSide = 16;       ///< cells
 inline constexpr int kTileArea = kTileSide * kTileSide;
 inline constexpr int kTileHalo = 8;         ///< clearance is known up to this many cells
 inline constexpr int kTileNodes = 16;       ///< at most; the widest openings of a side are kept
-inline constexpr float kSheetReach = 1.2f;  ///< ground higher or lower than this is of another floor, m
+inline constexpr float kSheetReach = 1.5f;  ///< ground higher or lower than this is of another floor, m
 inline constexpr float kUnreached = std::numeric_limits<float>::infinity();
 
 /// One column of one floor.

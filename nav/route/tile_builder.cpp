@@ -64,7 +64,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   for (int dy = -1; dy <= 1; ++dy)
     for (int dx = -1; dx <= 1; ++dx) {
       if (dx == 0 && dy == 0) continue;
-      const int other = map.at(tile.tx + dx, tile.ty + dy, tile.z);
+      const int other = map.beside(tile, dx, dy);
       if (other >= 0)
         gather_tile(map.tile(other), tile.z, kTileHalo + dx * kTileSide, kTileHalo + dy * kTileSide);
     }
