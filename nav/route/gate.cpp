@@ -24,14 +24,16 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
   bool left = false, right = false;
   for (int iy = cy - reach; iy <= cy + reach; ++iy)
     for (int ix = cx - reach; ix <= cx + reach; ++ix) {
-      const Eigen::Vector2d place((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell);
+      const int index = map.at_cell(ix, iy, at.z());
+      if (index < 0) continue;
+      const GroundCell& cell = map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+      if (!cell.blocked) continue;
+      const Eigen::Vector2d place((ix + 0.5) * kRouteCell + cell.aside_x * double{kAsideUnit},
+                                  (iy + 0.5) * kRouteCell + cell.aside_y * double{kAsideUnit});
       const Eigen::Vector2d away = place - at.head<2>();
       const double d2 = away.squaredNorm();
       const double across = along.x() * away.y() - along.y() * away.x();
       if (d2 >= (across > 0 ? least_left : least_right) || across * across < kOpposite * kOpposite * d2)
-        continue;
-      const int index = map.at_cell(ix, iy, at.z());
-      if (index < 0 || !map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))].blocked)
         continue;
       (across > 0 ? least_left : least_right) = d2;
       (across > 0 ? sides.left : sides.right) = place;

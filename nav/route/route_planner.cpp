@@ -38,7 +38,7 @@ void RoutePlanner::set_ground(const Eigen::Vector3d& place) {
 }
 
 void RoutePlanner::set_obstacle(const Eigen::Vector3d& place, double top) {
-  map_.see_obstacle(route_cell(place.x()), route_cell(place.y()), static_cast<float>(place.z()),
+  map_.see_obstacle(static_cast<float>(place.x()), static_cast<float>(place.y()), static_cast<float>(place.z()),
                     static_cast<float>(top), true);
 }
 

@@ -65,7 +65,7 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
     const int d = static_cast<int>((bearing(offset.y(), offset.x()) + static_cast<float>(M_PI)) *
                                    (kDirections / (2 * static_cast<float>(M_PI))));
     const Eigen::Vector3f place = at + offset;
-    unsorted_.push_back({range, place.z(), route_cell(place.x()), route_cell(place.y())});
+    unsorted_.push_back({range, place.x(), place.y(), place.z()});
     direction_.push_back(std::clamp(d, 0, kDirections - 1));
     ++begin_[static_cast<std::size_t>(direction_.back()) + 1];
   }
@@ -113,20 +113,19 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
     if (rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
     if (ended) {
       if (rise > step_ && is_face(returns, static_cast<std::size_t>(&r - returns.data())))
-        map.see_obstacle(r.ix, r.iy, z, rise);
+        map.see_obstacle(r.x, r.y, z, rise);
       continue;
     }
     if (rise > step_ + slope_ * run) {
       float base = z;
       if (last_ground && r.range - at < kStack && z - z_before > step_) {  // its foot passed for ground
         base = z_before;
-        map.see_obstacle(last_ground->ix, last_ground->iy, base, z - base);
+        map.see_obstacle(last_ground->x, last_ground->y, base, z - base);
         if (pieces_.size() > first) pieces_.back().z_to = base;
       }
-      map.see_obstacle(r.ix, r.iy, base, r.z - base);
+      map.see_obstacle(r.x, r.y, base, r.z - base);
       pieces_.push_back({at, r.range - kCellF, base, base, r.z});
-      hit = {r.range, static_cast<float>((r.ix + 0.5) * kRouteCell),
-             static_cast<float>((r.iy + 0.5) * kRouteCell), base, r.z - base};
+      hit = {r.range, r.x, r.y, base, r.z - base};
       z = base;
       ended = true;
     } else if (rise < -(drop_ + slope_ * run)) {
@@ -134,9 +133,8 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
       const float share = (sensor_.z() - z) / (sensor_.z() - r.z);
       const float there = share * r.range;
       if (there > std::max(at, kFirst)) {
-        const float x = sensor_.x() + share * (static_cast<float>((r.ix + 0.5) * kRouteCell) - sensor_.x());
-        const float y = sensor_.y() + share * (static_cast<float>((r.iy + 0.5) * kRouteCell) - sensor_.y());
-        map.see_obstacle(route_cell(x), route_cell(y), z, 0.02f);
+        map.see_obstacle(sensor_.x() + share * (r.x - sensor_.x()), sensor_.y() + share * (r.y - sensor_.y()), z,
+                         0.02f);
       }
       return;
     } else {
@@ -166,8 +164,7 @@ void ScanProfile::close_gaps(SurfaceMap& map) const {
     const int parts = static_cast<int>(std::ceil(gap / kCellF));
     for (int i = 1; i < parts; ++i) {
       const float t = static_cast<float>(i) / static_cast<float>(parts);
-      map.see_obstacle(route_cell(a.x + t * (b.x - a.x)), route_cell(a.y + t * (b.y - a.y)), a.base,
-                       std::min(a.top, b.top));
+      map.see_obstacle(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.base, std::min(a.top, b.top));
     }
   }
 }

@@ -28,8 +28,7 @@ class ScanProfile {
   static constexpr int kDirections = 360;
   static constexpr int kQuarter = kDirections / 4;
   struct Return {
-    float range, z;
-    int ix, iy;
+    float range, x, y, z;
   };
   /// A piece of ground between two ranges, seen by a ray that is `height` above the ground at its end.
   struct Piece {

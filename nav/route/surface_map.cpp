@@ -240,7 +240,7 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {z, 0, 0, true, measured, false, 0};
+    cell = {z, 0, 0, true, measured, false};
     mark_dirty(index);
     // A step between two cells is known with the second.
     if (const int x = ix & 15, y = iy & 15; x == 0 || y == 0 || x == 15 || y == 15) mark_around(t, ix, iy);
@@ -267,13 +267,28 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   mark_around(t, ix, iy);
 }
 
-void SurfaceMap::see_obstacle(int ix, int iy, float z, float top, bool sure) {
+void SurfaceMap::see_obstacle(float x, float y, float z, float top, bool sure) {
+  constexpr int kMeanOver = 8;  // returns
+  const int ix = route_cell(x), iy = route_cell(y);
   const int index = sheet(ix, iy, z);
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {z, 0, 0, true, false, false, 0};
+    cell = {z, 0, 0, true, false, false};
     mark_dirty(index);
+  }
+  // Whether it moved so far that ways beside it may be others.
+  const auto mean = [&](std::int8_t& aside, double at, int i) {
+    constexpr int kNoticed = 12;
+    const std::int8_t before = aside;
+    const double off = std::clamp((at - (i + 0.5) * kRouteCell) / double{kAsideUnit}, -125.0, 125.0);
+    aside = static_cast<std::int8_t>(std::lround(cell.evidence <= 0 ? off : aside + (off - aside) / kMeanOver));
+    return cell.blocked && std::abs(aside - before) > kNoticed;
+  };
+  const bool moved_x = mean(cell.aside_x, x, ix), moved_y = mean(cell.aside_y, y, iy);
+  if (moved_x || moved_y) {
+    mark_dirty(index);
+    mark_around(t, ix, iy);
   }
   cell.top = std::max(cell.top, static_cast<std::uint8_t>(std::clamp(top / kTopUnit, 0.0f, 255.0f)));
   if (cell.scan == scan_ && !sure) return;

@@ -32,8 +32,8 @@ class SurfaceMap {
   /// A ray passed over the ground of a cell. `height` of the ray above the ground, m: what is lower than it
   /// may still be there.
   void see_free(int ix, int iy, float z, float height, Seen seen = Seen::measured);
-  /// A return at `top` metres above the ground of a cell; `sure`: one is enough.
-  void see_obstacle(int ix, int iy, float z, float top, bool sure = false);
+  /// A return at (x, y), `top` metres above the ground at z; `sure`: one is enough.
+  void see_obstacle(float x, float y, float z, float top, bool sure = false);
   /// Begins a scan from there; the tiles farthest from it go when there are too many.
   void begin_scan(double x, double y);
 
@@ -92,7 +92,7 @@ class SurfaceMap {
   std::vector<BlockedPlace> places_{};
   Extent extent_{};
   int used_{0};
-  std::uint32_t scan_{0};
+  std::uint16_t scan_{0};
   double x_{0}, y_{0};
   int last_{-1};        // tile that was written last
   int last_first_{-1};  // first one at its place

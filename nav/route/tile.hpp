@@ -22,8 +22,10 @@ struct GroundCell {
   bool known : 1 {false};
   bool measured : 1 {false};  ///< its height; else that was drawn between the returns around it
   bool blocked : 1 {false};
-  std::uint32_t scan{0};  ///< the last one that hit it
+  std::int8_t aside_x{0}, aside_y{0};  ///< where in the cell the obstacle is: from its middle, kAsideUnit
+  std::uint16_t scan{0};               ///< the last one that hit it
 };
+inline constexpr float kAsideUnit = static_cast<float>(kRouteCell) / 250;  ///< m
 
 /// The sides of a tile: +x, +y, -x, -y.
 inline constexpr std::array<int, 4> kSideX{1, 0, -1, 0};

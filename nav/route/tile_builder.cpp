@@ -11,26 +11,31 @@ namespace {
 constexpr float kUnit = 16.0f;  // of a cell's cost
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kCellF = static_cast<float>(kRouteCell);
+constexpr double kAsideOfGap = 0.03;  // m
 
 }  // namespace
 
+// Less than the body needs: cells' middles lie up to half a cell aside of the middle of a gap. The local
+// planner knows better, and tells when it does not get through.
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
-    : rise_(static_cast<float>(
+    : hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
+      comfort_(
+          std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell)),
+      narrow_cost_(params.narrow_cost),
+      rise_(static_cast<float>(
           std::max(platform.step, std::max(params.slope, platform.steepest()) * kRouteCell) +
           params.step_margin + (platform.stairs ? kRiser : 0.0))),
       unknown_cost_(static_cast<float>(params.unknown_cost)) {
-  // Half a cell less than the body needs: obstacles fill whole cells. The local planner knows better, and
-  // tells when it does not get through.
-  const double hard = std::max(platform.width / 2 - kRouteCell / 2, kRouteCell);
-  const double comfort =
-      std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell);
-  for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2) {
-    const double d = std::sqrt(static_cast<double>(d2)) * kRouteCell;
-    const double lack = comfort > hard ? std::clamp((comfort - d) / (comfort - hard), 0.0, 1.0) : 0.0;
-    cost_of_[d2] = d < hard - 1e-9 ? std::uint8_t{0}
-                                   : static_cast<std::uint8_t>(std::lround(
-                                         std::min(255.0, kUnit * (1.0 + params.narrow_cost * lack * lack))));
-  }
+  for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)
+    cost_of_[d2] = cost_at(std::sqrt(static_cast<double>(d2)) * kRouteCell);
+}
+
+std::uint8_t TileBuilder::cost_at(double distance) const {
+  if (distance < hard_ - 1e-9) return 0;
+  const double lack =
+      comfort_ > hard_ ? std::clamp((comfort_ - distance) / (comfort_ - hard_), 0.0, 1.0) : 0.0;
+  return static_cast<std::uint8_t>(
+      std::lround(std::min(255.0, double{kUnit} * (1.0 + narrow_cost_ * lack * lack))));
 }
 
 void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
@@ -43,12 +48,14 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       // The ground under what stands there is a guess, and no step.
       height_[in_window(x, y)] = cell.blocked ? kNan : cell.z;
       solid_[in_window(x, y)] = cell.blocked;
+      aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
     }
 }
 
 void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   height_.fill(kNan);
   solid_.fill(false);
+  aside_.fill({0, 0});
   gather_tile(tile, tile.z, kTileHalo, kTileHalo);
   // What is ground of another floor, higher or lower by less than a storey, is an edge of this one.
   for (int i = map.first(tile.tx, tile.ty); i >= 0; i = map.tile(i).next) {
@@ -91,6 +98,20 @@ void TileBuilder::find_steps() {
     }
 }
 
+// From the middle of a cell of the window to the nearest obstacle, as it lies in its cell, m.
+double TileBuilder::exact_clearance(int x, int y) const {
+  const int reach = static_cast<int>(hard_ / kRouteCell) + 2;
+  double least = kTileHalo * kRouteCell;
+  for (int v = std::max(0, y - reach); v <= std::min(kWindow - 1, y + reach); ++v)
+    for (int u = std::max(0, x - reach); u <= std::min(kWindow - 1, x + reach); ++u) {
+      if (!solid_[in_window(u, v)]) continue;
+      const auto& aside = aside_[in_window(u, v)];
+      least = std::min(least, std::hypot((u - x) * kRouteCell + aside[0] * double{kAsideUnit},
+                                         (v - y) * kRouteCell + aside[1] * double{kAsideUnit}));
+    }
+  return least;
+}
+
 // The squared distance to the nearest obstacle, exact within the halo: columns first, then across.
 void TileBuilder::measure(Tile& tile) {
   constexpr int kFar = kTileHalo + 1;
@@ -115,7 +136,11 @@ void TileBuilder::measure(Tile& tile) {
         if (d <= kTileHalo) least = std::min(least, dx * dx + d * d);
       }
       const auto c = static_cast<std::size_t>(y * kTileSide + x);
-      float cost = cost_of_[static_cast<std::size_t>(least)];
+      // Where a cell more or less decides, as exact as it is known.
+      const double about = std::sqrt(static_cast<double>(least)) * kRouteCell;
+      float cost = std::abs(about - hard_) < kRouteCell
+                       ? cost_at(exact_clearance(x + kTileHalo, y + kTileHalo))
+                       : cost_of_[static_cast<std::size_t>(least)];
       if (!tile.cells[c].known) cost = std::min(255.0f, cost * unknown_cost_);
       tile.cost[c] = static_cast<std::uint8_t>(cost);
     }

@@ -44,14 +44,18 @@ class TileBuilder {
   void gather_tile(const Tile& from, float z, int ox, int oy);
   void find_steps();
   void measure(Tile& tile);
+  std::uint8_t cost_at(double distance) const;
+  double exact_clearance(int x, int y) const;
   void open_sides(Tile& tile);
   void add_node(Tile& tile, int side, int first, int last);
   void connect(Tile& tile, int node);
 
+  double hard_, comfort_, narrow_cost_;  // clearance that is needed and that is liked, m
   float rise_, unknown_cost_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
   std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
   std::array<bool, kWindow * kWindow> solid_{};
+  std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // of what is solid, kAsideUnit
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};
   struct Entry {

@@ -8,7 +8,7 @@
 namespace adit::nav::test {
 namespace {
 
-constexpr double kHard = 0.2;  // m: clearance that the wheeled robot must have
+constexpr double kHard = 0.22;  // m: half the width of wheeled(), and a cell aside of a gap
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::Vector3d middle(int x, int y, double z = 0) { return {(x + 0.5) * 0.1, (y + 0.5) * 0.1, z}; }
