@@ -17,12 +17,12 @@ struct Target {
     direction,  ///< along a direction, as far as it goes (smart joystick)
   };
   Kind kind{Kind::none};
-  Eigen::Vector2d goal{0, 0};  ///< odometry frame, m
-  double direction{0};         ///< in the body frame, rad, counter-clockwise from ahead
-  double speed{0};             ///< not faster than this, m/s; 0 of a goal: the platform's speed
-  double tolerance{0};         ///< of a goal, m; 0: the planner's own
+  Eigen::Vector2d goal{0, 0};   ///< odometry frame, m
+  double direction{0};          ///< in the body frame, rad, counter-clockwise from ahead
+  double speed{0};              ///< not faster than this, m/s; 0 of a goal: the platform's speed
+  double tolerance{0};          ///< of a goal, m; 0: the planner's own
   std::optional<Pose2> gate{};  ///< a gap that leads to a goal: its middle, heading through; odometry frame
-  bool held{false};            ///< the collision monitor keeps the robot from driving what was planned
+  bool held{false};             ///< the collision monitor keeps the robot from driving what was planned
 
   static Target to(const Eigen::Vector2d& goal, double speed = 0.0) {
     return {.kind = Kind::goal, .goal = goal, .speed = speed};

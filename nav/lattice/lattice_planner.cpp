@@ -194,8 +194,7 @@ std::optional<Pose2> LatticePlanner::gate_of(const Target& target, const Pose2& 
   const auto gateway = fit_gateway(pose.inverse() * *target.gate, obstacles);
   const auto& search = params_.search;
   if (!gateway || gateway->room < platform_.width + 2 * search.tight_margin ||
-      gateway->room > platform_.width + 2 * search.margin + kEasy ||
-      gateway->line.inverse().x > kBehindGate)
+      gateway->room > platform_.width + 2 * search.margin + kEasy || gateway->line.inverse().x > kBehindGate)
     return std::nullopt;
   return Pose2{rear_, 0, 0} * gateway->line;
 }
@@ -257,7 +256,8 @@ bool LatticePlanner::passable(const Pose2& rear) const {
   // What it stands in already it may leave.
   const std::size_t first = at_ + 8;
   for (std::size_t i = first; i < kept_.count; i += 2)
-    if (!search_.free(clear_, back * kept_.spots[i].pose, kept_.tight, kept_.tight ? kTightLoss : kHysteresis))
+    if (!search_.free(clear_, back * kept_.spots[i].pose, kept_.tight,
+                      kept_.tight ? kTightLoss : kHysteresis))
       return false;
   return true;
 }

@@ -47,7 +47,8 @@ class LatticePlanner final : public Planner {
   bool passable(const Pose2& rear) const;
   bool find(LatticeTask task);
   bool find_through(LatticeTask task);
-  /// The gap on the way to the target, in the frame of the fields, when it is one that has to be met straight.
+  /// The gap on the way to the target, in the frame of the fields, when it is one that has to be met
+  /// straight.
   std::optional<Pose2> gate_of(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles) const;
   void adopt(const Pose2& rear);

@@ -6,10 +6,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kLed = 1.25f;     ///< weight of the way that is left: fewer states, a little longer paths
-constexpr float kLeaving = 0.8f;  ///< m: a body that starts within its margin may be in it so far
-constexpr float kDeeper = 0.01f;  ///< m: cells are not finer
-constexpr float kCoarse = 0.05f;  ///< m: with so much more than the margin by the cells a body is free
+constexpr float kLed = 1.25f;       ///< weight of the way that is left: fewer states, a little longer paths
+constexpr float kLeaving = 0.8f;    ///< m: a body that starts within its margin may be in it so far
+constexpr float kDeeper = 0.01f;    ///< m: cells are not finer
+constexpr float kCoarse = 0.05f;    ///< m: with so much more than the margin by the cells a body is free
 constexpr double kStraight = 0.25;  ///< m before a gap a body is straight on its axis
 constexpr double kBehind = 0.9;     ///< m behind a gap's middle the path ends
 constexpr double kSteepest = 1.0;   ///< rad off the axis
@@ -28,8 +28,8 @@ LatticeSearch::LatticeSearch(const Platform& platform, const LatticeSearchParams
   const double half = platform.length / 2 / static_cast<double>(disc_count_);
   for (std::size_t i = 0; i < disc_count_; ++i)
     discs_[i] = static_cast<float>(base_ - platform.length / 2 + half * static_cast<double>(2 * i + 1));
-  wide_ = static_cast<float>(std::max(platform.width / 2 + params.margin,
-                                      std::hypot(half, platform.width / 2) + params.margin / 2));
+  wide_ = static_cast<float>(
+      std::max(platform.width / 2 + params.margin, std::hypot(half, platform.width / 2) + params.margin / 2));
   nodes_.reserve(kMostNodes);
   open_.reserve(kMostNodes);
 }

@@ -32,11 +32,11 @@ struct LatticeTask {
   int level{-1};     ///< of the present curvature; -1: so slow that any comes at once
   int direction{0};  ///< in which it drives, 1 or -1; 0: stands, either is as good
   Eigen::Vector2d target{0, 0};
-  bool goal{true};      ///< the target is a place to come to, not only a direction
-  bool tight{false};    ///< only the tight margin is kept
-  int only{0};          ///< may drive in this direction only, 1 or -1; 0: both
-  double heading{0};    ///< rad, of the way (not of the body) ...
-  double spread{M_PI};  ///< ... which paths may leave by so much
+  bool goal{true};              ///< the target is a place to come to, not only a direction
+  bool tight{false};            ///< only the tight margin is kept
+  int only{0};                  ///< may drive in this direction only, 1 or -1; 0: both
+  double heading{0};            ///< rad, of the way (not of the body) ...
+  double spread{M_PI};          ///< ... which paths may leave by so much
   std::optional<Pose2> gate{};  ///< the path shall end behind a gap with this middle, straight through it
 };
 
@@ -115,11 +115,11 @@ class LatticeSearch {
   std::array<float, kMostDiscs> discs_{};  ///< middles along the body's axis, from the poses' origin, m
   std::array<float, kMostDiscs> least_{};  ///< clearance of each where the search began, m
   std::size_t disc_count_{};
-  float wide_{};              ///< radius of the discs with the margin, m
-  Footprint outline_;         ///< with the tight margin
-  double front_;              ///< from the poses' origin to the foremost point of the body, m
-  bool tight_{false};         ///< the search under way keeps no more
-  float depth_{0};            ///< of the deepest point in the outline where it began, m
+  float wide_{};       ///< radius of the discs with the margin, m
+  Footprint outline_;  ///< with the tight margin
+  double front_;       ///< from the poses' origin to the foremost point of the body, m
+  bool tight_{false};  ///< the search under way keeps no more
+  float depth_{0};     ///< of the deepest point in the outline where it began, m
   std::vector<Node> nodes_{};
   std::vector<Open> open_{};
   std::vector<std::uint32_t> closed_;

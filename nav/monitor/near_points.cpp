@@ -11,10 +11,11 @@ constexpr float kLevel = 1e-3f;       ///< rise per metre that is none
 constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far within a 10 cm cell
 constexpr float kPast = 0.15f;        ///< m: rays that went so much farther show that nothing is there
 constexpr float kLevelRay = 0.1f;     ///< m below the lidar
-constexpr float kNotSeen = 1e9f;       ///< lowest return of a cell without one
+constexpr float kNotSeen = 1e9f;      ///< lowest return of a cell without one
 constexpr float kBefore = 0.12f;      ///< m: so far before a riser the tread is seen that leads to it
-constexpr float kSpread = 0.04f;      ///< m: the lowest and the highest of many returns lie so much apart by noise
-constexpr int kFewest = 2;            ///< returns in a cell and those around it; one alone is noise
+constexpr float kSpread =
+    0.04f;                  ///< m: the lowest and the highest of many returns lie so much apart by noise
+constexpr int kFewest = 2;  ///< returns in a cell and those around it; one alone is noise
 
 }  // namespace
 

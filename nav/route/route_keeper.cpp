@@ -20,7 +20,7 @@ constexpr double kThere = 0.1;       // m from where it lines up: nearer no plan
 constexpr double kAside = 0.25;      // m: farther off its axis a robot is not in it
 constexpr double kLinedUp = 0.10;    // tangent of the angle off the gate's axis
 constexpr double kStaysLinedUp = 0.25;
-constexpr double kTold = 3.0;        // m before it a gap is told to who finds its own way
+constexpr double kTold = 3.0;     // m before it a gap is told to who finds its own way
 constexpr double kDetour = 1.03;  // a straight line that costs more than this much of the route is none
 
 // The point of a way at a length from its beginning, and whether that is its end.

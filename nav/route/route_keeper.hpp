@@ -20,8 +20,8 @@ struct RouteKeeperParams {
   double ahead{4.0};  ///< the local planner is given the point of the route this far ahead, m, [1, 10]
   double least_ahead{1.2};  ///< and never a nearer one but the goal, m, [0.3, 5]
   GateUse gates{GateUse::line_up};
-  double proof{2.0};        ///< a goal is unreachable when that was so all this time, s, [0, 10]
-  double blocked{1.0};      ///< a route is blocked when the local planner says so for this long, s, [0, 30]
+  double proof{2.0};    ///< a goal is unreachable when that was so all this time, s, [0, 10]
+  double blocked{1.0};  ///< a route is blocked when the local planner says so for this long, s, [0, 30]
 };
 
 /// Where to drive next.

@@ -44,7 +44,7 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     if (tile.cost[c] == 0) {
       letting_out = letting_out && t * length <= kLetOut;
       letting_in = ends.let_in && (1 - t) * length <= kLetOut;
-      if (cell.blocked || !(letting_out || letting_in)) return {};
+      if (builder_.solid(cell) || !(letting_out || letting_in)) return {};
       result.cost += weight * builder_.unknown_cost();
     } else if (letting_in) {
       return {};
@@ -55,10 +55,10 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     if (!cell.known) {
       result.unknown += weight;
     } else {
-      if (was_known && std::abs(cell.z - z) > 2 * builder_.rise()) return {};
+      if (was_known && builder_.has_height(cell) && std::abs(cell.z - z) > 2 * builder_.rise()) return {};
       z = cell.z;
     }
-    was_known = cell.known;
+    was_known = builder_.has_height(cell);
   }
   result.passable = std::abs(z - to.z()) <= kSheetReach + 0.1;
   return result;

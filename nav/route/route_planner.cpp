@@ -6,20 +6,17 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStartReach = 1.5;   // m: a robot that stands close to something is let out
 constexpr double kGateMargin = 0.15;  // m
-constexpr double kOwnGoal = 0.1;      // m: a goal that was moved by more is a leg of its own
 
 }  // namespace
 
 RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
-    : params_(params),
+    : platform_(platform),
+      params_(params),
       narrow_(std::hypot(platform.length, platform.width) / 2 + kGateMargin),
       map_(params, ScanProfile::most_wrong(platform, params)),
       profile_(platform, params),
-      builder_(platform, params),
-      line_(map_, builder_),
-      search_(map_, builder_, params) {}
+      graph_(map_, platform, params) {}
 
 void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
                             bool search) {
@@ -28,22 +25,24 @@ void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3
   for (int i = 0; search && i < params_.rebuilds; ++i) {
     const int index = map_.next_dirty();
     if (index < 0) break;
-    builder_.build(map_, index);
-    builder_.connect(map_, index);
+    graph_.builder().build(map_, index);
+    graph_.builder().connect(map_, index);
   }
 }
 
 void RoutePlanner::set_ground(const Eigen::Vector3d& place) {
-  map_.see_free(route_cell(place.x()), route_cell(place.y()), static_cast<float>(place.z()), 0.0f);
+  map_.see_free(route_cell(place.x()), route_cell(place.y()), static_cast<float>(place.z()), 0.0f,
+                SurfaceMap::Seen::told);
 }
 
 void RoutePlanner::set_obstacle(const Eigen::Vector3d& place, double top) {
-  map_.see_obstacle(static_cast<float>(place.x()), static_cast<float>(place.y()), static_cast<float>(place.z()),
-                    static_cast<float>(top), true);
+  map_.see_obstacle(static_cast<float>(place.x()), static_cast<float>(place.y()),
+                    static_cast<float>(place.z()), static_cast<float>(top), true);
 }
 
 void RoutePlanner::finish() {
-  for (int index = map_.next_dirty(); index >= 0; index = map_.next_dirty()) builder_.build(map_, index);
+  for (int index = map_.next_dirty(); index >= 0; index = map_.next_dirty())
+    graph_.builder().build(map_, index);
 }
 
 void RoutePlanner::block(const Eigen::Vector3d& place, double stamp_s) {
@@ -55,112 +54,23 @@ bool RoutePlanner::has_blocked_places() const {
   return std::any_of(places.begin(), places.end(), [](const BlockedPlace& p) { return p.active; });
 }
 
-std::optional<double> RoutePlanner::ground(double x, double y, double z) const {
-  const int ix = route_cell(x), iy = route_cell(y);
-  std::optional<double> best;
-  bool free = false;
-  for (int i = map_.first(tile_of(ix), tile_of(iy)); i >= 0; i = map_.tile(i).next) {
-    const GroundCell& cell = map_.tile(i).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-    // The side of a ramp stands on the floor below it: what is free counts before that.
-    if (!cell.known || (free && cell.blocked)) continue;
-    const bool better = !best || free == cell.blocked || std::abs(cell.z - z) < std::abs(*best - z);
-    if (better) best = cell.z;
-    free = !cell.blocked;
-  }
-  return best;
-}
-
-double RoutePlanner::goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-  if (std::isfinite(to.z())) return to.z();
-  return ground(to.x(), to.y(), from.z()).value_or(from.z());
-}
-
-bool RoutePlanner::stands_between(const Eigen::Vector3d& place, int ix, int iy) const {
-  const Eigen::Vector2d way =
-      Eigen::Vector2d((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell) - place.head<2>();
-  const int steps = static_cast<int>(way.norm() / (kRouteCell / 2)) + 1;
-  for (int i = 0; i <= steps; ++i) {
-    const Eigen::Vector2d p = place.head<2>() + way * i / steps;
-    const int x = route_cell(p.x()), y = route_cell(p.y());
-    const int index = map_.at_cell(x, y, place.z());
-    if (index >= 0 && map_.tile(index).cells[static_cast<std::size_t>(cell_in_tile(x, y))].blocked)
-      return true;
-  }
-  return false;
-}
-
-// The passable cell nearest to a place, with nothing between; unknown space without a tile is passable as it
-// is.
-std::optional<RouteEnd> RoutePlanner::find_end(const Eigen::Vector3d& place, double reach) {
-  const int cx = route_cell(place.x()), cy = route_cell(place.y());
-  if (map_.at_cell(cx, cy, place.z()) < 0) return RouteEnd{place, -1, 0};
-  const int cells = static_cast<int>(reach / kRouteCell);
-  std::optional<RouteEnd> best;
-  double least = reach + kRouteCell;
-  for (int iy = cy - cells; iy <= cy + cells; ++iy)
-    for (int ix = cx - cells; ix <= cx + cells; ++ix) {
-      const double d = std::hypot((ix + 0.5) * kRouteCell - place.x(), (iy + 0.5) * kRouteCell - place.y());
-      if (d >= least) continue;
-      const int index = map_.at_cell(ix, iy, place.z());
-      if (index < 0) continue;
-      const Tile& tile = builder_.current(map_, index);
-      const int c = cell_in_tile(ix, iy);
-      if (tile.cost[static_cast<std::size_t>(c)] == 0 || stands_between(place, ix, iy)) continue;
-      least = d;
-      best = RouteEnd{{tile.cell_x(c), tile.cell_y(c), tile.cell_z(c)}, index, c};
-    }
-  return best;
-}
-
-// The ends were moved to passable cells; a robot starts and arrives where it was told.
-void RoutePlanner::finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-  const auto join = [&](const Eigen::Vector3d& cell, const Eigen::Vector3d& place) {
-    return (cell - place).head<2>().norm() > kOwnGoal;
-  };
-  const Eigen::Vector3d goal{to.x(), to.y(), route.points.back().z()};
-  if (join(route.points.back(), goal)) {
-    const double more = (goal - route.points.back()).norm();
-    route.points.push_back(goal);
-    route.unknown.push_back(0);
-    route.length += more;
-    route.cost += more;
-  } else {
-    route.points.back() = goal;
-  }
-  if (join(route.points.front(), from)) {
-    const double more = (from - route.points.front()).head<2>().norm();
-    route.points.insert(route.points.begin(), {from.x(), from.y(), route.points.front().z()});
-    route.unknown.insert(route.unknown.begin(), 0);
-    route.length += more;
-    route.cost += more;
-  } else {
-    route.points.front().head<2>() = from.head<2>();
-  }
-}
-
 std::size_t RoutePlanner::memory() const {
-  return static_cast<std::size_t>(map_.size()) * (sizeof(Tile) + 96) + search_.memory();
+  return static_cast<std::size_t>(map_.size()) * (sizeof(Tile) + 96) + graph_.search().memory() +
+         (doubts_ ? doubts_->memory() : 0);
+}
+
+std::size_t RoutePlanner::Doubts::memory() const {
+  return static_cast<std::size_t>(map.size()) * (sizeof(Tile) + 96) + graph.search().memory();
 }
 
 Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  Route route;
-  const Eigen::Vector3d goal_place{to.x(), to.y(), goal_height(from, to)};
-  const auto start = find_end(from, kStartReach);
-  auto goal = find_end(goal_place, params_.snap);
-  // Nobody knows the ground there nor said how high it is: it may as well be on a deck whose side is seen.
-  const bool any_floor = !std::isfinite(to.z()) && !ground(to.x(), to.y(), from.z());
-  if (any_floor && (!goal || goal->tile < 0)) goal = RouteEnd{goal_place, -1, 0, true};
-  if (!start)
-    route.status = RouteStatus::start_blocked;
-  else if (!goal)
-    route.status = RouteStatus::unreachable;
-  else
-    route.status = search_.search(*start, *goal, route.points);
-  if (!route.found()) return route;
-  line_.shorten(route.points);
-  line_.measure(route);
-  finish_ends(route, from, goal_place);
-  return route;
+  Route route = graph_.plan(from, to);
+  if (route.status != RouteStatus::unreachable) return route;
+  // Nothing is proven by what was seen from afar.
+  if (!doubts_) doubts_ = std::make_unique<Doubts>(platform_, params_);
+  doubts_->map.copy(map_);
+  Route doubtful = doubts_->graph.plan(from, to);
+  return doubtful.found() ? doubtful : route;
 }
 
 }  // namespace adit::nav

@@ -1,11 +1,11 @@
 #pragma once
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "core/geometry/pose.hpp"
 #include "nav/route/gate.hpp"
-#include "nav/route/route_line.hpp"
-#include "nav/route/route_search.hpp"
+#include "nav/route/route_graph.hpp"
 #include "nav/route/scan_profile.hpp"
 
 namespace adit::nav {
@@ -33,7 +33,8 @@ class RoutePlanner {
   void finish();
 
   /// The way from one place to another. Goal: z NaN is the floor nearest to the start's, and
-  /// where none is known any. Never through a known obstacle.
+  /// where none is known any. Never through a known obstacle. Where nothing else leads
+  /// there, steps that were only seen from afar do not count: a way that has to be looked at.
   Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   /// That place was found blocked, whatever the scans say; it counts for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
@@ -44,34 +45,38 @@ class RoutePlanner {
   }
 
   LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {}) {
-    return line_.line(from, to, ends);
+    return graph_.line().line(from, to, ends);
   }
   /// Brings costs, lengths and unknown legs of a route up to date; false when it is not passable any more.
-  bool measure(Route& route) { return line_.measure(route); }
+  bool measure(Route& route) { return graph_.line().measure(route); }
   /// Height of the ground there, of the floor nearest to z on which nothing stands; nothing when it is not
   /// known.
-  std::optional<double> ground(double x, double y, double z) const;
+  std::optional<double> ground(double x, double y, double z) const { return graph_.ground(x, y, z); }
   const SurfaceMap& map() const { return map_; }
   /// Nodes that the last search looked at.
-  std::size_t expanded() const { return search_.expanded(); }
+  std::size_t expanded() const { return graph_.search().expanded(); }
   /// Held by map, graph and search, bytes.
   std::size_t memory() const;
   /// Forgets everything, as after a jump of the poses.
   void clear() { map_.clear(); }
 
  private:
-  bool stands_between(const Eigen::Vector3d& place, int ix, int iy) const;
-  std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
-  double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
-  void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  /// A copy of the map in which doubtful steps do not count.
+  struct Doubts {
+    SurfaceMap map;
+    RouteGraph graph;
+    Doubts(const Platform& platform, const RouteParams& params)
+        : map(params, ScanProfile::most_wrong(platform, params)), graph(map, platform, params, true) {}
+    std::size_t memory() const;
+  };
 
+  Platform platform_;
   RouteParams params_;
   double narrow_;  // m: so near on both sides the robot is to go straight
   SurfaceMap map_;
   ScanProfile profile_;
-  TileBuilder builder_;
-  RouteLine line_;
-  RouteSearch search_;
+  RouteGraph graph_;
+  std::unique_ptr<Doubts> doubts_{};  ///< made when a goal seems to be out of reach
 };
 
 }  // namespace adit::nav

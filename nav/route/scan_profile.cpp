@@ -133,8 +133,8 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
       const float share = (sensor_.z() - z) / (sensor_.z() - r.z);
       const float there = share * r.range;
       if (there > std::max(at, kFirst)) {
-        map.see_obstacle(sensor_.x() + share * (r.x - sensor_.x()), sensor_.y() + share * (r.y - sensor_.y()), z,
-                         0.02f);
+        map.see_obstacle(sensor_.x() + share * (r.x - sensor_.x()), sensor_.y() + share * (r.y - sensor_.y()),
+                         z, 0.02f);
       }
       return;
     } else {

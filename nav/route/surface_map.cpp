@@ -45,6 +45,23 @@ void SurfaceMap::clear() {
   last_ = -1;
 }
 
+void SurfaceMap::copy(const SurfaceMap& other) {
+  tiles_.resize(other.tiles_.size());
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    if (!tiles_[i]) tiles_[i] = std::make_unique<Tile>();
+    *tiles_[i] = *other.tiles_[i];
+    tiles_[i]->dirty = tiles_[i]->used;
+    tiles_[i]->built = false;
+  }
+  free_ = other.free_;
+  heads_ = other.heads_;
+  queue_.clear();
+  places_ = other.places_;
+  extent_ = other.extent_;
+  used_ = other.used_;
+  last_ = -1;
+}
+
 int SurfaceMap::first(int tx, int ty) const {
   const auto found = heads_.find(key(tx, ty));
   return found == heads_.end() ? -1 : found->second;
@@ -234,13 +251,20 @@ void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
   }
 }
 
+bool SurfaceMap::is_near(int ix, int iy) const {
+  constexpr double kNear = 4.0;  // m: from farther off a ramp's side and a step look alike
+  const double dx = (ix + 0.5) * kRouteCell - x_, dy = (iy + 0.5) * kRouteCell - y_;
+  return dx * dx + dy * dy < kNear * kNear;
+}
+
 void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   const bool certain = seen == Seen::stood_on, measured = seen != Seen::between;
+  const bool sure = seen >= Seen::told || is_near(ix, iy);
   const int index = sheet(ix, iy, z);
   Tile& t = tile(index);
   GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
   if (!cell.known) {
-    cell = {z, 0, 0, true, measured, false};
+    cell = {z, 0, 0, true, measured, false, sure};
     mark_dirty(index);
     // A step between two cells is known with the second.
     if (const int x = ix & 15, y = iy & 15; x == 0 || y == 0 || x == 15 || y == 15) mark_around(t, ix, iy);
@@ -255,6 +279,7 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
     cell.z += 0.25f * (z - cell.z);
   }
   cell.measured |= measured;
+  cell.sure = cell.sure || sure;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
   if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;
@@ -282,7 +307,8 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float top, bool sure) {
     constexpr int kNoticed = 12;
     const std::int8_t before = aside;
     const double off = std::clamp((at - (i + 0.5) * kRouteCell) / double{kAsideUnit}, -125.0, 125.0);
-    aside = static_cast<std::int8_t>(std::lround(cell.evidence <= 0 ? off : aside + (off - aside) / kMeanOver));
+    aside =
+        static_cast<std::int8_t>(std::lround(cell.evidence <= 0 ? off : aside + (off - aside) / kMeanOver));
     return cell.blocked && std::abs(aside - before) > kNoticed;
   };
   const bool moved_x = mean(cell.aside_x, x, ix), moved_y = mean(cell.aside_y, y, iy);
@@ -290,6 +316,7 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float top, bool sure) {
     mark_dirty(index);
     mark_around(t, ix, iy);
   }
+  cell.sure = cell.sure || sure || is_near(ix, iy);
   cell.top = std::max(cell.top, static_cast<std::uint8_t>(std::clamp(top / kTopUnit, 0.0f, 255.0f)));
   if (cell.scan == scan_ && !sure) return;
   cell.scan = scan_;

@@ -27,8 +27,9 @@ class SurfaceMap {
   /// can take for ground too high by, and less than the height of a robot.
   SurfaceMap(const RouteParams& params, float same) : params_(params), same_(same) {}
 
-  /// How the height of the ground is known: drawn between two returns, by a return, or by the robot's feet.
-  enum class Seen : std::uint8_t { between, measured, stood_on };
+  /// How the height of the ground is known: drawn between two returns, by a return, from a map, or by the
+  /// robot's feet.
+  enum class Seen : std::uint8_t { between, measured, told, stood_on };
   /// A ray passed over the ground of a cell. `height` of the ray above the ground, m: what is lower than it
   /// may still be there.
   void see_free(int ix, int iy, float z, float height, Seen seen = Seen::measured);
@@ -69,6 +70,8 @@ class SurfaceMap {
   const Extent& extent() const { return extent_; }
   /// Changes with every change of what is passable.
   void clear();
+  /// Becomes a copy of another one's ground, all of it to be built anew.
+  void copy(const SurfaceMap& other);
 
  private:
   static std::uint64_t key(int tx, int ty) {
@@ -79,6 +82,7 @@ class SurfaceMap {
   int create(int tx, int ty, float z);
   void link(int index);
   void evict();
+  bool is_near(int ix, int iy) const;
   void mark_dirty(int index);
   void mark_around(const Tile& tile, int ix, int iy);
   void mark_place(const BlockedPlace& place);

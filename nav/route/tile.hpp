@@ -22,6 +22,7 @@ struct GroundCell {
   bool known : 1 {false};
   bool measured : 1 {false};  ///< its height; else that was drawn between the returns around it
   bool blocked : 1 {false};
+  bool sure : 1 {false};               ///< was seen from near
   std::int8_t aside_x{0}, aside_y{0};  ///< where in the cell the obstacle is: from its middle, kAsideUnit
   std::uint16_t scan{0};               ///< the last one that hit it
 };

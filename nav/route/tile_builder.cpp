@@ -17,7 +17,7 @@ constexpr double kAsideOfGap = 0.03;  // m
 
 // Less than the body needs: cells' middles lie up to half a cell aside of the middle of a gap. The local
 // planner knows better, and tells when it does not get through.
-TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
+TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, bool doubting)
     : hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
       comfort_(
           std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell)),
@@ -25,7 +25,8 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params)
       rise_(static_cast<float>(
           std::max(platform.step, std::max(params.slope, platform.steepest()) * kRouteCell) +
           params.step_margin + (platform.stairs ? kRiser : 0.0))),
-      unknown_cost_(static_cast<float>(params.unknown_cost)) {
+      unknown_cost_(static_cast<float>(params.unknown_cost)),
+      doubting_(doubting) {
   for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)
     cost_of_[d2] = cost_at(std::sqrt(static_cast<double>(d2)) * kRouteCell);
 }
@@ -46,8 +47,8 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
       if (!cell.known || std::abs(cell.z - z) > 2 * kSheetReach) continue;
       // The ground under what stands there is a guess, and no step.
-      height_[in_window(x, y)] = cell.blocked ? kNan : cell.z;
-      solid_[in_window(x, y)] = cell.blocked;
+      height_[in_window(x, y)] = cell.blocked || !has_height(cell) ? kNan : cell.z;
+      solid_[in_window(x, y)] = solid(cell);
       aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
     }
 }
@@ -63,7 +64,8 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
     if (&other == &tile) continue;
     for (int c = 0; c < kTileArea; ++c) {
       const auto k = static_cast<std::size_t>(c);
-      if (tile.cells[k].known || !other.cells[k].known || std::abs(other.cells[k].z - tile.z) > kSheetReach)
+      if (tile.cells[k].known || !has_height(other.cells[k]) ||
+          std::abs(other.cells[k].z - tile.z) > kSheetReach)
         continue;
       solid_[in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo)] = true;
     }

@@ -12,7 +12,12 @@ namespace adit::nav {
 /// openings of its own for each tile, so that one tile can be made anew alone).
 class TileBuilder {
  public:
-  TileBuilder(const Platform& platform, const RouteParams& params);
+  /// `doubting`: see RouteGraph.
+  TileBuilder(const Platform& platform, const RouteParams& params, bool doubting = false);
+
+  /// Whether something stands in a cell, and whether its height is known.
+  bool solid(const GroundCell& cell) const { return cell.blocked && (certain(cell) || cell.top > kTall); }
+  bool has_height(const GroundCell& cell) const { return cell.known && certain(cell); }
 
   /// From the map's evidence: cells and openings; the ways between these are measured when they are asked
   /// for.
@@ -38,6 +43,8 @@ class TileBuilder {
   float unknown_cost() const { return unknown_cost_; }
 
  private:
+  static constexpr std::uint8_t kTall = 30;  ///< 2 cm each: that is a wall, also from afar
+  bool certain(const GroundCell& cell) const { return !doubting_ || cell.sure; }
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);
@@ -52,6 +59,7 @@ class TileBuilder {
 
   double hard_, comfort_, narrow_cost_;  // clearance that is needed and that is liked, m
   float rise_, unknown_cost_;
+  bool doubting_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
   std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
   std::array<bool, kWindow * kWindow> solid_{};

@@ -19,9 +19,9 @@ struct GroundParams {
 };
 
 /// Heights of the ground around the robot, in 10 cm cells of a grid that rolls with it. The lowest returns of
-/// each cell are its height, averaged over scans; from the robot's feet the ground is grown outwards: a cell's
-/// height is ground when it follows from its inner neighbours, and from how the body leans, by no more than
-/// slope, rise and drop allow; else (a wall, a hole, nothing seen) the cell inherits from them.
+/// each cell are its height, averaged over scans; from the robot's feet the ground is grown outwards: a
+/// cell's height is ground when it follows from its inner neighbours, and from how the body leans, by no more
+/// than slope, rise and drop allow; else (a wall, a hole, nothing seen) the cell inherits from them.
 ///
 /// Heights are those of a map of its own: where odometry does not know its height (wheels) or drifts in it,
 /// the map goes along, by the median of what the scan and the map disagree about (the drift compensation of

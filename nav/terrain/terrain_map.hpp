@@ -50,10 +50,10 @@ class TerrainMap {
   Surface surface_;
   RayBlock block_{};
   RayImage rays_{};
-  std::vector<Eigen::Vector3f> near_{};  ///< returns within range, in the map
+  std::vector<Eigen::Vector3f> near_{};   ///< returns within range, in the map
   std::vector<Eigen::Vector2f> under_{};  ///< of those within range: nearly as high as an obstacle
-  std::vector<Eigen::Vector3f> deep_{};  ///< those farther away that lie lower than level ground would
-  std::vector<std::uint8_t> solid_;      ///< cells of the ground's window with an obstacle in them
+  std::vector<Eigen::Vector3f> deep_{};   ///< those farther away that lie lower than level ground would
+  std::vector<std::uint8_t> solid_;       ///< cells of the ground's window with an obstacle in them
   std::vector<TerrainCell> cells_{};
   Pose3 last_body_{};
   double epoch_{0};

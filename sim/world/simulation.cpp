@@ -15,9 +15,7 @@ constexpr double kStands = 0.05;  // m/s: who comes nearer no faster than that s
 }  // namespace
 
 Simulation::Simulation(std::shared_ptr<const World> world, const SimulationParams& params)
-    : world_(std::move(world)),
-      space_(world_),
-      params_(params) {}
+    : world_(std::move(world)), space_(world_), params_(params) {}
 
 Result<Simulation> Simulation::create(std::shared_ptr<const World> world, std::vector<RobotStart> robots,
                                       const SimulationParams& params) {

@@ -1,0 +1,37 @@
+#pragma once
+#include <optional>
+
+#include "nav/route/route_line.hpp"
+#include "nav/route/route_search.hpp"
+
+namespace adit::nav {
+
+/// The graph over a map, and all that is asked of it. `doubting`: what may be a step was seen from too far to
+/// be sure does not count; the map is to be a copy, since tiles keep what they cost.
+class RouteGraph {
+ public:
+  RouteGraph(SurfaceMap& map, const Platform& platform, const RouteParams& params, bool doubting = false);
+  RouteGraph(const RouteGraph&) = delete;
+  RouteGraph& operator=(const RouteGraph&) = delete;
+
+  /// See RoutePlanner.
+  Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  std::optional<double> ground(double x, double y, double z) const;
+  TileBuilder& builder() { return builder_; }
+  RouteLine& line() { return line_; }
+  const RouteSearch& search() const { return search_; }
+
+ private:
+  bool stands_between(const Eigen::Vector3d& place, int ix, int iy) const;
+  std::optional<RouteEnd> find_end(const Eigen::Vector3d& place, double reach);
+  double goal_height(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  void finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  RouteParams params_;
+  SurfaceMap& map_;
+  TileBuilder builder_;
+  RouteLine line_;
+  RouteSearch search_;
+};
+
+}  // namespace adit::nav
