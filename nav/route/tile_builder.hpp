@@ -43,7 +43,7 @@ class TileBuilder {
   float unknown_cost() const { return unknown_cost_; }
 
  private:
-  static constexpr std::uint8_t kTall = 30;  ///< 2 cm each: that is a wall, also from afar
+  static constexpr std::uint8_t kTall = 18;  ///< 2 cm each: higher is a wall, also from afar
   bool certain(const GroundCell& cell) const { return !doubting_ || cell.sure; }
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }

@@ -20,6 +20,7 @@ struct Box {
 struct BoxWorld {
   std::vector<Box> boxes{};
   double ceiling{2.5};
+  double lowest{-15};  ///< elevation of the lidar's lowest ring, degrees
 
   /// Distance along `direction` (unit length) to what is hit first, m; 100 when nothing is.
   double cast(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const {
@@ -37,7 +38,7 @@ struct BoxWorld {
   }
 
   /// A scan of `rings` x `columns` from a lidar at `height` above `body`: points in base_link.
-  /// Rings spread over +-15 degrees; one ring alone is level. `noise`: of the range, m (standard deviation).
+  /// Rings spread from `lowest` to 15 degrees; one ring alone is level. `noise`: of the range, m (standard deviation).
   std::vector<Eigen::Vector3f> scan(const Pose2& body, double height, int rings, int columns, double noise,
                                     std::mt19937& random) const {
     std::normal_distribution<double> error(0.0, 1.0);
@@ -47,7 +48,7 @@ struct BoxWorld {
     for (int column = 0; column < columns; ++column)
       for (int ring = 0; ring < rings; ++ring) {
         const double bearing = 2 * M_PI * column / columns;
-        const double elevation = rings == 1 ? 0.0 : (-15.0 + 30.0 * ring / (rings - 1)) * M_PI / 180.0;
+        const double elevation = rings == 1 ? 0.0 : (lowest + (15.0 - lowest) * ring / (rings - 1)) * M_PI / 180.0;
         const Eigen::Vector3d local(std::cos(elevation) * std::cos(bearing),
                                     std::cos(elevation) * std::sin(bearing), std::sin(elevation));
         const Eigen::Vector3d direction = Eigen::AngleAxisd(body.yaw, Eigen::Vector3d::UnitZ()) * local;

@@ -84,6 +84,19 @@ TEST(CollisionMonitor, LegsMayWalkUpToStairsAndNotIntoAWallBehindThem) {
   EXPECT_GT(wall.drive({1.2, 0, 0}, 6), 0.0) << "as high as three steps, and none";
 }
 
+TEST(CollisionMonitor, LegsThatLookDownClimbStairsThatLookedLikeAWall) {
+  std::vector<Box> stairs;
+  for (int n = 0; n < 6; ++n) stairs.push_back({2.0 + 0.3 * n, 6, -3, 3, 0, 0.2 * (n + 1)});
+  Seen legs(stairs, legged());
+  legs.noise = 0.02;
+  legs.look(0.0);
+  // Not lifted by them: it looks from where it stands. What it saw from afar is no wall when it stands before it.
+  legs.world.lowest = -45;
+  legs.pose.x = 1.4;
+  for (int i = 1; i < 6; ++i) legs.look(0.1 * i);
+  EXPECT_EQ(legs.ask({0.6, 0, 0}, Policy::stop, 0.5).velocity.vx, 0.6);
+}
+
 TEST(CollisionMonitor, TheSlowZoneGrowsWithTheSpeed) {
   const Seen seen({{1.5, 1.7, -3, 3}});
   EXPECT_EQ(seen.ask({0.5, 0, 0}).cause, Cause::none);

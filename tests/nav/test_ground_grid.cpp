@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <random>
 
 namespace adit::nav {
 namespace {
@@ -27,6 +28,19 @@ GroundGrid grid_of(const Height& height, const GroundParams& params = {}) {
 TEST(GroundGrid, FollowsASlope) {
   const GroundGrid grid = grid_of([](float x, float) { return 0.2f * x; });
   for (float x = -4; x <= 4; x += 0.5f) EXPECT_NEAR(grid.at(x, 1.0f), 0.2f * x, 0.03f) << x;
+}
+
+TEST(GroundGrid, ManyNoisyReturnsDoNotLowerIt) {
+  GroundGrid grid;
+  std::mt19937 random(2);
+  std::normal_distribution<float> noise(0, 0.015f);
+  for (int n = 0; n < 5; ++n) {
+    see(grid, [&](float, float) { return noise(random); }, 0, 0, 0.1f * static_cast<float>(n));
+    grid.grow(0, 0, {0, 0});
+  }
+  float sum = 0;
+  for (float x = -4; x <= 4; x += 0.1f) sum += grid.at(x, 0.5f) / 81;
+  EXPECT_NEAR(sum, 0, 0.004f);
 }
 
 TEST(GroundGrid, AWallIsNotGround) {

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "nav/air_map.hpp"
+#include "nav/lattice/gateway.hpp"
 #include "nav/lattice/lattice_search.hpp"
 #include "tests/nav/box_world.hpp"
 
@@ -97,6 +98,88 @@ TEST(LatticeSearch, PathsAreContinuousAndKeepClear) {
   way.fill(clear, task.target, 0.36f);
   ASSERT_TRUE(search.find(clear, way, task, path));
   for (std::size_t i = 0; i < path.count; ++i) EXPECT_EQ(path.spots[i].direction, -1) << i;
+}
+
+/// A wall along y, 0.2 m thick, with a gap around y = 0.
+std::vector<ObstaclePoint> wall_with_gap(float x, float gap, float turned = 0) {
+  std::vector<ObstaclePoint> wall;
+  const float c = std::cos(turned), s = std::sin(turned);
+  for (float along = 0; along <= 0.2f; along += 0.05f)
+    for (float aside = 0; aside < 2; aside += 0.05f)
+      for (const float side : {-1.0f, 1.0f}) {
+        const float y = side * (gap / 2 + aside);
+        wall.push_back({x + c * along - s * y, s * along + c * y, 1.0f});
+      }
+  return wall;
+}
+
+TEST(SolidPoints, DepthIsThatOfTheDeepestPoint) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-3, 3);
+  std::vector<ObstaclePoint> points;
+  for (int i = 0; i < 300; ++i) points.push_back({place(random), place(random), i % 3 == 0 ? 0.5f : 1.0f});
+  SolidPoints solid;
+  solid.fill(points, 0.3f);
+  const Footprint body(0.5, 0.3);
+  for (int n = 0; n < 200; ++n) {
+    const Pose2 pose{place(random), place(random), place(random)};
+    float deepest = -0.2f;
+    for (const ObstaclePoint& o : points) {
+      const Eigen::Vector2d p = pose.inverse() * Eigen::Vector2d(o.x + 0.3f, o.y);
+      if (o.cost >= 1)
+        deepest = std::max(deepest, body.depth(static_cast<float>(p.x()), static_cast<float>(p.y())));
+    }
+    EXPECT_NEAR(solid.depth(body, pose), deepest, 1e-4f);
+  }
+}
+
+TEST(Gateway, FindsTheMiddleAndTheWayThrough) {
+  for (const float turned : {-0.2f, 0.0f, 0.2f}) {
+    const auto wall = wall_with_gap(2.0f, 0.7f, turned);
+    const auto gateway = fit_gateway({2.1, 0.08, 0.05}, wall);
+    ASSERT_TRUE(gateway);
+    EXPECT_NEAR(gateway->room, 0.7, 0.01);
+    EXPECT_NEAR(gateway->line.yaw, turned, 0.03);
+    const Eigen::Vector2d middle = gateway->line.inverse() * Eigen::Vector2d(2.0, 0.0);
+    EXPECT_NEAR(middle.y(), 0.0, 0.01);
+  }
+  std::vector<ObstaclePoint> one_side = wall_with_gap(2.0f, 0.7f);
+  std::erase_if(one_side, [](const ObstaclePoint& o) { return o.y > 0; });
+  EXPECT_FALSE(fit_gateway({2.1, 0, 0}, one_side));
+}
+
+TEST(LatticeSearch, GetsThroughAGapTenCentimetresWiderFromWhereverItStands) {
+  const Platform platform = car();
+  const auto wall = wall_with_gap(2.5f, static_cast<float>(platform.width) + 0.1f);
+  const Footprint body(platform);
+  LatticeSearch search(platform);
+  ClearField clear;
+  WayField way;
+  LatticePath path;
+  int found = 0;
+  for (const double y : {-1.0, -0.3, 0.0, 0.6})
+    for (const double yaw : {-0.6, 0.0, 0.8}) {
+      const Pose2 rear = Pose2{0, y, yaw} * Pose2{-platform.rear_axle(), 0, 0};
+      std::vector<ObstaclePoint> seen;
+      for (const ObstaclePoint& o : wall) {
+        const Eigen::Vector2d p = rear.inverse() * Eigen::Vector2d(o.x, o.y);
+        seen.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), 1.0f});
+      }
+      clear.fill(seen);
+      LatticeTask task{};
+      task.gate = rear.inverse() * Pose2{2.6, 0, 0};
+      way.fill(clear, (*task.gate * Pose2{-1.7, 0, 0}).position(), 0.36f);
+      if (!search.find(clear, way, task, path)) continue;
+      ++found;
+      EXPECT_TRUE(path.through);
+      const Pose2 end = rear * path.spots[path.count - 1].pose * Pose2{platform.rear_axle(), 0, 0};
+      EXPECT_NEAR(end.x, 3.5, 0.06) << "behind the gap";
+      EXPECT_NEAR(end.y, 0.0, 0.01);
+      for (std::size_t i = 0; i < path.count; ++i)
+        EXPECT_LT(clear.points().depth(body, path.spots[i].pose * Pose2{platform.rear_axle(), 0, 0}), 0)
+            << y << " " << yaw << " " << i;
+    }
+  EXPECT_EQ(found, 12);
 }
 
 TEST(AirMap, KnowsWhatIsAtItsHeightAndForgetsWhatLeft) {

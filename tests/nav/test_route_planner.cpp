@@ -254,6 +254,68 @@ TEST(RoutePlanner, WhatStandsOnTheFloorBelowARampIsNotItsGround) {
   EXPECT_NEAR(planner.ground(1, 1, 0).value(), 0.7, 1e-3);
 }
 
+TEST(RoutePlanner, StairsLeadToALandingThatTheirTilesBelongTo) {
+  // Six steps of 0.2 m, some of them in tiles of the floor and some in those of the landing.
+  for (const double from : {3.0, 3.3, 3.9, 4.4}) {
+    RoutePlanner legs(legged());
+    for (int y = 0; y < 30; ++y)
+      for (int x = 99; x >= 0; --x) {  // the landing is seen first
+        const double above = std::clamp(std::ceil(((x + 0.5) * 0.1 - from) / 0.3), 0.0, 6.0) * 0.2;
+        if (y == 0 || y == 29 || x == 0 || x == 99)
+          legs.set_obstacle(middle(x, y, above), 1);
+        else
+          legs.set_ground(middle(x, y, above));
+      }
+    legs.finish();
+    const Route up = legs.plan({1, 1.5, 0}, {9, 1.5, 1.2}), down = legs.plan({9, 1.5, 1.2}, {1, 1.5, 0});
+    ASSERT_TRUE(up.found()) << from;
+    ASSERT_TRUE(down.found()) << from;
+    EXPECT_NEAR(up.points.back().z(), 1.2, 1e-3);
+    EXPECT_NEAR(down.points.back().z(), 0, 1e-3);
+  }
+}
+
+TEST(RoutePlanner, GapsAreAsWideAsTheReturnsSay) {
+  // The faces of a gap lie anywhere in their cells.
+  for (const double width : {0.60, 0.34})
+    for (double low = 2.01; low < 2.1; low += 0.02) {
+      RoutePlanner planner(wheeled());
+      GridWorld world(60, 50);
+      world.border();
+      world.tell(planner);
+      for (double y = 0.05; y < 5; y += 0.02)
+        if (y <= low || y >= low + width) planner.set_obstacle({3.05, y, 0}, 2);
+      planner.finish();
+      EXPECT_EQ(planner.plan({1, 2, 0}, {5, 2, 0}).found(), width > 0.5) << width << " from " << low;
+    }
+}
+
+TEST(RoutePlanner, AStepThatWasOnlySeenFromAfarProvesNothing) {
+  // Rings far apart on ground that rises 0.3 m in 2 m look like a step; from near it is a ramp.
+  for (const double robot : {0.0, 5.0}) {
+    RoutePlanner planner(wheeled());
+    std::vector<Eigen::Vector3f> points;
+    for (float y = -1.6f; y < 1.6f; y += 0.02f) {
+      const auto place = [&](double x, double z) {
+        points.emplace_back(static_cast<float>(x - robot), y, static_cast<float>(z));
+      };
+      for (double x = robot + 0.7; x < 8; x += 0.05) place(x, 0);
+      for (double x = 8.2; x < 12; x += 0.05) place(x, 0.35);
+      for (double z = 0; z < 1.5; z += 0.1) place(12, z);
+    }
+    for (float x = -1; x < 12 - static_cast<float>(robot); x += 0.02f)
+      for (float z = 0; z < 1.5f; z += 0.1f) {
+        points.emplace_back(x, 1.6f, z);
+        points.emplace_back(x, -1.6f, z);
+      }
+    for (float y = -1.6f; y < 1.6f; y += 0.02f)
+      for (float z = 0; z < 1.5f; z += 0.1f) points.emplace_back(-1.0f, y, z);
+    for (int scan = 0; scan < 5; ++scan)
+      planner.add_scan(points, Pose3::level({robot, 0, 0}, 0), 0.1 * scan);
+    EXPECT_EQ(planner.plan({robot, 0, 0}, {10, 0, 0.35}).found(), robot == 0.0);
+  }
+}
+
 TEST(RoutePlanner, NoRampNoWayUp) {
   TwoFloors floors(false);
   EXPECT_EQ(floors.planner.plan({2, 2, 0}, {2, 2, 3}).status, RouteStatus::unreachable);

@@ -69,6 +69,22 @@ TEST(TerrainMap, AKerbAsHighAsTheStepIsFreeHoweverNoisy) {
   }
 }
 
+TEST(TerrainMap, StairsSeenFromAboveAreFreeHoweverNoisy) {
+  Looker robot;
+  robot.platform = legged();
+  robot.map = TerrainMap(robot.platform);
+  robot.noise = 0.02;
+  robot.rings = 32;
+  robot.world.lowest = -45;
+  for (int n = 0; n < 3; ++n) robot.world.boxes.push_back({1.0 + 0.3 * n, 6, -3, 3, 0, 0.2 * (n + 1)});
+  robot.world.boxes.push_back({-3, -2.8, -3, 3, 0, 0.4});
+  for (int i = 0; i < 10; ++i, robot.pose.x += 0.03) {
+    robot.look(3);
+    ASSERT_LE(robot.count(0.8, 2.0, -1, 1), 2) << robot.pose.x;
+  }
+  EXPECT_GT(robot.count(-3.1, -2.7, -1, 1), 10) << "what is too high for its legs stands in the way";
+}
+
 TEST(TerrainMap, PassesUnderWhatHangsHigh) {
   for (const double low : {0.4, 0.9}) {
     Looker robot;
