@@ -101,6 +101,20 @@ Result<Platform> load(const std::string& drive, const std::string& more) {
                     "max_acceleration: 1\nstep: 0\nlidar_height: 1\n" + more));
 }
 
+TEST(Platforms, say_what_their_lidar_sees) {
+  const auto usual = load("differential", "");
+  EXPECT_EQ(usual->lidar_rings, 16);
+  EXPECT_EQ(usual->lidar_lowest, -15.0);
+  EXPECT_EQ(usual->lidar_highest, 15.0);
+  const auto dome = load("differential", "lidar_rings: 32\nlidar_lowest: -50\nlidar_highest: 10\n");
+  ASSERT_TRUE(dome) << dome.error().text;
+  EXPECT_EQ(dome->lidar_rings, 32);
+  EXPECT_EQ(dome->lidar_lowest, -50.0);
+  EXPECT_EQ(dome->lidar_highest, 10.0);
+  for (const char* bad : {"lidar_rings: 1\n", "lidar_rings: 1.5\n", "lidar_lowest: 5\n", "lidar_highest: 95\n"})
+    EXPECT_THAT(load("differential", bad).error().text, HasSubstr("p.yaml:10: lidar_")) << bad;
+}
+
 TEST(Platforms, slip_is_a_matter_of_tracks) {
   const auto tracked = load("tracked", "turn_slip: 0.3\nturn_error: 0.02\n");
   ASSERT_TRUE(tracked) << tracked.error().text;

@@ -95,6 +95,24 @@ TEST(Simulation, a_planar_lidar_sees_what_the_body_would_touch) {
   EXPECT_NEAR(ahead({9, 9.5, -1, 1, 0, 3}, {{"r2", low, {4, 0, 0}}}), 3.7, 1e-3) << "a low robot";
 }
 
+TEST(Simulation, each_robot_has_the_lidar_of_its_platform) {
+  Platform down = wheeled();
+  down.lidar_rings = 8;
+  down.lidar_lowest = -60;
+  const Simulation s = make({{"r1", wheeled(), {-4, 0, 0}}, {"r2", down, {3, 0, 0}}, {"r3", down, {3, 3, 0}}});
+  const auto floor = [&](std::size_t robot) {  // nearest return from it, m
+    double nearest = 99;
+    for (const Eigen::Vector3f& p : s.scan(robot).compute())
+      if (p.z() < 0.1f) nearest = std::min(nearest, double{p.head<2>().norm()});
+    return nearest;
+  };
+  EXPECT_NEAR(floor(0), 0.5 / std::tan(15 * M_PI / 180), 0.15);
+  EXPECT_NEAR(floor(1), 0.5 / std::tan(60 * M_PI / 180), 0.1);
+  EXPECT_EQ(s.scan(0).lidar->size(), 16u * 900);
+  EXPECT_EQ(s.scan(1).lidar->size(), 8u * 900);
+  EXPECT_EQ(s.scan(1).lidar, s.scan(2).lidar) << "shared";
+}
+
 TEST(Simulation, drives_and_keeps_the_books) {
   Simulation s = make({{"r1", wheeled(), {-4, 0, 0}}});
   drive(s, 0, {1, 0, 0}, 3.0);
