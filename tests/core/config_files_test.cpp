@@ -111,7 +111,8 @@ TEST(Platforms, say_what_their_lidar_sees) {
   EXPECT_EQ(dome->lidar_rings, 32);
   EXPECT_EQ(dome->lidar_lowest, -50.0);
   EXPECT_EQ(dome->lidar_highest, 10.0);
-  for (const char* bad : {"lidar_rings: 1\n", "lidar_rings: 1.5\n", "lidar_lowest: 5\n", "lidar_highest: 95\n"})
+  for (const char* bad :
+       {"lidar_rings: 1\n", "lidar_rings: 1.5\n", "lidar_lowest: 5\n", "lidar_highest: 95\n"})
     EXPECT_THAT(load("differential", bad).error().text, HasSubstr("p.yaml:10: lidar_")) << bad;
 }
 

@@ -38,7 +38,8 @@ struct BoxWorld {
   }
 
   /// A scan of `rings` x `columns` from a lidar at `height` above `body`: points in base_link.
-  /// Rings spread from `lowest` to 15 degrees; one ring alone is level. `noise`: of the range, m (standard deviation).
+  /// Rings spread from `lowest` to 15 degrees; one ring alone is level. `noise`: of the range, m (standard
+  /// deviation).
   std::vector<Eigen::Vector3f> scan(const Pose2& body, double height, int rings, int columns, double noise,
                                     std::mt19937& random) const {
     std::normal_distribution<double> error(0.0, 1.0);
@@ -48,7 +49,8 @@ struct BoxWorld {
     for (int column = 0; column < columns; ++column)
       for (int ring = 0; ring < rings; ++ring) {
         const double bearing = 2 * M_PI * column / columns;
-        const double elevation = rings == 1 ? 0.0 : (lowest + (15.0 - lowest) * ring / (rings - 1)) * M_PI / 180.0;
+        const double elevation =
+            rings == 1 ? 0.0 : (lowest + (15.0 - lowest) * ring / (rings - 1)) * M_PI / 180.0;
         const Eigen::Vector3d local(std::cos(elevation) * std::cos(bearing),
                                     std::cos(elevation) * std::sin(bearing), std::sin(elevation));
         const Eigen::Vector3d direction = Eigen::AngleAxisd(body.yaw, Eigen::Vector3d::UnitZ()) * local;

@@ -90,7 +90,8 @@ TEST(CollisionMonitor, LegsThatLookDownClimbStairsThatLookedLikeAWall) {
   Seen legs(stairs, legged());
   legs.noise = 0.02;
   legs.look(0.0);
-  // Not lifted by them: it looks from where it stands. What it saw from afar is no wall when it stands before it.
+  // Not lifted by them: it looks from where it stands. What it saw from afar is no wall when it stands before
+  // it.
   legs.world.lowest = -45;
   legs.pose.x = 1.4;
   for (int i = 1; i < 6; ++i) legs.look(0.1 * i);

@@ -35,7 +35,8 @@ TEST(GroundGrid, ManyNoisyReturnsDoNotLowerIt) {
   std::mt19937 random(2);
   std::normal_distribution<float> noise(0, 0.015f);
   for (int n = 0; n < 5; ++n) {
-    see(grid, [&](float, float) { return noise(random); }, 0, 0, 0.1f * static_cast<float>(n));
+    see(
+        grid, [&](float, float) { return noise(random); }, 0, 0, 0.1f * static_cast<float>(n));
     grid.grow(0, 0, {0, 0});
   }
   float sum = 0;

@@ -310,8 +310,7 @@ TEST(RoutePlanner, AStepThatWasOnlySeenFromAfarProvesNothing) {
       }
     for (float y = -1.6f; y < 1.6f; y += 0.02f)
       for (float z = 0; z < 1.5f; z += 0.1f) points.emplace_back(-1.0f, y, z);
-    for (int scan = 0; scan < 5; ++scan)
-      planner.add_scan(points, Pose3::level({robot, 0, 0}, 0), 0.1 * scan);
+    for (int scan = 0; scan < 5; ++scan) planner.add_scan(points, Pose3::level({robot, 0, 0}, 0), 0.1 * scan);
     EXPECT_EQ(planner.plan({robot, 0, 0}, {10, 0, 0.35}).found(), robot == 0.0);
   }
 }

@@ -99,7 +99,8 @@ TEST(Simulation, each_robot_has_the_lidar_of_its_platform) {
   Platform down = wheeled();
   down.lidar_rings = 8;
   down.lidar_lowest = -60;
-  const Simulation s = make({{"r1", wheeled(), {-4, 0, 0}}, {"r2", down, {3, 0, 0}}, {"r3", down, {3, 3, 0}}});
+  const Simulation s =
+      make({{"r1", wheeled(), {-4, 0, 0}}, {"r2", down, {2, 0, 0}}, {"r3", down, {-1, 0, 0}}});
   const auto floor = [&](std::size_t robot) {  // nearest return from it, m
     double nearest = 99;
     for (const Eigen::Vector3f& p : s.scan(robot).compute())
