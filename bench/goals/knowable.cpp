@@ -1,5 +1,6 @@
 #include "bench/goals/knowable.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -42,12 +43,16 @@ class Seen {
 
   bool keeps_apart(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const {
     std::vector<bool> been(closed_.size(), false);
-    std::vector<std::pair<int, int>> open{{column(from.x() - origin_.x()), column(from.y() - origin_.y())}};
+    const std::pair start{column(from.x() - origin_.x()), column(from.y() - origin_.y())};
+    std::vector<std::pair<int, int>> open{start};
     const std::pair goal{column(to.x() - origin_.x()), column(to.y() - origin_.y())};
     while (!open.empty()) {
       const auto [i, j] = open.back();
       open.pop_back();
-      if (i < 0 || j < 0 || i >= nx_ || j >= ny_ || been[index(i, j)] || closed_[index(i, j)]) continue;
+      if (i < 0 || j < 0 || i >= nx_ || j >= ny_) return false;  // nobody knows what is there
+      // A robot that passes something as near as it can is let out.
+      const bool here = std::hypot(i - start.first, j - start.second) <= pass_ + 1;
+      if (been[index(i, j)] || (closed_[index(i, j)] && !here) || stands_[index(i, j)]) continue;
       been[index(i, j)] = true;
       if (std::pair{i, j} == goal) return false;
       for (const auto& [a, b] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) open.push_back({i + a, j + b});

@@ -21,7 +21,7 @@ void ClearField::fill(std::span<const ObstaclePoint> obstacles, float ahead) {
   for (const ObstaclePoint& o : obstacles) {
     const float x = o.x + ahead;
     if (!(std::fabs(x) < kHalf && std::fabs(o.y) < kHalf)) continue;
-    const std::size_t at = index(cell(x), cell(o.y));
+    const std::size_t at = index(std::min(cell(x), kSide - 1), std::min(cell(o.y), kSide - 1));
     if (o.cost >= 1.0f)
       distance_[at] = 0.0f;
     else

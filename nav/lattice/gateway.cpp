@@ -35,14 +35,14 @@ std::optional<Gateway> fit_gateway(const Pose2& guess, std::span<const ObstacleP
         strip.right = std::max(strip.right, across);
     }
   }
-  // Of strips as wide the one in the middle of them: a gap in a thin wall has room to either side.
+  // Of strips about as wide the one that is turned least.
   const auto width = [](const Strip& strip) { return strip.left - strip.right; };
-  std::size_t best = kTurns;
+  float widest = 0;
+  for (const Strip& strip : strips) widest = std::max(widest, width(strip));
   const auto off = [](std::size_t i) { return std::abs(static_cast<int>(i) - kTurns); };
-  for (std::size_t i = 0; i < strips.size(); ++i) {
-    const float more = width(strips[i]) - width(strips[best]);
-    if (more > 1e-3f || (more > -1e-3f && off(i) < off(best))) best = i;
-  }
+  std::size_t best = strips.size();
+  for (std::size_t i = 0; i < strips.size(); ++i)
+    if (width(strips[i]) > widest - 1e-3f && (best == strips.size() || off(i) < off(best))) best = i;
   const Strip& strip = strips[best];
   if (strip.left >= kAcross || strip.right <= -kAcross || width(strip) <= 0) return std::nullopt;
   const Pose2 turned = guess * Pose2{0, 0, (static_cast<int>(best) - kTurns) * kTurn};

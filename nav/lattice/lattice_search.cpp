@@ -210,10 +210,11 @@ bool LatticeSearch::find(const ClearField& clear, const WayField& way, const Lat
   start.way = way.at(static_cast<float>(base_), 0.0f);
   start.level = static_cast<std::int8_t>(task.level);
   start.direction = static_cast<std::int8_t>(task.direction);
-  if (start.way >= WayField::kNoWay) return false;
-  if (way.least() > 0 && start.way < way.least() + 2 * static_cast<float>(params_.least_gain)) return false;
   nodes_.push_back(start);
   if (task.gate && shoot(clear, task, 0, path)) return true;
+  if (start.way >= WayField::kNoWay) return false;
+  if (!task.gate && way.least() > 0 && start.way < way.least() + 2 * static_cast<float>(params_.least_gain))
+    return false;
   open_.push_back({kLed * start.way, 0});
   std::int32_t best = -1;
   float nearest = start.way - static_cast<float>(params_.least_gain);

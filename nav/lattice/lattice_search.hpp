@@ -40,7 +40,7 @@ struct LatticeTask {
   std::optional<Pose2> gate{};  ///< the path shall end behind a gap with this middle, straight through it
 };
 
-/// A path over motions: its start and kPoses poses of each motion.
+/// A path over motions: its start, kPoses poses of each motion, and what leads through a gap, as far apart.
 struct LatticePath {
   static constexpr std::size_t kMost = 256;
   struct Spot {

@@ -35,13 +35,12 @@ float SolidPoints::depth(const Footprint& body, const Pose2& pose) const {
   const auto c = static_cast<float>(std::cos(pose.yaw)), s = static_cast<float>(std::sin(pose.yaw));
   const auto x = static_cast<float>(pose.x), y = static_cast<float>(pose.y);
   const auto reach = static_cast<float>(body.radius()) + kNear;
-  const auto first = [](float v) { return std::clamp(static_cast<int>((v + kHalf) / kCell), 0, kSide - 1); };
   float most = -kNear;
-  for (int j = first(y - reach); j <= first(y + reach); ++j) {
+  for (int j = cell(y - reach); j <= cell(y + reach); ++j) {
     // A row's squares lie side by side.
     const auto row = static_cast<std::size_t>(j * kSide);
-    const auto from = row + static_cast<std::size_t>(first(x - reach));
-    const auto to = row + static_cast<std::size_t>(first(x + reach));
+    const auto from = row + static_cast<std::size_t>(cell(x - reach));
+    const auto to = row + static_cast<std::size_t>(cell(x + reach));
     for (std::uint32_t i = begin_[from]; i < begin_[to + 1]; ++i) {
       const float dx = points_[i].x - x, dy = points_[i].y - y;
       most = std::max(most, body.depth(c * dx + s * dy, c * dy - s * dx));

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
@@ -28,7 +29,7 @@ class SolidPoints {
   static constexpr float kCell = 0.2f;
   static constexpr float kHalf = kCell * kSide / 2;
   static constexpr std::size_t kMost = 50'000;
-  static int cell(float v) { return static_cast<int>((v + kHalf) / kCell); }
+  static int cell(float v) { return std::clamp(static_cast<int>((v + kHalf) / kCell), 0, kSide - 1); }
 
   std::vector<Point> points_{};
   std::array<std::uint32_t, kSide * kSide + 1> begin_{};

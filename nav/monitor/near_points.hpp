@@ -72,7 +72,7 @@ class NearPoints {
   Footprint body_;
   float reach_;
   std::vector<float> lowest_;   ///< return in each 10 cm cell, m
-  std::vector<float> highest_;  ///< in each 5 cm cell
+  std::vector<float> highest_;  ///< in each 5 cm cell, of what is too high to be stepped on
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> used_{};
   std::vector<Place> places_{}, kept_{};

@@ -18,9 +18,10 @@ struct Route {
   RouteStatus status{RouteStatus::unreachable};
   std::vector<Eigen::Vector3d> points{};  ///< corners, from the start to the goal; empty unless found
   std::vector<std::uint8_t> unknown{};  ///< one per leg (points - 1): whether it leads through unknown space
-  double length{0};                     ///< m
-  double unknown_length{0};             ///< of it through unknown space, m
-  double cost{0};                       ///< m, with what narrow and unknown places cost more
+  bool doubtful{false};      ///< over what may be steps, seen from afar only: to be looked at, not relied on
+  double length{0};          ///< m
+  double unknown_length{0};  ///< of it through unknown space, m
+  double cost{0};            ///< m, with what narrow and unknown places cost more
 
   bool found() const { return status == RouteStatus::found; }
   bool attempt() const { return unknown_length > 0.0; }

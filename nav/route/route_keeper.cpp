@@ -193,8 +193,9 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
   bool kept = route_.found();
   if (kept) advance(planner, place);
   watch_blocked(planner, place, blocked, stamp_s);
-  const bool lost = kept && !planner.measure(route_);
-  kept = kept && !lost;
+  // A doubtful route is none to the map as it is: it is driven along until the next look.
+  const bool lost = kept && !route_.doubtful && !planner.measure(route_);
+  kept = kept && !lost && !route_.doubtful;
   if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {
     looked_ = stamp_s;
     Route other = planner.plan(place, goal);

@@ -11,7 +11,7 @@ struct RouteParams {
   double drop{0.20};           ///< lower ground than this is a hole (at least twice the step), m, [0.05, 2]
   double step_margin{0.025};   ///< more than the platform's step by this is an obstacle, m, [0, 0.1]
   double height_margin{0.15};  ///< what hangs this much above body and lidar is passed under, m, [0, 1]
-  double level_cost{8.0};  ///< of 1.2 m up or down through unknown space, towards a goal there, m, [0, 100]
+  double level_cost{8.0};  ///< of 1.5 m up or down through unknown space, towards a goal there, m, [0, 100]
   double snap{0.5};        ///< a start or goal is moved to a passable place this near, m, [0, 1.5]
   double margin{13.0};     ///< unknown space is used this far around what is known, m, [2, 100]
   int rebuilds{64};        ///< tiles of the graph made anew with a scan before a search, at most, [0, 100000]

@@ -7,13 +7,15 @@ namespace adit::nav {
 namespace {
 
 constexpr double kGateMargin = 0.15;  // m
+constexpr double kTightGate = 0.12;   // m: who plans its headings is told of what is really narrow
 
 }  // namespace
 
 RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
     : platform_(platform),
       params_(params),
-      narrow_(std::hypot(platform.length, platform.width) / 2 + kGateMargin),
+      narrow_(platform.planner == "lattice" ? platform.width / 2 + kTightGate
+                                            : std::hypot(platform.length, platform.width) / 2 + kGateMargin),
       map_(params, ScanProfile::most_wrong(platform, params)),
       profile_(platform, params),
       graph_(map_, platform, params) {}
@@ -55,21 +57,21 @@ bool RoutePlanner::has_blocked_places() const {
 }
 
 std::size_t RoutePlanner::memory() const {
-  return static_cast<std::size_t>(map_.size()) * (sizeof(Tile) + 96) + graph_.search().memory() +
-         (doubts_ ? doubts_->memory() : 0);
-}
-
-std::size_t RoutePlanner::Doubts::memory() const {
-  return static_cast<std::size_t>(map.size()) * (sizeof(Tile) + 96) + graph.search().memory();
+  const auto of = [](const SurfaceMap& map, const RouteGraph& graph) {
+    return static_cast<std::size_t>(map.size()) * (sizeof(Tile) + 96) + graph.search().memory();
+  };
+  return of(map_, graph_) + (doubts_ ? of(doubts_->map, doubts_->graph) : 0);
 }
 
 Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   Route route = graph_.plan(from, to);
+  if (route.found()) doubts_.reset();
   if (route.status != RouteStatus::unreachable) return route;
   // Nothing is proven by what was seen from afar.
   if (!doubts_) doubts_ = std::make_unique<Doubts>(platform_, params_);
   doubts_->map.copy(map_);
   Route doubtful = doubts_->graph.plan(from, to);
+  doubtful.doubtful = true;
   return doubtful.found() ? doubtful : route;
 }
 

@@ -58,7 +58,10 @@ class RoutePlanner {
   /// Held by map, graph and search, bytes.
   std::size_t memory() const;
   /// Forgets everything, as after a jump of the poses.
-  void clear() { map_.clear(); }
+  void clear() {
+    map_.clear();
+    doubts_.reset();
+  }
 
  private:
   /// A copy of the map in which doubtful steps do not count.
@@ -67,7 +70,6 @@ class RoutePlanner {
     RouteGraph graph;
     Doubts(const Platform& platform, const RouteParams& params)
         : map(params, ScanProfile::most_wrong(platform, params)), graph(map, platform, params, true) {}
-    std::size_t memory() const;
   };
 
   Platform platform_;

@@ -227,7 +227,7 @@ void SurfaceMap::evict() {
 }
 
 void SurfaceMap::begin_scan(double x, double y) {
-  ++scan_;
+  if (++scan_ == 0) scan_ = 1;  // 0: no scan hit it yet
   x_ = x;
   y_ = y;
 }
@@ -278,8 +278,11 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   } else if (measured == cell.measured) {
     cell.z += 0.25f * (z - cell.z);
   }
+  if (sure && !cell.sure && (measured || !cell.measured)) {
+    cell.z = z;
+    cell.sure = true;
+  }
   cell.measured |= measured;
-  cell.sure = cell.sure || sure;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
   if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;
@@ -293,7 +296,6 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
 }
 
 void SurfaceMap::see_obstacle(float x, float y, float z, float top, bool sure) {
-  constexpr int kMeanOver = 8;  // returns
   const int ix = route_cell(x), iy = route_cell(y);
   const int index = sheet(ix, iy, z);
   Tile& t = tile(index);
@@ -302,24 +304,20 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float top, bool sure) {
     cell = {z, 0, 0, true, false, false};
     mark_dirty(index);
   }
-  // Whether it moved so far that ways beside it may be others.
-  const auto mean = [&](std::int8_t& aside, double at, int i) {
-    constexpr int kNoticed = 12;
-    const std::int8_t before = aside;
-    const double off = std::clamp((at - (i + 0.5) * kRouteCell) / double{kAsideUnit}, -125.0, 125.0);
-    aside =
-        static_cast<std::int8_t>(std::lround(cell.evidence <= 0 ? off : aside + (off - aside) / kMeanOver));
-    return cell.blocked && std::abs(aside - before) > kNoticed;
-  };
-  const bool moved_x = mean(cell.aside_x, x, ix), moved_y = mean(cell.aside_y, y, iy);
-  if (moved_x || moved_y) {
-    mark_dirty(index);
-    mark_around(t, ix, iy);
-  }
   cell.sure = cell.sure || sure || is_near(ix, iy);
   cell.top = std::max(cell.top, static_cast<std::uint8_t>(std::clamp(top / kTopUnit, 0.0f, 255.0f)));
   if (cell.scan == scan_ && !sure) return;
   cell.scan = scan_;
+  if (cell.evidence < kMost || sure) {  // the mean over its first scans: once it is sure it stays
+    const int before = sure ? 0 : std::max(0, int{cell.evidence}) / kHit;
+    const auto mean = [&](std::int8_t& aside, double at, int i) {
+      const double off = std::clamp((at - (i + 0.5) * kRouteCell) / double{kAsideUnit}, -125.0, 125.0);
+      aside = static_cast<std::int8_t>(std::lround((before * aside + off) / (before + 1)));
+    };
+    mean(cell.aside_x, x, ix);
+    mean(cell.aside_y, y, iy);
+    if (cell.blocked) mark_dirty(index), mark_around(t, ix, iy);
+  }
   cell.evidence = static_cast<std::int8_t>(sure ? kMost : std::min(cell.evidence + kHit, kMost));
   if (cell.blocked || cell.evidence < kBlocked) return;
   cell.blocked = true;

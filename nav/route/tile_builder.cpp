@@ -15,7 +15,7 @@ constexpr double kAsideOfGap = 0.03;  // m
 
 }  // namespace
 
-// Less than the body needs: cells' middles lie up to half a cell aside of the middle of a gap. The local
+// Less than the body needs: the nearest cell's middle lies aside of the middle of a gap. The local
 // planner knows better, and tells when it does not get through.
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, bool doubting)
     : hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
@@ -49,7 +49,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       // The ground under what stands there is a guess, and no step.
       height_[in_window(x, y)] = cell.blocked || !has_height(cell) ? kNan : cell.z;
       solid_[in_window(x, y)] = solid(cell);
-      aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
+      if (solid(cell)) aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
     }
 }
 

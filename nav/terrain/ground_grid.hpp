@@ -44,10 +44,13 @@ class GroundGrid {
   void begin_scan(float x, float y, float now);
   /// A return at (x, y, z), within 4.7 m of the robot.
   void add(float x, float y, float z) {
+    float& low = low_[slot(cell(x), cell(y))].z;
+    low = z < low ? z : low;
+  }
+  /// The same returns again, after all were added: what lies in the lowest layer makes the cell's height.
+  void average(float x, float y, float z) {
     Lowest& low = low_[slot(cell(x), cell(y))];
     if (z >= low.z + kThin) return;
-    if (z < low.z - kThin) low = {z, 0.0f, 0.0f};
-    low.z = z < low.z ? z : low.z;
     low.sum += z;
     low.count += 1.0f;
   }
@@ -101,8 +104,8 @@ class GroundGrid {
   /// The lowest layer of a cell's returns: the least of many returns with noise would lie too low.
   struct Lowest {
     float z{1e9f}, sum{0}, count{0};
-    bool any() const { return count > 0; }
-    float height() const { return sum / count; }
+    bool any() const { return z < 1e9f; }
+    float height() const { return count > 0 ? sum / count : z; }
   };
   static constexpr float kThin = 0.05f;  ///< m: of a layer
 

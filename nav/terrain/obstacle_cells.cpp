@@ -9,6 +9,7 @@ namespace {
 constexpr int kMany = 8;               ///< a surface has this many times the hits of the noise before it
 constexpr int kMeanOver = 32;          ///< returns: older ones fade, odometry drifts
 constexpr double kForgetBeyond = 0.3;  ///< m beyond the range
+constexpr float kNoise = 0.05f;        ///< m: the highest of many returns lies so much too high
 constexpr float kInside = 0.05f;       ///< m within the body's outline
 
 }  // namespace
@@ -23,9 +24,9 @@ void ObstacleCells::clear() {
   std::fill(slots_.begin(), slots_.end(), std::uint16_t{0});
 }
 
-void ObstacleCells::mark(float x, float y, float z) {
+void ObstacleCells::mark(float x, float y, float z, float climb) {
   const int ix = cell(x), iy = cell(y);
-  const Entry fresh{ix, iy, z, z, scan_, 1, 0, false, false, now_, now_, x, y, 1, 0};
+  const Entry fresh{ix, iy, z, z, scan_, 1, 0, false, false, now_, now_, x, y, 1, 0, climb};
   std::uint16_t& index = slots_[slot(ix, iy)];
   if (index != 0) {
     Entry& e = entries_[index - 1u];
@@ -33,6 +34,7 @@ void ObstacleCells::mark(float x, float y, float z) {
       e.z_low = std::min(e.z_low, z);
       e.z_high = std::max(e.z_high, z);
       e.hits = e.scan == scan_ ? e.hits + 1 : 1;
+      e.climb = e.scan == scan_ ? std::max(e.climb, climb) : climb;
       if (e.scan != scan_) e.under = 0;
       e.scan = scan_;
       e.again = true;
@@ -63,7 +65,7 @@ void ObstacleCells::keep(const View& view, const RayImage& rays, const GroundGri
   for (Entry& entry : entries_) {
     const bool passable = entry.scan != scan_ && ground.measured(entry.x(), entry.y()) &&
                           entry.z_high - ground.before(entry.x(), entry.y()) <= step;
-    if (!stays(entry, view, rays, passable)) {
+    if (!stays(entry, view, rays, step, passable)) {
       slots_[slot(entry.ix, entry.iy)] = 0;
       continue;
     }
@@ -87,12 +89,13 @@ bool ObstacleCells::stray(const Entry& entry, float dx, float dy, float range) c
   return false;
 }
 
-bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, bool passable) const {
+bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, float step,
+                          bool passable) const {
   const float dx = entry.x() - view.sensor.x(), dy = entry.y() - view.sensor.y();
   const float range = std::sqrt(dx * dx + dy * dy);
   const auto memory = static_cast<float>(params_.memory);
   if (entry.scan == scan_) {
-    if (entry.under > entry.hits) return false;
+    if (entry.under > entry.hits && entry.climb <= step + kNoise) return false;
     entry.misses = 0;
     if (stray(entry, dx, dy, range)) return entry.solid && now_ - entry.stamp <= memory;
     entry.solid = true;

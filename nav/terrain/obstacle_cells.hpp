@@ -30,6 +30,7 @@ class ObstacleCells {
     float mean_x, mean_y;  ///< of the newest returns, m: where in the cell the surface is
     std::int32_t weight;   ///< of them
     std::int32_t under;    ///< returns of the newest scan from what may be climbed
+    float climb;           ///< above the ground before it, the highest of the newest scan, m
     float x() const { return (static_cast<float>(ix) + 0.5f) * kCell; }
     float y() const { return (static_cast<float>(iy) + 0.5f) * kCell; }
   };
@@ -41,10 +42,10 @@ class ObstacleCells {
     ++scan_;
     now_ = now;
   }
-  /// A return from an obstacle.
-  void mark(float x, float y, float z);
+  /// A return from an obstacle, `climb` metres above the ground before it.
+  void mark(float x, float y, float z, float climb);
   /// A return from something that is no obstacle but nearly as high, after all that are from one: a cell with
-  /// more of these than of those holds a stair whose height was measured with noise.
+  /// more of these than of those, none of which is much too high, holds a stair measured with noise.
   void mark_under(float x, float y);
   /// Drops what is free by now, or no more than a `step` (m) above the ground as it is known by now.
   void keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step);
@@ -58,7 +59,7 @@ class ObstacleCells {
   static std::size_t slot(int ix, int iy) {
     return static_cast<std::size_t>((ix & (kTorus - 1)) * kTorus + (iy & (kTorus - 1)));
   }
-  bool stays(Entry& entry, const View& view, const RayImage& rays, bool passable) const;
+  bool stays(Entry& entry, const View& view, const RayImage& rays, float step, bool passable) const;
   bool stray(const Entry& entry, float dx, float dy, float range) const;
 
   Footprint body_;

@@ -78,6 +78,7 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   drops_.begin_scan(ground_, now_);
   rays_.clear();
   sort_in(points, view);
+  average_ground();
 
   float lift = 0;
   if ((body.position - last_body_.position).norm() > kStood) {
@@ -133,6 +134,11 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
   }
 }
 
+// With all of a scan's lowest returns known.
+void TerrainMap::average_ground() {
+  for (const Eigen::Vector3f& p : near_) ground_.average(p.x(), p.y(), p.z());
+}
+
 void TerrainMap::classify(const View& view) {
   const auto step = static_cast<float>(platform_.step + params_.step_margin);
   const auto top =
@@ -142,7 +148,7 @@ void TerrainMap::classify(const View& view) {
   for (const Eigen::Vector3f& p : near_) {
     const float climb = p.z() - ground_.before(p.x(), p.y());
     if (climb > step) {
-      if (climb < top) obstacles_.mark(p.x(), p.y(), p.z());
+      if (climb < top) obstacles_.mark(p.x(), p.y(), p.z(), climb);
     } else if (climb > step / 2) {
       if (under_.size() < under_.capacity()) under_.emplace_back(p.x(), p.y());
     } else if (climb < drop && p.z() - ground_.at(p.x(), p.y()) < drop) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nav/route/route_target.hpp"
+
 namespace adit::agent {
 namespace {
 
@@ -120,14 +122,7 @@ nav::Target Navigation::target() const {
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     const auto* step = step_on(now());
     if (!step) return nav::Target::to(localisation_.to_odom(go->goal.head<2>()));
-    if (step->state == nav::RouteStep::State::unreachable) return {};
-    nav::Target target = nav::Target::to(step->target.head<2>());
-    if (!step->last) target.tolerance = nav::RouteStep::kTolerance;
-    if (step->gate) {
-      const Eigen::Vector2d& axis = step->gate->axis;
-      target.gate = {step->gate->middle.x(), step->gate->middle.y(), std::atan2(axis.y(), axis.x())};
-    }
-    return target;
+    return nav::target_of(*step);
   }
   const auto* guidance = std::get_if<Guidance>(&motion_);
   if (!guidance || guidance->stick.zero()) return {};

@@ -1,7 +1,7 @@
 #pragma once
 #include <cmath>
 
-#include "nav/route/route_keeper.hpp"
+#include "nav/route/route_target.hpp"
 #include "tests/nav/closed_loop.hpp"
 
 namespace adit::nav::test {
@@ -26,11 +26,7 @@ struct RouteDrive {
                        loop.time);
   }
   /// Drives there for a tenth of a second.
-  void drive() {
-    Target target = Target::to(step.target.head<2>());
-    if (!step.last) target.tolerance = RouteStep::kTolerance;
-    loop.cycle(target);
-  }
+  void drive() { loop.cycle(target_of(step)); }
   bool arrived() const { return step.last && loop.last.arrived && loop.follower.command().zero(); }
 
   /// True when it stands at the goal; false after so many seconds, or when there is no way.

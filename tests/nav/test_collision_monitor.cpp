@@ -98,6 +98,15 @@ TEST(CollisionMonitor, LegsThatLookDownClimbStairsThatLookedLikeAWall) {
   EXPECT_EQ(legs.ask({0.6, 0, 0}, Policy::stop, 0.5).velocity.vx, 0.6);
 }
 
+TEST(CollisionMonitor, LegsStopBeforeWhatTheyCannotClimb) {
+  for (const Box& box :
+       {Box{1.5, 3, -3, 3, 0, 0.28}, Box{1.5, 3, -3, 3, 0.55, 0.62}, Box{1.5, 3, -3, 3, 0, 0.35}}) {
+    Seen legs({box}, legged());
+    legs.world.lowest = -45;
+    EXPECT_GT(legs.drive({0.8, 0, 0}, 5), 0.0) << box.z0 << " to " << box.z1;
+  }
+}
+
 TEST(CollisionMonitor, TheSlowZoneGrowsWithTheSpeed) {
   const Seen seen({{1.5, 1.7, -3, 3}});
   EXPECT_EQ(seen.ask({0.5, 0, 0}).cause, Cause::none);

@@ -103,7 +103,9 @@ TEST(Gate, ARobotPassesAGapFifteenCentimetresWiderThanItself) {
   for (const Platform& platform : {wheeled(), tracked(), legged()}) expect_passed(platform, 0.15);
 }
 
-TEST(Gate, ACarPassesAGapThirtyCentimetresWiderThanItself) { expect_passed(car(), 0.30); }
+TEST(Gate, ACarPassesAGapTenCentimetresWiderThanItself) {
+  for (const double wider : {0.10, 0.20, 0.30}) expect_passed(car(), wider);
+}
 
 TEST(Gate, ItGoesStraightOnUntilItHasLeftIt) {
   RoutePlanner planner(wheeled());

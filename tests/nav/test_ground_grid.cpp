@@ -13,8 +13,12 @@ using Height = std::function<float(float, float)>;
 
 void see(GroundGrid& grid, const Height& height, float x, float y, float now, float raised = 0) {
   grid.begin_scan(x, y, now);
+  std::vector<Eigen::Vector3f> points;
   for (float i = -4.4f; i < 4.4f; i += 0.03f)
-    for (float j = -4.4f; j < 4.4f; j += 0.03f) grid.add(x + i, y + j, height(x + i, y + j) + raised);
+    for (float j = -4.4f; j < 4.4f; j += 0.03f)
+      points.emplace_back(x + i, y + j, height(x + i, y + j) + raised);
+  for (const Eigen::Vector3f& p : points) grid.add(p.x(), p.y(), p.z());
+  for (const Eigen::Vector3f& p : points) grid.average(p.x(), p.y(), p.z());
 }
 
 /// A grid over heights given by a function, seen once, grown around the origin.

@@ -85,6 +85,21 @@ TEST(TerrainMap, StairsSeenFromAboveAreFreeHoweverNoisy) {
   EXPECT_GT(robot.count(-3.1, -2.7, -1, 1), 10) << "what is too high for its legs stands in the way";
 }
 
+TEST(TerrainMap, WhatIsTooHighForLegsByAHandIsAnObstacle) {
+  for (const double height : {0.30, 0.35, 0.4})
+    for (const double deep : {0.03, 2.0}) {
+      Looker robot;
+      robot.platform = legged();
+      robot.map = TerrainMap(robot.platform);
+      robot.noise = 0.02;
+      robot.rings = 32;
+      robot.world.lowest = -45;
+      robot.world.boxes = {{1.5, 1.5 + deep, -1, 1, 0, height}};
+      robot.look(6);
+      EXPECT_GT(robot.count(1.4, 1.7, -1, 1), 10) << height << " " << deep;
+    }
+}
+
 TEST(TerrainMap, PassesUnderWhatHangsHigh) {
   for (const double low : {0.4, 0.9}) {
     Looker robot;

@@ -1,0 +1,20 @@
+#pragma once
+#include <cmath>
+
+#include "nav/plan.hpp"
+#include "nav/route/route_keeper.hpp"
+
+namespace adit::nav {
+
+/// What the local planner is asked for on the way along a route. Frame: that of the route.
+inline Target target_of(const RouteStep& step) {
+  if (step.state == RouteStep::State::unreachable) return {};
+  Target target = Target::to(step.target.head<2>());
+  if (!step.last) target.tolerance = RouteStep::kTolerance;
+  if (step.gate)
+    target.gate = {step.gate->middle.x(), step.gate->middle.y(),
+                   std::atan2(step.gate->axis.y(), step.gate->axis.x())};
+  return target;
+}
+
+}  // namespace adit::nav
