@@ -66,8 +66,9 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   const auto step = static_cast<float>(platform_.step + params_.rise);
   const auto slope = static_cast<float>(params_.slope);
   const auto stairs = static_cast<float>(std::max(params_.slope, platform_.steepest()));
-  // Stairs rise by one step within a cell, and a face that is higher is a wall.
-  const float within = platform_.stairs ? 0.0f : slope * kWithinCell;
+  // Stairs rise by one step within a cell, and a face that is higher is a wall. What is too high by less than
+  // noise is left to the planner.
+  const float within = platform_.stairs ? kSpread : slope * kWithinCell;
   const auto inside = [this](const Eigen::Vector3f& p) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
   };
@@ -82,7 +83,6 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
       fan.highest = std::max(fan.highest, rise);
     }
     if (!inside(p)) continue;
-    if (platform_.stairs && body_.depth(p.x(), p.y()) > own) continue;  // no tread
     const std::size_t cell = coarse(p.x(), p.y());
     lowest_[cell] = std::min(lowest_[cell], p.z());
   }
@@ -93,7 +93,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const float nearer = 1.0f - kBefore / std::max(range, kBefore);
     const float tread = lowest_[coarse(nearer * p.x(), nearer * p.y())];
-    const bool led_to = platform_.stairs && tread <= step + stairs * range && p.z() <= tread + step + kSpread;
+    const bool led_to = platform_.stairs && tread < kNotSeen && p.z() <= tread + step + within;
     // What was a wall from below is a riser when the tread before it is seen.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     if (!led_to) highest_[index] = std::max(highest_[index], p.z());
@@ -103,7 +103,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     // seen by a level ray: nothing lower need be there, unless the tread before it is seen.
     const bool riser = platform_.stairs && (p.z() < lidar - kLevelRay || led_to);
     const float ground = riser ? step + stairs * range : step - slope * depth;
-    if (p.z() <= ground && (led_to || p.z() <= lowest_[coarse(p.x(), p.y())] + step + within)) continue;
+    if (p.z() <= ground && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
     Cell& cell = cells_[index];
     if (cell.count == 0) used_.push_back(index);
     if (cell.count == 60000) continue;

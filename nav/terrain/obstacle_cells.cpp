@@ -9,7 +9,7 @@ namespace {
 constexpr int kMany = 8;               ///< a surface has this many times the hits of the noise before it
 constexpr int kMeanOver = 32;          ///< returns: older ones fade, odometry drifts
 constexpr double kForgetBeyond = 0.3;  ///< m beyond the range
-constexpr float kNoise = 0.05f;        ///< m: the highest of many returns lies so much too high
+constexpr float kNoise = 0.07f;        ///< m: the highest of many returns lies so much too high
 constexpr float kInside = 0.05f;       ///< m within the body's outline
 
 }  // namespace

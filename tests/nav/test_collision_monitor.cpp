@@ -100,7 +100,7 @@ TEST(CollisionMonitor, LegsThatLookDownClimbStairsThatLookedLikeAWall) {
 
 TEST(CollisionMonitor, LegsStopBeforeWhatTheyCannotClimb) {
   for (const Box& box :
-       {Box{1.5, 3, -3, 3, 0, 0.28}, Box{1.5, 3, -3, 3, 0.55, 0.62}, Box{1.5, 3, -3, 3, 0, 0.35}}) {
+       {Box{1.5, 3, -3, 3, 0, 0.30}, Box{1.5, 3, -3, 3, 0.55, 0.62}, Box{1.5, 3, -3, 3, 0, 0.35}}) {
     Seen legs({box}, legged());
     legs.world.lowest = -45;
     EXPECT_GT(legs.drive({0.8, 0, 0}, 5), 0.0) << box.z0 << " to " << box.z1;
