@@ -93,7 +93,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const float nearer = 1.0f - kBefore / std::max(range, kBefore);
     const float tread = lowest_[coarse(nearer * p.x(), nearer * p.y())];
-    const bool led_to = platform_.stairs && tread < kNotSeen && p.z() <= tread + step + within;
+    const bool led_to = platform_.stairs && tread <= step + stairs * range && p.z() <= tread + step + within;
     // What was a wall from below is a riser when the tread before it is seen.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     if (!led_to) highest_[index] = std::max(highest_[index], p.z());
