@@ -12,7 +12,8 @@ constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far with
 constexpr float kPast = 0.15f;        ///< m: rays that went so much farther show that nothing is there
 constexpr float kLevelRay = 0.1f;     ///< m below the lidar
 constexpr float kNotSeen = 1e9f;      ///< lowest return of a cell without one
-constexpr float kBefore = 0.12f;      ///< m: so far before a riser the tread is seen that leads to it
+constexpr std::array kBefore{0.12f, 0.2f};  ///< m: so far before a riser the tread is seen that leads to it
+constexpr float kFlat = 0.1f;               ///< m: what is higher within a cell is a face, and no tread
 constexpr float kSpread =
     0.04f;                  ///< m: the lowest and the highest of many returns lie so much apart by noise
 constexpr int kFewest = 2;  ///< returns in a cell and those around it; one alone is noise
@@ -25,6 +26,7 @@ NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsP
       body_(platform),
       reach_(static_cast<float>(std::min(reach, kCell * kSide / 2.0 - 2 * kCell))),
       lowest_(kCoarse * kCoarse),
+      upper_(kCoarse * kCoarse),
       highest_(kSide * kSide),
       cells_(kSide * kSide) {
   used_.reserve(cells_.size());
@@ -59,6 +61,17 @@ bool NearPoints::seen_again(const Eigen::Vector2f& local) const {
   return raised && obstacle < kFewest;
 }
 
+bool NearPoints::tread_leads_to(const Eigen::Vector3f& p, float range, float highest, float rise) const {
+  for (const float before : kBefore) {
+    if (range <= before) return false;
+    const float nearer = 1.0f - before / range;
+    const std::size_t cell = coarse(nearer * p.x(), nearer * p.y());
+    const float tread = lowest_[cell];
+    if (tread <= highest && p.z() <= tread + rise && upper_[cell] <= tread + kFlat) return true;
+  }
+  return false;
+}
+
 NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   const auto top = static_cast<float>(std::max(platform_.height, platform_.lidar_height) + params_.overhang);
   const auto lidar = static_cast<float>(platform_.lidar_height);
@@ -73,6 +86,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
   };
   std::fill(lowest_.begin(), lowest_.end(), kNotSeen);
+  std::fill(upper_.begin(), upper_.end(), -kNotSeen);
   std::fill(highest_.begin(), highest_.end(), -1e9f);
   Fan fan{};
   for (const Eigen::Vector3f& p : points) {
@@ -85,15 +99,14 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
     if (!inside(p)) continue;
     const std::size_t cell = coarse(p.x(), p.y());
     lowest_[cell] = std::min(lowest_[cell], p.z());
+    if (p.z() <= top) upper_[cell] = std::max(upper_[cell], p.z());
   }
   for (const std::uint32_t i : used_) cells_[i] = {};
   used_.clear();
   for (const Eigen::Vector3f& p : points) {
     if (!inside(p) || p.z() > top || p.z() <= step) continue;
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
-    const float nearer = 1.0f - kBefore / std::max(range, kBefore);
-    const float tread = lowest_[coarse(nearer * p.x(), nearer * p.y())];
-    const bool led_to = platform_.stairs && tread <= step + stairs * range && p.z() <= tread + step + within;
+    const bool led_to = platform_.stairs && tread_leads_to(p, range, step + stairs * range, step + within);
     // What was a wall from below is a riser when the tread before it is seen.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     if (!led_to) highest_[index] = std::max(highest_[index], p.z());

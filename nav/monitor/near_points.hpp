@@ -62,6 +62,8 @@ class NearPoints {
   static std::size_t coarse(float x, float y);
   static std::size_t fine(float x, float y);
   Fan sort_in(std::span<const Eigen::Vector3f> points);
+  /// Whether one step before `p` the ground was seen: flat, at most `highest`, and no more than `rise` lower.
+  bool tread_leads_to(const Eigen::Vector3f& p, float range, float highest, float rise) const;
   bool seen_again(const Eigen::Vector2f& local) const;
   void remember(const Pose3& body, const Fan& fan, double stamp_s, const Panorama& seen);
   bool hidden(const Eigen::Vector3d& local, const Fan& fan) const;
@@ -72,6 +74,7 @@ class NearPoints {
   Footprint body_;
   float reach_;
   std::vector<float> lowest_;   ///< return in each 10 cm cell, m
+  std::vector<float> upper_;    ///< and the highest that is not passed under
   std::vector<float> highest_;  ///< in each 5 cm cell, of what is too high to be stepped on
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> used_{};
