@@ -12,8 +12,9 @@ constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far with
 constexpr float kPast = 0.15f;        ///< m: rays that went so much farther show that nothing is there
 constexpr float kLevelRay = 0.1f;     ///< m below the lidar
 constexpr float kNotSeen = 1e9f;      ///< lowest return of a cell without one
-constexpr std::array kBefore{0.12f, 0.2f};  ///< m: so far before a riser the tread is seen that leads to it
-constexpr float kFlat = 0.1f;               ///< m: what is higher within a cell is a face, and no tread
+constexpr std::array kBefore{0.1f, 0.15f, 0.2f,
+                             0.25f};  ///< m: so far before a riser the tread is seen that leads to it
+constexpr float kFlat = 0.14f;        ///< m: what is higher within a cell is a face, and no tread
 constexpr float kSpread =
     0.04f;                  ///< m: the lowest and the highest of many returns lie so much apart by noise
 constexpr int kFewest = 2;  ///< returns in a cell and those around it; one alone is noise

@@ -26,7 +26,7 @@ constexpr std::uint8_t after(std::uint8_t gap) {
 
 GroundGrid::GroundGrid(const GroundParams& params)
     : params_(params),
-      low_(kTorus * kTorus),
+      low_(kTorus * kTorus, kNothing),
       height_(kTorus * kTorus, 0.0f),
       stamp_(kTorus * kTorus, kLongAgo),
       is_ground_(kTorus * kTorus, 0),
@@ -104,7 +104,7 @@ void GroundGrid::roll(int x, int y) {
 void GroundGrid::begin_scan(float x, float y, float now) {
   now_ = now;
   roll(cell(x), cell(y));
-  std::fill(low_.begin(), low_.end(), Lowest{});
+  std::fill(low_.begin(), low_.end(), kNothing);
 }
 
 float GroundGrid::disagreement() {
@@ -112,8 +112,8 @@ float GroundGrid::disagreement() {
   for (int i = -kHalf; i <= kHalf; ++i)
     for (int j = -kHalf; j <= kHalf; ++j) {
       const std::size_t s = slot(centre_x_ + i, centre_y_ + j);
-      if (low_[s].any() && is_ground_[s] && now_ - stamp_[s] <= kRecent)
-        differences_.push_back(height_[s] - low_[s].height());
+      if (low_[s] < kNothing && is_ground_[s] && now_ - stamp_[s] <= kRecent)
+        differences_.push_back(height_[s] - low_[s]);
     }
   if (differences_.size() < kEnough) return 0.0f;
   const auto middle = differences_.begin() + static_cast<std::ptrdiff_t>(differences_.size() / 2);
@@ -131,9 +131,9 @@ void GroundGrid::grow(float lift, float z, const Eigen::Vector2f& tilt) {
   gap_[kMiddle] = kNever;
   for (const Step& s : steps_) {
     const std::size_t at = slot(centre_x_ + s.dx, centre_y_ + s.dy);
-    const bool seen = low_[at].any();
+    const bool seen = low_[at] < kNothing;
     if (seen) {
-      const float low = low_[at].height() + lift;
+      const float low = low_[at] + lift;
       const bool same = now_ - stamp_[at] <= params_.memory && std::fabs(low - height_[at]) < kSame;
       height_[at] = same ? height_[at] + kNewest * (low - height_[at]) : low;
       stamp_[at] = now_;

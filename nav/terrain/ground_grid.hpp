@@ -18,10 +18,10 @@ struct GroundParams {
   float memory{60.0f};  ///< how long a height that is not measured again is kept, s, (0, 600]
 };
 
-/// Heights of the ground around the robot, in 10 cm cells of a grid that rolls with it. The lowest returns of
-/// each cell are its height, averaged over scans; from the robot's feet the ground is grown outwards: a
-/// cell's height is ground when it follows from its inner neighbours, and from how the body leans, by no more
-/// than slope, rise and drop allow; else (a wall, a hole, nothing seen) the cell inherits from them.
+/// Heights of the ground around the robot, in 10 cm cells of a grid that rolls with it. The lowest return of
+/// each cell is its height, averaged over scans; from the robot's feet the ground is grown outwards: a cell's
+/// height is ground when it follows from its inner neighbours, and from how the body leans, by no more than
+/// slope, rise and drop allow; else (a wall, a hole, nothing seen) the cell inherits from them.
 ///
 /// Heights are those of a map of its own: where odometry does not know its height (wheels) or drifts in it,
 /// the map goes along, by the median of what the scan and the map disagree about (the drift compensation of
@@ -44,15 +44,8 @@ class GroundGrid {
   void begin_scan(float x, float y, float now);
   /// A return at (x, y, z), within 4.7 m of the robot.
   void add(float x, float y, float z) {
-    float& low = low_[slot(cell(x), cell(y))].z;
+    float& low = low_[slot(cell(x), cell(y))];
     low = z < low ? z : low;
-  }
-  /// The same returns again, after all were added: what lies in the lowest layer makes the cell's height.
-  void average(float x, float y, float z) {
-    Lowest& low = low_[slot(cell(x), cell(y))];
-    if (z >= low.z + kThin) return;
-    low.sum += z;
-    low.count += 1.0f;
   }
   /// How much higher than its returns say the scan lies in the map, m: to be added to all of them.
   float disagreement();
@@ -101,13 +94,7 @@ class GroundGrid {
     std::int8_t dx, dy;
     std::int8_t from_a_x, from_a_y, from_b_x, from_b_y;  ///< the way from those two
   };
-  /// The lowest layer of a cell's returns: the least of many returns with noise would lie too low.
-  struct Lowest {
-    float z{1e9f}, sum{0}, count{0};
-    bool any() const { return z < 1e9f; }
-    float height() const { return count > 0 ? sum / count : z; }
-  };
-  static constexpr float kThin = 0.05f;  ///< m: of a layer
+  static constexpr float kNothing = 1e9f;
 
   static int cell(float v) { return floor_int(v * (1.0f / kCell)); }
   static std::size_t slot(int ix, int iy) {
@@ -120,7 +107,7 @@ class GroundGrid {
   /// Allowed where the last measured cell is so many away: as ground to climb, to fall, and by slope alone.
   std::array<float, 256> rise_{}, fall_{}, climb_{};
   // On the torus.
-  std::vector<Lowest> low_;    ///< of this scan
+  std::vector<float> low_;     ///< of this scan
   std::vector<float> height_;  ///< of the map
   std::vector<float> stamp_;   ///< measured last
   std::vector<std::uint8_t> is_ground_;

@@ -78,7 +78,6 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   drops_.begin_scan(ground_, now_);
   rays_.clear();
   sort_in(points, view);
-  average_ground();
 
   float lift = 0;
   if ((body.position - last_body_.position).norm() > kStood) {
@@ -132,13 +131,6 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
       }
     }
   }
-}
-
-// With all of a scan's lowest returns known. Steps and what is just too high for a step are told apart by
-// centimetres where stairs are climbed, by rays that look down steeply; elsewhere the lowest return will do.
-void TerrainMap::average_ground() {
-  if (!platform_.stairs) return;
-  for (const Eigen::Vector3f& p : near_) ground_.average(p.x(), p.y(), p.z());
 }
 
 void TerrainMap::classify(const View& view) {

@@ -38,7 +38,6 @@ class TerrainMap {
 
  private:
   void sort_in(std::span<const Eigen::Vector3f> points, const View& view);
-  void average_ground();
   void classify(const View& view);
   void write_cells();
 
