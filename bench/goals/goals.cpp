@@ -34,6 +34,7 @@ constexpr double kArrived = 0.35;  // m: the goal's tolerance, and what a scan i
 constexpr double kDrift = 0.03;    // of the way: what dead reckoning is off by, three deviations
 constexpr double kLook = 1.0;      // s: as exact as the other time is known
 constexpr double kSent = 4.0;      // s: when the goal is sent
+constexpr double kTold = 10.0;     // s: so long after it could be known that a goal is out of reach it is told
 
 /// From when the goal was sent until what the robot saw proves that it cannot get there, s.
 std::optional<double> knowable_after(const Course& course, std::span<const Pose2> poses) {
@@ -76,6 +77,11 @@ Outcome run(const Course& course, const sim::AgentFactory& agents, double slowne
   if (!out.told || course.reachable) return out;
   if (const auto known = knowable_after(course, poses)) out.told_late = out.told_after - *known;
   return out;
+}
+
+bool as_it_should_be(const Outcome& o) {
+  if (!o.error.empty() || o.collisions > 0) return false;
+  return o.course.reachable ? o.arrived : o.told && o.told_late.value_or(0.0) <= kTold;
 }
 
 struct Row {
@@ -156,7 +162,7 @@ int main(int argc, char** argv) {
   Row all;
   for (const Outcome& o : outcomes) {
     for (Row* row : {&by_kind[o.course.kind], &by_platform[o.course.platform], &all}) row->add(o);
-    const bool good = o.error.empty() && o.collisions == 0 && (o.course.reachable ? o.arrived : o.told);
+    const bool good = as_it_should_be(o);
     if (!good && o.error.empty() && !save.empty()) {
       const std::filesystem::path folder = std::filesystem::path(save) / std::to_string(o.course.seed);
       std::filesystem::create_directories(folder);
@@ -167,7 +173,8 @@ int main(int argc, char** argv) {
                  o.course.platform, o.course.seed, o.course.start.x(), o.course.start.y(), o.course.goal.x(),
                  o.course.goal.y(), o.collisions > 0 ? ", collided" : "",
                  o.course.reachable && !o.arrived ? ", not reached" : "",
-                 !o.course.reachable && !o.told ? ", cannot be reached and that was not told" : "", o.error);
+                 !o.course.reachable && !good && o.collisions == 0 ? ", out of reach and that was not told in time" : "",
+                 o.error);
   }
   fmt::print(
       "| | goals | reached | out of reach | told | at the latest after, s | after it could be known, s | "

@@ -49,7 +49,9 @@ Twist2 Controller::follow(const Pose2& odom, double dt) {
 
 void Controller::sent(const Twist2& velocity) {
   last_ = velocity;
-  if (std::fabs(velocity.vx) < kNoWay) steering_ = steering_before_;  // a car was not told to steer
+  // A car that does not move was not told to steer.
+  steering_ = std::fabs(velocity.vx) < kNoWay ? steering_before_
+                                              : std::atan(platform_.wheelbase * velocity.wz / velocity.vx);
   sent_turn_ = velocity.wz;
   last_.wz *= grip_;
 }

@@ -10,6 +10,7 @@ constexpr int kMostStrides = 160;  ///< of one sweep
 constexpr float kDeeper = 0.002f;  ///< m: less is not "deeper": sliding along a wall is allowed
 constexpr double kCreep = 0.02;    ///< m/s: less than this is standing
 constexpr int kShares = 10;        ///< of a velocity that are tried against what moves
+constexpr double kNext = 0.05;     ///< s from one check to the next
 constexpr double kTick = 0.06;     ///< s between the looks at where it is then
 constexpr std::size_t kMostMoving = Tracker::kMost * Mover::kMost;
 
@@ -54,33 +55,51 @@ void CollisionMonitor::look(std::span<const Eigen::Vector3f> points, const Pose3
 }
 
 Twist2 CollisionMonitor::limited(const Twist2& wanted) const {
-  const double fastest = std::max(speed_of(wanted), std::fabs(wanted.wz) * body_.radius());
+  const double fastest = rim(wanted);
   return fastest > params_.limit_speed ? scaled(wanted, params_.limit_speed / fastest) : wanted;
 }
 
-CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Pose2& odom, double now_s,
-                                                  Policy policy) const {
-  if (wanted.zero()) return {wanted, Cause::none};
-  if (!fresh(now_s)) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::stale};
+// The speed of the body's fastest part, m/s.
+double CollisionMonitor::rim(const Twist2& velocity) const {
+  return std::max(speed_of(velocity), std::fabs(velocity.wz) * body_.radius());
+}
+
+double CollisionMonitor::share(const Twist2& wanted, const Pose2& odom, double now_s) const {
   // Braking takes this long from all of `wanted`; from a share of it, that share of the time.
   const double brake =
       std::max(speed_of(wanted) / (params_.braking_share * platform_.max_acceleration),
                std::fabs(wanted.wz) / (params_.braking_share * platform_.max_turn_acceleration));
   const double horizon = params_.reaction + brake / 2;
   const double free = free_time(wanted, odom, horizon);
-  double k = share_before_movers(wanted, odom, now_s, brake);
+  const double k = share_before_movers(wanted, odom, now_s, brake);
+  if (free >= horizon) return k;
   // The share k whose way to a stop, k reaction + k^2 brake / 2 (s of driving all of it), ends there.
-  if (free < horizon)
-    k = std::min(
-        k, (std::sqrt(params_.reaction * params_.reaction + 2 * brake * free) - params_.reaction) / brake);
+  return std::min(
+      k, (std::sqrt(params_.reaction * params_.reaction + 2 * brake * free) - params_.reaction) / brake);
+}
+
+CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Pose2& odom, double now_s,
+                                                  Policy policy, const Twist2& moves) const {
+  if (wanted.zero()) return {wanted, Cause::none};
+  if (!fresh(now_s)) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::stale};
+  const double k = share(wanted, odom, now_s);
   if (k >= 1) return {wanted, Cause::none};
-  const bool stands = k * std::max(speed_of(wanted), std::fabs(wanted.wz) * body_.radius()) < kCreep;
+  const bool stands = k * rim(wanted) < kCreep;
   const Cause cause = stands ? Cause::stopped : Cause::slowed;
   const Twist2 allowed = stands ? Twist2{} : scaled(wanted, k);
-  if (policy != Policy::limit) return {allowed, cause};
-  const Twist2 slow = limited(wanted);
-  return {speed_of(allowed) + std::fabs(allowed.wz) > speed_of(slow) + std::fabs(slow.wz) ? allowed : slow,
-          cause};
+  if (policy == Policy::limit) {
+    const Twist2 slow = limited(wanted);
+    return {speed_of(allowed) + std::fabs(allowed.wz) > speed_of(slow) + std::fabs(slow.wz) ? allowed : slow,
+            cause};
+  }
+  // Who turns towards something at speed cannot be as slow at once as that arc needs: he would be beyond.
+  const double lost = platform_.max_acceleration * kNext;
+  if (speed_of(moves) - speed_of(allowed) > lost) {
+    const double kept = 1 - params_.braking_share * lost / speed_of(moves);
+    const double braked = std::min(kept, share(moves, odom, now_s));
+    if (braked * speed_of(moves) > speed_of(allowed)) return {scaled(moves, braked), Cause::slowed};
+  }
+  return {allowed, cause};
 }
 
 double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, double horizon) const {

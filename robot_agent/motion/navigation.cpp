@@ -57,7 +57,11 @@ void Navigation::step(Time now) {
 nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
                                                    nav::CollisionMonitor::Policy policy) const {
   if (params_.defects.has(Defect::blind_and_unwatched)) return {wanted, nav::CollisionMonitor::Cause::none};
-  return monitor_.check(wanted, localisation_.odom().planar(), seconds(now().time_since_epoch()), policy);
+  Twist2 moves = localisation_.twist();
+  moves.vz = 0;
+  if (!params_.platform.sideways()) moves.vy = 0;
+  return monitor_.check(wanted, localisation_.odom().planar(), seconds(now().time_since_epoch()), policy,
+                        moves);
 }
 
 void Navigation::pass_on(const Velocity& wanted) {

@@ -334,6 +334,44 @@ TEST(CollisionMonitor, AnObstacleOfFewNoisyReturnsIsKeptFartherOff) {
       }
 }
 
+/// A car that drives along a wall and then wants to turn towards it; how near it came, m.
+double turns_towards_a_wall(double speed, double apart, double turn, bool tells_how_it_moves) {
+  Platform p = wheeled();
+  p.drive = Drive::car;
+  p.wheelbase = 0.4;
+  Seen seen({{-5, 20, p.width / 2 + apart, 6}}, p);
+  seen.noise = 0.02;
+  double least = 10, bend = 0;
+  Twist2 v{speed, 0, 0}, allowed{};
+  for (int i = 0; i < 300; ++i) {
+    constexpr double kDt = 0.01, kBends = 2.0;  // s, 1/m per s
+    const double time = kDt * i;
+    if (i % 10 == 0) seen.look(time);
+    if (i % 5 == 0)
+      allowed = seen.monitor.check({speed, 0, speed * turn}, seen.pose, time, Policy::stop,
+                                   tells_how_it_moves ? v : Twist2{})
+                    .velocity;
+    v.vx += std::clamp(allowed.vx - v.vx, -p.max_acceleration * kDt, p.max_acceleration * kDt);
+    if (allowed.vx > 1e-3) bend += std::clamp(allowed.wz / allowed.vx - bend, -kBends * kDt, kBends * kDt);
+    v.wz = bend * v.vx;
+    seen.pose = seen.pose * Pose2{v.vx * kDt, p.rear_axle() * v.wz * kDt, v.wz * kDt};
+    least = std::min(least, seen.world.clearance(p, seen.pose));
+  }
+  return least;
+}
+
+TEST(CollisionMonitor, WhoTurnsTowardsAWallTooFastBrakesOnItsOwnArc) {
+  double blind = 10;
+  for (const double speed : {0.5, 1.0, 2.0})
+    for (const double apart : {0.1, 0.3, 0.6})
+      for (const double turn : {0.3, 0.8, 1.2}) {
+        EXPECT_GT(turns_towards_a_wall(speed, apart, turn, true), 0.0)
+            << speed << " m/s, " << apart << " m apart, " << turn << " per m";
+        blind = std::min(blind, turns_towards_a_wall(speed, apart, turn, false));
+      }
+  EXPECT_LT(blind, 0.0) << "braking on the arc that was asked for is too late";
+}
+
 TEST(CollisionMonitor, WhatRaysPassedIsNotRememberedHoweverNear) {
   // Somebody who stood at the nose, nearer than the lidar sees, and left.
   Platform p = wheeled();
