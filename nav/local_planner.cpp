@@ -174,7 +174,9 @@ bool LocalPlanner::given_up(bool drives, double stamp_s) {
   constexpr double kLongest = 0.5;  // s: what is longer was a break
   if (drives) effort_ += std::clamp(stamp_s - last_stamp_, 0.0, kLongest);
   last_stamp_ = stamp_s;
-  if (effort_ > (closest_ < params_.effort_range ? params_.effort_near : params_.effort)) {
+  // It may have to turn once around before it can come nearer.
+  const double turn = 2 * M_PI / platform_.max_turn;
+  if (effort_ > (closest_ < params_.effort_range ? params_.effort_near + turn : params_.effort)) {
     effort_ = 0;
     rest_until_ = stamp_s + params_.rest;
   }

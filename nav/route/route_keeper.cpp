@@ -12,6 +12,7 @@ constexpr double kSampling = 0.5;    // m
 constexpr double kNextCorner = 5.0;  // m
 constexpr double kInGate = 0.3;      // m before its middle
 constexpr double kBeforeGate = 1.1;  // m: there the robot lines up
+constexpr double kBack = 0.3;        // m: so much nearer it does not go back there unless it is well off
 constexpr double kAtGate = 1.5;      // m: from farther off no path of the local planner leads through
 constexpr double kBeyondGate = 0.9;  // m: so far it goes straight on
 constexpr double kEnters = 0.6;      // m before its middle a robot that is lined up is in it
@@ -85,6 +86,10 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
   if (!blocked_since_) blocked_since_ = stamp_s;
   if (stamp_s - *blocked_since_ < params_.blocked) return;
   blocked_since_.reset();
+  if (lining_up_ && !waived_) {  // then from where it is
+    waived_ = true;
+    return;
+  }
   bool end = false;
   const Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
   if (!end) planner.block({there.x(), there.y(), place.z()}, stamp_s);
@@ -133,6 +138,7 @@ bool RouteKeeper::tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place)
 
 // A robot that is to go through a gate lines up before it, and goes straight on behind it.
 std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, const Eigen::Vector3d& place) {
+  lining_up_ = false;
   if (const auto on = straight_on(place)) return on;
   const auto gate = planner.gate(route_.points, params_.ahead);
   const Eigen::Vector2d rest =
@@ -143,14 +149,18 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
     return std::nullopt;
   }
   const double off = std::abs(gate->axis.x() * rest.y() - gate->axis.y() * rest.x()) / before;
-  lined_up_ = before < kAtGate && off < (lined_up_ ? kStaysLinedUp : kLinedUp);
-  if (!lined_up_) {
+  if (before > kAtGate) waived_ = false;
+  // Nobody goes back for a little.
+  const bool past = lined_up_ || before < kBeforeGate - kBack;
+  lined_up_ = before < kAtGate && off < (past ? kStaysLinedUp : kLinedUp);
+  if (!lined_up_ && !waived_) {
     double s = kBeforeGate;
     while (s > kInGate && !planner.line(on_axis(*gate, -s), gate->middle, {.let_in = true}).passable)
       s -= kRouteCell;
     if (s <= kInGate) return std::nullopt;
     const Eigen::Vector3d here = on_axis(*gate, -s);
-    if ((here - place).head<2>().norm() > kThere) return here;
+    lining_up_ = (here - place).head<2>().norm() > kThere;
+    if (lining_up_) return here;
     lined_up_ = true;
   }
   const Eigen::Vector3d beyond = on_axis(*gate, kBeyondGate);

@@ -77,6 +77,8 @@ class RouteKeeper {
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
   bool lined_up_{false};          // with the gate ahead
+  bool lining_up_{false};         // on its way to where it does
+  bool waived_{false};            // it could not get there
   std::optional<Gate> inside_{};  // the gate that it goes through
 };
 

@@ -120,5 +120,29 @@ TEST(Gate, ItGoesStraightOnUntilItHasLeftIt) {
   EXPECT_LT(keeper.step(planner, {5.8, 3.05, 0}, goal, false, 6.0).target.y(), 2.4);
 }
 
+TEST(Gate, NobodyGoesBackToLineUpForALittle) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 27, 34);
+  const Eigen::Vector3d goal{8, 1.0, 0};
+  for (const double x : {4.4, 4.5}) {
+    RouteKeeper keeper;
+    EXPECT_GT(keeper.step(planner, {x, 3.13, 0}, goal, false, 0.0).target.x(), 5.5) << x;
+    keeper.clear();
+    EXPECT_LT(keeper.step(planner, {x, 3.35, 0}, goal, false, 0.0).target.x(), 4.3) << x << ": well off";
+  }
+}
+
+TEST(Gate, WhoCannotGetToWhereItLinesUpGoesOnFromWhereItIs) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 27, 34);
+  RouteKeeper keeper;
+  const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.35, 0};
+  for (const double t : {0.0, 0.5}) EXPECT_LT(keeper.step(planner, place, goal, true, t).target.x(), 4.3);
+  EXPECT_GT(keeper.step(planner, place, goal, true, 1.6).target.x(), 5.5);
+  EXPECT_FALSE(planner.has_blocked_places());
+  for (const double t : {2.0, 3.1}) keeper.step(planner, place, goal, true, t);
+  EXPECT_TRUE(planner.has_blocked_places()) << "nor there: it is the gap that is blocked";
+}
+
 }  // namespace
 }  // namespace adit::nav::test
