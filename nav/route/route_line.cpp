@@ -21,7 +21,8 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   LineCost result;
   double z = from.z();
   int index = -1, tx = 0, ty = 0;
-  bool have = false, was_known = false, letting_out = ends.let_out, letting_in = false;
+  const GroundCell* before = nullptr;  // where the height of the cell before is known
+  bool have = false, letting_out = ends.let_out, letting_in = false;
   for (int i = 0; i <= steps; ++i) {
     const double t = static_cast<double>(i) / steps;
     const int ix = route_cell(from.x() + t * way.x()), iy = route_cell(from.y() + t * way.y());
@@ -35,7 +36,8 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     if (index < 0) {
       result.cost += weight * builder_.unknown_cost();
       result.unknown += weight;
-      was_known = letting_out = false;
+      before = nullptr;
+      letting_out = false;
       continue;
     }
     const Tile& tile = builder_.current(map_, index);
@@ -55,10 +57,10 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     if (!cell.known) {
       result.unknown += weight;
     } else {
-      if (was_known && builder_.has_height(cell) && std::abs(cell.z - z) > 2 * builder_.rise()) return {};
+      if (before && std::abs(cell.z - before->z) > 2 * builder_.most_rise(*before, cell)) return {};
       z = cell.z;
     }
-    was_known = builder_.has_height(cell);
+    before = cell.known ? &cell : nullptr;
   }
   result.passable = std::abs(z - to.z()) <= kSheetReach + 0.1;
   return result;

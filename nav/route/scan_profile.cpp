@@ -9,6 +9,7 @@ namespace adit::nav {
 namespace {
 
 constexpr float kStack = 0.15f;  // m: returns this near above each other are of one thing
+constexpr float kNextReturn = 1.0f;  // m: 16 rays over 30 degrees are so far apart in 28 m
 constexpr float kCellF = static_cast<float>(kRouteCell);
 constexpr float kRun = 0.8f;       // m: over more than this nobody knows how the ground goes on
 constexpr float kWallGap = 1.5f;   // m
@@ -110,15 +111,18 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
   for (const Return& r : returns) {
     const float run = std::min(r.range - at, kRun);
     const float rise = r.z - z;
-    if (rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
+    // The foot of what stands there passed for ground that rises: the next return is right above it.
+    const bool foot = !ended && last_ground && r.range - at < kStack && z - z_before > step_ &&
+                      rise > step_ && rise < kNextReturn;
+    if (!foot && rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
     if (ended) {
       if (rise > step_ && is_face(returns, static_cast<std::size_t>(&r - returns.data())))
         map.see_obstacle(r.x, r.y, z, rise);
       continue;
     }
-    if (rise > step_ + slope_ * run) {
+    if (foot || rise > step_ + slope_ * run) {
       float base = z;
-      if (last_ground && r.range - at < kStack && z - z_before > step_) {  // its foot passed for ground
+      if (foot) {
         base = z_before;
         map.see_obstacle(last_ground->x, last_ground->y, base, z - base);
         if (pieces_.size() > first) pieces_.back().z_to = base;

@@ -14,7 +14,6 @@ constexpr int kLeast = -4;
 constexpr std::size_t kPlaces = 32;
 constexpr double kSamePlace = 0.6;  // m
 constexpr int kMostTimes = 4;
-constexpr float kTopUnit = 0.02f;  // m
 constexpr std::array<int, 8> kAroundX{1, 0, -1, 0, 1, -1, -1, 1};
 constexpr std::array<int, 8> kAroundY{0, 1, 0, -1, 1, 1, -1, -1};
 constexpr std::array<std::size_t, 8> kOpposite{2, 3, 0, 1, 6, 7, 4, 5};

@@ -18,7 +18,7 @@ inline constexpr float kUnreached = std::numeric_limits<float>::infinity();
 struct GroundCell {
   float z{0};               ///< of the ground, m
   std::int8_t evidence{0};  ///< of an obstacle; rises with each hit, falls with each ray through it
-  std::uint8_t top{0};      ///< of the obstacle above the ground, 2 cm
+  std::uint8_t top{0};      ///< of the obstacle above the ground, kTopUnit
   bool known : 1 {false};
   bool measured : 1 {false};  ///< its height; else that was drawn between the returns around it
   bool blocked : 1 {false};
@@ -26,6 +26,7 @@ struct GroundCell {
   std::int8_t aside_x{0}, aside_y{0};  ///< where in the cell the obstacle is: from its middle, kAsideUnit
   std::uint16_t scan{0};               ///< the last one that hit it
 };
+inline constexpr float kTopUnit = 0.02f;                                     ///< m
 inline constexpr float kAsideUnit = static_cast<float>(kRouteCell) / 250;  ///< m
 
 /// The sides of a tile: +x, +y, -x, -y.

@@ -25,6 +25,7 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, bo
       rise_(static_cast<float>(
           std::max(platform.step, std::max(params.slope, platform.steepest()) * kRouteCell) +
           params.step_margin + (platform.stairs ? kRiser : 0.0))),
+      doubtful_rise_(std::max(rise_, kTall * kTopUnit)),
       unknown_cost_(static_cast<float>(params.unknown_cost)),
       doubting_(doubting) {
   for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)
@@ -47,7 +48,8 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
       if (!cell.known || std::abs(cell.z - z) > 2 * kSheetReach) continue;
       // The ground under what stands there is a guess, and no step.
-      height_[in_window(x, y)] = cell.blocked || !has_height(cell) ? kNan : cell.z;
+      height_[in_window(x, y)] = cell.blocked ? kNan : cell.z;
+      sure_[in_window(x, y)] = certain(cell);
       solid_[in_window(x, y)] = solid(cell);
       if (solid(cell)) aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
     }
@@ -64,9 +66,9 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
     if (&other == &tile) continue;
     for (int c = 0; c < kTileArea; ++c) {
       const auto k = static_cast<std::size_t>(c);
-      if (tile.cells[k].known || !has_height(other.cells[k]) ||
-          std::abs(other.cells[k].z - tile.z) > kSheetReach)
+      if (tile.cells[k].known || !other.cells[k].known || std::abs(other.cells[k].z - tile.z) > kSheetReach)
         continue;
+      if (!certain(other.cells[k]) && std::abs(other.cells[k].z - tile.z) < doubtful_rise_) continue;
       solid_[in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo)] = true;
     }
   }
@@ -91,7 +93,8 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
 // Ground that is too steep between two cells is an edge to keep away from, below and above.
 void TileBuilder::find_steps() {
   const auto compare = [this](std::size_t a, std::size_t b) {
-    if (std::abs(height_[a] - height_[b]) > rise_) solid_[a] = solid_[b] = true;  // false for NaN
+    const float most = sure_[a] && sure_[b] ? rise_ : doubtful_rise_;
+    if (std::abs(height_[a] - height_[b]) > most) solid_[a] = solid_[b] = true;  // false for NaN
   };
   for (int y = 0; y < kWindow; ++y)
     for (int x = 0; x < kWindow; ++x) {

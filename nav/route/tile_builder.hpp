@@ -15,9 +15,12 @@ class TileBuilder {
   /// `doubting`: see RouteGraph.
   TileBuilder(const Platform& platform, const RouteParams& params, bool doubting = false);
 
-  /// Whether something stands in a cell, and whether its height is known.
+  /// Whether something stands in a cell.
   bool solid(const GroundCell& cell) const { return cell.blocked && (certain(cell) || cell.top > kTall); }
-  bool has_height(const GroundCell& cell) const { return cell.known && certain(cell); }
+  /// From one of two neighbouring cells whose heights are known to the other: what is higher is a step, m.
+  float most_rise(const GroundCell& a, const GroundCell& b) const {
+    return certain(a) && certain(b) ? rise_ : doubtful_rise_;
+  }
 
   /// From the map's evidence: cells and openings; the ways between these are measured when they are asked
   /// for.
@@ -37,13 +40,11 @@ class TileBuilder {
   float distance(int cell) const { return distance_[static_cast<std::size_t>(cell)]; }
   /// The cell before that one on the way from where spread() began; -1 at its beginning.
   int before(int cell) const { return before_[static_cast<std::size_t>(cell)]; }
-  /// Ground that rises more than this from one cell to the next is a step, m.
-  float rise() const { return rise_; }
   /// What a cell in the open costs (unknown: in unknown space), m per m.
   float unknown_cost() const { return unknown_cost_; }
 
  private:
-  static constexpr std::uint8_t kTall = 18;  ///< 2 cm each: higher is a wall, also from afar
+  static constexpr std::uint8_t kTall = 18;  ///< kTopUnit each: higher is a wall or an edge, also from afar
   bool certain(const GroundCell& cell) const { return !doubting_ || cell.sure; }
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
@@ -58,11 +59,11 @@ class TileBuilder {
   void connect(Tile& tile, int node);
 
   double hard_, comfort_, narrow_cost_;  // clearance that is needed and that is liked, m
-  float rise_, unknown_cost_;
+  float rise_, doubtful_rise_, unknown_cost_;
   bool doubting_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
   std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
-  std::array<bool, kWindow * kWindow> solid_{};
+  std::array<bool, kWindow * kWindow> sure_{}, solid_{};
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // of what is solid, kAsideUnit
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};
