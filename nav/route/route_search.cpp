@@ -213,7 +213,7 @@ int RouteSearch::meeting_place(const Tile& a, const TileNode& from, const Tile& 
   for (int i = first; i <= last; ++i) {
     const GroundCell& p = a.cells[static_cast<std::size_t>(side_cell(from.side, i))];
     const GroundCell& q = b.cells[static_cast<std::size_t>(side_cell(to.side, i))];
-    const float most = p.known && q.known ? builder_.most_rise(p, q) : kSheetReach;
+    const float most = builder_.most_rise(p, q);
     const float pz = p.known ? p.z : a.z, qz = q.known ? q.z : b.z;
     if (std::abs(pz - qz) <= most && (best < 0 || std::abs(i - middle) < std::abs(best - middle))) best = i;
   }

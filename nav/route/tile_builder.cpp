@@ -48,7 +48,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
       if (!cell.known || std::abs(cell.z - z) > 2 * kSheetReach) continue;
       // The ground under what stands there is a guess, and no step.
-      height_[in_window(x, y)] = cell.blocked ? kNan : cell.z;
+      height_[in_window(x, y)] = cell.blocked || !said(cell) ? kNan : cell.z;
       sure_[in_window(x, y)] = certain(cell);
       solid_[in_window(x, y)] = solid(cell);
       if (solid(cell)) aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
@@ -66,7 +66,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
     if (&other == &tile) continue;
     for (int c = 0; c < kTileArea; ++c) {
       const auto k = static_cast<std::size_t>(c);
-      if (tile.cells[k].known || !other.cells[k].known || std::abs(other.cells[k].z - tile.z) > kSheetReach)
+      if (tile.cells[k].known || !said(other.cells[k]) || std::abs(other.cells[k].z - tile.z) > kSheetReach)
         continue;
       if (!certain(other.cells[k]) && std::abs(other.cells[k].z - tile.z) < doubtful_rise_) continue;
       solid_[in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo)] = true;

@@ -17,8 +17,9 @@ class TileBuilder {
 
   /// Whether something stands in a cell.
   bool solid(const GroundCell& cell) const { return cell.blocked && (certain(cell) || cell.top > kTall); }
-  /// From one of two neighbouring cells whose heights are known to the other: what is higher is a step, m.
+  /// From one of two neighbouring cells to the other: what is higher is a step, m.
   float most_rise(const GroundCell& a, const GroundCell& b) const {
+    if (!said(a) || !said(b)) return kSheetReach;
     return certain(a) && certain(b) ? rise_ : doubtful_rise_;
   }
 
@@ -46,6 +47,8 @@ class TileBuilder {
  private:
   static constexpr std::uint8_t kTall = 18;  ///< kTopUnit each: higher is a wall or an edge, also from afar
   bool certain(const GroundCell& cell) const { return !doubting_ || cell.sure; }
+  /// What was only drawn, from afar, says nothing.
+  bool said(const GroundCell& cell) const { return cell.known && (certain(cell) || cell.measured); }
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);
