@@ -315,6 +315,54 @@ TEST(RoutePlanner, AStepThatWasOnlySeenFromAfarProvesNothing) {
   }
 }
 
+/// A line from afar over an edge, of who doubts what was seen from there.
+bool passes_edge(double height, SurfaceMap::Seen seen, bool doubting) {
+  const RouteParams params;
+  SurfaceMap map(params, ScanProfile::most_wrong(wheeled(), params));
+  RouteGraph graph(map, wheeled(), params, doubting);
+  map.begin_scan(0, 0);
+  for (int ix = 80; ix < 120; ++ix)
+    for (int iy = -20; iy < 20; ++iy)
+      map.see_free(ix, iy, ix < 100 ? 0.0f : static_cast<float>(height), 0.0f, seen);
+  return graph.line().line({9, 0, 0}, {11, 0, height}).passable;
+}
+
+TEST(RoutePlanner, AHighEdgeIsOneAlsoFromAfar) {
+  using Seen = SurfaceMap::Seen;
+  EXPECT_FALSE(passes_edge(0.30, Seen::measured, false));
+  EXPECT_TRUE(passes_edge(0.30, Seen::measured, true));
+  EXPECT_FALSE(passes_edge(0.45, Seen::measured, true));
+  EXPECT_TRUE(passes_edge(0.45, Seen::between, true)) << "what was only drawn says nothing";
+}
+
+TEST(RoutePlanner, WhatWasSeenFromNearIsNotChangedFromAfar) {
+  SurfaceMap map(RouteParams{}, 0.5f);
+  const auto look = [&](double from, float z) {
+    for (int scan = 0; scan < 10; ++scan) {
+      map.begin_scan(from, 0);
+      map.see_free(10, 0, z, 0.0f);
+    }
+    return map.tile(map.at_cell(10, 0, 0)).cells[static_cast<std::size_t>(cell_in_tile(10, 0))].z;
+  };
+  EXPECT_NEAR(look(12, 0.05f), 0.05, 0.01);
+  EXPECT_NEAR(look(3, 0.2f), 0.2, 0.01);
+  EXPECT_NEAR(look(12, 0.05f), 0.2, 0.01);
+  EXPECT_NEAR(look(3, 0.1f), 0.1, 0.01);
+}
+
+TEST(RoutePlanner, AWallFarAwayIsNoGroundThatRises) {
+  // Its lowest return is half a metre up, the next one too far above that to be in the way of a robot.
+  RoutePlanner planner(wheeled());
+  std::vector<Eigen::Vector3f> points;
+  for (float y = -1; y < 1; y += 0.02f) {
+    for (float x = 0.7f; x < 16.5f; x += 0.2f) points.emplace_back(x, y, 0.0f);
+    for (const float z : {0.4f, 1.25f, 2.1f}) points.emplace_back(17.2f, y, z);
+  }
+  for (int scan = 0; scan < 5; ++scan) planner.add_scan(points, Pose3::level({0, 0, 0}, 0), 0.1 * scan);
+  EXPECT_TRUE(planner.line({5, 0, 0}, {15.5, 0, 0}).passable);
+  EXPECT_FALSE(planner.line({5, 0, 0}, {18.5, 0, 0}).passable);
+}
+
 TEST(RoutePlanner, NoRampNoWayUp) {
   TwoFloors floors(false);
   EXPECT_EQ(floors.planner.plan({2, 2, 0}, {2, 2, 3}).status, RouteStatus::unreachable);
