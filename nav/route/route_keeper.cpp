@@ -37,6 +37,12 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double leng
   return points.back();
 }
 
+// A height that is not given is a place of its own.
+bool same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const bool level = std::isnan(a.z()) ? std::isnan(b.z()) : std::abs(a.z() - b.z()) <= kSameGoal;
+  return level && (a - b).head<2>().norm() <= kSameGoal;
+}
+
 // A place on the axis of a gate, so far behind its middle.
 Eigen::Vector3d on_axis(const Gate& gate, double behind) {
   return {gate.middle.x() + behind * gate.axis.x(), gate.middle.y() + behind * gate.axis.y(),
@@ -195,7 +201,7 @@ RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place
 
 RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place, const Eigen::Vector3d& goal,
                             bool blocked, double stamp_s) {
-  if (!goal_ || (*goal_ - goal).head<2>().norm() > kSameGoal) {
+  if (!goal_ || !same_place(*goal_, goal)) {
     clear();
     goal_ = goal;
   }

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "nav/route/route_keeper.hpp"
 #include "tests/nav/route_world.hpp"
 
 namespace adit::nav::test {
@@ -244,6 +245,15 @@ TEST(RoutePlanner, TwoFloorsWithARamp) {
   const Route level = floors.planner.plan({2, 2, 3}, {18, 2, kNan});
   ASSERT_TRUE(level.found());
   EXPECT_NEAR(level.length, 16, 0.2);
+}
+
+TEST(RoutePlanner, TheSamePlaceOnAnotherFloorIsAnotherGoal) {
+  TwoFloors floors(true);
+  RouteKeeper keeper;
+  keeper.step(floors.planner, {2, 2, 0}, {8, 2, std::nan("")}, false, 0.0);
+  EXPECT_LT(keeper.route().length, 7);
+  keeper.step(floors.planner, {2, 2, 0}, {8, 2, 3}, false, 0.1);
+  EXPECT_GT(keeper.route().length, 15);
 }
 
 TEST(RoutePlanner, WhatStandsOnTheFloorBelowARampIsNotItsGround) {
