@@ -34,7 +34,7 @@ constexpr double kArrived = 0.35;  // m: the goal's tolerance, and what a scan i
 constexpr double kDrift = 0.03;    // of the way: what dead reckoning is off by, three deviations
 constexpr double kLook = 1.0;      // s: as exact as the other time is known
 constexpr double kSent = 4.0;      // s: when the goal is sent
-constexpr double kTold = 10.0;     // s: so long after it could be known that a goal is out of reach it is told
+constexpr double kTold = 10.0;  // s: so long after it could be known that a goal is out of reach it is told
 
 /// From when the goal was sent until what the robot saw proves that it cannot get there, s.
 std::optional<double> knowable_after(const Course& course, std::span<const Pose2> poses) {
@@ -169,12 +169,13 @@ int main(int argc, char** argv) {
       std::ofstream(folder / (o.course.kind + ".yaml")) << scenario_text(o.course, slowness, planar);
     }
     if (each && !good)
-      fmt::print("{} {} seed {}: ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}){}{}{} {}\n", o.course.kind,
-                 o.course.platform, o.course.seed, o.course.start.x(), o.course.start.y(), o.course.goal.x(),
-                 o.course.goal.y(), o.collisions > 0 ? ", collided" : "",
-                 o.course.reachable && !o.arrived ? ", not reached" : "",
-                 !o.course.reachable && !good && o.collisions == 0 ? ", out of reach and that was not told in time" : "",
-                 o.error);
+      fmt::print(
+          "{} {} seed {}: ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}){}{}{} {}\n", o.course.kind, o.course.platform,
+          o.course.seed, o.course.start.x(), o.course.start.y(), o.course.goal.x(), o.course.goal.y(),
+          o.collisions > 0 ? ", collided" : "", o.course.reachable && !o.arrived ? ", not reached" : "",
+          !o.course.reachable && !good && o.collisions == 0 ? ", out of reach and that was not told in time"
+                                                            : "",
+          o.error);
   }
   fmt::print(
       "| | goals | reached | out of reach | told | at the latest after, s | after it could be known, s | "

@@ -49,9 +49,9 @@ class CollisionMonitor {
   /// The newest scan: points in base_link, m; the body in the odometry frame when it was taken; the time
   /// that it came, s.
   void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
-  /// What may be driven of `wanted` (body frame) by a robot that is at `odom`, at `now_s`, and drives at `moves`
-  /// (body frame; of what turns about its base_link: a car's without the rear axle's share) now. Where it
-  /// cannot lose as much speed as the arc of `wanted` needs, it brakes on the arc that it is on.
+  /// What may be driven of `wanted` (body frame) by a robot that is at `odom`, at `now_s`, and drives at
+  /// `moves` (body frame; of what turns about its base_link: a car's without the rear axle's share) now.
+  /// Where it cannot lose as much speed as the arc of `wanted` needs, it brakes on the arc that it is on.
   Verdict check(const Twist2& wanted, const Pose2& odom, double now_s, Policy policy,
                 const Twist2& moves = {}) const;
   bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }
@@ -59,8 +59,8 @@ class CollisionMonitor {
  private:
   /// How long `velocity` can be driven until the body touches something, s, at most `horizon`.
   double free_time(const Twist2& velocity, const Pose2& odom, double horizon) const;
-  /// How much of `wanted`, 0 to 1, can be driven and braked before the body touches what stands, or, by its own
-  /// motion, what moves.
+  /// How much of `wanted`, 0 to 1, can be driven and braked before the body touches what stands, or, by its
+  /// own motion, what moves.
   double share(const Twist2& wanted, const Pose2& odom, double now_s) const;
   /// The same of what moves; braking takes `brake` s from all of `wanted`.
   double share_before_movers(const Twist2& wanted, const Pose2& odom, double now_s, double brake) const;

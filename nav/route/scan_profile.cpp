@@ -8,7 +8,7 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kStack = 0.15f;  // m: returns this near above each other are of one thing
+constexpr float kStack = 0.15f;      // m: returns this near above each other are of one thing
 constexpr float kNextReturn = 1.0f;  // m: 16 rays over 30 degrees are so far apart in 28 m
 constexpr float kCellF = static_cast<float>(kRouteCell);
 constexpr float kRun = 0.8f;       // m: over more than this nobody knows how the ground goes on

@@ -274,7 +274,8 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   if (measured && !cell.measured) {
     cell.z = z;
     if (std::abs(z - before) > 0.02f) mark_around(t, ix, iy);  // it may be a step now
-  } else if (measured == cell.measured && (sure || !cell.sure)) {  // nor what is seen from afar from what was near
+  } else if (measured == cell.measured &&
+             (sure || !cell.sure)) {  // nor what is seen from afar from what was near
     cell.z += 0.25f * (z - cell.z);
   }
   if (sure && !cell.sure && (measured || !cell.measured)) {

@@ -26,7 +26,7 @@ struct GroundCell {
   std::int8_t aside_x{0}, aside_y{0};  ///< where in the cell the obstacle is: from its middle, kAsideUnit
   std::uint16_t scan{0};               ///< the last one that hit it
 };
-inline constexpr float kTopUnit = 0.02f;                                     ///< m
+inline constexpr float kTopUnit = 0.02f;                                   ///< m
 inline constexpr float kAsideUnit = static_cast<float>(kRouteCell) / 250;  ///< m
 
 /// The sides of a tile: +x, +y, -x, -y.

@@ -348,8 +348,9 @@ double turns_towards_a_wall(double speed, double apart, double turn, bool tells_
     const double time = kDt * i;
     if (i % 10 == 0) seen.look(time);
     if (i % 5 == 0)
-      allowed = seen.monitor.check({speed, 0, speed * turn}, seen.pose, time, Policy::stop,
-                                   tells_how_it_moves ? v : Twist2{})
+      allowed = seen.monitor
+                    .check({speed, 0, speed * turn}, seen.pose, time, Policy::stop,
+                           tells_how_it_moves ? v : Twist2{})
                     .velocity;
     v.vx += std::clamp(allowed.vx - v.vx, -p.max_acceleration * kDt, p.max_acceleration * kDt);
     if (allowed.vx > 1e-3) bend += std::clamp(allowed.wz / allowed.vx - bend, -kBends * kDt, kBends * kDt);
