@@ -34,8 +34,7 @@ struct LocalPlannerParams {
   double retreat{1.2};   ///< backs away this far to look for another way, m, [0.5, 3]
   int retreats{2};       ///< as often, until it came nearer to the goal again; then it stays blocked, [0, 10]
   double effort{20.0};  ///< drives this long without coming nearer to a goal, then it is blocked, s, [1, 600]
-  double effort_near{4.0};  ///< the same within effort_range of it, where there is no way round, and as long
-                            ///< as one whole turn takes, s, [1, 600]
+  double effort_near{4.0};   ///< the same within effort_range of it, and a whole turn more, s, [1, 600]
   double effort_range{1.0};  ///< m, [0, 10]
   double rest{30.0};         ///< and stays blocked this long before it tries again, s, [0, 3600]
   PathSpeedParams speed{};
