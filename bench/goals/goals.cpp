@@ -169,13 +169,14 @@ int main(int argc, char** argv) {
       std::ofstream(folder / (o.course.kind + ".yaml")) << scenario_text(o.course, slowness, planar);
     }
     if (each && !good)
-      fmt::print(
-          "{} {} seed {}: ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}){}{}{} {}\n", o.course.kind, o.course.platform,
-          o.course.seed, o.course.start.x(), o.course.start.y(), o.course.goal.x(), o.course.goal.y(),
-          o.collisions > 0 ? ", collided" : "", o.course.reachable && !o.arrived ? ", not reached" : "",
-          !o.course.reachable && !good && o.collisions == 0 ? ", out of reach and that was not told in time"
-                                                            : "",
-          o.error);
+      fmt::print("{} {} seed {}: ({:.1f}, {:.1f}) to ({:.1f}, {:.1f}){}{}{} {}\n", o.course.kind,
+                 o.course.platform, o.course.seed, o.course.start.x(), o.course.start.y(), o.course.goal.x(),
+                 o.course.goal.y(), o.collisions > 0 ? ", collided" : "",
+                 o.course.reachable && !o.arrived ? ", not reached" : "",
+                 !o.course.reachable && !good && o.error.empty() && o.collisions == 0
+                     ? ", out of reach and that was not told in time"
+                     : "",
+                 o.error);
   }
   fmt::print(
       "| | goals | reached | out of reach | told | at the latest after, s | after it could be known, s | "

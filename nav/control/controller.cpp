@@ -50,8 +50,10 @@ Twist2 Controller::follow(const Pose2& odom, double dt) {
 void Controller::sent(const Twist2& velocity) {
   last_ = velocity;
   // A car that does not move was not told to steer.
-  steering_ = std::fabs(velocity.vx) < kNoWay ? steering_before_
-                                              : std::atan(platform_.wheelbase * velocity.wz / velocity.vx);
+  steering_ = std::fabs(velocity.vx) < kNoWay
+                  ? steering_before_
+                  : std::clamp(std::atan(platform_.wheelbase * velocity.wz / velocity.vx),
+                               -platform_.max_steering, platform_.max_steering);
   sent_turn_ = velocity.wz;
   last_.wz *= grip_;
 }

@@ -10,6 +10,8 @@ constexpr int kMostStrides = 160;  ///< of one sweep
 constexpr float kDeeper = 0.002f;  ///< m: less is not "deeper": sliding along a wall is allowed
 constexpr double kCreep = 0.02;    ///< m/s: less than this is standing
 constexpr int kShares = 10;        ///< of a velocity that are tried against what moves
+constexpr double kSlow = 0.2;      ///< m/s: who is slower stands within a hand; odometry may be noise
+constexpr double kFastest = 1.5;   ///< of the platform's speed: more is no velocity
 constexpr double kNext = 0.05;     ///< s from one check to the next
 constexpr double kTick = 0.06;     ///< s between the looks at where it is then
 constexpr std::size_t kMostMoving = Tracker::kMost * Mover::kMost;
@@ -93,11 +95,16 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
             cause};
   }
   // Who turns towards something at speed cannot be as slow at once as that arc needs: he would be beyond.
-  const double lost = platform_.max_acceleration * kNext;
-  if (speed_of(moves) - speed_of(allowed) > lost) {
-    const double kept = 1 - params_.braking_share * lost / speed_of(moves);
+  const double lost = platform_.max_acceleration * kNext, speed = speed_of(moves);
+  const bool ahead = moves.vx * wanted.vx + moves.vy * wanted.vy > 0;
+  if (ahead && speed > kSlow && speed <= kFastest * platform_.max_speed && speed - speed_of(allowed) > lost) {
+    const double kept = 1 - params_.braking_share * lost / speed;
     const double braked = std::min(kept, share(moves, odom, now_s));
-    if (braked * speed_of(moves) > speed_of(allowed)) return {scaled(moves, braked), Cause::slowed};
+    Twist2 braking = scaled(moves, braked);
+    braking.vz = wanted.vz;
+    // What tracks swallow of a turn has to be asked for.
+    braking.wz = std::clamp(braking.wz / (1 - platform_.turn_slip), -platform_.max_turn, platform_.max_turn);
+    if (braked * speed > speed_of(allowed)) return {braking, Cause::slowed};
   }
   return {allowed, cause};
 }

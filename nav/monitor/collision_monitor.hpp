@@ -51,7 +51,8 @@ class CollisionMonitor {
   void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
   /// What may be driven of `wanted` (body frame) by a robot that is at `odom`, at `now_s`, and drives at
   /// `moves` (body frame; of what turns about its base_link: a car's without the rear axle's share) now.
-  /// Where it cannot lose as much speed as the arc of `wanted` needs, it brakes on the arc that it is on.
+  /// Where it cannot lose as much speed as the arc of `wanted` needs, it brakes on the arc that it is on:
+  /// faster than `wanted`, slower than `moves`. Zero `moves`: nobody knows.
   Verdict check(const Twist2& wanted, const Pose2& odom, double now_s, Policy policy,
                 const Twist2& moves = {}) const;
   bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }

@@ -13,6 +13,7 @@ constexpr double kNextCorner = 5.0;  // m
 constexpr double kInGate = 0.3;      // m before its middle
 constexpr double kBeforeGate = 1.1;  // m: there the robot lines up
 constexpr double kBack = 0.3;        // m: so much nearer it does not go back there unless it is well off
+constexpr double kSameGate = 0.5;    // m: its middle wanders with what was seen of it
 constexpr double kAtGate = 1.5;      // m: from farther off no path of the local planner leads through
 constexpr double kBeyondGate = 0.9;  // m: so far it goes straight on
 constexpr double kEnters = 0.6;      // m before its middle a robot that is lined up is in it
@@ -92,8 +93,8 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
   if (!blocked_since_) blocked_since_ = stamp_s;
   if (stamp_s - *blocked_since_ < params_.blocked) return;
   blocked_since_.reset();
-  if (lining_up_ && !waived_) {  // then from where it is
-    waived_ = true;
+  if (lines_up_for_ && !is_waived(*lines_up_for_)) {  // then from where it is
+    waived_ = lines_up_for_;
     return;
   }
   bool end = false;
@@ -116,6 +117,10 @@ double RouteKeeper::cost_to(RoutePlanner& planner, double length) const {
   return cost;
 }
 
+bool RouteKeeper::is_waived(const Eigen::Vector3d& gate) const {
+  return waived_ && (*waived_ - gate).head<2>().norm() < kSameGate;
+}
+
 // In a gate there is no room to turn: until the robot has left it, it goes straight on, as long as the route
 // still leads that way.
 std::optional<Eigen::Vector3d> RouteKeeper::straight_on(const Eigen::Vector3d& place) {
@@ -128,6 +133,7 @@ std::optional<Eigen::Vector3d> RouteKeeper::straight_on(const Eigen::Vector3d& p
   if (along < -kBeforeGate || along > kLeft || aside > kAside || next.dot(inside_->axis) <= 0) {
     inside_.reset();
     lined_up_ = false;
+    if (along > kLeft) waived_.reset();
     return std::nullopt;
   }
   return on_axis(*inside_, kBeyondGate);
@@ -144,7 +150,7 @@ bool RouteKeeper::tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place)
 
 // A robot that is to go through a gate lines up before it, and goes straight on behind it.
 std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, const Eigen::Vector3d& place) {
-  lining_up_ = false;
+  lines_up_for_.reset();
   if (const auto on = straight_on(place)) return on;
   const auto gate = planner.gate(route_.points, params_.ahead);
   const Eigen::Vector2d rest =
@@ -155,18 +161,19 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
     return std::nullopt;
   }
   const double off = std::abs(gate->axis.x() * rest.y() - gate->axis.y() * rest.x()) / before;
-  if (before > kAtGate) waived_ = false;
+  double s = kBeforeGate;
+  while (s > kInGate && !planner.line(on_axis(*gate, -s), gate->middle, {.let_in = true}).passable)
+    s -= kRouteCell;
   // Nobody goes back for a little.
-  const bool past = lined_up_ || before < kBeforeGate - kBack;
+  const bool past = lined_up_ || before < s - kBack, at_gate = rest.norm() < kAtGate;
   lined_up_ = before < kAtGate && off < (past ? kStaysLinedUp : kLinedUp);
-  if (!lined_up_ && !waived_) {
-    double s = kBeforeGate;
-    while (s > kInGate && !planner.line(on_axis(*gate, -s), gate->middle, {.let_in = true}).passable)
-      s -= kRouteCell;
+  if (!lined_up_ && !(at_gate && is_waived(gate->middle))) {
     if (s <= kInGate) return std::nullopt;
     const Eigen::Vector3d here = on_axis(*gate, -s);
-    lining_up_ = (here - place).head<2>().norm() > kThere;
-    if (lining_up_) return here;
+    if ((here - place).head<2>().norm() > kThere) {
+      if (at_gate) lines_up_for_ = gate->middle;
+      return here;
+    }
     lined_up_ = true;
   }
   const Eigen::Vector3d beyond = on_axis(*gate, kBeyondGate);

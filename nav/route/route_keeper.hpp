@@ -68,6 +68,7 @@ class RouteKeeper {
   RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place);
   std::optional<Eigen::Vector3d> straight_on(const Eigen::Vector3d& place);
   bool tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place);
+  bool is_waived(const Eigen::Vector3d& gate) const;
   std::optional<Eigen::Vector3d> gate_step(RoutePlanner& planner, const Eigen::Vector3d& place);
 
   RouteKeeperParams params_{};
@@ -76,10 +77,10 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
-  bool lined_up_{false};          // with the gate ahead
-  bool lining_up_{false};         // on its way to where it does
-  bool waived_{false};            // it could not get there
-  std::optional<Gate> inside_{};  // the gate that it goes through
+  bool lined_up_{false};                           // with the gate ahead
+  std::optional<Eigen::Vector3d> lines_up_for_{};  // the gate it is near, on its way to where it lines up
+  std::optional<Eigen::Vector3d> waived_{};        // the one where it could not get there
+  std::optional<Gate> inside_{};                   // the gate that it goes through
 };
 
 }  // namespace adit::nav

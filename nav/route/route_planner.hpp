@@ -34,7 +34,7 @@ class RoutePlanner {
 
   /// The way from one place to another. Goal: z NaN is the floor nearest to the start's, and
   /// where none is known any. Never through a known obstacle. Where nothing else leads
-  /// there, steps that were only seen from afar do not count: a way that has to be looked at.
+  /// there, steps up to 0.36 m that were only seen from afar do not count: a way that has to be looked at.
   Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   /// That place was found blocked, whatever the scans say; it counts for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);

@@ -270,19 +270,20 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
     return;
   }
   const float before = cell.z;
-  // From afar stairs look like a ramp: that takes nothing from what was measured.
-  if (measured && !cell.measured) {
+  // From afar stairs look like a ramp: what is drawn takes nothing from what was measured, and what is seen
+  // from afar nothing from what was seen from near.
+  const bool counts = sure || !cell.sure;
+  if (counts && measured && !cell.measured) {
     cell.z = z;
     if (std::abs(z - before) > 0.02f) mark_around(t, ix, iy);  // it may be a step now
-  } else if (measured == cell.measured &&
-             (sure || !cell.sure)) {  // nor what is seen from afar from what was near
+  } else if (counts && measured == cell.measured) {
     cell.z += 0.25f * (z - cell.z);
   }
   if (sure && !cell.sure && (measured || !cell.measured)) {
     cell.z = z;
     cell.sure = true;
   }
-  cell.measured |= measured;
+  cell.measured |= measured && counts;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
   if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;

@@ -42,16 +42,21 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
     pass_on(*velocity);
   else if (std::holds_alternative<Stand>(motion_))
-    outputs_.velocity({});
+    send({});
+}
+
+void Navigation::send(const Twist2& velocity) {
+  sent_speed_ = std::hypot(velocity.vx, velocity.vy);
+  outputs_.velocity(velocity);
 }
 
 void Navigation::step(Time now) {
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
     pass_on(*velocity);
   else if (std::holds_alternative<Stand>(motion_))
-    outputs_.velocity({});
+    send({});
   else
-    outputs_.velocity(along_plan(now));
+    send(along_plan(now));
 }
 
 nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
@@ -60,6 +65,10 @@ nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
   Twist2 moves = localisation_.twist();
   moves.vz = 0;
   if (!params_.platform.sideways()) moves.vy = 0;
+  // Whatever odometry says, the robot is told to be slower from one time to the next.
+  const double speed = std::hypot(moves.vx, moves.vy);
+  if (speed > sent_speed_)
+    moves = {moves.vx * sent_speed_ / speed, moves.vy * sent_speed_ / speed, moves.wz * sent_speed_ / speed};
   return monitor_.check(wanted, localisation_.odom().planar(), seconds(now().time_since_epoch()), policy,
                         moves);
 }
@@ -69,7 +78,7 @@ void Navigation::pass_on(const Velocity& wanted) {
   const Policy by_hand = params_.platform.manual_collision_stop ? Policy::stop_seen : Policy::limit;
   const auto verdict = guarded(limited(wanted.twist), wanted.by_program ? Policy::stop : by_hand);
   watch_warning(verdict.cause, now());
-  outputs_.velocity(verdict.velocity);
+  send(verdict.velocity);
 }
 
 void Navigation::watch_warning(nav::CollisionMonitor::Cause cause, Time now) {

@@ -75,6 +75,7 @@ class Navigation : public Component, public NavigationInput {
   double climb() const;
   bool at_height() const;
   Twist2 limited(const Twist2& wanted) const;
+  void send(const Twist2& velocity);
   void pass_on(const Velocity& wanted);
   nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;
   void plan(std::shared_ptr<Scan> scan, Time now);
@@ -95,6 +96,7 @@ class Navigation : public Component, public NavigationInput {
   std::array<std::optional<Time>, 2> warned_{};  // by Warning: when its cause was there last
   std::optional<Time> held_since_{};  // the monitor stops the robot, with no more than short breaks
   Time held_last_{};
+  double sent_speed_{0};               // of the last velocity, m/s
   Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
   Cycle planning_{};
   std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning

@@ -373,6 +373,14 @@ TEST(CollisionMonitor, WhoTurnsTowardsAWallTooFastBrakesOnItsOwnArc) {
   EXPECT_LT(blind, 0.0) << "braking on the arc that was asked for is too late";
 }
 
+TEST(CollisionMonitor, AVelocityThatIsNoneIsNotDriven) {
+  Seen seen({{0.45, 0.7, -3, 3}});
+  const Twist2 wanted{0.5, 0, 0};
+  const Twist2 allowed = seen.ask(wanted).velocity;
+  for (const Twist2& moves : {Twist2{500, 0, 0}, Twist2{-0.5, 0, 0}, Twist2{0.1, 0.1, 0}})
+    EXPECT_EQ(seen.monitor.check(wanted, seen.pose, 0, Policy::stop, moves).velocity, allowed) << moves.vx;
+}
+
 TEST(CollisionMonitor, WhatRaysPassedIsNotRememberedHoweverNear) {
   // Somebody who stood at the nose, nearer than the lidar sees, and left.
   Platform p = wheeled();

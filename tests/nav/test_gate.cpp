@@ -144,5 +144,13 @@ TEST(Gate, WhoCannotGetToWhereItLinesUpGoesOnFromWhereItIs) {
   EXPECT_TRUE(planner.has_blocked_places()) << "nor there: it is the gap that is blocked";
 }
 
+TEST(Gate, WhoIsBlockedFarBeforeItLooksForAnotherWay) {
+  RoutePlanner planner(wheeled());
+  tell_hall(planner, 27, 34);
+  RouteKeeper keeper;
+  for (const double t : {0.0, 0.5, 1.6, 2.7}) keeper.step(planner, {2.5, 3.05, 0}, {8, 1.0, 0}, true, t);
+  EXPECT_TRUE(planner.has_blocked_places());
+}
+
 }  // namespace
 }  // namespace adit::nav::test

@@ -358,6 +358,11 @@ TEST(RoutePlanner, WhatWasSeenFromNearIsNotChangedFromAfar) {
   EXPECT_NEAR(look(3, 0.2f), 0.2, 0.01);
   EXPECT_NEAR(look(12, 0.05f), 0.2, 0.01);
   EXPECT_NEAR(look(3, 0.1f), 0.1, 0.01);
+  map.begin_scan(3, 0);
+  map.see_free(11, 0, 0.0f, 0.0f, SurfaceMap::Seen::between);
+  map.begin_scan(13, 0);
+  map.see_free(11, 0, 0.3f, 0.0f);
+  EXPECT_EQ(map.tile(map.at_cell(11, 0, 0)).cells[static_cast<std::size_t>(cell_in_tile(11, 0))].z, 0.0f);
 }
 
 TEST(RoutePlanner, AWallFarAwayIsNoGroundThatRises) {
