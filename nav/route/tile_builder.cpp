@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
 
 #include "nav/riser.hpp"
 
@@ -12,6 +14,9 @@ constexpr float kUnit = 16.0f;  // of a cell's cost
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kCellF = static_cast<float>(kRouteCell);
 constexpr double kAsideOfGap = 0.03;  // m
+constexpr int kSteep = 5;             // cells, and fewer: a step is looked for over them
+constexpr int kLongSteep = 13;        // when it was seen from afar
+constexpr double kNoise = 0.05;       // m: of two heights that were measured from afar
 
 }  // namespace
 
@@ -27,6 +32,9 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, bo
           params.step_margin + (platform.stairs ? kRiser : 0.0))),
       doubtful_rise_(std::max(rise_, kTall * kTopUnit)),
       unknown_cost_(static_cast<float>(params.unknown_cost)),
+      step_(platform.step + params.step_margin),
+      slope_(std::max(params.slope, platform.steepest())),
+      climbs_stairs_(platform.stairs),
       doubting_(doubting) {
   for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)
     cost_of_[d2] = cost_at(std::sqrt(static_cast<double>(d2)) * kRouteCell);
@@ -60,16 +68,18 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   solid_.fill(false);
   aside_.fill({0, 0});
   gather_tile(tile, tile.z, kTileHalo, kTileHalo);
-  // What is ground of another floor, higher or lower by less than a storey, is an edge of this one.
+  // What is ground of another floor, higher or lower by less than a storey, is an edge of this one; and what
+  // stands there stands here, too.
   for (int i = map.first(tile.tx, tile.ty); i >= 0; i = map.tile(i).next) {
     const Tile& other = map.tile(i);
     if (&other == &tile) continue;
     for (int c = 0; c < kTileArea; ++c) {
       const auto k = static_cast<std::size_t>(c);
-      if (tile.cells[k].known || !said(other.cells[k]) || std::abs(other.cells[k].z - tile.z) > kSheetReach)
-        continue;
-      if (!certain(other.cells[k]) && std::abs(other.cells[k].z - tile.z) < doubtful_rise_) continue;
-      solid_[in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo)] = true;
+      const GroundCell& cell = other.cells[k];
+      const float off = std::abs(cell.z - tile.z);
+      if (tile.cells[k].known || !cell.known || off > kSheetReach) continue;
+      const bool edge = said(cell) && (certain(cell) || off >= doubtful_rise_);
+      if (edge || solid(cell)) solid_[in_window(c % kTileSide + kTileHalo, c / kTileSide + kTileHalo)] = true;
     }
   }
   for (int dy = -1; dy <= 1; ++dy)
@@ -92,6 +102,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
 
 // Ground that is too steep between two cells is an edge to keep away from, below and above.
 void TileBuilder::find_steps() {
+  float lowest = std::numeric_limits<float>::max(), highest = std::numeric_limits<float>::lowest();
   const auto compare = [this](std::size_t a, std::size_t b) {
     const float most = sure_[a] && sure_[b] ? rise_ : doubtful_rise_;
     if (std::abs(height_[a] - height_[b]) > most) solid_[a] = solid_[b] = true;  // false for NaN
@@ -100,7 +111,35 @@ void TileBuilder::find_steps() {
     for (int x = 0; x < kWindow; ++x) {
       if (x + 1 < kWindow) compare(in_window(x, y), in_window(x + 1, y));
       if (y + 1 < kWindow) compare(in_window(x, y), in_window(x, y + 1));
+      lowest = std::fmin(lowest, height_[in_window(x, y)]);  // not the NaN
+      highest = std::fmax(highest, height_[in_window(x, y)]);
     }
+  if (climbs_stairs_ || highest - lowest <= rise_) return;
+  for (int cells = 2; cells < (doubting_ ? kLongSteep : kSteep); ++cells)
+    for (int i = 0; i < kWindow; ++i)
+      for (int j = 0; j + cells < kWindow; ++j) {
+        find_steep(in_window(j, i), 1, cells);
+        find_steep(in_window(i, j), kWindow, cells);
+      }
+}
+
+// The returns of a riser, or drift, smear a step over cells that rise little each; and from afar, where
+// nobody can tell stairs from a ramp, there is what is too steep for either. What a shorter piece of it
+// explains is left to that.
+void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
+  const std::size_t to = from + stride * static_cast<std::size_t>(cells);
+  const float rise = std::abs(height_[from] - height_[to]);
+  if (!(rise > rise_)) return;
+  bool sure = cells < kSteep;
+  for (std::size_t i = from; i <= to; i += stride) {
+    if (solid_[i]) return;
+    sure = sure && sure_[i] && !std::isnan(height_[i]);
+  }
+  const double run = kRouteCell * cells;
+  const double most = sure ? std::max(step_, slope_ * run)
+                           : std::max(kTall * double{kTopUnit}, step_ + slope_ * run + kNoise);
+  if (rise <= most) return;
+  for (std::size_t i = from + stride; i < to; i += stride) solid_[i] = true;
 }
 
 // From the middle of a cell of the window to the nearest obstacle, as it lies in its cell, m.

@@ -54,6 +54,7 @@ class TileBuilder {
   void gather(const SurfaceMap& map, const Tile& tile);
   void gather_tile(const Tile& from, float z, int ox, int oy);
   void find_steps();
+  void find_steep(std::size_t from, std::size_t stride, int cells);
   void measure(Tile& tile);
   std::uint8_t cost_at(double distance) const;
   double exact_clearance(int x, int y) const;
@@ -63,7 +64,8 @@ class TileBuilder {
 
   double hard_, comfort_, narrow_cost_;  // clearance that is needed and that is liked, m
   float rise_, doubtful_rise_, unknown_cost_;
-  bool doubting_;
+  double step_, slope_;
+  bool climbs_stairs_, doubting_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
   std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
   std::array<bool, kWindow * kWindow> sure_{}, solid_{};
