@@ -345,6 +345,70 @@ TEST(RoutePlanner, AHighEdgeIsOneAlsoFromAfar) {
   EXPECT_TRUE(passes_edge(0.45, Seen::between, true)) << "what was only drawn says nothing";
 }
 
+/// A line up ground that rises `rise` every `run` cells, by 1.2 m; every third cell was measured, from afar,
+/// and what is between was drawn.
+bool passes_rise(const Platform& platform, double rise, int run, bool doubting) {
+  const RouteParams params;
+  SurfaceMap map(params, ScanProfile::most_wrong(platform, params));
+  RouteGraph graph(map, platform, params, doubting);
+  map.begin_scan(0, 0);
+  double highest = 0;
+  for (int ix = 80; ix < 140; ++ix) {
+    const double z = std::min(1.2, ix < 100 ? 0.0 : rise * (1 + (ix - 100) / run));
+    const auto seen = ix % 3 == 0 ? SurfaceMap::Seen::measured : SurfaceMap::Seen::between;
+    for (int iy = -20; iy < 20; ++iy) map.see_free(ix, iy, static_cast<float>(z), 0.0f, seen);
+    highest = z;
+  }
+  return graph.line().line({9, 0, 0}, {13.8, 0, highest}).passable;
+}
+
+TEST(RoutePlanner, StairsAreTooSteepForARampAlsoFromAfar) {
+  Platform tracked = wheeled();
+  tracked.step = 0.15;
+  for (const bool doubting : {false, true}) {
+    EXPECT_FALSE(passes_rise(tracked, 0.2, 3, doubting)) << doubting;
+    EXPECT_TRUE(passes_rise(tracked, 0.03, 1, doubting)) << "a ramp " << doubting;
+    EXPECT_TRUE(passes_rise(legged(), 0.2, 3, doubting)) << doubting;
+  }
+  EXPECT_TRUE(passes_rise(tracked, 0.045, 1, true)) << "hardly too steep is not proven from afar";
+}
+
+TEST(RoutePlanner, AStepThatIsSmearedOverCellsIsOne) {
+  struct Ground {
+    double rise, height;  // per cell, and in all, m
+    bool passable;
+  };
+  for (const Ground& ground : {Ground{0.02, 0.4, true}, Ground{0.07, 0.2, false}}) {
+    RoutePlanner planner(wheeled());
+    for (int y = 0; y < 40; ++y)
+      for (int x = 0; x < 100; ++x) {
+        const Eigen::Vector3d place = middle(x, y, std::clamp(ground.rise * (x - 50), 0.0, ground.height));
+        planner.set_ground(place);
+        if (y % 39 == 0 || x % 99 == 0) planner.set_obstacle(place, 1);
+      }
+    planner.finish();
+    EXPECT_EQ(planner.plan({1, 2, 0}, {9, 2, kNan}).found(), ground.passable) << ground.rise;
+  }
+}
+
+TEST(RoutePlanner, WhatStandsOnAnotherFloorStandsOnThisToo) {
+  const RouteParams params;
+  for (const bool wall : {false, true}) {
+    SurfaceMap map(params, ScanProfile::most_wrong(wheeled(), params));
+    RouteGraph graph(map, wheeled(), params, true);
+    for (int scan = 0; scan < 8; ++scan) {  // from afar, a wall at the foot of what is higher
+      map.begin_scan(20, 0);
+      for (int ix = 0; ix < 16; ++ix) {
+        map.see_free(ix, 0, 0.9f, 0.0f);
+        if (wall) map.see_obstacle((static_cast<float>(ix) + 0.5f) * 0.1f, 0.85f, 0.55f, 1.0f);
+      }
+    }
+    for (int ix = 0; ix < 16; ++ix) map.see_free(ix, 0, 0.3f, 0.0f);
+    ASSERT_EQ(map.size(), 2);
+    EXPECT_EQ(graph.line().line({0.8, 0.3, 0.3}, {0.8, 1.5, 0.3}).passable, !wall);
+  }
+}
+
 TEST(RoutePlanner, WhatWasSeenFromNearIsNotChangedFromAfar) {
   SurfaceMap map(RouteParams{}, 0.5f);
   const auto look = [&](double from, float z) {
