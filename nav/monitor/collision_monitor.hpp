@@ -18,8 +18,8 @@ struct CollisionMonitorParams {
   double limit_speed{0.3};     ///< of any part of the body, where a robot is limited and not stopped, m/s
 };
 
-/// The last word on a velocity, by the newest scan alone: independent of map, planner and controller, which
-/// it watches. It sweeps the footprint along the arc of the velocity that is asked for and lets through as
+/// The last word on a velocity, by the newest scan and the odometry alone: independent of map, planner and
+/// controller, which it watches. It sweeps the footprint along the arc of the velocity that is asked for and lets through as
 /// much of it as can be braked before the body, and a margin, touch what was seen: far off everything, nearer
 /// less (the slow zone), at the margin nothing (the stop zone). Both zones grow with the speed and
 /// bend with the arc. What is inside the margin already may not come deeper: a robot that touches something

@@ -53,7 +53,7 @@ struct ClosedLoop {
       constexpr double kDt = 0.02;
       const Twist2 before = follower.command();
       const auto verdict =
-          monitor.check(follower.follow(odometry(), kDt), odometry(), time, CollisionMonitor::Policy::stop);
+          monitor.check(follower.follow(odometry(), kDt), odometry(), time, CollisionMonitor::Policy::stop, before);
       const Twist2 v = verdict.velocity;
       if (verdict.cause != CollisionMonitor::Cause::none) follower.sent(v);
       held_steps += verdict.cause == CollisionMonitor::Cause::stopped;

@@ -49,7 +49,9 @@ TEST(Allocations, NoneInACycle) {
       controller->set_plan(plan);
       air.add_scan(scan, {}, time);
       monitor.look(scan, {}, time);
-      return monitor.check(controller->follow({}, 0.05), {}, time, CollisionMonitor::Policy::stop).velocity;
+      return monitor
+          .check(controller->follow({}, 0.05), {}, time, CollisionMonitor::Policy::stop, {0.5, 0, 0.3})
+          .velocity;
     };
     cycle(0);
     const std::uint64_t before = allocations;
