@@ -81,7 +81,7 @@ double CollisionMonitor::share(const Twist2& wanted, const Pose2& odom, double n
 }
 
 CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Pose2& odom, double now_s,
-                                                  Policy policy, const Twist2& moves) const {
+                                                  Policy policy, const Driven& drives) const {
   if (wanted.zero()) return {wanted, Cause::none};
   if (!fresh(now_s)) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::stale};
   const double k = share(wanted, odom, now_s);
@@ -95,9 +95,13 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
             cause};
   }
   // Who turns towards something at speed cannot be as slow at once as that arc needs: he would be beyond.
-  const double lost = platform_.max_acceleration * kNext, speed = speed_of(moves);
+  const double lost = platform_.max_acceleration * kNext, by_odometry = speed_of(drives.velocity);
+  const Twist2 moves =
+      by_odometry > drives.told ? scaled(drives.velocity, drives.told / by_odometry) : drives.velocity;
+  const double speed = speed_of(moves);
   const bool ahead = moves.vx * wanted.vx + moves.vy * wanted.vy > 0;
-  if (ahead && speed > kSlow && speed <= kFastest * platform_.max_speed && speed - speed_of(allowed) > lost) {
+  if (ahead && speed > kSlow && by_odometry <= kFastest * platform_.max_speed &&
+      speed - speed_of(allowed) > lost) {
     const double kept = 1 - params_.braking_share * lost / speed;
     const double braked = std::min(kept, share(moves, odom, now_s));
     Twist2 braking = scaled(moves, braked);

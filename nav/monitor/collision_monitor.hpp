@@ -18,12 +18,18 @@ struct CollisionMonitorParams {
   double limit_speed{0.3};     ///< of any part of the body, where a robot is limited and not stopped, m/s
 };
 
+/// How a robot drives now; nothing: nobody knows.
+struct Driven {
+  Twist2 velocity{};  ///< by its odometry, of what it turns about: without a car's rear axle's share
+  double told{std::numeric_limits<double>::infinity()};  ///< the speed that it was told last, m/s
+};
+
 /// The last word on a velocity, by the newest scan and the odometry alone: independent of map, planner and
-/// controller, which it watches. It sweeps the footprint along the arc of the velocity that is asked for and lets through as
-/// much of it as can be braked before the body, and a margin, touch what was seen: far off everything, nearer
-/// less (the slow zone), at the margin nothing (the stop zone). Both zones grow with the speed and
-/// bend with the arc. What is inside the margin already may not come deeper: a robot that touches something
-/// can leave it, and what stands behind it does not matter to one that drives ahead.
+/// controller, which it watches. It sweeps the footprint along the arc of the velocity that is asked for and
+/// lets through as much of it as can be braked before the body, and a margin, touch what was seen: far off
+/// everything, nearer less (the slow zone), at the margin nothing (the stop zone). Both zones grow with the
+/// speed and bend with the arc. What is inside the margin already may not come deeper: a robot that touches
+/// something can leave it, and what stands behind it does not matter to one that drives ahead.
 ///
 /// What moves (it has a tracker of its own) is taken to go on as it does: the robot brakes in time to stand
 /// when they meet, and may always drive away from it, or be where it does not come.
@@ -49,12 +55,11 @@ class CollisionMonitor {
   /// The newest scan: points in base_link, m; the body in the odometry frame when it was taken; the time
   /// that it came, s.
   void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
-  /// What may be driven of `wanted` (body frame) by a robot that is at `odom`, at `now_s`, and drives at
-  /// `moves` (body frame; of what turns about its base_link: a car's without the rear axle's share) now.
-  /// Where it cannot lose as much speed as the arc of `wanted` needs, it brakes on the arc that it is on:
-  /// faster than `wanted`, slower than `moves`. Zero `moves`: nobody knows.
+  /// What may be driven of `wanted` (body frame) by a robot that is at `odom`, at `now_s`. Where it cannot
+  /// lose as much speed as the arc of `wanted` needs, it brakes on the arc that it is on: faster than
+  /// `wanted`, slower than it `drives` and, whatever its odometry says, than it was told.
   Verdict check(const Twist2& wanted, const Pose2& odom, double now_s, Policy policy,
-                const Twist2& moves = {}) const;
+                const Driven& drives = {}) const;
   bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }
 
  private:

@@ -65,12 +65,8 @@ nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
   Twist2 moves = localisation_.twist();
   moves.vz = 0;
   if (!params_.platform.sideways()) moves.vy = 0;
-  // Whatever odometry says, the robot is told to be slower from one time to the next.
-  const double speed = std::hypot(moves.vx, moves.vy);
-  if (speed > sent_speed_)
-    moves = {moves.vx * sent_speed_ / speed, moves.vy * sent_speed_ / speed, moves.wz * sent_speed_ / speed};
   return monitor_.check(wanted, localisation_.odom().planar(), seconds(now().time_since_epoch()), policy,
-                        moves);
+                        {moves, sent_speed_});
 }
 
 void Navigation::pass_on(const Velocity& wanted) {

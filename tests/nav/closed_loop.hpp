@@ -52,8 +52,8 @@ struct ClosedLoop {
     for (int i = 0; i < 5; ++i) {
       constexpr double kDt = 0.02;
       const Twist2 before = follower.command();
-      const auto verdict =
-          monitor.check(follower.follow(odometry(), kDt), odometry(), time, CollisionMonitor::Policy::stop, before);
+      const auto verdict = monitor.check(follower.follow(odometry(), kDt), odometry(), time,
+                                         CollisionMonitor::Policy::stop, {before});
       const Twist2 v = verdict.velocity;
       if (verdict.cause != CollisionMonitor::Cause::none) follower.sent(v);
       held_steps += verdict.cause == CollisionMonitor::Cause::stopped;

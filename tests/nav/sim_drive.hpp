@@ -68,8 +68,8 @@ class SimDrive {
       }
       if ((ticks + n) % 5 != 0) continue;
       const Twist2 moves = r.controller->command();
-      const auto verdict =
-          r.monitor.check(r.controller->follow(odom, 0.05), odom, now, CollisionMonitor::Policy::stop, moves);
+      const auto verdict = r.monitor.check(r.controller->follow(odom, 0.05), odom, now,
+                                           CollisionMonitor::Policy::stop, {moves});
       if (verdict.cause != CollisionMonitor::Cause::none) r.controller->sent(verdict.velocity);
       simulation.command(n, verdict.velocity);
       if (r.held_since && (now - r.held_last > 0.5 || (odom.position() - r.held_at).norm() > 0.3))

@@ -50,7 +50,7 @@ TEST(Allocations, NoneInACycle) {
       air.add_scan(scan, {}, time);
       monitor.look(scan, {}, time);
       return monitor
-          .check(controller->follow({}, 0.05), {}, time, CollisionMonitor::Policy::stop, {0.5, 0, 0.3})
+          .check(controller->follow({}, 0.05), {}, time, CollisionMonitor::Policy::stop, {{0.5, 0, 0.3}})
           .velocity;
     };
     cycle(0);

@@ -334,27 +334,36 @@ TEST(CollisionMonitor, AnObstacleOfFewNoisyReturnsIsKeptFartherOff) {
       }
 }
 
+/// What its odometry says of how it moves: `share` of it, `late` s ago.
+struct Odometer {
+  double share{1}, late{0};
+};
+
 /// A car that drives along a wall and then wants to turn towards it; how near it came, m.
-double turns_towards_a_wall(double speed, double apart, double turn, bool tells_how_it_moves) {
+double turns_towards_a_wall(double speed, double apart, double turn, const Odometer& odometer) {
   Platform p = wheeled();
   p.drive = Drive::car;
   p.wheelbase = 0.4;
   Seen seen({{-5, 20, p.width / 2 + apart, 6}}, p);
   seen.noise = 0.02;
   double least = 10, bend = 0;
-  Twist2 v{speed, 0, 0}, allowed{};
+  Twist2 v{speed, 0, 0}, allowed = v;
+  std::vector<Twist2> driven{v};
   for (int i = 0; i < 300; ++i) {
     constexpr double kDt = 0.01, kBends = 2.0;  // s, 1/m per s
     const double time = kDt * i;
     if (i % 10 == 0) seen.look(time);
+    const auto late = static_cast<std::size_t>(std::lround(odometer.late / kDt));
+    const Twist2& was = driven[driven.size() - 1 - std::min(late, driven.size() - 1)];
+    const Twist2 told{odometer.share * was.vx, 0, odometer.share * was.wz};
     if (i % 5 == 0)
-      allowed = seen.monitor
-                    .check({speed, 0, speed * turn}, seen.pose, time, Policy::stop,
-                           tells_how_it_moves ? v : Twist2{})
-                    .velocity;
+      allowed =
+          seen.monitor.check({speed, 0, speed * turn}, seen.pose, time, Policy::stop, {told, allowed.vx})
+              .velocity;
     v.vx += std::clamp(allowed.vx - v.vx, -p.max_acceleration * kDt, p.max_acceleration * kDt);
     if (allowed.vx > 1e-3) bend += std::clamp(allowed.wz / allowed.vx - bend, -kBends * kDt, kBends * kDt);
     v.wz = bend * v.vx;
+    driven.push_back(v);
     seen.pose = seen.pose * Pose2{v.vx * kDt, p.rear_axle() * v.wz * kDt, v.wz * kDt};
     least = std::min(least, seen.world.clearance(p, seen.pose));
   }
@@ -365,10 +374,12 @@ TEST(CollisionMonitor, WhoTurnsTowardsAWallTooFastBrakesOnItsOwnArc) {
   double blind = 10;
   for (const double speed : {0.5, 1.0, 2.0})
     for (const double apart : {0.1, 0.3, 0.6})
-      for (const double turn : {0.3, 0.8, 1.2}) {
-        EXPECT_GT(turns_towards_a_wall(speed, apart, turn, true), 0.0)
-            << speed << " m/s, " << apart << " m apart, " << turn << " per m";
-        blind = std::min(blind, turns_towards_a_wall(speed, apart, turn, false));
+      for (const double turn : {0.3, 1.2}) {
+        for (const Odometer& odometer : {Odometer{}, Odometer{1.05}, Odometer{0.95}, Odometer{1, 0.1}})
+          EXPECT_GT(turns_towards_a_wall(speed, apart, turn, odometer), 0.0)
+              << speed << " m/s, " << apart << " m apart, " << turn << " per m, told " << odometer.share
+              << " of it " << odometer.late << " s late";
+        blind = std::min(blind, turns_towards_a_wall(speed, apart, turn, {0.0}));
       }
   EXPECT_LT(blind, 0.0) << "braking on the arc that was asked for is too late";
 }
@@ -378,7 +389,7 @@ TEST(CollisionMonitor, AVelocityThatIsNoneIsNotDriven) {
   const Twist2 wanted{0.5, 0, 0};
   const Twist2 allowed = seen.ask(wanted).velocity;
   for (const Twist2& moves : {Twist2{500, 0, 0}, Twist2{-0.5, 0, 0}, Twist2{0.1, 0.1, 0}})
-    EXPECT_EQ(seen.monitor.check(wanted, seen.pose, 0, Policy::stop, moves).velocity, allowed) << moves.vx;
+    EXPECT_EQ(seen.monitor.check(wanted, seen.pose, 0, Policy::stop, {moves}).velocity, allowed) << moves.vx;
 }
 
 TEST(CollisionMonitor, WhatRaysPassedIsNotRememberedHoweverNear) {
