@@ -431,15 +431,21 @@ TEST(RoutePlanner, WhatWasSeenFromNearIsNotChangedFromAfar) {
 
 TEST(RoutePlanner, AWallFarAwayIsNoGroundThatRises) {
   // Its lowest return is a foot up, the next one too far above that to be in the way of a robot.
-  RoutePlanner planner(wheeled());
-  std::vector<Eigen::Vector3f> points;
-  for (float y = -1; y < 1; y += 0.02f) {
-    for (float x = 0.7f; x < 16.5f; x += 0.2f) points.emplace_back(x, y, 0.0f);
-    for (const float z : {0.3f, 1.15f, 2.0f}) points.emplace_back(17.2f, y, z);
+  for (const float noise : {0.0f, 0.02f}) {
+    RoutePlanner planner(wheeled());
+    std::mt19937 random(1);
+    std::normal_distribution<float> off(0.0f, 1.0f);
+    for (int scan = 0; scan < 5; ++scan) {
+      std::vector<Eigen::Vector3f> points;
+      for (float y = -1; y < 1; y += 0.02f) {
+        for (float x = 0.7f; x < 16.5f; x += 0.2f) points.emplace_back(x + noise * off(random), y, 0.0f);
+        for (const float z : {0.3f, 1.15f, 2.0f}) points.emplace_back(17.2f + noise * off(random), y, z);
+      }
+      planner.add_scan(points, Pose3::level({0, 0, 0}, 0), 0.1 * scan);
+    }
+    EXPECT_TRUE(planner.line({5, 0, 0}, {15.5, 0, 0}).passable) << noise;
+    EXPECT_FALSE(planner.line({5, 0, 0}, {18.5, 0, 0}).passable) << noise;
   }
-  for (int scan = 0; scan < 5; ++scan) planner.add_scan(points, Pose3::level({0, 0, 0}, 0), 0.1 * scan);
-  EXPECT_TRUE(planner.line({5, 0, 0}, {15.5, 0, 0}).passable);
-  EXPECT_FALSE(planner.line({5, 0, 0}, {18.5, 0, 0}).passable);
 }
 
 TEST(RoutePlanner, NoRampNoWayUp) {
