@@ -44,10 +44,11 @@ bool in_map_frame(const PlanOptions& options, const PcdFile& cloud, double lidar
 void print(const PlanOptions& options, std::size_t cycle, double terrain_ms, double plan_ms,
            const nav::Plan& plan) {
   if (!options.json) {
-    std::printf("cycle %zu: terrain %.3f ms, plan %.3f ms, %s\n", cycle, terrain_ms, plan_ms,
-                plan.blocked   ? "blocked"
-                : plan.arrived ? "arrived"
-                               : ("path of " + std::to_string(plan.length) + " m").c_str());
+    std::printf("cycle %zu: terrain %.3f ms, plan %.3f ms, ", cycle, terrain_ms, plan_ms);
+    if (plan.blocked || plan.arrived)
+      std::puts(plan.blocked ? "blocked" : "arrived");
+    else
+      std::printf("path of %.2f m\n", plan.length);
     return;
   }
   nlohmann::ordered_json line{
