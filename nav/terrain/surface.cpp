@@ -17,8 +17,9 @@ constexpr float kMostCost = 0.9f;    ///< of what can be passed
 
 }  // namespace
 
-Surface::Surface(const SurfaceParams& params) : params_(params), weight_(kSide * kSide, 0.0f) {
-  places_.reserve(kSide * kSide / 4);
+Surface::Surface(const SurfaceParams& params)
+    : params_(params), weight_(kSide * kSide, 0.0f), followed_(kSide * kSide, 0) {
+  places_.reserve(kSide * kSide);
 }
 
 float Surface::cost(float share) const {
@@ -29,6 +30,7 @@ float Surface::cost(float share) const {
 
 void Surface::work_out(const GroundGrid& ground, std::span<const std::uint8_t> solid) {
   places_.clear();
+  std::fill(followed_.begin(), followed_.end(), 0);
   const std::uint8_t* gaps = ground.gaps();
   for (std::size_t k = 0; k < weight_.size(); ++k) weight_[k] = gaps[k] == 0 && solid[k] == 0 ? 1.0f : 0.0f;
   for (int i = kReach; i < kSide - kReach; i += 2) {
@@ -57,6 +59,40 @@ void Surface::add_rows(const GroundGrid& ground, int i) {
   }
 }
 
+Surface::Step Surface::step_at(const GroundGrid& ground, int middle, float gx, float gy) const {
+  constexpr float kRun = 2 * kCell, kShare = 1 - kRun * 1.5f / ((2 * kReach + 1) * kCell);
+  Step step;
+  const auto edge = [&](int before, int after, float gradient) {
+    if (weight_[static_cast<std::size_t>(before)] == 0 || weight_[static_cast<std::size_t>(after)] == 0)
+      return;
+    const float rise = ground.height(after) - ground.height(before);
+    const float height = std::min(std::fabs(rise - kRun * gradient) / kShare, std::fabs(rise));
+    if (height > step.height) step = {height, rise > 0 ? after : before};
+  };
+  edge(middle - kSide, middle + kSide, gx);
+  edge(middle - 1, middle + 1, gy);
+  return step;
+}
+
+void Surface::follow_step(const GroundGrid& ground, int i, int j, float gx, float gy) {
+  const auto add = [&](int cell) {
+    std::uint8_t& followed = followed_[static_cast<std::size_t>(cell)];
+    if (!followed) places_.push_back({static_cast<std::uint16_t>(cell), Layer::step, 1.0f});
+    followed = 1;
+  };
+  for (int a = i - 1; a <= i + 1; ++a)
+    for (int b = j - 1; b <= j + 1; ++b) {
+      const int cell = a * kSide + b;
+      const Step step = step_at(ground, cell, gx, gy);
+      if (step.height <= params_.blocking_step) continue;
+      add(cell);
+      // Who stands above touches nothing there: to him the step begins where the ground ends.
+      const bool high = weight_[static_cast<std::size_t>(cell)] != 0 &&
+                        ground.height(step.above) - ground.height(cell) < step.height / 2;
+      if (!high) add(step.above);
+    }
+}
+
 void Surface::judge(const GroundGrid& ground, int i, int j) {
   float n = 0, x = 0, xx = 0, z = 0, xz = 0, zz = 0, y = 0, yy = 0, xy = 0, yz = 0;
   for (int dj = -kReach; dj <= kReach; ++dj) {
@@ -82,23 +118,13 @@ void Surface::judge(const GroundGrid& ground, int i, int j) {
   const float slope = std::sqrt(gx * gx + gy * gy) / params_.slope;
   const float rms = std::sqrt(std::max(0.0f, szz - gx * sxz - gy * syz) / n);
 
-  constexpr float kRun = 2 * kCell, kShare = 1 - kRun * 1.5f / ((2 * kReach + 1) * kCell);
-  float step = 0;
   const int middle = i * kSide + j;
-  const auto edge = [&](int before, int after, float gradient) {
-    if (weight_[static_cast<std::size_t>(before)] == 0 || weight_[static_cast<std::size_t>(after)] == 0)
-      return;
-    const float jump = ground.height(after) - ground.height(before) - kRun * gradient;
-    const float seen = std::fabs(ground.height(after) - ground.height(before));
-    step = std::max(step, std::min(std::fabs(jump) / kShare, seen));
-  };
-  edge(middle - kSide, middle + kSide, gx);
-  edge(middle - 1, middle + 1, gy);
-
+  const float step = step_at(ground, middle, gx, gy).height;
+  if (step > params_.blocking_step) follow_step(ground, i, j, gx, gy);
   const bool certain = n >= kCertain && det > kCertainSpread * n * (sxx + syy);
   Place place{static_cast<std::uint16_t>(middle), Layer::slope,
               certain && slope > kOverSlope ? 1.0f : cost(slope)};
-  const float step_cost = step > params_.blocking_step ? 1.0f : cost(step / params_.step);
+  const float step_cost = step > params_.blocking_step ? 0.0f : cost(step / params_.step);  // followed
   if (step_cost > place.cost) place = {place.index, Layer::step, step_cost};
   const float rough = cost(rms / (params_.rough * params_.step));
   if (rough > place.cost) place = {place.index, Layer::roughness, rough};

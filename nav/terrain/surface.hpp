@@ -29,7 +29,8 @@ class Surface {
   /// `solid`: cells of the ground's window that hold an obstacle, and so tell nothing of the ground.
   void work_out(const GroundGrid& ground, std::span<const std::uint8_t> solid);
 
-  /// A place that costs something: every second cell of the ground.
+  /// A place that costs something: every second cell of the ground, and each that a step crosses which is too
+  /// high.
   struct Place {
     std::uint16_t index;  ///< in the ground's window
     Layer layer;
@@ -46,11 +47,20 @@ class Surface {
   };
   void add_rows(const GroundGrid& ground, int i);
   void judge(const GroundGrid& ground, int i, int j);
+  struct Step {
+    float height{};
+    int above{-1};  ///< the cell beside, on its upper side
+  };
+  /// The step at a cell of ground that else rises by that gradient.
+  Step step_at(const GroundGrid& ground, int middle, float gx, float gy) const;
+  /// Every cell at and around one where a step is too high: where it ends, and where it begins, counts.
+  void follow_step(const GroundGrid& ground, int i, int j, float gx, float gy);
   /// Of ground that asks for this share of what the platform can.
   float cost(float share) const;
 
   SurfaceParams params_;
-  std::vector<float> weight_;  ///< of each cell of the window: 1 measured, 0 not
+  std::vector<float> weight_;           ///< of each cell of the window: 1 measured, 0 not
+  std::vector<std::uint8_t> followed_;  ///< the same: it is among the places, as a step that is too high
   Sums sums_{};
   std::vector<Place> places_{};
 };

@@ -34,7 +34,7 @@ SurfaceParams surface_params(const Platform& platform, const TerrainParams& para
   surface.slope = static_cast<float>(platform.steepest());
   surface.step = static_cast<float>(std::max(platform.step, 0.02));
   // On stairs the edges seen from below are uncertain; what is too high for legs stands in the way anyway.
-  if (!platform.stairs) surface.blocking_step = static_cast<float>(platform.step + 1.5 * params.step_margin);
+  if (!platform.stairs) surface.blocking_step = static_cast<float>(platform.step + params.step_margin);
   return surface;
 }
 
