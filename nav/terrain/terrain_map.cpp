@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "nav/riser.hpp"
 
@@ -48,7 +49,8 @@ TerrainMap::TerrainMap(const Platform& platform, const TerrainParams& params)
       obstacles_(body_, params),
       drops_(params),
       surface_(surface_params(platform, params)),
-      solid_(GroundGrid::kSide * GroundGrid::kSide, 0) {
+      solid_(GroundGrid::kSide * GroundGrid::kSide, 0),
+      drop_(GroundGrid::kSide * GroundGrid::kSide, 0) {
   near_.reserve(kUsualReturns);
   under_.reserve(platform.stairs ? kMostUnder : 0);
   deep_.reserve(kMostDeep);
@@ -154,14 +156,27 @@ void TerrainMap::classify(const View& view) {
     if (p.z() - ground_.at(p.x(), p.y()) < drop) drops_.below(view, p, ground_);
 }
 
+// With the last cell of the ground before each: where in its cell a drop begins nobody knows.
+void TerrainMap::write_drops() {
+  constexpr int kSide = GroundGrid::kSide;
+  std::fill(drop_.begin(), drop_.end(), std::uint8_t{0});
+  const auto write = [this](int index) {
+    if (std::exchange(drop_[static_cast<std::size_t>(index)], std::uint8_t{1})) return;
+    const Eigen::Vector2f at = ground_.middle(index);
+    cells_.push_back({at.x(), at.y(), 1.0f, 0.0f, Layer::drop});
+  };
+  for (const int index : drops_.cells()) {
+    write(index);
+    for (const int beside : {index - kSide, index - 1, index + 1, index + kSide})
+      if (beside >= 0 && beside < kSide * kSide && ground_.measured(beside)) write(beside);
+  }
+}
+
 void TerrainMap::write_cells() {
   cells_.clear();
   for (const auto& e : obstacles_.entries())
     if (e.again) cells_.push_back({e.mean_x, e.mean_y, 1.0f, now_ - e.since});
-  for (const std::uint16_t index : drops_.cells()) {
-    const Eigen::Vector2f at = ground_.middle(index);
-    cells_.push_back({at.x(), at.y(), 1.0f, 0.0f, Layer::drop});
-  }
+  write_drops();
   for (const Surface::Place& place : surface_.places()) {
     const Eigen::Vector2f at = ground_.middle(place.index);
     cells_.push_back({at.x(), at.y(), place.cost, 0.0f, place.layer});

@@ -39,6 +39,7 @@ class TerrainMap {
  private:
   void sort_in(std::span<const Eigen::Vector3f> points, const View& view);
   void classify(const View& view);
+  void write_drops();
   void write_cells();
 
   Platform platform_;
@@ -54,6 +55,7 @@ class TerrainMap {
   std::vector<Eigen::Vector2f> under_{};  ///< of those within range: nearly as high as an obstacle
   std::vector<Eigen::Vector3f> deep_{};   ///< those farther away that lie lower than level ground would
   std::vector<std::uint8_t> solid_;       ///< cells of the ground's window with an obstacle in them
+  std::vector<std::uint8_t> drop_;        ///< and those that are written as a drop
   std::vector<TerrainCell> cells_{};
   Pose3 last_body_{};
   double epoch_{0};
