@@ -21,7 +21,8 @@ struct CollisionMonitorParams {
 /// How a robot drives now; nothing: nobody knows.
 struct Driven {
   Twist2 velocity{};  ///< by its odometry, of what it turns about: without a car's rear axle's share
-  double told{std::numeric_limits<double>::infinity()};  ///< the speed that it was told last, m/s
+  double told{
+      std::numeric_limits<double>::infinity()};  ///< the speed that it may have by what it was told, m/s
 };
 
 /// The last word on a velocity, by the newest scan and the odometry alone: independent of map, planner and

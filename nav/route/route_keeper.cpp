@@ -97,6 +97,7 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
     waived_ = lines_up_for_;
     return;
   }
+  waived_.reset();  // whoever comes again may line up
   bool end = false;
   const Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
   if (!end) planner.block({there.x(), there.y(), place.z()}, stamp_s);
@@ -118,7 +119,7 @@ double RouteKeeper::cost_to(RoutePlanner& planner, double length) const {
 }
 
 bool RouteKeeper::is_waived(const Eigen::Vector3d& gate) const {
-  return waived_ && (*waived_ - gate).head<2>().norm() < kSameGate;
+  return waived_ && (*waived_ - gate).norm() < kSameGate;
 }
 
 // In a gate there is no room to turn: until the robot has left it, it goes straight on, as long as the route

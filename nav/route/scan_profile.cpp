@@ -110,6 +110,10 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
   bool ended = false;
   for (const Return& r : returns) {
     const float run = std::min(r.range - at, kRun);
+    // Before the first return the ground goes on as it is below the body, or gets level.
+    const bool begins = !last_ground && !ended;
+    if (const float on = ground_at(r.x, r.y); begins)
+      z = std::abs(r.z - on) < std::abs(r.z - ground_) ? on : ground_;
     const float rise = r.z - z;
     // The foot of what stands there passed for ground that rises: the next return is right above it.
     const bool foot = !ended && last_ground && r.range - at < kStack && z - z_before > step_ &&
@@ -128,7 +132,7 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
         if (pieces_.size() > first) pieces_.back().z_to = base;
       }
       map.see_obstacle(r.x, r.y, base, r.z - base);
-      pieces_.push_back({at, r.range - kCellF, base, base, r.z});
+      pieces_.push_back({at, r.range - kCellF, begins ? ground_ : base, base, r.z});
       hit = {r.range, r.x, r.y, base, r.z - base};
       z = base;
       ended = true;
@@ -142,7 +146,7 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
       }
       return;
     } else {
-      pieces_.push_back({at, r.range, z, r.z, r.z});
+      pieces_.push_back({at, r.range, begins ? ground_ : z, r.z, r.z});
       z_before = z;
       z = r.z;
       at = r.range;
@@ -215,6 +219,10 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
   }
 }
 
+float ScanProfile::ground_at(double x, double y) const {
+  return ground_ + lean_.dot(Eigen::Vector2f(static_cast<float>(x), static_cast<float>(y)) - at_);
+}
+
 void ScanProfile::stand(const Pose3& body, SurfaceMap& map) const {
   const double radius = std::min(platform_.length, platform_.width) / 2;
   const int reach = static_cast<int>(radius / kRouteCell) + 1;
@@ -223,12 +231,16 @@ void ScanProfile::stand(const Pose3& body, SurfaceMap& map) const {
     for (int x = cx - reach; x <= cx + reach; ++x)
       if (std::hypot((x + 0.5) * kRouteCell - body.position.x(),
                      (y + 0.5) * kRouteCell - body.position.y()) <= radius)
-        map.see_free(x, y, ground_, 0.0f, SurfaceMap::Seen::stood_on);
+        map.see_free(x, y, ground_at((x + 0.5) * kRouteCell, (y + 0.5) * kRouteCell), 0.0f,
+                     SurfaceMap::Seen::stood_on);
 }
 
 void ScanProfile::add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map) {
   sensor_ = (body * Eigen::Vector3d(0, 0, platform_.lidar_height)).cast<float>();
+  at_ = body.position.head<2>().cast<float>();
   ground_ = static_cast<float>(body.position.z());
+  const Eigen::Vector3f up = (body.orientation * Eigen::Vector3d::UnitZ()).cast<float>();
+  lean_ = up.z() > 0.5f ? Eigen::Vector2f(-up.x() / up.z(), -up.y() / up.z()) : Eigen::Vector2f(0, 0);
   map.begin_scan(body.position.x(), body.position.y());
   sort(points, body);
   stand(body, map);

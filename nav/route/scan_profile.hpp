@@ -50,12 +50,15 @@ class ScanProfile {
   void write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const;
   void close_gaps(SurfaceMap& map) const;
   void stand(const Pose3& body, SurfaceMap& map) const;
+  /// Height of the plane that the body stands on, m.
+  float ground_at(double x, double y) const;
 
   Platform platform_;
   RouteParams params_;
   float clear_, step_, drop_, slope_;
   Eigen::Vector3f sensor_{0, 0, 0};
-  float ground_{0};
+  Eigen::Vector2f at_{0, 0}, lean_{0, 0};  ///< the body, and how much the ground below it rises per metre
+  float ground_{0};                        ///< below the body
   std::vector<Return> sorted_{};
   std::vector<Return> unsorted_{};
   std::vector<int> direction_{};

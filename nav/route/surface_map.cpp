@@ -265,8 +265,8 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   if (!cell.known) {
     cell = {z, 0, 0, true, measured, false, sure};
     mark_dirty(index);
-    // A step between two cells is known with the second.
-    if (const int x = ix & 15, y = iy & 15; x == 0 || y == 0 || x == 15 || y == 15) mark_around(t, ix, iy);
+    // A step between two cells is known with the second; it is looked for over four (TileBuilder).
+    if (const int x = ix & 15, y = iy & 15; x < 4 || y < 4 || x > 11 || y > 11) mark_around(t, ix, iy);
     return;
   }
   const float before = cell.z;
@@ -275,7 +275,6 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   const bool counts = sure || !cell.sure;
   if (counts && measured && !cell.measured) {
     cell.z = z;
-    if (std::abs(z - before) > 0.02f) mark_around(t, ix, iy);  // it may be a step now
   } else if (counts && measured == cell.measured) {
     cell.z += 0.25f * (z - cell.z);
   }
@@ -285,12 +284,14 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   }
   cell.measured |= measured && counts;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
+  if (std::abs(cell.z - before) > 0.05f) mark_around(t, ix, iy);  // it may be a step now, or none any more
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
   if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;
   if (cell.blocked && height > static_cast<float>(cell.top) * kTopUnit + 0.05f) return;
   cell.evidence = static_cast<std::int8_t>(cell.evidence - kRay);
   if (!cell.blocked || cell.evidence > kFree) return;
   cell.blocked = false;
+  cell.sure = sure;  // its height was that before what stood there
   cell.top = 0;
   mark_dirty(index);
   mark_around(t, ix, iy);

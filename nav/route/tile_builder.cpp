@@ -16,7 +16,7 @@ constexpr float kCellF = static_cast<float>(kRouteCell);
 constexpr double kAsideOfGap = 0.03;  // m
 constexpr int kSteep = 5;             // cells, and fewer: a step is looked for over them
 constexpr int kLongSteep = 13;        // when it was seen from afar
-constexpr double kNoise = 0.05;       // m: of two heights that were measured from afar
+constexpr double kNoise = 0.05;       // m: of two heights; or a kerb with a ramp behind it
 
 }  // namespace
 
@@ -56,6 +56,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
       if (!cell.known || std::abs(cell.z - z) > 2 * kSheetReach) continue;
       // The ground under what stands there is a guess, and no step.
+      known_[in_window(x, y)] = true;
       height_[in_window(x, y)] = cell.blocked || !said(cell) ? kNan : cell.z;
       sure_[in_window(x, y)] = certain(cell);
       solid_[in_window(x, y)] = solid(cell);
@@ -65,6 +66,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
 
 void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   height_.fill(kNan);
+  known_.fill(false);
   solid_.fill(false);
   aside_.fill({0, 0});
   gather_tile(tile, tile.z, kTileHalo, kTileHalo);
@@ -136,10 +138,11 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
     sure = sure && sure_[i] && !std::isnan(height_[i]);
   }
   const double run = kRouteCell * cells;
-  const double most = sure ? std::max(step_, slope_ * run)
+  const double most = sure ? std::max(step_, slope_ * run + kNoise)
                            : std::max(kTall * double{kTopUnit}, step_ + slope_ * run + kNoise);
   if (rise <= most) return;
-  for (std::size_t i = from + stride; i < to; i += stride) solid_[i] = true;
+  for (std::size_t i = from + stride; i < to; i += stride)
+    solid_[i] = cells < kSteep || known_[i];  // nobody knows what is below a stage
 }
 
 // From the middle of a cell of the window to the nearest obstacle, as it lies in its cell, m.

@@ -68,7 +68,7 @@ class TileBuilder {
   bool climbs_stairs_, doubting_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
   std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
-  std::array<bool, kWindow * kWindow> sure_{}, solid_{};
+  std::array<bool, kWindow * kWindow> known_{}, sure_{}, solid_{};
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // of what is solid, kAsideUnit
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};

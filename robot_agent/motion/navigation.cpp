@@ -46,7 +46,11 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
 }
 
 void Navigation::send(const Twist2& velocity) {
-  sent_speed_ = std::hypot(velocity.vx, velocity.vy);
+  // What it was told is not what it does at once.
+  const double since = seconds(now() - sent_at_);
+  sent_at_ = now();
+  sent_speed_ =
+      std::max(std::hypot(velocity.vx, velocity.vy), sent_speed_ - params_.platform.max_acceleration * since);
   outputs_.velocity(velocity);
 }
 

@@ -96,7 +96,8 @@ class Navigation : public Component, public NavigationInput {
   std::array<std::optional<Time>, 2> warned_{};  // by Warning: when its cause was there last
   std::optional<Time> held_since_{};  // the monitor stops the robot, with no more than short breaks
   Time held_last_{};
-  double sent_speed_{0};               // of the last velocity, m/s
+  double sent_speed_{0};  // that it may have by the velocities it was told, m/s
+  Time sent_at_{};
   Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
   Cycle planning_{};
   std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <functional>
 
 #include "nav/route/route_keeper.hpp"
 #include "tests/nav/route_world.hpp"
@@ -345,9 +346,12 @@ TEST(RoutePlanner, AHighEdgeIsOneAlsoFromAfar) {
   EXPECT_TRUE(passes_edge(0.45, Seen::between, true)) << "what was only drawn says nothing";
 }
 
-/// A line up ground that rises `rise` every `run` cells, by 1.2 m; every third cell was measured, from afar,
-/// and what is between was drawn.
-bool passes_rise(const Platform& platform, double rise, int run, bool doubting) {
+/// Two lines over ground that rises `rise` every `run` cells, by 1.2 m: up it, and along its upper end. Every
+/// third cell was measured, from afar, and what is between was drawn.
+struct Rise {
+  bool up, above;
+};
+Rise passes_rise(const Platform& platform, double rise, int run, bool doubting) {
   const RouteParams params;
   SurfaceMap map(params, ScanProfile::most_wrong(platform, params));
   RouteGraph graph(map, platform, params, doubting);
@@ -359,18 +363,22 @@ bool passes_rise(const Platform& platform, double rise, int run, bool doubting) 
     for (int iy = -20; iy < 20; ++iy) map.see_free(ix, iy, static_cast<float>(z), 0.0f, seen);
     highest = z;
   }
-  return graph.line().line({9, 0, 0}, {13.8, 0, highest}).passable;
+  const double end = 10.5 + 0.1 * run * 1.2 / rise;
+  return {graph.line().line({9, 0, 0}, {13.8, 0, highest}).passable,
+          graph.line().line({end, -1, highest}, {end, 1, highest}).passable};
 }
 
 TEST(RoutePlanner, StairsAreTooSteepForARampAlsoFromAfar) {
   Platform tracked = wheeled();
   tracked.step = 0.15;
   for (const bool doubting : {false, true}) {
-    EXPECT_FALSE(passes_rise(tracked, 0.2, 3, doubting)) << doubting;
-    EXPECT_TRUE(passes_rise(tracked, 0.03, 1, doubting)) << "a ramp " << doubting;
-    EXPECT_TRUE(passes_rise(legged(), 0.2, 3, doubting)) << doubting;
+    const Rise stairs = passes_rise(tracked, 0.2, 3, doubting);
+    EXPECT_FALSE(stairs.up) << doubting;
+    EXPECT_TRUE(stairs.above) << doubting;
+    EXPECT_TRUE(passes_rise(tracked, 0.03, 1, doubting).up) << "a ramp " << doubting;
+    EXPECT_TRUE(passes_rise(legged(), 0.2, 3, doubting).up) << doubting;
   }
-  EXPECT_TRUE(passes_rise(tracked, 0.045, 1, true)) << "hardly too steep is not proven from afar";
+  EXPECT_TRUE(passes_rise(tracked, 0.045, 1, true).up) << "hardly too steep is not proven from afar";
 }
 
 TEST(RoutePlanner, AStepThatIsSmearedOverCellsIsOne) {
@@ -388,6 +396,54 @@ TEST(RoutePlanner, AStepThatIsSmearedOverCellsIsOne) {
       }
     planner.finish();
     EXPECT_EQ(planner.plan({1, 2, 0}, {9, 2, kNan}).found(), ground.passable) << ground.rise;
+  }
+}
+
+/// Ground that goes from one side of a walled place to the other; whether a robot gets over it.
+bool passes(const Platform& platform, double noise, const std::function<double(double)>& height) {
+  RoutePlanner planner(platform);
+  std::mt19937 random(1);
+  std::normal_distribution<double> off(0.0, noise);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 100; ++x) {
+      const Eigen::Vector3d place = middle(x, y, height((x + 0.5) * 0.1) + (noise > 0 ? off(random) : 0.0));
+      planner.set_ground(place);
+      if (y % 31 == 0 || x % 99 == 0) planner.set_obstacle(place, 1);
+    }
+  planner.finish();
+  return planner.plan({1, 1.6, height(1)}, {9, 1.6, kNan}).found();
+}
+
+TEST(RoutePlanner, WhatIsNearlyTooMuchIsNot) {
+  Platform tracked = wheeled();
+  tracked.step = 0.15;
+  tracked.max_slope = 0.5;
+  const auto ramp = [](double slope, double kerb = 0) {
+    return [=](double x) { return x < 4 ? 0.0 : kerb + slope * std::min(x - 4, 2.0); };
+  };
+  EXPECT_TRUE(passes(wheeled(), 0.005, ramp(0.95 * 0.35)));
+  EXPECT_TRUE(passes(tracked, 0.005, ramp(0.95 * 0.5)));
+  EXPECT_TRUE(passes(wheeled(), 0.0, ramp(0.15, 0.08))) << "a ramp behind a kerb";
+  EXPECT_TRUE(passes(wheeled(), 0.0, [](double x) {
+    return x < 4 ? 0.0 : x < 4.3 ? 0.08 : 0.16;
+  })) << "two kerbs";
+  EXPECT_FALSE(passes(wheeled(), 0.005, ramp(0.6)));
+  EXPECT_FALSE(passes(wheeled(), 0.0, [](double x) { return x < 4 ? 0.0 : 0.12; }));
+}
+
+TEST(RoutePlanner, WhoStandsOnARampSeesNoWallUpOrDownIt) {
+  for (const double slope : {-0.3, 0.3}) {
+    RoutePlanner planner(wheeled());
+    Pose3 body;
+    body.orientation = Eigen::AngleAxisd(-std::atan(slope), Eigen::Vector3d::UnitY());
+    std::vector<Eigen::Vector3f> points;
+    for (const float range : {1.87f, 2.2f, 2.6f, 3.1f, 3.9f, 5.0f, 7.0f})
+      for (float turn = 0; turn < 6.28f; turn += 0.005f)
+        points.emplace_back(range * std::cos(turn), range * std::sin(turn), 0.0f);
+    for (int scan = 0; scan < 5; ++scan) planner.add_scan(points, body, 0.1 * scan);
+    const LineCost line = planner.line({0, 0, 0}, {4, 0, 4 * slope});
+    EXPECT_TRUE(line.passable) << slope;
+    EXPECT_LT(line.unknown, 0.1) << slope;
   }
 }
 
