@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
+
+#include "nav/terrain/surface.hpp"
 
 namespace adit::nav {
 namespace {
@@ -118,6 +122,28 @@ TEST(FloorInt, RoundsDownOnBothSides) {
   EXPECT_EQ(floor_int(-0.1f), -1);
   EXPECT_EQ(floor_int(-3.0f), -3);
   EXPECT_EQ(floor_int(0.0f), 0);
+}
+
+// The side of a ramp of low steps: passable at its foot, too high from x = 0.5 m on.
+TEST(Surface, WhereAStepGetsTooHighIsKnownToTheCell) {
+  const GroundGrid grid = grid_of(
+      [](float x, float y) { return x < 0 || y > 0.9f ? 0.0f
+                                    : x < 0.5f        ? 0.06f
+                                                      : 0.14f; }, {.rise = 0.2f});
+  const std::vector<std::uint8_t> solid(GroundGrid::kSide * GroundGrid::kSide, 0);
+  Surface surface({.step = 0.08f, .blocking_step = 0.105f});
+  surface.work_out(grid, solid);
+  const auto blocked = [&](float x, float y) {
+    const auto places = surface.places();
+    return std::count_if(places.begin(), places.end(), [&](const Surface::Place& place) {
+      return place.index == grid.window(x, y) && place.layer == Layer::step && place.cost >= 1;
+    });
+  };
+  for (float x = 0.55f; x < 2; x += 0.1f) {
+    EXPECT_EQ(blocked(x, 0.85f), 1) << x << ": on its upper side, where who is below touches it";
+    EXPECT_EQ(blocked(x, 0.65f) + blocked(x, 1.15f), 0) << x;
+  }
+  for (float x = -1; x < 0.4f; x += 0.1f) EXPECT_EQ(blocked(x, 0.85f) + blocked(x, 0.95f), 0) << x;
 }
 
 }  // namespace

@@ -121,6 +121,7 @@ TEST(TerrainLayers, TheEdgeOfADropIsWhereTheGroundEnds) {
     EXPECT_GT(robot.blocked(1.8, 2.4, -0.5, 0.5), 0) << depth << ": seen from afar";
     robot.drive_to(1.3);
     EXPECT_GT(robot.blocked(1.8, 2.2, -0.5, 0.5), 5) << depth;
+    EXPECT_GT(robot.blocked(1.9, 2.0, -0.5, 0.5), 5) << depth << ": the last cell of the ground";
     EXPECT_EQ(robot.blocked(0.5, 1.8, -0.5, 0.5), 0) << depth;
     robot.look(30);  // now in the blind spot
     EXPECT_GT(robot.blocked(1.8, 2.2, -0.5, 0.5), 5) << depth;
