@@ -59,7 +59,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
       known_[in_window(x, y)] = true;
       height_[in_window(x, y)] = cell.blocked || !said(cell) ? kNan : cell.z;
       sure_[in_window(x, y)] = certain(cell);
-      solid_[in_window(x, y)] = solid(cell);
+      solid_[in_window(x, y)] = stands_[in_window(x, y)] = solid(cell);
       if (solid(cell)) aside_[in_window(x, y)] = {cell.aside_x, cell.aside_y};
     }
 }
@@ -68,6 +68,7 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   height_.fill(kNan);
   known_.fill(false);
   solid_.fill(false);
+  stands_.fill(false);
   aside_.fill({0, 0});
   gather_tile(tile, tile.z, kTileHalo, kTileHalo);
   // What is ground of another floor, higher or lower by less than a storey, is an edge of this one; and what
@@ -102,12 +103,24 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   }
 }
 
+// Beside what stands there, a return of its foot passes for ground that is higher: that is no step, which
+// would keep robots farther away than the thing itself, and close gaps.
+bool TileBuilder::is_foot(std::size_t cell) const {
+  const int x = static_cast<int>(cell % kWindow), y = static_cast<int>(cell / kWindow);
+  for (int v = std::max(0, y - 1); v <= std::min(kWindow - 1, y + 1); ++v)
+    for (int u = std::max(0, x - 1); u <= std::min(kWindow - 1, x + 1); ++u)
+      if (stands_[in_window(u, v)]) return true;
+  return false;
+}
+
 // Ground that is too steep between two cells is an edge to keep away from, below and above.
 void TileBuilder::find_steps() {
   float lowest = std::numeric_limits<float>::max(), highest = std::numeric_limits<float>::lowest();
   const auto compare = [this](std::size_t a, std::size_t b) {
     const float most = sure_[a] && sure_[b] ? rise_ : doubtful_rise_;
-    if (std::abs(height_[a] - height_[b]) > most) solid_[a] = solid_[b] = true;  // false for NaN
+    if (std::abs(height_[a] - height_[b]) > most &&
+        !is_foot(height_[a] > height_[b] ? a : b))  // false for NaN
+      solid_[a] = solid_[b] = true;
   };
   for (int y = 0; y < kWindow; ++y)
     for (int x = 0; x < kWindow; ++x) {
@@ -140,7 +153,7 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
   const double run = kRouteCell * cells;
   const double most = sure ? std::max(step_, slope_ * run + kNoise)
                            : std::max(kTall * double{kTopUnit}, step_ + slope_ * run + kNoise);
-  if (rise <= most) return;
+  if (rise <= most || is_foot(height_[from] > height_[to] ? from : to)) return;
   for (std::size_t i = from + stride; i < to; i += stride)
     solid_[i] = cells < kSteep || known_[i];  // nobody knows what is below a stage
 }

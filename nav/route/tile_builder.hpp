@@ -53,6 +53,7 @@ class TileBuilder {
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);
   void gather_tile(const Tile& from, float z, int ox, int oy);
+  bool is_foot(std::size_t cell) const;
   void find_steps();
   void find_steep(std::size_t from, std::size_t stride, int cells);
   void measure(Tile& tile);
@@ -68,7 +69,7 @@ class TileBuilder {
   bool climbs_stairs_, doubting_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
   std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
-  std::array<bool, kWindow * kWindow> known_{}, sure_{}, solid_{};
+  std::array<bool, kWindow * kWindow> known_{}, sure_{}, stands_{}, solid_{};
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // of what is solid, kAsideUnit
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};
