@@ -89,14 +89,18 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
 // on, like a ramp from beside it, where a robot may well drive.
 bool ScanProfile::is_face(std::span<const Return> returns, std::size_t which) const {
   constexpr float kBelow = 0.05f;  // m below the lidar: no ground is seen from there
+  return returns[which].z > sensor_.z() - kBelow || stands(returns, which);
+}
+
+// Others are right above or below it.
+bool ScanProfile::stands(std::span<const Return> returns, std::size_t which) const {
   const Return& r = returns[which];
-  if (r.z > sensor_.z() - kBelow) return true;
   const auto near = [&](const Return& other) { return std::abs(other.range - r.range) < kStack; };
-  const auto stands = [&](const Return& other) { return std::abs(other.z - r.z) > kStack; };
+  const auto apart = [&](const Return& other) { return std::abs(other.z - r.z) > kStack; };
   for (std::size_t i = which; i-- > 0 && near(returns[i]);)
-    if (stands(returns[i])) return true;
+    if (apart(returns[i])) return true;
   for (std::size_t i = which + 1; i < returns.size() && near(returns[i]); ++i)
-    if (stands(returns[i])) return true;
+    if (apart(returns[i])) return true;
   return false;
 }
 
@@ -110,18 +114,18 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
   bool ended = false;
   for (const Return& r : returns) {
     const float run = std::min(r.range - at, kRun);
+    const auto which = static_cast<std::size_t>(&r - returns.data());
     // Before the first return the ground goes on as it is below the body, or gets level.
     const bool begins = !last_ground && !ended;
     if (const float on = ground_at(r.x, r.y); begins)
-      z = std::abs(r.z - on) < std::abs(r.z - ground_) ? on : ground_;
+      z = std::abs(r.z - on) <= step_ && !stands(returns, which) ? on : ground_;
     const float rise = r.z - z;
     // The foot of what stands there passed for ground that rises: the next return is right above it.
     const bool foot = !ended && last_ground && r.range - at < kStack && z - z_before > step_ &&
                       rise > step_ && rise < kNextReturn;
     if (!foot && rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
     if (ended) {
-      if (rise > step_ && is_face(returns, static_cast<std::size_t>(&r - returns.data())))
-        map.see_obstacle(r.x, r.y, z, rise);
+      if (rise > step_ && is_face(returns, which)) map.see_obstacle(r.x, r.y, z, rise);
       continue;
     }
     if (foot || rise > step_ + slope_ * run) {
@@ -199,8 +203,8 @@ void ScanProfile::list_sectors() {
 
 void ScanProfile::write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const {
   const auto sector = static_cast<std::size_t>(direction % kQuarter);
-  const int turns = direction / kQuarter + 2;  // of a quarter: direction 0 is -x
-  const int cx = route_cell(sensor_.x()), cy = route_cell(sensor_.y());
+  const int turns = direction / kQuarter + 2;                    // of a quarter: direction 0 is -x
+  const int cx = route_cell(at_.x()), cy = route_cell(at_.y());  // ranges are from the body's middle
   std::size_t i = first_[sector];
   for (const Piece& p : pieces) {
     const float run = std::max(p.to - p.from, 1e-3f);

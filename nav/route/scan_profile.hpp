@@ -45,6 +45,7 @@ class ScanProfile {
   };
   void sort(std::span<const Eigen::Vector3f> points, const Pose3& body);
   void walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit);
+  bool stands(std::span<const Return> returns, std::size_t which) const;
   bool is_face(std::span<const Return> returns, std::size_t which) const;
   void list_sectors();
   void write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const;

@@ -16,6 +16,7 @@ constexpr float kCellF = static_cast<float>(kRouteCell);
 constexpr double kAsideOfGap = 0.03;  // m
 constexpr int kSteep = 5;             // cells, and fewer: a step is looked for over them
 constexpr int kLongSteep = 13;        // when it was seen from afar
+constexpr double kSureNoise = 0.025;  // m: of two heights that were measured from near
 constexpr double kNoise = 0.05;       // m: of two heights; or a kerb with a ramp behind it
 
 }  // namespace
@@ -151,7 +152,7 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
     sure = sure && sure_[i] && !std::isnan(height_[i]);
   }
   const double run = kRouteCell * cells;
-  const double most = sure ? std::max(step_, slope_ * run + kNoise)
+  const double most = sure ? std::max(step_, slope_ * run + kSureNoise)
                            : std::max(kTall * double{kTopUnit}, step_ + slope_ * run + kNoise);
   if (rise <= most || is_foot(height_[from] > height_[to] ? from : to)) return;
   for (std::size_t i = from + stride; i < to; i += stride)

@@ -19,7 +19,7 @@ constexpr float kMostCost = 0.9f;    ///< of what can be passed
 
 Surface::Surface(const SurfaceParams& params)
     : params_(params), weight_(kSide * kSide, 0.0f), followed_(kSide * kSide, 0) {
-  places_.reserve(kSide * kSide);
+  places_.reserve(kSide * kSide * 5 / 4);
 }
 
 float Surface::cost(float share) const {

@@ -35,7 +35,9 @@ SurfaceParams surface_params(const Platform& platform, const TerrainParams& para
   surface.slope = static_cast<float>(platform.steepest());
   surface.step = static_cast<float>(std::max(platform.step, 0.02));
   // On stairs the edges seen from below are uncertain; what is too high for legs stands in the way anyway.
-  if (!platform.stairs) surface.blocking_step = static_cast<float>(platform.step + params.step_margin);
+  if (!platform.stairs)
+    surface.blocking_step = static_cast<float>(
+        std::max(platform.step, platform.steepest() * double{GroundGrid::kCell}) + params.step_margin);
   return surface;
 }
 
@@ -167,8 +169,10 @@ void TerrainMap::write_drops() {
   };
   for (const int index : drops_.cells()) {
     write(index);
+    const int i = index / kSide, j = index % kSide;
+    if (i == 0 || j == 0 || i == kSide - 1 || j == kSide - 1) continue;
     for (const int beside : {index - kSide, index - 1, index + 1, index + kSide})
-      if (beside >= 0 && beside < kSide * kSide && ground_.measured(beside)) write(beside);
+      if (ground_.measured(beside)) write(beside);
   }
 }
 

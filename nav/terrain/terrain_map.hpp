@@ -19,7 +19,7 @@ class TerrainMap {
  public:
   /// As many cells as there can be.
   static constexpr std::size_t kMaxCells =
-      ObstacleCells::kMaxCells + std::size_t{GroundGrid::kSide * GroundGrid::kSide} * 2;
+      ObstacleCells::kMaxCells + std::size_t{GroundGrid::kSide * GroundGrid::kSide} * 9 / 4;
 
   explicit TerrainMap(const Platform& platform, const TerrainParams& params = {});
 

@@ -386,7 +386,8 @@ TEST(RoutePlanner, AStepThatIsSmearedOverCellsIsOne) {
     double rise, height;  // per cell, and in all, m
     bool passable;
   };
-  for (const Ground& ground : {Ground{0.02, 0.4, true}, Ground{0.07, 0.2, false}}) {
+  for (const Ground& ground :
+       {Ground{0.02, 0.4, true}, Ground{0.07, 0.2, false}, Ground{0.045, 0.18, false}}) {
     RoutePlanner planner(wheeled());
     for (int y = 0; y < 40; ++y)
       for (int x = 0; x < 100; ++x) {
@@ -429,6 +430,34 @@ TEST(RoutePlanner, WhatIsNearlyTooMuchIsNot) {
   })) << "two kerbs";
   EXPECT_FALSE(passes(wheeled(), 0.005, ramp(0.6)));
   EXPECT_FALSE(passes(wheeled(), 0.0, [](double x) { return x < 4 ? 0.0 : 0.12; }));
+}
+
+TEST(RoutePlanner, TheFootOfAJambIsNoStepThatClosesItsGap) {
+  // 0.7 m between the jambs; one's foot, seen at a slant, passed for ground that is higher.
+  RoutePlanner planner(wheeled());
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 100; ++x) {
+      const bool jamb = x == 50 && (y < 13 || y > 19), foot = x == 50 && y == 19;
+      planner.set_ground(middle(x, y, foot ? 0.23 : 0.0));
+      if (jamb || y % 31 == 0 || x % 99 == 0) planner.set_obstacle(middle(x, y), 1);
+    }
+  planner.finish();
+  EXPECT_TRUE(planner.plan({1, 1.6, 0}, {9, 1.6, 0}).found());
+}
+
+TEST(RoutePlanner, WhoLeansBeforeACrestSeesTheWallBehindIt) {
+  // Up a ramp of 0.3 whose crest is 0.3 m ahead; a wall stands 3 m away, on what is level.
+  RoutePlanner planner(wheeled());
+  Pose3 body;
+  body.orientation = Eigen::AngleAxisd(-std::atan(0.3), Eigen::Vector3d::UnitY());
+  const Eigen::Matrix3d to_body = body.orientation.toRotationMatrix().transpose();
+  std::vector<Eigen::Vector3f> points;
+  for (double y = -1.5; y < 1.5; y += 0.02)
+    for (const double z : {0.57, 0.8, 1.0})
+      points.push_back((to_body * Eigen::Vector3d(3, y, z)).cast<float>());
+  for (int scan = 0; scan < 5; ++scan) planner.add_scan(points, body, 0.1 * scan);
+  EXPECT_FALSE(planner.line({0, 0, 0}, {3.5, 0, 0.09}).passable);
+  EXPECT_TRUE(planner.line({0, 0, 0}, {2.2, 0, 0.09}).passable);
 }
 
 TEST(RoutePlanner, WhoStandsOnARampSeesNoWallUpOrDownIt) {
