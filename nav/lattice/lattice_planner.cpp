@@ -17,8 +17,11 @@ constexpr double kSlow = 0.25;          ///< m/s: nearly standing
 constexpr double kAhead = 4.2;          ///< m: a direction becomes a place so far off
 constexpr float kHysteresis = 0.02f;    ///< m of the margin that a path which is kept may lose
 constexpr float kTightLoss = 0.015f;    ///< the same of the tight margin
-constexpr double kEasy = 0.12;          ///< m: a gap with so much more than the margins is a way like others
+constexpr double kTightAhead = 0.6;     ///< m, and what braking takes: so far ahead it slows for a tight place
+constexpr double kEasy = 0.24;          ///< m: a gap with so much more than the margins is a way like others
 constexpr double kLineUp = 1.7;         ///< m before a gap: about there a path gets onto its axis
+constexpr double kMisses = 0.015;        ///< m off the axis of a gap
+constexpr double kMends = 0.2;          ///< m before it
 constexpr double kBehindGate = 0.4;     ///< m behind its middle a gap is left
 
 }  // namespace
@@ -57,8 +60,9 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   const bool held = target.held && goal && !retreat_;
   const bool keeps = !held && follows_on(rear) && kept_for_.kind == aim.kind &&
                      (!goal || (kept_for_.goal - aim.goal).norm() < 1.0) && passable(rear);
-  // Through a gap there is one way: it is kept to.
-  const bool goes_through = keeps && kept_.through && task.gate;
+  // Through a gap there is one way: it is kept to, unless what is seen from nearer shows that it misses the
+  // middle.
+  const bool goes_through = keeps && kept_.through && task.gate && !misses(*task.gate, rear);
   const bool finds = !held && !goes_through && find(task);
   bool takes = finds;
   if (keeps && finds && !found_.through) {
@@ -73,6 +77,7 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
       takes = found_.cost() + found_.left + params_.better < cost;
     }
   }
+  if (keeps && kept_.through && task.gate && finds && !(found_.through && found_.straight_on())) takes = false;
   if (takes) {
     adopt(rear);
     kept_for_ = aim;
@@ -212,6 +217,13 @@ bool LatticePlanner::find_through(LatticeTask task) {
   return false;
 }
 
+// Whether the way that is kept to does not end on the axis of the gap, and there is still room to mend that.
+bool LatticePlanner::misses(const Pose2& gate, const Pose2& rear) const {
+  const Pose2 end = gate.inverse() * rear.inverse() * kept_.spots[kept_.count - 1].pose;
+  const double before = -gate.inverse().x - (platform_.length / 2 + rear_);
+  return before > kMends && std::fabs(end.y) + std::fabs(wrap_angle(end.yaw)) * platform_.length / 2 > kMisses;
+}
+
 void LatticePlanner::adopt(const Pose2& rear) {
   kept_ = found_;
   for (std::size_t i = 0; i < kept_.count; ++i) kept_.spots[i].pose = rear * kept_.spots[i].pose;
@@ -287,6 +299,16 @@ bool LatticePlanner::given_up(const Target& target, double distance, bool drives
   return stamp_s < rest_until_;
 }
 
+// Whether the way up to a spot comes, before it could slow down, to where only the tight margin is left.
+bool LatticePlanner::tightens(const Pose2& back, std::size_t last) const {
+  const double slow = std::max(0.0, speed_ * speed_ - params_.tight_speed * params_.tight_speed);
+  const double ahead = kTightAhead + slow / (2.0 * platform_.max_acceleration);
+  const auto end = std::min(last, at_ + static_cast<std::size_t>(ahead / search_.motions().spacing()));
+  for (std::size_t i = at_; i <= end; i += 2)
+    if (!search_.free(clear_, back * kept_.spots[i].pose, false, 0.0f)) return true;
+  return false;
+}
+
 void LatticePlanner::write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
                            Plan& plan) const {
   const std::size_t last = std::min(end_, at_ + Plan::kMaxPath - 1);
@@ -299,10 +321,10 @@ void LatticePlanner::write(const Target& target, const Pose2& pose, std::span<co
   plan.option = 0;
   double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
   if (plan.reverse) limit = std::min(limit, params_.reverse_speed);
-  if (kept_.tight) limit = std::min(limit, params_.tight_speed);
+  const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();
+  if (kept_.tight && tightens(back, last)) limit = std::min(limit, params_.tight_speed);
   // Ground that costs is driven slowly.
   float rough = 0.0f;
-  const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();
   for (std::size_t i = at_; i <= last; i += 2) {
     const Pose2 at = back * kept_.spots[i].pose;
     rough = std::max(rough, clear_.cost(static_cast<float>(at.x), static_cast<float>(at.y)));

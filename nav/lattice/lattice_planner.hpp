@@ -51,6 +51,7 @@ class LatticePlanner final : public Planner {
   /// straight.
   std::optional<Pose2> gate_of(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles) const;
+  bool misses(const Pose2& gate, const Pose2& rear) const;
   void adopt(const Pose2& rear);
   void next_part();
   bool changes_ahead() const;
@@ -59,6 +60,7 @@ class LatticePlanner final : public Planner {
   void forget_retreat();
   void consider_retreat(const Target& target, const Pose2& pose, double stamp_s);
   bool given_up(const Target& target, double distance, bool drives, double stamp_s);
+  bool tightens(const Pose2& back, std::size_t last) const;
   void write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
              Plan& plan) const;
 

@@ -14,12 +14,13 @@ struct Sides {
   bool both{false};
 };
 
-// `along`: of length one.
-Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Vector2d& along,
-               double narrow) {
+// `along`: of length one. Both, when they are no more than `width` apart: a route need not be in the middle.
+Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Vector2d& along, double width,
+               double beside) {
   Sides sides;
-  double least_left = narrow * narrow, least_right = least_left;
-  const int reach = static_cast<int>(narrow / kRouteCell) + 1;
+  const double farthest = width - beside;
+  double least_left = farthest * farthest, least_right = least_left;
+  const int reach = static_cast<int>(farthest / kRouteCell) + 1;
   const int cx = route_cell(at.x()), cy = route_cell(at.y());
   bool left = false, right = false;
   for (int iy = cy - reach; iy <= cy + reach; ++iy)
@@ -39,14 +40,14 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
       (across > 0 ? sides.left : sides.right) = place;
       (across > 0 ? left : right) = true;
     }
-  sides.both = left && right;
+  sides.both = left && right && std::sqrt(least_left) + std::sqrt(least_right) <= width;
   return sides;
 }
 
 }  // namespace
 
 std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vector3d> points, double ahead,
-                              double narrow) {
+                              double width, double beside) {
   Eigen::Vector2d left(0, 0), right(0, 0), along(0, 0);
   double z = 0;
   int samples = 0;
@@ -66,7 +67,7 @@ std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vect
     const Eigen::Vector2d direction = way.head<2>() / length;
     for (double s = 0; s < length && passed + s < ahead; s += kRouteCell) {
       const Eigen::Vector3d at = points[i] + way * (s / length);
-      const Sides sides = sides_of(map, at, direction, narrow);
+      const Sides sides = sides_of(map, at, direction, width, beside);
       if (!begun) open = !sides.both;
       begun = true;
       if (!open) {

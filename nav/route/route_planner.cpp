@@ -7,7 +7,7 @@ namespace adit::nav {
 namespace {
 
 constexpr double kGateMargin = 0.15;  // m
-constexpr double kTightGate = 0.12;   // m: who plans its headings is told of what is really narrow
+constexpr double kTightGate = 0.20;   // m: who plans its headings is told of what is really narrow
 
 }  // namespace
 

@@ -22,11 +22,15 @@ struct RouteDrive {
     planner.add_scan(loop.world.scan(loop.truth, loop.platform.lidar_height, loop.rings, loop.columns,
                                      loop.noise, loop.random),
                      Pose3::level(at, 0.0), loop.time);
-    step = keeper.step(planner, {at.x, at.y, 0}, {goal.x(), goal.y(), std::nan("")}, loop.last.blocked,
-                       loop.time);
+    step = keeper.step(planner, {at.x, at.y, 0}, {goal.x(), goal.y(), std::nan("")},
+                       loop.last.blocked || loop.held() >= 1.5, loop.time);
   }
   /// Drives there for a tenth of a second.
-  void drive() { loop.cycle(target_of(step)); }
+  void drive() {
+    Target target = target_of(step);
+    target.held = loop.held() >= 3.0;
+    loop.cycle(target);
+  }
   bool arrived() const { return step.last && loop.last.arrived && loop.follower.command().zero(); }
 
   /// True when it stands at the goal; false after so many seconds, or when there is no way.

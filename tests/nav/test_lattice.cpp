@@ -5,6 +5,7 @@
 
 #include "nav/air_map.hpp"
 #include "nav/lattice/gateway.hpp"
+#include "nav/lattice/lattice_planner.hpp"
 #include "nav/lattice/lattice_search.hpp"
 #include "tests/nav/box_world.hpp"
 
@@ -180,6 +181,42 @@ TEST(LatticeSearch, GetsThroughAGapTenCentimetresWiderFromWhereverItStands) {
             << y << " " << yaw << " " << i;
     }
   EXPECT_EQ(found, 12);
+}
+
+/// A car 3 m before a gap 10 cm wider than itself that was seen `aside` of its first place from the second
+/// look on.
+Plan plan_twice(LatticePlanner& planner, float aside) {
+  const Platform platform = car();
+  auto wall = wall_with_gap(3.0f, static_cast<float>(platform.width) + 0.1f);
+  Target target = Target::to({4.0, 0.0});
+  target.gate = Pose2{3.0, 0, 0};
+  planner.plan(target, {}, wall, 0.0);
+  for (ObstaclePoint& o : wall) o.y += aside;
+  return planner.plan(target, {}, wall, 0.1);
+}
+
+TEST(LatticePlanner, AimsAnewAtTheMiddleOfAGapThatItSeesBetterFromNearer) {
+  for (const float aside : {-0.03f, 0.03f}) {
+    LatticePlanner planner(car());
+    const Plan plan = plan_twice(planner, aside);
+    ASSERT_GT(plan.pose_count, 2u);
+    EXPECT_NEAR(plan.path().back().y, aside, 0.01);
+  }
+  LatticePlanner planner(car());
+  EXPECT_NEAR(plan_twice(planner, 0.008f).path().back().y, 0.0, 0.004) << "not for a little";
+}
+
+TEST(LatticePlanner, CreepsOnlyWhereItIsTight) {
+  const Platform platform = car();
+  LatticePlanner planner(platform);
+  EXPECT_GT(plan_twice(planner, 0.0f).max_speed, 0.6);
+  const auto near = wall_with_gap(1.0f, static_cast<float>(platform.width) + 0.1f);
+  Target target = Target::to({2.0, 0.0});
+  target.gate = Pose2{1.0, 0, 0};
+  LatticePlanner close(platform);
+  const Plan plan = close.plan(target, {}, near, 0.0);
+  ASSERT_GT(plan.pose_count, 2u);
+  EXPECT_LE(plan.max_speed, 0.3);
 }
 
 TEST(AirMap, KnowsWhatIsAtItsHeightAndForgetsWhatLeft) {
