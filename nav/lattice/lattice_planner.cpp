@@ -17,12 +17,12 @@ constexpr double kSlow = 0.25;          ///< m/s: nearly standing
 constexpr double kAhead = 4.2;          ///< m: a direction becomes a place so far off
 constexpr float kHysteresis = 0.02f;    ///< m of the margin that a path which is kept may lose
 constexpr float kTightLoss = 0.015f;    ///< the same of the tight margin
-constexpr double kTightAhead = 0.6;     ///< m, and what braking takes: so far ahead it slows for a tight place
-constexpr double kEasy = 0.24;          ///< m: a gap with so much more than the margins is a way like others
-constexpr double kLineUp = 1.7;         ///< m before a gap: about there a path gets onto its axis
-constexpr double kMisses = 0.015;        ///< m off the axis of a gap
-constexpr double kMends = 0.2;          ///< m before it
-constexpr double kBehindGate = 0.4;     ///< m behind its middle a gap is left
+constexpr double kTightAhead = 0.6;  ///< m, and what braking takes: so far ahead it slows for a tight place
+constexpr double kEasy = 0.24;       ///< m: a gap with so much more than the margins is a way like others
+constexpr double kLineUp = 1.7;      ///< m before a gap: about there a path gets onto its axis
+constexpr double kMisses = 0.015;    ///< m off the axis of a gap
+constexpr double kMends = 0.2;       ///< m before it
+constexpr double kBehindGate = 0.4;  ///< m behind its middle a gap is left
 
 }  // namespace
 
@@ -77,7 +77,8 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
       takes = found_.cost() + found_.left + params_.better < cost;
     }
   }
-  if (keeps && kept_.through && task.gate && finds && !(found_.through && found_.straight_on())) takes = false;
+  if (keeps && kept_.through && task.gate && finds && !(found_.through && found_.straight_on()))
+    takes = false;
   if (takes) {
     adopt(rear);
     kept_for_ = aim;
@@ -221,7 +222,8 @@ bool LatticePlanner::find_through(LatticeTask task) {
 bool LatticePlanner::misses(const Pose2& gate, const Pose2& rear) const {
   const Pose2 end = gate.inverse() * rear.inverse() * kept_.spots[kept_.count - 1].pose;
   const double before = -gate.inverse().x - (platform_.length / 2 + rear_);
-  return before > kMends && std::fabs(end.y) + std::fabs(wrap_angle(end.yaw)) * platform_.length / 2 > kMisses;
+  return before > kMends &&
+         std::fabs(end.y) + std::fabs(wrap_angle(end.yaw)) * platform_.length / 2 > kMisses;
 }
 
 void LatticePlanner::adopt(const Pose2& rear) {
