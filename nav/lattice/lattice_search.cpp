@@ -11,8 +11,11 @@ constexpr float kLeaving = 0.8f;    ///< m: a body that starts within its margin
 constexpr float kDeeper = 0.01f;    ///< m: cells are not finer
 constexpr float kCoarse = 0.05f;    ///< m: with so much more than the margin by the cells a body is free
 constexpr double kStraight = 0.25;  ///< m before a gap a body is straight on its axis
-constexpr double kBehind = 0.9;     ///< m behind a gap's middle the path ends
-constexpr double kSteepest = 1.0;   ///< rad off the axis
+constexpr double kMouth = 0.1;      ///< m before a gap's middle it may begin
+constexpr double kNearlyOn =
+    0.08;                        ///< m: the front is nearer than this to a gap's axis, a corner not in a jamb
+constexpr double kBehind = 0.9;  ///< m behind a gap's middle the path ends
+constexpr double kSteepest = 1.0;  ///< rad off the axis
 
 }  // namespace
 
@@ -125,7 +128,8 @@ void LatticeSearch::expand(const ClearField& clear, const WayField& way, const L
   }
 }
 
-// Onto the axis before the gap; a body that stands in the gap already, over the next metre or so.
+// Onto the axis before the gap. A body that stands in the gap already, or nearly on its axis, gets there over
+// the next metre or so; from elsewhere so near a bend would end with a corner in the jamb.
 bool LatticeSearch::shoot(const ClearField& clear, const LatticeTask& task, std::int32_t index,
                           LatticePath& path) const {
   const Pose2 at = task.gate->inverse() * nodes_[static_cast<std::size_t>(index)].pose;
@@ -133,6 +137,8 @@ bool LatticeSearch::shoot(const ClearField& clear, const LatticeTask& task, std:
   if (at.x > end - 0.3 || std::fabs(at.yaw) > kSteepest) return false;
   const double before = -front_ - kStraight;
   if (at.x < before - 0.4) return shoot_onto(clear, task, index, before, path);
+  const bool outside = at.x < -front_ - kMouth;
+  if (outside && std::fabs(at.y) + std::fabs(at.yaw) * front_ > kNearlyOn) return false;
   for (const double length : {0.6, 1.0, 1.5})
     if (at.x + length <= end && shoot_onto(clear, task, index, at.x + length, path)) return true;
   return false;

@@ -93,8 +93,10 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
   if (!blocked_since_) blocked_since_ = stamp_s;
   if (stamp_s - *blocked_since_ < params_.blocked) return;
   blocked_since_.reset();
-  if (lines_up_for_ && !is_waived(*lines_up_for_)) {  // then from where it is
+  if (lines_up_for_ &&
+      !is_waived(*lines_up_for_)) {  // then from where it is; or it backs off and tries again
     waived_ = lines_up_for_;
+    if (params_.gates == GateUse::tell) blocked_since_ = stamp_s + params_.retry;
     return;
   }
   waived_.reset();  // whoever comes again may line up
@@ -151,7 +153,6 @@ bool RouteKeeper::tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place)
 
 // A robot that is to go through a gate lines up before it, and goes straight on behind it.
 std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, const Eigen::Vector3d& place) {
-  lines_up_for_.reset();
   if (const auto on = straight_on(place)) return on;
   const auto gate = planner.gate(route_.points, params_.ahead);
   const Eigen::Vector2d rest =
@@ -186,6 +187,7 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
 // The farthest point of the route, up to `ahead`, that is in a straight line from here: one that keeps as far
 // from what stands there as the route does.
 RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
+  lines_up_for_.reset();
   RouteStep step{RouteStep::State::along, {}, false};
   if (const auto target =
           params_.gates == GateUse::line_up ? gate_step(planner, place) : std::optional<Eigen::Vector3d>{}) {
@@ -193,6 +195,7 @@ RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place
     return step;
   }
   if (params_.gates == GateUse::tell && tell_gate(planner, place)) {
+    if ((inside_->middle - place).head<2>().norm() < kAtGate) lines_up_for_ = inside_->middle;
     step.target = on_axis(*inside_, kBeyondGate);
     step.gate = inside_;
     return step;
