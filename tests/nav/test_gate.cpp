@@ -155,6 +155,18 @@ TEST(Gate, WhoCannotGetToWhereItLinesUpGoesOnFromWhereItIs) {
   EXPECT_TRUE(planner.has_blocked_places()) << "nor there: it is the gap that is blocked";
 }
 
+TEST(Gate, WhoFindsItsOwnWayMayBackOffOnceBeforeTheGapIsBlocked) {
+  RoutePlanner planner(car());
+  tell_hall(planner, 26, 34);
+  RouteKeeper keeper(car());
+  const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.1, 0};
+  for (const double t : {0.0, 0.5, 1.6, 3.0, 5.5})
+    EXPECT_TRUE(keeper.step(planner, place, goal, true, t).gate) << t;
+  EXPECT_FALSE(planner.has_blocked_places());
+  keeper.step(planner, place, goal, true, 5.7);
+  EXPECT_TRUE(planner.has_blocked_places());
+}
+
 TEST(Gate, WhoIsBlockedFarBeforeItLooksForAnotherWay) {
   RoutePlanner planner(wheeled());
   tell_hall(planner, 27, 34);

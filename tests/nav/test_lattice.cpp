@@ -183,6 +183,30 @@ TEST(LatticeSearch, GetsThroughAGapTenCentimetresWiderFromWhereverItStands) {
   EXPECT_EQ(found, 12);
 }
 
+TEST(LatticeSearch, BacksUpWhereABendWouldEndInTheJamb) {
+  const Platform platform = car();
+  const auto wall = wall_with_gap(0.8f, static_cast<float>(platform.width) + 0.1f);
+  LatticeSearch search(platform);
+  ClearField clear;
+  WayField way;
+  for (const auto& [aside, back] : {std::pair{-0.1, true}, std::pair{0.0, false}}) {
+    const Pose2 rear = Pose2{0, aside, 0.05} * Pose2{-platform.rear_axle(), 0, 0};
+    std::vector<ObstaclePoint> seen;
+    for (const ObstaclePoint& o : wall) {
+      const Eigen::Vector2d p = rear.inverse() * Eigen::Vector2d(o.x, o.y);
+      seen.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), 1.0f});
+    }
+    clear.fill(seen);
+    LatticeTask task{};
+    task.gate = rear.inverse() * Pose2{0.9, 0, 0};
+    way.fill(clear, (*task.gate * Pose2{-1.7, 0, 0}).position(), 0.36f);
+    LatticePath path;
+    ASSERT_TRUE(search.find(clear, way, task, path)) << aside;
+    EXPECT_TRUE(path.through);
+    EXPECT_EQ(path.straight_on(), !back) << aside;
+  }
+}
+
 /// A car 3 m before a gap 10 cm wider than itself that was seen `aside` of its first place from the second
 /// look on.
 Plan plan_twice(LatticePlanner& planner, float aside) {
