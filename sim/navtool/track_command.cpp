@@ -64,15 +64,22 @@ Result<Points> read_path(const std::string& file) {
   return dense(points);
 }
 
-/// The part of the path that begins at an index, as a plan.
-nav::Plan plan_from(const Points& path, std::size_t begin, double speed) {
+/// The path's direction at a point of it, rad: over some points, since a line of corners bends all at once.
+double heading(const Points& path, std::size_t i) {
+  constexpr std::size_t kAround = 3;
+  const Eigen::Vector2d way =
+      path[std::min(i + kAround, path.size() - 1)] - path[i > kAround ? i - kAround : 0];
+  return std::atan2(way.y(), way.x());
+}
+
+/// The part of the path that begins at an index, as a plan. `ahead`: of base_link before what follows the
+/// path, m.
+nav::Plan plan_from(const Points& path, std::size_t begin, double speed, double ahead) {
   nav::Plan plan;
   plan.max_speed = speed;
   plan.clearance = 2.0;
   for (std::size_t i = begin; i < path.size() && plan.pose_count < nav::Plan::kMaxPath; ++i) {
-    const Eigen::Vector2d way =
-        path[std::min(i + 1, path.size() - 1)] - path[i + 1 < path.size() ? i : i - 1];
-    plan.poses[plan.pose_count++] = {path[i].x(), path[i].y(), std::atan2(way.y(), way.x())};
+    plan.poses[plan.pose_count++] = Pose2{path[i].x(), path[i].y(), heading(path, i)} * Pose2{ahead, 0, 0};
     if (plan.pose_count > 1) plan.length += (path[i] - path[i - 1]).norm();
   }
   plan.ends_at_goal = begin + plan.pose_count >= path.size();
@@ -87,7 +94,9 @@ struct Run {
 
 Run drive(nav::Controller& controller, const Platform& platform, const Points& path) {
   Run run;
-  Pose2 pose{path[0].x(), path[0].y(), std::atan2((path[1] - path[0]).y(), (path[1] - path[0]).x())};
+  // Of what follows the path and is turned about: a car's rear axle, of others base_link.
+  Pose2 pose{path[0].x(), path[0].y(), heading(path, 0)};
+  const double ahead = platform.rear_axle();
   std::size_t nearest = 0;
   double sum = 0;
   int samples = 0;
@@ -98,8 +107,8 @@ Run drive(nav::Controller& controller, const Platform& platform, const Points& p
       if ((path[i] - pose.position()).norm() < (path[nearest] - pose.position()).norm()) nearest = i;
     const auto behind = static_cast<std::size_t>(kBehind / kStep);
     controller.set_plan(plan_from(path, std::min(nearest > behind ? nearest - behind : 0, path.size() - 2),
-                                  platform.max_speed));
-    const Twist2 v = controller.follow(pose, kPeriod);
+                                  platform.max_speed, ahead));
+    const Twist2 v = controller.follow(pose * Pose2{ahead, 0, 0}, kPeriod);
     for (int k = 0; k < 5; ++k)
       pose = pose * Pose2{v.vx * kPeriod / 5, v.vy * kPeriod / 5, v.wz * kPeriod / 5};
     run.seconds += kPeriod;

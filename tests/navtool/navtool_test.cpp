@@ -135,6 +135,17 @@ TEST(Navtool, TracksWithEveryController) {
   EXPECT_NE(ended.out.find("ilqr"), std::string::npos);
 }
 
+TEST(Navtool, TracksWithACarWhoseRearAxleFollows) {
+  const Ended ended = run("track --json --platform car");
+  ASSERT_EQ(ended.status, 0) << ended.out;
+  std::istringstream stream(ended.out);
+  for (std::string line; std::getline(stream, line);) {
+    const auto result = nlohmann::json::parse(line);
+    EXPECT_LT(result["seconds"].get<double>(), 15.0) << line;
+    EXPECT_LT(result["max_m"].get<double>(), 0.25) << line;
+  }
+}
+
 TEST(Navtool, HelpHasExamples) {
   for (const char* command : {"", "route", "plan", "track"}) {
     const Ended ended = run(std::string(command) + " --help");
