@@ -64,21 +64,7 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   // middle.
   const bool goes_through = keeps && kept_.through && task.gate && !misses(*task.gate, rear);
   const bool finds = !held && !goes_through && find(task);
-  bool takes = finds;
-  if (keeps && finds && !found_.through) {
-    const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
-    if (found_.tight && !kept_.tight) {
-      takes = false;
-    } else if (other || changes_ahead() || !found_.straight_on()) {
-      const Eigen::Vector2d end =
-          rear.inverse() * (kept_.spots[kept_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
-      const double left = way_.at(static_cast<float>(end.x()), static_cast<float>(end.y()));
-      const double cost = kept_.cost() - static_cast<double>(kept_.spots[at_].cost) + left;
-      takes = found_.cost() + found_.left + params_.better < cost;
-    }
-  }
-  if (keeps && kept_.through && task.gate && finds && !(found_.through && found_.straight_on()))
-    takes = false;
+  const bool takes = finds && (!keeps || is_better(rear, task.gate.has_value()));
   if (takes) {
     adopt(rear);
     kept_for_ = aim;
@@ -224,6 +210,21 @@ bool LatticePlanner::misses(const Pose2& gate, const Pose2& rear) const {
   const double before = -gate.inverse().x - (platform_.length / 2 + rear_);
   return before > kMends &&
          std::fabs(end.y) + std::fabs(wrap_angle(end.yaw)) * platform_.length / 2 > kMisses;
+}
+
+// Whether the way that was found is driven instead of the one that is kept to.
+bool LatticePlanner::is_better(const Pose2& rear, bool to_gate) const {
+  const double ahead = kept_.cost() - static_cast<double>(kept_.spots[at_].cost);
+  if (to_gate && kept_.through)
+    return found_.through && (found_.straight_on() || found_.cost() + params_.better < ahead);
+  if (found_.through) return true;
+  if (found_.tight && !kept_.tight) return false;
+  const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
+  if (!other && !changes_ahead() && found_.straight_on()) return true;
+  const Eigen::Vector2d end =
+      rear.inverse() * (kept_.spots[kept_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
+  const double left = way_.at(static_cast<float>(end.x()), static_cast<float>(end.y()));
+  return found_.cost() + found_.left + params_.better < ahead + left;
 }
 
 void LatticePlanner::adopt(const Pose2& rear) {

@@ -52,6 +52,7 @@ class LatticePlanner final : public Planner {
   std::optional<Pose2> gate_of(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles) const;
   bool misses(const Pose2& gate, const Pose2& rear) const;
+  bool is_better(const Pose2& rear, bool to_gate) const;
   void adopt(const Pose2& rear);
   void next_part();
   bool changes_ahead() const;
