@@ -17,11 +17,14 @@ constexpr double kSlow = 0.25;          ///< m/s: nearly standing
 constexpr double kAhead = 4.2;          ///< m: a direction becomes a place so far off
 constexpr float kHysteresis = 0.02f;    ///< m of the margin that a path which is kept may lose
 constexpr float kTightLoss = 0.015f;    ///< the same of the tight margin
-constexpr double kTightAhead = 1.0;  ///< m, and what braking takes: so far ahead it slows for a tight place
-constexpr double kEasy = 0.24;       ///< m: a gap with so much more than the margins is a way like others
+constexpr double kTightAhead = 1.0;     ///< m along the path, and the way that braking takes: so far before
+                                        ///< a tight place it goes slowly
+constexpr double kGap = 0.24;        ///< m: an opening with so much more than the margins is none to be met
+                                     ///< straight
+constexpr double kEasy = 0.12;       ///< m: in one with so much more other ways lead, too
 constexpr double kLineUp = 1.7;      ///< m before a gap: about there a path gets onto its axis
-constexpr double kMisses = 0.015;    ///< m off the axis of a gap
-constexpr double kMends = 0.2;       ///< m before it
+constexpr double kMisses = 0.015;    ///< m off the middle of a gap, place and heading together
+constexpr double kMends = 0.2;       ///< m from the body's front to a gap's middle: nearer it is too late
 constexpr double kBehindGate = 0.4;  ///< m behind its middle a gap is left
 
 }  // namespace
@@ -55,16 +58,18 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
 
   const Target aim = aim_of(target, pose, stamp_s);
   LatticeTask task = task_of(aim, pose, rear);
-  if (goal && !retreat_) task.gate = gate_of(target, pose, obstacles);
+  if (goal && !retreat_) see_gate(target, pose, obstacles, task);
   // What it would drive is what it is held from; backing away it is let go.
   const bool held = target.held && goal && !retreat_;
   const bool keeps = !held && follows_on(rear) && kept_for_.kind == aim.kind &&
                      (!goal || (kept_for_.goal - aim.goal).norm() < 1.0) && passable(rear);
   // Through a gap there is one way: it is kept to, unless what is seen from nearer shows that it misses the
   // middle.
-  const bool goes_through = keeps && kept_.through && task.gate && !misses(*task.gate, rear);
-  const bool finds = !held && !goes_through && find(task);
-  const bool takes = finds && (!keeps || is_better(rear, task.gate.has_value()));
+  const bool to_gate = keeps && kept_.through && task.gate;
+  const bool goes_through = to_gate && !misses(*task.gate, rear);
+  if (to_gate && !changes_ahead()) task.only = 1;
+  const bool finds = !held && !goes_through && (to_gate ? find_through(task) : find(task));
+  const bool takes = finds && (!keeps || is_better(rear, to_gate));
   if (takes) {
     adopt(rear);
     kept_for_ = aim;
@@ -162,15 +167,23 @@ LatticeTask LatticePlanner::task_of(const Target& target, const Pose2& pose, con
   return task;
 }
 
-// A path that keeps the margin; where there is none, one that keeps the tight one. Before a gap that cannot
-// be gone through from here, to a place from where it can.
+// Before a gap that cannot be gone through from here, to a place from where it can; into one that is so wide
+// that it may be met at an angle, any way, where no way leads to that place.
 bool LatticePlanner::find(LatticeTask task) {
+  if (!task.gate) return find_there(task);
+  if (find_through(task)) return true;
+  LatticeTask before = task;
+  before.target = (*task.gate * Pose2{rear_ - kLineUp, 0, 0}).position();
+  before.gate.reset();
+  const bool easy = task.room >= platform_.width + 2 * params_.search.margin + kEasy;
+  if (find_there(before) && (found_.complete || !easy)) return true;
+  task.gate.reset();
+  return easy && find_there(task);
+}
+
+// A path that keeps the margin; where there is none, one that keeps the tight one.
+bool LatticePlanner::find_there(LatticeTask task) {
   const auto& search = params_.search;
-  if (task.gate) {
-    if (find_through(task)) return true;
-    task.target = (*task.gate * Pose2{rear_ - kLineUp, 0, 0}).position();
-    task.gate.reset();
-  }
   for (const bool tight : {false, true}) {
     task.tight = tight;
     const double margin = tight ? search.tight_margin : search.margin;
@@ -180,43 +193,38 @@ bool LatticePlanner::find(LatticeTask task) {
   return false;
 }
 
-std::optional<Pose2> LatticePlanner::gate_of(const Target& target, const Pose2& pose,
-                                             std::span<const ObstaclePoint> obstacles) const {
-  if (!target.gate) return std::nullopt;
+void LatticePlanner::see_gate(const Target& target, const Pose2& pose,
+                              std::span<const ObstaclePoint> obstacles, LatticeTask& task) const {
+  if (!target.gate) return;
   const auto gateway = fit_gateway(pose.inverse() * *target.gate, obstacles);
   const auto& search = params_.search;
   if (!gateway || gateway->room < platform_.width + 2 * search.tight_margin ||
-      gateway->room > platform_.width + 2 * search.margin + kEasy || gateway->line.inverse().x > kBehindGate)
-    return std::nullopt;
-  return Pose2{rear_, 0, 0} * gateway->line;
+      gateway->room > platform_.width + 2 * search.margin + kGap || gateway->line.inverse().x > kBehindGate)
+    return;
+  task.gate = Pose2{rear_, 0, 0} * gateway->line;
+  task.room = gateway->room;
 }
 
 // Onto the axis of the gap and straight on; before that with the margin where there is room for it.
 bool LatticePlanner::find_through(LatticeTask task) {
-  const auto& search = params_.search;
-  const Pose2 line_up = *task.gate * Pose2{-kLineUp, 0, 0};
-  for (const bool tight : {false, true}) {
-    task.tight = tight;
-    const double margin = tight ? search.tight_margin : search.margin;
-    way_.fill(clear_, line_up.position(), static_cast<float>(platform_.width / 2 + margin));
-    if (search_.find(clear_, way_, task, found_)) return true;
-  }
-  return false;
+  task.target = (*task.gate * Pose2{-kLineUp, 0, 0}).position();
+  return find_there(task);
 }
 
-// Whether the way that is kept to does not end on the axis of the gap, and there is still room to mend that.
+// Whether the way that is kept to is off the middle of the gap, and there is still room to mend that.
 bool LatticePlanner::misses(const Pose2& gate, const Pose2& rear) const {
-  const Pose2 end = gate.inverse() * rear.inverse() * kept_.spots[kept_.count - 1].pose;
-  const double before = -gate.inverse().x - (platform_.length / 2 + rear_);
-  return before > kMends &&
-         std::fabs(end.y) + std::fabs(wrap_angle(end.yaw)) * platform_.length / 2 > kMisses;
+  const Pose2 to_gate = gate.inverse();
+  const Pose2 end = to_gate * rear.inverse() * kept_.spots[kept_.count - 1].pose;
+  const double turned = wrap_angle(end.yaw);
+  const double aside = std::fabs(end.y - end.x * std::tan(turned)) + std::fabs(turned) * body_.front();
+  return -to_gate.x - (rear_ + body_.front()) > kMends && aside > kMisses;
 }
 
 // Whether the way that was found is driven instead of the one that is kept to.
 bool LatticePlanner::is_better(const Pose2& rear, bool to_gate) const {
   const double ahead = kept_.cost() - static_cast<double>(kept_.spots[at_].cost);
-  if (to_gate && kept_.through)
-    return found_.through && (found_.straight_on() || found_.cost() + params_.better < ahead);
+  // Through a gap the middle is worth a little more way, but no turning.
+  if (to_gate) return found_.cost() < ahead + (found_.straight_on() ? params_.better : -params_.better);
   if (found_.through) return true;
   if (found_.tight && !kept_.tight) return false;
   const bool other = found_.spots[0].direction != kept_.spots[end_].direction;

@@ -46,11 +46,11 @@ class LatticePlanner final : public Planner {
   bool follows_on(const Pose2& rear);
   bool passable(const Pose2& rear) const;
   bool find(LatticeTask task);
+  bool find_there(LatticeTask task);
   bool find_through(LatticeTask task);
-  /// The gap on the way to the target, in the frame of the fields, when it is one that has to be met
-  /// straight.
-  std::optional<Pose2> gate_of(const Target& target, const Pose2& pose,
-                               std::span<const ObstaclePoint> obstacles) const;
+  /// Writes the gap on the way to the target, when it is one that has to be met straight.
+  void see_gate(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+                LatticeTask& task) const;
   bool misses(const Pose2& gate, const Pose2& rear) const;
   bool is_better(const Pose2& rear, bool to_gate) const;
   void adopt(const Pose2& rear);

@@ -23,6 +23,7 @@ LatticeSearch::LatticeSearch(const Platform& platform, const LatticeSearchParams
     : params_(params),
       motions_(platform, params.motions),
       base_(platform.rear_axle()),
+      width_(platform.width),
       outline_(Footprint(platform).grown(params.tight_margin, params.tight_margin)),
       front_(base_ + Footprint(platform).front()),
       closed_(static_cast<std::size_t>(kCells) * kCells * kHeadings * 2, 0) {
@@ -138,7 +139,8 @@ bool LatticeSearch::shoot(const ClearField& clear, const LatticeTask& task, std:
   const double before = -front_ - kStraight;
   if (at.x < before - 0.4) return shoot_onto(clear, task, index, before, path);
   const bool outside = at.x < -front_ - kMouth;
-  if (outside && std::fabs(at.y) + std::fabs(at.yaw) * front_ > kNearlyOn) return false;
+  const double nearly_on = std::max(kNearlyOn, (task.room - width_) / 2);
+  if (outside && std::fabs(at.y) + std::fabs(at.yaw) * front_ > nearly_on) return false;
   for (const double length : {0.6, 1.0, 1.5})
     if (at.x + length <= end && shoot_onto(clear, task, index, at.x + length, path)) return true;
   return false;

@@ -38,6 +38,7 @@ struct LatticeTask {
   double heading{0};            ///< rad, of the way (not of the body) ...
   double spread{M_PI};          ///< ... which paths may leave by so much
   std::optional<Pose2> gate{};  ///< the path shall end behind a gap with this middle, straight through it
+  double room{0};               ///< width of that gap, m; 0: no more than the body needs
 };
 
 /// A path over motions: its start, kPoses poses of each motion, and what leads through a gap, as far apart.
@@ -112,6 +113,7 @@ class LatticeSearch {
   LatticeSearchParams params_;
   MotionSet motions_;
   double base_;                            ///< base_link ahead of the poses' origin, m
+  double width_;                           ///< of the body, m
   std::array<float, kMostDiscs> discs_{};  ///< middles along the body's axis, from the poses' origin, m
   std::array<float, kMostDiscs> least_{};  ///< clearance of each where the search began, m
   std::size_t disc_count_{};

@@ -5,16 +5,19 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kOpposite = 0.5;  // the sides are this much, as a cosine, on opposite sides of the way
-constexpr int kLongest = 6;        // samples: of a passage its mouth counts
+constexpr double kOpposite = 0.5;   // the sides are this much, as a cosine, on opposite sides of the way
+constexpr int kLongest = 6;         // samples: of a passage its mouth counts
+constexpr double kNarrower = 0.15;  // m: than the passage that a route begins in a door at its end is
 
 // What stands on both sides of a place.
 struct Sides {
   Eigen::Vector2d left{0, 0}, right{0, 0};
+  double width{0};  // from side to side by way of the place, m
   bool both{false};
 };
 
-// `along`: of length one. Both, when they are no more than `width` apart: a route need not be in the middle.
+// `along`: of length one. Both, when together they are no farther than `width`: a route need not be in the
+// middle.
 Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Vector2d& along, double width,
                double beside) {
   Sides sides;
@@ -40,7 +43,8 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
       (across > 0 ? sides.left : sides.right) = place;
       (across > 0 ? left : right) = true;
     }
-  sides.both = left && right && std::sqrt(least_left) + std::sqrt(least_right) <= width;
+  sides.width = std::sqrt(least_left) + std::sqrt(least_right);
+  sides.both = left && right && sides.width <= width;
   return sides;
 }
 
@@ -51,7 +55,7 @@ std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vect
   Eigen::Vector2d left(0, 0), right(0, 0), along(0, 0);
   double z = 0;
   int samples = 0;
-  bool begun = false, open = false;  // whether the route has begun, and came to a wide place
+  double most = -1;  // a place is a gate up to this width; negative: the route has not begun
   const auto gate = [&]() -> std::optional<Gate> {
     const Eigen::Vector2d across = (left - right) / samples, middle = (left + right) / (2.0 * samples);
     Eigen::Vector2d axis(across.y(), -across.x());
@@ -68,13 +72,10 @@ std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vect
     for (double s = 0; s < length && passed + s < ahead; s += kRouteCell) {
       const Eigen::Vector3d at = points[i] + way * (s / length);
       const Sides sides = sides_of(map, at, direction, width, beside);
-      if (!begun) open = !sides.both;
-      begun = true;
-      if (!open) {
-        open = !sides.both;
-        continue;
-      }
-      if (!sides.both) {
+      // Where it begins is none; what is clearly narrower, or comes after a wide place, may be one.
+      if (most < 0) most = sides.width - kNarrower;
+      if (!sides.both) most = width;
+      if (!sides.both || sides.width > most) {
         if (samples > 0) return gate();
         continue;
       }

@@ -13,9 +13,10 @@ struct Gate {
   Eigen::Vector2d axis{1, 0};       ///< through it, the way that the route leads; of length one
 };
 
-/// The first gate of a route over its first `ahead` metres: where what stands on both sides is no more than
-/// `width` (m) apart; the route keeps `beside` from it. One that the route begins in is none. Nothing when
-/// there is none, or the map does not know.
+/// The first gate of a route over its first `ahead` metres: where what stands on both sides, by way of the
+/// route, is no more than `width` (m) apart. Who is led there keeps at least about `beside` (m) from it. The
+/// place that the route begins in is none, but a door at the end of a passage is. Nothing when there is none,
+/// or the map does not know.
 std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vector3d> points, double ahead,
                               double width, double beside);
 

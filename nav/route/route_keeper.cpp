@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace adit::nav {
 namespace {
@@ -148,6 +149,10 @@ bool RouteKeeper::tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place)
   inside_ = planner.gate(route_.points, kTold);
   if (inside_ && !planner.line(inside_->middle, on_axis(*inside_, kBeyondGate), {.let_out = true}).passable)
     inside_.reset();
+  if (inside_ && waived_ && !is_waived(inside_->middle)) {
+    waived_.reset();
+    retry_until_ = -std::numeric_limits<double>::infinity();
+  }
   return inside_.has_value();
 }
 
@@ -195,7 +200,8 @@ RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place
     return step;
   }
   if (params_.gates == GateUse::tell && tell_gate(planner, place)) {
-    if ((inside_->middle - place).head<2>().norm() < kAtGate) lines_up_for_ = inside_->middle;
+    const Eigen::Vector2d rest = (inside_->middle - place).head<2>();
+    if (rest.norm() < kAtGate && rest.dot(inside_->axis) > 0) lines_up_for_ = inside_->middle;
     step.target = on_axis(*inside_, kBeyondGate);
     step.gate = inside_;
     return step;

@@ -1,4 +1,5 @@
 #pragma once
+#include <limits>
 #include <optional>
 
 #include "nav/route/route_planner.hpp"
@@ -22,7 +23,8 @@ struct RouteKeeperParams {
   GateUse gates{GateUse::line_up};
   double proof{2.0};    ///< a goal is unreachable when that was so all this time, s, [0, 10]
   double blocked{1.0};  ///< a route is blocked when the local planner says so for this long, s, [0, 30]
-  double retry{3.0};    ///< and by so much later the first time at a gap that it was told of, s, [0, 30]
+  double retry{3.0};    ///< before a gap that it was told of it then has so long to back off and come again
+                        ///< before that counts, once, s, [0, 30]
 };
 
 /// Where to drive next.
@@ -78,10 +80,11 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
-  bool lined_up_{false};                           // with the gate ahead
-  std::optional<Eigen::Vector3d> lines_up_for_{};  // the gate it is near and not yet in
-  std::optional<Eigen::Vector3d> waived_{};        // the one where it could not get there
-  std::optional<Gate> inside_{};                   // the gate that it goes through
+  bool lined_up_{false};                                          // with the gate ahead
+  std::optional<Eigen::Vector3d> lines_up_for_{};                 // the gate it is near and not yet in
+  std::optional<Eigen::Vector3d> waived_{};                       // the one where it could not get there
+  double retry_until_{-std::numeric_limits<double>::infinity()};  // s: so long being blocked does not count
+  std::optional<Gate> inside_{};                                  // the gate that it goes through
 };
 
 }  // namespace adit::nav

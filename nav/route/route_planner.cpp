@@ -6,16 +6,18 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kGateMargin = 0.15;  // m
-constexpr double kTightGate = 0.20;   // m: who plans its headings is told of what is really narrow
+constexpr double kGateMargin = 0.3;  // m more than the robot's diagonal
+// m more than its width, for who plans its headings: a little more than what it treats as a gap, since the
+// map is not as exact as what it sees.
+constexpr double kTightGate = 0.40;
 
 }  // namespace
 
 RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
     : platform_(platform),
       params_(params),
-      narrow_(platform.planner == "lattice" ? platform.width / 2 + kTightGate
-                                            : std::hypot(platform.length, platform.width) / 2 + kGateMargin),
+      gate_width_(platform.planner == "lattice" ? platform.width + kTightGate
+                                                : std::hypot(platform.length, platform.width) + kGateMargin),
       map_(params, ScanProfile::most_wrong(platform, params)),
       profile_(platform, params),
       graph_(map_, platform, params) {}

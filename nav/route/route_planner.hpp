@@ -41,7 +41,7 @@ class RoutePlanner {
   bool has_blocked_places() const;
   /// The first gate over a route's first `ahead` metres: hardly wider than the robot is long across.
   std::optional<Gate> gate(std::span<const Eigen::Vector3d> points, double ahead) const {
-    return find_gate(map_, points, ahead, 2 * narrow_, platform_.width / 2);
+    return find_gate(map_, points, ahead, gate_width_, platform_.width / 2);
   }
 
   LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {}) {
@@ -74,7 +74,7 @@ class RoutePlanner {
 
   Platform platform_;
   RouteParams params_;
-  double narrow_;  // m: so near on both sides the robot is to go straight
+  double gate_width_;  // m: through what is no wider the robot is to go straight
   SurfaceMap map_;
   ScanProfile profile_;
   RouteGraph graph_;
