@@ -92,12 +92,12 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
     return;
   }
   if (!blocked_since_) blocked_since_ = stamp_s;
-  if (stamp_s - *blocked_since_ < params_.blocked) return;
+  if (stamp_s - *blocked_since_ < params_.blocked || stamp_s < retry_until_) return;
   blocked_since_.reset();
-  if (lines_up_for_ &&
-      !is_waived(*lines_up_for_)) {  // then from where it is; or it backs off and tries again
+  if (lines_up_for_ && !is_waived(*lines_up_for_)) {
+    // It goes on from where it is. Who finds its own way has the time to back off and try again.
     waived_ = lines_up_for_;
-    if (params_.gates == GateUse::tell) blocked_since_ = stamp_s + params_.retry;
+    if (params_.gates == GateUse::tell) retry_until_ = stamp_s + params_.retry;
     return;
   }
   waived_.reset();  // whoever comes again may line up

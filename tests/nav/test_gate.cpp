@@ -32,12 +32,29 @@ TEST(Gate, IsTheMiddleOfAGapAndPointsThroughIt) {
 
 TEST(Gate, ItIsAsNarrowForARouteBesideItsMiddle) {
   RoutePlanner planner(car());
-  tell_hall(planner, 26, 34);  // 20 cm wider than it is
+  tell_hall(planner, 26, 34);  // 20 cm wider than it is; 30 cm from cell to cell
   for (const double y : {2.91, 3.0, 3.09}) {
     const std::vector<Eigen::Vector3d> points{{3.5, y, 0}, {6.5, y, 0}};
     const auto gate = planner.gate(points, 5.0);
     ASSERT_TRUE(gate) << y;
     EXPECT_NEAR(gate->middle.y(), 3.0, 0.06) << y;
+  }
+}
+
+TEST(Gate, ADoorAtTheEndOfAPassageIsOneThePassageIsNot) {
+  for (const Platform& platform : {car(), tracked()}) {
+    RoutePlanner planner(platform);
+    GridWorld world(100, 60);
+    world.border();
+    world.fill(0, 52, 0, 60);
+    world.fill(0, 50, 26, 35, false);   // a passage 0.9 m wide
+    world.fill(50, 52, 27, 34, false);  // and its door
+    world.tell(planner);
+    const std::vector<Eigen::Vector3d> points{{2, 3.05, 0}, {8, 3.05, 0}};
+    const auto gate = planner.gate(points, 5.0);
+    ASSERT_TRUE(gate) << platform.name;
+    EXPECT_NEAR(gate->middle.x(), 5.1, 0.15) << platform.name;
+    EXPECT_FALSE(planner.gate(points, 2.0)) << platform.name << ": the passage";
   }
 }
 
@@ -160,10 +177,33 @@ TEST(Gate, WhoFindsItsOwnWayMayBackOffOnceBeforeTheGapIsBlocked) {
   tell_hall(planner, 26, 34);
   RouteKeeper keeper(car());
   const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.1, 0};
-  for (const double t : {0.0, 0.5, 1.6, 3.0, 5.5})
+  for (const double t : {0.0, 0.5, 1.6, 3.0, 4.5})
     EXPECT_TRUE(keeper.step(planner, place, goal, true, t).gate) << t;
   EXPECT_FALSE(planner.has_blocked_places());
-  keeper.step(planner, place, goal, true, 5.7);
+  keeper.step(planner, place, goal, true, 4.7);
+  EXPECT_TRUE(planner.has_blocked_places());
+}
+
+TEST(Gate, BackingOffIsNotCutShortByACycleThatWasFree) {
+  RoutePlanner planner(car());
+  tell_hall(planner, 26, 34);
+  RouteKeeper keeper(car());
+  const Eigen::Vector3d goal{8, 1.0, 0}, place{4.4, 3.1, 0};
+  for (const double t : {0.0, 0.5, 1.6}) keeper.step(planner, place, goal, true, t);
+  keeper.step(planner, place, goal, false, 1.9);
+  for (const double t : {2.0, 3.1, 4.5}) keeper.step(planner, place, goal, true, t);
+  EXPECT_FALSE(planner.has_blocked_places());
+  keeper.step(planner, place, goal, true, 4.7);
+  EXPECT_TRUE(planner.has_blocked_places());
+}
+
+TEST(Gate, WhoIsBlockedBehindItDoesNotBackOffIntoIt) {
+  RoutePlanner planner(car());
+  tell_hall(planner, 26, 34);
+  RouteKeeper keeper(car());
+  const Eigen::Vector3d goal{8, 3.0, 0};
+  keeper.step(planner, {4.4, 3.0, 0}, goal, false, 0.0);
+  for (const double t : {0.5, 1.0, 1.6}) keeper.step(planner, {5.5, 3.0, 0}, goal, true, t);
   EXPECT_TRUE(planner.has_blocked_places());
 }
 

@@ -230,6 +230,58 @@ TEST(LatticePlanner, AimsAnewAtTheMiddleOfAGapThatItSeesBetterFromNearer) {
   EXPECT_NEAR(plan_twice(planner, 0.008f).path().back().y, 0.0, 0.004) << "not for a little";
 }
 
+TEST(LatticePlanner, KeepsToItsWayWhenAGapIsOnlyMeasuredAtAnotherAngle) {
+  const Platform platform = car();
+  LatticePlanner planner(platform);
+  const auto gap = static_cast<float>(platform.width) + 0.1f;
+  Target target = Target::to({4.0, 0.0});
+  target.gate = Pose2{3.0, 0, 0};
+  const Pose2 end = planner.plan(target, {}, wall_with_gap(3.0f, gap), 0.0).path().back();
+  auto turned = wall_with_gap(0.0f, gap, 0.0175f);  // by a degree about its middle
+  for (ObstaclePoint& o : turned) o.x += 3.0f;
+  const Pose2 again = planner.plan(target, {}, turned, 0.1).path().back();
+  EXPECT_EQ(end.y, again.y);
+  EXPECT_EQ(end.yaw, again.yaw);
+}
+
+TEST(LatticePlanner, BacksOutOfASmallRoomThroughADoorThatIsWideEnough) {
+  const Platform platform = car();
+  LatticePlanner planner(platform);
+  std::vector<ObstaclePoint> room;  // 1.5 x 1 m, its door behind the car, 30 cm wider than it
+  for (float x = -1.0f; x <= 0.8f; x += 0.03f) {
+    room.push_back({x, -0.5f, 1.0f});
+    room.push_back({x, 0.5f, 1.0f});
+  }
+  for (float y = -0.5f; y <= 0.5f; y += 0.03f) {
+    room.push_back({0.8f, y, 1.0f});
+    if (std::fabs(y) > 0.45f) room.push_back({-1.0f, y, 1.0f});
+  }
+  Target target = Target::to({-2.0, 0.0});
+  target.gate = Pose2{-1.0, 0, M_PI};
+  const Plan plan = planner.plan(target, {}, room, 0.0);
+  ASSERT_FALSE(plan.blocked);
+  EXPECT_TRUE(plan.reverse);
+}
+
+TEST(LatticePlanner, BrakesInTimeForATightPlace) {
+  const Platform platform = car();
+  const auto gap = static_cast<float>(platform.width) + 0.1f;
+  const auto fastest = [&](double speed) {
+    LatticePlanner planner(platform);
+    Plan plan;
+    for (int i = 0; i < 3; ++i) {
+      const Pose2 at{0.1 * speed * i, 0, 0};
+      auto wall = wall_with_gap(static_cast<float>(3.1 - at.x), gap);
+      Target target = Target::to({4.0, 0.0});
+      target.gate = Pose2{3.1, 0, 0};
+      plan = planner.plan(target, at, wall, 0.1 * i);
+    }
+    return plan.max_speed;
+  };
+  EXPECT_GT(fastest(0.4), 0.6);
+  EXPECT_LE(fastest(2.0), 0.3);
+}
+
 TEST(LatticePlanner, CreepsOnlyWhereItIsTight) {
   const Platform platform = car();
   LatticePlanner planner(platform);
