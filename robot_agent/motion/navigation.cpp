@@ -11,8 +11,6 @@ namespace {
 constexpr double kTurnLooksAhead = 0.6;  // s: how far a stick's turn rate shifts the direction asked for
 constexpr double kTurningSpeed = 0.05;   // m/s: of a stick that only turns
 constexpr Duration kCycleLost = 2s;
-constexpr Duration kFreeAgain = 500ms;  // without a cut velocity: no longer held
-constexpr double kHeldWithin = 0.3;     // m: who came further is not held, only slow
 
 }  // namespace
 
@@ -34,7 +32,7 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
   step_.reset();
   blocked_ = false;
   motion_ = motion;
-  held_since_.reset();
+  held_.clear();
   if (other_kind) {
     has_plan_ = false;
     controller_->stop_now();
@@ -98,7 +96,8 @@ Twist2 Navigation::along_plan(Time now) {
   const Twist2 wanted = controller_->follow(localisation_.odom().planar(), seconds(params_.period));
   const auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
   if (verdict.cause != nav::CollisionMonitor::Cause::none) controller_->sent(verdict.velocity);
-  watch_held(verdict.cause == nav::CollisionMonitor::Cause::stopped, now);
+  held_.look(verdict.cause == nav::CollisionMonitor::Cause::stopped, localisation_.odom().planar().position(),
+             seconds(now.time_since_epoch()));
   Twist2 velocity = verdict.velocity;
   if (terrain_fresh(now)) velocity.vz = climb();
   return velocity;
@@ -118,17 +117,6 @@ bool Navigation::at_height() const {
   const auto* go = std::get_if<GoTo>(&motion_);
   if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return true;
   return std::fabs(go->goal.z() - localisation_.z()) < kThere;
-}
-
-void Navigation::watch_held(bool stopped, Time now) {
-  const Eigen::Vector2d at = localisation_.odom().planar().position();
-  if (held_since_ && (now - held_last_ > kFreeAgain || (at - held_at_).norm() > kHeldWithin))
-    held_since_.reset();
-  if (!stopped) return;
-  held_last_ = now;
-  if (held_since_) return;
-  held_since_ = now;
-  held_at_ = at;
 }
 
 nav::Target Navigation::target() const {
@@ -219,7 +207,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->scan = std::move(scan);
   job->target = target();
   // The router, where there is one, has half of that time to lead another way first.
-  job->target.held = held_since_ && now - *held_since_ >= 2 * params_.held_after;
+  job->target.held = held_.held(seconds(now.time_since_epoch()), 2 * seconds(params_.held_after));
   const auto* step = step_on(now);
   job->last = !step || step->last;
   job->pose = localisation_.odom().planar();
@@ -240,7 +228,7 @@ void Navigation::planned(const PlanJob& job) {
     controller_->set_plan(job.plan);
     has_plan_ = true;
     plan_made_ = job.made;
-    const bool held = held_since_ && now() - *held_since_ >= params_.held_after;
+    const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
     if (for_goal) {
       blocked_ = job.plan.blocked || held;
       outputs_.progress({.arrived = job.plan.arrived && job.last && at_height(), .blocked = blocked_});

@@ -8,6 +8,7 @@
 #include "core/component/component.hpp"
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
+#include "nav/monitor/held_watch.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/motion.hpp"
@@ -69,7 +70,6 @@ class Navigation : public Component, public NavigationInput {
   void ask_route(const std::shared_ptr<Scan>& scan, Time now);
   void routed(const RouteJob& job);
   Twist2 along_plan(Time now);
-  void watch_held(bool stopped, Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
   /// Of what flies to a goal with a height: the velocity upwards, m/s, and whether it is there.
   double climb() const;
@@ -94,11 +94,9 @@ class Navigation : public Component, public NavigationInput {
   bool has_plan_{};
   Time plan_made_{};
   std::array<std::optional<Time>, 2> warned_{};  // by Warning: when its cause was there last
-  std::optional<Time> held_since_{};  // the monitor stops the robot, with no more than short breaks
-  Time held_last_{};
+  nav::HeldWatch held_{};
   double sent_speed_{0};  // that it may have by the velocities it was told, m/s
   Time sent_at_{};
-  Eigen::Vector2d held_at_{0.0, 0.0};  // odometry frame
   Cycle planning_{};
   std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning
   Cycle routing_{};

@@ -1,9 +1,9 @@
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
+#include "nav/monitor/held_watch.hpp"
 #include "nav/navigator.hpp"
 #include "tests/nav/box_world.hpp"
 
@@ -29,9 +29,7 @@ struct ClosedLoop {
   double least_clearance{10};
   double driven{0}, fastest{0}, steepest{0};  ///< m, m/s, m/s2
   int blocked_cycles{0}, held_steps{0}, slowed_steps{0};
-  std::optional<double> held_since{};
-  double held_last{0};
-  Eigen::Vector2d held_at{0, 0};
+  HeldWatch held{};
 
   ClosedLoop(const Platform& p, BoxWorld w, const Pose2& start, const std::string& tracks = "ilqr")
       : world(std::move(w)),
@@ -61,7 +59,7 @@ struct ClosedLoop {
       const Twist2 v = verdict.velocity;
       if (verdict.cause != CollisionMonitor::Cause::none) follower.sent(v);
       held_steps += verdict.cause == CollisionMonitor::Cause::stopped;
-      watch_held(verdict.cause == CollisionMonitor::Cause::stopped);
+      held.look(verdict.cause == CollisionMonitor::Cause::stopped, odometry().position(), time);
       slowed_steps += verdict.cause == CollisionMonitor::Cause::slowed;
       steepest = std::max(steepest, std::hypot(v.vx - before.vx, v.vy - before.vy) / kDt);
       fastest = std::max(fastest, std::hypot(v.vx, v.vy));
@@ -72,18 +70,6 @@ struct ClosedLoop {
       time += kDt;
       least_clearance = std::min(least_clearance, world.clearance(platform, truth));
     }
-  }
-
-  /// The monitor keeps it on the spot, with no more than short breaks, for so long, s: as the agent counts.
-  double held() const { return held_since ? time - *held_since : 0.0; }
-  void watch_held(bool stopped) {
-    const Eigen::Vector2d at = odometry().position();
-    if (held_since && (time - held_last > 0.5 || (at - held_at).norm() > 0.3)) held_since.reset();
-    if (!stopped) return;
-    held_last = time;
-    if (held_since) return;
-    held_since = time;
-    held_at = at;
   }
 
   /// Until the plan says `arrived` and the robot stands, or for so many seconds; true when it arrived.

@@ -8,6 +8,7 @@ namespace adit::nav::test {
 
 /// A robot that is led by the route keeper, as the agent does it.
 struct RouteDrive {
+  static constexpr double kHeldAfter = 1.5;  ///< s, as the agent's default: then the way is blocked
   ClosedLoop loop;
   RoutePlanner planner;
   RouteKeeper keeper;
@@ -23,12 +24,12 @@ struct RouteDrive {
                                      loop.noise, loop.random),
                      Pose3::level(at, 0.0), loop.time);
     step = keeper.step(planner, {at.x, at.y, 0}, {goal.x(), goal.y(), std::nan("")},
-                       loop.last.blocked || loop.held() >= 1.5, loop.time);
+                       loop.last.blocked || loop.held.held(loop.time, kHeldAfter), loop.time);
   }
   /// Drives there for a tenth of a second.
   void drive() {
     Target target = target_of(step);
-    target.held = loop.held() >= 3.0;
+    target.held = loop.held.held(loop.time, 2 * kHeldAfter);
     loop.cycle(target);
   }
   bool arrived() const { return step.last && loop.last.arrived && loop.follower.command().zero(); }

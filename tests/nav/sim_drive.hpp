@@ -5,6 +5,7 @@
 
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
+#include "nav/monitor/held_watch.hpp"
 #include "nav/navigator.hpp"
 #include "sim/world/simulation.hpp"
 #include "tests/nav/box_world.hpp"
@@ -25,10 +26,8 @@ class SimDrive {
     Plan plan{};
     std::size_t moving{0};  ///< movers that were told, over all scans
     sim::Simulation::ScanJob job{};
-    Pose2 scanned{};                     ///< where it says it was
-    std::optional<double> held_since{};  ///< by the monitor, s, as the agent reckons
-    double held_last{};
-    Eigen::Vector2d held_at{0, 0};
+    Pose2 scanned{};  ///< where it says it was
+    HeldWatch held{};
   };
 
   SimDrive(std::shared_ptr<const sim::World> world, const std::vector<sim::RobotStart>& starts,
@@ -59,7 +58,7 @@ class SimDrive {
         r.moving += r.navigator.movers().size();
         if (!r.goal) continue;
         Target target = Target::to(r.start.inverse() * *r.goal);
-        target.held = r.held_since && now - *r.held_since >= 3.0;
+        target.held = r.held.held(now, 3.0);
         r.plan = r.navigator.plan(target, odom, now);
       }
       if (phase == 4 && r.goal) {
@@ -72,12 +71,7 @@ class SimDrive {
                                            CollisionMonitor::Policy::stop, {moves});
       if (verdict.cause != CollisionMonitor::Cause::none) r.controller->sent(verdict.velocity);
       simulation.command(n, verdict.velocity);
-      if (r.held_since && (now - r.held_last > 0.5 || (odom.position() - r.held_at).norm() > 0.3))
-        r.held_since.reset();
-      if (verdict.cause != CollisionMonitor::Cause::stopped) continue;
-      r.held_last = now;
-      if (!r.held_since) r.held_at = odom.position();
-      if (!r.held_since) r.held_since = now;
+      r.held.look(verdict.cause == CollisionMonitor::Cause::stopped, odom.position(), now);
     }
   }
   /// Until all that have a goal have arrived, or for so long.

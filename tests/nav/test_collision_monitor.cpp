@@ -1,4 +1,5 @@
 #include "nav/monitor/collision_monitor.hpp"
+#include "nav/monitor/held_watch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -418,6 +419,25 @@ TEST(CollisionMonitor, GarbageIsNoObstacleAndHarmsNothing) {
   EXPECT_EQ(monitor.check({2, 0, 0}, {}, 0, Policy::stop).cause, Cause::none);
   monitor.look(std::vector<Eigen::Vector3f>{{0.6f, 0, 0.3f}}, {}, 0);
   EXPECT_EQ(monitor.check({2, 0, 0}, {}, 0, Policy::stop).cause, Cause::none) << "one return alone is noise";
+}
+
+TEST(HeldWatch, ShortBreaksDoNotEndItWayAndLongOnesDo) {
+  const Eigen::Vector2d here{1, 2};
+  HeldWatch watch;
+  EXPECT_FALSE(watch.held(0.0, 0.0)) << "never stopped";
+  watch.look(true, here, 0.0);
+  watch.look(false, here, 0.4);
+  watch.look(true, here, 0.5);
+  EXPECT_FALSE(watch.held(1.4, 1.5));
+  EXPECT_TRUE(watch.held(1.5, 1.5));
+  watch.look(false, here, 1.1);
+  EXPECT_FALSE(watch.held(2.0, 1.5)) << "0.6 s without being stopped";
+  watch.look(true, here, 2.0);
+  watch.look(true, here + Eigen::Vector2d(0.31, 0), 2.1);
+  EXPECT_FALSE(watch.held(3.5, 1.5)) << "slow, not held";
+  EXPECT_TRUE(watch.held(3.6, 1.5));
+  watch.clear();
+  EXPECT_FALSE(watch.held(9.0, 1.5));
 }
 
 }  // namespace
