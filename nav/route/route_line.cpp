@@ -20,30 +20,32 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   const double share = length / steps;
   LineCost result;
   double z = from.z();
-  int index = -1, tx = 0, ty = 0;
+  int tx = 0, ty = 0;
+  const Tile* tile = nullptr;          // that the line is over, where the ground is known
   const GroundCell* before = nullptr;  // where the height of the cell before is known
   bool have = false, letting_out = ends.let_out, letting_in = false;
   for (int i = 0; i <= steps; ++i) {
+    if (result.cost > ends.most) return {};
     const double t = static_cast<double>(i) / steps;
     const int ix = route_cell(from.x() + t * way.x()), iy = route_cell(from.y() + t * way.y());
     if (!have || tile_of(ix) != tx || tile_of(iy) != ty) {
       tx = tile_of(ix);
       ty = tile_of(iy);
-      index = map_.at_cell(ix, iy, z);
+      const int index = map_.at_cell(ix, iy, z);
+      tile = index < 0 ? nullptr : &builder_.current(map_, index);
       have = true;
     }
     const double weight = i == 0 || i == steps ? share / 2 : share;
-    if (index < 0) {
+    if (!tile) {
       result.cost += weight * builder_.unknown_cost();
       result.unknown += weight;
       before = nullptr;
       letting_out = false;
       continue;
     }
-    const Tile& tile = builder_.current(map_, index);
     const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
-    const GroundCell& cell = tile.cells[c];
-    if (tile.cost[c] == 0) {
+    const GroundCell& cell = tile->cells[c];
+    if (tile->cost[c] == 0) {
       letting_out = letting_out && t * length <= kLetOut;
       letting_in = ends.let_in && (1 - t) * length <= kLetOut;
       if (builder_.solid(cell) || !(letting_out || letting_in)) return {};
@@ -52,7 +54,7 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
       return {};
     } else {
       letting_out = false;
-      result.cost += weight * tile.cost[c] / 16.0;
+      result.cost += weight * tile->cost[c] / 16.0;
     }
     if (!cell.known) {
       result.unknown += weight;
@@ -77,8 +79,9 @@ void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) {
     int unseen = 0;
     for (std::size_t j = anchor + 2; j < points.size() && unseen < kGiveUp; ++j) {
       if ((points[j] - points[anchor]).squaredNorm() > kLongest * kLongest) break;
-      const LineCost direct = line(points[anchor], points[j]);
-      if (direct.passable && direct.cost <= before[j] - before[anchor] + 1e-3) {
+      const double most = before[j] - before[anchor] + 1e-3;
+      const LineCost direct = line(points[anchor], points[j], {.most = most});
+      if (direct.passable && direct.cost <= most) {
         best = j;
         unseen = 0;
       } else {

@@ -1,5 +1,6 @@
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "nav/route/route.hpp"
@@ -19,6 +20,7 @@ struct LineCost {
 /// or in may be too narrow for half a metre, as long as nothing stands there.
 struct LineEnds {
   bool let_out{false}, let_in{false};
+  double most{std::numeric_limits<double>::infinity()};  ///< what costs more is not followed to its end, m
 };
 
 /// Walks lines over the map's ground, and shortens ways with them.
@@ -27,7 +29,7 @@ class RouteLine {
   RouteLine(SurfaceMap& map, TileBuilder& builder) : map_(map), builder_(builder) {}
 
   /// From one point of the ground to another, both within 1.2 m of it; not passable where the ground is
-  /// not, where a step is, or where the floor does not lead to `to`'s height.
+  /// not, where a step is, where the floor does not lead to `to`'s height, or where it costs too much.
   LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {});
   /// Replaces parts of a way by straight lines, where those are passable and cost no more. Each leg of
   /// `points` must be passable.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "nav/riser.hpp"
@@ -244,6 +245,11 @@ void TileBuilder::open_sides(Tile& tile) {
     }
 }
 
+// Not negative, so that the bits of a distance sort as it does.
+std::uint64_t TileBuilder::entry(float distance, int cell) {
+  return (std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32) | static_cast<std::uint32_t>(cell);
+}
+
 void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
   std::array<bool, kTileArea> wanted{};
   int left = 0;
@@ -252,39 +258,42 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
     left += !node;
     node = true;
   }
+  // With a border around it nothing has to be asked about the tile's end.
+  constexpr int kWide = kTileSide + 2;
+  std::array<std::uint8_t, kWide * kWide> costs{};
+  for (int y = 0; y < kTileSide; ++y)
+    std::copy_n(tile.cost.begin() + y * kTileSide, kTileSide, costs.begin() + (y + 1) * kWide + 1);
+  const auto cost_of = [&costs](int at) { return int{costs[static_cast<std::size_t>(at)]}; };
   distance_.fill(kUnreached);
   before_.fill(-1);
   heap_.clear();
   distance_[static_cast<std::size_t>(cell)] = 0;
-  heap_.push_back({0, cell});
+  heap_.push_back(entry(0, cell));
   while (!heap_.empty()) {
-    std::pop_heap(heap_.begin(), heap_.end());
-    const Entry e = heap_.back();
+    std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
+    const auto at = static_cast<std::uint32_t>(heap_.back());  // the lower half: a cell
+    const auto so_far = std::bit_cast<float>(static_cast<std::uint32_t>(heap_.back() >> 32));
     heap_.pop_back();
-    if (e.distance > distance_[static_cast<std::size_t>(e.cell)]) continue;
-    if (wanted[static_cast<std::size_t>(e.cell)] && --left == 0) return;
-    const int x = e.cell % kTileSide, y = e.cell / kTileSide;
+    if (so_far > distance_[at]) continue;
+    if (wanted[at] && --left == 0) return;
+    const int here = static_cast<int>((at / kTileSide + 1) * kWide + at % kTileSide + 1);
+    const int own = cost_of(here);
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
-        const int nx = x + dx, ny = y + dy;
-        if ((dx == 0 && dy == 0) || nx < 0 || ny < 0 || nx >= kTileSide || ny >= kTileSide) continue;
-        const int next = ny * kTileSide + nx;
-        const int cost = tile.cost[static_cast<std::size_t>(next)];
+        if (dx == 0 && dy == 0) continue;
+        const int cost = cost_of(here + dy * kWide + dx);
         if (cost == 0) continue;
         // Not across a corner: a straight line would touch it.
-        if (dx != 0 && dy != 0 &&
-            (tile.cost[static_cast<std::size_t>(y * kTileSide + nx)] == 0 ||
-             tile.cost[static_cast<std::size_t>(ny * kTileSide + x)] == 0))
-          continue;
-        const float step = kCellF * (dx != 0 && dy != 0 ? 1.41421356f : 1.0f);
-        const float d =
-            e.distance +
-            step * static_cast<float>(cost + tile.cost[static_cast<std::size_t>(e.cell)]) / (2 * kUnit);
+        const bool across = dx != 0 && dy != 0;
+        if (across && (cost_of(here + dx) == 0 || cost_of(here + dy * kWide) == 0)) continue;
+        const int next = static_cast<int>(at) + dy * kTileSide + dx;
+        const float step = kCellF * (across ? 1.41421356f : 1.0f);
+        const float d = so_far + step * static_cast<float>(cost + own) / (2 * kUnit);
         if (d >= distance_[static_cast<std::size_t>(next)]) continue;
         distance_[static_cast<std::size_t>(next)] = d;
-        before_[static_cast<std::size_t>(next)] = e.cell;
-        heap_.push_back({d, next});
-        std::push_heap(heap_.begin(), heap_.end());
+        before_[static_cast<std::size_t>(next)] = static_cast<int>(at);
+        heap_.push_back(entry(d, next));
+        std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
       }
   }
 }

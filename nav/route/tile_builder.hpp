@@ -62,6 +62,8 @@ class TileBuilder {
   void open_sides(Tile& tile);
   void add_node(Tile& tile, int side, int first, int last);
   void connect(Tile& tile, int node);
+  /// A distance and a cell as one number, which sorts as they do.
+  static std::uint64_t entry(float distance, int cell);
 
   double hard_, comfort_, narrow_cost_;  // clearance that is needed and that is liked, m
   float rise_, doubtful_rise_, unknown_cost_;
@@ -73,14 +75,7 @@ class TileBuilder {
   std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // of what is solid, kAsideUnit
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};
-  struct Entry {
-    float distance;
-    int cell;
-    bool operator<(const Entry& o) const {
-      return distance > o.distance || (distance == o.distance && cell > o.cell);
-    }
-  };
-  std::vector<Entry> heap_{};
+  std::vector<std::uint64_t> heap_{};  // of entries
 };
 
 }  // namespace adit::nav
