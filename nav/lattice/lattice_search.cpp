@@ -12,10 +12,9 @@ constexpr float kDeeper = 0.01f;    ///< m: cells are not finer
 constexpr float kCoarse = 0.05f;    ///< m: with so much more than the margin by the cells a body is free
 constexpr double kStraight = 0.25;  ///< m before a gap a body is straight on its axis
 constexpr double kMouth = 0.1;      ///< m before a gap's middle it may begin
-constexpr double kNearlyOn =
-    0.08;                        ///< m: the front is nearer than this to a gap's axis, a corner not in a jamb
-constexpr double kBehind = 0.9;  ///< m behind a gap's middle the path ends
-constexpr double kSteepest = 1.0;  ///< rad off the axis
+constexpr double kNearlyOn = 0.08;  ///< m off the axis, place and heading together: no corner in a jamb
+constexpr double kBehind = 0.9;     ///< m behind a gap's middle the path ends
+constexpr double kSteepest = 1.0;   ///< rad off the axis
 
 }  // namespace
 

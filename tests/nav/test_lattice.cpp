@@ -149,6 +149,15 @@ TEST(Gateway, FindsTheMiddleAndTheWayThrough) {
   EXPECT_FALSE(fit_gateway({2.1, 0, 0}, one_side));
 }
 
+std::vector<ObstaclePoint> seen_from(const Pose2& place, std::vector<ObstaclePoint> points) {
+  const Pose2 back = place.inverse();
+  for (ObstaclePoint& o : points) {
+    const Eigen::Vector2d p = back * Eigen::Vector2d(o.x, o.y);
+    o = {static_cast<float>(p.x()), static_cast<float>(p.y()), 1.0f};
+  }
+  return points;
+}
+
 TEST(LatticeSearch, GetsThroughAGapTenCentimetresWiderFromWhereverItStands) {
   const Platform platform = car();
   const auto wall = wall_with_gap(2.5f, static_cast<float>(platform.width) + 0.1f);
@@ -161,12 +170,7 @@ TEST(LatticeSearch, GetsThroughAGapTenCentimetresWiderFromWhereverItStands) {
   for (const double y : {-1.0, -0.3, 0.0, 0.6})
     for (const double yaw : {-0.6, 0.0, 0.8}) {
       const Pose2 rear = Pose2{0, y, yaw} * Pose2{-platform.rear_axle(), 0, 0};
-      std::vector<ObstaclePoint> seen;
-      for (const ObstaclePoint& o : wall) {
-        const Eigen::Vector2d p = rear.inverse() * Eigen::Vector2d(o.x, o.y);
-        seen.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), 1.0f});
-      }
-      clear.fill(seen);
+      clear.fill(seen_from(rear, wall));
       LatticeTask task{};
       task.gate = rear.inverse() * Pose2{2.6, 0, 0};
       way.fill(clear, (*task.gate * Pose2{-1.7, 0, 0}).position(), 0.36f);
@@ -191,12 +195,7 @@ TEST(LatticeSearch, BacksUpWhereABendWouldEndInTheJamb) {
   WayField way;
   for (const auto& [aside, back] : {std::pair{-0.1, true}, std::pair{0.0, false}}) {
     const Pose2 rear = Pose2{0, aside, 0.05} * Pose2{-platform.rear_axle(), 0, 0};
-    std::vector<ObstaclePoint> seen;
-    for (const ObstaclePoint& o : wall) {
-      const Eigen::Vector2d p = rear.inverse() * Eigen::Vector2d(o.x, o.y);
-      seen.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), 1.0f});
-    }
-    clear.fill(seen);
+    clear.fill(seen_from(rear, wall));
     LatticeTask task{};
     task.gate = rear.inverse() * Pose2{0.9, 0, 0};
     way.fill(clear, (*task.gate * Pose2{-1.7, 0, 0}).position(), 0.36f);
