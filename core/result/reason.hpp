@@ -39,6 +39,9 @@ enum class Reason : std::uint16_t {
   program_silent = 214,      ///< the program that steers from outside has not been heard
   obstacle_close = 215,      ///< the collision monitor holds the robot back
   just_restarted = 216,      ///< a stop may be under way to the agent that was started a moment ago
+  tree_refused = 226,        ///< The behaviour tree contradicts the mode table; the robot runs in hold.
+  odometry_jumped = 227,     ///< The driver's odometry moved farther than the body can.
+  name_taken = 228,          ///< Another robot with the same name was there first.
 
   // What was typed or sent
   bad_argument = 301,
