@@ -30,7 +30,7 @@ Bytes to(std::uint8_t whom) {
   sub.resize(14, whom);
   return sub;
 }
-Bytes announcement(std::uint8_t from, std::uint16_t port) {
+Bytes announcement(std::uint8_t from, std::uint16_t port, std::uint8_t network = 127) {
   return message(from, {{0x15,
                          5,
                          0,
@@ -89,7 +89,7 @@ Bytes announcement(std::uint8_t from, std::uint16_t port) {
                          0,
                          0,
                          0,
-                         127,
+                         network,
                          0,
                          0,
                          1,
@@ -191,6 +191,75 @@ TEST(Contact, SaysAHeartbeatAgainWithAHigherCountUntilItIsAcknowledged) {
   EXPECT_EQ(talk.pass(300ms), 1U);
   talk.hears(acknack(6));
   EXPECT_EQ(talk.pass(3s), 0U);
+}
+
+TEST(Contact, APeerThatComesBackAfterItsLeaseIsMetAsANewOne) {
+  Talk talk;
+  const Bytes own = announcement(1, 7410);
+  talk.sends(own, 7400);
+  talk.hears(announcement(2, port_of_peer));
+  talk.hears(acknack(0));
+  EXPECT_EQ(talk.pass(1s), 0U);
+  // Our last announcement to it alone is recent, and got lost in the gap.
+  talk.now += Discovery::lease - 5s;
+  EXPECT_TRUE(talk.sends(own, port_of_peer));
+  talk.now += 10s;
+  talk.hears(announcement(2, port_of_peer));
+  EXPECT_NE(talk.contact.next(), Duration::max());
+  EXPECT_TRUE(talk.sends(own, port_of_peer));  // the library's only answer
+  EXPECT_EQ(talk.pass(1s), 4U);
+}
+
+TEST(Contact, AnythingHeardRenewsThePeersLease) {
+  Talk talk;
+  talk.sends(announcement(1, 7410), 7400);
+  talk.hears(announcement(2, port_of_peer));
+  talk.hears(acknack(0));
+  for (int i = 0; i < 4; ++i) {
+    talk.now += Discovery::lease / 2;
+    talk.hears(message(2, {to(3)}));
+  }
+  talk.hears(announcement(2, port_of_peer));
+  EXPECT_EQ(talk.contact.next(), Duration::max());
+}
+
+TEST(Contact, SpoofedAnnouncementsCauseABoundedNumberOfOurs) {
+  Talk talk;
+  talk.sends(announcement(1, 7410), 7400);
+  const auto forge = [&](std::uint8_t from) { talk.hears(announcement(from, port_of_peer + from)); };
+  for (std::uint8_t from = 2; from < 202; ++from) forge(from);
+  std::size_t sent = 0;
+  const auto count = [&](auto, in_addr_t, std::uint16_t) { ++sent; };
+  for (const Duration end = talk.now + 1s; talk.now < end; talk.now += 10ms)
+    talk.contact.repeat(talk.now, true, count);
+  EXPECT_GT(sent, 100U);  // Ten robots and ten stations that start together are all helped at once.
+  EXPECT_LE(sent, 300U);
+}
+
+TEST(Contact, AnnouncesItselfToItsOwnNetworksAlone) {
+  Talk talk;
+  talk.contact.set_reachable([](in_addr_t address) { return (ntohl(address) >> 24) == 127; });
+  talk.sends(announcement(1, 7410), 7400);
+  talk.hears(announcement(3, port_of_peer, 10));
+  EXPECT_EQ(talk.contact.next(), Duration::max());
+  talk.hears(announcement(2, port_of_peer));
+  EXPECT_EQ(talk.pass(1s), 4U);
+}
+
+TEST(Contact, HelpsANewcomerAfterManyPeersFellSilent) {
+  Talk talk;
+  talk.sends(announcement(1, 7410), 7400);
+  for (int i = 0; i < 300; ++i) {
+    Bytes one = announcement(2, static_cast<std::uint16_t>(8000 + 2 * i));
+    one[8] = static_cast<std::uint8_t>(i), one[9] = static_cast<std::uint8_t>(i >> 8);
+    talk.hears(one);
+    talk.now += 1s;
+  }
+  for (int i = 0; i < 40; ++i, talk.now += 1s)
+    talk.contact.repeat(talk.now, true, [](auto, in_addr_t, std::uint16_t) {});
+  ASSERT_EQ(talk.contact.next(), Duration::max());
+  talk.hears(announcement(3, port_of_peer));
+  EXPECT_NE(talk.contact.next(), Duration::max());
 }
 
 TEST(Contact, CutShortOrStrangeMessagesAreOfNoConcern) {

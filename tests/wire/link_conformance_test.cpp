@@ -8,6 +8,7 @@ namespace {
 
 constexpr TopicInfo urgent{"adit/test_urgent", "Number", QosClass::urgent, 16, false, 1024};
 constexpr TopicInfo state{"adit/test_state", "Number", QosClass::state, 1, false, 4096};
+constexpr TopicInfo keyed{"adit/test_keyed", "Keyed", QosClass::state, 1, true, 4096};
 constexpr TopicInfo bulk{"adit/test_bulk", "Block", QosClass::bulk, 64, false, 4096};
 
 std::vector<std::uint8_t> sample(std::uint32_t number, std::size_t size = 8) {
@@ -15,6 +16,11 @@ std::vector<std::uint8_t> sample(std::uint32_t number, std::size_t size = 8) {
   bytes[1] = 1;
   for (std::size_t i = 0; i < 4; ++i) bytes[4 + i] = static_cast<std::uint8_t>(number >> (8 * i));
   return bytes;
+}
+
+/// A sample of a keyed topic: its key is one letter.
+std::vector<std::uint8_t> keyed_sample(char key) {
+  return {0, 1, 0, 0, 2, 0, 0, 0, static_cast<std::uint8_t>(key), 0};
 }
 
 struct Heard {
@@ -154,6 +160,30 @@ TYPED_TEST(LinkConformance, OfStatesTheNewestIsSent) {
   const auto all = seen.all();
   EXPECT_LT(all.size(), 60U);
   EXPECT_LT(all.back().at - all[all.size() - 2].at, 300ms);
+}
+
+TYPED_TEST(LinkConformance, OfStatesTheNewestOfEachKeyIsSent) {
+  this->open({.bandwidth = 50e3, .latency = 0.01, .queue = 4.0});
+  Seen<char> keys;
+  const auto writer = this->a->make_writer(keyed, "").value();
+  const auto reader = this->b
+                          ->make_reader(keyed, "", *this->strand,
+                                        [&](auto bytes, const SampleInfo&) {
+                                          keys.add(static_cast<char>(bytes[8]));
+                                          return true;
+                                        })
+                          .value();
+  ASSERT_TRUE(this->net->until([&] { return writer->matched() == 1; }));
+  this->net->pass(1s);
+  // A datagram of 500 B holds the air for 80 ms while the others are written.
+  this->write(state, 1, 440);
+  for (const char key : {'a', 'b', 'a', 'b', 'a', 'b'}) EXPECT_TRUE(writer->write(keyed_sample(key)).ok());
+  const auto seen = [&](char key) {
+    const auto all = keys.all();
+    return std::count(all.begin(), all.end(), key);
+  };
+  EXPECT_TRUE(this->net->until([&] { return seen('a') > 0 && seen('b') > 0; }, 3s)) << seen('a') << seen('b');
+  EXPECT_LT(keys.size(), 6U);
 }
 
 TEST(LiveRange, WhoIsBelievedFarAwayHearsNothingUntilHeIsNear) {

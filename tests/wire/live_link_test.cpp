@@ -83,6 +83,29 @@ TEST(RtpsPeek, ARepairOrAHeartbeatMeansWhatTheOneBeforeMeant) {
   EXPECT_EQ(meaning(message({Bytes{0x07, 0, 0}})), 0U);
 }
 
+TEST(RtpsPeek, MessagesThatItCannotReadNeverReplaceEachOther) {
+  // Those of DDS security (0x30 to 0x34), HEARTBEAT_FRAG (0x13), and kinds of other vendors.
+  for (const std::uint8_t kind : {0x30, 0x31, 0x33, 0x13, 0x81}) {
+    const int k = kind;
+    EXPECT_EQ(peek(message({Bytes{kind, 1, 2, 3, 4}})).meaning, 0U) << k;
+    EXPECT_EQ(peek(message({Bytes{kind, 5, 6, 7, 8}})).meaning, 0U) << k;
+    EXPECT_EQ(peek(message({heartbeat(1, 5, 1), Bytes{kind, 5, 6, 7, 8}})).meaning, 0U) << k;
+  }
+  const Bytes destination{0x0e, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5};
+  EXPECT_NE(peek(message({destination, heartbeat(1, 5, 1)})).meaning, 0U);
+}
+
+TEST(RtpsPeek, HeartbeatsInProtectedMessagesStayAsTheyAre) {
+  // With sign-only protection they are readable, but a code behind them covers their bytes.
+  for (const std::uint8_t kind : {0x31, 0x33}) {
+    const Bytes before = message({Bytes{kind, 1, 2, 3, 4}, heartbeat(1, 5, 1), Bytes{0x34, 1, 2, 3, 4}});
+    Bytes after = before;
+    change_heartbeat_counts(
+        after, [](std::uint32_t) { return true; }, 16, 0);
+    EXPECT_EQ(after, before);
+  }
+}
+
 TEST(RtpsPeek, TellsWhoSentItAndWhomItIsMeantFor) {
   const RtpsPeek seen = peek(message({Bytes{0x0e, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5, 5}, heartbeat(1, 5, 1)}));
   ParticipantId nine{}, five{};
@@ -120,6 +143,30 @@ TEST(HeartbeatFilter, LetsOneThatSaysNothingNewPassOnlySoOften) {
     with_sample.insert(with_sample.end(), beat.begin() + 20, beat.end());
     EXPECT_TRUE(passes(with_sample, 1, 312ms));
   }
+}
+
+TEST(RtpsPeek, PayloadThatLooksLikeStatisticsIsNotCut) {
+  // A sample whose last 60 bytes are what a statistics submessage is.
+  Bytes sample{0x15, 0, 0, 16, 0, 0, 0, 0, 0, 0, 0, 1, 3, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
+  const Bytes lookalike = message({statistics()});
+  sample.insert(sample.end(), lookalike.begin() + 20, lookalike.end());
+  Bytes m = message({sample});
+  EXPECT_EQ(without_statistics(m), m.size());
+  m[22] = 0;  // The last submessage may give no length.
+  EXPECT_EQ(without_statistics(m), m.size());
+  const Bytes real = message({sample, statistics()});
+  EXPECT_EQ(without_statistics(real), real.size() - 60);
+}
+
+TEST(HeartbeatFilter, RemembersABoundedNumberOfHeartbeats) {
+  HeartbeatFilter filter(200ms);
+  const Bytes beat = message({heartbeat(1, 5, 1)});
+  for (std::uint16_t port = 1; port <= 10000; ++port) EXPECT_TRUE(filter.passes(beat, 1, port, 1ms));
+  // What it has no room for is sent each time.
+  EXPECT_TRUE(filter.passes(beat, 1, 10000, 2ms));
+  EXPECT_FALSE(filter.passes(beat, 1, 1, 2ms));
+  EXPECT_TRUE(filter.passes(beat, 1, 10000, 300ms));
+  EXPECT_FALSE(filter.passes(beat, 1, 10000, 301ms));
 }
 
 /// A socket that waits for what a link lets through.

@@ -7,9 +7,9 @@ namespace {
 
 // Entity ids of RTPS 2.2, 9.3.1.3.
 constexpr std::uint32_t publications_writer = 0x000003c2, subscriptions_writer = 0x000004c2;
-constexpr Duration settled = 20s;     // until someone who knows us is told by unicast again
+constexpr Duration settled = 20s;     // between two announcements by unicast to a peer that knows us
 constexpr int repeats = 3;            // of a heartbeat, until the library sends the next
-constexpr std::uint32_t counts = 16;  // of ours for one of the library's
+constexpr std::uint32_t counts = 16;  // counts of ours for one of the library's
 
 bool of_discovery(std::uint32_t writer) {
   return writer == publications_writer || writer == subscriptions_writer;
@@ -46,34 +46,43 @@ bool Contact::sent(std::span<std::uint8_t> message, in_addr_t address, std::uint
   return true;
 }
 
+Contact::Peer& Contact::meet(const ParticipantId& id, const PeerAddress& locator, Duration now) {
+  const auto known = peers_.find(id);
+  if (known != peers_.end() && now - known->second.heard >= Discovery::lease) peers_.erase(known);
+  if (!peers_.contains(id)) {
+    // The participant that had this address before is gone.
+    std::erase_if(peers_, [&](const auto& entry) {
+      return entry.second.address == locator.address && entry.second.port == locator.port;
+    });
+    if (peers_.size() >= kMaxPeers)
+      peers_.erase(std::min_element(peers_.begin(), peers_.end(), [](const auto& a, const auto& b) {
+        return a.second.heard < b.second.heard;
+      }));
+  }
+  Peer& peer = peers_[id];
+  peer.address = locator.address, peer.port = locator.port, peer.heard = now;
+  return peer;
+}
+
 void Contact::received(std::span<const std::uint8_t> message, Duration now) {
   const RtpsPeek seen = peek(message);
   if (!seen.source) return;
   const std::lock_guard lock(mutex_);
   if (*seen.source == own_) return;
-  const auto known = peers_.find(*seen.source);
   if (seen.writer == announcing_writer) {
     const auto locator = announced_address(message);
-    if (!locator) {
-      if (known != peers_.end()) peers_.erase(known);
-      return;
-    }
-    if (known == peers_.end()) {
-      // Whoever was there before is gone.
-      std::erase_if(peers_, [&](const auto& entry) {
-        return entry.second.address == locator->address && entry.second.port == locator->port;
-      });
-      if (peers_.size() >= most_peers) return;
-    }
-    Peer& peer = peers_[*seen.source];
-    peer.address = locator->address, peer.port = locator->port;
-    if (peer.knows_us) return;
-    peer.tells = Discovery::tells;
+    if (!locator) return (void)peers_.erase(*seen.source);
+    Peer& peer = meet(*seen.source, *locator, now);
+    if (peer.knows_us || (reachable_ && !reachable_(peer.address))) return;
+    peer.announcements_left = Discovery::tells;
     if (peer.tell_at == Duration::max()) peer.tell_at = now + Discovery::tell_period;
     return;
   }
-  if (known == peers_.end()) return;
+  const auto known = peers_.find(*seen.source);
+  // After its lease nothing but an announcement tells that it is back: the library has forgotten it.
+  if (known == peers_.end() || now - known->second.heard >= Discovery::lease) return;
   Peer& peer = known->second;
+  peer.heard = now;
   if (seen.destination == own_) {
     peer.knows_us = true;
     peer.tell_at = Duration::max();
@@ -84,41 +93,59 @@ void Contact::received(std::span<const std::uint8_t> message, Duration now) {
     if (answer->base > beat->second.last) {
       peer.beats.erase(beat);
     } else {
-      beat->second.at =
-          std::max(beat->second.at, now + Discovery::heartbeat);  // what it asks for is on its way
+      // The library is sending what the peer asks for.
+      beat->second.at = std::max(beat->second.at, now + Discovery::heartbeat);
     }
   }
 }
 
-void Contact::repeat(Duration now, bool calm, const Send& send) {
-  struct Out {
-    std::vector<std::uint8_t> message{};
-    in_addr_t address{};
-    std::uint16_t port{};
-  };
+void Contact::dropped(const ParticipantId& id) {
+  const std::lock_guard lock(mutex_);
+  peers_.erase(id);
+}
+
+void Contact::announce(Duration now, std::vector<Out>& out) {
+  if (now - second_ >= 1s) second_ = now, announced_ = 0;
+  auto next = peers_.upper_bound(announced_last_);
+  for (std::size_t i = 0; i < peers_.size(); ++i, ++next) {
+    if (next == peers_.end()) next = peers_.begin();
+    auto& [id, peer] = *next;
+    if (peer.tell_at > now) continue;
+    if (announced_ >= kMaxAnnouncements) {
+      peer.tell_at = second_ + 1s;
+      continue;
+    }
+    peer.tell_at = --peer.announcements_left > 0 ? now + Discovery::tell_period : Duration::max();
+    if (announcement_.empty()) continue;
+    ++announced_;
+    announced_last_ = id;
+    out.push_back({announcement_, peer.address, peer.port});
+  }
+}
+
+void Contact::repeat_heartbeats(Peer& peer, Duration now, bool link_idle, std::vector<Out>& out) {
+  for (auto beat = peer.beats.begin(); beat != peer.beats.end();) {
+    Beat& b = beat->second;
+    if (b.at > now) {
+      ++beat;
+      continue;
+    }
+    b.at = now + Discovery::heartbeat;
+    if (link_idle) {
+      ++b.repeats;
+      change_heartbeat_counts(b.message, of_discovery, 1, 1);
+      out.push_back({b.message, peer.address, peer.port});
+    }
+    beat = b.repeats >= repeats ? peer.beats.erase(beat) : std::next(beat);
+  }
+}
+
+void Contact::repeat(Duration now, bool link_idle, const Send& send) {
   std::vector<Out> out;
   {
     const std::lock_guard lock(mutex_);
-    for (auto& [id, peer] : peers_) {
-      if (peer.tell_at <= now) {
-        peer.tell_at = --peer.tells > 0 ? now + Discovery::tell_period : Duration::max();
-        if (!announcement_.empty()) out.push_back({announcement_, peer.address, peer.port});
-      }
-      for (auto beat = peer.beats.begin(); beat != peer.beats.end();) {
-        Beat& b = beat->second;
-        if (b.at > now) {
-          ++beat;
-          continue;
-        }
-        b.at = now + Discovery::heartbeat;
-        if (calm) {
-          ++b.repeats;
-          change_heartbeat_counts(b.message, of_discovery, 1, 1);
-          out.push_back({b.message, peer.address, peer.port});
-        }
-        beat = b.repeats >= repeats ? peer.beats.erase(beat) : std::next(beat);
-      }
-    }
+    announce(now, out);
+    for (auto& [id, peer] : peers_) repeat_heartbeats(peer, now, link_idle, out);
   }
   for (const Out& one : out) send(one.message, one.address, one.port);
 }
@@ -138,8 +165,11 @@ Duration Contact::next() const {
   return soonest;
 }
 
-ContactThread::ContactThread(Contact& contact, std::function<bool()> calm, Contact::Send send)
-    : contact_(contact), calm_(std::move(calm)), send_(std::move(send)), thread_([this] { run(); }) {}
+ContactThread::ContactThread(Contact& contact, std::function<bool()> link_idle, Contact::Send send)
+    : contact_(contact),
+      link_idle_(std::move(link_idle)),
+      send_(std::move(send)),
+      thread_([this] { run(); }) {}
 
 ContactThread::~ContactThread() {
   {
@@ -171,7 +201,7 @@ void ContactThread::run() {
     }
     if (ends_) return;
     lock.unlock();
-    contact_.repeat(std::chrono::steady_clock::now().time_since_epoch(), calm_(), send_);
+    contact_.repeat(std::chrono::steady_clock::now().time_since_epoch(), link_idle_(), send_);
     lock.lock();
   }
 }

@@ -38,7 +38,7 @@ Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher
     const Qos qos = writer_qos(topic);
     const auto& id = writer->writer_->guid().entityId.value;
     writer->entity_ = static_cast<std::uint32_t>(id[0]) << 24 | id[1] << 16 | id[2] << 8 | id[3];
-    link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable);
+    link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable, topic.keyed);
     writer->link_ = std::move(link);
   }
   return std::unique_ptr<RawWriter>(std::move(writer));

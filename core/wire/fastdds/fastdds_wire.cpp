@@ -14,6 +14,7 @@
 #include "core/wire/fastdds/endpoints.hpp"
 #include "core/wire/fastdds/live_link.hpp"
 #include "core/wire/fastdds/participant_qos.hpp"
+#include "core/wire/fastdds/subnets.hpp"
 
 namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
@@ -30,6 +31,7 @@ ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
 /// Who is there, told to one handler on its strand.
 class Presence final : public dds::DomainParticipantListener {
  public:
+  explicit Presence(std::shared_ptr<Traffic> traffic) : traffic_(std::move(traffic)) {}
   void watch(Executor& strand, std::function<void(const ParticipantEvent&)> handler) {
     const std::lock_guard lock(mutex_);
     if (target_) target_->close();
@@ -62,6 +64,7 @@ class Presence final : public dds::DomainParticipantListener {
     const ParticipantId id = id_of(info.info.m_guid.guidPrefix);
     const bool gone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
                       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
+    if (gone) traffic_->contact.dropped(id);
     const std::lock_guard lock(mutex_);
     const bool changed = gone ? present_.erase(id) > 0 : present_.insert(id).second;
     if (changed) tell({id, !gone});
@@ -75,6 +78,7 @@ class Presence final : public dds::DomainParticipantListener {
     });
   }
 
+  std::shared_ptr<Traffic> traffic_;
   std::mutex mutex_{};
   std::set<ParticipantId> present_{};
   Executor* strand_{};
@@ -106,6 +110,9 @@ class FastDdsWire final : public Wire {
     const auto& interfaces = params.interfaces.empty() ? loopback : params.interfaces;
     for (const std::string& address : interfaces) traffic_->own_addresses.insert(inet_addr(address.c_str()));
     if (!params.large_samples) traffic_->outlet = std::make_shared<Outlet>(interfaces);
+    traffic_->contact.set_reachable([networks = Subnets(interfaces, params.peers)](in_addr_t address) {
+      return networks.contains(address);
+    });
     if (params.link) {
       traffic_->link = std::make_shared<LiveLink>(
           *params.link, params.link_seed, interfaces,
@@ -209,8 +216,8 @@ class FastDdsWire final : public Wire {
     return known;
   }
 
-  Presence presence_{};
   std::shared_ptr<Traffic> traffic_{std::make_shared<Traffic>()};
+  Presence presence_{traffic_};
   std::shared_ptr<SharedCounts> counts_{std::make_shared<SharedCounts>()};
   dds::DomainParticipant* participant_{};
   std::mutex mutex_{};

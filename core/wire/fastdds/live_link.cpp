@@ -22,9 +22,9 @@ LiveLink::~LiveLink() { close(); }
 
 Duration LiveLink::now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
-void LiveLink::add_writer(std::uint32_t entity, int priority, bool newest_wins) {
+void LiveLink::add_writer(std::uint32_t entity, int priority, bool newest_wins, bool keyed) {
   const std::lock_guard lock(mutex_);
-  writers_[entity] = {priority, newest_wins};
+  writers_[entity] = {priority, newest_wins, keyed};
 }
 
 void LiveLink::remove_writer(std::uint32_t entity) {
@@ -36,7 +36,7 @@ void LiveLink::send(std::span<const std::uint8_t> message, in_addr_t address, st
   const RtpsPeek seen = peek(message);
   {
     const std::lock_guard lock(mutex_);
-    Class what{WireCost::discovery_priority, false};
+    Class what{WireCost::discovery_priority, false, false};
     if (seen.writer) {
       const auto known = writers_.find(*seen.writer);
       if (known != writers_.end()) what = known->second;
@@ -45,10 +45,11 @@ void LiveLink::send(std::span<const std::uint8_t> message, in_addr_t address, st
       queue_.note_dropped(what.priority);
       return;
     }
-    // The newest sample of a stream stands for those before it, a repair or a heartbeat for the same one that
-    // waits: else what is asked for again while it waits is sent as often as it was asked for.
-    const bool newest = what.newest_wins && seen.whole;
-    std::uint64_t number = newest ? *seen.writer : seen.meaning;
+    // The newest sample of a stream stands for those before it of the same key, a repair or a heartbeat for
+    // the same one that waits: else a repair that is requested again while it waits is sent once per request.
+    const std::optional<std::uint64_t> key = what.keyed ? sample_key(message) : 0;
+    const bool newest = what.newest_wins && seen.whole && key;
+    std::uint64_t number = newest ? *seen.writer ^ *key : seen.meaning;
     if (number != 0) {
       number = (number ^ (static_cast<std::uint64_t>(address) << 16 | port)) * 0x9e3779b97f4a7c15ULL;
       number |= 1;

@@ -37,8 +37,9 @@ class LiveLink {
   LiveLink(const LiveLink&) = delete;
   LiveLink& operator=(const LiveLink&) = delete;
 
-  /// What a writer's samples get: its priority, and whether the newest replaces what waits.
-  void add_writer(std::uint32_t entity, int priority, bool newest_wins);
+  /// How a writer's samples are sent: their priority, and whether the newest sample replaces those that wait;
+  /// of a keyed topic, those of the same key.
+  void add_writer(std::uint32_t entity, int priority, bool newest_wins, bool keyed = false);
   void remove_writer(std::uint32_t entity);
 
   /// A datagram to an IPv4 address (network order) and port. Never blocks.
@@ -62,6 +63,7 @@ class LiveLink {
   struct Class {
     int priority{};
     bool newest_wins{};
+    bool keyed{};
   };
 
   static Duration now();

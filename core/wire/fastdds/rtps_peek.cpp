@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/wire/cdr_key.hpp"
+
 namespace adit::wire {
 namespace {
 
@@ -11,7 +13,12 @@ using Message = std::span<const std::uint8_t>;
 constexpr std::size_t header = 20;
 // RTPS 2.2, 8.3.7 and 9.4.5.
 constexpr std::uint8_t acknack = 0x06, heartbeat = 0x07, gap = 0x08, info_timestamp = 0x09,
-                       info_destination = 0x0e, nack_frag = 0x12, data = 0x15, data_frag = 0x16;
+                       info_source = 0x0c, info_destination = 0x0e, nack_frag = 0x12, data = 0x15,
+                       data_frag = 0x16;
+// DDS Security 1.1, 7.3.6: SEC_BODY, SEC_PREFIX, SEC_POSTFIX, SRTPS_PREFIX, SRTPS_POSTFIX.
+constexpr std::uint8_t first_security = 0x30, last_security = 0x34;
+constexpr std::uint8_t with_qos = 2, with_data = 4;  // flags of DATA
+constexpr std::uint16_t sentinel = 1, key_hash = 0x70, metatraffic_unicast = 0x32;
 constexpr std::uint8_t statistics = 0x80;  // of the vendor: 56 bytes
 constexpr std::size_t statistics_size = 60;
 constexpr std::uint8_t eprosima[2] = {0x01, 0x0f};
@@ -67,7 +74,39 @@ void mix(std::uint64_t& hash, std::uint64_t value) {
   hash ^= hash >> 29;
 }
 
-/// Mixes in what it says; false: it is of no kind that has a meaning of its own.
+void mix(std::uint64_t& hash, Message bytes) {
+  for (const std::uint8_t byte : bytes) mix(hash, static_cast<std::uint64_t>(byte));
+}
+
+bool is_protected(Message message) {
+  bool found = false;
+  each(message, [&](const Submessage& sub) {
+    found = sub.kind >= first_security && sub.kind <= last_security;
+    return !found;
+  });
+  return found;
+}
+
+/// Calls `see(id, value)` for each parameter of the list at `at` until it returns false. Returns the offset
+/// behind the list; nothing where the list is cut short or `see` returned false.
+template <class See>
+std::optional<std::size_t> each_parameter(const Submessage& sub, std::size_t at, See see) {
+  const auto half = [&](std::size_t i) {
+    return static_cast<std::uint16_t>(sub.little ? sub.body[i] | sub.body[i + 1] << 8
+                                                 : sub.body[i + 1] | sub.body[i] << 8);
+  };
+  while (at + 4 <= sub.body.size()) {
+    const std::uint16_t id = half(at);
+    const std::size_t length = half(at + 2);
+    at += 4;
+    if (id == sentinel) return at;
+    if (at + length > sub.body.size() || !see(id, sub.body.subspan(at, length))) return std::nullopt;
+    at += length;
+  }
+  return std::nullopt;
+}
+
+/// Mixes in what the submessage says. Returns false for a kind that it cannot read.
 bool mean(const Submessage& sub, std::uint64_t& hash) {
   const Message body = sub.body;
   mix(hash, sub.kind);
@@ -88,8 +127,12 @@ bool mean(const Submessage& sub, std::uint64_t& hash) {
       mix(hash, entity(body, 4)), mix(hash, entity(body, 8)), mix(hash, sequence(sub, 12));
       if (sub.kind == data_frag) mix(hash, word(sub, 20));
       return true;
-    default:
+    case info_source:
+    case info_destination:
+      mix(hash, body);
       return true;
+    default:
+      return false;
   }
 }
 
@@ -122,12 +165,44 @@ RtpsPeek peek(Message message) {
   return result;
 }
 
+std::optional<std::uint64_t> sample_key(Message message) {
+  constexpr std::size_t fixed = 20;  // in front of the parameters and the payload
+  std::optional<std::uint64_t> result;
+  each(message, [&](const Submessage& sub) {
+    if (sub.kind != data) return true;
+    if (sub.body.size() < fixed) return false;
+    std::uint64_t hash = 0;
+    std::optional<std::size_t> payload = fixed;
+    if ((sub.flags & with_qos) != 0) {
+      payload = each_parameter(sub, fixed, [&](std::uint16_t id, Message value) {
+        if (id != key_hash) return true;
+        mix(hash, value);
+        result = hash;
+        return false;
+      });
+    }
+    if (result || !payload || (sub.flags & with_data) == 0) return false;
+    if (const auto key = first_string(sub.body.subspan(*payload))) {
+      mix(hash, {reinterpret_cast<const std::uint8_t*>(key->data()), key->size()});
+      result = hash;
+    }
+    return false;
+  });
+  return result;
+}
+
 std::size_t without_statistics(Message message) {
   const std::size_t size = message.size();
   if (size < header + statistics_size || std::memcmp(message.data() + 6, eprosima, 2) != 0) return size;
   const std::uint8_t* const tail = message.data() + size - statistics_size;
   if (tail[0] != statistics || tail[2] + (tail[3] << 8) != statistics_size - 4) return size;
-  return size - statistics_size;
+  // A payload can end with the same bytes: the tail counts where a submessage begins there.
+  bool begins = false;
+  each(message, [&](const Submessage& sub) {
+    begins = sub.kind == statistics && sub.body.data() == tail + 4;
+    return !begins;
+  });
+  return begins ? size - statistics_size : size;
 }
 
 std::optional<LoneHeartbeat> lone_heartbeat(Message message) {
@@ -145,35 +220,25 @@ std::optional<LoneHeartbeat> lone_heartbeat(Message message) {
 }
 
 std::optional<PeerAddress> announced_address(Message message) {
-  constexpr std::uint8_t with_qos = 2, with_data = 4;
   constexpr std::size_t fixed = 20;  // in front of the parameters
-  constexpr std::uint32_t sentinel = 1, metatraffic_unicast = 0x32, udp_v4 = 1;
+  constexpr std::uint32_t udp_v4 = 1;
   std::optional<PeerAddress> result;
   each(message, [&](const Submessage& sub) {
     if (sub.kind != data || sub.body.size() < fixed || entity(sub.body, 8) != announcing_writer) return true;
     // Little-endian parameter lists alone, as every machine that we know of sends them.
     if (!sub.little || (sub.flags & with_data) == 0) return false;
-    std::size_t at = fixed;
-    for (int lists = (sub.flags & with_qos) != 0 ? 2 : 1; lists > 0; --lists) {
-      if (lists == 1) {
-        if (at + 4 > sub.body.size() || sub.body[at + 1] != 3) return false;  // PL_CDR_LE
-        at += 4;
-      }
-      while (at + 4 <= sub.body.size()) {
-        const std::uint32_t id = sub.body[at] | sub.body[at + 1] << 8;
-        const std::size_t length = sub.body[at + 2] | sub.body[at + 3] << 8;
-        at += 4;
-        if (id == sentinel || at + length > sub.body.size()) break;
-        if (lists == 1 && id == metatraffic_unicast && length >= 24 && word(sub, at) == udp_v4) {
-          PeerAddress found;
-          found.port = static_cast<std::uint16_t>(word(sub, at + 4));
-          std::memcpy(&found.address, sub.body.data() + at + 20, 4);
-          result = found;
-          return false;
-        }
-        at += length;
-      }
-    }
+    std::optional<std::size_t> at = fixed;
+    if ((sub.flags & with_qos) != 0) at = each_parameter(sub, fixed, [](auto, auto) { return true; });
+    if (!at || *at + 4 > sub.body.size() || sub.body[*at + 1] != 3) return false;  // PL_CDR_LE
+    each_parameter(sub, *at + 4, [&](std::uint16_t id, Message value) {
+      const auto offset = static_cast<std::size_t>(value.data() - sub.body.data());
+      if (id != metatraffic_unicast || value.size() < 24 || word(sub, offset) != udp_v4) return true;
+      PeerAddress found;
+      found.port = static_cast<std::uint16_t>(word(sub, offset + 4));
+      std::memcpy(&found.address, value.data() + 20, 4);
+      result = found;
+      return false;
+    });
     return false;
   });
   return result;
@@ -191,6 +256,7 @@ std::optional<Acknowledged> acknowledgement(Message message) {
 void change_heartbeat_counts(std::span<std::uint8_t> message,
                              const std::function<bool(std::uint32_t)>& of_writer, std::uint32_t factor,
                              std::uint32_t more) {
+  if (is_protected(message)) return;
   each(message, [&](const Submessage& sub) {
     if (sub.kind != heartbeat || sub.body.size() < 28 || !of_writer(entity(sub.body, 4))) return true;
     const auto count = static_cast<std::uint32_t>(word(sub, 24)) * factor + more;

@@ -16,14 +16,19 @@ struct RtpsPeek {
   bool whole{};                                ///< that sample is alone and no fragment
   std::optional<ParticipantId> source{};       ///< who sent the message
   std::optional<ParticipantId> destination{};  ///< whom its first part is for, if it is for one alone
-  /// What it says, without how often it was said: two messages with the same number to the same receiver, the
-  /// newer one stands for both. 0: none. Samples by writer and sequence number, heartbeats and
-  /// acknowledgements by writer and reader.
+  /// A number for what the message says, without how often it was said: of two messages with the same number
+  /// to the same receiver the newer one stands for both. Samples by writer and sequence number, heartbeats
+  /// and acknowledgements by writer and reader. 0: a submessage is of a kind that cannot be read, as under
+  /// DDS security; then the message stands for itself alone.
   std::uint64_t meaning{};
 };
 
 /// Reads the submessage headers of an RTPS 2 message. Nothing in it when it is none or is cut short.
 RtpsPeek peek(std::span<const std::uint8_t> message);
+
+/// A number for the key of the first sample: of its key hash, where the library sends one, else of the first
+/// string of its payload, which is the key of every keyed topic. Nothing where there is no such sample.
+std::optional<std::uint64_t> sample_key(std::span<const std::uint8_t> message);
 
 /// Bytes of the message without what only the library's own statistics use: 60 at the end of each that Fast
 /// DDS sends where it was built with them, as Debian's is. Its own sockets write into the last 60 bytes of
@@ -55,8 +60,8 @@ struct Acknowledged {
 };
 std::optional<Acknowledged> acknowledgement(std::span<const std::uint8_t> message);
 
-/// Heartbeats that those writers send, with `factor` * count + `more` as their count. Readers ignore all but
-/// a higher count than before.
+/// Sets the count of each heartbeat of those writers to `factor` * count + `more`. Readers ignore all but a
+/// higher count than before. Leaves messages under DDS security as they are: a code covers their bytes.
 void change_heartbeat_counts(std::span<std::uint8_t> message,
                              const std::function<bool(std::uint32_t)>& of_writer, std::uint32_t factor,
                              std::uint32_t more);

@@ -1,0 +1,25 @@
+#pragma once
+#include <netinet/in.h>
+
+#include <string>
+#include <vector>
+
+namespace adit::wire {
+
+/// IPv4 networks that this machine is in by the named interfaces, and single addresses beside them.
+class Subnets {
+ public:
+  /// `interfaces`: addresses of this machine; one that no interface has counts as a network of that address
+  /// alone. `peers`: ADDRESS or ADDRESS:PORT.
+  Subnets(const std::vector<std::string>& interfaces, const std::vector<std::string>& peers);
+  /// `address` is in network order.
+  bool contains(in_addr_t address) const;
+
+ private:
+  struct Network {
+    in_addr_t address{}, mask{};
+  };
+  std::vector<Network> networks_{};
+};
+
+}  // namespace adit::wire
