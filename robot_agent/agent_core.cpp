@@ -40,10 +40,14 @@ NavigationParams navigation_params(const AgentParams& params) {
   return n;
 }
 
-LinkLossParams link_loss_params(const AgentParams& params) {
-  LinkLossParams l = params.link_loss;
-  l.start = {params.start.x, params.start.y};
-  return l;
+SafeguardParams safeguard_params(const AgentParams& params) {
+  SafeguardParams s{};
+  s.robot = params.name;
+  s.start = params.start;
+  s.link_loss = params.link_loss;
+  s.battery = params.battery;
+  s.return_at_last_battery = params.return_at_last_battery;
+  return s;
 }
 
 constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
@@ -66,8 +70,10 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       external_(mux_),
       behaviour_(behaviour_params(params), std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
-      link_loss_(link_loss_params(params)),
-      battery_watch_(params.battery),
+      notices_(params.name, *edges.notifier, log(), [this] { return commands_.authority().holder_name(); }),
+      safeguards_(safeguard_params(params), {commands_.authority(), behaviour_, localisation_, notices_}),
+      telemetry_({*edges.radio, *edges.wire, edges.rate, *edges.driver, *edges.watch, localisation_,
+                  commands_, behaviour_}),
       rivals_(now()) {}
 
 void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
@@ -85,10 +91,7 @@ void Agent::Core::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp) 
 }
 
 void Agent::Core::battery(float charge) {
-  protect([&] {
-    battery_ = std::isfinite(charge) ? charge : -1.0f;
-    if (const auto level = battery_watch_.update(battery_)) battery_fell(*level);
-  });
+  protect([&] { safeguards_.battery(charge, now()); });
 }
 
 void Agent::Core::external(const Twist2& velocity) {
@@ -97,13 +100,7 @@ void Agent::Core::external(const Twist2& velocity) {
 
 void Agent::Core::rival(const wire::ParticipantId& writer) {
   protect([&] {
-    if (rivals_.heard(writer, now()))
-      tell({{},
-            Severity::error,
-            "rival_writer",
-            Reason::none,
-            "participant " + wire::to_string(writer) + " writes velocities to the driver of " + params_.name +
-                " beside its agent: end that program, neither is obeyed as long as both write"});
+    if (rivals_.heard(writer, now())) notices_.rival(writer);
   });
 }
 
@@ -154,7 +151,7 @@ void Agent::Core::restore() {
   // Where its driver's odometry began anew, the goal's place is no longer known for sure.
   const bool resume = params_.resume_after_restart && s.boot == params_.boot;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);
-  battery_watch_.restore(static_cast<BatteryLevel>(s.battery));
+  safeguards_.restore(static_cast<BatteryLevel>(s.battery));
 }
 
 Result<void> Agent::Core::on_start() {
@@ -166,44 +163,22 @@ Result<void> Agent::Core::on_start() {
   edges_.driver->write({});
   if (edges_.instances == 1) edges_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion);
   behaviour_.tick(now());
-  tell_restored();
+  notices_.restored(edges_.restored,
+                    edges_.restored.snapshot && edges_.restored.snapshot->boot == params_.boot);
   keep();
-  send_status();
-  note_driver();
+  telemetry_.start(now(), started_);
   timers_.push_back(every(kBeat, [this] { beat(); }));
   timers_.push_back(every(kStatePeriod, [this] {
-    follow_link();
-    if (edges_.rate.due(now())) send_state();
+    telemetry_.send_state(now(), safeguards_.charge());
     edges_.directory.tick(now());
   }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
-    watch_link();
-    send_periodic();
+    safeguards_.watch_link(now());
+    telemetry_.send_periodic(now());
     send_findings();
   }));
   return {};
-}
-
-void Agent::Core::follow_link() {
-  // The stick echoes our stamps, and at 600 ms an echo is stale.
-  constexpr double kWithStick = 5.0;
-  const wire::SenderState sender = edges_.wire->sender();
-  edges_.rate.observe(now(), sender.waiting(wire::status_priority), sender.lost(wire::status_priority));
-  edges_.rate.set_floor(commands_.stick_used(now()) ? kWithStick : 0.0);
-  if (localisation_.initialised())
-    edges_.wire->set_place(edges_.wire->id(),
-                           {localisation_.pose().x, localisation_.pose().y, localisation_.z()});
-}
-
-void Agent::Core::send_periodic() {
-  constexpr std::uint32_t kLinkSeconds = 2;  // between two link reports
-  const std::uint32_t at = seconds_++;
-  const auto stretch = static_cast<std::uint32_t>(edges_.rate.stretch());
-  // What changes is told at once; this is for those who came late.
-  if (at % stretch == 0) send_status();
-  if (at % (kLinkSeconds * stretch) == kLinkSeconds * stretch - 1)
-    edges_.radio->send_link_report(now(), edges_.driver->malformed(), edges_.rate.rate());
 }
 
 void Agent::Core::on_stop() {
@@ -237,82 +212,17 @@ void Agent::Core::listen_first(Time at) {
 
 void Agent::Core::keep() {
   edges_.keeper->save(
-      {commands_.kept(),
-       behaviour_.kept(),
-       params_.boot,
-       static_cast<std::uint8_t>(battery_watch_.level()),
-       {}},
+      {commands_.kept(), behaviour_.kept(), params_.boot, static_cast<std::uint8_t>(safeguards_.level()), {}},
       [this] { return commands_.kept_answers(); }, commands_.accepted());
 }
 
-void Agent::Core::tell_restored() {
-  if (edges_.restored.lost)
-    tell({{},
-          Severity::error,
-          "state_lost",
-          Reason::cannot_read,
-          params_.name + " started and holds: its state was lost (" + edges_.restored.text + ")"});
-  else if (edges_.restored.snapshot)
-    tell({{},
-          Severity::warning,
-          "restarted",
-          Reason::none,
-          params_.name + " was restarted: " + describe(*edges_.restored.snapshot) +
-              (edges_.restored.snapshot->boot == params_.boot ? "" : "; with its computer, so it holds")});
-}
-
 void Agent::Core::watch_driver() {
-  const bool alive = localisation_.alive(now());
-  if (driver_was_alive_ && !alive)
-    tell_holder({{},
-                 Severity::error,
-                 "driver_lost",
-                 Reason::driver_silent,
-                 "the driver of " + params_.name + " is silent"});
-  if (driver_was_alive_ != alive) {
-    driver_was_alive_ = alive;
-    note_driver();
-  }
+  if (telemetry_.driver_fell_silent(now())) notices_.driver_lost();
 }
 
-void Agent::Core::send_state() {
-  const std::uint64_t stamp = to_stamp(now());
-  commands_.sent_stamp(stamp);
-  const bool known = localisation_.initialised();
-  edges_.radio->send_state(
-      {localisation_.pose(), localisation_.z(), known ? localisation_.twist() : Twist2{}, battery_}, stamp);
-}
-
-void Agent::Core::send_status() {
-  edges_.radio->send_authority(commands_, now());
-  send_behaviour();
-}
-
-void Agent::Core::send_behaviour() {
-  edges_.radio->send_behaviour(behaviour_.view(), behaviour_.options(now()));
-}
-
-void Agent::Core::note_driver() {
-  const bool alive = localisation_.alive(now());
-  ComponentRow driver{};
-  driver.name = "driver";
-  driver.state = alive ? PartState::up : PartState::failed;
-  driver.healthy = alive;
-  if (!alive) driver.heard = now() - localisation_.silence(now(), started_);
-  if (!alive) driver.text = "no odometry";
-  edges_.watch->note(driver);
-}
-
-void Agent::Core::tell(Notice notice) {
-  if (log().on(LogLevel::info))
-    log().info("tells " + (notice.operator_name.empty() ? "everybody" : notice.operator_name) + " " +
-               notice.code + ": " + notice.text);
-  edges_.notifier->send(notice);
-}
-
-void Agent::Core::tell_holder(Notice notice) {
-  notice.operator_name = commands_.authority().holder_name();
-  if (!notice.operator_name.empty()) tell(std::move(notice));
+void Agent::Core::send_findings() {
+  for (const findings::Finding* f : edges_.findings->due(commands_.stations().heard_ids(now()), now()))
+    edges_.radio->send(*f, edges_.findings->size(), edges_.findings->overflowed());
 }
 
 Facts Agent::Core::sense(Time now) const {
@@ -325,10 +235,10 @@ Facts Agent::Core::sense(Time now) const {
 }
 
 CommandInterface::Outputs Agent::Core::command_outputs() {
-  return {[this](const Notice& notice) { tell(notice); },
+  return {[this](const Notice& notice) { notices_.send(notice); },
           [this] {
             keep();
-            edges_.keeper->when_safe(guard([this] { edges_.radio->send_authority(commands_, now()); }));
+            edges_.keeper->when_safe(guard([this] { telemetry_.send_authority(now()); }));
           },
           [this](const std::string& component) { return edges_.watch->restart(component); },
           [this](const std::string& component, bool automatic) {
@@ -346,7 +256,8 @@ Behaviour::Inputs Agent::Core::behaviour_inputs() {
 }
 
 Behaviour::Outputs Agent::Core::behaviour_outputs() {
-  return {[this](const Notice& notice) { tell_holder(notice); }, [this] { send_behaviour(); }};
+  return {[this](const Notice& notice) { notices_.send_to_holder(notice); },
+          [this] { telemetry_.send_behaviour(now()); }};
 }
 
 Navigation::Outputs Agent::Core::navigation_outputs() {
@@ -354,24 +265,10 @@ Navigation::Outputs Agent::Core::navigation_outputs() {
             if (lease_->valid()) edges_.driver->write(velocity);
           },
           [this](const Progress& progress) { behaviour_.set_progress(progress); },
-          [this](Warning warning) { warn(warning); }};
-}
-
-void Agent::Core::warn(Warning warning) {
-  const bool stops = params_.platform.manual_collision_stop || behaviour_.mode().name != "manual";
-  if (warning == Warning::lidar_silent)
-    tell_holder({{},
-                 Severity::warning,
-                 "lidar_silent",
-                 Reason::terrain_stale,
-                 "the lidar of " + params_.name + " is silent: it drives blindly, at most 0.3 m/s"});
-  else
-    tell_holder({{},
-                 Severity::warning,
-                 "obstacle_near",
-                 Reason::none,
-                 "something is in the way of " + params_.name +
-                     (stops ? ": it slows down and stops" : ": it slows down to 0.3 m/s and does not stop")});
+          [this](Warning warning) {
+            notices_.warning(warning,
+                             params_.platform.manual_collision_stop || behaviour_.mode().name != "manual");
+          }};
 }
 
 std::string Agent::Core::at_console(const std::string& line) {

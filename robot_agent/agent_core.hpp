@@ -16,11 +16,14 @@
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
 #include "robot_agent/motion/rival.hpp"
+#include "robot_agent/notices/notices.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
+#include "robot_agent/safeguard/safeguards.hpp"
 #include "robot_agent/state/restored.hpp"
 #include "robot_agent/state/state_keeper.hpp"
 #include "robot_agent/supervisor/watch.hpp"
+#include "robot_agent/telemetry/telemetry.hpp"
 
 namespace adit::agent {
 
@@ -76,21 +79,8 @@ class Agent::Core : public Component {
   void restore();
   void beat();
   void listen_first(Time at);
-  void follow_link();
-  void send_state();
-  void send_periodic();
-  void send_status();
-  void send_behaviour();
-  void note_driver();
   void watch_driver();
-  void warn(Warning warning);
-  void tell_restored();
-  void watch_link();
-  void battery_fell(BatteryLevel level);
-  void go_back(const Eigen::Vector2d& place, const std::string& why);
   void send_findings();
-  void tell(Notice notice);
-  void tell_holder(Notice notice);
   Facts sense(Time now) const;
   CommandInterface::Outputs command_outputs();
   Behaviour::Inputs behaviour_inputs();
@@ -106,13 +96,11 @@ class Agent::Core : public Component {
   External external_;
   Behaviour behaviour_;
   CommandInterface commands_;
-  LinkLoss link_loss_;
-  BatteryWatch battery_watch_;
-  float battery_{-1.0f};
-  bool driver_was_alive_{};
+  Notices notices_;
+  Safeguards safeguards_;
+  Telemetry telemetry_;
   Time started_{};
-  std::optional<Time> holder_heard_{};  ///< for the first time since then
-  std::uint32_t seconds_{};             // since it started, for what is sent more rarely
+  std::optional<Time> holder_heard_{};  ///< First time since the start that the holder was heard.
   RivalWatch rivals_;
   std::vector<Timer> timers_{};
 };

@@ -1,0 +1,67 @@
+#include "robot_agent/notices/notices.hpp"
+
+namespace adit::agent {
+
+Notices::Notices(std::string robot, Notifier& notifier, Log log, std::function<std::string()> holder)
+    : robot_(std::move(robot)), notifier_(notifier), log_(std::move(log)), holder_(std::move(holder)) {}
+
+void Notices::send(const Notice& notice) const {
+  if (log_.on(LogLevel::info))
+    log_.info("notice to " + (notice.operator_name.empty() ? "everybody" : notice.operator_name) + " " +
+              notice.code + ": " + notice.text);
+  notifier_.send(notice);
+}
+
+void Notices::send_to_holder(Notice notice) const {
+  notice.operator_name = holder_();
+  if (!notice.operator_name.empty()) send(notice);
+}
+
+void Notices::restored(const Restored& found, bool same_boot) const {
+  if (found.lost)
+    send({{},
+          Severity::error,
+          "state_lost",
+          Reason::cannot_read,
+          robot_ + " started and holds: its state was lost (" + found.text + ")"});
+  else if (found.snapshot)
+    send({{},
+          Severity::warning,
+          "restarted",
+          Reason::none,
+          robot_ + " was restarted: " + describe(*found.snapshot) +
+              (same_boot ? "" : "; with its computer, so it holds")});
+}
+
+void Notices::rival(const wire::ParticipantId& writer) const {
+  send({{},
+        Severity::error,
+        "rival_writer",
+        Reason::none,
+        "participant " + wire::to_string(writer) + " writes velocities to the driver of " + robot_ +
+            " beside its agent: end that program, neither is obeyed as long as both write"});
+}
+
+void Notices::driver_lost() const {
+  send_to_holder(
+      {{}, Severity::error, "driver_lost", Reason::driver_silent, "the driver of " + robot_ + " is silent"});
+}
+
+void Notices::warning(Warning warning, bool stops) const {
+  if (warning == Warning::lidar_silent)
+    send_to_holder({{},
+                    Severity::warning,
+                    "lidar_silent",
+                    Reason::terrain_stale,
+                    "the lidar of " + robot_ + " is silent: it drives blindly, at most 0.3 m/s"});
+  else
+    send_to_holder(
+        {{},
+         Severity::warning,
+         "obstacle_near",
+         Reason::none,
+         "something is in the way of " + robot_ +
+             (stops ? ": it slows down and stops" : ": it slows down to 0.3 m/s and does not stop")});
+}
+
+}  // namespace adit::agent

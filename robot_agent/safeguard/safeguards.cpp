@@ -1,0 +1,93 @@
+#include "robot_agent/safeguard/safeguards.hpp"
+
+#include <cmath>
+
+namespace adit::agent {
+namespace {
+
+LinkLossParams link_loss_params(const SafeguardParams& params) {
+  LinkLossParams l = params.link_loss;
+  l.start = {params.start.x, params.start.y};
+  return l;
+}
+
+}  // namespace
+
+Safeguards::Safeguards(SafeguardParams params, const Parts& parts)
+    : params_(std::move(params)),
+      parts_(parts),
+      link_loss_(link_loss_params(params_)),
+      battery_watch_(params_.battery) {}
+
+void Safeguards::watch_link(Time now) {
+  const Authority& authority = parts_.authority;
+  const Localisation& at = parts_.localisation;
+  LinkLoss::Inputs in{};
+  in.held = authority.holder().has_value();
+  in.heard = authority.heard();
+  in.autonomous = parts_.behaviour.mode().autonomous();
+  in.arrived = parts_.behaviour.view().goal_state == GoalState::reached;
+  if (at.initialised()) in.place = Eigen::Vector2d(at.pose().x, at.pose().y);
+  const LinkLoss::Step step = link_loss_.tick(in, now);
+  const std::string holder = authority.holder_name();
+  if (step.lost)
+    parts_.notices.send({{},
+                         Severity::warning,
+                         "link_lost",
+                         Reason::no_answer,
+                         params_.robot + " has not heard " + holder + " for " +
+                             std::to_string(std::lround(seconds(step.silence))) + " s"});
+  if (step.found)
+    parts_.notices.send(
+        {{}, Severity::info, "link_back", Reason::none, params_.robot + " hears " + holder + " again"});
+  if (step.hold) {
+    parts_.behaviour.hold(Reason::no_answer, now);
+    parts_.notices.send({{},
+                         Severity::warning,
+                         "mode_changed",
+                         Reason::no_answer,
+                         params_.robot + " holds until it hears " + holder +
+                             " again and is told to go on; its goal is kept"});
+  }
+  if (step.go_to) go_back(*step.go_to, "its holder is not heard", now);
+}
+
+void Safeguards::go_back(const Eigen::Vector2d& place, const std::string& why, Time now) {
+  const auto asked = parts_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, now);
+  if (!asked) return link_loss_.refused(now);
+  parts_.notices.send({{},
+                       Severity::warning,
+                       "returning",
+                       Reason::none,
+                       params_.robot + " goes back to " + std::to_string(std::lround(place.x())) + " " +
+                           std::to_string(std::lround(place.y())) + ": " + why});
+}
+
+void Safeguards::battery(float charge, Time now) {
+  charge_ = std::isfinite(charge) ? charge : -1.0f;
+  if (const auto level = battery_watch_.update(charge_)) battery_fell(*level, now);
+}
+
+void Safeguards::battery_fell(BatteryLevel level, Time now) {
+  const char* code = level == BatteryLevel::last  ? "battery_last"
+                     : level == BatteryLevel::low ? "battery_low"
+                                                  : "battery_warning";
+  parts_.notices.send(
+      {{},
+       level == BatteryLevel::last ? Severity::error : Severity::warning,
+       code,
+       Reason::none,
+       params_.robot + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left"});
+  // An operator who drives by hand sees it, and decides.
+  if (level != BatteryLevel::last || !parts_.behaviour.mode().autonomous()) return;
+  if (params_.return_at_last_battery)
+    return go_back({params_.start.x, params_.start.y}, "its battery is nearly empty", now);
+  parts_.behaviour.hold(Reason::none, now);
+  parts_.notices.send({{},
+                       Severity::warning,
+                       "mode_changed",
+                       Reason::none,
+                       params_.robot + " holds: its battery is nearly empty; its goal is kept"});
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,57 @@
+#pragma once
+#include <functional>
+#include <string>
+
+#include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/command/authority.hpp"
+#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/notices/notices.hpp"
+#include "robot_agent/safeguard/battery_watch.hpp"
+#include "robot_agent/safeguard/link_loss.hpp"
+
+namespace adit::agent {
+
+struct SafeguardParams {
+  std::string robot{};
+  Pose2 start{};  ///< Start pose, map frame.
+  LinkLossParams link_loss{};
+  BatteryParams battery{};
+  bool return_at_last_battery{};  ///< At the last threshold: true drives back to the start, false holds.
+};
+
+/// Acts without an operator when the link to the holder is lost or the battery is nearly empty (rule 9).
+/// Only autonomous modes are changed. Runs on the command strand.
+class Safeguards {
+ public:
+  /// What it watches and acts on; all of it must outlive the safeguards.
+  struct Parts {
+    const Authority& authority;
+    Behaviour& behaviour;
+    const Localisation& localisation;
+    const Notices& notices;
+  };
+
+  Safeguards(SafeguardParams params, const Parts& parts);
+
+  /// After a restart: the threshold that was passed last.
+  void restore(BatteryLevel level) { battery_watch_.restore(level); }
+  /// Once a second.
+  void watch_link(Time now);
+  /// A new state of charge, [0, 1]; anything that is not finite counts as unknown.
+  void battery(float charge, Time now);
+  /// State of charge, [0, 1]; negative while unknown.
+  float charge() const { return charge_; }
+  BatteryLevel level() const { return battery_watch_.level(); }
+
+ private:
+  void battery_fell(BatteryLevel level, Time now);
+  void go_back(const Eigen::Vector2d& place, const std::string& why, Time now);
+
+  SafeguardParams params_;
+  Parts parts_;
+  LinkLoss link_loss_;
+  BatteryWatch battery_watch_;
+  float charge_{-1.0f};
+};
+
+}  // namespace adit::agent

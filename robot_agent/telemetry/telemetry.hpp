@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+
+#include "core/wire/link/rate_control.hpp"
+#include "core/wire/wire.hpp"
+#include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/command/command_interface.hpp"
+#include "robot_agent/motion/driver.hpp"
+#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/radio/radio_edge.hpp"
+#include "robot_agent/supervisor/watch.hpp"
+
+namespace adit::agent {
+
+/// Sends the robot's state, status and link report to the stations, at the rate that the link allows. Runs on
+/// the command strand, as part of the command component.
+class Telemetry {
+ public:
+  /// Where the reports come from and go to; all of it must outlive the telemetry.
+  struct Parts {
+    RadioEdge& radio;
+    wire::Wire& wire;         ///< The radio domain.
+    wire::RateControl& rate;  ///< Rate of RobotState; the other reports follow it.
+    Driver& driver;
+    Watch& watch;
+    const Localisation& localisation;
+    CommandInterface& commands;
+    const Behaviour& behaviour;
+  };
+
+  explicit Telemetry(const Parts& parts) : parts_(parts) {}
+
+  /// Sends authority, behaviour and the driver's health. `started`: start of the command component.
+  void start(Time now, Time started);
+  /// Adapts the rate to the link, and sends RobotState when it is due. At 10 Hz. `charge`: of the battery,
+  /// [0, 1], negative while unknown.
+  void send_state(Time now, float charge);
+  /// Repeats the status for stations that came late, and reports on the link. Once a second.
+  void send_periodic(Time now);
+  void send_authority(Time now);
+  void send_behaviour(Time now);
+  /// Compares the driver's health with the last call and reports a change. True when it fell silent.
+  bool driver_fell_silent(Time now);
+
+ private:
+  void follow_link(Time now);
+  void report_driver(Time now);
+
+  Parts parts_;
+  Time started_{};
+  bool driver_was_alive_{};
+  std::uint32_t seconds_{};  ///< Calls of send_periodic() so far.
+};
+
+}  // namespace adit::agent
