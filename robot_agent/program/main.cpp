@@ -160,19 +160,9 @@ int run_agent(const RobotConfig& config, const Options& options) {
        .about = {{"kind", "robot"}, {"software", ADIT_VERSION}},
        .complain = [log = *log, name = config.name](const std::string& text) { Log(log, name).warn(text); }});
 
-  AgentParams params{};
-  params.name = config.name;
-  params.platform = config.platform;
+  AgentParams params = agent_params(config);
   params.seed = drawn_seed();
-  params.start = config.start;
-  params.lock_lease = config.lock_lease;
-  params.tree = config.tree;
   params.log = keeper.tap(*log);
-  params.link_loss = config.link_loss;
-  params.battery = config.battery;
-  params.velocity = config.velocity;
-  params.return_at_last_battery = config.return_at_last_battery;
-  params.resume_after_restart = config.resume_after_restart;
   params.boot = this_boot();
   if (const std::string folder = state_folder(config); !folder.empty()) {
     auto disk = store::FileDisk::open(folder);

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 
@@ -9,7 +11,7 @@
 #include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
 #include "core/wire/link_file.hpp"
-#include "robot_agent/command/types.hpp"
+#include "robot_agent/agent.hpp"
 
 namespace adit::agent {
 namespace {
@@ -27,20 +29,31 @@ void read_radio(const config::Node& node, const std::string& file, wire::FastDds
     node.child("link").fail(link.error().reason, link.error().text);
 }
 
-void read_safeguards(const config::Node& root, RobotConfig& c) {
-  const std::string loss = root.text("on_link_loss", "continue");
-  c.link_loss.action = loss == "hold" ? OnLoss::hold : loss == "return" ? OnLoss::back : OnLoss::go_on;
-  if (loss != "continue" && loss != "hold" && loss != "return")
-    root.child("on_link_loss").fail(Reason::out_of_range, "expected continue, hold or return");
-  c.link_loss.after = from_seconds(root.number("link_loss_after", config::within(1.0, 3600.0), 10.0));
-  const auto battery = root.child_if("battery");
+void read_link_loss(const config::Node& node, LinkLossParams& loss) {
+  static const std::array<std::pair<const char*, OnLoss>, 3> actions{
+      {{"continue", OnLoss::go_on}, {"hold", OnLoss::hold}, {"return", OnLoss::back}}};
+  if (node.has("on_link_loss")) {
+    const std::string name = node.text("on_link_loss");
+    const auto* action =
+        std::find_if(actions.begin(), actions.end(), [&](const auto& a) { return a.first == name; });
+    if (action == actions.end())
+      node.child("on_link_loss").fail(Reason::out_of_range, "expected continue, hold or return");
+    else
+      loss.action = action->second;
+  }
+  loss.after = from_seconds(node.number("link_loss_after", config::within(1.0, 3600.0), seconds(loss.after)));
+}
+
+void read_battery(const config::Node& node, RobotConfig& c) {
+  const auto battery = node.child_if("battery");
   if (!battery.present()) return;
   c.battery.warning = battery.number("warning", config::within(0.0, 1.0), c.battery.warning);
   c.battery.low = battery.number("low", config::within(0.0, 1.0), c.battery.low);
   c.battery.last = battery.number("last", config::within(0.0, 1.0), c.battery.last);
   if (c.battery.warning < c.battery.low || c.battery.low < c.battery.last)
     battery.fail(Reason::out_of_range, "expected warning >= low >= last");
-  const std::string last = battery.text("at_last", "hold");
+  if (!battery.has("at_last")) return;
+  const std::string last = battery.text("at_last");
   c.return_at_last_battery = last == "return";
   if (last != "hold" && last != "return")
     battery.child("at_last").fail(Reason::out_of_range, "expected hold or return");
@@ -60,6 +73,45 @@ std::string state_folder(const RobotConfig& config) {
   return base + "/adit/robot-" + config.name;
 }
 
+void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& c) {
+  if (node.has("cmd_vel")) {
+    const std::string velocity = node.text("cmd_vel");
+    c.velocity = velocity == "twist" ? VelocityType::twist : VelocityType::twist_stamped;
+    if (velocity != "twist" && velocity != "twist_stamped")
+      node.child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
+  }
+  c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
+  if (node.has("tree")) {
+    if (auto tree = config::find_file(node.text("tree"), file))
+      c.tree = std::filesystem::absolute(*tree).lexically_normal().string();
+    else
+      node.child("tree").fail(tree.error().reason, tree.error().text);
+  }
+  read_link_loss(node, c.link_loss);
+  read_battery(node, c);
+  if (node.has("after_restart")) {
+    const std::string after = node.text("after_restart");
+    c.resume_after_restart = after == "resume";
+    if (after != "resume" && after != "hold")
+      node.child("after_restart").fail(Reason::out_of_range, "expected resume or hold");
+  }
+}
+
+AgentParams agent_params(const RobotConfig& config) {
+  AgentParams params{};
+  params.name = config.name;
+  params.platform = config.platform;
+  params.start = config.start;
+  params.lock_lease = config.lock_lease;
+  params.tree = config.tree;
+  params.link_loss = config.link_loss;
+  params.battery = config.battery;
+  params.velocity = config.velocity;
+  params.return_at_last_battery = config.return_at_last_battery;
+  params.resume_after_restart = config.resume_after_restart;
+  return params;
+}
+
 Result<RobotConfig> load_robot_config(const std::string& file) {
   auto root = config::load(file);
   if (!root) return root.error();
@@ -72,25 +124,14 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.start = {pose[0], pose[1], wrap_angle(pose[2])};
   if (const auto radio = root->child_if("radio"); radio.present()) read_radio(radio, file, c.radio);
   c.robot_domain = static_cast<std::uint32_t>(root->integer("robot_domain", 0, 232, 0));
-  const std::string velocity = root->text("cmd_vel", "twist");
-  c.velocity = velocity == "twist" ? VelocityType::twist : VelocityType::twist_stamped;
-  if (velocity != "twist" && velocity != "twist_stamped")
-    root->child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
-  c.lock_lease = from_seconds(root->number("lock_lease", config::within(0.0, 1e6), 300.0));
   c.memory_limit = root->number("memory_limit", config::within(0.0, 1e6), c.memory_limit);
-  c.tree = root->text("tree", c.tree);
-  if (auto tree = config::find_file(c.tree, file))
+  read_robot_keys(*root, file, c);
+  if (!root->has("tree")) {
+    auto tree = config::find_file(c.tree, file);
+    if (!tree) return tree.error();
     c.tree = std::filesystem::absolute(*tree).lexically_normal().string();
-  else if (root->has("tree"))
-    root->child("tree").fail(tree.error().reason, tree.error().text);
-  else
-    return tree.error();
-  read_safeguards(*root, c);
+  }
   c.state = root->text("state", "");
-  const std::string after = root->text("after_restart", "resume");
-  c.resume_after_restart = after == "resume";
-  if (after != "resume" && after != "hold")
-    root->child("after_restart").fail(Reason::out_of_range, "expected resume or hold");
   c.record = root->text("record", "");
   if (!level_from_name(root->text("log", "info"), c.log))
     root->child("log").fail(Reason::out_of_range, "expected trace, debug, info, warn, error or off");

@@ -10,7 +10,13 @@
 #include "robot_agent/safeguard/battery_watch.hpp"
 #include "robot_agent/safeguard/link_loss.hpp"
 
+namespace adit::config {
+class Node;
+}
+
 namespace adit::agent {
+
+struct AgentParams;
 
 /// What config/robots/NAME.yaml says; docs/configuration.md lists the keys.
 struct RobotConfig {
@@ -36,6 +42,16 @@ struct RobotConfig {
 /// $XDG_STATE_HOME/adit/robot-NAME; without that /var/lib/adit/robot-NAME for root,
 /// ~/.local/state/adit/robot-NAME for others.
 std::string state_folder(const RobotConfig& config);
+
+/// Reads the keys that mean the same in a robot's file and for a robot of a scenario: cmd_vel, lock_lease,
+/// tree, on_link_loss, link_loss_after, battery, after_restart. A missing key leaves `config` as it is; a
+/// wrong one is noted at `node`. `file`: the tree is looked for beside it first, and becomes an absolute
+/// path.
+void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& config);
+
+/// An agent's parameters as far as the file gives them: the rest (seed, log, disk, boot, handlers) is the
+/// caller's.
+AgentParams agent_params(const RobotConfig& config);
 
 /// Reads it. Errors: one line with file, line and what was expected.
 Result<RobotConfig> load_robot_config(const std::string& file);

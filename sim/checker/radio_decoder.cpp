@@ -7,6 +7,7 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
+#include "geometry_msgs/msg/TwistStamped.h"
 
 namespace adit::sim {
 namespace {
@@ -96,6 +97,18 @@ Decoded acknowledgement(std::span<const std::uint8_t> cdr) {
                                            a->epoch().start(), a->epoch().counter()}};
 }
 
+Decoded velocity(std::string_view type, std::span<const std::uint8_t> cdr) {
+  std::optional<geometry_msgs::msg::Twist> t;
+  if (type == topics::cmd_vel_stamped.type) {
+    if (const auto stamped = read<geometry_msgs::msg::TwistStamped>(cdr)) t = stamped->twist();
+  } else {
+    t = read<geometry_msgs::msg::Twist>(cdr);
+  }
+  if (!t) return std::nullopt;
+  return DecodedSample{{},
+                       VelocitySent{{t->linear().x(), t->linear().y(), t->angular().z(), t->linear().z()}}};
+}
+
 Decoded authority(std::span<const std::uint8_t> cdr) {
   const auto a = read<radio::AuthorityStatus>(cdr);
   if (!a) return std::nullopt;
@@ -116,13 +129,8 @@ Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cd
   return std::nullopt;
 }
 
-Decoded decode_sent(std::string_view topic, std::span<const std::uint8_t> cdr) {
-  if (is(topic, topics::cmd_vel)) {
-    const auto t = read<geometry_msgs::msg::Twist>(cdr);
-    if (!t) return std::nullopt;
-    return DecodedSample{{},
-                         VelocitySent{{t->linear().x(), t->linear().y(), t->angular().z(), t->linear().z()}}};
-  }
+Decoded decode_sent(std::string_view topic, std::string_view type, std::span<const std::uint8_t> cdr) {
+  if (is(topic, topics::cmd_vel)) return velocity(type, cdr);
   if (is(topic, topics::robot_state)) {
     const auto s = read<radio::RobotState>(cdr);
     if (!s) return std::nullopt;

@@ -18,7 +18,9 @@ struct DecodedSample {
 /// topics and for bytes that are no sample.
 std::optional<DecodedSample> decode_received(std::string_view topic, std::span<const std::uint8_t> cdr,
                                              const wire::ParticipantId& from);
-/// Decodes what a robot sends: acknowledgements, its states, notifications, cmd_vel.
-std::optional<DecodedSample> decode_sent(std::string_view topic, std::span<const std::uint8_t> cdr);
+/// Decodes what a robot sends: acknowledgements, its states, notifications, cmd_vel. `type`: the DDS type,
+/// for cmd_vel has two.
+std::optional<DecodedSample> decode_sent(std::string_view topic, std::string_view type,
+                                         std::span<const std::uint8_t> cdr);
 
 }  // namespace adit::sim

@@ -7,6 +7,7 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
+#include "geometry_msgs/msg/TwistStamped.h"
 #include "nav_msgs/msg/Odometry.h"
 #include "sensor_msgs/msg/BatteryState.h"
 #include "sensor_msgs/msg/PointCloud2.h"
@@ -75,16 +76,10 @@ Result<void> RobotDriver::start() {
   if (!battery) return battery.error();
   auto points = wire_.make_writer(wire::topics::points, {});
   if (!points) return points.error();
-  auto cmd_vel = wire::make_reader<geometry_msgs::msg::Twist>(
-      wire_, wire::topics::cmd_vel, strand_,
-      [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
-        simulation_.command(robot_, {t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()});
-      });
-  if (!cmd_vel) return cmd_vel.error();
   endpoints_->odom = std::move(*odom);
   endpoints_->battery = std::move(*battery);
   endpoints_->points = std::move(*points);
-  endpoints_->cmd_vel = std::move(*cmd_vel);
+  if (auto listening = listen(); !listening) return listening;
 
   started_ = strand_.now();
   odom_ = strand_.every(params_.odom_period, [this] { send_odom(); });
@@ -93,6 +88,23 @@ Result<void> RobotDriver::start() {
     send_points();
     points_ = strand_.every(from_seconds(1.0 / simulation_.params().lidar.rate), [this] { send_points(); });
   });
+  return {};
+}
+
+Result<void> RobotDriver::listen() {
+  const auto obey = [this](const geometry_msgs::msg::Twist& t) {
+    simulation_.command(robot_, {t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()});
+  };
+  using Stamped = geometry_msgs::msg::TwistStamped;
+  auto reader =
+      params_.velocity == agent::VelocityType::twist_stamped
+          ? wire::make_reader<Stamped>(wire_, wire::topics::cmd_vel_stamped, strand_,
+                                       [obey](const Stamped& t, const wire::SampleInfo&) { obey(t.twist()); })
+          : wire::make_reader<geometry_msgs::msg::Twist>(
+                wire_, wire::topics::cmd_vel, strand_,
+                [obey](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) { obey(t); });
+  if (!reader) return reader.error();
+  endpoints_->cmd_vel = std::move(*reader);
   return {};
 }
 
@@ -121,11 +133,12 @@ void RobotDriver::send_odom() {
 }
 
 void RobotDriver::send_battery() {
-  const double used = seconds(strand_.now() - started_) / (params_.battery_hours * 3600.0);
+  const double charge =
+      std::clamp(params_.charge - params_.drain * seconds(strand_.now() - started_), 0.0, 1.0);
   sensor_msgs::msg::BatteryState battery;
   battery.header(header(strand_.now(), "base_link"));
-  battery.percentage(static_cast<float>(std::max(0.0, 1.0 - used)));
-  battery.voltage(static_cast<float>(25.2 - 4.2 * std::min(1.0, used)));
+  battery.percentage(static_cast<float>(charge));
+  battery.voltage(static_cast<float>(21.0 + 4.2 * charge));
   battery.present(true);
   (void)endpoints_->battery.write(battery);
 }

@@ -5,6 +5,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/wire/wire.hpp"
+#include "robot_agent/motion/velocity_writer.hpp"
 #include "sim/driver/sensor.hpp"
 #include "sim/world/simulation.hpp"
 
@@ -15,7 +16,9 @@ struct DriverParams {
   Duration battery_period{1s};  ///< (0, 60 s]
   Duration scan_delay{20ms};    ///< from the instant a scan shows to its sample, in rehearsal; (0, 100 ms]
   Duration first_scan{100ms};   ///< lets the robots' scans be spread over the period, > 0
-  double battery_hours{4.0};    ///< a full battery lasts so long, (0, 1000]
+  double charge{1.0};           ///< Charge of the battery at the start, [0, 1].
+  double drain{1.0 / 14400.0};  ///< Charge that the battery loses a second, 1/s, [0, 1].
+  agent::VelocityType velocity{agent::VelocityType::twist};  ///< Type of the /cmd_vel that it obeys.
 };
 
 /// A simulated robot's driver: obeys rt/cmd_vel and gives rt/odom, rt/points and rt/battery_state, as a ROS 2
@@ -34,6 +37,7 @@ class RobotDriver {
 
  private:
   struct Endpoints;
+  Result<void> listen();
   void send_odom();
   void send_battery();
   void send_points();

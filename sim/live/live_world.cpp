@@ -67,10 +67,8 @@ LiveWorld::~LiveWorld() {
 Result<std::unique_ptr<LiveWorld>> LiveWorld::open(const Scenario& scenario,
                                                    std::shared_ptr<const World> world,
                                                    const LiveWorldParams& params) {
-  auto starts = make_starts(scenario);
-  if (!starts) return starts.error();
-  auto simulation =
-      Simulation::create(std::move(world), std::move(*starts), make_simulation_params(scenario, params.seed));
+  auto simulation = Simulation::create(std::move(world), make_starts(scenario),
+                                       make_simulation_params(scenario, params.seed));
   if (!simulation) return simulation.error();
   std::unique_ptr<LiveWorld> out(new LiveWorld(scenario, std::move(*simulation), params));
   for (std::size_t i = 0; i < out->simulation_.size(); ++i) {
@@ -100,7 +98,7 @@ Result<void> LiveWorld::start() {
     started_ = strand_->now();
     if (!params_.await_script) script_began_ = Duration{0};
     for (std::size_t i = 0; i < wires_.size() && result; ++i) {
-      DriverParams params;
+      DriverParams params = make_driver_params(judged_.robots[i]);
       params.first_scan = 100ms + 30ms * static_cast<int>(i);
       drivers_.push_back(std::make_unique<RobotDriver>(simulation_, i, *strand_, *wires_[i], params));
       result = drivers_.back()->start();

@@ -23,7 +23,7 @@ struct LiveWorldParams {
 /// would be.
 class LiveWorld {
  public:
-  /// `scenario` outlives it. Errors: as make_starts and Simulation::create, and wire_failed.
+  /// `scenario` outlives it. Errors: as Simulation::create, and wire_failed.
   static Result<std::unique_ptr<LiveWorld>> open(const Scenario& scenario, std::shared_ptr<const World> world,
                                                  const LiveWorldParams& params);
   ~LiveWorld();

@@ -57,13 +57,8 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
   }
   return AgentFactory([defects, libraries = std::make_shared<Libraries>()](
                           const AgentContext& context) -> Result<std::unique_ptr<RehearsedAgent>> {
-    agent::AgentParams params;
-    params.name = context.spec.id;
-    params.platform = context.platform;
+    agent::AgentParams params = agent::agent_params(context.spec.settings);
     params.seed = context.seed;
-    params.start = context.spec.pose;
-    params.lock_lease = context.lock_lease;
-    params.link_loss = context.spec.link_loss;
     params.defects = defects;
     params.library = [libraries](const Platform& platform) { return libraries->of(platform); };
     params.disk = context.disk;

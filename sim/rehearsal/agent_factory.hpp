@@ -32,7 +32,6 @@ struct AgentContext {
   const RobotSpec& spec;
   const Platform& platform;
   std::uint64_t seed{};
-  Duration lock_lease{};
   Runtime& runtime;
   wire::Wire& radio;
   wire::Wire& robot;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/config/platform_file.hpp"
 #include "core/record/frame_recorder.hpp"
 #include "sim/rehearsal/expectations.hpp"
 #include "sim/rehearsal/fault_player.hpp"
@@ -21,7 +20,7 @@ std::vector<RobotFacts> facts_of(const Scenario& scenario, const Simulation& sim
   for (std::size_t i = 0; i < simulation.size(); ++i) {
     const Platform& platform = simulation.platform(i);
     out.push_back({simulation.id(i), platform.max_acceleration, platform.max_turn_acceleration,
-                   seconds(scenario.lock_lease)});
+                   seconds(scenario.robots[i].settings.lock_lease)});
   }
   return out;
 }
@@ -111,6 +110,7 @@ class Run {
     for (std::size_t i = 0; i < scenario_.robots.size(); ++i) {
       const RobotSpec& spec = scenario_.robots[i];
       robots_[spec.id] = std::make_unique<RobotMachine>(stage_, i, spec, random_.fork(100 + i));
+      witness_.obeys(spec.id, spec.settings.velocity);
       ether_.set_position(spec.id, spec.pose.x, spec.pose.y, simulation_.truth(i).pose.position.z());
       if (auto started = robots_[spec.id]->start(); !started) return started;
     }
@@ -258,13 +258,17 @@ Result<std::shared_ptr<const World>> make_world(const WorldSpec& spec) {
   return std::shared_ptr<const World>(std::make_shared<World>(std::move(*world)));
 }
 
-Result<std::vector<RobotStart>> make_starts(const Scenario& scenario) {
+std::vector<RobotStart> make_starts(const Scenario& scenario) {
   std::vector<RobotStart> out;
-  for (const RobotSpec& spec : scenario.robots) {
-    auto platform = config::load_platform(spec.platform, scenario.file.string());
-    if (!platform) return platform.error();
-    out.push_back({spec.id, *platform, spec.pose});
-  }
+  for (const RobotSpec& spec : scenario.robots) out.push_back({spec.id, spec.settings.platform, spec.pose});
+  return out;
+}
+
+DriverParams make_driver_params(const RobotSpec& spec) {
+  DriverParams out;
+  out.charge = spec.charge;
+  out.drain = spec.drain;
+  out.velocity = spec.settings.velocity;
   return out;
 }
 
@@ -278,10 +282,8 @@ SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t 
 
 Result<RunOutcome> rehearse(const Scenario& scenario, std::shared_ptr<const World> world,
                             const RunParams& params) {
-  auto starts = make_starts(scenario);
-  if (!starts) return starts.error();
   Random random(params.seed);
-  auto simulation = Simulation::create(std::move(world), std::move(*starts),
+  auto simulation = Simulation::create(std::move(world), make_starts(scenario),
                                        make_simulation_params(scenario, random.fork(3).next()));
   if (!simulation)
     return Error{simulation.error().reason, scenario.file.string() + ": " + simulation.error().text};

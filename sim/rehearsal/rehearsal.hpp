@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim/driver/robot_driver.hpp"
 #include "sim/rehearsal/agent_factory.hpp"
 #include "sim/rehearsal/report.hpp"
 #include "sim/rehearsal/scenario.hpp"
@@ -42,8 +43,10 @@ Draws draw(const Scenario& scenario, std::uint64_t seed);
 
 /// Builds a scenario's world; it may be shared by many runs. Errors name the file.
 Result<std::shared_ptr<const World>> make_world(const WorldSpec& spec);
-/// The robots as the simulation takes them, with their platforms. Errors of core/config.
-Result<std::vector<RobotStart>> make_starts(const Scenario& scenario);
+/// The robots as the simulation takes them, with their platforms.
+std::vector<RobotStart> make_starts(const Scenario& scenario);
+/// What a robot's driver takes from its scenario: battery, type of /cmd_vel.
+DriverParams make_driver_params(const RobotSpec& spec);
 SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t seed);
 
 /// Runs a scenario on virtual time. Same scenario and seed, same run, whatever the number of workers.

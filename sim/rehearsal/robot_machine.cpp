@@ -1,8 +1,7 @@
 #include "sim/rehearsal/robot_machine.hpp"
 
-#include "core/wire/topics.hpp"
-#include "core/wire/typed.hpp"
-#include "geometry_msgs/msg/Twist.h"
+#include "robot_agent/motion/velocity_writer.hpp"
+#include "sim/rehearsal/rehearsal.hpp"
 
 namespace adit::sim {
 
@@ -28,10 +27,10 @@ struct RobotMachine::Parent {
   std::unique_ptr<Runtime> runtime{};
   std::shared_ptr<Executor> strand{};
   std::unique_ptr<wire::Wire> wire{};
-  wire::Writer<geometry_msgs::msg::Twist> cmd_vel{};
+  agent::VelocityWriter cmd_vel{};
   Timer zero{};
 
-  void send_zero() { (void)cmd_vel.write({}); }  // counted by the wire when it fails; the next follows
+  void send_zero() { cmd_vel.write({}); }
 };
 
 struct RobotMachine::Agent {
@@ -56,7 +55,7 @@ Result<void> RobotMachine::start() {
   driver_runtime_ = stage_.scheduler.machine(driver, clock_offset_);
   driver_strand_ = driver_runtime_->strand("driver");
   driver_wire_ = stage_.ether.join(domain_, driver);
-  DriverParams params;
+  DriverParams params = make_driver_params(spec_);
   // Scans of different robots do not all fall into the same instant.
   params.first_scan = 100ms + 5ms * static_cast<int>(index_);
   driver_ = std::make_unique<RobotDriver>(stage_.simulation, index_, *driver_strand_, *driver_wire_, params);
@@ -67,7 +66,7 @@ Result<void> RobotMachine::start() {
   parent_->runtime = stage_.scheduler.machine(name, clock_offset_);
   parent_->strand = parent_->runtime->strand("parent");
   parent_->wire = stage_.ether.join(domain_, name);
-  auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(*parent_->wire, wire::topics::cmd_vel);
+  auto writer = agent::VelocityWriter::make(*parent_->wire, spec_.settings.velocity);
   if (!writer) return writer.error();
   parent_->cmd_vel = std::move(*writer);
   return start_agent();
@@ -79,12 +78,12 @@ Result<void> RobotMachine::start_agent() {
   agent->radio = stage_.ether.join(Witness::radio_domain, spec_.id);
   agent->robot = stage_.ether.join(domain_, spec_.id);
   stage_.witness.agent_started(spec_.id, stage_.scheduler.elapsed(), agent->radio->id());
-  auto program = stage_.make_agent({spec_, stage_.simulation.platform(index_), random_.next(),
-                                    stage_.scenario.lock_lease, *agent->runtime, *agent->radio, *agent->robot,
-                                    disk_, [this](const std::string&) {
-                                      // Not on the agent's own strand: that goes with it.
-                                      stage_.scheduler.at(stage_.scheduler.elapsed(), [this] { crash(); });
-                                    }});
+  auto program =
+      stage_.make_agent({spec_, stage_.simulation.platform(index_), random_.next(), *agent->runtime,
+                         *agent->radio, *agent->robot, disk_, [this](const std::string&) {
+                           // Not on the agent's own strand: that goes with it.
+                           stage_.scheduler.at(stage_.scheduler.elapsed(), [this] { crash(); });
+                         }});
   if (!program) return program.error();
   agent->program = std::move(*program);
   agent_ = std::move(agent);

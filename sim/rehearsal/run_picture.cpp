@@ -32,8 +32,6 @@ bool worth_drawing(const TimedEvent& event) {
 
 Result<void> draw_run(const Scenario& scenario, const World& world, const RunOutcome& outcome,
                       const std::filesystem::path& file) {
-  auto starts = make_starts(scenario);
-  if (!starts) return starts.error();
   PictureSpec spec;
   spec.title = scenario.name;
   char text[128];
@@ -41,7 +39,7 @@ Result<void> draw_run(const Scenario& scenario, const World& world, const RunOut
                 static_cast<unsigned long long>(outcome.report.seed), outcome.report.virtual_s,
                 scenario.link.name.c_str(), outcome.report.ok() ? "all as expected" : "failed");
   spec.subtitle = text;
-  for (const RobotStart& start : *starts) {
+  for (const RobotStart& start : make_starts(scenario)) {
     const auto trail = outcome.trails.find(start.id);
     const auto robot = outcome.report.robots.find(start.id);
     if (trail == outcome.trails.end() || robot == outcome.report.robots.end()) continue;

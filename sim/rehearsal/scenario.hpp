@@ -11,7 +11,7 @@
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/link.hpp"
-#include "robot_agent/safeguard/link_loss.hpp"
+#include "robot_agent/program/robot_config.hpp"
 #include "sim/rehearsal/fault.hpp"
 #include "sim/world/person.hpp"
 
@@ -32,9 +32,11 @@ enum class LidarKind { full, planar };
 
 struct RobotSpec {
   std::string id{};
-  std::string platform{};
-  Pose2 pose{};  ///< at the start, world frame
-  agent::LinkLossParams link_loss{};
+  std::string platform{};         ///< Its name, as written.
+  Pose2 pose{};                   ///< At the start, world frame.
+  agent::RobotConfig settings{};  ///< Of its file and of the scenario, as the product's reader gives them.
+  double charge{1.0};             ///< Charge of its battery at the start, [0, 1].
+  double drain{1.0 / 14400.0};    ///< Charge that it loses a second, 1/s, [0, 1].
 };
 
 struct StationSpec {
@@ -116,7 +118,6 @@ struct Scenario {
   std::uint64_t seed{1};  ///< when the command line names none
   wire::LinkProfile link{};
   LidarKind lidar{LidarKind::full};
-  Duration lock_lease{300s};  ///< 0: a lock never lapses
   std::vector<RobotSpec> robots{};
   std::vector<StationSpec> stations{};
   std::vector<PersonSpec> people{};

@@ -1,11 +1,8 @@
 #include "sim/rehearsal/scenario_file.hpp"
 
 #include <algorithm>
-#include <array>
-#include <set>
 
 #include "core/config/node.hpp"
-#include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
 #include "sim/world/generate.hpp"
@@ -69,36 +66,6 @@ WorldSpec read_world(const Node& world, const std::string& file) {
     if (out.ceiling <= out.floor) world.fail(Reason::out_of_range, "expected a ceiling above the floor");
   }
   return out;
-}
-
-void read_robots(const Node& root, Scenario& out) {
-  std::set<std::string> names;
-  for (const Node& robot : root.list("robots")) {
-    RobotSpec spec;
-    spec.id = read_name(robot, "id");
-    spec.platform = robot.text("platform");
-    if (!spec.platform.empty())
-      if (auto known = config::load_platform(spec.platform, out.file.string()); !known)
-        robot.child("platform").fail(known.error().reason, known.error().text);
-    const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));
-    if (pose.size() == 3) spec.pose = {pose[0], pose[1], wrap_angle(pose[2])};
-    static constexpr std::array actions{agent::OnLoss::go_on, agent::OnLoss::hold, agent::OnLoss::back};
-    spec.link_loss.action = actions[robot.choice("on_link_loss", {"continue", "hold", "return"}, 0)];
-    spec.link_loss.after = from_seconds(robot.number("link_loss_after", config::within(1.0, 3600.0), 10.0));
-    if (!names.insert(spec.id).second)
-      robot.fail(Reason::in_use, "expected another id: " + spec.id + " is taken");
-    out.robots.push_back(std::move(spec));
-  }
-  if (out.robots.empty()) root.child("robots").fail(Reason::missing_key, "expected at least one robot");
-  for (const Node& station : root.list_if("basestations")) {
-    StationSpec spec;
-    spec.id = read_name(station, "id");
-    const std::vector<double> pose = station.numbers("pose", 2, 3, config::within(-1e5, 1e5), {0.0, 0.0});
-    if (pose.size() >= 2) spec.position = {pose[0], pose[1]};
-    if (!names.insert(spec.id).second)
-      station.fail(Reason::in_use, "expected another id: " + spec.id + " is taken");
-    out.stations.push_back(std::move(spec));
-  }
 }
 
 void read_people(const Node& root, Scenario& out) {
@@ -175,8 +142,7 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);
   out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;
-  out.lock_lease = from_seconds(root.number("lock_lease", config::within(0.0, longest), 300.0));
-  read_robots(root, out);
+  read_machines(root, out);
   read_people(root, out);
   out.script = read_script(root, out);
   if (root.has("random_script")) out.random = read_random(root.child("random_script"), out);

@@ -15,6 +15,8 @@ std::string read_station(const config::Node& node, const char* key, const Scenar
 /// Seconds from 0 to the scenario's duration.
 Duration read_time(const config::Node& node, const char* key, const Scenario& scenario);
 
+/// Robots and basestations, with the robots' files and trees.
+void read_machines(const config::Node& root, Scenario& out);
 /// The name of a profile in config/links/, or a mapping with the profile itself.
 wire::LinkProfile read_link(const config::Node& node, const std::string& file);
 std::vector<ScriptLine> read_script(const config::Node& root, const Scenario& scenario);

@@ -28,6 +28,8 @@ std::string Witness::robot_of(std::string_view machine) const {
   return robot;
 }
 
+void Witness::obeys(const std::string& robot, agent::VelocityType type) { obeyed_[robot] = type; }
+
 void Witness::note(const std::string& robot, Duration at, std::string text) {
   if (events_.size() < most_events) events_.push_back({at, robot, std::move(text)});
 }
@@ -60,8 +62,12 @@ void Witness::sent(const wire::Frame& frame) {
   }
   const std::string robot = robot_of(frame.from_name);
   if (robot.empty()) return;
-  const auto decoded = decode_sent(frame.topic, frame.bytes);
+  const auto decoded = decode_sent(frame.topic, frame.type, frame.bytes);
   if (!decoded) return;
+  if (std::holds_alternative<VelocitySent>(decoded->event)) {
+    const bool stamped = obeyed_[robot] == agent::VelocityType::twist_stamped;
+    if (stamped != (frame.type == wire::topics::cmd_vel_stamped.type)) return;
+  }
   RobotWord& said = words_.at(robot);
   if (const auto* behaviour = std::get_if<BehaviourSent>(&decoded->event)) {
     if (said.heard && said.mode != behaviour->mode) note(robot, frame.at, "mode " + behaviour->mode);

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/wire/memory/ether.hpp"
+#include "robot_agent/motion/velocity_writer.hpp"
 #include "sim/checker/checker.hpp"
 #include "sim/rehearsal/digest.hpp"
 #include "sim/rehearsal/report.hpp"
@@ -38,6 +39,9 @@ class Witness {
   static std::string driver_machine(const std::string& robot) { return robot + "/driver"; }
   static std::string parent_machine(const std::string& robot) { return robot + "/parent"; }
 
+  /// The robot's driver obeys a /cmd_vel of that type alone; others are no word to it.
+  void obeys(const std::string& robot, agent::VelocityType type);
+
   void see(const wire::Frame& frame);
   void agent_started(const std::string& robot, Duration at, const wire::ParticipantId& participant);
   /// A fault begins; `text` says what.
@@ -67,6 +71,7 @@ class Witness {
 
   Checker& checker_;
   std::map<std::string, RobotWord> words_{};
+  std::map<std::string, agent::VelocityType> obeyed_{};
   std::map<std::string, TopicResult, std::less<>> topics_{};
   std::set<std::string, std::less<>> stations_{};
   struct Asked {

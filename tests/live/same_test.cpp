@@ -95,7 +95,7 @@ class RehearsedWorld {
         wire_(net.join_robot("driver")),
         scenario_(sim::parse_scenario(plain, "plain.yaml").value()),
         simulation_(sim::Simulation::create(sim::make_world(scenario_.world).value(),
-                                            sim::make_starts(scenario_).value(),
+                                            sim::make_starts(scenario_),
                                             sim::make_simulation_params(scenario_, 1))
                         .value()),
         driver_(simulation_, 0, *strand_, *wire_, {}) {

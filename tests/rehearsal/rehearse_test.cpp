@@ -50,7 +50,9 @@ TEST(Rehearse, FailedExpectationsFailTheRun) {
 
 TEST(Rehearse, RobotsThatOverlapAreAnError) {
   Scenario scenario = load_shipped("locked.yaml");
-  scenario.robots.push_back({"r2", "wheeled", {0.2, 0.0, 0.0}});
+  scenario.robots.push_back(scenario.robots.front());
+  scenario.robots.back().id = "r2";
+  scenario.robots.back().pose.x += 0.2;
   RunParams params;
   params.make_agent = *make_agent_factory();
   const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
@@ -93,7 +95,8 @@ INSTANTIATE_TEST_SUITE_P(Config, Scenarios,
                                          "car_turns_round", "legged_step", "stairs", "tracked_step",
                                          "dead_end", "agent_crash", "cut_link", "two_robots_passing",
                                          "station_restart", "foreign_writer", "thin_link", "floor_plan",
-                                         "stuck_stick", "ten_robots", "findings_after_gap", "demo"),
+                                         "stuck_stick", "low_battery", "ten_robots", "findings_after_gap",
+                                         "demo"),
                          [](const auto& which) { return std::string(which.param); });
 
 TEST(Rehearse, TheDemoHoldsWithAPlanarLidar) {
