@@ -58,7 +58,8 @@ endfunction()
 
 # adit_test(NAME SOURCES ... LINK dep ... [LABELS label ...] [TIMEOUT seconds] [SERIAL])
 # A GoogleTest program test_NAME; each of its cases is one ctest.
-# Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow.
+# Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow, long (soaks, fuzzing, campaigns
+# and benchmarks: built always, run by `./run test long` alone).
 # SERIAL: its cases never run beside other tests (live timing).
 # Under sanitizers only some are built: address takes those labelled unit; thread takes those in tests/core, tests/wire
 # (live ones over Fast DDS too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
