@@ -143,13 +143,12 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
 
 void Agent::Core::restore() {
   // Made anew within this process it goes on from what it gave last, else from what is on the disk.
-  if (const auto& last = edges_.keeper->given())
-    edges_.restored = {decode_snapshot(encode(*last)), false, {}, 0};
+  if (const auto& last = edges_.keeper->given()) edges_.restored = restored_from(*last);
   if (!edges_.restored.snapshot) return;
   const Snapshot& s = *edges_.restored.snapshot;
   commands_.restore(s.authority, s.answers, started_);  // listen_first asks who was heard since
   // Where its driver's odometry began anew, the goal's place is no longer known for sure.
-  const bool resume = params_.resume_after_restart && s.boot == params_.boot;
+  const bool resume = params_.resume_after_restart && s.boot == params_.boot && !edges_.restored.hold;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);
   safeguards_.restore(static_cast<BatteryLevel>(s.battery));
 }

@@ -51,6 +51,13 @@ Result<void> Disk::append(const std::string& name, std::span<const std::uint8_t>
   return sync_folder();  // the file may be new
 }
 
+Result<void> Disk::rename(const std::string& from, const std::string& to) {
+  for (const std::string& name : {from, to})
+    if (auto good = check(name); !good) return good;
+  if (auto done = rename_file(from, to); !done) return done;
+  return sync_folder();
+}
+
 Result<void> Disk::remove(const std::string& name) {
   if (auto good = check(name); !good) return good;
   if (auto done = remove_file(name); !done) return done;

@@ -32,6 +32,8 @@ class Disk {
   Result<void> append(const std::string& name, std::span<const std::uint8_t> bytes);
   /// Durable when it returns. No such file: nothing happens.
   Result<void> remove(const std::string& name);
+  /// Gives a file another name; a file of that name is replaced. Durable when it returns.
+  Result<void> rename(const std::string& from, const std::string& to);
   /// Names, sorted. Temporary files are not among them.
   virtual Result<std::vector<std::string>> list() const = 0;
   /// Bytes that still fit.

@@ -17,7 +17,14 @@ std::array<std::uint8_t, 4> octets(const std::array<char, 4>& kind) {
   return out;
 }
 
-State flawed(Found found, std::string text) { return {found, std::move(text), 0, {}}; }
+State flawed(Found found, std::string text, std::span<const std::uint8_t> bytes = {}) {
+  State state{};
+  state.found = found;
+  state.text = std::move(text);
+  const auto remains = bytes.subspan(std::min(bytes.size(), kHeader));
+  state.remains.assign(remains.begin(), remains.end());
+  return state;
+}
 
 /// Ours from the first byte on, as far as it goes; zeros behind are a write that did not get far.
 bool begun(std::span<const std::uint8_t> bytes, const std::array<std::uint8_t, 4>& kind) {
@@ -64,9 +71,9 @@ Bytes seal(const StateFormat& format, std::uint64_t generation, std::span<const 
 
 State unseal(const StateFormat& format, std::span<const std::uint8_t> bytes) {
   const auto kind = octets(format.kind);
-  if (!begun(bytes, kind)) return flawed(Found::foreign, "it is no file of this kind");
+  if (!begun(bytes, kind)) return flawed(Found::foreign, "it is no file of this kind", bytes);
   if (bytes.size() < kHeader + kChecksum || bytes[7] != kind[3])
-    return flawed(Found::torn, "it ends after " + std::to_string(bytes.size()) + " bytes");
+    return flawed(Found::torn, "it ends after " + std::to_string(bytes.size()) + " bytes", bytes);
   Unpacker in(bytes);
   (void)in.array<8>();
   const auto version = in.get<std::uint16_t>();
@@ -75,18 +82,24 @@ State unseal(const StateFormat& format, std::span<const std::uint8_t> bytes) {
   const auto generation = in.get<std::uint64_t>();
   const std::size_t whole = kHeader + size + kChecksum;
   if (bytes.size() < whole)
-    return flawed(Found::torn, "it ends after " + std::to_string(bytes.size()) + " of " +
-                                   std::to_string(whole) + " bytes");
+    return flawed(Found::torn,
+                  "it ends after " + std::to_string(bytes.size()) + " of " + std::to_string(whole) + " bytes",
+                  bytes);
   const auto payload = bytes.subspan(kHeader, size);
   const auto checksum = Unpacker(bytes.subspan(kHeader + size)).get<std::uint32_t>();
   if (bytes.size() > whole || zero != 0 || checksum != crc32c(bytes.first(kHeader + size)))
-    return flawed(Found::corrupt, "its checksum does not match");
-  if (version != format.version)
-    return flawed(version < format.version ? Found::older : Found::newer,
-                  "it is of version " + std::to_string(version) + ", this program speaks version " +
-                      std::to_string(format.version));
+    return flawed(Found::corrupt, "its checksum does not match", bytes);
+  if (version > format.version)
+    return flawed(Found::newer, "it is of version " + std::to_string(version) +
+                                    ", this program reads versions up to " + std::to_string(format.version));
   if (size > format.most) return flawed(Found::corrupt, "it is longer than it can be");
-  return {Found::good, {}, generation, {payload.begin(), payload.end()}};
+  State state{};
+  state.found = version < format.version ? Found::older : Found::good;
+  if (state.found == Found::older) state.text = "it is of version " + std::to_string(version);
+  state.generation = generation;
+  state.payload.assign(payload.begin(), payload.end());
+  state.version = version;
+  return state;
 }
 
 State StateFile::load() const {

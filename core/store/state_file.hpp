@@ -33,7 +33,11 @@ struct State {
   Found found{Found::nothing};
   std::string text{};          ///< what is wrong, for people; empty when good or nothing
   std::uint64_t generation{};  ///< rises with every save
-  Bytes payload{};             ///< good only
+  Bytes payload{};             ///< good, or older: then in the layout of `version`
+  std::uint16_t version{};     ///< of the payload; 0 when the header cannot be trusted
+  /// Torn, corrupt or foreign: what follows the place of the header, unchecked, for formats whose payload
+  /// carries checksums of its own.
+  Bytes remains{};
 };
 
 /// A header that never changes, the payload, a checksum over both:

@@ -81,7 +81,9 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   }
   const Outcome outcome = judge(c, now);
   const Answer result = answer(c, outcome);
-  if (c.seq != 0) memory_.remember(c.from.participant, result, line_of(c.kind), now);
+  // A name that is refused is refused each time, and is not worth a place in the memory or on the disk.
+  if (c.seq != 0 && valid_name(c.from.name))
+    memory_.remember(c.from.participant, result, line_of(c.kind), now);
   if (params_.defects.has(Defect::silent_refusal) && !result.accepted()) return std::nullopt;
   return result;
 }

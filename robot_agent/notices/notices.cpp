@@ -31,6 +31,12 @@ void Notices::restored(const Restored& found, bool same_boot) const {
           Reason::none,
           robot_ + " was restarted: " + describe(*found.snapshot) +
               (same_boot ? "" : "; with its computer, so it holds")});
+  if (found.damaged)
+    send({{},
+          Severity::error,
+          "state_damaged",
+          Reason::cannot_read,
+          robot_ + (found.hold ? " holds: " : ": ") + "its state was damaged (" + found.text + ")"});
 }
 
 void Notices::rival(const wire::ParticipantId& writer) const {

@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t kAnswerText = 200;
 constexpr std::size_t kNoticeText = 500;
 constexpr std::size_t kHealthText = 200;
-constexpr std::size_t kName = 64;  // names that count have 32
+constexpr std::size_t kName = 32;
 
 std::string clipped(const std::string& text, std::size_t most) {
   return text.size() <= most ? text : text.substr(0, most - 3) + "...";
@@ -91,12 +91,15 @@ radio::GoalState to_radio(GoalState state) {
   return radio::GOAL_NONE;
 }
 
+/// A name as it came, or one of 32 bytes that is no valid name: cut alone, it could become another station's.
+std::string bounded_name(const std::string& name) { return clipped(name, kName); }
+
 }  // namespace
 
 Command from_radio(const radio::Command& in, const wire::ParticipantId& sender) {
   Command c{};
   c.robot = in.robot();
-  c.from = {in.station(), in.station_id(), sender};
+  c.from = {bounded_name(in.station()), in.station_id(), sender};
   c.epoch = from_radio(in.epoch());
   c.seq = in.seq();
   c.kind = from_radio(in.kind());
@@ -118,7 +121,7 @@ StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sen
 
 AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender) {
   AgentRecord r{};
-  r.name = in.name();
+  r.name = bounded_name(in.name());
   r.id = in.id();
   r.station = in.kind() == radio::AGENT_STATION;
   r.participant = sender;

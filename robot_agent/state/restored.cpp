@@ -1,29 +1,114 @@
 #include "robot_agent/state/restored.hpp"
 
+#include <algorithm>
+
 namespace adit::agent {
 namespace {
 
 constexpr store::StateFormat kIdentityFormat{{'I', 'D', 'E', 'N'}, 1, 16};
+
+/// A name for a copy of `file` that is not taken: state.newer, state.newer-2 and so on. The last of them is
+/// used again when all are: what is preserved is bounded.
+std::string free_name(const store::Disk& disk, const std::string& file, std::string_view why) {
+  constexpr int kMaxCopies = 8;
+  std::string name = file + "." + std::string(why);
+  const auto names = disk.list();
+  const auto taken = [&](const std::string& n) {
+    return names && std::find(names->begin(), names->end(), n) != names->end();
+  };
+  for (int i = 2; taken(name) && i <= kMaxCopies; ++i)
+    name = file + "." + std::string(why) + "-" + std::to_string(i);
+  return name;
+}
+
+/// Gives a file that cannot be used another name; empty when the disk refuses.
+std::string set_aside(store::Disk& disk, const std::string& file, std::string_view why) {
+  const std::string name = free_name(disk, file, why);
+  return disk.rename(file, name) ? name : std::string{};
+}
+
+/// Copies a file that can be used in part, so that no power cut can take what is still good in it.
+std::string copy_aside(store::Disk& disk, const std::string& file, std::string_view why) {
+  const auto bytes = disk.read(file);
+  if (!bytes || !*bytes) return {};
+  const std::string name = free_name(disk, file, why);
+  return disk.replace(name, **bytes) ? name : std::string{};
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::optional<ReadSnapshot> read_any(const store::State& state) {
+  switch (state.found) {
+    case store::Found::good:
+      return decode_snapshot(state.payload);
+    case store::Found::older:
+      return state.version == 2 ? decode_snapshot_v2(state.payload) : std::nullopt;
+    case store::Found::torn:
+    case store::Found::corrupt:
+    case store::Found::foreign:
+      return decode_snapshot(state.remains);
+    case store::Found::nothing:
+    case store::Found::newer:
+    case store::Found::unreadable:
+      break;
+  }
+  return std::nullopt;
+}
+
+Restored usable(ReadSnapshot read) {
+  Restored r{};
+  r.hold = !read.safe();
+  if (!read.lost.empty()) r.text = "lost: " + joined(read.lost);
+  if (!read.unknown.empty())
+    r.text += (r.text.empty() ? "" : "; ") + ("of a newer version: " + joined(read.unknown));
+  r.damaged = !r.text.empty();
+  r.snapshot = std::move(read.snapshot);
+  return r;
+}
 
 }  // namespace
 
 Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   if (!disk) return {};
   const store::State state = store::StateFile(disk, kStateFile, kSnapshotFormat).load();
-  switch (state.found) {
-    case store::Found::nothing: {
-      const auto marker = disk->read(kMarkerFile);
-      if (!marker || *marker) return {std::nullopt, true, "the disk could not keep it", 0};
-      return {};
-    }
-    case store::Found::good: {
-      auto snapshot = decode_snapshot(state.payload);
-      if (!snapshot) return {std::nullopt, true, "corrupt: it makes no sense", state.generation};
-      return {std::move(snapshot), false, {}, state.generation};
-    }
-    default:
-      return {std::nullopt, true, std::string(store::name(state.found)) + ": " + state.text, 0};
+  if (state.found == store::Found::nothing) {
+    Restored r{};
+    const auto marker = disk->read(kMarkerFile);
+    r.lost = !marker || *marker;
+    if (r.lost) r.text = "the disk could not keep it";
+    return r;
   }
+  auto read = read_any(state);
+  if (!read) {
+    Restored r{};
+    r.lost = true;
+    const bool broken = state.found == store::Found::good;  // whole, and no list of sections
+    r.text =
+        broken ? "corrupt: it makes no sense" : std::string(store::name(state.found)) + ": " + state.text;
+    r.preserved = set_aside(*disk, kStateFile, broken ? "corrupt" : store::name(state.found));
+    r.generation = state.generation;
+    return r;
+  }
+  const bool newer = !read->unknown.empty();
+  Restored r = usable(std::move(*read));
+  r.generation = state.generation;
+  if (state.found != store::Found::good && state.found != store::Found::older) {
+    r.damaged = true;
+    r.text = std::string(store::name(state.found)) +
+             (r.text.empty() ? ", every entry could be read" : "; " + r.text);
+  }
+  if (r.damaged) r.preserved = copy_aside(*disk, kStateFile, newer ? "newer" : "damaged");
+  return r;
+}
+
+Restored restored_from(const Snapshot& snapshot) {
+  Restored r{};
+  r.snapshot = sanitized(snapshot);
+  return r;
 }
 
 Id restore_identity(const std::shared_ptr<store::Disk>& disk, const Id& drawn) {
@@ -35,6 +120,7 @@ Id restore_identity(const std::shared_ptr<store::Disk>& disk, const Id& drawn) {
     std::copy(state.payload.begin(), state.payload.end(), id.begin());
     return id;
   }
+  if (state.found != store::Found::nothing) (void)set_aside(*disk, kIdentityFile, store::name(state.found));
   (void)file.save(1, drawn);  // a disk that fails is reported with the first state
   return drawn;
 }

@@ -16,13 +16,20 @@ inline constexpr const char* kIdentityFile = "identity";
 /// What an agent found on its disk.
 struct Restored {
   std::optional<Snapshot> snapshot{};
-  bool lost{};         ///< there was a state, and it cannot be used: hold, no holder, and everybody is told
-  std::string text{};  ///< why it was lost
+  bool lost{};              ///< There was a state, and nothing of it can be used: hold, no holder.
+  bool damaged{};           ///< A part of the state, or its file, is not what was written.
+  bool hold{};              ///< Holder or stops are not known: nothing goes on by itself.
+  std::string text{};       ///< What was lost and why, for operators; empty when nothing was
+  std::string preserved{};  ///< The name under which the file that was not understood is stored; empty: none
   std::uint64_t generation{};
 };
 
-/// Never guesses: anything but a whole state of this version is lost. `disk` null: a first start.
+/// Reads the state; never guesses. A file that this version cannot use is given another name, one that it can
+/// use in part is copied: `state.newer`, `state.damaged` and so on. `disk` null: a first start.
 Restored restore_state(const std::shared_ptr<store::Disk>& disk);
+
+/// The same for a state that this process holds in memory.
+Restored restored_from(const Snapshot& snapshot);
 
 /// The 128 bits of this robot, kept on its disk. `drawn` becomes them when there are none yet, or when they
 /// cannot be read.

@@ -1,139 +1,212 @@
 #include "robot_agent/state/snapshot.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <functional>
 
-#include "core/store/pack.hpp"
+#include "core/store/sections.hpp"
+#include "robot_agent/command/stop_latches.hpp"
+#include "robot_agent/state/snapshot_fields.hpp"
 
 namespace adit::agent {
 namespace {
 
 using store::Packer;
+using store::Section;
 using store::Unpacker;
 
-constexpr std::size_t kName = 32;
+/// One kind of section. A further entry of the state is a further row: its tag, two functions, and a line in
+/// sanitized().
+struct Row {
+  store::SectionTag tag;
+  std::uint16_t version;  ///< Rises when the layout of the payload changes.
+  const char* name;       ///< As operators see it in `state_damaged`
+  bool always;            ///< Every program that writes version 3 writes it: missing, it was lost.
+  /// Calls `add` with each payload, once for most rows.
+  void (*write)(const Snapshot& snapshot, const std::function<void(const Packer&)>& add);
+  /// Takes one payload into the snapshot; false, and the snapshot as it was, when no robot wrote it.
+  bool (*read)(Unpacker& in, Snapshot& snapshot);
+};
 
-void put(Packer& out, const Party& party) { out.text(party.name).put(party.id); }
-void put(Packer& out, const std::optional<Binding::Kept>& speaker) {
-  out.flag(speaker.has_value());
-  if (!speaker) return;
-  out.put(speaker->participant);
-  for (const auto& other : {speaker->former, speaker->rival}) {
-    out.flag(other.has_value());
-    if (other) out.put(*other);
-  }
-}
-std::optional<Binding::Kept> speaker(Unpacker& in) {
-  if (!in.flag()) return std::nullopt;
-  Binding::Kept kept{};
-  kept.participant = in.array<12>();
-  if (in.flag()) kept.former = in.array<12>();
-  if (in.flag()) kept.rival = in.array<12>();
-  return kept;
-}
-
-Party party(Unpacker& in) {
-  Party p{};
-  p.name = in.text(kName);
-  p.id = in.array<16>();
-  return p;
+/// Nothing when bytes are missing or left, or when the value is not what encode() writes.
+template <class T>
+std::optional<T> checked(const Unpacker& in, T value) {
+  if (!in.done() || fields::sanitized(value) != value) return std::nullopt;
+  return value;
 }
 
-void put(Packer& out, const KeptAnswers& from) {
-  out.put(from.participant).text(from.station).put(from.station_id);
-  out.put(from.newest).put(from.floor);
-  for (const std::uint64_t newest : from.newest_of) out.put(newest);
-  const std::size_t count = std::min(from.answers.size(), Snapshot::kAnswers);
-  out.put(static_cast<std::uint16_t>(count));
-  for (std::size_t i = from.answers.size() - count; i < from.answers.size(); ++i) {
-    const KeptAnswer& a = from.answers[i];
-    out.put(a.seq).put(static_cast<std::uint16_t>(a.reason)).text(a.text.substr(0, Snapshot::kText));
-  }
-}
-KeptAnswers answers(Unpacker& in) {
-  KeptAnswers from{};
-  from.participant = in.array<12>();
-  from.station = in.text(kName);
-  from.station_id = in.array<16>();
-  from.newest = in.get<std::uint64_t>();
-  from.floor = in.get<std::uint64_t>();
-  for (std::uint64_t& newest : from.newest_of) newest = in.get<std::uint64_t>();
-  for (std::size_t left = in.count(Snapshot::kAnswers); left > 0; --left) {
-    KeptAnswer a{};
-    a.seq = in.get<std::uint64_t>();
-    a.reason = static_cast<Reason>(in.get<std::uint16_t>());
-    a.text = in.text(Snapshot::kText);
-    from.answers.push_back(std::move(a));
-  }
-  return from;
+template <class T>
+void add_one(const std::function<void(const Packer&)>& add, const T& value) {
+  Packer out;
+  fields::put(out, value);
+  add(out);
 }
 
-bool sane(const KeptAnswers& from) {
-  return std::all_of(from.answers.begin(), from.answers.end(),
-                     [&](const KeptAnswer& a) { return a.seq != 0 && a.seq <= from.newest; });
+bool read_authority(Unpacker& in, Snapshot& s) {
+  auto value = checked(in, fields::authority(in));
+  if (!value) return false;
+  value->stops = std::move(s.authority.stops);
+  s.authority = std::move(*value);
+  return true;
 }
 
-bool sane(const Snapshot& s) {
-  if (s.authority.holder && !valid_name(s.authority.holder->name)) return false;
-  if ((s.authority.locked || s.authority.speaker) && !s.authority.holder) return false;
-  for (const Party& stopper : s.authority.stops)
-    if (!valid_name(stopper.name)) return false;
-  if (!std::all_of(s.answers.begin(), s.answers.end(), [](const KeptAnswers& a) { return sane(a); }))
-    return false;
-  return s.behaviour.goal.allFinite() && s.battery <= 3;
+bool read_stops(Unpacker& in, Snapshot& s) {
+  auto value = checked(in, fields::stops(in));
+  if (!value) return false;
+  s.authority.stops = std::move(*value);
+  return true;
+}
+
+bool read_behaviour(Unpacker& in, Snapshot& s) {
+  auto value = checked(in, fields::behaviour(in));
+  if (!value) return false;
+  s.behaviour = std::move(*value);
+  return true;
+}
+
+bool read_answers(Unpacker& in, Snapshot& s) {
+  auto value = checked(in, fields::answers(in));
+  if (!value || s.answers.size() >= Snapshot::kParticipants) return false;
+  s.answers.push_back(std::move(*value));
+  return true;
+}
+
+void write_host(const Snapshot& s, const std::function<void(const Packer&)>& add) {
+  add(Packer{}.put(s.boot).put(s.battery));
+}
+
+bool read_host(Unpacker& in, Snapshot& s) {
+  const auto boot = in.get<std::uint64_t>();
+  const auto battery = in.get<std::uint8_t>();
+  if (!in.done() || fields::sanitized_battery(battery) != battery) return false;
+  s.boot = boot;
+  s.battery = battery;
+  return true;
+}
+
+constexpr store::SectionTag kAuthority{'A', 'U', 'T', 'H'}, kStops{'S', 'T', 'O', 'P'};
+
+/// In order of importance: what does not fit into the file any more is left out from the end.
+const std::array kRows{
+    Row{kAuthority, 1, "authority", true,
+        [](const Snapshot& s, const auto& add) { add_one(add, s.authority); }, read_authority},
+    Row{kStops, 1, "stops", true, [](const Snapshot& s, const auto& add) { add_one(add, s.authority.stops); },
+        read_stops},
+    Row{{'B', 'E', 'H', 'V'},
+        1,
+        "mode and goal",
+        true,
+        [](const Snapshot& s, const auto& add) { add_one(add, s.behaviour); },
+        read_behaviour},
+    Row{{'H', 'O', 'S', 'T'}, 1, "boot and battery", true, write_host, read_host},
+    Row{{'A', 'N', 'S', 'W'},
+        1,
+        "answers to a station",
+        false,
+        [](const Snapshot& s, const auto& add) {
+          for (const KeptAnswers& from : s.answers) add_one(add, from);
+        },
+        read_answers},
+};
+
+const Row* find_row(const store::SectionTag& tag) {
+  const auto found = std::find_if(kRows.begin(), kRows.end(), [&](const Row& row) { return row.tag == tag; });
+  return found == kRows.end() ? nullptr : &*found;
+}
+
+/// Sets what a robot must assume of the entries that were lost.
+void assume_safe(ReadSnapshot& read) {
+  if (read.stops_lost) read.snapshot.authority.stops = {{StopLatches::kOthers, Id{}}};
+}
+
+void lose(ReadSnapshot& read, const Row& row) {
+  read.lost.emplace_back(row.name);
+  read.authority_lost = read.authority_lost || row.tag == kAuthority;
+  read.stops_lost = read.stops_lost || row.tag == kStops;
 }
 
 }  // namespace
 
-store::Bytes encode(const Snapshot& s) {
-  Packer out;
-  out.put(s.authority.epoch.start).put(s.authority.epoch.counter).flag(s.authority.holder.has_value());
-  if (s.authority.holder) put(out, *s.authority.holder);
-  put(out, s.authority.speaker);
-  out.flag(s.authority.locked);
-  const std::size_t stops = std::min(s.authority.stops.size(), Snapshot::kStops);
-  out.put(static_cast<std::uint16_t>(stops));
-  for (std::size_t i = 0; i < stops; ++i) put(out, s.authority.stops[i]);
-
-  const KeptBehaviour& b = s.behaviour;
-  out.text(b.mode.substr(0, kName)).put(static_cast<std::uint16_t>(b.reason));
-  out.flag(b.goal_known).flag(b.goal_reached).put(b.goal_id);
-  for (const double value : {b.goal.x(), b.goal.y(), b.goal.z()}) out.put(value);
-  out.flag(b.goal_on_floor);
-  out.put(s.boot).put(s.battery);
-
-  const std::size_t participants = std::min(s.answers.size(), Snapshot::kParticipants);
-  out.put(static_cast<std::uint16_t>(participants));
-  for (std::size_t i = 0; i < participants; ++i) put(out, s.answers[i]);
-  return out.bytes();
+Snapshot sanitized(Snapshot s) {
+  auto stops = fields::sanitized(std::move(s.authority.stops));
+  s.authority = fields::sanitized(std::move(s.authority));
+  s.authority.stops = std::move(stops);
+  s.behaviour = fields::sanitized(std::move(s.behaviour));
+  s.battery = fields::sanitized_battery(s.battery);
+  if (s.answers.size() > Snapshot::kParticipants) s.answers.resize(Snapshot::kParticipants);
+  for (KeptAnswers& from : s.answers) from = fields::sanitized(std::move(from));
+  return s;
 }
 
-std::optional<Snapshot> decode_snapshot(std::span<const std::uint8_t> bytes) {
+store::Bytes encode(const Snapshot& snapshot) {
+  const Snapshot clean = sanitized(snapshot);
+  std::vector<Section> sections;
+  store::Bytes packed;
+  for (const Row& row : kRows)
+    row.write(clean, [&](const Packer& payload) {
+      sections.push_back({row.tag, row.version, payload.bytes()});
+      auto larger = sections.size() <= store::kMaxSections ? store::pack_sections(sections) : store::Bytes{};
+      if (!larger.empty() && larger.size() <= kSnapshotFormat.most)
+        packed = std::move(larger);
+      else
+        sections.pop_back();
+    });
+  return packed;
+}
+
+std::optional<ReadSnapshot> decode_snapshot(std::span<const std::uint8_t> bytes) {
+  const store::SectionList list = store::unpack_sections(bytes);
+  if (!list.readable) return std::nullopt;
+  ReadSnapshot read{};
+  std::vector<store::SectionTag> seen;
+  for (const Section& section : list.damaged) {
+    if (const Row* row = find_row(section.tag))
+      lose(read, *row);
+    else
+      read.lost.push_back("section " + store::tag_text(section.tag));
+    seen.push_back(section.tag);
+  }
+  for (const Section& section : list.good) {
+    const Row* row = find_row(section.tag);
+    seen.push_back(section.tag);
+    if (!row || section.version > row->version) {
+      read.unknown.push_back("section " + store::tag_text(section.tag));
+      if (row) lose(read, *row);
+      continue;
+    }
+    Unpacker in(section.payload);
+    if (!row->read(in, read.snapshot)) lose(read, *row);
+  }
+  for (const Row& row : kRows)
+    if (row.always && std::find(seen.begin(), seen.end(), row.tag) == seen.end()) lose(read, row);
+  assume_safe(read);
+  return read;
+}
+
+std::optional<ReadSnapshot> decode_snapshot_v2(std::span<const std::uint8_t> bytes) {
   Unpacker in(bytes);
-  Snapshot s{};
-  s.authority.epoch.start = in.get<std::uint64_t>();
-  s.authority.epoch.counter = in.get<std::uint32_t>();
-  if (in.flag()) s.authority.holder = party(in);
-  s.authority.speaker = speaker(in);
-  s.authority.locked = in.flag();
-  for (std::size_t left = in.count(Snapshot::kStops); left > 0; --left)
-    s.authority.stops.push_back(party(in));
-
-  KeptBehaviour& b = s.behaviour;
-  b.mode = in.text(kName);
-  b.reason = static_cast<Reason>(in.get<std::uint16_t>());
-  b.goal_known = in.flag();
-  b.goal_reached = in.flag();
-  b.goal_id = in.get<std::uint32_t>();
-  for (int axis = 0; axis < 3; ++axis) b.goal[axis] = in.number();
-  b.goal_on_floor = in.flag();
-  s.boot = in.get<std::uint64_t>();
-  s.battery = in.get<std::uint8_t>();
-
-  for (std::size_t left = in.count(Snapshot::kParticipants); left > 0; --left)
-    s.answers.push_back(answers(in));
-  if (!in.done() || !sane(s)) return std::nullopt;
-  return s;
+  KeptAuthority authority = fields::authority(in);
+  authority.stops = fields::stops(in);
+  if (!in.good()) return std::nullopt;
+  ReadSnapshot read{};
+  Snapshot& s = read.snapshot;
+  s.authority = std::move(authority);
+  const auto rest = [&](const char* name, auto& to, auto value) {
+    if (in.good())
+      to = std::move(value);
+    else
+      read.lost.emplace_back(name);
+  };
+  rest("mode and goal", s.behaviour, fields::behaviour(in));
+  rest("boot and battery", s.boot, in.get<std::uint64_t>());
+  if (const auto battery = in.get<std::uint8_t>(); in.good()) s.battery = battery;
+  for (std::size_t left = in.count(Snapshot::kParticipants); left > 0 && in.good(); --left)
+    if (KeptAnswers from = fields::answers(in); in.good()) s.answers.push_back(std::move(from));
+  if (!in.done()) read.lost.emplace_back("answers to a station");
+  const KeptAuthority written = s.authority;
+  s = sanitized(std::move(s));
+  if (s.authority != written) return std::nullopt;  // no robot wrote it
+  return read;
 }
 
 }  // namespace adit::agent

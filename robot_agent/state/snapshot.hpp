@@ -71,11 +71,30 @@ struct Snapshot {
   bool operator==(const Snapshot&) const = default;
 };
 
-inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 2, 16 * 1024};
+/// Version 3: sections (core/store/sections.hpp), see snapshot.cpp. Version 2 is still read.
+inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 3, 16 * 1024};
 
-/// At most 16 kB: what is beyond the bounds above is left out.
+/// What the bytes of a state file gave.
+struct ReadSnapshot {
+  Snapshot snapshot{};                 ///< What was lost in it has its default value.
+  std::vector<std::string> lost{};     ///< Entries that could not be read, for people: "stops", "an answer"
+  std::vector<std::string> unknown{};  ///< Sections of a newer version of this program, skipped
+  bool authority_lost{};               ///< Holder, lock and epoch are not known.
+  bool stops_lost{};  ///< Who stopped the robot is not known: `snapshot` holds a stop of "others".
+  bool safe() const { return !authority_lost && !stops_lost; }
+};
+
+/// The snapshot as it is written and read: bounded, and nothing in it that no robot could have meant. A stop
+/// whose name is not valid becomes one of "others"; an answer that is not valid is left out.
+Snapshot sanitized(Snapshot snapshot);
+
+/// Encodes the sanitized snapshot, at most 16 kB: decoding gives it back without loss.
 store::Bytes encode(const Snapshot& snapshot);
-/// Nothing when the bytes are no snapshot that a robot could have written.
-std::optional<Snapshot> decode_snapshot(std::span<const std::uint8_t> bytes);
+
+/// Decodes the sections that are intact. Nothing when not even their directory can be read.
+std::optional<ReadSnapshot> decode_snapshot(std::span<const std::uint8_t> bytes);
+
+/// Decodes the payload of version 2, which has no sections: what is behind the first error is lost.
+std::optional<ReadSnapshot> decode_snapshot_v2(std::span<const std::uint8_t> bytes);
 
 }  // namespace adit::agent

@@ -36,6 +36,20 @@ TEST(Convert, LongTextsFitTheirTopics) {
   EXPECT_LE(encoded(to_radio(std::vector<ComponentRow>(8, part), name)), wire::topics::health.max_bytes);
 }
 
+// A name that is cut must not become the valid name of another station.
+TEST(Convert, OverlongNamesAreBoundedAndStayInvalid) {
+  radio::Command command;
+  command.station(std::string(200, 'n'));
+  const Sender from = from_radio(command, {}).from;
+  EXPECT_LE(from.name.size(), 32u);
+  EXPECT_FALSE(valid_name(from.name));
+  radio::Capabilities capabilities;
+  capabilities.name(std::string(200, 'n'));
+  EXPECT_FALSE(valid_name(from_radio(capabilities, {}).name));
+  command.station(std::string(32, 'n'));
+  EXPECT_EQ(from_radio(command, {}).from.name, std::string(32, 'n'));
+}
+
 TEST(Convert, ShortTextsStay) {
   Answer answer{};
   answer.station = "op1";

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "core/store/memory_disk.hpp"
+#include "core/store/sections.hpp"
+#include "robot_agent/state/restored.hpp"
 #include "tests/agent/agent_bench.hpp"
 
 namespace adit::agent {
@@ -306,6 +308,50 @@ TEST_F(Restore, WithoutADiskItIsAFirstStartEachTime) {
   bench->run(1s);
   EXPECT_EQ(op1->authority.holder(), "");
   EXPECT_THAT(op1->told(), Not(Contains("state_lost")));
+}
+
+TEST_F(Restore, ACommandWithAnOverlongStationNameCostsNothingOverARestart) {
+  take_lock_and_go();
+  ASSERT_EQ(bench->ask(*op2, CMD_STOP), Reason::none);
+  AgentBench::Operator& stranger = bench->join("op3");
+  bench->run(1s);
+  stranger.name = "no name";
+  EXPECT_EQ(bench->ask(stranger, CMD_STOP), Reason::bad_argument);
+  stranger.name = std::string(40, 'x');
+  EXPECT_EQ(bench->ask(stranger, CMD_TAKE), Reason::bad_argument);
+  ASSERT_EQ(bench->ask(*op2, CMD_STOP), Reason::none);  // accepted, so the answers are written again
+  crash();
+  bench->run(1s);
+  EXPECT_EQ(op1->authority.holder(), "op1");
+  EXPECT_TRUE(op1->authority.locked());
+  EXPECT_EQ(op1->authority.stops().size(), 1u);
+  EXPECT_THAT(op1->told(), Not(Contains("state_lost")));
+}
+
+TEST_F(Restore, DamagedStopsAreToldAndHoldTheRobot) {
+  take_lock_and_go();
+  bench->stop_agent();
+  store::Bytes file = *disk->read("state").value();
+  auto list = store::unpack_sections(std::span(file).subspan(24));
+  ASSERT_TRUE(list.readable);
+  std::erase_if(list.good, [](const store::Section& s) { return store::tag_text(s.tag) == "STOP"; });
+  disk->plant("state", store::seal(kSnapshotFormat, 99, store::pack_sections(list.good)));
+  crash();
+  bench->run(3s);
+  EXPECT_EQ(op1->authority.holder(), "op1") << "it was not damaged";
+  EXPECT_TRUE(op1->authority.locked());
+  EXPECT_THAT(notice(*op1, "state_damaged"), HasSubstr("r1 holds: its state was damaged (lost: stops)"));
+  EXPECT_THAT(notice(*op2, "state_damaged"), HasSubstr("stops"));
+  EXPECT_EQ(op1->behaviour.mode(), "hold");
+  EXPECT_TRUE(op1->behaviour.stopped()) << "somebody may have stopped it";
+  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_TRUE(disk->read("state.damaged").value());
+  EXPECT_EQ(bench->ask(*op1, CMD_RESET, "", 0, 0, true), Reason::none);
+  bench->run(1s);
+  EXPECT_THAT(bench->commands, Each(Twist2{})) << "a reset moves nothing";
+  EXPECT_EQ(bench->ask(*op1, CMD_MODE, "waypoint"), Reason::none);
+  bench->run(1s);
+  EXPECT_GT(bench->command.vx, 0.1) << "the goal was not damaged";
 }
 
 TEST_F(Restore, TheRobotsIdentityStays) {

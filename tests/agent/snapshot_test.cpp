@@ -5,13 +5,17 @@
 #include <limits>
 
 #include "core/store/memory_disk.hpp"
+#include "core/store/sections.hpp"
 #include "core/time/random.hpp"
 #include "robot_agent/state/restored.hpp"
+#include "robot_agent/state/snapshot_fields.hpp"
 
 namespace adit::agent {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 Id id_of(char c) {
   Id id{};
@@ -52,10 +56,19 @@ Snapshot largest() {
   return s;
 }
 
+Snapshot read_back(const Snapshot& s) {
+  const auto read = decode_snapshot(encode(s));
+  EXPECT_TRUE(read);
+  if (!read) return {};
+  EXPECT_THAT(read->lost, IsEmpty());
+  EXPECT_TRUE(read->safe());
+  return read->snapshot;
+}
+
 TEST(Snapshot, gives_back_what_was_put) {
-  EXPECT_EQ(decode_snapshot(encode(full())), full());
-  EXPECT_EQ(decode_snapshot(encode(largest())), largest());
-  EXPECT_EQ(decode_snapshot(encode(Snapshot{})), Snapshot{});
+  EXPECT_EQ(read_back(full()), full());
+  EXPECT_EQ(read_back(largest()), largest());
+  EXPECT_EQ(read_back(Snapshot{}), Snapshot{});
 }
 
 TEST(Snapshot, is_bounded) {
@@ -65,49 +78,155 @@ TEST(Snapshot, is_bounded) {
   beyond.answers.resize(100, beyond.answers.front());
   for (KeptAnswers& a : beyond.answers) a.answers.resize(50, {2, Reason::none, std::string(5000, 'x')});
   EXPECT_LE(encode(beyond).size(), kSnapshotFormat.most);
-  const auto back = decode_snapshot(encode(beyond));
-  ASSERT_TRUE(back);
-  EXPECT_EQ(back->authority.stops.size(), 16u);
+  const Snapshot back = read_back(beyond);
+  ASSERT_EQ(back.authority.stops.size(), 16u);
+  EXPECT_EQ(back.authority.stops.back().name, "others") << "the stops that have no place stay as one";
+  EXPECT_EQ(back.answers.size(), 8u);
 }
 
-TEST(Snapshot, takes_no_bytes_that_no_robot_wrote) {
-  const store::Bytes whole = encode(full());
-  for (std::size_t size = 0; size < whole.size(); ++size)
-    EXPECT_FALSE(decode_snapshot(std::span(whole).first(size))) << size;
-  store::Bytes longer = whole;
-  longer.push_back(0);
-  EXPECT_FALSE(decode_snapshot(longer));
+std::string hostile_text(Random& random) {
+  std::string text(random.chance(0.2) ? random.below(70'000) : random.below(70), '\0');
+  for (char& c : text) c = random.chance(0.5) ? 'a' : static_cast<char>(random.next());
+  return text;
+}
 
+double hostile_number(Random& random) {
+  const double numbers[] = {0, 1.5, -1e300, std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::quiet_NaN()};
+  return numbers[random.below(5)];
+}
+
+Snapshot hostile(Random& random) {
+  Snapshot s;
+  const auto party = [&] { return Party{hostile_text(random), id_of(static_cast<char>(random.next()))}; };
+  s.authority.epoch = {random.next(), static_cast<std::uint32_t>(random.next())};
+  if (random.chance(0.7)) s.authority.holder = party();
+  if (random.chance(0.5)) s.authority.speaker = Binding::Kept{{1}, std::nullopt, wire::ParticipantId{2}};
+  s.authority.locked = random.chance(0.5);
+  for (std::uint64_t n = random.below(30); n > 0; --n) s.authority.stops.push_back(party());
+  s.behaviour = {hostile_text(random),
+                 static_cast<Reason>(random.next()),
+                 random.chance(0.5),
+                 random.chance(0.5),
+                 static_cast<std::uint32_t>(random.next()),
+                 {hostile_number(random), hostile_number(random), hostile_number(random)},
+                 random.chance(0.5)};
+  s.boot = random.next();
+  s.battery = static_cast<std::uint8_t>(random.next());
+  for (std::uint64_t n = random.below(20); n > 0; --n) {
+    KeptAnswers a;
+    a.station = hostile_text(random);
+    a.newest = random.chance(0.5) ? random.next() : random.below(5);
+    a.floor = random.next();
+    for (std::uint64_t k = random.below(20); k > 0; --k)
+      a.answers.push_back({random.below(8), static_cast<Reason>(random.next()), hostile_text(random)});
+    s.answers.push_back(std::move(a));
+  }
+  return s;
+}
+
+TEST(Snapshot, of_hostile_input_is_read_back_whole) {
+  Random random(7);
+  for (int i = 0; i < 500; ++i) {
+    const Snapshot s = hostile(random);
+    EXPECT_LE(encode(s).size(), kSnapshotFormat.most);
+    const Snapshot back = read_back(s);
+    EXPECT_EQ(back, sanitized(s));
+    EXPECT_EQ(back.authority.stops.empty(), s.authority.stops.empty()) << "no stop is lost";
+  }
+}
+
+TEST(Snapshot, loses_one_section_alone_to_one_damaged_byte) {
+  const Snapshot whole = full();
+  const store::Bytes bytes = encode(whole);
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
+    store::Bytes bent = bytes;
+    bent[at] ^= 0x41;
+    const auto read = decode_snapshot(bent);
+    ASSERT_TRUE(read) << at;
+    ASSERT_LE(read->lost.size(), 1u) << at;
+    const Snapshot& s = read->snapshot;
+    int differ = (s.behaviour != whole.behaviour) + (s.answers != whole.answers) +
+                 (s.boot != whole.boot || s.battery != whole.battery);
+    differ += read->authority_lost ? s.authority.holder == std::nullopt
+                                   : s.authority.holder != whole.authority.holder;
+    differ += s.authority.stops != whole.authority.stops;
+    EXPECT_EQ(differ, static_cast<int>(read->lost.size())) << at;
+  }
+}
+
+TEST(Snapshot, without_its_stops_counts_as_stopped) {
+  const store::Bytes payload = encode(full());
+  auto list = store::unpack_sections(payload);
+  std::erase_if(list.good, [](const store::Section& s) { return store::tag_text(s.tag) == "STOP"; });
+  const auto read = decode_snapshot(store::pack_sections(list.good));
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(read->stops_lost);
+  EXPECT_FALSE(read->safe());
+  EXPECT_THAT(read->lost, ElementsAre("stops"));
+  ASSERT_EQ(read->snapshot.authority.stops.size(), 1u);
+  EXPECT_EQ(read->snapshot.authority.stops.front().name, "others");
+  EXPECT_EQ(read->snapshot.authority.holder, full().authority.holder);
+}
+
+TEST(Snapshot, skips_sections_that_it_does_not_know) {
+  auto list = store::unpack_sections(encode(full()));
+  list.good.push_back({{'C', 'O', 'N', 'V'}, 1, {1, 2, 3}});
+  auto read = decode_snapshot(store::pack_sections(list.good));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->snapshot, full());
+  EXPECT_THAT(read->lost, IsEmpty());
+  EXPECT_THAT(read->unknown, ElementsAre("section CONV"));
+
+  for (store::Section& section : list.good)
+    if (store::tag_text(section.tag) == "BEHV") section.version = 9;
+  read = decode_snapshot(store::pack_sections(list.good));
+  ASSERT_TRUE(read);
+  EXPECT_THAT(read->lost, ElementsAre("mode and goal"));
+  EXPECT_EQ(read->snapshot.authority, full().authority);
+}
+
+/// The bytes of version 2, as it wrote them.
+store::Bytes version_2(const Snapshot& s) {
+  store::Packer out;
+  fields::put(out, s.authority);
+  fields::put(out, s.authority.stops);
+  fields::put(out, s.behaviour);
+  out.put(s.boot).put(s.battery).put(static_cast<std::uint16_t>(s.answers.size()));
+  for (const KeptAnswers& from : s.answers) fields::put(out, from);
+  return out.bytes();
+}
+
+TEST(Snapshot, of_version_2_is_read) {
+  const auto read = decode_snapshot_v2(version_2(full()));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->snapshot, full());
+  EXPECT_THAT(read->lost, IsEmpty());
+}
+
+TEST(Snapshot, of_version_2_with_an_overlong_name_loses_the_answers_alone) {
   Snapshot s = full();
-  s.authority.holder.reset();
-  EXPECT_FALSE(decode_snapshot(encode(s))) << "locked by nobody";
-  s = full();
-  s.authority.holder->name = "no name";
-  EXPECT_FALSE(decode_snapshot(encode(s)));
-  s = full();
-  s.authority.stops.front().name = "";
-  EXPECT_FALSE(decode_snapshot(encode(s)));
-  s = full();
-  s.behaviour.goal.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(decode_snapshot(encode(s)));
-  s = full();
-  s.battery = 4;
-  EXPECT_FALSE(decode_snapshot(encode(s)));
-  s = full();
-  s.answers.front().answers.front().seq = 13;
-  EXPECT_FALSE(decode_snapshot(encode(s))) << "an answer to a number that was never seen";
+  s.answers.front().station = std::string(40, 'x');
+  const auto read = decode_snapshot_v2(version_2(s));
+  ASSERT_TRUE(read);
+  EXPECT_THAT(read->lost, ElementsAre("answers to a station"));
+  EXPECT_EQ(read->snapshot.authority, full().authority);
+  EXPECT_EQ(read->snapshot.behaviour, full().behaviour);
 }
 
 TEST(Snapshot, takes_any_bytes) {
   Random random(3);
-  const store::Bytes whole = encode(largest());
+  const store::Bytes whole = encode(largest()), old = version_2(largest());
   for (int i = 0; i < 5000; ++i) {
-    store::Bytes junk = whole;
+    const bool sections = random.chance(0.5);
+    store::Bytes junk = sections ? whole : old;
     for (std::uint64_t edits = 1 + random.below(5); edits > 0; --edits)
       junk[random.below(junk.size())] = static_cast<std::uint8_t>(random.next());
     if (random.chance(0.3)) junk.resize(random.below(junk.size()));
-    const auto s = decode_snapshot(junk);
-    EXPECT_TRUE(!s || encode(*s).size() <= kSnapshotFormat.most);
+    const auto read = sections ? decode_snapshot(junk) : decode_snapshot_v2(junk);
+    if (!read) continue;
+    EXPECT_EQ(sanitized(read->snapshot), read->snapshot);
+    EXPECT_LE(encode(read->snapshot).size(), kSnapshotFormat.most);
   }
 }
 
@@ -124,6 +243,8 @@ TEST_F(RestoreTest, GivesTheStateThatWasSaved) {
   ASSERT_TRUE(save(full()).ok());
   const Restored r = restore_state(disk);
   EXPECT_FALSE(r.lost);
+  EXPECT_FALSE(r.damaged);
+  EXPECT_EQ(r.text, "");
   EXPECT_EQ(r.snapshot, full());
   EXPECT_EQ(r.generation, 5u);
 }
@@ -140,19 +261,15 @@ TEST_F(RestoreTest, AMissingStateThatOnceWasIsLost) {
 }
 
 TEST_F(RestoreTest, WhatCannotBeUsedIsLostWithItsReason) {
-  const store::Bytes whole = store::seal(kSnapshotFormat, 5, encode(full()));
-  const auto lost = [&](store::Bytes bytes) {
-    disk->plant(kStateFile, std::move(bytes));
+  const auto lost = [&](const store::Bytes& bytes) {
+    disk->plant(kStateFile, bytes);
     const Restored r = restore_state(disk);
     EXPECT_TRUE(r.lost);
     EXPECT_FALSE(r.snapshot);
+    EXPECT_EQ(disk->read(r.preserved).value(), bytes) << "preserved as " << r.preserved;
     return r.text;
   };
   EXPECT_THAT(lost({}), HasSubstr("torn"));
-  EXPECT_THAT(lost({whole.begin(), whole.end() - 9}), HasSubstr("torn"));
-  store::Bytes bent = whole;
-  bent[40] ^= 1;
-  EXPECT_THAT(lost(bent), HasSubstr("corrupt"));
   EXPECT_THAT(lost(store::seal(kSnapshotFormat, 5, store::Bytes(30, 9))), HasSubstr("corrupt"));
   store::StateFormat format = kSnapshotFormat;
   format.version = 0;
@@ -161,6 +278,69 @@ TEST_F(RestoreTest, WhatCannotBeUsedIsLostWithItsReason) {
   EXPECT_THAT(lost(store::seal(format, 5, encode(full()))), HasSubstr("newer"));
   EXPECT_THAT(lost(store::Bytes(50, 'x')), HasSubstr("foreign"));
   EXPECT_THAT(lost(store::Bytes(1'000'000, 'x')), HasSubstr("unreadable"));
+}
+
+TEST_F(RestoreTest, AFileOfANewerVersionIsNeverDeleted) {
+  store::StateFormat newer = kSnapshotFormat;
+  newer.version = 9;
+  for (std::uint8_t i = 1; i <= 3; ++i) {
+    disk->plant(kStateFile, store::seal(newer, i, store::Bytes{i}));
+    EXPECT_TRUE(restore_state(disk).lost);
+    ASSERT_TRUE(save(full()).ok());
+  }
+  EXPECT_EQ(disk->read("state.newer").value(), store::seal(newer, 1, store::Bytes{1}));
+  EXPECT_EQ(disk->read("state.newer-2").value(), store::seal(newer, 2, store::Bytes{2}));
+  EXPECT_EQ(disk->read("state.newer-3").value(), store::seal(newer, 3, store::Bytes{3}));
+  for (int i = 0; i < 20; ++i) {
+    disk->plant(kStateFile, store::seal(newer, 4, {}));
+    (void)restore_state(disk);
+  }
+  EXPECT_EQ(disk->list().value().size(), 8u) << "what is preserved is bounded";
+}
+
+TEST_F(RestoreTest, AFileOfVersion2IsRead) {
+  store::StateFormat format = kSnapshotFormat;
+  format.version = 2;
+  disk->plant(kStateFile, store::seal(format, 8, version_2(full())));
+  const Restored r = restore_state(disk);
+  EXPECT_FALSE(r.lost || r.damaged);
+  EXPECT_EQ(r.snapshot, full());
+  EXPECT_EQ(r.generation, 8u);
+}
+
+TEST_F(RestoreTest, ADamagedByteAnywhereInTheFileLosesOneEntryAtMost) {
+  const store::Bytes whole = store::seal(kSnapshotFormat, 5, encode(full()));
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    disk = std::make_shared<store::MemoryDisk>();
+    store::Bytes bent = whole;
+    bent[at] ^= 0x20;
+    disk->plant(kStateFile, bent);
+    const Restored r = restore_state(disk);
+    ASSERT_TRUE(r.snapshot) << at << ": " << r.text;
+    EXPECT_TRUE(r.damaged && !r.text.empty()) << at;
+    EXPECT_EQ(std::count(r.text.begin(), r.text.end(), ','),
+              r.text.find("every") == std::string::npos ? 0 : 1)
+        << r.text;
+    EXPECT_EQ(disk->read(r.preserved).value(), bent);
+    EXPECT_EQ(r.hold,
+              r.text.find("stops") != std::string::npos || r.text.find("authority") != std::string::npos);
+  }
+}
+
+TEST_F(RestoreTest, ATornFileGivesWhatIsThere) {
+  const store::Bytes whole = store::seal(kSnapshotFormat, 5, encode(full()));
+  std::size_t used = 0;
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    disk->plant(kStateFile, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
+    const Restored r = restore_state(disk);
+    EXPECT_THAT(r.text, HasSubstr("torn"));
+    EXPECT_NE(r.lost, r.snapshot.has_value());
+    used += r.snapshot ? 1u : 0u;
+    if (r.snapshot && !r.hold) {
+      EXPECT_EQ(r.snapshot->authority, full().authority);
+    }
+  }
+  EXPECT_GT(used, 100u);
 }
 
 TEST_F(RestoreTest, TheIdentityIsDrawnOnceAndKept) {

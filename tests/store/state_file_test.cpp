@@ -76,6 +76,9 @@ TEST(StateFile, knows_every_byte_that_is_not_what_was_written) {
 
 TEST(StateFile, tells_older_and_newer_versions_apart) {
   EXPECT_EQ(unseal(kFormat, sealed(2)).found, Found::older);
+  EXPECT_EQ(unseal(kFormat, sealed(2)).version, 2);
+  EXPECT_EQ(unseal(kFormat, sealed(2)).payload, bytes("holder op1")) << "for a program that still reads it";
+  EXPECT_TRUE(unseal(kFormat, sealed(4)).payload.empty());
   EXPECT_EQ(unseal(kFormat, sealed(4)).found, Found::newer);
   EXPECT_THAT(unseal(kFormat, sealed(4)).text, HasSubstr("version 4"));
 }

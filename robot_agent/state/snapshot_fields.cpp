@@ -1,0 +1,163 @@
+#include "robot_agent/state/snapshot_fields.hpp"
+
+#include <algorithm>
+
+#include "robot_agent/command/stop_latches.hpp"
+
+namespace adit::agent::fields {
+namespace {
+
+using store::Packer;
+using store::Unpacker;
+
+void put(Packer& out, const Party& party) { out.text(party.name).put(party.id); }
+
+Party party(Unpacker& in) {
+  Party p{};
+  p.name = in.text(kName);
+  p.id = in.array<16>();
+  return p;
+}
+
+void put(Packer& out, const std::optional<Binding::Kept>& speaker) {
+  out.flag(speaker.has_value());
+  if (!speaker) return;
+  out.put(speaker->participant);
+  for (const auto& other : {speaker->former, speaker->rival}) {
+    out.flag(other.has_value());
+    if (other) out.put(*other);
+  }
+}
+
+std::optional<Binding::Kept> speaker(Unpacker& in) {
+  if (!in.flag()) return std::nullopt;
+  Binding::Kept kept{};
+  kept.participant = in.array<12>();
+  if (in.flag()) kept.former = in.array<12>();
+  if (in.flag()) kept.rival = in.array<12>();
+  return kept;
+}
+
+}  // namespace
+
+void put(Packer& out, const KeptAuthority& authority) {
+  out.put(authority.epoch.start).put(authority.epoch.counter).flag(authority.holder.has_value());
+  if (authority.holder) put(out, *authority.holder);
+  put(out, authority.speaker);
+  out.flag(authority.locked);
+}
+
+KeptAuthority authority(Unpacker& in) {
+  KeptAuthority a{};
+  a.epoch.start = in.get<std::uint64_t>();
+  a.epoch.counter = in.get<std::uint32_t>();
+  if (in.flag()) a.holder = party(in);
+  a.speaker = speaker(in);
+  a.locked = in.flag();
+  return a;
+}
+
+KeptAuthority sanitized(KeptAuthority a) {
+  if (a.holder && !valid_name(a.holder->name)) a.holder.reset();
+  if (!a.holder) a.speaker.reset();
+  if (!a.holder) a.locked = false;
+  a.stops.clear();
+  return a;
+}
+
+void put(Packer& out, const std::vector<Party>& stops) {
+  out.put(static_cast<std::uint16_t>(stops.size()));
+  for (const Party& stopper : stops) put(out, stopper);
+}
+
+std::vector<Party> stops(Unpacker& in) {
+  std::vector<Party> all;
+  for (std::size_t left = in.count(Snapshot::kStops); left > 0; --left) all.push_back(party(in));
+  return all;
+}
+
+// A stop is never lost: what cannot be written by its name stays as one that only an override clears.
+std::vector<Party> sanitized(std::vector<Party> stops) {
+  const Party others{StopLatches::kOthers, Id{}};
+  for (Party& stopper : stops)
+    if (!valid_name(stopper.name)) stopper = others;
+  if (stops.size() > Snapshot::kStops) {
+    stops.resize(Snapshot::kStops);
+    stops.back() = others;
+  }
+  return stops;
+}
+
+void put(Packer& out, const KeptBehaviour& b) {
+  out.text(b.mode).put(static_cast<std::uint16_t>(b.reason));
+  out.flag(b.goal_known).flag(b.goal_reached).put(b.goal_id);
+  for (const double value : {b.goal.x(), b.goal.y(), b.goal.z()}) out.put(value);
+  out.flag(b.goal_on_floor);
+}
+
+KeptBehaviour behaviour(Unpacker& in) {
+  KeptBehaviour b{};
+  b.mode = in.text(kName);
+  b.reason = static_cast<Reason>(in.get<std::uint16_t>());
+  b.goal_known = in.flag();
+  b.goal_reached = in.flag();
+  b.goal_id = in.get<std::uint32_t>();
+  for (int axis = 0; axis < 3; ++axis) b.goal[axis] = in.number();
+  b.goal_on_floor = in.flag();
+  return b;
+}
+
+KeptBehaviour sanitized(KeptBehaviour b) {
+  if (!valid_name(b.mode)) b.mode = "hold";
+  if (!b.goal.allFinite()) {
+    b.goal.setZero();
+    b.goal_known = b.goal_reached = b.goal_on_floor = false;
+  }
+  return b;
+}
+
+void put(Packer& out, const KeptAnswers& from) {
+  out.put(from.participant).text(from.station).put(from.station_id);
+  out.put(from.newest).put(from.floor);
+  for (const std::uint64_t newest : from.newest_of) out.put(newest);
+  out.put(static_cast<std::uint16_t>(from.answers.size()));
+  for (const KeptAnswer& a : from.answers)
+    out.put(a.seq).put(static_cast<std::uint16_t>(a.reason)).text(a.text);
+}
+
+KeptAnswers answers(Unpacker& in) {
+  KeptAnswers from{};
+  from.participant = in.array<12>();
+  from.station = in.text(kName);
+  from.station_id = in.array<16>();
+  from.newest = in.get<std::uint64_t>();
+  from.floor = in.get<std::uint64_t>();
+  for (std::uint64_t& newest : from.newest_of) newest = in.get<std::uint64_t>();
+  for (std::size_t left = in.count(Snapshot::kAnswers); left > 0; --left) {
+    KeptAnswer a{};
+    a.seq = in.get<std::uint64_t>();
+    a.reason = static_cast<Reason>(in.get<std::uint16_t>());
+    a.text = in.text(Snapshot::kText);
+    from.answers.push_back(std::move(a));
+  }
+  return from;
+}
+
+// An answer that is left out counts as one that is too old: its command is refused and not done again.
+KeptAnswers sanitized(KeptAnswers from) {
+  if (!valid_name(from.station)) from.station.clear();
+  const auto invalid = [&](const KeptAnswer& a) { return a.seq == 0 || a.seq > from.newest; };
+  std::erase_if(from.answers, invalid);
+  if (from.answers.size() > Snapshot::kAnswers) {
+    from.answers.erase(from.answers.begin(), from.answers.end() - Snapshot::kAnswers);
+    const auto before = [](const KeptAnswer& a, const KeptAnswer& b) { return a.seq < b.seq; };
+    from.floor =
+        std::max(from.floor, std::min_element(from.answers.begin(), from.answers.end(), before)->seq);
+  }
+  for (KeptAnswer& a : from.answers) a.text.resize(std::min(a.text.size(), Snapshot::kText));
+  return from;
+}
+
+std::uint8_t sanitized_battery(std::uint8_t level) { return std::min<std::uint8_t>(level, 3); }
+
+}  // namespace adit::agent::fields

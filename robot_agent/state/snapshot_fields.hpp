@@ -1,0 +1,30 @@
+#pragma once
+#include "core/store/pack.hpp"
+#include "robot_agent/state/snapshot.hpp"
+
+/// The fields of a snapshot, packed and unpacked: shared by all versions of the state file. Private to
+/// robot_agent/state.
+namespace adit::agent::fields {
+
+inline constexpr std::size_t kName = 32;
+
+void put(store::Packer& out, const KeptAuthority& authority);
+void put(store::Packer& out, const std::vector<Party>& stops);
+void put(store::Packer& out, const KeptBehaviour& behaviour);
+void put(store::Packer& out, const KeptAnswers& from);
+
+/// Ask `in.good()` afterwards. The authority comes without its stops.
+KeptAuthority authority(store::Unpacker& in);
+std::vector<Party> stops(store::Unpacker& in);
+KeptBehaviour behaviour(store::Unpacker& in);
+KeptAnswers answers(store::Unpacker& in);
+
+// Each gives its argument as it may be written: bounded, and nothing that no robot could have meant. What is
+// read must be equal to its own sanitized form.
+KeptAuthority sanitized(KeptAuthority authority);  ///< without its stops
+std::vector<Party> sanitized(std::vector<Party> stops);
+KeptBehaviour sanitized(KeptBehaviour behaviour);
+KeptAnswers sanitized(KeptAnswers from);
+std::uint8_t sanitized_battery(std::uint8_t level);
+
+}  // namespace adit::agent::fields
