@@ -3,8 +3,11 @@
 namespace adit::sim {
 namespace {
 
+constexpr Duration program_silence{500ms};  // of what steers in mode external
+
 /// Rule 7: nothing moves by surprise. Motion needs a request that was accepted since the last start, stop,
-/// fall to hold, or change of holder in a manual mode; a manual mode is entered with a fresh, centred stick.
+/// fall to hold, or change of holder in a manual mode; a manual mode is entered with a fresh, centred stick,
+/// external with a fresh program.
 class NoSurprise : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
@@ -64,8 +67,6 @@ class NoSurprise : public Rule {
     if (!pending || !ack.accepted || robot.first_answer(RobotModel::key(pending->command))) return;
     const CommandHeard& command = pending->command;
     const Authority& before = robot.authority();
-    const bool manual_request =
-        command.verb == Verb::mode && (command.text == "manual" || command.text == "smart_joystick");
     if (command.verb == Verb::go_to || (command.verb == Verb::mode && command.text != "hold")) {
       allowed_ = true;
       granted_at_ = robot.now();
@@ -73,7 +74,7 @@ class NoSurprise : public Rule {
     } else if (command.verb == Verb::mode) {
       revoke("a request to hold");
     }
-    if (manual_request) see_manual_entry(robot, command, broken);
+    if (command.verb == Verb::mode) see_entry(robot, command, broken);
     const bool holder_changes = (command.verb == Verb::take &&
                                  (command.station != before.holder || command.id != before.holder_id)) ||
                                 command.verb == Verb::release ||
@@ -86,14 +87,17 @@ class NoSurprise : public Rule {
 
   // A mode may show before its answer, which waits for the disk.
   void see_mode(const RobotModel& robot, const std::string& mode, const Report& broken) {
-    if (mode == robot.mode() || (mode != "manual" && mode != "smart_joystick")) return;
+    if (mode == robot.mode()) return;
     for (const RobotModel::Pending& p : robot.pending())
-      if (p.command.verb == Verb::mode && p.command.text == mode)
-        return see_manual_entry(robot, p.command, broken);
+      if (p.command.verb == Verb::mode && p.command.text == mode) return see_entry(robot, p.command, broken);
   }
 
-  void see_manual_entry(const RobotModel& robot, const CommandHeard& command, const Report& broken) {
+  static void see_entry(const RobotModel& robot, const CommandHeard& command, const Report& broken) {
     if (robot.mode() == command.text) return;
+    const auto& program = robot.programmed();
+    if (command.text == "external" && (!program || robot.now() - *program > program_silence + 20ms))
+      broken("entered external without a program that steers");
+    if (command.text != "manual" && command.text != "smart_joystick") return;
     const auto& stick = robot.stick();
     if (!stick || robot.now() - stick->at > joystick_silence + 20ms)
       broken("entered " + command.text + " without a fresh joystick");

@@ -54,8 +54,12 @@ class NothingLost : public Rule {
   }
 
   void see_behaviour(const Before& before, const BehaviourSent& now, const Report& broken) const {
-    const bool manual = before.behaviour.mode == "manual" || before.behaviour.mode == "smart_joystick";
-    if (now.mode == "manual" || now.mode == "smart_joystick")
+    // A mode whose source is somebody's hand or a program does not come back by itself.
+    const auto steered = [](const std::string& mode) {
+      return mode == "manual" || mode == "smart_joystick" || mode == "external";
+    };
+    const bool manual = steered(before.behaviour.mode);
+    if (steered(now.mode))
       broken("came back in " + now.mode);
     else if (now.mode != "hold" && (manual || before.behaviour.mode == "hold") &&
              !asked(before, {Verb::go_to, Verb::mode}))

@@ -32,7 +32,22 @@ struct Latch {
   bool operator==(const Latch&) const = default;
 };
 
-enum class Verb { take, release, lock, unlock, grant, stop, reset, mode, go_to, query };
+enum class Verb {
+  take,
+  release,
+  lock,
+  unlock,
+  grant,
+  stop,
+  reset,
+  mode,
+  go_to,
+  query,
+  restart,  ///< of a component, named in the text
+  policy,   ///< of a component
+  plan,     ///< a question to the global planner
+  unknown   ///< a number that the checker does not know
+};
 
 /// The agent's process began to run as that participant of the radio domain.
 struct AgentStarted {
@@ -79,6 +94,10 @@ struct JoystickHeard {
 
 /// A scan of its lidar reached the robot.
 struct ScanHeard {};
+/// A velocity of the program that steers in mode `external` reached the robot.
+struct ProgramHeard {
+  Twist2 velocity{};  ///< body frame
+};
 
 // Sent by the robot -----------------------------------------------------------------------------------
 struct AckSent {
@@ -128,7 +147,7 @@ struct ClockJumped {
 
 using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
                            AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion,
-                           ClockJumped, ComponentFaulted, DiskChanged, ScanHeard>;
+                           ClockJumped, ComponentFaulted, DiskChanged, ScanHeard, ProgramHeard>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

@@ -7,7 +7,9 @@ std::string describe_epoch(std::uint32_t counter) { return "epoch " + std::to_st
 
 std::string said(const AckSent& ack) { return ack.accepted ? "accepted" : std::string(name(ack.reason)); }
 
-bool needs_holder(Verb verb) { return verb != Verb::take && verb != Verb::stop && verb != Verb::query; }
+bool needs_holder(Verb verb) {
+  return verb != Verb::take && verb != Verb::stop && verb != Verb::query && verb != Verb::plan;
+}
 
 /// Rule 1: a command counts only with the holder's identity, the current epoch and a new sequence number;
 /// every change of holder raises the epoch; a repeat gets its first answer again.

@@ -36,9 +36,16 @@ Verb verb_of(radio::CommandKind kind) {
       return Verb::mode;
     case radio::CMD_GOTO:
       return Verb::go_to;
-    default:
+    case radio::CMD_QUERY:
       return Verb::query;
+    case radio::CMD_RESTART:
+      return Verb::restart;
+    case radio::CMD_POLICY:
+      return Verb::policy;
+    case radio::CMD_PLAN:
+      return Verb::plan;
   }
+  return Verb::unknown;
 }
 
 template <class T>
@@ -97,6 +104,10 @@ Decoded acknowledgement(std::span<const std::uint8_t> cdr) {
                                            a->epoch().start(), a->epoch().counter()}};
 }
 
+VelocitySent as_velocity(const geometry_msgs::msg::Twist& t) {
+  return {{t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()}};
+}
+
 Decoded velocity(std::string_view type, std::span<const std::uint8_t> cdr) {
   std::optional<geometry_msgs::msg::Twist> t;
   if (type == topics::cmd_vel_stamped.type) {
@@ -105,8 +116,7 @@ Decoded velocity(std::string_view type, std::span<const std::uint8_t> cdr) {
     t = read<geometry_msgs::msg::Twist>(cdr);
   }
   if (!t) return std::nullopt;
-  return DecodedSample{{},
-                       VelocitySent{{t->linear().x(), t->linear().y(), t->angular().z(), t->linear().z()}}};
+  return DecodedSample{{}, as_velocity(*t)};
 }
 
 Decoded authority(std::span<const std::uint8_t> cdr) {
@@ -126,6 +136,12 @@ Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cd
   if (is(topic, topics::joystick)) return joystick(cdr, from);
   if (is(topic, topics::presence)) return station(cdr, from, true);
   if (is(topic, topics::capabilities)) return station(cdr, from, false);
+  if (is(topic, topics::points)) return DecodedSample{{}, ScanHeard{}};
+  if (is(topic, topics::external_cmd_vel)) {
+    const auto t = read<geometry_msgs::msg::Twist>(cdr);
+    if (!t) return std::nullopt;
+    return DecodedSample{{}, ProgramHeard{as_velocity(*t).velocity}};
+  }
   return std::nullopt;
 }
 

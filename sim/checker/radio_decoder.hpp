@@ -14,8 +14,8 @@ struct DecodedSample {
   Event event{};
 };
 
-/// Decodes what a robot receives: Presence, Capabilities of a station, Command, Joystick. Nothing for other
-/// topics and for bytes that are no sample.
+/// Decodes what a robot receives: Presence, Capabilities of a station, Command, Joystick; scans and the
+/// velocities of a program on its own domain. Nothing for other topics and for bytes that are no sample.
 std::optional<DecodedSample> decode_received(std::string_view topic, std::span<const std::uint8_t> cdr,
                                              const wire::ParticipantId& from);
 /// Decodes what a robot sends: acknowledgements, its states, notifications, cmd_vel. `type`: the DDS type,

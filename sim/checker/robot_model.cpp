@@ -1,6 +1,7 @@
 #include "sim/checker/robot_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace adit::sim {
 
@@ -23,6 +24,7 @@ void RobotModel::take_in_event(const AgentStarted& e) {
   next.truth_ = truth_;
   next.jumps_ = std::move(jumps_);
   next.scanned_ = scanned_;
+  next.programmed_ = programmed_;
   next.disk_full_ = disk_full_;
   next.disk_freed_ = disk_freed_;
   next.participant_ = e.participant;
@@ -89,6 +91,11 @@ void RobotModel::take_in_event(const ComponentFaulted& e) {
   if (e.component == "command" && alive_) faulted_ = now_;
 }
 
+void RobotModel::take_in_event(const ProgramHeard& e) {
+  const Twist2& v = e.velocity;
+  if (std::isfinite(v.vx) && std::isfinite(v.vy) && std::isfinite(v.wz)) programmed_ = now_;
+}
+
 void RobotModel::take_in_event(const DiskChanged& e) {
   disk_full_ = e.full;
   if (!e.full) disk_freed_ = now_;
@@ -130,6 +137,9 @@ void RobotModel::take_in_event(const CommandHeard& e) {
   const bool repeat = commands_.contains(key(e));
   commands_.try_emplace(key(e));
   pending_.push_back({e, now_, repeat});
+  // The holder may have the command component restarted: it speaks under another epoch after that.
+  const bool restarts = e.verb == Verb::restart && e.text == "command" && !repeat;
+  if (restarts && is_holder(e) && current_epoch(e.start, e.counter)) faulted_ = now_;
   // A command is a sign of life of its station, but while the holder is heard as another participant it does
   // not show a new one to be his.
   const Heard* known = heard(e.station);

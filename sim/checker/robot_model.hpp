@@ -71,6 +71,8 @@ class RobotModel {
   const std::optional<Before>& before() const { return before_; }
   const BehaviourSent& behaviour() const { return behaviour_; }
   std::optional<Duration> scanned() const { return scanned_; }
+  /// When the program of mode `external` spoke last.
+  std::optional<Duration> programmed() const { return programmed_; }
   bool disk_failed() const;
   /// The lock's lease ran out.
   bool lock_lapsed() const;
@@ -140,6 +142,7 @@ class RobotModel {
   void take_in_event(const ComponentFaulted& e);
   void take_in_event(const DiskChanged& e);
   void take_in_event(const ScanHeard&) { scanned_ = now_; }
+  void take_in_event(const ProgramHeard& e);
   void take_in_event(const ClockJumped& e) { jumps_.emplace_back(now_, e.by); }
   void hear(const std::string& station, const StationId& id, const wire::ParticipantId& from);
   Before remember() const;
@@ -149,7 +152,7 @@ class RobotModel {
   Duration now_{}, started_{}, died_{}, holder_changed_{}, mode_changed_{}, velocity_at_{};
   bool alive_{};
   wire::ParticipantId participant_{};
-  std::optional<Duration> faulted_{}, scanned_{};
+  std::optional<Duration> faulted_{}, scanned_{}, programmed_{};
   bool disk_full_{};
   std::optional<Duration> disk_freed_{};
   std::optional<Before> before_{};

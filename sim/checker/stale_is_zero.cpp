@@ -8,13 +8,15 @@ namespace {
 constexpr Duration longest_gap{120ms};  // between two cmd_vel of a living agent; 50 ms is its period
 constexpr Duration longest_gap_of_a_failure{350ms};  // until the supervisor sends zero in its stead
 constexpr Duration plan_silence{500ms};              // without a scan no plan is fresh
+constexpr Duration program_silence{500ms};           // of what steers in mode external
 constexpr Duration start_up{500ms};                  // until the first cmd_vel of a new agent
 constexpr Duration parent_reaction{60ms};            // from an agent's death to its parent's zero
 constexpr Duration stick_release{1s};                // silence after which a manual mode falls to hold
 constexpr Duration centred_rest{2500ms};             // a robot brakes in less from its highest speed
 
-/// Rule 6: when the joystick falls silent the driver is sent zero, actively, and a manual mode then falls
-/// to hold; the driver is never left without a word; a dead agent's parent sends zero.
+/// Rule 6: when the joystick, or the program of mode external, falls silent the driver is sent zero,
+/// actively, and the mode then falls to hold; the driver is never left without a word; a dead agent's parent
+/// sends zero.
 class StaleIsZero : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
@@ -48,9 +50,13 @@ class StaleIsZero : public Rule {
       return;
     }
     if (velocity.zero() || robot.mode_changed() == robot.now()) return;
-    const bool planned = robot.mode() == "waypoint" || robot.mode() == "smart_joystick";
+    const bool external = robot.mode() == "external";
+    const bool planned = external || robot.mode() == "waypoint" || robot.mode() == "smart_joystick";
     if (planned && (!robot.scanned() || robot.now() - *robot.scanned() > plan_silence + reaction))
       broken("sent a velocity in " + robot.mode() + " without a scan for more than 500 ms");
+    const auto& program = robot.programmed();
+    if (external && (!program || robot.now() - *program > program_silence + reaction))
+      broken("sent a velocity in external with a program silent for more than 500 ms");
     if (!robot.in_manual_mode()) return;
     const auto& stick = robot.stick();
     if (!stick || robot.now() - stick->at > joystick_silence + reaction) {
@@ -62,10 +68,15 @@ class StaleIsZero : public Rule {
   }
 
   void watch_mode(const RobotModel& robot, const Report& broken) {
-    const bool manual = robot.in_manual_mode();
-    const Duration since = std::max(robot.stick() ? robot.stick()->at : Duration{}, robot.mode_changed());
-    const bool overdue = manual && robot.now() - since > stick_release + 2 * reaction;
-    if (overdue && !told_mode_) broken("stays in " + robot.mode() + " without a joystick");
+    const bool manual = robot.in_manual_mode(), external = robot.mode() == "external";
+    const Duration source = external        ? robot.programmed().value_or(Duration{})
+                            : robot.stick() ? robot.stick()->at
+                                            : Duration{};
+    const Duration silence = robot.now() - std::max(source, robot.mode_changed());
+    const bool overdue = (manual && silence > stick_release + 2 * reaction) ||
+                         (external && silence > program_silence + 2 * reaction);
+    if (overdue && !told_mode_)
+      broken("stays in " + robot.mode() + " without " + (external ? "its program" : "a joystick"));
     told_mode_ = overdue;
   }
 

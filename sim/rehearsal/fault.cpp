@@ -79,6 +79,15 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
             return Parts{"finds",
                          fmt::format("\"{}\", robot: {}, importance: {}", f.kind, f.robot, f.importance)};
           },
+          [](const Steer& f) {
+            return Parts{"steers", f.robot +
+                                       fmt::format(", velocity: [{:.3f}, {:.3f}, {:.3f}]", f.velocity.vx,
+                                                   f.velocity.vy, f.velocity.wz) +
+                                       window(f.duration)};
+          },
+          [](const OdometryReset& f) {
+            return Parts{"odometry_reset", f.robot};
+          },
       },
       fault.what);
 }

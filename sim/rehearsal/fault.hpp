@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/geometry/pose.hpp"
 #include "core/time/time.hpp"
 #include "sim/driver/sensor.hpp"
 
@@ -84,10 +85,21 @@ struct Find {
   int importance{1};   ///< 0 to 255
 };
 
+/// No fault either: a program on the robot steers, in mode `external`, 20 times a second.
+struct Steer {
+  std::string robot{};
+  Twist2 velocity{};  ///< body frame
+  Duration duration{};
+};
+/// The robot's driver is started again: its odometry begins anew at zero, where the robot is.
+struct OdometryReset {
+  std::string robot{};
+};
+
 struct Fault {
   Duration at{};
   std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
-               StuckDrive, DiskFull, Forge, StuckStick, Find>
+               StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset>
       what{};
 };
 

@@ -125,6 +125,15 @@ Find read_find(const Node& node, const Scenario& scenario) {
   return out;
 }
 
+Steer read_steer(const Node& node, const Scenario& scenario) {
+  Steer out;
+  out.robot = read_robot(node, "steers", scenario);
+  const std::vector<double> v = node.numbers("velocity", 3, 3, config::within(-10.0, 10.0));
+  if (v.size() == 3) out.velocity = {v[0], v[1], v[2]};
+  out.duration = read_length(node);
+  return out;
+}
+
 void read_link_fault(const Node& fault, const std::string& kind, const Scenario& scenario, Fault& out) {
   const auto [a, b] = read_pair(fault, kind.c_str(), scenario);
   const auto chance = [&](const char* key) { return fault.number(key, config::within(0.0, 1.0)); };
@@ -140,8 +149,8 @@ void read_link_fault(const Node& fault, const std::string& kind, const Scenario&
 
 Fault read_fault(const Node& node, const Scenario& scenario) {
   static const std::vector<std::string> kinds{
-      "crash",      "hang",          "cut",   "degrade",   "partition", "reorder", "duplicate",
-      "clock_jump", "sensor_silent", "stuck", "disk_full", "forge",     "finds"};
+      "crash",         "hang",  "cut",       "degrade", "partition", "reorder", "duplicate",     "clock_jump",
+      "sensor_silent", "stuck", "disk_full", "forge",   "finds",     "steers",  "odometry_reset"};
   Fault fault;
   fault.at = read_time(node, "at", scenario);
   std::string kind, all;
@@ -175,6 +184,10 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
     fault.what = read_forge(node, scenario);
   } else if (kind == "finds") {
     fault.what = read_find(node, scenario);
+  } else if (kind == "steers") {
+    fault.what = read_steer(node, scenario);
+  } else if (kind == "odometry_reset") {
+    fault.what = OdometryReset{read_robot(node, "odometry_reset", scenario)};
   } else {
     read_link_fault(node, kind, scenario, fault);
   }

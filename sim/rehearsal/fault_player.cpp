@@ -7,7 +7,8 @@ void FaultPlayer::schedule(const Fault& fault) {
 }
 
 void FaultPlayer::happen(const Fault& fault) {
-  if (!std::holds_alternative<Find>(fault.what)) ++counts_[kind_of(fault)];
+  if (!std::holds_alternative<Find>(fault.what) && !std::holds_alternative<Steer>(fault.what))
+    ++counts_[kind_of(fault)];
   stage_.witness.fault(stage_.scheduler.elapsed(), to_yaml(fault));
   std::visit([this](const auto& what) { play(what); }, fault.what);
 }
@@ -106,6 +107,14 @@ void FaultPlayer::play(const Forge& fault) {
 
 void FaultPlayer::play(const StuckStick& fault) {
   note(stations_.at(fault.by)->stick_hangs(fault.robot, fault.duration));
+}
+
+void FaultPlayer::play(const Steer& steer) {
+  note(robots_.at(steer.robot)->steer(steer.velocity, steer.duration));
+}
+
+void FaultPlayer::play(const OdometryReset& fault) {
+  stage_.simulation.reset_odometry(stage_.simulation.find(fault.robot).value());
 }
 
 void FaultPlayer::play(const Find& find) {

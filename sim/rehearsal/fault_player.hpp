@@ -39,6 +39,8 @@ class FaultPlayer {
   void play(const Forge& fault);
   void play(const StuckStick& fault);
   void play(const Find& find);
+  void play(const Steer& steer);
+  void play(const OdometryReset& fault);
   void disturb(wire::Disturbance disturbance, Duration duration);
   void later(Duration duration, Task task);
   void note(Result<void> result);

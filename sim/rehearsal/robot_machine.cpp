@@ -1,5 +1,8 @@
 #include "sim/rehearsal/robot_machine.hpp"
 
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "geometry_msgs/msg/Twist.h"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "sim/rehearsal/rehearsal.hpp"
 
@@ -37,6 +40,15 @@ struct RobotMachine::Agent {
   std::unique_ptr<Runtime> runtime{};
   std::unique_ptr<wire::Wire> radio{}, robot{};
   std::unique_ptr<RehearsedAgent> program{};
+};
+
+/// A program on the robot that steers by itself.
+struct RobotMachine::Program {
+  std::unique_ptr<Runtime> runtime{};
+  std::shared_ptr<Executor> strand{};
+  std::unique_ptr<wire::Wire> wire{};
+  wire::Writer<geometry_msgs::msg::Twist> velocity{};
+  Timer timer{};
 };
 
 RobotMachine::RobotMachine(Stage& stage, std::size_t index, const RobotSpec& spec, Random random)
@@ -119,6 +131,29 @@ Result<void> RobotMachine::inject(const std::string& component, ComponentFault f
 Result<void> RobotMachine::find(findings::Finding finding) {
   if (!agent_) return {};
   return agent_->program->find(std::move(finding));
+}
+
+Result<void> RobotMachine::steer(const Twist2& velocity, Duration duration) {
+  auto program = std::make_unique<Program>();
+  const std::string machine = spec_.id + "/program";
+  program->runtime = stage_.scheduler.machine(machine, clock_offset_);
+  program->strand = program->runtime->strand("program");
+  program->wire = stage_.ether.join(domain_, machine);
+  auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(*program->wire, wire::topics::external_cmd_vel);
+  if (!writer) return writer.error();
+  program->velocity = std::move(*writer);
+  geometry_msgs::msg::Twist twist;
+  twist.linear().x(velocity.vx);
+  twist.linear().y(velocity.vy);
+  twist.angular().z(velocity.wz);
+  // A failed write is counted by the wire; the next follows.
+  program->timer =
+      program->strand->every(50ms, [p = program.get(), twist] { (void)p->velocity.write(twist); });
+  program_ = std::move(program);
+  stage_.scheduler.at(stage_.scheduler.elapsed() + duration, [this, p = program_.get()] {
+    if (program_.get() == p) program_.reset();
+  });
+  return {};
 }
 
 void RobotMachine::jump_clock(Duration by) {

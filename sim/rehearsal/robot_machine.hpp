@@ -36,6 +36,8 @@ class RobotMachine {
   Result<void> inject(const std::string& component, ComponentFault fault);
   /// A component of the agent reports it; nothing happens while the agent is dead.
   Result<void> find(findings::Finding finding);
+  /// A program beside the agent writes that velocity (body frame) for mode `external`, 20 times a second.
+  Result<void> steer(const Twist2& velocity, Duration duration);
   /// The computer's clock goes on by so much at once.
   void jump_clock(Duration by);
   void silence(Sensor sensor, bool silent) { driver_->silence(sensor, silent); }
@@ -47,6 +49,7 @@ class RobotMachine {
  private:
   struct Parent;
   struct Agent;
+  struct Program;
   Result<void> start_agent();
 
   Stage& stage_;
@@ -64,6 +67,7 @@ class RobotMachine {
   std::unique_ptr<RobotDriver> driver_{};
   std::unique_ptr<Parent> parent_{};
   std::unique_ptr<Agent> agent_{};
+  std::unique_ptr<Program> program_{};
   Result<void> health_{};
 };
 

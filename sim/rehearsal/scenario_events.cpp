@@ -8,8 +8,8 @@ namespace {
 
 using config::Node;
 
-const std::vector<std::string> mode_names{"hold",    "manual",        "smart_joystick", "waypoint",
-                                          "explore", "convoy_follow", "get_out"};
+const std::vector<std::string> mode_names{"hold",     "manual",  "smart_joystick", "waypoint",
+                                          "external", "explore", "convoy_follow",  "get_out"};
 
 void read_robot_expectation(const Node& node, const Scenario& scenario, Expectation& out) {
   const std::string robot = read_robot(node, "robot", scenario);

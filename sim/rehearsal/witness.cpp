@@ -108,11 +108,7 @@ void Witness::delivered(const wire::Frame& frame) {
   if (it != topics_.end()) ++it->second.delivered;
   const std::string robot = robot_of(frame.to_name);
   if (robot.empty()) return;
-  if (frame.domain != radio_domain) {
-    if (frame.topic == wire::topics::points.name && frame.to_name == robot)
-      checker_.observe(robot, frame.at, ScanHeard{});
-    return;
-  }
+  if (frame.domain != radio_domain && frame.to_name != robot) return;  // what its parent reads
   auto decoded = decode_received(frame.topic, frame.bytes, frame.from);
   if (decoded) checker_.observe(robot, frame.at, std::move(decoded->event));
 }

@@ -27,6 +27,11 @@ class Odometry {
   void move(const Pose2& from, const Pose2& to, double dt);
   /// The ground under the robot rose by so much, m: measured by how the body leaned on the way.
   void rise(double by) { height_ += scale_ * by; }
+  /// Begins anew at zero: the driver was started again. Its errors stay as they are.
+  void reset() {
+    pose_ = {};
+    height_ = 0.0;
+  }
   /// Above the start, m.
   double height() const { return height_; }
   /// Pose in the frame `odom`, which begins at the start pose.

@@ -83,6 +83,8 @@ class Simulation {
   void command(std::size_t robot, const Twist2& wanted) { robots_[robot].body.command(wanted); }
   /// The drive stands whatever it is told, as long as it was jammed more often than freed.
   void jam(std::size_t robot, bool jammed) { robots_[robot].jams += jammed ? 1 : -1; }
+  /// Its odometry begins anew at zero, as after a restart of its driver.
+  void reset_odometry(std::size_t robot) { robots_[robot].odometry.reset(); }
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
   /// Pose in `odom` (which begins at the start pose) and measured velocity.
   const Odometry& odometry(std::size_t robot) const { return robots_[robot].odometry; }

@@ -219,5 +219,41 @@ TEST(CheckerAuthority, StreamAnsweredMoreThanOnceASecond) {
   EXPECT_THAT(r.broken(), ElementsAre(3)) << r.texts();
 }
 
+TEST(CheckerAuthority, ARestartOrAPolicyOfWhoDoesNotHoldIt) {
+  for (const Verb verb : {Verb::restart, Verb::policy}) {
+    Record r;
+    r.pass(1s);
+    r.take(1);
+    const CommandHeard c = r.ask(2, verb, "planner");
+    r.answer(c);
+    r.pass(100ms);
+    EXPECT_THAT(r.broken(), testing::ElementsAre(1)) << r.texts();
+  }
+}
+
+TEST(CheckerAuthority, TheHoldersRestartOfTheCommandComponentBreaksNothing) {
+  Record r;
+  r.pass(1s);
+  r.take(1);
+  const CommandHeard c = r.ask(1, Verb::restart, "command");
+  r.answer(c);
+  r.pass(50ms);
+  r.start = 10;
+  ++r.epoch;
+  r.publish();
+  r.behave("hold");
+  r.pass(1s);
+  EXPECT_TRUE(r.broken().empty()) << r.texts();
+}
+
+TEST(CheckerAuthority, AnyoneMayAskForAPlan) {
+  Record r;
+  r.pass(1s);
+  r.take(1);
+  r.answer(r.ask(2, Verb::plan));
+  r.pass(100ms);
+  EXPECT_TRUE(r.broken().empty()) << r.texts();
+}
+
 }  // namespace
 }  // namespace adit::sim

@@ -77,6 +77,85 @@ TEST(CheckerMotion, APlanWithoutScansIsStale) {
   EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
 }
 
+/// A program steers r1 for so long; the agent obeys it.
+void steer(Record& r, Duration how_long) {
+  for (const Duration end = r.now + how_long; r.now < end;) {
+    r.see(ProgramHeard{forward});
+    r.pass(50ms, forward);
+  }
+}
+
+TEST(CheckerMotion, ExternalDriveBreaksNothing) {
+  Record r;
+  r.take(1);
+  r.see(ProgramHeard{forward});
+  r.enter("external");
+  steer(r, 1s);
+  r.pass(450ms, forward);
+  r.pass(100ms);
+  r.behave("hold");
+  r.pass(1s);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerMotion, ExternalIsEnteredWithoutAProgram) {
+  Record r;
+  r.take(1);
+  r.enter("external");
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
+TEST(CheckerMotion, VelocityGoesOnWhenTheProgramFallsSilent) {
+  Record r;
+  r.take(1);
+  r.see(ProgramHeard{forward});
+  r.enter("external");
+  steer(r, 1s);
+  r.pass(800ms, forward);
+  EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
+}
+
+TEST(CheckerMotion, ExternalStaysWithoutItsProgram) {
+  Record r;
+  r.take(1);
+  r.see(ProgramHeard{forward});
+  r.enter("external");
+  steer(r, 500ms);
+  r.pass(1s);
+  EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
+}
+
+TEST(CheckerMotion, ExternalDrivesWithoutScans) {
+  Record r;
+  r.take(1);
+  r.see(ProgramHeard{forward});
+  r.enter("external");
+  r.seeing = false;
+  steer(r, 1s);
+  EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
+}
+
+TEST(CheckerMotion, ExternalComesBackAfterARestart) {
+  Record r;
+  r.take(1);
+  r.see(ProgramHeard{forward});
+  r.enter("external");
+  steer(r, 500ms);
+  r.see(AgentDied{});
+  r.see(VelocitySent{});
+  r.pass(200ms);
+  r.start = 10;
+  ++r.epoch;
+  r.see(AgentStarted{participant(101)});
+  r.publish();
+  r.hear_stations();
+  r.behave("external");
+  steer(r, 200ms);
+  const auto broken = r.broken();
+  EXPECT_THAT(broken, testing::Contains(7)) << r.texts();
+  EXPECT_THAT(broken, testing::Contains(9)) << r.texts();
+}
+
 TEST(CheckerMotion, ManualModeUnderTheNextHolder) {
   Record r;
   drive(r);

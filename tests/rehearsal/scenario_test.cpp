@@ -113,7 +113,7 @@ TEST(Scenario, WhatIsAlwaysExpectedOfCollisionsIsAllOrThoseCaused) {
 
 TEST(Scenario, EveryModeThereIsMayBeExpected) {
   for (const char* mode :
-       {"hold", "manual", "smart_joystick", "waypoint", "explore", "convoy_follow", "get_out"}) {
+       {"hold", "manual", "smart_joystick", "waypoint", "external", "explore", "convoy_follow", "get_out"}) {
     const auto s = parse_scenario(with("mode: waypoint", std::string("mode: ") + mode), "b.yaml");
     ASSERT_TRUE(s.ok()) << s.error().text;
     EXPECT_EQ(std::get<StateExpectation>(s->expectations[0].what).mode, mode);
@@ -165,7 +165,9 @@ TEST(Scenario, EveryFaultIsWrittenAsItIsRead) {
       "{at: 12.000, stuck: r1, for: 2.000}",
       "{at: 13.000, stuck: [op1, r1], for: 2.000}",
       "{at: 14.000, disk_full: r1, for: 2.000}",
-      "{at: 15.000, forge: [op1, r1], for: 2.000}"};
+      "{at: 15.000, forge: [op1, r1], for: 2.000}",
+      "{at: 16.000, steers: r1, velocity: [0.500, 0.000, -0.250], for: 2.000}",
+      "{at: 17.000, odometry_reset: r1}"};
   std::string all;
   for (const std::string& fault : faults) all += "  - " + fault + "\n";
   const auto s = parse_scenario(with("  - {at: 20, crash: r1}\n", all), "b.yaml");
@@ -245,6 +247,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"silent_station", "crash: r1", "sensor_silent: op1, for: 3", 15, "op1"},
         Bad{"stuck_station", "crash: r1", "stuck: op1, for: 3", 15, "op1"},
         Bad{"stuck_three", "crash: r1", "stuck: [op1, r1, r2], for: 3", 15, "[BASESTATION, ROBOT]"},
+        Bad{"steers_nothing", "crash: r1", "steers: op1, velocity: [1, 0, 0], for: 3", 15, "op1"},
+        Bad{"steers_nowhere", "crash: r1", "steers: r1, velocity: [1, 0], for: 3", 15, "3"},
+        Bad{"odometry_of_a_station", "crash: r1", "odometry_reset: op1", 15, "op1"},
         Bad{"full_disk_of_a_station", "crash: r1", "disk_full: op1, for: 3", 15, "op1"},
         Bad{"find_by_nobody", "crash: r1", "finds: artifact", 15, "robot"},
         Bad{"find_by_a_station", "crash: r1", "finds: artifact, robot: op1", 15, "op1"},
