@@ -16,12 +16,15 @@ using ParticipantId = std::array<std::uint8_t, 12>;
 
 /// What waits at a sender for its link now, and what never went on the air.
 struct SenderState {
-  /// What limits it, as long as the wire lives; null: nothing stands between writers and network, and nothing
-  /// waits here.
+  /// The link profile that limits what is sent, valid as long as the wire lives; null: none, as on a real
+  /// radio.
   const LinkProfile* link{};
-  std::array<Duration, priorities> queue{};         ///< airtime that what waits needs, by priority
-  std::array<std::uint64_t, priorities> dropped{};  ///< messages since the start, by priority: waited too
-                                                    ///< long, or a newer one took their place
+  /// By priority: airtime that the waiting messages need. Without a profile how fast the link is stays
+  /// unknown: then how long the oldest message has waited for a socket with room.
+  std::array<Duration, priorities> queue{};
+  /// By priority: messages since the start that never went on the air. They waited too long, or a newer one
+  /// took their place.
+  std::array<std::uint64_t, priorities> dropped{};
 
   /// Airtime of all that goes before or with `priority`, in [0, priorities).
   Duration waiting(std::size_t priority) const {

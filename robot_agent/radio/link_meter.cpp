@@ -44,10 +44,10 @@ radio::LinkReport LinkMeter::report(const wire::WireCounters& counters, const wi
   if (sender.link != nullptr) {
     out.link(sender.link->name);
     out.bandwidth(static_cast<float>(sender.link->bandwidth));
-    out.queue(static_cast<float>(seconds(sender.waiting(wire::status_priority))));
-    for (std::size_t i = 0; i < sender.dropped.size(); ++i)
-      out.dropped()[i] = static_cast<std::uint32_t>(sender.dropped[i]);
   }
+  out.queue(static_cast<float>(seconds(sender.waiting(wire::status_priority))));
+  for (std::size_t i = 0; i < sender.dropped.size(); ++i)
+    out.dropped()[i] = static_cast<std::uint32_t>(sender.dropped[i]);
   last_ = std::move(sums);
   totals_ = counters;
   totals_.topics.clear();

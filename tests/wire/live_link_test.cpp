@@ -8,6 +8,7 @@
 
 #include "core/wire/fastdds/counting_transport.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
+#include "tests/live/process.hpp"
 
 namespace adit::wire {
 namespace {
@@ -200,12 +201,13 @@ class Receiver {
 };
 
 const in_addr_t loopback = htonl(INADDR_LOOPBACK);
+const std::vector<std::string> interfaces{"127.0.0.1"};
 
 TEST(LiveLink, SendsByPriorityAndTheNewestOfAStream) {
   Receiver receiver;
   std::atomic<int> sent{0};
   // 69 B and 28 of headers: 40 ms each.
-  LiveLink link({.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, {"127.0.0.1"},
+  LiveLink link(LinkProfile{.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, interfaces,
                 {[&](auto, in_addr_t, std::uint16_t) { ++sent; }, {}});
   link.add_writer(0x103, 0, false);
   link.add_writer(0x203, 3, true);
@@ -225,7 +227,7 @@ TEST(LiveLink, SendsByPriorityAndTheNewestOfAStream) {
 
 TEST(LiveLink, TellsWhatWaitsAndWhatWasDroppedByClass) {
   Receiver receiver;
-  LiveLink link({.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, {"127.0.0.1"}, {});
+  LiveLink link(LinkProfile{.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, interfaces, {});
   link.add_writer(0x203, 3, true);
   for (int i = 0; i < 4; ++i) link.send(rtps(0x15, 0x203), loopback, receiver.port);
   link.send(rtps(0x15, 0x303), loopback, receiver.port);  // of no writer that it knows: as discovery
@@ -241,7 +243,7 @@ TEST(LiveLink, TellsWhatWaitsAndWhatWasDroppedByClass) {
 TEST(LiveLink, BeyondTheRangeNothingArrives) {
   Receiver receiver;
   std::optional<double> metres{};
-  LiveLink link({.bandwidth = 1e6, .latency = 0, .range = 50}, 1, {"127.0.0.1"},
+  LiveLink link(LinkProfile{.bandwidth = 1e6, .latency = 0, .range = 50}, 1, interfaces,
                 {{}, [&](in_addr_t, std::uint16_t) {
                    return Path{metres, 0.0};
                  }});
@@ -255,7 +257,7 @@ TEST(LiveLink, BeyondTheRangeNothingArrives) {
 
 TEST(LiveLink, WhatIsAskedForAgainWhileItWaitsIsSentOnce) {
   Receiver receiver;
-  LiveLink link({.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, {"127.0.0.1"}, {});
+  LiveLink link(LinkProfile{.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, interfaces, {});
   for (int i = 0; i < 10; ++i) {
     for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x3c2, tag), loopback, receiver.port);
   }
@@ -264,14 +266,65 @@ TEST(LiveLink, WhatIsAskedForAgainWhileItWaitsIsSentOnce) {
   for (const std::uint8_t tag : {1, 2, 3}) EXPECT_GE(std::count(tags.begin(), tags.end(), tag), 1);
 }
 
+/// A radio that takes no datagrams until it is opened.
+struct FullRadio {
+  LiveLink::Socket socket() {
+    return [this](std::span<const std::uint8_t> message, in_addr_t, std::uint16_t) {
+      const std::lock_guard lock(mutex);
+      if (open) taken.push_back(message.back());
+      return open;
+    };
+  }
+  void set_open(bool is_open) {
+    const std::lock_guard lock(mutex);
+    open = is_open;
+  }
+  Bytes tags() {
+    const std::lock_guard lock(mutex);
+    return taken;
+  }
+  std::mutex mutex{};
+  bool open{};
+  Bytes taken{};
+};
+
+TEST(LiveLink, WhatARealRadioRefusesWaitsByPriority) {
+  FullRadio radio;
+  LiveLink link(std::nullopt, 1, radio.socket(), {});
+  link.add_writer(0x103, 0, false);
+  link.add_writer(0x203, 3, true);
+  link.send(rtps(0x15, 0x303, 1), loopback, 7411);
+  ASSERT_TRUE(live::eventually([&] { return link.sender().queue[1] > 0ms; }));
+  for (const std::uint8_t tag : {11, 12, 13}) link.send(rtps(0x15, 0x203, tag), loopback, 7411);
+  link.send(rtps(0x15, 0x103, 21), loopback, 7411);
+  EXPECT_EQ(link.sender().dropped[3], 2U);
+  radio.set_open(true);
+  ASSERT_TRUE(live::eventually([&] { return radio.tags().size() == 3; }));
+  // The thread may have tried the first one already when the urgent one came.
+  const Bytes tags = radio.tags();
+  EXPECT_TRUE(tags == (Bytes{1, 21, 13}) || tags == (Bytes{21, 1, 13}));
+  link.send(rtps(0x15, 0x303, 2), loopback, 7411);
+  EXPECT_EQ(radio.tags().size(), 4U);  // on the caller's thread
+}
+
+TEST(LiveLink, WhatARealRadioRefusesForTooLongIsDroppedAndCounted) {
+  FullRadio radio;
+  LiveLink link(std::nullopt, 1, radio.socket(), {});
+  link.add_writer(0x203, 3, false);
+  for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x203, tag), loopback, 7411);
+  EXPECT_TRUE(live::eventually([&] { return link.sender().dropped[3] == 3; }));
+  EXPECT_TRUE(live::eventually([&] { return link.sender().queue[3] == 0ms; }));
+  EXPECT_TRUE(radio.tags().empty());
+}
+
 TEST(LiveLink, LosesDropsAndCounts) {
   Receiver receiver;
   {
-    LiveLink all({.bandwidth = 1e6, .loss = 1.0}, 1, {"127.0.0.1"}, {});
+    LiveLink all(LinkProfile{.bandwidth = 1e6, .loss = 1.0}, 1, interfaces, {});
     all.send(rtps(0x15, 1), loopback, receiver.port);
     EXPECT_TRUE(receiver.tags(50).empty());
   }
-  LiveLink slow({.bandwidth = 1e3, .queue = 0.01}, 1, {"127.0.0.1"}, {});
+  LiveLink slow(LinkProfile{.bandwidth = 1e3, .queue = 0.01}, 1, interfaces, {});
   for (std::uint8_t i = 0; i < 5; ++i) slow.send(rtps(0x15, 1, i), loopback, receiver.port);
   slow.close();
   slow.send(rtps(0x15, 1), loopback, receiver.port);
@@ -282,7 +335,7 @@ TEST(LiveLink, LosesDropsAndCounts) {
 TEST(LiveLink, WhatWaitsIsSentBeforeItEnds) {
   Receiver receiver;
   {
-    LiveLink link({.bandwidth = 1e6, .latency = 0.1}, 1, {"127.0.0.1"}, {});
+    LiveLink link(LinkProfile{.bandwidth = 1e6, .latency = 0.1}, 1, interfaces, {});
     for (std::uint8_t i = 0; i < 10; ++i) link.send(rtps(0x15, 1, i), loopback, receiver.port);
   }
   EXPECT_EQ(receiver.tags(10).size(), 10U);

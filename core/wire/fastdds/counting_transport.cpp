@@ -34,12 +34,6 @@ void Traffic::received(std::span<const std::uint8_t> message, std::uint32_t port
   peers.received(seen, bytes);
 }
 
-void Traffic::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
-  if (link) return link->send(message, address, port);
-  sent(message, address, port);
-  outlet->send(message, address, port);
-}
-
 CountingTransport::CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
                                      std::shared_ptr<Traffic> traffic)
     : ChainingTransport(descriptor),
@@ -64,7 +58,7 @@ void CountingTransport::send(std::span<const std::uint8_t> message, in_addr_t ad
   message = message.first(without_statistics(message));
   // Robots read what they write, of their own as well: that is no radio traffic.
   if (traffic_->own_addresses.contains(address) && traffic_->own_ports.contains(port))
-    return traffic_->outlet->send(message, address, port);
+    return (void)traffic_->outlet->send(message, address, port);
   const Duration now = std::chrono::steady_clock::now().time_since_epoch();
   std::vector<std::uint8_t> changed;
   if (is_discovery_port(port)) {
@@ -72,7 +66,7 @@ void CountingTransport::send(std::span<const std::uint8_t> message, in_addr_t ad
     message = changed;
     if (!traffic_->contact.sent(changed, address, port, now)) return;
   }
-  if (traffic_->heartbeats.passes(message, address, port, now)) traffic_->send(message, address, port);
+  if (traffic_->heartbeats.passes(message, address, port, now)) traffic_->link->send(message, address, port);
   if (traffic_->repeats) traffic_->repeats->wake();
 }
 
@@ -90,7 +84,7 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
     in_addr_t address{};
     std::memcpy(&address, rtps::IPLocator::getIPv4(locator), sizeof address);
     const std::uint16_t port = rtps::IPLocator::getPhysicalPort(locator);
-    if (traffic_->outlet) {
+    if (traffic_->link) {
       send({send_buffer, send_buffer_size}, address, port);
       continue;
     }

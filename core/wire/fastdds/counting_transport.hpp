@@ -64,20 +64,17 @@ class OwnPorts {
 /// Bytes that went through a participant's sockets, UDP and IP headers included.
 struct Traffic {
   std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
-  PeerBook peers{};                  ///< the same by peer
-  Gate ready{};                      ///< discovery datagrams wait here
-  std::shared_ptr<LiveLink> link{};  ///< what is sent goes through it, if there is one
-  /// A radio: what is sent leaves by it, without what is of no use there. None: by the library's own sockets,
-  /// as it is.
-  std::shared_ptr<Outlet> outlet{};
+  PeerBook peers{};  ///< the same by peer
+  Gate ready{};      ///< discovery datagrams wait here
+  /// Of a radio: what is sent to others leaves by it, without what is of no use there. Null: by the library's
+  /// own sockets, as it is.
+  std::shared_ptr<LiveLink> link{};
+  std::shared_ptr<Outlet> outlet{};     ///< of a radio: what goes to ourselves
   std::set<in_addr_t> own_addresses{};  ///< network order
   OwnPorts own_ports{};
   HeartbeatFilter heartbeats{Discovery::heartbeat};
   Contact contact{};
   std::unique_ptr<ContactThread> repeats{};  ///< by radio
-
-  /// Sends a datagram by radio: by the link if there is one.
-  void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 
   /// Counts a datagram that leaves.
   void sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);

@@ -28,8 +28,9 @@ Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher
                                                        std::shared_ptr<SharedCounts> counts,
                                                        std::shared_ptr<LiveLink> link) {
   std::unique_ptr<FastDdsWriter> writer(new FastDdsWriter(publisher, topic, std::move(counts)));
-  writer->writer_ = publisher.create_datawriter(&dds_topic, dds_writer_qos(topic, link != nullptr),
-                                                writer.get(), dds::StatusMask::publication_matched());
+  writer->writer_ =
+      publisher.create_datawriter(&dds_topic, dds_writer_qos(topic, link && link->profile() != nullptr),
+                                  writer.get(), dds::StatusMask::publication_matched());
   if (writer->writer_ == nullptr) {
     return Error{Reason::wire_failed,
                  std::string(topic.name) + ": Fast DDS refused the writer; its log says why"};

@@ -109,13 +109,13 @@ class FastDdsWire final : public Wire {
     const std::vector<std::string> loopback{"127.0.0.1"};
     const auto& interfaces = params.interfaces.empty() ? loopback : params.interfaces;
     for (const std::string& address : interfaces) traffic_->own_addresses.insert(inet_addr(address.c_str()));
-    if (!params.large_samples) traffic_->outlet = std::make_shared<Outlet>(interfaces);
     traffic_->contact.set_reachable([networks = Subnets(interfaces, params.peers)](in_addr_t address) {
       return networks.contains(address);
     });
-    if (params.link) {
+    if (!params.large_samples) {
+      traffic_->outlet = std::make_shared<Outlet>(interfaces);
       traffic_->link = std::make_shared<LiveLink>(
-          *params.link, params.link_seed, interfaces,
+          params.link, params.link_seed, interfaces,
           LiveLink::Outputs{[traffic = traffic_.get()](auto message, in_addr_t address, std::uint16_t port) {
                               traffic->sent(message, address, port);
                             },
@@ -123,12 +123,11 @@ class FastDdsWire final : public Wire {
                               return traffic->peers.path(address, port);
                             }});
     }
-    if (traffic_->outlet) {
+    if (traffic_->link) {
       traffic_->repeats = std::make_unique<ContactThread>(
-          traffic_->contact,
-          [traffic = traffic_.get()] { return !traffic->link || traffic->link->sender().waiting(1) < 100ms; },
-          [traffic = traffic_.get()](auto message, in_addr_t address, std::uint16_t port) {
-            traffic->send(message, address, port);
+          traffic_->contact, [link = traffic_->link.get()] { return link->sender().waiting(1) < 100ms; },
+          [link = traffic_->link.get()](auto message, in_addr_t address, std::uint16_t port) {
+            link->send(message, address, port);
           });
     }
     participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
@@ -192,7 +191,7 @@ class FastDdsWire final : public Wire {
 
   SenderState sender() const override { return traffic_->link ? traffic_->link->sender() : SenderState{}; }
   std::vector<PeerState> peers() const override {
-    return traffic_->peers.all(id(), traffic_->link ? &traffic_->link->profile() : nullptr);
+    return traffic_->peers.all(id(), traffic_->link ? traffic_->link->profile() : nullptr);
   }
   void set_place(const ParticipantId& who, const Position& at) override {
     if (who == id())

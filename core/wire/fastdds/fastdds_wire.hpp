@@ -19,7 +19,8 @@ struct FastDdsParams {
   /// one's for ever (Fast-DDS #4728).
   bool large_samples{false};
   /// A link that all that is sent passes: its bandwidth, priorities and budgets, and, where it says so, its
-  /// latency and losses. Without one datagrams go straight to the sockets.
+  /// latency and losses. Without one datagrams go straight to the sockets, and those of a radio domain wait
+  /// by priority while these have no room.
   std::optional<LinkProfile> link{};
   std::uint64_t link_seed{1};  ///< of losses and jitter
 };

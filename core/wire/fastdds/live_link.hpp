@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -18,21 +19,28 @@
 
 namespace adit::wire {
 
-/// The link model between a participant and its sockets: datagrams leave by priority, within their budget, at
-/// the link's bandwidth, and arrive late or not at all. One thread. It has a socket of its own, so that what
-/// is still in the air does not depend on the library's life.
+/// The queue between a participant and its sockets. With a link profile it is the link model: datagrams leave
+/// by priority, within their budget, at the link's bandwidth, and arrive late or not at all. Without one
+/// datagrams go straight to the sockets; those that a socket has no room for, as when a real radio is full,
+/// wait here by priority and are tried again. One thread. It has sockets of its own, so that what is still in
+/// the air does not depend on the library's life.
 class LiveLink {
  public:
-  /// What it asks of others, from its own thread; each may be empty.
+  /// Functions that it calls from any thread; each may be empty.
   struct Outputs {
     /// A datagram was put on the air.
     std::function<void(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)> sent{};
-    /// What lies between us and whoever that address is.
+    /// What lies between us and the peer at that address.
     std::function<Path(in_addr_t address, std::uint16_t port)> path{};
   };
+  /// Puts a datagram into a socket; false: the socket has no room now. Never blocks.
+  using Socket =
+      std::function<bool(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)>;
 
-  /// `interfaces`: addresses that multicast goes out on.
-  LiveLink(LinkProfile link, std::uint64_t seed, const std::vector<std::string>& interfaces, Outputs outputs);
+  /// `seed`: of losses and jitter. `interfaces`: addresses that multicast goes out on.
+  LiveLink(std::optional<LinkProfile> link, std::uint64_t seed, const std::vector<std::string>& interfaces,
+           Outputs outputs);
+  LiveLink(std::optional<LinkProfile> link, std::uint64_t seed, Socket socket, Outputs outputs);
   ~LiveLink();
   LiveLink(const LiveLink&) = delete;
   LiveLink& operator=(const LiveLink&) = delete;
@@ -45,7 +53,8 @@ class LiveLink {
   /// A datagram to an IPv4 address (network order) and port. Never blocks.
   void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 
-  const LinkProfile& profile() const { return link_; }
+  /// Null: it has none.
+  const LinkProfile* profile() const { return link_ ? &*link_ : nullptr; }
   /// Datagrams that were dropped before they went on the air, since the start.
   std::uint64_t dropped() const { return sender().lost(priorities - 1); }
   SenderState sender() const;
@@ -59,7 +68,9 @@ class LiveLink {
     std::vector<std::uint8_t> bytes{};
     in_addr_t address{};
     std::uint16_t port{};
+    int priority{};
   };
+  using Waiting = Transmitter<Packet>::Waiting;
   struct Class {
     int priority{};
     bool newest_wins{};
@@ -70,13 +81,17 @@ class LiveLink {
   void run();
   /// Puts what is due on the air and into sockets; when to be asked again.
   Duration step(Duration at);
+  /// The same without a profile: gives the sockets what they take.
+  Duration refill(Duration at);
+  Waiting classify(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
+  bool put_in_socket(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
   Duration airtime(const Packet& packet) const;
-  void put_on_air(Packet packet, int priority, Duration at, Duration airtime);
+  void put_on_air(Packet packet, Duration at, Duration airtime);
   std::uint64_t peer_of(const Packet& packet) const;
 
-  LinkProfile link_;
+  std::optional<LinkProfile> link_;
   Outputs outputs_;
-  Outlet outlet_;
+  Socket socket_;
   mutable std::mutex mutex_{};
   std::condition_variable wake_{};
   Random random_;
@@ -84,6 +99,7 @@ class LiveLink {
   Window window_{};
   std::map<std::uint64_t, Channel> channels_{};
   std::multimap<Duration, Packet> in_air_{};
+  std::optional<Waiting> refused_{};  // by a socket; goes before all others
   std::map<std::uint32_t, Class> writers_{};
   Duration free_at_{};  // the air is ours again
   Duration close_at_{Duration::max()};

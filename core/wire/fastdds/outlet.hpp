@@ -18,10 +18,13 @@ class Outlet {
   Outlet(const Outlet&) = delete;
   Outlet& operator=(const Outlet&) = delete;
 
-  /// To an address in network order. What the socket does not take at once is lost, as on the air.
-  void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
+  /// Sends to an address in network order. Returns false when a socket had no room for the datagram: the
+  /// radio sends more slowly than we do, and the caller may try again. A datagram that can never be sent, as
+  /// to a network without a route, is lost and counts as sent.
+  bool send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
 
  private:
+  static bool send_by(int socket, std::span<const std::uint8_t> message, const sockaddr_in& to);
   std::vector<int> sockets_{};  // one per interface; the first one for unicast
 };
 

@@ -118,6 +118,13 @@ class Transmitter {
     }
     return longest;
   }
+  /// The longest that anything of each priority has waited.
+  std::array<Duration, priorities> ages(Duration now) const {
+    std::array<Duration, priorities> result{};
+    for (std::size_t p = 0; p < priorities; ++p)
+      if (!queues_[p].empty()) result[p] = now - queues_[p].front().since;
+    return result;
+  }
   void clear() {
     for (auto& queue : queues_) queue.clear();
   }
