@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "core/config/search.hpp"
 #include "core/time/random.hpp"
 #include "nav/control/controller.hpp"
 #include "nav/make_planner.hpp"
@@ -44,12 +43,8 @@ Result<void> Agent::start() {
   if (params_.platform.router != "none" && params_.platform.flies())
     return {Reason::bad_argument, "platform " + params_.platform.name + ": router '" +
                                       params_.platform.router + "' leads over ground: none for what flies"};
-  const auto tree = config::find_file(params_.tree);
-  if (!tree) return tree.error();
-  // Here as well as in each instance of the command component: who starts an agent is told at once.
-  if (const auto decider = Decider::load(*tree); !decider) return decider.error();
   params_.id = restore_identity(params_.disk, params_.id);
-  auto parts = std::make_unique<Parts>(params_, *tree, runtime_);
+  auto parts = std::make_unique<Parts>(params_, runtime_);
   if (const auto opened = parts->open(radio_, robot_); !opened) return opened.error();
   parts_ = std::move(parts);
   parts_->watch->start();

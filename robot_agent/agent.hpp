@@ -25,16 +25,22 @@ struct PlannerLibrary;
 
 namespace adit::agent {
 
+class Decider;
+
 struct AgentParams {
   std::string name{"r1"};  ///< 1 to 32 of [A-Za-z0-9_-]
   Platform platform{};
-  Id id{};                              ///< kept on the robot's disk; all zero: drawn from the seed
-  std::uint64_t seed{1};                ///< of the epoch; another one at each start
-  Pose2 start{};                        ///< map frame, where odometry begins
-  Duration lock_lease{300s};            ///< a lock lapses when its holder was silent so long; 0: never
-  std::string tree{"trees/robot.xml"};  ///< behaviour tree, on the configuration's search path
-  Duration planning{20ms};              ///< what a planning cycle takes in rehearsal
-  Defects defects{};                    ///< effective in adit::agent_defects only
+  Id id{};                    ///< kept on the robot's disk; all zero: drawn from the seed
+  std::uint64_t seed{1};      ///< of the epoch; another one at each start
+  Pose2 start{};              ///< map frame, where odometry begins
+  Duration lock_lease{300s};  ///< a lock lapses when its holder was silent so long; 0: never
+  /// Behaviour tree, on the configuration's search path. A tree that cannot be read, or contradicts the mode
+  /// table, is refused: the agent runs in `hold` with the reason tree_refused.
+  std::string tree{"trees/robot.xml"};
+  /// Loads that file, for tests that replace the check against the mode table; empty: Decider::load.
+  std::function<Result<std::unique_ptr<Decider>>(const std::string& file)> load_tree{};
+  Duration planning{20ms};  ///< what a planning cycle takes in rehearsal
+  Defects defects{};        ///< effective in adit::agent_defects only
   std::shared_ptr<LogSink> log{};
   /// What the local planner of that platform looks up, when several robots share it; empty: made here.
   std::function<std::shared_ptr<const nav::PlannerLibrary>(const Platform&)> library{};
@@ -66,7 +72,7 @@ class Agent {
   Agent(const Agent&) = delete;
   Agent& operator=(const Agent&) = delete;
 
-  /// Errors: bad_argument (name), those of the tree and of the wires.
+  /// Errors: bad_argument (name, platform), those of the wires.
   Result<void> start();
 
   /// The robot's own console: "status", "unlock", "health", "restart COMPONENT", "policy COMPONENT

@@ -164,6 +164,7 @@ Result<void> Agent::Core::on_start() {
   behaviour_.tick(now());
   notices_.restored(edges_.restored,
                     edges_.restored.snapshot && edges_.restored.snapshot->boot == params_.boot);
+  if (const std::string& why = behaviour_.tree_refusal(); !why.empty()) notices_.tree_refused(why);
   keep();
   telemetry_.start(now(), started_);
   timers_.push_back(every(kBeat, [this] { beat(); }));

@@ -1,5 +1,6 @@
 #include "robot_agent/agent_parts.hpp"
 
+#include "core/config/search.hpp"
 #include "core/time/random.hpp"
 
 namespace adit::agent {
@@ -9,6 +10,14 @@ KeeperParams keeper_params(const AgentParams& params) {
   KeeperParams k{};
   if (params.defects.has(Defect::acknowledged_lost)) k.lazy = 5s;
   return k;
+}
+
+/// Runs the robot's tree, or holds because it was refused.
+std::unique_ptr<Decider> decider_of(const AgentParams& params) {
+  const auto file = config::find_file(params.tree);
+  if (!file) return Decider::refused(file.error());
+  auto decider = params.load_tree ? params.load_tree(*file) : Decider::load(*file);
+  return decider ? std::move(*decider) : Decider::refused(decider.error());
 }
 
 /// Has `use` ask the component of that unit, on its strand, and calls `done` back on the caller's while the
@@ -51,10 +60,9 @@ void RouterUnit::find(std::shared_ptr<RouteQuery> query, Task done) {
       std::move(done));
 }
 
-Agent::Parts::Parts(const AgentParams& agent_params, std::string tree_file, Runtime& agent_runtime)
+Agent::Parts::Parts(const AgentParams& agent_params, Runtime& agent_runtime)
     : params(agent_params),
       runtime(agent_runtime),
-      tree(std::move(tree_file)),
       command(agent_runtime, command_unit()),
       planner(agent_runtime, planner_unit()),
       router(agent_runtime, router_unit()),
@@ -75,10 +83,8 @@ UnitParams Agent::Parts::command_unit() {
   unit.name = "command";
   unit.make = [this](Executor& strand,
                      std::shared_ptr<const Lease> lease) -> Result<std::unique_ptr<Component>> {
-    auto decider = Decider::load(tree);
-    if (!decider) return decider.error();
     return std::unique_ptr<Component>(
-        std::make_unique<Core>(params, strand, std::move(*decider), *edges, std::move(lease)));
+        std::make_unique<Core>(params, strand, decider_of(params), *edges, std::move(lease)));
   };
   return unit;
 }

@@ -38,7 +38,7 @@ class RouterUnit final : public RouteService {
 /// The parts of an agent, composed: four units on strands of their own, what they share, and who watches
 /// them. Private to agent.cpp.
 struct Agent::Parts {
-  Parts(const AgentParams& agent_params, std::string tree_file, Runtime& agent_runtime);
+  Parts(const AgentParams& agent_params, Runtime& agent_runtime);
   /// First nothing runs any more, then the parts go.
   ~Parts();
   Parts(const Parts&) = delete;
@@ -50,7 +50,6 @@ struct Agent::Parts {
 
   const AgentParams& params;
   Runtime& runtime;
-  std::string tree;  ///< the file found
   wire::Wire* robot_wire{};
   std::unique_ptr<Edges> edges{};
   Unit command, planner, router, sensors;

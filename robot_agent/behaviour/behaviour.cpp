@@ -14,8 +14,7 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
       manual_(mux.connect("manual", Stick::kFresh)),
       smart_(mux.connect("smart_joystick", Stick::kFresh)),
       waypoint_(mux.connect("waypoint", params.goal_age)),
-      requested_(&mode_table().front()),
-      decision_{requested_, false, Reason::none} {}
+      decision_{&guard_.admitted(), false, Reason::none} {}
 
 Facts Behaviour::facts(Time now) const {
   Facts f = inputs_.sense(now);
@@ -32,19 +31,20 @@ Result<void> Behaviour::refuse(Reason reason, std::string_view mode) const {
   return {reason, std::string(mode) + ": " + std::string(describe(reason))};
 }
 
+Reason Behaviour::not_run(const ModeRow& row) const {
+  if (&row == &mode_table().front()) return Reason::none;
+  if (!decider_->refusal().empty()) return Reason::tree_refused;
+  return decider_->installed(row) ? Reason::none : Reason::mode_not_installed;
+}
+
 Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   const ModeRow* row = find_mode(mode);
-  if (row && !decider_->installed(*row)) return refuse(Reason::mode_not_installed, mode);
   if (!row)
     return refuse(known_but_not_installed(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
-  // Who is in a manual mode already need not centre his stick to ask for it again.
-  const bool goes_on = row == decision_.mode && row->manual();
-  if (!goes_on) {
-    const Reason reason = entry_refusal(*row, facts(now));
-    if (reason != Reason::none) return refuse(reason, mode);
-  }
-  enter(*row, now);
-  return {};
+  if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, mode);
+  if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
+    return refuse(reason, mode);
+  return enter(*row, now);
 }
 
 Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Time now) {
@@ -53,27 +53,27 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Time now) {
   if (!std::isfinite(goal.x()) || !std::isfinite(goal.y()) || std::isinf(goal.z()) ||
       std::hypot(goal.x(), goal.y()) > params_.farthest_goal)
     return {Reason::out_of_range, "goto: the goal is no place within 10 km"};
+  if (const Reason reason = not_run(row); reason != Reason::none) return refuse(reason, "goto");
   Facts f = facts(now);
   f.goal_known = true;
   f.goal_free = inputs_.goal_free(goal.head<2>());
-  const Reason reason = entry_refusal(row, f);
+  const Reason reason = guard_.admit(row, Commander::holder, f);
   if (reason != Reason::none) return refuse(reason, "goto");
   const bool given = !std::isnan(goal.z()), on_floor = !given && !inputs_.height;
   const double height = given ? goal.z() : on_floor ? 0.0 : inputs_.height();
   goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), height}, on_floor};
   progress_ = {};
-  enter(row, now);
-  return {};
+  return enter(row, now);
 }
 
-void Behaviour::enter(const ModeRow& row, Time now) {
+Result<void> Behaviour::enter(const ModeRow& row, Time now) {
   if (row.accepts != Accepts::goal) goal_ = {false, false, goal_.id, Eigen::Vector3d::Zero(), false};
-  requested_ = &row;
   listens_ = false;
   fell_because_ = Reason::none;
   idle_told_ = blocked_told_ = false;
   idle_since_ = free_since_ = now;
   tick(now);
+  return decision_.mode == &row ? Result<void>{} : refuse(decision_.reason, row.name);
 }
 
 void Behaviour::stop_changed(bool stopped, Time now) {
@@ -86,10 +86,7 @@ void Behaviour::holder_changed(Time now) {
   stick_.forget();
   idle_since_ = now;
   idle_told_ = false;
-  if (requested_->manual()) {
-    requested_ = &mode_table().front();
-    fell_because_ = Reason::not_holder;
-  }
+  if (guard_.holder_changed()) fell_because_ = Reason::not_holder;
   tick(now);
 }
 
@@ -115,19 +112,19 @@ Result<void> Behaviour::stick(const Twist2& twist, Time now) {
 
 void Behaviour::resume_goal(Time now) {
   if (!goal_.known) return;
-  requested_ = find_mode("waypoint");
+  guard_.readmit(*find_mode("waypoint"));
   tick(now);
 }
 
 void Behaviour::hold(Reason reason, Time now) {
-  requested_ = &mode_table().front();
+  guard_.hold();
   fell_because_ = reason;
   idle_since_ = now;
   tick(now);
 }
 
 KeptBehaviour Behaviour::kept() const {
-  return {std::string(requested_->name),
+  return {std::string(guard_.admitted().name),
           fell_because_,
           goal_.known,
           goal_.reached,
@@ -140,7 +137,7 @@ void Behaviour::restore(const KeptBehaviour& kept, bool stopped, bool resume, bo
   const ModeRow* row = find_mode(kept.mode);
   const bool autonomous = row && row->accepts == Accepts::goal && kept.goal_known;
   goal_ = {kept.goal_known, kept.goal_reached, kept.goal_id, kept.goal, kept.goal_on_floor};
-  requested_ = autonomous && resume ? row : &mode_table().front();
+  guard_.readmit(autonomous && resume ? *row : mode_table().front());
   fell_because_ = kept.reason;
   stopped_ = stopped;
   listens_ = listens;
@@ -154,12 +151,14 @@ void Behaviour::go_on(Time now) {
 void Behaviour::tick(Time now) {
   if (!begun_) idle_since_ = free_since_ = now;
   begun_ = true;
-  decision_ = decider_->decide(requested_->name, facts(now), now);
+  const ModeRow& requested = guard_.admitted();
+  const Facts f = facts(now);
+  decision_ = guard_.judge(decider_->decide(requested.name, f, now), f);
   if (listens_ && decision_.runs) {
     decision_.runs = false;
     decision_.reason = Reason::just_restarted;
   }
-  if (decision_.mode != requested_) fall(decision_);
+  if (decision_.mode != &requested) fall(requested, decision_);
   mux_.enable(decision_.runs ? decision_.mode->name : std::string_view{}, now);
   feed_waypoint(now);
   watch(now);
@@ -169,11 +168,9 @@ void Behaviour::tick(Time now) {
   }
 }
 
-void Behaviour::fall(const Decision& decision) {
+void Behaviour::fall(const ModeRow& from, const Decision& decision) {
   fell_because_ = decision.reason;
-  const std::string text =
-      std::string(requested_->name) + " ended: " + std::string(describe(decision.reason));
-  requested_ = decision.mode;
+  const std::string text = std::string(from.name) + " ended: " + std::string(describe(decision.reason));
   if (decision.reason == Reason::stopped) return;  // who stopped it was told already
   const bool stale = decision.reason == Reason::joystick_stale;
   if (stale && stick_.centred())  // the last that was heard of it: it was let go, and nothing was moving
@@ -246,8 +243,10 @@ BehaviourView Behaviour::view() const {
 std::vector<ModeOption> Behaviour::options(Time now) const {
   const Facts f = facts(now);
   std::vector<ModeOption> all;
-  for (const ModeRow& row : mode_table())
-    all.push_back({row.name, decider_->installed(row) ? entry_refusal(row, f) : Reason::mode_not_installed});
+  for (const ModeRow& row : mode_table()) {
+    const Reason reason = not_run(row);
+    all.push_back({row.name, reason != Reason::none ? reason : entry_refusal(row, f)});
+  }
   return all;
 }
 

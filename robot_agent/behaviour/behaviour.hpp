@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "robot_agent/behaviour/decider.hpp"
+#include "robot_agent/behaviour/motion_guard.hpp"
 #include "robot_agent/behaviour/stick.hpp"
 #include "robot_agent/command/requests.hpp"
 #include "robot_agent/command/types.hpp"
@@ -48,8 +49,8 @@ struct BehaviourParams {
   Defects defects{};
 };
 
-/// Modes and goals: answers requests by the mode table, has the tree decide, enables its source at the
-/// mux. Runs on the command strand; every call takes effect before it returns.
+/// Modes and goals: answers requests by the mode table, has the tree decide, and enables at the mux what the
+/// guard lets through of that. Runs on the command strand; every call takes effect before it returns.
 class Behaviour : public Requests {
  public:
   struct Inputs {
@@ -94,12 +95,17 @@ class Behaviour : public Requests {
   /// Every mode of the table, and whether it could be entered now.
   std::vector<ModeOption> options(Time now) const;
   const ModeRow& mode() const { return *decision_.mode; }
+  /// Why the behaviour tree was refused; empty: it runs.
+  const std::string& tree_refusal() const { return decider_->refusal(); }
 
  private:
   Facts facts(Time now) const;
   Result<void> refuse(Reason reason, std::string_view mode) const;
-  void enter(const ModeRow& row, Time now);
-  void fall(const Decision& decision);
+  /// Why the tree does not run the mode; none: it does.
+  Reason not_run(const ModeRow& row) const;
+  /// Runs a mode that the guard admitted. Errors: the reason why the tree does not.
+  Result<void> enter(const ModeRow& row, Time now);
+  void fall(const ModeRow& from, const Decision& decision);
   void feed_waypoint(Time now);
   void watch(Time now);
   GoalState goal_state() const;
@@ -119,7 +125,7 @@ class Behaviour : public Requests {
   Outputs outputs_;
   Mux::Output manual_, smart_, waypoint_;
 
-  const ModeRow* requested_;
+  MotionGuard guard_{};
   Decision decision_;
   Reason fell_because_{Reason::none};  ///< of the last fall to hold, until the next request
   bool stopped_{};

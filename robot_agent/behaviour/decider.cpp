@@ -1,29 +1,11 @@
 #include "robot_agent/behaviour/decider.hpp"
 
-#include <algorithm>
+#include "robot_agent/behaviour/tree_check.hpp"
 
 namespace adit::agent {
 namespace {
 
 bt::NodeStatus status(bool holds) { return holds ? bt::NodeStatus::success : bt::NodeStatus::failure; }
-
-// The modes that the tree runs. Every mode that is not optional must be reachable: a row without a subtree
-// would be refused in silence by the tree.
-Result<std::set<std::string, std::less<>>> modes_of(const bt::Tree& tree) {
-  std::set<std::string, std::less<>> runs;
-  tree.for_each([&](const bt::Node& node, std::size_t) {
-    if (node.id() != "Run") return;
-    const auto mode = node.config().ports.find("mode");
-    if (mode != node.config().ports.end()) runs.insert(mode->second);
-  });
-  for (const ModeRow& row : mode_table())
-    if (!row.optional && !runs.contains(row.name))
-      return Error{Reason::not_supported, "the behaviour tree has no Run for mode " + std::string(row.name)};
-  for (const std::string& mode : runs)
-    if (!find_mode(mode))
-      return Error{Reason::mode_unknown, "the behaviour tree runs the unknown mode " + mode};
-  return runs;
-}
 
 }  // namespace
 
@@ -64,34 +46,51 @@ bt::NodeStatus Decider::choose(bt::Leaf& leaf, bool runs) {
   return bt::NodeStatus::success;
 }
 
-Result<std::unique_ptr<Decider>> Decider::load(const std::string& tree_file) {
+Result<std::unique_ptr<Decider>> Decider::make(
+    const std::function<Result<bt::Tree>(const bt::Registry&)>& load) {
   std::unique_ptr<Decider> decider(new Decider);
   const auto leaves = decider->registry();
   if (!leaves) return leaves.error();
-  return finish(std::move(decider), bt::load_tree_file(*leaves, tree_file));
-}
-
-Result<std::unique_ptr<Decider>> Decider::load_text(const std::string& xml) {
-  std::unique_ptr<Decider> decider(new Decider);
-  const auto leaves = decider->registry();
-  if (!leaves) return leaves.error();
-  return finish(std::move(decider), bt::load_tree_text(*leaves, xml));
-}
-
-Result<std::unique_ptr<Decider>> Decider::finish(std::unique_ptr<Decider> decider, Result<bt::Tree> tree) {
+  auto tree = load(*leaves);
   if (!tree) return tree.error();
-  auto modes = modes_of(*tree);
-  if (!modes) return modes.error();
-  decider->modes_ = std::move(*modes);
   decider->tree_ = std::move(*tree);
+  decider->tree_.for_each([&](const bt::Node& node, std::size_t) {
+    const auto mode = node.config().ports.find("mode");
+    if (node.id() == "Run" && mode != node.config().ports.end()) decider->modes_.insert(mode->second);
+  });
   decider->tree_.on_error([d = decider.get()](const bt::Node& node, std::string_view what) {
     d->error_ = node.name() + ": " + std::string(what);
   });
   return decider;
 }
 
+Result<std::unique_ptr<Decider>> Decider::load_unchecked(const std::string& tree_file) {
+  return make([&](const bt::Registry& leaves) { return bt::load_tree_file(leaves, tree_file); });
+}
+
+Result<std::unique_ptr<Decider>> Decider::load(const std::string& tree_file) {
+  auto decider = load_unchecked(tree_file);
+  if (!decider) return decider;
+  if (const auto checked = check_tree((*decider)->tree_); !checked) return checked.error();
+  return decider;
+}
+
+Result<std::unique_ptr<Decider>> Decider::load_text(const std::string& xml) {
+  auto decider = make([&](const bt::Registry& leaves) { return bt::load_tree_text(leaves, xml); });
+  if (!decider) return decider;
+  if (const auto checked = check_tree((*decider)->tree_); !checked) return checked.error();
+  return decider;
+}
+
+std::unique_ptr<Decider> Decider::refused(const Error& why) {
+  std::unique_ptr<Decider> decider(new Decider);
+  decider->refusal_ = why.text;
+  return decider;
+}
+
 Decision Decider::decide(std::string_view requested, const Facts& facts, Time now) {
   const ModeRow* hold = &mode_table().front();
+  if (tree_.empty()) return {hold, false, Reason::tree_refused};
   requested_ = requested;
   facts_ = facts;
   decision_ = {hold, false, Reason::none};

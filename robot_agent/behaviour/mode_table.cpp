@@ -7,26 +7,25 @@ namespace adit::agent {
 namespace {
 
 constexpr Condition kNotStopped{"NotStopped", Reason::stopped, [](const Facts& f) { return !f.stopped; },
-                                false};
+                                Scope::ending};
 constexpr Condition kDriverAlive{"DriverAlive", Reason::driver_silent,
-                                 [](const Facts& f) { return f.driver_alive; }, false};
+                                 [](const Facts& f) { return f.driver_alive; }, Scope::lasting};
 constexpr Condition kLocalised{"Localised", Reason::no_localisation,
-                               [](const Facts& f) { return f.localised; }, false};
+                               [](const Facts& f) { return f.localised; }, Scope::lasting};
 constexpr Condition kTerrainFresh{"TerrainFresh", Reason::terrain_stale,
-                                  [](const Facts& f) { return f.terrain_fresh; }, false};
+                                  [](const Facts& f) { return f.terrain_fresh; }, Scope::lasting};
 constexpr Condition kStickFresh{"StickFresh", Reason::joystick_stale,
-                                [](const Facts& f) { return f.stick_fresh; }, true};
+                                [](const Facts& f) { return f.stick_fresh; }, Scope::entry};
 constexpr Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
-                                  [](const Facts& f) { return f.stick_centred; }, true};
+                                  [](const Facts& f) { return f.stick_centred; }, Scope::entry};
 constexpr Condition kStickKept{"StickKept", Reason::joystick_stale,
-                               [](const Facts& f) { return f.stick_kept; }, false};
+                               [](const Facts& f) { return f.stick_kept; }, Scope::ending};
 constexpr Condition kGoalKnown{"GoalKnown", Reason::goal_missing, [](const Facts& f) { return f.goal_known; },
-                               false};
+                               Scope::ending};
 constexpr Condition kGoalFree{"GoalFree", Reason::goal_unreachable,
-                              [](const Facts& f) { return f.goal_free; }, true};
-
+                              [](const Facts& f) { return f.goal_free; }, Scope::entry};
 constexpr Condition kProgramFresh{"ProgramFresh", Reason::program_silent,
-                                  [](const Facts& f) { return f.program_fresh; }, false};
+                                  [](const Facts& f) { return f.program_fresh; }, Scope::lasting};
 
 constexpr std::array kAll{kNotStopped,   kDriverAlive, kLocalised, kTerrainFresh, kStickFresh,
                           kStickCentred, kStickKept,   kGoalKnown, kGoalFree,     kProgramFresh};
@@ -39,15 +38,25 @@ constexpr std::array kWaypoint{kNotStopped, kDriverAlive, kLocalised, kTerrainFr
 
 constexpr std::array kExternal{kNotStopped, kDriverAlive, kProgramFresh};
 
+constexpr CommandedBy kHolder{true, false}, kHolderOrAgent{true, true};
+
 constexpr std::array kTable{
-    ModeRow{"hold", "holder", Accepts::nothing, GoalOnLeaving::none, OnFailure::falls_to_hold, {}},
-    ModeRow{"manual", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold, kManual},
-    ModeRow{"smart_joystick", "holder", Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold,
-            kSmart},
-    ModeRow{"waypoint", "holder", Accepts::goal, GoalOnLeaving::cleared, OnFailure::pauses, kWaypoint},
+    ModeRow{"hold",
+            kHolderOrAgent,
+            Accepts::nothing,
+            GoalOnLeaving::none,
+            OnFailure::falls_to_hold,
+            OnHandover::continues,
+            {}},
+    ModeRow{"manual", kHolder, Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold,
+            OnHandover::falls_to_hold, kManual},
+    ModeRow{"smart_joystick", kHolder, Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold,
+            OnHandover::falls_to_hold, kSmart},
+    ModeRow{"waypoint", kHolderOrAgent, Accepts::goal, GoalOnLeaving::cleared, OnFailure::pauses,
+            OnHandover::continues, kWaypoint},
     // Falls to hold when its program is silent: one that comes back must not move the robot by that alone.
-    ModeRow{"external", "holder", Accepts::program, GoalOnLeaving::none, OnFailure::falls_to_hold, kExternal,
-            true},
+    ModeRow{"external", kHolder, Accepts::program, GoalOnLeaving::none, OnFailure::falls_to_hold,
+            OnHandover::continues, kExternal, true},
 };
 
 constexpr std::array<std::string_view, 3> kNotInstalled{"explore", "convoy_follow", "get_out"};

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <span>
 #include <string_view>
 
@@ -20,27 +21,51 @@ struct Facts {
   bool program_fresh{};  ///< the program that steers from outside spoke within the last 0.5 s
 };
 
+/// When a condition is asked.
+enum class Scope {
+  entry,    ///< Only when the mode is entered.
+  lasting,  ///< On entry and while the mode lasts; the row's `on_failure` says what its failure does.
+  ending,   ///< The same, and its failure ends every mode, even one that pauses.
+};
+
 /// A condition: the leaf of that name in the behaviour tree, and what the operator reads when it fails.
 struct Condition {
   std::string_view leaf{};
   Reason reason{};
   bool (*holds)(const Facts&){};
-  bool entry_only{};  ///< asked when the mode is entered, not while it lasts
+  Scope scope{};
+
+  bool entry_only() const { return scope == Scope::entry; }
+};
+
+/// Who asks for a mode.
+enum class Commander : std::uint8_t {
+  holder = 1,  ///< The operator who holds the robot.
+  agent = 2,   ///< The robot's own safeguards.
+};
+/// The commanders that may ask for a mode.
+struct CommandedBy {
+  bool holder{};
+  bool agent{};
+  constexpr bool allows(Commander who) const { return who == Commander::holder ? holder : agent; }
 };
 
 /// What a mode takes: from its holder, or from a program on the robot.
 enum class Accepts { nothing, stick, goal, program };
 /// What becomes of the goal when the mode is left for another.
 enum class GoalOnLeaving { none, cleared };
-/// When a condition fails while the mode lasts, or the holder changes.
+/// What the failure of a lasting condition does.
 enum class OnFailure { falls_to_hold, pauses };
+/// What a change of holder does.
+enum class OnHandover { continues, falls_to_hold };
 
 struct ModeRow {
   std::string_view name{};
-  std::string_view commanded_by{};  ///< who may ask for it
+  CommandedBy commanded_by{};
   Accepts accepts{};
-  GoalOnLeaving goal{};    ///< on stop and restart a goal is always kept
-  OnFailure on_failure{};  ///< `pauses`: autonomous, goes on under the next holder
+  GoalOnLeaving goal{};  ///< On stop and restart a goal is always stored.
+  OnFailure on_failure{};
+  OnHandover on_handover{};
   std::span<const Condition> conditions{};
 
   bool optional{};  ///< a tree may do without it: then it is not installed

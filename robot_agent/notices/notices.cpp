@@ -39,6 +39,10 @@ void Notices::restored(const Restored& found, bool same_boot) const {
           robot_ + (found.hold ? " holds: " : ": ") + "its state was damaged (" + found.text + ")"});
 }
 
+void Notices::tree_refused(const std::string& why) const {
+  send({{}, Severity::error, "tree_refused", Reason::tree_refused, robot_ + " runs in hold: " + why});
+}
+
 void Notices::rival(const wire::ParticipantId& writer) const {
   send({{},
         Severity::error,

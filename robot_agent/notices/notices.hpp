@@ -23,6 +23,8 @@ class Notices {
 
   /// Says what a restart restored or lost. `same_boot`: the computer was not restarted.
   void restored(const Restored& found, bool same_boot) const;
+  /// `why`: file, line and what is missing.
+  void tree_refused(const std::string& why) const;
   void rival(const wire::ParticipantId& writer) const;
   void driver_lost() const;
   /// `stops`: the collision monitor stops the robot in its present mode; otherwise it only slows it down.

@@ -20,7 +20,6 @@
 #include "core/store/file_disk.hpp"
 #include "core/wire/link_file.hpp"
 #include "robot_agent/agent.hpp"
-#include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/program/console.hpp"
 #include "robot_agent/program/memory_limit.hpp"
 #include "robot_agent/program/parent.hpp"
@@ -81,9 +80,6 @@ Result<RobotConfig> load(const Options& options) {
   if (!options.log.empty() && !level_from_name(options.log, config->log))
     return Error{Reason::bad_argument, "--log is trace, debug, info, warn, error or off"};
   if (!options.record.empty()) config->record = options.record;
-  // Here, and not in the agent alone: a parent would start it again and again.
-  if (const auto tree = Decider::load(config->tree); !tree)
-    return Error{tree.error().reason, tree.error().text + " (tree: " + config->tree + ")"};
   return config;
 }
 

@@ -59,6 +59,12 @@ void read_battery(const config::Node& node, RobotConfig& c) {
     battery.child("at_last").fail(Reason::out_of_range, "expected hold or return");
 }
 
+/// A tree that is missing stays as it was written: the agent starts, holds and reports it.
+std::string find_tree(const std::string& tree, const std::string& beside) {
+  const auto found = config::find_file(tree, beside);
+  return found ? std::filesystem::absolute(*found).lexically_normal().string() : tree;
+}
+
 }  // namespace
 
 std::string state_folder(const RobotConfig& config) {
@@ -81,12 +87,7 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
       node.child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
   }
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
-  if (node.has("tree")) {
-    if (auto tree = config::find_file(node.text("tree"), file))
-      c.tree = std::filesystem::absolute(*tree).lexically_normal().string();
-    else
-      node.child("tree").fail(tree.error().reason, tree.error().text);
-  }
+  if (node.has("tree")) c.tree = find_tree(node.text("tree"), file);
   read_link_loss(node, c.link_loss);
   read_battery(node, c);
   if (node.has("after_restart")) {
@@ -126,11 +127,7 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.robot_domain = static_cast<std::uint32_t>(root->integer("robot_domain", 0, 232, 0));
   c.memory_limit = root->number("memory_limit", config::within(0.0, 1e6), c.memory_limit);
   read_robot_keys(*root, file, c);
-  if (!root->has("tree")) {
-    auto tree = config::find_file(c.tree, file);
-    if (!tree) return tree.error();
-    c.tree = std::filesystem::absolute(*tree).lexically_normal().string();
-  }
+  if (!root->has("tree")) c.tree = find_tree(c.tree, file);
   c.state = root->text("state", "");
   c.record = root->text("record", "");
   if (!level_from_name(root->text("log", "info"), c.log))

@@ -48,14 +48,15 @@ class Libraries {
 
 }  // namespace
 
-Result<AgentFactory> make_agent_factory(const std::string& defect) {
+Result<AgentFactory> make_agent_factory(const std::string& defect,
+                                        std::function<void(agent::AgentParams&)> adjust) {
   agent::Defects defects;
   if (!defect.empty()) {
     const auto known = agent::defect_from_name(defect);
     if (!known) return Error{Reason::bad_argument, "no defect of that name: " + defect};
     defects.active = *known;
   }
-  return AgentFactory([defects, libraries = std::make_shared<Libraries>()](
+  return AgentFactory([defects, adjust = std::move(adjust), libraries = std::make_shared<Libraries>()](
                           const AgentContext& context) -> Result<std::unique_ptr<RehearsedAgent>> {
     agent::AgentParams params = agent::agent_params(context.spec.settings);
     params.seed = context.seed;
@@ -63,6 +64,7 @@ Result<AgentFactory> make_agent_factory(const std::string& defect) {
     params.library = [libraries](const Platform& platform) { return libraries->of(platform); };
     params.disk = context.disk;
     params.end = context.end;
+    if (adjust) adjust(params);
     auto agent = std::make_unique<ProductAgent>(std::move(params), context);
     if (auto started = agent->start(); !started) return started.error();
     return std::unique_ptr<RehearsedAgent>(std::move(agent));

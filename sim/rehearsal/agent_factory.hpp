@@ -10,6 +10,10 @@
 #include "core/wire/wire.hpp"
 #include "sim/rehearsal/scenario.hpp"
 
+namespace adit::agent {
+struct AgentParams;
+}
+
 namespace adit::sim {
 
 /// An agent that runs in a rehearsal, as its faults see it; it stops when it is destroyed.
@@ -45,7 +49,9 @@ struct AgentContext {
 using AgentFactory = std::function<Result<std::unique_ptr<RehearsedAgent>>(const AgentContext&)>;
 
 /// The product's agent. `defect`: one of robot_agent/defects.hpp, in the library adit::rehearsal_defects
-/// only; there the empty name means none. Reason::bad_argument for a name it does not know.
-Result<AgentFactory> make_agent_factory(const std::string& defect = {});
+/// only; there the empty name means none. Reason::bad_argument for a name it does not know. `adjust`, for
+/// tests: changes what each agent is made of.
+Result<AgentFactory> make_agent_factory(const std::string& defect = {},
+                                        std::function<void(agent::AgentParams&)> adjust = {});
 
 }  // namespace adit::sim

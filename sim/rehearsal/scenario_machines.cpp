@@ -3,7 +3,7 @@
 
 #include "core/config/platform_file.hpp"
 #include "core/config/search.hpp"
-#include "robot_agent/behaviour/decider.hpp"
+#include "robot_agent/behaviour/tree_check.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
 
 namespace adit::sim {
@@ -52,12 +52,12 @@ void read_battery(const Node& robot, RobotSpec& spec) {
   spec.drain = battery.number("drain", config::within(0.0, 1.0), spec.drain);
 }
 
-// A tree that the product refuses makes the scenario unreadable.
-void check_tree(const Node& robot, const RobotSpec& spec) {
+// A tree that is missing, or that the product refuses, makes the scenario unreadable.
+void check_tree(const Node& robot, const Scenario& scenario, const RobotSpec& spec) {
   const bool own = robot.has("tree");
-  if (!std::filesystem::path(spec.settings.tree).is_absolute())
-    return;  // the one that comes along, or not found
-  const auto tree = agent::Decider::load(spec.settings.tree);
+  if (!own && !robot.has("file")) return;  // the one that comes along
+  const auto file = config::find_file(spec.settings.tree, scenario.file.string());
+  const auto tree = file ? agent::check_tree(*file) : Result<void>{file.error()};
   if (!tree) robot.child(own ? "tree" : "file").fail(tree.error().reason, tree.error().text);
 }
 
@@ -76,7 +76,7 @@ RobotSpec read_spec(const Node& robot, const Scenario& scenario, Duration lock_l
   read_battery(robot, spec);
   spec.settings.name = spec.id;
   spec.settings.start = spec.pose;
-  check_tree(robot, spec);
+  check_tree(robot, scenario, spec);
   return spec;
 }
 

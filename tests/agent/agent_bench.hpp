@@ -56,9 +56,10 @@ class AgentBench {
     }
   };
 
-  explicit AgentBench(AgentParams params = {}, std::uint64_t seed = 1)
+  explicit AgentBench(AgentParams params = {}, std::uint64_t seed = 1,
+                      const std::string& tree = source_folder() + "/config/trees/robot.xml")
       : params_(std::move(params)), scheduler_(seed), ether_(scheduler_, {seed}) {
-    params_.tree = source_folder() + "/config/trees/robot.xml";
+    params_.tree = tree;
     machine_ = scheduler_.machine("r1", 77777s);
     world_ = scheduler_.machine("world", 3s);
     strand_ = world_->strand("bench");

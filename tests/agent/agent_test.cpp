@@ -282,7 +282,30 @@ TEST(AgentRun, SameSeedSameRun) {
   EXPECT_EQ(run(3), run(3));
 }
 
-TEST(AgentRun, BadNameAndMissingTreeAreErrors) {
+TEST(AgentRun, RefusedTreeHoldsAndSaysSo) {
+  // One that contradicts the mode table, and one that is not there.
+  for (const std::string& tree : {source_folder() + "/tests/rehearsal/hostile_trees/without_not_stopped.xml",
+                                  std::string("/nowhere/robot.xml")}) {
+    AgentBench bench(AgentParams{}, 1, tree);
+    auto& op = bench.join("op1");
+    bench.run(2s);
+    EXPECT_THAT(op.told(), testing::Contains("tree_refused"));
+    EXPECT_THAT(op.notices,
+                testing::Contains(testing::Property(&radio::Notification::text, testing::HasSubstr(tree))));
+    ASSERT_EQ(bench.ask(op, radio::CMD_TAKE), Reason::none);
+    EXPECT_EQ(op.behaviour.mode(), "hold");
+    EXPECT_EQ(op.behaviour.reason(), static_cast<std::uint16_t>(Reason::tree_refused));
+    EXPECT_EQ(bench.ask(op, radio::CMD_GOTO, {}, 3, 0), Reason::tree_refused);
+    EXPECT_EQ(bench.ask(op, radio::CMD_MODE, "manual"), Reason::tree_refused);
+    EXPECT_EQ(bench.ask(op, radio::CMD_MODE, "fly"), Reason::mode_unknown);
+    EXPECT_EQ(bench.ask(op, radio::CMD_MODE, "hold"), Reason::none);
+    EXPECT_EQ(bench.ask(op, radio::CMD_STOP), Reason::none);
+    EXPECT_EQ(bench.ask(op, radio::CMD_RESET), Reason::none);
+    EXPECT_EQ(bench.command, Twist2{});
+  }
+}
+
+TEST(AgentRun, BadNameIsAnError) {
   VirtualScheduler scheduler(1);
   wire::Ether ether(scheduler, {});
   const auto machine = scheduler.machine("r1", 0s);
@@ -290,9 +313,6 @@ TEST(AgentRun, BadNameAndMissingTreeAreErrors) {
   AgentParams params{};
   params.name = "no good";
   EXPECT_EQ(Agent(params, *machine, *radio, *robot).start().reason(), Reason::bad_argument);
-  params.name = "r1";
-  params.tree = "/nowhere/robot.xml";
-  EXPECT_EQ(Agent(params, *machine, *radio, *robot).start().reason(), Reason::cannot_read);
 }
 
 }  // namespace

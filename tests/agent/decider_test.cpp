@@ -48,13 +48,12 @@ TEST(Decider, FollowsTheTableWhenAConditionFails) {
   for (const ModeRow& row : mode_table())
     for (const Condition& condition : row.conditions) {
       const Decision d = decider->decide(row.name, spoilt(condition), now += 50ms);
-      if (condition.entry_only) {
+      if (condition.entry_only()) {
         EXPECT_TRUE(d.runs) << row.name << " " << condition.leaf;
         continue;
       }
       EXPECT_EQ(name(d.reason), name(condition.reason)) << row.name;
-      const bool pauses = row.on_failure == OnFailure::pauses && condition.reason != Reason::stopped &&
-                          condition.reason != Reason::goal_missing;
+      const bool pauses = row.on_failure == OnFailure::pauses && condition.scope != Scope::ending;
       EXPECT_EQ(d.mode->name, pauses ? row.name : "hold") << condition.leaf;
       EXPECT_TRUE(!d.runs || d.mode->name == "hold");
     }
@@ -73,22 +72,19 @@ TEST(Decider, MissingFileAndBrokenTreesAreErrors) {
   };
   EXPECT_FALSE(with("<Fallback><Fly/></Fallback>"));
   EXPECT_FALSE(with("<Fallback><Run/></Fallback>"));
-  const auto incomplete = with("<Run mode=\"hold\"/>");
-  ASSERT_FALSE(incomplete);
-  EXPECT_THAT(incomplete.error().text, testing::HasSubstr("manual"));
-  const auto unknown = with(
-      "<Fallback><Run mode=\"hold\"/><Run mode=\"manual\"/><Run mode=\"smart_joystick\"/><Run "
-      "mode=\"waypoint\"/>"
-      "<Run mode=\"fly\"/></Fallback>");
-  ASSERT_FALSE(unknown);
-  EXPECT_EQ(unknown.reason(), Reason::mode_unknown);
+}
+
+TEST(Decider, RefusedTreeHoldsWithTheReason) {
+  const auto decider = Decider::refused({Reason::cannot_read, "robot.xml: no such file"});
+  EXPECT_EQ(decider->refusal(), "robot.xml: no such file");
+  const Decision d = decider->decide("waypoint", kAllGood, Time{});
+  EXPECT_EQ(d.mode->name, "hold");
+  EXPECT_FALSE(d.runs);
+  EXPECT_EQ(d.reason, Reason::tree_refused);
 }
 
 TEST(Decider, TreeThatFailsHolds) {
-  const auto decider = Decider::load_text(
-      "<root BTCPP_format=\"4\" main_tree_to_execute=\"T\"><BehaviorTree ID=\"T\"><Sequence><AlwaysFailure/>"
-      "<Run mode=\"hold\"/><Run mode=\"manual\"/><Run mode=\"smart_joystick\"/><Run mode=\"waypoint\"/>"
-      "</Sequence></BehaviorTree></root>");
+  const auto decider = Decider::load_unchecked(source_folder() + "/tests/rehearsal/hostile_trees/fails.xml");
   ASSERT_TRUE(decider) << decider.error().text;
   const Decision d = (*decider)->decide("manual", kAllGood, Time{});
   EXPECT_EQ(d.mode->name, "hold");

@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/motion/rival.hpp"
@@ -64,8 +66,12 @@ TEST_F(ExternalMode, WhatIsNoNumberIsSilence) {
 }
 
 TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
-  const auto decider = Decider::load_text(R"(<root BTCPP_format="4"><BehaviorTree ID="T"><Fallback>
-    <Run mode="manual"/><Run mode="smart_joystick"/><Run mode="waypoint"/><Run mode="hold"/></Fallback></BehaviorTree></root>)");
+  std::ifstream file(source_folder() + "/config/trees/robot.xml");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string xml = text.str();
+  const std::string subtree = "<SubTree ID=\"External\" name=\"external\"/>";
+  const auto decider = Decider::load_text(xml.erase(xml.find(subtree), subtree.size()));
   ASSERT_TRUE(decider) << decider.error().text;
   EXPECT_FALSE((*decider)->installed(*find_mode("external")));
   EXPECT_TRUE((*decider)->installed(*find_mode("waypoint")));

@@ -40,6 +40,14 @@ TEST(RobotConfig, ATreeBesideTheFileComesFirst) {
   EXPECT_EQ(config->tree, tree);
 }
 
+TEST(RobotConfig, AMissingTreeIsLeftToTheAgent) {
+  const live::Folder folder;
+  const auto config =
+      load_robot_config(folder.write("r.yaml", "name: r1\nplatform: wheeled\ntree: oak.xml\n"));
+  ASSERT_TRUE(config) << config.error().text;
+  EXPECT_EQ(config->tree, "oak.xml");
+}
+
 TEST(RobotConfig, StateIsKeptWhereItSaysOrInTheUsualPlace) {
   const live::Folder folder;
   const auto state = [&](const std::string& line) {
@@ -78,7 +86,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"short_pose", "name: r1\nplatform: wheeled\npose: [1, 2]\n", "r.yaml:3"},
         BadFile{"unknown_platform", "name: r1\nplatform: hovercraft\n",
                 "no 'hovercraft' in config/platforms; there are: aerial, car, legged, tracked, wheeled"},
-        BadFile{"missing_tree", "name: r1\nplatform: wheeled\ntree: oak.xml\n", "r.yaml:3"},
         BadFile{"radio_key", "name: r1\nplatform: wheeled\nradio: {domian: 3}\n", "domian"},
         BadFile{"domain_range", "name: r1\nplatform: wheeled\nrobot_domain: 500\n", "r.yaml:3"},
         BadFile{"lease", "name: r1\nplatform: wheeled\nlock_lease: -1\n", "r.yaml:3"},

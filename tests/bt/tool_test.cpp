@@ -124,6 +124,23 @@ TEST_F(Tool, CheckBuildsEveryTreeOfTheFile) {
   EXPECT_EQ(tree("run t.xml --ticks 1").status, 0);
 }
 
+TEST_F(Tool, CheckAsksARobotsTreeAgainstTheModeTable) {
+  const std::string folder = adit::source_folder() + "/tests/rehearsal/hostile_trees/";
+  const auto stop = tree("check " + folder + "without_not_stopped.xml");
+  EXPECT_EQ(stop.status, 1);
+  EXPECT_EQ(stop.out,
+            "tree: " + folder +
+                "without_not_stopped.xml:19: Run mode=\"manual\" lacks the condition NotStopped before "
+                "it\n");
+  write("fly.xml", "<root><BehaviorTree ID=\"M\">\n<Run mode=\"fly\"/></BehaviorTree></root>");
+  EXPECT_EQ(tree("check fly.xml").out, "tree: fly.xml:2: Run: the mode table has no mode 'fly'\n");
+  EXPECT_EQ(tree("check " + adit::source_folder() + "/config/trees/robot.xml").status, 0);
+  // A robot's tree with a leaf that the robot does not know.
+  write("dance.xml",
+        "<root><BehaviorTree ID=\"M\"><Sequence>\n<NotStopped/>\n<Dance/></Sequence></BehaviorTree></root>");
+  EXPECT_EQ(tree("check dance.xml").out.rfind("tree: dance.xml:3: ", 0), 0u);
+}
+
 TEST_F(Tool, WrongLeavesAreErrorsWithTheirLine) {
   write("t.xml", kTree);
   const auto run = [&](const std::string& yaml) {

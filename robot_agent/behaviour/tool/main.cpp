@@ -1,11 +1,13 @@
 // tree: checks, draws and dry-runs behaviour trees.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 
 #include "core/bt/draw.hpp"
 #include "core/bt/tool/leaves.hpp"
 #include "core/bt/tool/run.hpp"
 #include "core/config/usage.hpp"
+#include "robot_agent/behaviour/tree_check.hpp"
 
 namespace {
 
@@ -24,14 +26,26 @@ leaves.yaml scripts the results of leaves, by name or ID; one entry is used per 
   Drive:   [RUNNING, RUNNING, SUCCESS]
 Leaves that are neither built in nor scripted succeed.
 
+A tree with leaves of a robot's (Run, Pause, Requested, a condition of a mode) is checked against the mode table as well, as the
+robot does when it loads the tree.
+
 Exit status: 0 done, 1 the tree or the leaves are wrong (file:line on stderr), 2 wrong usage.)";
 
+int fail(const adit::Error& error) {
+  std::cerr << "tree: " << error.text << "\n";
+  return kBadInput;
+}
+
 int check(const std::string& file) {
-  const auto trees = check_tree_file(tool::dry_registry(std::make_shared<tool::DryRun>()), file);
-  if (!trees) {
-    std::cerr << "tree: " << trees.error().text << "\n";
-    return kBadInput;
-  }
+  const Registry leaves = tool::dry_registry(std::make_shared<tool::DryRun>());
+  const auto trees = check_tree_file(leaves, file);
+  if (!trees) return fail(trees.error());
+  const bool robots = std::any_of(trees->begin(), trees->end(), [&](const std::string& id) {
+    const auto tree = load_tree_file(leaves, file, id);
+    return tree && adit::agent::is_robot_tree(*tree);
+  });
+  if (robots)
+    if (const auto checked = adit::agent::check_tree(file); !checked) return fail(checked.error());
   std::cout << file << ": ok,";
   for (const auto& id : *trees) std::cout << " " << id;
   std::cout << "\n";
@@ -40,10 +54,7 @@ int check(const std::string& file) {
 
 int draw(const std::string& file, const std::string& id, bool dot) {
   const auto tree = load_tree_file(tool::dry_registry(std::make_shared<tool::DryRun>()), file, id);
-  if (!tree) {
-    std::cerr << "tree: " << tree.error().text << "\n";
-    return kBadInput;
-  }
+  if (!tree) return fail(tree.error());
   std::cout << (dot ? draw_dot(*tree) : draw_text(*tree));
   return 0;
 }

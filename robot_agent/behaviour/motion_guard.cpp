@@ -1,0 +1,44 @@
+#include "robot_agent/behaviour/motion_guard.hpp"
+
+namespace adit::agent {
+
+MotionGuard::MotionGuard() : hold_(&mode_table().front()), admitted_(hold_) {}
+
+Reason MotionGuard::admit(const ModeRow& row, Commander by, const Facts& facts) {
+  if (!row.commanded_by.allows(by)) return Reason::not_holder;
+  const bool goes_on = &row == admitted_ && row.manual();
+  if (!goes_on)
+    if (const Reason reason = entry_refusal(row, facts); reason != Reason::none) return reason;
+  admitted_ = &row;
+  return Reason::none;
+}
+
+void MotionGuard::readmit(const ModeRow& row) {
+  admitted_ = row.on_failure == OnFailure::pauses ? &row : hold_;
+}
+
+bool MotionGuard::holder_changed() {
+  if (admitted_->on_handover == OnHandover::continues) return false;
+  hold();
+  return true;
+}
+
+Decision MotionGuard::judge(const Decision& wanted, const Facts& facts) {
+  if (admitted_ == hold_) return {hold_, wanted.mode == hold_ && wanted.runs, wanted.reason};
+  const bool pauses = admitted_->on_failure == OnFailure::pauses;
+  for (const Condition& c : admitted_->conditions)
+    if ((c.scope == Scope::ending || (c.scope == Scope::lasting && !pauses)) && !c.holds(facts))
+      return fall(c.reason);
+  if (wanted.mode != admitted_ || (!wanted.runs && !pauses))
+    return fall(wanted.mode == hold_ && wanted.reason != Reason::none ? wanted.reason : Reason::tree_refused);
+  for (const Condition& c : admitted_->conditions)
+    if (c.scope == Scope::lasting && !c.holds(facts)) return {admitted_, false, c.reason};
+  return {admitted_, wanted.runs, wanted.reason};
+}
+
+Decision MotionGuard::fall(Reason reason) {
+  hold();
+  return {hold_, false, reason};
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,184 @@
+#include "robot_agent/behaviour/tree_check.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "robot_agent/behaviour/decider.hpp"
+
+namespace adit::agent {
+namespace {
+
+using bt::Hook;
+using bt::Node;
+using bt::NodeKind;
+using Names = std::set<std::string, std::less<>>;
+
+bool is_leaf(const Node& node, std::string_view id) {
+  return node.kind() != NodeKind::subtree && node.children().empty() && node.id() == id;
+}
+
+bool is_condition(const Node& node) {
+  const auto all = all_conditions();
+  return std::any_of(all.begin(), all.end(), [&](const Condition& c) { return is_leaf(node, c.leaf); });
+}
+
+std::string mode_of(const Node& node) {
+  const auto mode = node.config().ports.find("mode");
+  return mode == node.config().ports.end() ? std::string{} : mode->second;
+}
+
+/// The name under which a leaf counts as asked: a condition's, or `Requested mode="NAME"`.
+std::string requested(std::string_view mode) { return "Requested mode=\"" + std::string(mode) + "\""; }
+
+std::optional<std::string> asked_by(const Node& leaf) {
+  if (is_leaf(leaf, "Requested")) return requested(mode_of(leaf));
+  if (is_condition(leaf)) return leaf.id();
+  return std::nullopt;
+}
+
+/// The scripts that let a node answer without being ticked.
+bool may_be_passed_over(const Node& node) {
+  const auto has = [&](Hook hook) { return node.config().hooks[static_cast<std::size_t>(hook)] != nullptr; };
+  return has(Hook::success_if) || has(Hook::skip_if) || has(Hook::while_true);
+}
+
+bool is_reactive(const Node& node) {
+  return node.kind() == NodeKind::subtree || node.id() == "ReactiveSequence" ||
+         node.id() == "ReactiveFallback";
+}
+
+/// The conditions that were asked in this tick, and held, when the node succeeds. A node with such a
+/// condition is never skipped.
+Names guaranteed(const Node& node) {
+  if (may_be_passed_over(node)) return {};
+  if (const auto name = asked_by(node)) return {*name};
+  if (node.kind() == NodeKind::subtree) return guaranteed(*node.children().front());
+  Names all;
+  if (node.id() == "ReactiveSequence") {
+    for (const auto& child : node.children()) all.merge(guaranteed(*child));
+  } else if (node.id() == "ReactiveFallback") {
+    all = guaranteed(*node.children().front());
+    for (const auto& child : node.children()) {
+      const Names other = guaranteed(*child);
+      std::erase_if(all, [&](const std::string& name) { return !other.contains(name); });
+    }
+  }
+  return all;
+}
+
+std::string place(const Node& node) { return node.config().file + ":" + std::to_string(node.config().line); }
+
+class Checker {
+ public:
+  Result<void> run(const bt::Tree& tree) {
+    visit(tree.root(), {});
+    if (error_.empty())
+      for (const ModeRow& row : mode_table())
+        if (!row.optional && !runs_.contains(row.name))
+          refuse(tree.root(), "the tree has no Run for mode " + std::string(row.name));
+    if (error_.empty()) return {};
+    return {Reason::tree_refused, error_};
+  }
+
+ private:
+  void visit(const Node& node, Names asked) {
+    if (!error_.empty()) return;
+    path_.push_back(&node);
+    if (is_leaf(node, "Run") || is_leaf(node, "Pause"))
+      see_decision(node, asked);
+    else if (is_leaf(node, "Requested"))
+      (void)row_of(node);
+    for (const auto& child : node.children()) {
+      visit(*child, asked);
+      if (node.id() == "ReactiveSequence") asked.merge(guaranteed(*child));
+    }
+    path_.pop_back();
+  }
+
+  void see_decision(const Node& leaf, const Names& asked) {
+    const ModeRow* row = row_of(leaf);
+    if (!row) return;
+    const bool runs = leaf.id() == "Run";
+    if (runs) runs_.insert(row->name);
+    if (row == &mode_table().front()) return;
+    if (!runs && row->on_failure != OnFailure::pauses)
+      return refuse(leaf, std::string(row->name) + " cannot pause: it falls to hold");
+    require(leaf, requested(row->name), asked);
+    for (const Condition& c : row->conditions)
+      if (runs ? !c.entry_only() : c.scope == Scope::ending) require(leaf, std::string(c.leaf), asked);
+  }
+
+  const ModeRow* row_of(const Node& leaf) {
+    const std::string mode = mode_of(leaf);
+    const ModeRow* row = find_mode(mode);
+    if (!row) refuse(leaf, leaf.id() + ": the mode table has no mode '" + mode + "'");
+    return row;
+  }
+
+  void require(const Node& leaf, const std::string& condition, const Names& asked) {
+    if (asked.contains(condition)) return;
+    const std::string what = leaf.id() + " mode=\"" + mode_of(leaf) + "\"";
+    refuse(leaf, what + " lacks the condition " + condition + hint(condition));
+  }
+
+  /// Why a condition that precedes the leaf does not count; empty when there is none.
+  std::string hint(const std::string& condition) const {
+    for (std::size_t i = path_.size() - 1; i-- > 0;)
+      for (const auto& child : path_[i]->children()) {
+        if (child.get() == path_[i + 1]) break;
+        std::vector<const Node*> way{path_[i]};
+        if (find(*child, condition, way)) return ": " + blame(way);
+      }
+    return " before it";
+  }
+
+  static bool find(const Node& node, const std::string& condition, std::vector<const Node*>& way) {
+    way.push_back(&node);
+    if (asked_by(node) == condition) return true;
+    for (const auto& child : node.children())
+      if (find(*child, condition, way)) return true;
+    way.pop_back();
+    return false;
+  }
+
+  static std::string blame(const std::vector<const Node*>& way) {
+    const std::string it =
+        "the one in line " + std::to_string(way.back()->config().line) + " does not count, ";
+    for (const Node* node : way)
+      if (may_be_passed_over(*node))
+        return it + "_skipIf, _successIf or _while may pass over " + node->name();
+    for (std::size_t i = way.size() - 1; i-- > 0;)
+      if (!is_reactive(*way[i])) return it + "it is under " + way[i]->id() + "; use ReactiveSequence";
+    return it + "ReactiveFallback does without it";
+  }
+
+  void refuse(const Node& node, const std::string& what) {
+    if (error_.empty()) error_ = place(node) + ": " + what;
+  }
+
+  std::vector<const Node*> path_{};  ///< From the root to the node that is visited.
+  std::set<std::string_view> runs_{};
+  std::string error_{};
+};
+
+}  // namespace
+
+Result<void> check_tree(const bt::Tree& tree) { return Checker().run(tree); }
+
+Result<void> check_tree(const std::string& file) {
+  const auto decider = Decider::load(file);
+  return decider ? Result<void>{} : Result<void>{decider.error()};
+}
+
+bool is_robot_tree(const bt::Tree& tree) {
+  bool found = false;
+  tree.for_each([&](const Node& node, std::size_t) {
+    found = found || is_leaf(node, "Run") || is_leaf(node, "Pause") || is_leaf(node, "Requested") ||
+            is_condition(node);
+  });
+  return found;
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,112 @@
+// What a user reads when a tree contradicts the mode table.
+#include "robot_agent/behaviour/tree_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "robot_agent/behaviour/decider.hpp"
+#include "tests/folders/folders.hpp"
+
+namespace adit::agent {
+namespace {
+
+using testing::HasSubstr;
+
+/// The shipped tree, one place changed.
+std::string changed(const std::string& from, const std::string& to, std::size_t occurrence = 0) {
+  std::ifstream file(source_folder() + "/config/trees/robot.xml");
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string xml = text.str();
+  std::size_t at = xml.find(from);
+  for (; occurrence > 0 && at != std::string::npos; --occurrence) at = xml.find(from, at + 1);
+  EXPECT_NE(at, std::string::npos) << from;
+  return xml.replace(at, from.size(), to);
+}
+
+std::string complaint(const std::string& xml) {
+  const auto decider = Decider::load_text(xml);
+  EXPECT_FALSE(decider);
+  if (decider) return {};
+  EXPECT_EQ(decider.reason(), Reason::tree_refused);
+  return decider.error().text;
+}
+
+TEST(TreeCheck, TheShippedTreeAgrees) {
+  const auto checked = check_tree(source_folder() + "/config/trees/robot.xml");
+  EXPECT_TRUE(checked) << checked.error().text;
+}
+
+TEST(TreeCheck, MissingConditionIsNamedWithTheLineOfItsRun) {
+  EXPECT_EQ(complaint(changed("      <NotStopped/>\n", "")),
+            "<text>:21: Run mode=\"manual\" lacks the condition NotStopped before it");
+  EXPECT_EQ(complaint(changed("      <Requested mode=\"waypoint\"/>\n", "")),
+            "<text>:47: Run mode=\"waypoint\" lacks the condition Requested mode=\"waypoint\" before it");
+}
+
+TEST(TreeCheck, ConditionThatDoesNotCountIsExplained) {
+  EXPECT_EQ(
+      complaint(changed("<NotStopped/>", "<Inverter><NotStopped/></Inverter>")),
+      "<text>:22: Run mode=\"manual\" lacks the condition NotStopped: the one in line 19 does not count, "
+      "it is under Inverter; use ReactiveSequence");
+  EXPECT_THAT(complaint(changed("<StickKept/>", "<ForceSuccess><StickKept/></ForceSuccess>")),
+              HasSubstr("it is under ForceSuccess"));
+  EXPECT_THAT(complaint(changed("<StickKept/>", "<StickKept _skipIf=\"true\"/>")),
+              HasSubstr("_skipIf, _successIf or _while may pass over StickKept"));
+  EXPECT_THAT(
+      complaint(changed("<StickKept/>", "<ReactiveFallback><StickKept/><AlwaysSuccess/></ReactiveFallback>")),
+      HasSubstr("ReactiveFallback does without it"));
+  EXPECT_THAT(complaint(changed("<StickKept/>", "<Sequence><StickKept/></Sequence>")),
+              HasSubstr("it is under Sequence"));
+}
+
+TEST(TreeCheck, NodeThatRemembersAboveTheConditionsIsNamed) {
+  std::string xml = changed("<ReactiveSequence>", "<Sequence>");
+  xml.replace(xml.find("</ReactiveSequence>"), 19, "</Sequence>");
+  EXPECT_THAT(complaint(xml), HasSubstr("it is under Sequence; use ReactiveSequence"));
+}
+
+TEST(TreeCheck, ConditionsMayStandInOtherPlacesOfAReactiveSequence) {
+  // In a sequence of their own, in a subtree, and in every branch of a fallback.
+  for (const char* form :
+       {"<ReactiveSequence><NotStopped/></ReactiveSequence>", "<SubTree ID=\"Conditions\"/>",
+        "<ReactiveFallback><NotStopped/><ReactiveSequence><NotStopped/><DriverAlive/>"
+        "</ReactiveSequence></ReactiveFallback>"}) {
+    std::string xml = changed("<NotStopped/>", form);
+    xml.insert(xml.find("  <TreeNodesModel>"),
+               "<BehaviorTree ID=\"Conditions\"><NotStopped/></BehaviorTree>\n");
+    const auto decider = Decider::load_text(xml);
+    EXPECT_TRUE(decider) << form << ": " << decider.error().text;
+  }
+}
+
+TEST(TreeCheck, UnknownModesAreNamed) {
+  EXPECT_EQ(complaint(changed("<Run mode=\"manual\"/>", "<Run mode=\"fly\"/>")),
+            "<text>:22: Run: the mode table has no mode 'fly'");
+  EXPECT_THAT(complaint(changed("<Requested mode=\"manual\"/>", "<Requested mode=\"fly\"/>")),
+              HasSubstr("Requested: the mode table has no mode 'fly'"));
+  EXPECT_THAT(complaint(changed("<Pause mode=\"waypoint\"/>", "<Pause mode=\"{mode}\"/>")),
+              HasSubstr("Pause: the mode table has no mode '{mode}'"));
+}
+
+TEST(TreeCheck, ModesThatFallToHoldCannotPause) {
+  EXPECT_THAT(complaint(changed("<Run mode=\"manual\"/>",
+                                "<ReactiveFallback><Run mode=\"manual\"/><Pause mode=\"manual\"/>"
+                                "</ReactiveFallback>")),
+              HasSubstr("manual cannot pause: it falls to hold"));
+}
+
+TEST(TreeCheck, EveryModeThatIsNotOptionalNeedsARun) {
+  EXPECT_THAT(complaint(changed("<SubTree ID=\"Manual\" name=\"manual\"/>", "")),
+              HasSubstr("the tree has no Run for mode manual"));
+  EXPECT_TRUE(Decider::load_text(changed("<SubTree ID=\"External\" name=\"external\"/>", "")));
+}
+
+TEST(TreeCheck, FilesThatCannotBeReadAreErrorsOfTheLoader) {
+  EXPECT_EQ(check_tree("/nowhere/robot.xml").reason(), Reason::cannot_read);
+}
+
+}  // namespace
+}  // namespace adit::agent
