@@ -87,9 +87,8 @@ Result<void> Station::Impl::start() {
   auto findings = wire::Writer<radio::FindingsAck>::make(radio_, wire::topics::findings_ack);
   if (!findings) return findings.error();
   topics_->findings = std::move(*findings);
-  if (const std::size_t damaged = desk_.load(); damaged > 0)
-    desk_outputs().trouble("findings_damaged",
-                           std::to_string(damaged) + " findings on the disk were damaged");
+  if (const std::string lost = desk_.load().text(); !lost.empty())
+    desk_outputs().trouble("findings_damaged", lost);
   auto found = wire::make_reader(radio_, wire::topics::finding, strand_,
                                  [this](const radio::Finding& sample, const wire::SampleInfo&) {
                                    desk_.hear(from_radio(sample), {sample.kept(), sample.overflowed()});

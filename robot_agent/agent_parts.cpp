@@ -163,8 +163,9 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
                                                .most = params.findings,
                                                .seed = Random(params.seed).fork(kFindingsSalt).next()},
                                     params.disk, strand, disk_strand, findings_outputs());
-  if (const std::size_t damaged = e.findings->load(); damaged > 0)
-    findings_outputs().full(std::to_string(damaged) + " findings on the disk were damaged");
+  if (const std::string lost = e.findings->load().text(); !lost.empty())
+    e.notifier->send(
+        {{}, Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost});
 
   const auto with_core = [&e](const auto& use) {
     if (e.core) use(*e.core);

@@ -32,8 +32,8 @@ class FindingDesk {
 
   FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, Executor& home, Outputs outputs);
 
-  /// Reads what is on disk. The number of files that were damaged.
-  std::size_t load() { return shelf_.load(); }
+  /// Reads what is on disk.
+  findings::LoadReport load() { return shelf_.load(); }
   void hear(findings::Finding finding, const Robot& robot);
   /// Ten times a second: answers what was heard since, in as few messages as they fit in.
   void tick();

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/store/pack.hpp"
-#include "core/store/state_file.hpp"
 
 namespace adit::findings {
 namespace {
@@ -32,9 +31,9 @@ store::Bytes to_file(const Finding& f) {
   return store::seal(kFormat, 0, out.bytes());
 }
 
-std::optional<Finding> from_file(std::span<const std::uint8_t> bytes) {
+FindingFile read_finding(std::span<const std::uint8_t> bytes) {
   const store::State state = store::unseal(kFormat, bytes);
-  if (state.found != store::Found::good) return std::nullopt;
+  if (state.found != store::Found::good) return {state.found, std::nullopt};
   store::Unpacker in(state.payload);
   Finding f{};
   f.key.robot = in.text(32);
@@ -45,10 +44,10 @@ std::optional<Finding> from_file(std::span<const std::uint8_t> bytes) {
   f.stamp = in.get<std::uint64_t>();
   f.text = in.text(Finding::kText);
   const std::size_t size = in.count(Finding::kData);
-  if (!in.good() || in.rest().size() != size) return std::nullopt;
+  if (!in.good() || in.rest().size() != size) return {};
   f.data.assign(in.rest().begin(), in.rest().end());
-  if (!valid(f)) return std::nullopt;
-  return f;
+  if (!valid(f)) return {};
+  return {store::Found::good, std::move(f)};
 }
 
 std::string id_text(std::uint64_t id) {
@@ -59,6 +58,9 @@ std::string id_text(std::uint64_t id) {
 
 std::string file_name(const Key& key) { return kPrefix + key.robot + "-" + id_text(key.id); }
 
-bool is_finding_file(const std::string& name) { return name.starts_with(kPrefix); }
+// No robot's name holds a point: what has one was preserved under another name.
+bool is_finding_file(const std::string& name) {
+  return name.starts_with(kPrefix) && name.find('.') == std::string::npos;
+}
 
 }  // namespace adit::findings

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/store/disk.hpp"
+#include "core/store/state_file.hpp"
 
 /// What robots find, on robots and stations alike (rule 9): a set keyed by (robot, id).
 namespace adit::findings {
@@ -33,9 +33,20 @@ struct Finding {
 /// Bounds, a robot's name, a finite place, an id that is not 0.
 bool valid(const Finding& finding);
 
-/// As a sealed file; nothing when the bytes are none that was sealed.
+/// What the bytes of a file gave.
+struct FindingFile {
+  store::Found found{store::Found::corrupt};  ///< good exactly when there is a finding
+  std::optional<Finding> finding{};
+};
+
+/// As a sealed file, at most `kMaxFindingFile` bytes.
 store::Bytes to_file(const Finding& finding);
-std::optional<Finding> from_file(std::span<const std::uint8_t> bytes);
+inline constexpr std::size_t kMaxFindingFile = 4096;
+FindingFile read_finding(std::span<const std::uint8_t> bytes);
+/// The finding alone; nothing when the bytes are none that was sealed.
+inline std::optional<Finding> from_file(std::span<const std::uint8_t> bytes) {
+  return read_finding(bytes).finding;
+}
 /// Sixteen hexadecimal digits, as people and files see an id.
 std::string id_text(std::uint64_t id);
 /// "finding-ROBOT-0123456789abcdef"

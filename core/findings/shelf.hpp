@@ -3,6 +3,8 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "core/exec/executor.hpp"
 #include "core/findings/finding.hpp"
@@ -12,7 +14,20 @@ namespace adit::findings {
 struct ShelfParams {
   std::size_t most{512};  ///< findings, [1, 65536]
   Duration write{3ms};    ///< what a batch takes in rehearsal
-  Duration retry{1s};     ///< after a write that failed
+  Duration retry{1s};     ///< after a batch of which nothing could be written
+};
+
+/// What load() could not use. No file is deleted: a damaged one is renamed to NAME.bad (at most 64 of them,
+/// the others stay), the rest stay as they are.
+struct LoadReport {
+  std::size_t damaged{};     ///< torn, corrupt, or under the name of another finding
+  std::size_t newer{};       ///< of another version of this program
+  std::size_t unreadable{};  ///< refused by the disk: perhaps readable at the next start
+  std::size_t surplus{};     ///< beyond ShelfParams::most; the most important ones are loaded
+  std::string error{};       ///< the folder cannot be listed; empty when it can
+  bool operator==(const LoadReport&) const = default;
+  /// For operators; empty when everything was loaded.
+  std::string text() const;
 };
 
 /// Findings in memory and on disk, a file each, written in batches beside the strand it lives on.
@@ -31,8 +46,8 @@ class Shelf {
   Shelf(const Shelf&) = delete;
   Shelf& operator=(const Shelf&) = delete;
 
-  /// Reads what the disk has, before anything is put. Files that are damaged are removed: their number.
-  std::size_t load();
+  /// Reads what the disk has, before anything is put.
+  LoadReport load();
   /// False when it is full, or not valid. One that is there already stays as it is.
   bool put(Finding finding);
   void drop(const Key& key);
@@ -44,8 +59,13 @@ class Shelf {
 
  private:
   struct Batch;
+  /// Keys whose file has to be written or removed, with the number of the last try that failed; 0: none yet.
+  using Pending = std::map<Key, std::uint64_t>;
+
+  void load_file(const std::string& name, LoadReport& report, std::vector<Finding>& found);
   void write();
-  void written(const Batch& batch, const Result<void>& result);
+  void start(const std::shared_ptr<Batch>& batch);
+  void written(const Batch& batch);
 
   ShelfParams params_;
   std::shared_ptr<store::Disk> disk_;
@@ -53,9 +73,15 @@ class Shelf {
   std::shared_ptr<Executor> writer_;
   Outputs outputs_;
   std::map<Key, Finding> all_{};
-  std::set<Key> unsaved_{}, dropped_{};  ///< dropped_: their files are still there
-  bool writing_{}, failed_{};
-  Timer timer_{};
+  Pending unsaved_{}, dropped_{};  ///< dropped_: their files are still there
+  std::set<std::string>
+      foreign_{};  ///< files that load() left: renamed to NAME.aside before a finding takes the name
+  std::size_t bad_files_{};
+  std::uint64_t tries_{};
+  /// The batch under way. It expires when it was written, and also when the strand or the pool dropped it.
+  std::weak_ptr<Batch> writing_{};
+  bool failing_{};
+  Timer modelled_{}, retry_{};
   std::shared_ptr<Shelf*> self_;  ///< what writes under way find; null inside when it is gone
 };
 

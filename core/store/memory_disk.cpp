@@ -6,6 +6,7 @@ namespace adit::store {
 namespace {
 
 Error dead(Reason reason) { return {reason, "the disk has no power"}; }
+Error refused(Reason reason, const std::string& name) { return {reason, "the disk refuses " + name}; }
 Error missing(const std::string& name) { return {Reason::cannot_write, "no file " + name}; }
 
 }  // namespace
@@ -13,6 +14,21 @@ Error missing(const std::string& name) { return {Reason::cannot_write, "no file 
 void MemoryDisk::set_full(bool full) {
   const std::lock_guard lock(mutex_);
   full_ = full;
+}
+
+void MemoryDisk::set_refused(const std::string& name, bool refused) {
+  const std::lock_guard lock(mutex_);
+  if (refused)
+    refused_.insert(name);
+  else
+    refused_.erase(name);
+}
+
+/// Of its temporary file, too: that is how it is written.
+bool MemoryDisk::refuses(const std::string& name) const {
+  return std::any_of(refused_.begin(), refused_.end(), [&](const std::string& r) {
+    return name == r || (is_temporary(name) && name == "." + r + ".new");
+  });
 }
 
 void MemoryDisk::cut_power_after(std::uint64_t steps) {
@@ -108,6 +124,7 @@ Result<std::vector<std::string>> MemoryDisk::list() const {
 Result<std::optional<Bytes>> MemoryDisk::read_file(const std::string& name, std::size_t most) const {
   const std::lock_guard lock(mutex_);
   if (!powered_) return dead(Reason::cannot_read);
+  if (refuses(name)) return refused(Reason::cannot_read, name);
   const auto found = names_.find(name);
   if (found == names_.end()) return std::optional<Bytes>{};
   if (found->second->cached.size() > most)
@@ -119,6 +136,7 @@ Result<void> MemoryDisk::write_file(const std::string& name, std::span<const std
                                     bool append) {
   const std::lock_guard lock(mutex_);
   if (!step()) return dead(Reason::cannot_write);
+  if (refuses(name)) return refused(Reason::cannot_write, name);
   if (!names_.contains(name)) {
     names_[name] = std::make_shared<File>();
     changed();
@@ -158,6 +176,7 @@ Result<void> MemoryDisk::rename_file(const std::string& from, const std::string&
 Result<void> MemoryDisk::remove_file(const std::string& name) {
   const std::lock_guard lock(mutex_);
   if (!step()) return dead(Reason::cannot_write);
+  if (refuses(name)) return refused(Reason::cannot_write, name);
   if (names_.erase(name) != 0) changed();
   return {};
 }

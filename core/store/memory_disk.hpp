@@ -2,6 +2,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 
 #include "core/store/disk.hpp"
 #include "core/time/random.hpp"
@@ -18,6 +19,8 @@ class MemoryDisk final : public Disk {
 
   /// Nothing fits any more, as long as it is set; a write stops halfway.
   void set_full(bool full);
+  /// Every access to that file fails, as on a bad block or an immutable file, as long as it is set.
+  void set_refused(const std::string& name, bool refused);
   /// Power fails within the writes to come: after `steps` more of them, where each byte written is one, and
   /// so is each opening, sync, rename and removal. Every call fails from then on, until power_up().
   void cut_power_after(std::uint64_t steps);
@@ -52,6 +55,7 @@ class MemoryDisk final : public Disk {
   using Folder = std::map<std::string, std::shared_ptr<File>>;
 
   bool step();
+  bool refuses(const std::string& name) const;
   std::uint64_t used() const;
   void changed() { history_.push_back(names_); }
   void survive(File& file);
@@ -60,6 +64,7 @@ class MemoryDisk final : public Disk {
   Random random_;
   std::uint64_t capacity_;
   bool full_{};
+  std::set<std::string> refused_{};
   std::optional<std::uint64_t> fuse_{};  ///< steps until the power fails
   bool powered_{true};
   std::uint64_t steps_{};

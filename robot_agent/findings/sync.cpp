@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/store/pack.hpp"
+#include "core/store/preserve.hpp"
 #include "core/store/state_file.hpp"
 
 namespace adit::agent {
@@ -28,11 +29,17 @@ FindingSync::FindingSync(SyncParams params, std::shared_ptr<store::Disk> disk, E
       shelf_({.most = params_.most}, std::move(disk), home, std::move(writer),
              {[](const findings::Key&) {}, outputs_.failing}) {}
 
-std::size_t FindingSync::load() {
-  const std::size_t damaged = shelf_.load();
-  if (!disk_) return damaged;
+findings::LoadReport FindingSync::load() {
+  findings::LoadReport report = shelf_.load();
+  if (!disk_) return report;
   const store::State state = store::StateFile(disk_, kTracksFile, kTracksFormat).load();
-  store::Unpacker in(state.payload);  // empty when it is not good: then all is sent once more
+  // Without it every finding is sent once more, and no station is harmed by that.
+  if (state.found != store::Found::good) {
+    if (state.found != store::Found::nothing)
+      (void)store::set_aside(*disk_, kTracksFile, store::name(state.found));
+    return report;
+  }
+  store::Unpacker in(state.payload);
   for (std::size_t left = in.count(65535); left > 0 && in.good(); --left) {
     const auto id = in.get<std::uint64_t>();
     std::vector<StationId> has;
@@ -40,7 +47,7 @@ std::size_t FindingSync::load() {
       has.push_back(in.array<16>());
     if (in.good() && shelf_.all().contains({params_.robot, id})) track(id).has = std::move(has);
   }
-  return damaged;
+  return report;
 }
 
 Result<std::uint64_t> FindingSync::report(Finding finding) {

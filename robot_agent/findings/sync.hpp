@@ -34,8 +34,8 @@ class FindingSync {
   FindingSync(SyncParams params, std::shared_ptr<store::Disk> disk, Executor& home,
               std::shared_ptr<Executor> writer, Outputs outputs);
 
-  /// Reads what is on disk: findings, and who has them. The number of files that were damaged.
-  std::size_t load();
+  /// Reads what is on disk: findings, and which stations have them.
+  findings::LoadReport load();
   /// Adds one; id 0: it gets one. Its robot is this one. Errors: bad_argument, queue_full when there is no
   /// room and nothing that matters less.
   Result<std::uint64_t> report(findings::Finding finding);

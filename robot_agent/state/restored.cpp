@@ -2,38 +2,12 @@
 
 #include <algorithm>
 
+#include "core/store/preserve.hpp"
+
 namespace adit::agent {
 namespace {
 
 constexpr store::StateFormat kIdentityFormat{{'I', 'D', 'E', 'N'}, 1, 16};
-
-/// A name for a copy of `file` that is not taken: state.newer, state.newer-2 and so on. The last of them is
-/// used again when all are: what is preserved is bounded.
-std::string free_name(const store::Disk& disk, const std::string& file, std::string_view why) {
-  constexpr int kMaxCopies = 8;
-  std::string name = file + "." + std::string(why);
-  const auto names = disk.list();
-  const auto taken = [&](const std::string& n) {
-    return names && std::find(names->begin(), names->end(), n) != names->end();
-  };
-  for (int i = 2; taken(name) && i <= kMaxCopies; ++i)
-    name = file + "." + std::string(why) + "-" + std::to_string(i);
-  return name;
-}
-
-/// Gives a file that cannot be used another name; empty when the disk refuses.
-std::string set_aside(store::Disk& disk, const std::string& file, std::string_view why) {
-  const std::string name = free_name(disk, file, why);
-  return disk.rename(file, name) ? name : std::string{};
-}
-
-/// Copies a file that can be used in part, so that no power cut can take what is still good in it.
-std::string copy_aside(store::Disk& disk, const std::string& file, std::string_view why) {
-  const auto bytes = disk.read(file);
-  if (!bytes || !*bytes) return {};
-  const std::string name = free_name(disk, file, why);
-  return disk.replace(name, **bytes) ? name : std::string{};
-}
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
@@ -89,7 +63,7 @@ Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
     const bool broken = state.found == store::Found::good;  // whole, and no list of sections
     r.text =
         broken ? "corrupt: it makes no sense" : std::string(store::name(state.found)) + ": " + state.text;
-    r.preserved = set_aside(*disk, kStateFile, broken ? "corrupt" : store::name(state.found));
+    r.preserved = store::set_aside(*disk, kStateFile, broken ? "corrupt" : store::name(state.found));
     r.generation = state.generation;
     return r;
   }
@@ -101,7 +75,7 @@ Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
     r.text = std::string(store::name(state.found)) +
              (r.text.empty() ? ", every entry could be read" : "; " + r.text);
   }
-  if (r.damaged) r.preserved = copy_aside(*disk, kStateFile, newer ? "newer" : "damaged");
+  if (r.damaged) r.preserved = store::copy_aside(*disk, kStateFile, newer ? "newer" : "damaged");
   return r;
 }
 
@@ -120,7 +94,8 @@ Id restore_identity(const std::shared_ptr<store::Disk>& disk, const Id& drawn) {
     std::copy(state.payload.begin(), state.payload.end(), id.begin());
     return id;
   }
-  if (state.found != store::Found::nothing) (void)set_aside(*disk, kIdentityFile, store::name(state.found));
+  if (state.found != store::Found::nothing)
+    (void)store::set_aside(*disk, kIdentityFile, store::name(state.found));
   (void)file.save(1, drawn);  // a disk that fails is reported with the first state
   return drawn;
 }

@@ -2,9 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <future>
+#include <thread>
+
+#include "core/exec/live_runtime.hpp"
 #include "core/exec/virtual_runtime.hpp"
+#include "core/store/file_disk.hpp"
 #include "core/store/memory_disk.hpp"
+#include "core/store/state_file.hpp"
 #include "tests/findings/some.hpp"
+#include "tests/store/scratch_folder.hpp"
 
 namespace adit::findings {
 namespace {
@@ -19,7 +26,7 @@ class ShelfTest : public testing::Test {
                                                    [this](bool failing, const std::string&) {
                                                      told.push_back(failing ? "failing" : "works");
                                                    }});
-    damaged = shelf->load();
+    loaded = shelf->load();
   }
   void run(Duration time) { scheduler.run_until(scheduler.elapsed() + time); }
 
@@ -30,7 +37,7 @@ class ShelfTest : public testing::Test {
   std::vector<std::uint64_t> kept{};
   std::vector<std::string> told{};
   std::unique_ptr<Shelf> shelf{};
-  std::size_t damaged{};
+  LoadReport loaded{};
 };
 
 TEST_F(ShelfTest, KeepsOverARestart) {
@@ -81,7 +88,7 @@ TEST_F(ShelfTest, ABurstIsWrittenInBatches) {
   EXPECT_EQ(kept.size(), 100u);
 }
 
-TEST_F(ShelfTest, RemovesWhatIsDamaged) {
+TEST_F(ShelfTest, DamagedFilesAreStoredUnderAnotherName) {
   make();
   EXPECT_TRUE(shelf->put(some(1)));
   run(20ms);
@@ -89,11 +96,125 @@ TEST_F(ShelfTest, RemovesWhatIsDamaged) {
   disk->plant(file_name({"r1", 3}), to_file(some(4)));  // in another one's place
   disk->plant("state", store::Bytes(5, 'x'));
   make();
-  EXPECT_EQ(damaged, 2u);
+  EXPECT_EQ(loaded.damaged, 2u);
   EXPECT_EQ(shelf->all().size(), 1u);
+  EXPECT_EQ(disk->read(file_name({"r1", 2}) + ".bad").value(), store::Bytes(50, 'x'));
+  EXPECT_EQ(disk->read(file_name({"r1", 3}) + ".bad").value(), to_file(some(4)));
   make();
-  EXPECT_EQ(damaged, 0u);
+  EXPECT_EQ(loaded, LoadReport{}) << "reported once";
   EXPECT_TRUE(disk->read("state").value()) << "what is not its own stays";
+}
+
+TEST_F(ShelfTest, FilesOfANewerVersionStayAsTheyAre) {
+  const store::Bytes newer = store::seal({{'F', 'I', 'N', 'D'}, 2, 1024}, 0, store::Bytes(40, 1));
+  disk->plant(file_name({"r1", 2}), newer);
+  make();
+  EXPECT_EQ(loaded.newer, 1u);
+  EXPECT_TRUE(shelf->all().empty());
+  EXPECT_EQ(disk->read(file_name({"r1", 2})).value(), newer);
+  EXPECT_TRUE(shelf->put(some(2)));
+  run(20ms);
+  EXPECT_EQ(disk->read(file_name({"r1", 2})).value(), to_file(some(2)));
+  EXPECT_EQ(disk->read(file_name({"r1", 2}) + ".aside").value(), newer) << "not overwritten either";
+}
+
+TEST_F(ShelfTest, FilesThatCannotBeReadNowAreThereLater) {
+  make();
+  EXPECT_TRUE(shelf->put(some(1)));
+  EXPECT_TRUE(shelf->put(some(2)));
+  run(20ms);
+  disk->set_refused(file_name({"r1", 1}), true);
+  make();
+  EXPECT_EQ(loaded.unreadable, 1u);
+  EXPECT_EQ(shelf->all().size(), 1u);
+  disk->set_refused(file_name({"r1", 1}), false);
+  make();
+  EXPECT_EQ(shelf->all().size(), 2u);
+}
+
+TEST_F(ShelfTest, WithALowerBoundTheMostImportantAreLoadedAndNoneIsDeleted) {
+  make();
+  for (std::uint64_t id = 1; id <= 6; ++id) EXPECT_TRUE(shelf->put(some(id, static_cast<std::uint8_t>(id))));
+  run(50ms);
+  make({.most = 2});
+  EXPECT_EQ(loaded.surplus, 4u);
+  EXPECT_EQ(shelf->all().size(), 2u);
+  EXPECT_TRUE(shelf->all().contains({"r1", 6}));
+  EXPECT_TRUE(shelf->all().contains({"r1", 5}));
+  make();
+  EXPECT_EQ(shelf->all().size(), 6u);
+}
+
+TEST_F(ShelfTest, TheNumberOfDamagedFilesIsBounded) {
+  make();
+  for (std::uint64_t id = 1; id <= 200; ++id) disk->plant(file_name({"r1", id}), store::Bytes(9, 'x'));
+  make();
+  EXPECT_EQ(loaded.damaged, 200u);
+  const auto names = disk->list().value();
+  EXPECT_EQ(names.size(), 200u) << "nothing is deleted";
+  EXPECT_EQ(
+      std::count_if(names.begin(), names.end(), [](const std::string& n) { return n.ends_with(".bad"); }),
+      64);
+}
+
+TEST_F(ShelfTest, OneFileThatCannotBeWrittenBlocksNoOther) {
+  make();
+  disk->set_refused(file_name({"r1", 1}), true);
+  for (std::uint64_t id = 1; id <= 40; ++id) EXPECT_TRUE(shelf->put(some(id)));
+  run(1500ms);
+  EXPECT_EQ(kept.size(), 39u);
+  EXPECT_FALSE(shelf->kept({"r1", 1}));
+  EXPECT_THAT(told, ElementsAre("failing"));
+  disk->set_refused(file_name({"r1", 1}), false);
+  run(2s);
+  EXPECT_TRUE(shelf->kept({"r1", 1}));
+  EXPECT_THAT(told, ElementsAre("failing", "works"));
+}
+
+TEST_F(ShelfTest, AFullDiskIsTriedOnceARound) {
+  make();
+  disk->set_full(true);
+  for (std::uint64_t id = 1; id <= 64; ++id) EXPECT_TRUE(shelf->put(some(id)));
+  run(100ms);
+  const auto before = disk->steps();
+  run(800ms);
+  EXPECT_EQ(disk->steps(), before) << "no batch follows a batch of which nothing could be written";
+  EXPECT_THAT(told, ElementsAre("failing"));
+}
+
+// A strand that is flooded drops posts, also the one that says that a batch was written.
+TEST(ShelfLive, ALostCompletionDoesNotEndItsWrites) {
+  const store::ScratchFolder folder;
+  LiveParams params;
+  params.queue = 1;
+  LiveRuntime runtime(params);
+  auto writer = runtime.strand("disk");
+  auto home = runtime.strand("home");
+  const std::shared_ptr<store::Disk> disk = store::FileDisk::open(folder.path()).value();
+  std::promise<void> began, go, saved;
+  std::unique_ptr<Shelf> shelf;
+  home->post([&] {
+    shelf = std::make_unique<Shelf>(
+        ShelfParams{.retry = 50ms}, disk, *home, writer,
+        Shelf::Outputs{[&](const Key&) { saved.set_value(); }, [](bool, const std::string&) {}});
+    EXPECT_TRUE(shelf->put(some(1)));
+    began.set_value();
+    go.get_future().wait();
+  });
+  began.get_future().wait();
+  home->post([] {});  // fills the queue: the completion has no place
+  while (!disk->read(file_name({"r1", 1})).value()) std::this_thread::yield();
+  std::promise<void> written;
+  writer->post([&] { written.set_value(); });  // comes after the batch, which runs now or has run
+  written.get_future().wait();
+  go.set_value();
+  EXPECT_EQ(saved.get_future().wait_for(std::chrono::seconds(5)), std::future_status::ready);
+  std::promise<void> gone;
+  home->post([&] {
+    shelf.reset();
+    gone.set_value();
+  });
+  gone.get_future().wait();
 }
 
 TEST_F(ShelfTest, AFullDiskIsToldAndTriedAgain) {
