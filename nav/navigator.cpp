@@ -13,9 +13,11 @@ constexpr std::size_t kMostPredicted = 8192;  ///< places of what moves
 Navigator::Navigator(const Platform& platform, const TerrainParams& terrain,
                      const LocalPlannerParams& planner, std::shared_ptr<const PlannerLibrary> library)
     : platform_(platform),
+      planner_params_(planner),
+      library_(std::move(library)),
       terrain_(platform, terrain),
       tracker_(platform),
-      planner_(make_planner(platform, planner, std::move(library)).value()) {
+      planner_(make_planner(platform, planner, library_).value()) {
   if (platform.flies()) air_.emplace(platform);
   obstacles_.reserve(std::max<std::size_t>(TerrainMap::kMaxCells, AirMap::kMost) + kMostPredicted);
 }
@@ -78,7 +80,9 @@ void Navigator::clear() {
   terrain_.clear();
   if (air_) air_->clear();
   tracker_.clear();
+  planner_ = make_planner(platform_, planner_params_, library_).value();
   has_scan_ = false;
+  last_stamp_s_ = -std::numeric_limits<double>::infinity();
 }
 
 }  // namespace adit::nav

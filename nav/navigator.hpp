@@ -29,7 +29,8 @@ class Navigator {
   /// What cannot be passed, into `cells`: their middles, odometry frame, m.
   void blocked(std::vector<Eigen::Vector2f>& cells) const;
   std::span<const Mover> movers() const { return tracker_.movers(); }
-  /// Forgets what was seen, as after a jump of the odometry.
+  /// Forgets everything that is in the odometry frame, as after a jump of the odometry: what was seen, what
+  /// moves, and what the local planner was about to do.
   void clear();
 
  private:
@@ -37,6 +38,8 @@ class Navigator {
   double speed(const Pose2& pose, double stamp_s);
 
   Platform platform_;
+  LocalPlannerParams planner_params_;
+  std::shared_ptr<const PlannerLibrary> library_;
   TerrainMap terrain_;
   std::optional<AirMap> air_{};  ///< of what flies, in place of the former
   Tracker tracker_;

@@ -63,7 +63,7 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       params_(params),
       edges_(edges),
       lease_(std::move(lease)),
-      localisation_(params.start),
+      localisation_(params.start, params.platform),
       navigation_(navigation_params(params), command, log(), localisation_, *edges.planner, edges.router,
                   navigation_outputs()),
       mux_(navigation_, mux_params(params)),
@@ -77,7 +77,25 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       rivals_(now()) {}
 
 void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
-  protect([&] { localisation_.update(odom, twist, stamp, now()); });
+  protect([&] {
+    if (!localisation_.update(odom, twist, stamp, now())) odometry_jumped();
+  });
+}
+
+void Agent::Core::odometry_jumped() {
+  constexpr Duration kTellAgain = 5s;  // Two drivers that write in turn jump with every sample.
+  navigation_.clear();
+  behaviour_.hold(Reason::odometry_jumped, now());
+  if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
+  jump_told_ = now();
+  notices_.odometry_jumped(localisation_.pose());
+}
+
+Result<void> Agent::Core::set_pose(const Pose2& pose) {
+  if (!localisation_.initialised())
+    return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
+  localisation_.set_pose(pose);
+  return {};
 }
 
 void Agent::Core::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp) {
@@ -134,10 +152,14 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
     const Pose2 pose = localisation_.odom().planar();
     const Eigen::Vector2d to = localisation_.to_odom(goal.head<2>());
     auto query = std::make_shared<RouteQuery>();
+    query->odom_epoch = localisation_.odom_epoch();
     query->from = {pose.x, pose.y, localisation_.z()};
     query->to = {to.x(), to.y(), goal.z()};
-    edges_.router->find(query,
-                        guard([this, query, answer] { answer(describe(query->route, params_.start)); }));
+    edges_.router->find(query, guard([this, query, answer] {
+                          if (query->odom_epoch != localisation_.odom_epoch())
+                            return answer({Reason::odometry_jumped, "the odometry jumped meanwhile"});
+                          answer(describe(query->route, localisation_.T_map_odom()));
+                        }));
   });
 }
 
@@ -147,8 +169,12 @@ void Agent::Core::restore() {
   if (!edges_.restored.snapshot) return;
   const Snapshot& s = *edges_.restored.snapshot;
   commands_.restore(s.authority, s.answers, started_);  // listen_first asks who was heard since
-  // Where its driver's odometry began anew, the goal's place is no longer known for sure.
-  const bool resume = params_.resume_after_restart && s.boot == params_.boot && !edges_.restored.hold;
+  if (s.place) localisation_.restore(*s.place);
+  // Without a pose to compare with, nobody knows whether the odometry is still the same. With one, the first
+  // sample tells.
+  const bool comparable = s.place && s.place->newest;
+  const bool resume =
+      params_.resume_after_restart && s.boot == params_.boot && comparable && !edges_.restored.hold;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);
   safeguards_.restore(static_cast<BatteryLevel>(s.battery));
 }
@@ -212,7 +238,12 @@ void Agent::Core::listen_first(Time at) {
 
 void Agent::Core::keep() {
   edges_.keeper->save(
-      {commands_.kept(), behaviour_.kept(), params_.boot, static_cast<std::uint8_t>(safeguards_.level()), {}},
+      {commands_.kept(),
+       behaviour_.kept(),
+       params_.boot,
+       static_cast<std::uint8_t>(safeguards_.level()),
+       localisation_.kept(),
+       {}},
       [this] { return commands_.kept_answers(); }, commands_.accepted());
 }
 
@@ -252,6 +283,7 @@ Behaviour::Inputs Agent::Core::behaviour_inputs() {
                            {}};
   // What flies keeps the height that it has.
   if (params_.platform.flies()) inputs.height = [this] { return localisation_.z(); };
+  inputs.set_pose = [this](const Pose2& pose) { return set_pose(pose); };
   return inputs;
 }
 

@@ -80,6 +80,9 @@ class Agent::Core : public Component {
   void beat();
   void listen_first(Time at);
   void watch_driver();
+  /// The odometry began again elsewhere: zero, hold, and a new local map.
+  void odometry_jumped();
+  Result<void> set_pose(const Pose2& pose);
   void send_findings();
   Facts sense(Time now) const;
   CommandInterface::Outputs command_outputs();
@@ -101,6 +104,7 @@ class Agent::Core : public Component {
   Telemetry telemetry_;
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First time since the start that the holder was heard.
+  std::optional<Time> jump_told_{};
   RivalWatch rivals_;
   std::vector<Timer> timers_{};
 };

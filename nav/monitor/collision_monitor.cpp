@@ -56,6 +56,12 @@ void CollisionMonitor::look(std::span<const Eigen::Vector3f> points, const Pose3
   stamp_s_ = stamp_s;
 }
 
+void CollisionMonitor::clear() {
+  tracker_.clear();
+  near_.clear();
+  stamp_s_ = -std::numeric_limits<double>::infinity();
+}
+
 Twist2 CollisionMonitor::limited(const Twist2& wanted) const {
   const double fastest = rim(wanted);
   return fastest > params_.limit_speed ? scaled(wanted, params_.limit_speed / fastest) : wanted;

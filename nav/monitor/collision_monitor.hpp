@@ -61,6 +61,8 @@ class CollisionMonitor {
   /// `wanted`, slower than it `drives` and, whatever its odometry says, than it was told.
   Verdict check(const Twist2& wanted, const Pose2& odom, double now_s, Policy policy,
                 const Driven& drives = {}) const;
+  /// Forgets what was seen, as after a jump of the odometry: every scan is too old until the next one.
+  void clear();
   bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }
 
  private:

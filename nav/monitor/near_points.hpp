@@ -44,6 +44,8 @@ class NearPoints {
   /// One scan: points in base_link, m, the body in the odometry frame then, and the time, s; and what it saw
   /// by direction.
   void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s, const Panorama& seen);
+  /// Forgets what was seen.
+  void clear() { places_.clear(); }
   std::span<const Place> places() const { return {places_.data(), places_.size()}; }
 
  private:

@@ -66,6 +66,18 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Time now) {
   return enter(row, now);
 }
 
+Result<void> Behaviour::set_pose(const Pose2& pose, Time now) {
+  const ModeRow* hold = &mode_table().front();
+  if (&guard_.admitted() != hold || decision_.mode != hold)
+    return {Reason::wrong_mode, "pose: only a robot in hold is told where it is"};
+  if (!std::isfinite(pose.yaw) || !(std::hypot(pose.x, pose.y) <= params_.farthest_goal))
+    return {Reason::out_of_range, "pose: expected a place within 10 km and a heading in radians"};
+  if (const auto done = inputs_.set_pose(pose); !done) return done;
+  if (fell_because_ == Reason::odometry_jumped) fell_because_ = Reason::none;
+  tick(now);
+  return {};
+}
+
 Result<void> Behaviour::enter(const ModeRow& row, Time now) {
   if (row.accepts != Accepts::goal) goal_ = {false, false, goal_.id, Eigen::Vector3d::Zero(), false};
   listens_ = false;

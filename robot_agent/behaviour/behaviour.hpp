@@ -59,6 +59,8 @@ class Behaviour : public Requests {
     /// No known obstacle covers that place (map frame, m).
     std::function<bool(const Eigen::Vector2d&)> goal_free{};
     std::function<double()> height{};  ///< of a goal that was given none, m; empty: it is on the floor
+    /// The robot is at that pose of the map. Errors: no_localisation.
+    std::function<Result<void>(const Pose2&)> set_pose{};
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.
@@ -71,6 +73,7 @@ class Behaviour : public Requests {
 
   Result<void> request_mode(const std::string& mode, Time now) override;
   Result<void> request_goal(const Eigen::Vector3d& goal, Time now) override;
+  Result<void> set_pose(const Pose2& pose, Time now) override;
   void stop_changed(bool stopped, Time now) override;
   void holder_changed(Time now) override;
   void holder_restarted(Time now) override;

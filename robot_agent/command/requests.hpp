@@ -17,6 +17,9 @@ class Requests {
   virtual Result<void> request_mode(const std::string& mode, Time now) = 0;
   /// `goal`: map frame, m.
   virtual Result<void> request_goal(const Eigen::Vector3d& goal, Time now) = 0;
+  /// `pose`: map frame. The robot is there; moves nothing. Errors: wrong_mode outside hold, out_of_range,
+  /// no_localisation.
+  virtual Result<void> set_pose(const Pose2& pose, Time now) = 0;
   virtual void stop_changed(bool stopped, Time now) = 0;
   /// Also when the holder let go.
   virtual void holder_changed(Time now) = 0;

@@ -43,6 +43,17 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
     send({});
 }
 
+void Navigation::clear() {
+  controller_->stop_now();
+  has_plan_ = blocked_ = false;
+  step_.reset();
+  held_.clear();
+  monitor_.clear();
+  waiting_.reset();
+  scanned_.reset();
+  obstacles_.reset();
+}
+
 void Navigation::send(const Twist2& velocity) {
   // What it was told is not what it does at once.
   const double since = seconds(now() - sent_at_);
@@ -182,6 +193,7 @@ void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
     job->goal = {goal.x(), goal.y(), go->goal.z()};
     job->blocked = blocked_;
   }
+  job->odom_epoch = localisation_.odom_epoch();
   job->generation = goal_generation_;
   job->made = now;
   routing_ = {now, router_->instance()};
@@ -190,6 +202,7 @@ void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
 
 void Navigation::routed(const RouteJob& job) {
   routing_ = {};
+  if (job.odom_epoch != localisation_.odom_epoch()) return;
   if (!job.goal || job.generation != goal_generation_ || !std::holds_alternative<GoTo>(motion_)) return;
   step_ = job.step;
   step_made_ = job.made;
@@ -211,6 +224,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   const auto* step = step_on(now);
   job->last = !step || step->last;
   job->pose = localisation_.odom().planar();
+  job->odom_epoch = localisation_.odom_epoch();
   job->generation = goal_generation_;
   job->made = now;
   planning_ = {now, planner_.instance()};
@@ -220,6 +234,11 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
 
 void Navigation::planned(const PlanJob& job) {
   planning_ = {};
+  if (job.odom_epoch == localisation_.odom_epoch()) take(job);
+  if (waiting_) plan(std::exchange(waiting_, nullptr), now());
+}
+
+void Navigation::take(const PlanJob& job) {
   obstacles_ = std::make_shared<const std::vector<Eigen::Vector2f>>(job.obstacles);
   const bool for_goal = job.target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_);
   const bool for_stick =
@@ -234,7 +253,6 @@ void Navigation::planned(const PlanJob& job) {
       outputs_.progress({.arrived = job.plan.arrived && job.last && at_height(), .blocked = blocked_});
     }
   }
-  if (waiting_) plan(std::exchange(waiting_, nullptr), now());
 }
 
 bool Navigation::goal_free(const Eigen::Vector2d& place) const {

@@ -52,6 +52,9 @@ class Navigation : public Component, public NavigationInput {
   /// The velocity for the next period, every period.
   void step(Time now);
   void add_scan(std::shared_ptr<Scan> scan, Time now);
+  /// Forgets what was seen and planned in the odometry frame: it is another one now. Until the next scan the
+  /// terrain is not fresh.
+  void clear();
 
   bool terrain_fresh(Time now) const { return scanned_ && now - *scanned_ < params_.scan_age; }
   /// Whether the body would stand there without touching a known obstacle (map frame, m).
@@ -80,6 +83,7 @@ class Navigation : public Component, public NavigationInput {
   nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;
   void plan(std::shared_ptr<Scan> scan, Time now);
   void planned(const PlanJob& job);
+  void take(const PlanJob& job);
 
   NavigationParams params_;
   const Localisation& localisation_;

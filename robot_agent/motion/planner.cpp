@@ -1,6 +1,7 @@
 #include "robot_agent/motion/planner.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace adit::agent {
 namespace {
@@ -23,26 +24,32 @@ nav::Plan straight(const PlanJob& job, const Platform& platform) {
 
 }  // namespace
 
+struct Planner::Maps {
+  nav::Navigator navigator;
+  std::uint32_t odom_epoch{};  ///< Of the frame that they are in.
+};
+
 Planner::Planner(PlannerParams params, Executor& strand, Log log,
                  std::shared_ptr<const nav::PlannerLibrary> library)
     : Component("planner", strand, std::move(log), {.beat = 100ms}),
       params_(std::move(params)),
-      navigator_(std::make_shared<nav::Navigator>(params_.platform, nav::TerrainParams{},
-                                                  nav::LocalPlannerParams{}, std::move(library))) {}
+      maps_(new Maps{nav::Navigator(params_.platform, {}, {}, std::move(library))}) {}
 
 void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
   if (!running()) return;
   compute(
       params_.planning,
-      [job, navigator = navigator_, params = params_] {
+      [job, maps = maps_, params = params_] {
+        nav::Navigator& navigator = maps->navigator;
+        if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) navigator.clear();
         const double stamp = seconds(job->made.time_since_epoch());
-        navigator->add_scan(job->scan->points, job->scan->body, stamp);
+        navigator.add_scan(job->scan->points, job->scan->body, stamp);
         if (job->target.kind != nav::Target::Kind::none)
           job->plan =
               params.defects.has(Defect::blind_planner) || params.defects.has(Defect::blind_and_unwatched)
                   ? straight(*job, params.platform)
-                  : navigator->plan(job->target, job->pose, stamp);
-        navigator->blocked(job->obstacles);
+                  : navigator.plan(job->target, job->pose, stamp);
+        navigator.blocked(job->obstacles);
       },
       std::move(done));
 }

@@ -20,6 +20,7 @@ struct PlanJob {
   nav::Target target{};        ///< kind none: the scan enters the map, nothing is planned
   bool last{true};             ///< `target` is the goal itself, no place on the way there
   Pose2 pose{};                ///< odometry frame
+  std::uint32_t odom_epoch{};  ///< Of that frame; what was mapped in another one is forgotten.
   std::uint64_t generation{};  ///< of the goal, for whoever asked
   Time made{};
   nav::Plan plan{};
@@ -44,7 +45,8 @@ class Planner : public Component {
 
  private:
   PlannerParams params_;
-  std::shared_ptr<nav::Navigator> navigator_;
+  struct Maps;
+  std::shared_ptr<Maps> maps_;
 };
 
 /// The way to whatever planner there is.

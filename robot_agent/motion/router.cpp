@@ -1,6 +1,7 @@
 #include "robot_agent/motion/router.hpp"
 
 #include <cstdio>
+#include <utility>
 
 namespace adit::agent {
 namespace {
@@ -14,6 +15,13 @@ struct Router::Maps {
       : planner(params.platform, params.route), keeper(params.platform) {}
   nav::RoutePlanner planner;
   nav::RouteKeeper keeper;
+  std::uint32_t odom_epoch{};  ///< Of the frame that they are in.
+
+  void enter(std::uint32_t epoch) {
+    if (std::exchange(odom_epoch, epoch) == epoch) return;
+    planner.clear();
+    keeper.clear();
+  }
 };
 
 Router::Router(RouterParams params, Executor& strand, Log log)
@@ -33,6 +41,7 @@ void Router::step(std::shared_ptr<RouteJob> job, Task done) {
   compute(
       params_.modelled,
       [job, takes, maps = maps_] {
+        maps->enter(job->odom_epoch);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
         if (job->goal)
@@ -46,11 +55,15 @@ void Router::step(std::shared_ptr<RouteJob> job, Task done) {
 void Router::find(std::shared_ptr<RouteQuery> query, Task done) {
   if (!running()) return;
   compute(
-      params_.modelled, [query, maps = maps_] { query->route = maps->planner.plan(query->from, query->to); },
+      params_.modelled,
+      [query, maps = maps_] {
+        maps->enter(query->odom_epoch);
+        query->route = maps->planner.plan(query->from, query->to);
+      },
       std::move(done));
 }
 
-Result<std::string> describe(const nav::Route& route, const Pose2& start) {
+Result<std::string> describe(const nav::Route& route, const Pose2& T_map_odom) {
   switch (route.status) {
     case nav::RouteStatus::found:
       break;
@@ -72,7 +85,7 @@ Result<std::string> describe(const nav::Route& route, const Pose2& start) {
   told += ": ";
   for (std::size_t i = 1; i < route.points.size(); ++i) {
     if (i > most) return told + " ...";
-    const Eigen::Vector2d corner = start * Eigen::Vector2d(route.points[i].head<2>());
+    const Eigen::Vector2d corner = T_map_odom * Eigen::Vector2d(route.points[i].head<2>());
     std::snprintf(text, sizeof text, "%s%.1f %.1f", i > 1 ? ", " : "", corner.x(), corner.y());
     told += text;
   }

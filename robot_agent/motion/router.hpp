@@ -15,6 +15,7 @@ struct RouteJob {
   std::optional<Eigen::Vector3d> goal{};  ///< none: the scan enters the map, no route is asked for
   Eigen::Vector3d place{0, 0, 0};         ///< of the body
   bool blocked{};                         ///< the local planner found no way along the step before
+  std::uint32_t odom_epoch{};             ///< Of that frame; what was mapped in another one is forgotten.
   std::uint64_t generation{};             ///< of the goal, for whoever asked
   Time made{};
   nav::RouteStep step{};
@@ -23,6 +24,7 @@ struct RouteJob {
 /// A question to the global planner. Odometry frame, m.
 struct RouteQuery {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
+  std::uint32_t odom_epoch{};  ///< As in RouteJob.
   nav::Route route{};
 };
 
@@ -64,7 +66,7 @@ class RouteService {
 };
 
 /// A route for people, its corners in the map frame; goal_unreachable, with why, when there is none.
-/// `start`: origin of the route's frame in the map.
-Result<std::string> describe(const nav::Route& route, const Pose2& start);
+/// `T_map_odom`: of the route's frame.
+Result<std::string> describe(const nav::Route& route, const Pose2& T_map_odom);
 
 }  // namespace adit::agent

@@ -1,5 +1,7 @@
 #include "robot_agent/notices/notices.hpp"
 
+#include <cstdio>
+
 namespace adit::agent {
 
 Notices::Notices(std::string robot, Notifier& notifier, Log log, std::function<std::string()> holder)
@@ -50,6 +52,18 @@ void Notices::rival(const wire::ParticipantId& writer) const {
         Reason::none,
         "participant " + wire::to_string(writer) + " writes velocities to the driver of " + robot_ +
             " beside its agent: end that program, neither is obeyed as long as both write"});
+}
+
+void Notices::odometry_jumped(const Pose2& guess) const {
+  char place[64];
+  std::snprintf(place, sizeof place, "%.1f %.1f %.2f", guess.x, guess.y, guess.yaw);
+  send({{},
+        Severity::error,
+        "odometry_jumped",
+        Reason::odometry_jumped,
+        "the odometry of " + robot_ +
+            " jumped: it holds with an empty local map, and assumes that it is at " + place +
+            "; check that, and set it by: pose " + robot_ + " X Y YAW"});
 }
 
 void Notices::driver_lost() const {

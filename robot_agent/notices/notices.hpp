@@ -26,6 +26,8 @@ class Notices {
   /// `why`: file, line and what is missing.
   void tree_refused(const std::string& why) const;
   void rival(const wire::ParticipantId& writer) const;
+  /// `guess`: where the robot takes itself to be, map frame.
+  void odometry_jumped(const Pose2& guess) const;
   void driver_lost() const;
   /// `stops`: the collision monitor stops the robot in its present mode; otherwise it only slows it down.
   void warning(Warning warning, bool stops) const;

@@ -64,6 +64,11 @@ bool read_behaviour(Unpacker& in, Snapshot& s) {
   return true;
 }
 
+bool read_place(Unpacker& in, Snapshot& s) {
+  s.place = checked(in, fields::place(in));
+  return s.place.has_value();
+}
+
 bool read_answers(Unpacker& in, Snapshot& s) {
   auto value = checked(in, fields::answers(in));
   if (!value || s.answers.size() >= Snapshot::kParticipants) return false;
@@ -99,6 +104,14 @@ const std::array kRows{
         [](const Snapshot& s, const auto& add) { add_one(add, s.behaviour); },
         read_behaviour},
     Row{{'H', 'O', 'S', 'T'}, 1, "boot and battery", true, write_host, read_host},
+    Row{{'P', 'L', 'A', 'C'},
+        1,
+        "place",
+        false,
+        [](const Snapshot& s, const auto& add) {
+          if (s.place) add_one(add, *s.place);
+        },
+        read_place},
     Row{{'A', 'N', 'S', 'W'},
         1,
         "answers to a station",
@@ -133,6 +146,7 @@ Snapshot sanitized(Snapshot s) {
   s.authority.stops = std::move(stops);
   s.behaviour = fields::sanitized(std::move(s.behaviour));
   s.battery = fields::sanitized_battery(s.battery);
+  if (s.place) s.place = fields::sanitized(*s.place);
   if (s.answers.size() > Snapshot::kParticipants) s.answers.resize(Snapshot::kParticipants);
   for (KeptAnswers& from : s.answers) from = fields::sanitized(std::move(from));
   return s;

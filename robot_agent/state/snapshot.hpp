@@ -10,6 +10,7 @@
 #include "robot_agent/command/authority.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/discovery/binding.hpp"
+#include "robot_agent/motion/kept_place.hpp"
 
 namespace adit::agent {
 
@@ -60,13 +61,15 @@ struct Snapshot {
 
   KeptAuthority authority{};
   KeptBehaviour behaviour{};
-  std::uint64_t boot{};    ///< of the computer when it was written; 0: not known
-  std::uint8_t battery{};  ///< threshold that was passed last: 0 none, 1 warning, 2 low, 3 last
+  std::uint64_t boot{};              ///< of the computer when it was written; 0: not known
+  std::uint8_t battery{};            ///< threshold that was passed last: 0 none, 1 warning, 2 low, 3 last
+  std::optional<KeptPlace> place{};  ///< Empty: it could not be read.
   std::vector<KeptAnswers> answers{};
-  /// Without the answers: what tells whether something changed that must survive.
+  /// Without the answers and the odometry: what tells whether something changed that must survive.
   bool same_state(const Snapshot& other) const {
     return authority == other.authority && behaviour == other.behaviour && boot == other.boot &&
-           battery == other.battery;
+           battery == other.battery && place.has_value() == other.place.has_value() &&
+           (!place || place->same_frame(*other.place));
   }
   bool operator==(const Snapshot&) const = default;
 };

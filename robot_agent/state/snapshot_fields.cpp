@@ -1,6 +1,7 @@
 #include "robot_agent/state/snapshot_fields.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "robot_agent/command/stop_latches.hpp"
 
@@ -114,6 +115,41 @@ KeptBehaviour sanitized(KeptBehaviour b) {
     b.goal_known = b.goal_reached = b.goal_on_floor = false;
   }
   return b;
+}
+
+void put(Packer& out, const KeptPlace& place) {
+  for (const double value : {place.T_map_odom.x, place.T_map_odom.y, place.T_map_odom.yaw}) out.put(value);
+  out.put(place.odom_epoch).flag(place.newest.has_value());
+  if (!place.newest) return;
+  const Eigen::Vector3d& p = place.newest->T_odom_base.position;
+  const Eigen::Quaterniond& q = place.newest->T_odom_base.orientation;
+  for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) out.put(value);
+  out.put(place.newest->stamp).put(to_stamp(place.newest->received));
+}
+
+KeptPlace place(Unpacker& in) {
+  KeptPlace kept{};
+  for (double* value : {&kept.T_map_odom.x, &kept.T_map_odom.y, &kept.T_map_odom.yaw}) *value = in.number();
+  kept.odom_epoch = in.get<std::uint32_t>();
+  if (!in.flag()) return kept;
+  OdometrySample& newest = kept.newest.emplace();
+  for (double& value : newest.T_odom_base.position) value = in.number();
+  auto& q = newest.T_odom_base.orientation;
+  for (double* value : {&q.w(), &q.x(), &q.y(), &q.z()}) *value = in.number();
+  newest.stamp = in.get<std::uint64_t>();
+  newest.received = from_stamp(in.get<std::uint64_t>());
+  return kept;
+}
+
+// A place that is none is as good as no odometry: nothing goes on by itself.
+KeptPlace sanitized(KeptPlace place) {
+  const Pose2& frame = place.T_map_odom;
+  if (!std::isfinite(frame.x) || !std::isfinite(frame.y) || !std::isfinite(frame.yaw)) return {};
+  if (!place.newest) return place;
+  const Pose3& odom = place.newest->T_odom_base;
+  const bool is_pose = odom.position.allFinite() && std::fabs(odom.orientation.norm() - 1.0) < 1e-6;
+  if (!is_pose) place.newest.reset();
+  return place;
 }
 
 void put(Packer& out, const KeptAnswers& from) {

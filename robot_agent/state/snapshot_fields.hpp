@@ -11,12 +11,14 @@ inline constexpr std::size_t kName = 32;
 void put(store::Packer& out, const KeptAuthority& authority);
 void put(store::Packer& out, const std::vector<Party>& stops);
 void put(store::Packer& out, const KeptBehaviour& behaviour);
+void put(store::Packer& out, const KeptPlace& place);
 void put(store::Packer& out, const KeptAnswers& from);
 
 /// Ask `in.good()` afterwards. The authority comes without its stops.
 KeptAuthority authority(store::Unpacker& in);
 std::vector<Party> stops(store::Unpacker& in);
 KeptBehaviour behaviour(store::Unpacker& in);
+KeptPlace place(store::Unpacker& in);
 KeptAnswers answers(store::Unpacker& in);
 
 // Each gives its argument as it may be written: bounded, and nothing that no robot could have meant. What is
@@ -24,6 +26,7 @@ KeptAnswers answers(store::Unpacker& in);
 KeptAuthority sanitized(KeptAuthority authority);  ///< without its stops
 std::vector<Party> sanitized(std::vector<Party> stops);
 KeptBehaviour sanitized(KeptBehaviour behaviour);
+KeptPlace sanitized(KeptPlace place);
 KeptAnswers sanitized(KeptAnswers from);
 std::uint8_t sanitized_battery(std::uint8_t level);
 

@@ -1,5 +1,7 @@
 #include "robot_agent/state/state_keeper.hpp"
 
+#include <cmath>
+
 #include "robot_agent/state/restored.hpp"
 
 namespace adit::agent {
@@ -35,6 +37,8 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
   std::uint64_t asked{}, done{};           ///< generations: given, and settled one way or the other
   std::optional<std::uint64_t> writing{};  ///< the one under way
   Time since{};                            ///< of the write under way, or of the last one
+  std::optional<KeptPlace> placed{};       // with the state given last
+  Time placed_at{};
   bool marked{}, failed{}, stuck{};
   std::optional<Time> retry{};
   std::deque<std::pair<std::uint64_t, Task>> waiting{};
@@ -42,6 +46,15 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
 
   Writer(KeeperParams p, std::shared_ptr<store::Disk> d, Executor& c, std::shared_ptr<Executor> s, Outputs o)
       : params(p), disk(std::move(d)), command(c), strand(std::move(s)), outputs(std::move(o)) {}
+
+  /// Whether a restart would compare the odometry with a place that the robot has left.
+  bool place_due(const Snapshot& now) const {
+    constexpr double kMoved = 0.05, kTurned = 0.05;  // m, rad
+    if (!now.place || !now.place->newest || command.now() - placed_at < params.place) return false;
+    if (!placed || !placed->newest) return true;
+    const Pose3 &a = placed->newest->T_odom_base, &b = now.place->newest->T_odom_base;
+    return (b.position - a.position).norm() > kMoved || std::fabs(wrap_angle(b.yaw() - a.yaw())) > kTurned;
+  }
 
   void start() {
     if (writing || !next) return;
@@ -127,7 +140,12 @@ void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswe
                        std::uint64_t accepted) {
   Writer& w = *writer_;
   const bool same = w.state && w.state->same_state(state);
-  if (same && w.accepted == accepted) return;
+  if (same && w.accepted == accepted && !w.place_due(state)) {
+    w.state->place = state.place;
+    return;
+  }
+  w.placed = state.place;
+  w.placed_at = w.command.now();
   w.accepted = accepted;
   state.answers = answers();
   w.state = std::move(state);

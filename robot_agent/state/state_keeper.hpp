@@ -14,6 +14,7 @@ struct KeeperParams {
   Duration write{3ms};    ///< what a write takes in rehearsal, [0, 1 s]
   Duration patience{1s};  ///< a write that takes longer holds back no answer any more
   Duration retry{1s};     ///< after a write that failed
+  Duration place{1s};     ///< Between two writes of the place of a robot that drives, (0, 1 s].
   Duration lazy{0};       ///< of a build with defects: writes only so often, and lets answers go before
 };
 
@@ -36,8 +37,8 @@ class StateKeeper {
   StateKeeper& operator=(const StateKeeper&) = delete;
 
   /// The state as it is now; written when it differs from the last one given, or when more commands were
-  /// accepted than then: one that changed nothing is answered as before after a restart, too. `answers` is
-  /// asked then.
+  /// accepted than then: one that changed nothing is answered as before after a restart, too; and once a
+  /// second while its place changes, which no answer waits for. `answers` is asked then.
   void save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers,
             std::uint64_t accepted = 0);
   /// Runs once every state given so far is on disk: at once when it is, or when the disk fails. At most 256

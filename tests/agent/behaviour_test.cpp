@@ -45,16 +45,46 @@ class BehaviourTest : public testing::Test {
   Recorder nav{};
   Mux mux{nav};
   std::vector<Notice> told{};
+  std::vector<Pose2> set{};
   int changes{};
   Behaviour behaviour{{},
                       Decider::load(source_folder() + "/config/trees/robot.xml").value(),
                       mux,
-                      {[this](Time) { return facts; }, [this](const Eigen::Vector2d&) { return goal_free; }},
+                      {[this](Time) { return facts; },
+                       [this](const Eigen::Vector2d&) { return goal_free; },
+                       {},
+                       [this](const Pose2& pose) -> Result<void> {
+                         set.push_back(pose);
+                         return {};
+                       }},
                       {[this](const Notice& n) { told.push_back(n); }, [this] { ++changes; }}};
   Time now{Duration{1h}};
   bool streaming{};
   Twist2 value{};
 };
+
+TEST_F(BehaviourTest, OnlyARobotInHoldIsToldWhereItIs) {
+  EXPECT_TRUE(behaviour.set_pose({3, 4, 1}, now));
+  EXPECT_EQ(behaviour.set_pose({std::nan(""), 4, 1}, now).error().reason, Reason::out_of_range);
+  EXPECT_EQ(behaviour.set_pose({3, 20'000, 1}, now).error().reason, Reason::out_of_range);
+  EXPECT_EQ(behaviour.set_pose({3, 4, INFINITY}, now).error().reason, Reason::out_of_range);
+  ASSERT_TRUE(behaviour.request_goal({5, 0, 0}, now));
+  EXPECT_EQ(behaviour.set_pose({3, 4, 1}, now).error().reason, Reason::wrong_mode);
+  enter_manual();
+  EXPECT_EQ(behaviour.set_pose({3, 4, 1}, now).error().reason, Reason::wrong_mode);
+  behaviour.stop_changed(true, now);
+  EXPECT_TRUE(behaviour.set_pose({5, 6, 2}, now)) << "a stop ends in hold";
+  EXPECT_EQ(set, (std::vector<Pose2>{{3, 4, 1}, {5, 6, 2}}));
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+}
+
+TEST_F(BehaviourTest, ThePoseAnswersAJumpOfTheOdometry) {
+  behaviour.hold(Reason::odometry_jumped, now);
+  EXPECT_EQ(behaviour.view().reason, Reason::odometry_jumped);
+  EXPECT_TRUE(behaviour.set_pose({3, 4, 1}, now));
+  EXPECT_EQ(behaviour.view().reason, Reason::none);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+}
 
 TEST_F(BehaviourTest, StartsInHoldWithZero) {
   EXPECT_EQ(mode(), "hold");

@@ -17,6 +17,10 @@ struct FakeRequests : Requests {
     calls.push_back("goal");
     return {};
   }
+  Result<void> set_pose(const Pose2&, Time) override {
+    calls.push_back("pose");
+    return {};
+  }
   void stop_changed(bool on, Time) override {
     stopped = on;
     calls.push_back(on ? "stopped" : "reset");

@@ -50,6 +50,12 @@ class NavigationTest : public testing::Test {
     mux.step(strand->now());
     go({6, 0});
   }
+  /// The tests put the robot elsewhere, which is no jump here.
+  static Platform anything_goes() {
+    Platform platform{};
+    platform.max_speed = platform.max_turn = 1000;
+    return platform;
+  }
   void go(const Eigen::Vector2d& goal) {
     goal_writer.write(GoTo{{goal.x(), goal.y(), 0}}, strand->now());
     run(100ms);
@@ -58,7 +64,9 @@ class NavigationTest : public testing::Test {
     elapsed += time;
     scheduler.run_until(elapsed);
   }
-  void odometry(const Pose2& pose) { localisation.update(Pose3::level(pose, 0), {}, ++stamp, strand->now()); }
+  void odometry(const Pose2& pose) {
+    EXPECT_TRUE(localisation.update(Pose3::level(pose, 0), {}, ++stamp, strand->now()));
+  }
 
   /// One tenth of a second in which the scan and the plan are made at `seen`, and the robot is at `stands`
   /// when it follows.
@@ -85,7 +93,7 @@ class NavigationTest : public testing::Test {
   Duration elapsed{};
   std::unique_ptr<Runtime> machine{scheduler.machine("robot", 1h)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
-  Localisation localisation{Pose2{}};
+  Localisation localisation{Pose2{}, anything_goes()};
   std::uint64_t stamp{};
   Twist2 velocity{};
   Progress progress{};
@@ -168,6 +176,41 @@ TEST_F(NavigationTest, WithoutARouterItHeadsForTheGoal) {
   router.answers = false;
   for (int i = 0; i < 45; ++i) cycle({}, {});
   EXPECT_GT(velocity.vx, 0.3);
+}
+
+TEST_F(NavigationTest, AJumpOfTheOdometryEmptiesEveryMap) {
+  for (int i = 0; i < 10; ++i) cycle({}, {});
+  ASSERT_FALSE(navigation.goal_free({2, 0}));
+  ASSERT_GT(velocity.vx, 0.3);
+  // There and back, so that the second frame lies where the first one did.
+  for (const double x : {1e5, 0.0}) {
+    ASSERT_FALSE(localisation.update(Pose3::level({x, 0, 0}, 0), {}, ++stamp, strand->now()));
+    navigation.clear();
+  }
+  EXPECT_FALSE(navigation.terrain_fresh(strand->now()));
+  EXPECT_TRUE(navigation.goal_free({2, 0}));
+  navigation.step(strand->now());
+  EXPECT_TRUE(velocity.zero());
+
+  auto scan = std::make_shared<Scan>();
+  scan->points.emplace_back(-3.0f, 0.0f, 0.5f);  // Nothing is seen where the post was.
+  navigation.add_scan(scan, strand->now());
+  run(100ms);
+  EXPECT_TRUE(navigation.goal_free({2, 0})) << "the planner's map";
+  EXPECT_EQ(router.last->odom_epoch, 2u);
+}
+
+TEST_F(NavigationTest, APlanOfTheOldFrameIsNotFollowed) {
+  for (int i = 0; i < 10; ++i) cycle({}, {});
+  auto scan = std::make_shared<Scan>();
+  scan->points.emplace_back(2.0f, 0.0f, 0.5f);
+  navigation.add_scan(scan, strand->now());
+  ASSERT_FALSE(localisation.update(Pose3::level({1e5, 0, 0}, 0), {}, ++stamp, strand->now()));
+  navigation.clear();
+  run(100ms);  // The plan comes back now.
+  navigation.step(strand->now());
+  EXPECT_TRUE(velocity.zero());
+  EXPECT_TRUE(navigation.goal_free(localisation.pose() * Eigen::Vector2d(2, 0)));
 }
 
 TEST_F(NavigationTest, TheRouterIsToldOfWhatIsBlocked) {

@@ -28,6 +28,19 @@ TEST(RoutePlanner, StraightOverOpenGround) {
   EXPECT_EQ(route.points.back().head<2>(), Eigen::Vector2d(18.5, 4));
 }
 
+TEST(RoutePlanner, ClearForgetsEverything) {
+  GridWorld world(200, 100);
+  world.border();
+  RoutePlanner planner(wheeled());
+  world.tell(planner);
+  ASSERT_FALSE(planner.plan({1.5, 5, 0}, {1.5, 20, 0}).found()) << "beyond the border";
+  planner.clear();
+  EXPECT_EQ(planner.map().used(), 0);
+  EXPECT_TRUE(planner.plan({1.5, 5, 0}, {1.5, 20, 0}).found());
+  world.tell(planner);
+  EXPECT_FALSE(planner.plan({1.5, 5, 0}, {1.5, 20, 0}).found()) << "and learns it again";
+}
+
 // What passed for ground a step and a slope up, once, makes no floor of its own between the robot and the
 // rest.
 TEST(RoutePlanner, WhatPassesForGroundIsNoFloorOfItsOwn) {

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "core/geometry/pose.hpp"
+#include "core/time/time.hpp"
+
+namespace adit::agent {
+
+/// A pose of the body in the driver's odometry frame, and when it was measured.
+struct OdometrySample {
+  Pose3 T_odom_base{};
+  std::uint64_t stamp{};  ///< Of the driver's clock, ns; 0: the driver sends none.
+  Time received{};        ///< Of the agent's clock.
+  bool operator==(const OdometrySample& other) const {
+    return T_odom_base.position == other.T_odom_base.position &&
+           T_odom_base.orientation.coeffs() == other.T_odom_base.orientation.coeffs() &&
+           stamp == other.stamp && received == other.received;
+  }
+};
+
+/// What survives a restart of the agent about where the robot is.
+struct KeptPlace {
+  Pose2 T_map_odom{};
+  std::uint32_t odom_epoch{};              ///< Rises when the odometry begins again elsewhere.
+  std::optional<OdometrySample> newest{};  ///< The last pose in the odometry frame; empty: there was none.
+  bool same_frame(const KeptPlace& other) const {
+    return T_map_odom == other.T_map_odom && odom_epoch == other.odom_epoch;
+  }
+  bool operator==(const KeptPlace&) const = default;
+};
+
+}  // namespace adit::agent
