@@ -19,11 +19,15 @@ struct LidarParams {
   double max_range{30.0};    ///< farther hits are lost, m, (0, 1000]
   double range_noise{0.02};  ///< standard deviation of a range, m, [0, 1]
 
-  /// A level ring sees whatever the robot's body would touch, between its step and its height, as if that
-  /// stood in the ring's plane: one ring then shows low things and hanging ones, too.
-  bool profile{false};
+  /// Elevations of the rings, degrees, rising; empty: evenly from lowest to highest.
+  std::vector<double> elevations{};
+  /// One return a column, in the lidar's plane: the nearest of what the rings of that column show not to be
+  /// ground.
+  bool folded{false};
+  double step{0.08};  ///< Folded: rise that is ground, m, [0, 1].
+  double drop{0.15};  ///< Folded: fall that is none, m, (0, 10].
 
-  /// One level ring of 360 that sees the profile: for many seeds.
+  /// Five rings folded to 360 columns: for many seeds.
   static LidarParams planar();
 };
 
@@ -39,16 +43,20 @@ class LidarPattern {
  public:
   explicit LidarPattern(const LidarParams& params);
   const LidarParams& params() const { return params_; }
-  std::size_t size() const { return azimuth_.size() * elevation_.size(); }
+  /// Returns of one turn at most.
+  std::size_t size() const { return azimuth_.size() * (params_.folded ? 1 : elevation_.size()); }
 
   /// One turn, taken at one instant, of a sensor at `height` above the ground point `base` (world).
   /// Points are in base_link: origin on the ground under the robot's centre, x forward, z up, as level as
   /// `base` is; at most size() of them, column by column, in each from the lowest ring up; beams that hit
-  /// nothing are left out. Depends on the arguments alone, so scans may run in parallel.
+  /// nothing are left out. A folded scan has the points of the lidar's plane, at z = height: an obstacle
+  /// stands where a ray met it, a drop begins where the last ground was seen. Depends on the arguments alone,
+  /// so scans may run in parallel.
   PointCloud scan(const World& world, std::span<const BodyBox> others, const Pose3& base, double height,
                   std::uint64_t seed) const;
 
  private:
+  class Column;
   LidarParams params_;
   std::vector<Eigen::Vector2d> azimuth_;    ///< cos, sin
   std::vector<Eigen::Vector2d> elevation_;  ///< cos, sin

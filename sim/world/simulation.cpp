@@ -51,20 +51,15 @@ Result<void> Simulation::add(const RobotStart& start) {
       std::abs(start.pose.x) > 1e5 || std::abs(start.pose.y) > 1e5)
     return {Reason::bad_argument, start.id + ": the start pose is outside the world"};
   std::shared_ptr<const StandingMap> ground;
-  std::shared_ptr<const World> seen = world_;
   for (const Robot& robot : robots_)
     if (robot.body.platform().height == platform.height && robot.body.platform().step == platform.step &&
-        robot.body.platform().flies() == platform.flies()) {
+        robot.body.platform().flies() == platform.flies())
       ground = robot.ground;
-      seen = robot.seen;
-    }
   if (!ground) {
     // Whatever rises or falls below it does not stop what flies.
     constexpr double any_step = 1e6;
     ground = std::make_shared<const StandingMap>(*world_, platform.height,
                                                  platform.flies() ? any_step : platform.step);
-    if (params_.lidar.profile && !platform.flies())
-      seen = std::make_shared<const World>(world_->name(), ground->profile());
   }
   const Rectangle body = footprint(platform, start.pose);
   const double floor = ground->ground(start.pose.x, start.pose.y);
@@ -79,7 +74,7 @@ Result<void> Simulation::add(const RobotStart& start) {
   OdometryParams odometry = params_.odometry;
   odometry.turn = std::max(odometry.turn, platform.turn_error);
   robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(odometry, seed),
-                     std::move(ground), std::move(seen), lidar_of(platform)});
+                     std::move(ground), lidar_of(platform)});
   Robot& robot = robots_.back();
   robot.truth.pose = Pose3::level(start.pose, z);
   robot.start_ground = floor;
@@ -278,14 +273,23 @@ void Simulation::measure(std::size_t index) {
 // Robots with the same share its pattern.
 std::shared_ptr<const LidarPattern> Simulation::lidar_of(const Platform& platform) const {
   LidarParams params = params_.lidar;
-  if (!params.profile) {
+  if (params.folded && platform.flies()) {
+    // One level ring: ground, steps and holes do not stand in its way.
+    params.elevations = {0.0};
+    params.rings = 1;
+    params.folded = false;
+  } else if (params.folded) {
+    params.step = platform.step;
+    params.drop = std::max(params.drop, 1.5 * platform.step);
+  } else {
     params.rings = platform.lidar_rings;
     params.lowest = platform.lidar_lowest;
     params.highest = platform.lidar_highest;
   }
   for (const Robot& robot : robots_) {
     const LidarParams& other = robot.lidar->params();
-    if (other.rings == params.rings && other.lowest == params.lowest && other.highest == params.highest)
+    if (other.rings == params.rings && other.lowest == params.lowest && other.highest == params.highest &&
+        other.elevations == params.elevations && other.folded == params.folded && other.step == params.step)
       return robot.lidar;
   }
   return std::make_shared<const LidarPattern>(params);
@@ -301,14 +305,12 @@ void Simulation::step() {
 
 Simulation::ScanJob Simulation::scan(std::size_t index) const {
   const double height = robots_[index].body.platform().lidar_height;
-  ScanJob job{robots_[index].seen, robots_[index].lidar, {}, robots_[index].truth.pose, height, 0};
+  ScanJob job{world_, robots_[index].lidar, {}, robots_[index].truth.pose, height, 0};
   for (std::size_t n = 0; n < robots_.size(); ++n) {
     if (n == index) continue;
     const Platform& platform = robots_[n].body.platform();
     BodyBox box{robots_[n].body.pose(), robots_[n].truth.pose.position.z(), platform.length, platform.width,
                 platform.height};
-    // In the ring's plane, however low it is.
-    if (params_.lidar.profile) box = {box.pose, job.base.position.z(), box.length, box.width, 2.0 * height};
     job.others.push_back(box);
   }
   for (const Person& person : people_) {
@@ -316,7 +318,6 @@ Simulation::ScanJob Simulation::scan(std::size_t index) const {
     const double ground = robots_[index].ground->ground(body.pose.x, body.pose.y);
     BodyBox box{body.pose, std::isnan(ground) ? job.base.position.z() : ground, body.length, body.width,
                 Person::height};
-    if (params_.lidar.profile) box.ground = job.base.position.z();
     job.others.push_back(box);
   }
   job.seed = derive_seed(params_.seed ^ (steps_ << 8), 2 * index + 2);

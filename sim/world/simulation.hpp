@@ -113,7 +113,6 @@ class Simulation {
     Body body;
     Odometry odometry;
     std::shared_ptr<const StandingMap> ground;
-    std::shared_ptr<const World> seen;  ///< by its lidar
     std::shared_ptr<const LidarPattern> lidar;
     Truth truth{};
     std::optional<std::size_t> partner{};  ///< of the contact that lasts, see contact()

@@ -12,8 +12,6 @@ namespace {
 constexpr float nowhere = std::numeric_limits<float>::quiet_NaN();
 /// Floors within this distance carry the body, m.
 constexpr double support = 0.25;
-/// Higher than everything, m.
-constexpr double far_away = 1e4;
 
 }  // namespace
 
@@ -92,14 +90,6 @@ void StandingMap::measure() {
           static_cast<float>(cells[static_cast<std::size_t>(j + rim) * width + i + rim] * resolution_);
       if (blocked_[index(i, j)]) bounds_.extend(middle(i, j));
     }
-}
-
-VoxelGrid StandingMap::profile() const {
-  VoxelGrid grid(origin_, resolution_, nx_, ny_, {-far_away, far_away}, open_sides_);
-  for (int j = 0; j < ny_; ++j)
-    for (int i = 0; i < nx_; ++i) grid.set(i, j, 0, blocked_[index(i, j)] != 0);
-  grid.build();
-  return grid;
 }
 
 bool StandingMap::blocked_at(int i, int j) const {

@@ -29,8 +29,6 @@ class StandingMap {
   double clearance(const Rectangle& footprint) const;
   /// Whether the column that holds (x, y) is blocked.
   bool blocked(double x, double y) const { return blocked_at(column(x, 0), column(y, 1)); }
-  /// The blocked columns as walls without an end upwards or downwards, for rays.
-  VoxelGrid profile() const;
   /// Distance from (x, y) to the middle of the nearest blocked column, m; see clearance.
   double distance(double x, double y) const;
 

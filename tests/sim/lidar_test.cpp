@@ -69,9 +69,62 @@ TEST(Lidar, robots_see_each_other) {
   }
   EXPECT_GT(seen, 10);
   EXPECT_LT(seen, 40);
-  const auto high = lidar.scan(world, other, Pose3::level({0, 0, 0}, 0.0), 0.6, 1);
-  for (const Eigen::Vector3f& p : high)
-    EXPECT_TRUE(p.head<2>().norm() > 2.9) << "a level beam passes over it";
+}
+
+/// Distance straight ahead in the plane of a planar lidar 0.5 m above the ground at x = 0, without noise; 0:
+/// nothing.
+double ahead(std::span<const Box> boxes, double floor, std::span<const BodyBox> bodies = {}) {
+  const World world = *make_box_world(boxes, floor, 3);
+  const LidarPattern lidar(exact(LidarParams::planar()));
+  for (const Eigen::Vector3f& p : lidar.scan(world, bodies, Pose3::level({0, 0, 0}, 0.0), 0.5, 1))
+    if (std::abs(p.y()) < 1e-3 && p.x() > 0) {
+      EXPECT_FLOAT_EQ(p.z(), 0.5f) << "in the lidar's plane";
+      return p.x();
+    }
+  return 0.0;
+}
+
+TEST(PlanarLidar, FoldsItsRingsToOneReturnAColumn) {
+  const LidarPattern lidar(LidarParams::planar());
+  EXPECT_EQ(lidar.size(), 360u);
+  EXPECT_EQ(lidar.scan(room(), {}, Pose3::level({0, 0, 0}, 0.0), 0.5, 1).size(), 360u);
+}
+
+TEST(PlanarLidar, SeesABodyOf40CentimetresFromFarToNear) {
+  for (double x = 0.4; x < 3.6; x += 0.05) {
+    const std::array<Box, 1> box{Box{x, x + 0.3, -1, 1, 0, 0.4}};
+    EXPECT_NEAR(ahead(box, 0), x, 0.03) << "in the world";
+    const std::array<BodyBox, 1> body{BodyBox{{x + 0.3, 0, 0}, 0.0, 0.6, 0.5, 0.4}};
+    EXPECT_NEAR(ahead({}, 0, body), x, 0.01) << "a robot";
+  }
+}
+
+TEST(PlanarLidar, SeesWhereADropBegins) {
+  for (const double width : {1.5, 4.0, 30.0})
+    for (double x = 0.35; x < 2.5; x += 0.05) {
+      const std::array<Box, 2> ground{Box{-5, x, -3, 3, -1, 0}, Box{x + width, x + width + 5, -3, 3, -1, 0}};
+      EXPECT_NEAR(ahead(ground, -1), x, 0.1) << width;
+    }
+}
+
+TEST(PlanarLidar, GroundThatRisesAndFallsIsGround) {
+  std::vector<Box> ramp;  // 12 %, up from x = 1 to 6 and down again
+  for (double x = 1.0; x < 11.0; x += 0.05)
+    ramp.push_back({x, x + 0.05, -3, 3, 0, 0.12 * std::min(x - 0.975, 11.025 - x)});
+  const World world = *make_box_world(ramp, 0, 3);
+  const LidarPattern lidar(LidarParams::planar());
+  for (double x = -6.0; x < 12.0; x += 0.21) {
+    const double z = std::max(0.0, 0.12 * std::min(x - 1.0, 11.0 - x));
+    for (const Eigen::Vector3f& p : lidar.scan(world, {}, Pose3::level({x, 0, 0}, z), 0.5, 7)) {
+      const bool near = p.head<2>().norm() < 5.0;  // farther off its foot is between two rays
+      ASSERT_FALSE(near && std::abs(p.y()) < 2.0) << "from " << x << ": " << p.transpose();
+    }
+  }
+}
+
+TEST(PlanarLidar, SeesNothingBehindWhatStands) {
+  const std::array<Box, 2> boxes{Box{2, 2.2, -1, 1, 0, 3}, Box{3, 3.2, -0.2, 0.2, 0, 3}};
+  EXPECT_NEAR(ahead(boxes, 0), 2.0, 1e-3);
 }
 
 TEST(Lidar, noise_has_the_deviation_asked_for) {

@@ -84,15 +84,16 @@ TEST(Simulation, what_flies_passes_over_and_touches_what_is_at_its_height) {
   EXPECT_EQ(s->truth(1).collisions, 0u);
 }
 
-TEST(Simulation, a_planar_lidar_sees_what_the_body_would_touch) {
-  EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0, 3}), 2.0, 1e-3) << "a wall";
-  EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0, 0.2}), 2.0, 1e-3) << "lower than the ring, higher than the step";
-  EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0.3, 0.35}), 2.0, 1e-3) << "between the two";
+TEST(Simulation, a_planar_lidar_sees_what_its_rays_meet) {
+  EXPECT_NEAR(ahead({9, 9.5, -1, 1, 0, 3}), 9.0, 1e-3) << "a wall";
+  EXPECT_NEAR(ahead({2, 2.5, -1, 1, 0, 0.4}), 2.0, 1e-3) << "lower than the lidar, higher than the step";
+  EXPECT_NEAR(ahead({1, 1.5, -1, 1, 0.2, 0.35}), 1.0, 1e-3) << "it hangs";
   EXPECT_EQ(ahead({2, 2.5, -1, 1, 0, 0.05}), 0.0) << "a step that it climbs";
-  EXPECT_EQ(ahead({2, 2.5, -1, 1, 2, 2.5}), 0.0) << "higher than the body";
+  EXPECT_EQ(ahead({2, 2.5, -1, 1, 0.6, 2.5}), 0.0) << "higher than the lidar";
+  EXPECT_EQ(ahead({4.5, 5, -1, 1, 0, 0.1}), 0.0) << "between two rays: no robot knows of it";
   Platform low = wheeled();
-  low.height = 0.2;
-  EXPECT_NEAR(ahead({9, 9.5, -1, 1, 0, 3}, {{"r2", low, {4, 0, 0}}}), 3.7, 1e-3) << "a low robot";
+  low.height = 0.4;
+  EXPECT_NEAR(ahead({9, 9.5, -1, 1, 0, 3}, {{"r2", low, {2.5, 0, 0}}}), 2.2, 1e-3) << "a low robot";
 }
 
 TEST(Simulation, each_robot_has_the_lidar_of_its_platform) {
