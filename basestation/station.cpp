@@ -211,6 +211,8 @@ void Station::Impl::report_traffic() {
 void Station::Impl::heard_acknowledgement(const radio::Acknowledgement& sample,
                                           const wire::SampleInfo& info) {
   if (sample.station() != params_.name || sample.station_id() != params_.id) return;
+  // Another robot of that name answers as well.
+  if (!fleet_.speaks_for(sample.robot(), info.sender)) return;
   fleet_.learn_authority(sample.robot(), sample.holder(), {sample.epoch().start(), sample.epoch().counter()});
   if (sample.seq() != 0) return sender_.hear(sample, info);
   const auto reason = static_cast<Reason>(sample.reason());

@@ -176,6 +176,8 @@ void Agent::Core::restore() {
   const bool resume =
       params_.resume_after_restart && s.boot == params_.boot && comparable && !edges_.restored.hold;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);
+  // A copy of this robot's disk in another computer proves nothing.
+  if (edges_.instances == 1 && s.authority.holder && s.boot == params_.boot) edges_.namesakes.held_before();
   safeguards_.restore(static_cast<BatteryLevel>(s.battery));
 }
 
@@ -217,6 +219,7 @@ void Agent::Core::on_stop() {
 void Agent::Core::beat() {
   const Time at = now();
   watch_driver();
+  watch_namesakes(at);
   listen_first(at);
   behaviour_.tick(at);
   mux_.step(at);
@@ -229,7 +232,7 @@ void Agent::Core::beat() {
 // until this agent answers it.
 void Agent::Core::listen_first(Time at) {
   constexpr Duration least = 1s, heard_for = 300ms, most = 3s;
-  if (!behaviour_.listens()) return;
+  if (!behaviour_.listens() || edges_.namesakes.verdict() == Namesakes::Verdict::undecided) return;
   const auto& authority = commands_.authority();
   if (!holder_heard_ && authority.holder() && authority.heard() > started_) holder_heard_ = at;
   const bool heard = !authority.holder() || (holder_heard_ && at - *holder_heard_ >= heard_for);
@@ -249,6 +252,21 @@ void Agent::Core::keep() {
 
 void Agent::Core::watch_driver() {
   if (telemetry_.driver_fell_silent(now())) notices_.driver_lost();
+}
+
+void Agent::Core::watch_namesakes(Time at) {
+  Namesakes& namesakes = edges_.namesakes;
+  const Authority& authority = commands_.authority();
+  namesakes.claim({authority.holder().has_value(), authority.epoch().start}, at);
+  const auto other = namesakes.tick(at);
+  const bool gives_way = namesakes.verdict() == Namesakes::Verdict::gives_way;
+  if (other && namesakes_told_.pass(gives_way, at)) notices_.namesake(*other, gives_way);
+  if (gives_way != std::exchange(gives_way_, gives_way)) {
+    edges_.radio->send_claim(namesakes.announced());
+    behaviour_.hold(gives_way ? Reason::name_taken : Reason::none, at);
+  } else if (gives_way && behaviour_.mode().name != "hold") {
+    behaviour_.hold(Reason::name_taken, at);
+  }
 }
 
 void Agent::Core::send_findings() {
@@ -274,7 +292,8 @@ CommandInterface::Outputs Agent::Core::command_outputs() {
           [this](const std::string& component) { return edges_.watch->restart(component); },
           [this](const std::string& component, bool automatic) {
             return edges_.watch->set_policy(component, automatic);
-          }};
+          },
+          [this](const Epoch& epoch) { return edges_.namesakes.obeys(epoch.start); }};
 }
 
 Behaviour::Inputs Agent::Core::behaviour_inputs() {

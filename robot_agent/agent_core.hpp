@@ -8,7 +8,9 @@
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
+#include "robot_agent/command/rate_limit.hpp"
 #include "robot_agent/discovery/directory.hpp"
+#include "robot_agent/discovery/namesakes.hpp"
 #include "robot_agent/findings/sync.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/external.hpp"
@@ -31,12 +33,13 @@ namespace adit::agent {
 /// safe state, and the way to the components beside it. Touched on the command strand, but for what says
 /// otherwise.
 struct Agent::Edges {
-  explicit Edges(Executor& command) : directory(command) {}
+  Edges(Executor& command, const wire::ParticipantId& own) : directory(command), namesakes(own) {}
 
   std::unique_ptr<Notifier> notifier{};  ///< from any thread
   std::unique_ptr<RadioEdge> radio{};
   std::unique_ptr<Driver> driver{};
   Directory directory;
+  Namesakes namesakes;
   Restored restored{};  ///< what was there at the start, or when the component was made anew
   std::unique_ptr<StateKeeper> keeper{};  ///< what the component gave last, here and on the disk
   std::unique_ptr<FindingSync> findings{};
@@ -83,6 +86,8 @@ class Agent::Core : public Component {
   /// The odometry began again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
   Result<void> set_pose(const Pose2& pose);
+  /// Holds while this robot gives way to another one of its name.
+  void watch_namesakes(Time at);
   void send_findings();
   Facts sense(Time now) const;
   CommandInterface::Outputs command_outputs();
@@ -106,6 +111,8 @@ class Agent::Core : public Component {
   std::optional<Time> holder_heard_{};  ///< First time since the start that the holder was heard.
   std::optional<Time> jump_told_{};
   RivalWatch rivals_;
+  bool gives_way_{};                     ///< to another robot of its name
+  RateLimit<bool> namesakes_told_{10s};  // by whether it gives way
   std::vector<Timer> timers_{};
 };
 

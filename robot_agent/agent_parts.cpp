@@ -143,7 +143,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   robot_wire = &robot;
   if (const auto opened = command.open(); !opened) return opened.error();
   Executor& strand = command_strand();
-  edges = std::make_unique<Edges>(strand);
+  edges = std::make_unique<Edges>(strand, radio.id());
   Edges& e = *edges;
   auto notifier = Notifier::open(radio, params.name, strand);
   if (!notifier) return notifier.error();
@@ -204,7 +204,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   if (routes_it) watch->watch(router, {.name = "router"});
   watch->watch(sensors, {.name = "sensors"});
   if (params.disk) watch->note({.name = "store"});
-  return e.radio->listen({e.directory,
+  return e.radio->listen({e.directory, e.namesakes,
                           [with_core](const std::function<void(CommandInterface&)>& use) {
                             with_core([&](Core& core) { core.commands(use); });
                           },

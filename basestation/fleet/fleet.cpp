@@ -63,7 +63,8 @@ const char* to_string(Level level) {
 RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
   const auto known = robots_.find(name);
   if (known != robots_.end()) {
-    known->second.participant = info.sender;
+    if (known->second.participant != info.sender) return touch_namesake(known->second, info);
+    known->second.spoke = info.received;
     return &known->second;
   }
   if (!valid_name(name) || robots_.size() == max_robots) {
@@ -73,7 +74,7 @@ RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
   RobotView& robot = robots_[name];
   robot.name = name;
   robot.participant = info.sender;
-  robot.first_heard = robot.last_heard = info.received;
+  robot.first_heard = robot.last_heard = robot.spoke = info.received;
   if (on_robot) on_robot(robot);
   return &robot;
 }
@@ -101,13 +102,13 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
 }
 
 void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
-  if (valid_name(sample.name()) && sample.name() != own_name_)
+  if (valid_name(sample.name()) && sample.name() != own_name_ && speaks_for(sample.name(), info.sender))
     links_.heard(sample.name(), sample.seq(), info.received);
   if (sample.kind() != radio::AGENT_STATION) {
     // Its states say more, but where the link is full they come as rarely as this.
     const auto robot = robots_.find(sample.name());
     if (robot != robots_.end() && robot->second.participant == info.sender)
-      robot->second.last_sign = info.received;
+      robot->second.last_sign = robot->second.spoke = info.received;
     return;
   }
   if (sample.name() == own_name_ && sample.id() != own_id_) {
@@ -304,6 +305,8 @@ void Fleet::check(Time now) {
   const auto silent = [now](const auto& entry) { return now - entry.second.last_heard > forget_after; };
   std::erase_if(stations_, silent);
   std::erase_if(traffic_, silent);
+  std::erase_if(namesakes_,
+                [now](const auto& entry) { return now - entry.second.view.spoke > forget_after; });
 }
 
 const RobotView* Fleet::robot(const std::string& name) const {

@@ -40,6 +40,9 @@ class Fleet {
   /// Something that this station itself has to say.
   void say(Notice said) { notice(std::move(said)); }
 
+  /// Whether what this participant says as that robot counts: false for another robot of the same name.
+  bool speaks_for(const std::string& robot, const wire::ParticipantId& participant) const;
+
   /// Null when the robot is not known.
   const RobotView* robot(const std::string& name) const;
   std::vector<std::string> robot_names() const;
@@ -67,13 +70,25 @@ class Fleet {
   std::function<void(const RobotView&)> on_robot{};
 
  private:
+  /// Another participant that speaks as a robot, and what it says.
+  struct Namesake {
+    RobotView view{};
+    std::optional<Time> displaced{};  ///< It was shown until then.
+    bool rival{};                     ///< It was shown, and then the one before it spoke again.
+  };
+  static constexpr std::size_t max_namesakes = 16;
+
   RobotView* touch(const std::string& name, const wire::SampleInfo& info);
+  /// The view that a sample of another participant than the one that is shown goes into.
+  RobotView* touch_namesake(RobotView& shown, const wire::SampleInfo& info);
+  static bool replaces(const Namesake& namesake, const RobotView& shown, Time now);
   void notice(Notice notice);
   void date(Notice& notice, const RobotView& robot) const;
 
   std::string own_name_;
   Id own_id_;
   std::map<std::string, RobotView> robots_{};
+  std::map<std::pair<std::string, wire::ParticipantId>, Namesake> namesakes_{};
   std::map<std::string, StationView> stations_{};
   std::map<std::string, TrafficView> traffic_{};
   wire::PeerMeter links_{};

@@ -55,6 +55,7 @@ struct RobotView {
   wire::ParticipantId participant{};
   Time first_heard{};
   Time last_heard{};  ///< last RobotState, or the first sign of life before that
+  Time spoke{};       ///< last sample of any kind
   Time last_sign{};   ///< of life, by what it says once a second beside its RobotStates
   bool lost{false};   ///< neither for 2.5 s
 

@@ -101,6 +101,7 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
     if (c.kind != CommandKind::stop || (known && known->id != c.from.id)) return identity;
   }
   if (c.seq == 0) return {Reason::bad_argument, "command numbers start at 1"};
+  if (c.kind != CommandKind::stop && !is_meant(c.epoch)) return {Reason::name_taken};
   if (memory_.too_old(c.from.participant, c.seq,
                       c.kind == CommandKind::stop ? Line::none : line_of(c.kind)) &&
       !params_.defects.has(Defect::repeat_done_twice))
@@ -279,6 +280,7 @@ std::optional<Answer> CommandInterface::handle(const StickSample& s, Time now) {
 
 CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now) {
   if (s.robot != params_.robot) return {Reason::wrong_robot};
+  if (!is_meant(s.epoch)) return {Reason::name_taken};
   const auto& holder = authority_.holder();
   if (!holder) return {Reason::nobody_holds};
   const Station* bound = holders_station();

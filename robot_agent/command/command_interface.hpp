@@ -32,6 +32,9 @@ class CommandInterface {
     /// The supervisor is asked; an error refuses the command. Null: there is no supervisor.
     std::function<Result<void>(const std::string& component)> restart{};
     std::function<Result<void>(const std::string& component, bool automatic)> policy{};
+    /// Whether what was given under that epoch is for this robot and not for another one of the same name.
+    /// Null: always.
+    std::function<bool(const Epoch& epoch)> is_meant{};
   };
 
   CommandInterface(CommandParams params, Requests& requests, Outputs outputs);
@@ -75,6 +78,7 @@ class CommandInterface {
   Outcome judge(const Command& c, Time now);
   Outcome identify(const Sender& from, StationTable::Sign sign, Time now);
   Outcome check_holder(const Command& c) const;
+  bool is_meant(const Epoch& epoch) const { return !outputs_.is_meant || outputs_.is_meant(epoch); }
   Outcome perform(const Command& c, Time now);
   Outcome take(const Command& c, Time now);
   Outcome release(const Command& c, Time now);

@@ -45,6 +45,17 @@ void Notices::tree_refused(const std::string& why) const {
   send({{}, Severity::error, "tree_refused", Reason::tree_refused, robot_ + " runs in hold: " + why});
 }
 
+void Notices::namesake(const wire::ParticipantId& other, bool gives_way) const {
+  const std::string who =
+      "another robot, participant " + wire::to_string(other) + ", calls itself " + robot_ + ": ";
+  send({{},
+        gives_way ? Severity::error : Severity::warning,
+        "name_taken",
+        Reason::name_taken,
+        who + (gives_way ? "this one came later, holds and refuses commands; give it a name of its own"
+                         : "this one was first and stays in service; give the other one a name of its own")});
+}
+
 void Notices::rival(const wire::ParticipantId& writer) const {
   send({{},
         Severity::error,

@@ -25,6 +25,8 @@ class Notices {
   void restored(const Restored& found, bool same_boot) const;
   /// `why`: file, line and what is missing.
   void tree_refused(const std::string& why) const;
+  /// Another robot has this robot's name. `gives_way`: this one does, else it stays in service.
+  void namesake(const wire::ParticipantId& other, bool gives_way) const;
   void rival(const wire::ParticipantId& writer) const;
   /// `guess`: where the robot takes itself to be, map frame.
   void odometry_jumped(const Pose2& guess) const;

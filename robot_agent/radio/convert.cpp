@@ -1,5 +1,8 @@
 #include "robot_agent/radio/convert.hpp"
 
+#include <charconv>
+#include <cstdio>
+
 namespace adit::agent {
 namespace {
 
@@ -9,6 +12,7 @@ constexpr std::size_t kAnswerText = 200;
 constexpr std::size_t kNoticeText = 500;
 constexpr std::size_t kHealthText = 200;
 constexpr std::size_t kName = 32;
+constexpr std::string_view kNameTaken = "name_taken:";
 
 std::string clipped(const std::string& text, std::size_t most) {
   return text.size() <= most ? text : text.substr(0, most - 3) + "...";
@@ -133,6 +137,25 @@ AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId&
   r.max_speed = in.max_speed();
   r.modes = in.modes();
   return r;
+}
+
+std::string service_word(const Namesakes::Claim& claim) {
+  char digits[17]{};
+  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(claim.start));
+  return std::string(kNameTaken) + (claim.held ? "held:" : "free:") + digits;
+}
+
+std::optional<Namesakes::Claim> claim_of(const radio::Capabilities& in) {
+  for (const std::string& word : in.services()) {
+    if (!word.starts_with(kNameTaken)) continue;
+    Namesakes::Claim claim;
+    claim.held = word.substr(kNameTaken.size(), 5) == "held:";
+    const std::size_t digits = kNameTaken.size() + 5;
+    if (word.size() > digits)
+      std::from_chars(word.data() + digits, word.data() + word.size(), claim.start, 16);
+    return claim;
+  }
+  return std::nullopt;
 }
 
 radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot) {

@@ -10,9 +10,15 @@
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/discovery/directory.hpp"
+#include "robot_agent/discovery/namesakes.hpp"
 #include "robot_agent/supervisor/component_row.hpp"
 
 namespace adit::agent {
+
+/// The service that a robot announces while it gives way to another one of its name, and what it claims;
+/// nothing where `in` has none.
+std::string service_word(const Namesakes::Claim& claim);
+std::optional<Namesakes::Claim> claim_of(const radio::Capabilities& in);
 
 inline radio::Epoch to_radio(const Epoch& epoch) {
   radio::Epoch out;

@@ -28,6 +28,7 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::Presence> presence{};
   wire::Writer<radio::Finding> finding{};
   radio::Presence presence_sample{};
+  radio::Capabilities capabilities_sample{};
   wire::PeerMeter stations{};  // what the link from each of them gives
   Timer presence_timer{};
   radio::RobotState state_sample{};
@@ -84,28 +85,37 @@ Result<void> RadioEdge::listen(Parts parts) {
     if (a->seq == 0) return (void)e.acknowledgement.write(to_radio(*a, e.robot));  // a stream changes nothing
     settle([&e, a = *a] { (void)e.acknowledgement.write(to_radio(a, e.robot)); });
   };
-  e.wire.on_participant(e.strand, [&e, commands, &directory](const wire::ParticipantEvent& event) {
-    directory.participant(event);
-    if (event.present)
-      e.say_present();  // it need not wait for the next second
-    else
-      commands([&](CommandInterface& interface) { interface.departed(event.id); });
-  });
+  Namesakes& namesakes = parts.namesakes;
+  e.wire.on_participant(e.strand,
+                        [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
+                          directory.participant(event);
+                          if (!event.present) namesakes.left(event.id);
+                          if (event.present)
+                            e.say_present();  // it need not wait for the next second
+                          else
+                            commands([&](CommandInterface& interface) { interface.departed(event.id); });
+                        });
   for (const auto& made : {
-           e.read(topics::presence,
-                  [&e, commands, &directory](const radio::Presence&p, const wire::SampleInfo&info) {
-                    const Time now = e.strand.now();
-                    if (p.kind() == radio::AGENT_STATION && valid_name(p.name()))
-                      e.stations.heard(p.name(), p.seq(), now);
-                    if (p.kind() == radio::AGENT_STATION)
-                      commands([&](CommandInterface& interface) {
-                        interface.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
-                      });
-                    if (p.name() != e.robot) directory.presence(p.name(), p.id(), info.sender, now);
-                  }),
+           e.read(
+               topics::presence,
+               [&e, commands, &directory, &namesakes](const radio::Presence&p, const wire::SampleInfo&info) {
+                 const Time now = e.strand.now();
+                 if (p.kind() == radio::AGENT_STATION && valid_name(p.name()))
+                   e.stations.heard(p.name(), p.seq(), now);
+                 if (p.kind() == radio::AGENT_STATION) namesakes.station(now);
+                 if (p.kind() == radio::AGENT_ROBOT && p.name() == e.robot) namesakes.heard(info.sender, now);
+                 if (p.kind() == radio::AGENT_STATION)
+                   commands([&](CommandInterface& interface) {
+                     interface.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
+                   });
+                 if (p.name() != e.robot) directory.presence(p.name(), p.id(), info.sender, now);
+               }),
            e.read(topics::capabilities,
-                  [&e, commands, &directory](const radio::Capabilities&c, const wire::SampleInfo&info) {
+                  [&e, commands, &directory, &namesakes](const radio::Capabilities&c,
+                                                         const wire::SampleInfo&info) {
                     const Time now = e.strand.now();
+                    if (c.kind() == radio::AGENT_ROBOT && c.name() == e.robot)
+                      namesakes.described(info.sender, claim_of(c), now);
                     if (c.kind() == radio::AGENT_STATION)
                       commands([&](CommandInterface& interface) {
                         interface.hear({c.name(), c.id(), info.sender}, c.protocol(), now);
@@ -195,13 +205,20 @@ void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
 
 void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol) {
   Endpoints& e = *endpoints_;
-  (void)e.capabilities.write(to_radio(platform, e.robot, id, protocol));
+  e.capabilities_sample = to_radio(platform, e.robot, id, protocol);
+  (void)e.capabilities.write(e.capabilities_sample);
   e.presence_sample.name(e.robot);
   e.presence_sample.kind(radio::AGENT_ROBOT);
   e.presence_sample.id(id);
   e.presence_sample.protocol(protocol);
   e.say_present();
   e.presence_timer = e.strand.every(kPresencePeriod, [&e] { e.say_present(); });
+}
+
+void RadioEdge::send_claim(const std::optional<Namesakes::Claim>& claim) {
+  radio::Capabilities sample = endpoints_->capabilities_sample;
+  if (claim) sample.services().push_back(service_word(*claim));
+  (void)endpoints_->capabilities.write(sample);
 }
 
 void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed, double state_rate) {

@@ -9,6 +9,7 @@
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/discovery/directory.hpp"
+#include "robot_agent/discovery/namesakes.hpp"
 
 namespace adit::agent {
 
@@ -26,6 +27,7 @@ class RadioEdge {
  public:
   struct Parts {
     Directory& directory;
+    Namesakes& namesakes;
     /// Runs it with the command interface; not at all while there is none.
     std::function<void(const std::function<void(CommandInterface&)>&)> commands;
     /// Runs what gives an answer once all that it tells of is on disk.
@@ -57,6 +59,9 @@ class RadioEdge {
   void send_state(const RobotReport& report, std::uint64_t stamp);
   /// And from now on a sign of life once a second, and when somebody appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
+  /// Sends the capabilities once more, with what this robot claims while it gives way to another one of its
+  /// name.
+  void send_claim(const std::optional<Namesakes::Claim>& claim);
   /// What passed on the wire since the last call. `inner_malformed`: samples on the robot's inner network
   /// that were none, since the start; operators see them with the radio's.
   /// `state_rate`: RobotStates a second, as the link lets it.

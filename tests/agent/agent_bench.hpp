@@ -44,6 +44,8 @@ class AgentBench {
     radio::Capabilities capabilities{};
     radio::Health health{};
     radio::LinkReport link{};
+    /// Of several robots with one name: the participant whose state is stored; none: whoever spoke last.
+    std::optional<wire::ParticipantId> follows{};
     std::uint64_t seq{}, stick_seq{};
     bool up{true};
     Timer beat{};
@@ -166,6 +168,7 @@ class AgentBench {
   PointCloud obstacles{};  ///< odometry frame, beside the plain
   radio::Command last_command{};
   wire::Ether& ether() { return ether_; }
+  const wire::Wire& radio() const { return *radio_; }
   Agent& agent() { return *agent_; }
   std::unique_ptr<Runtime> machine(const std::string& name) { return scheduler_.machine(name, 9s); }
 
@@ -179,9 +182,9 @@ class AgentBench {
     keep(op, wire::topics::acknowledgement,
          [o](const radio::Acknowledgement& a) { o->answers.push_back(a); });
     keep(op, wire::topics::notification, [o](const radio::Notification& n) { o->notices.push_back(n); });
-    keep(op, wire::topics::authority, [o](const radio::AuthorityStatus& a) { o->authority = a; });
-    keep(op, wire::topics::behaviour, [o](const radio::BehaviourState& b) { o->behaviour = b; });
-    keep(op, wire::topics::robot_state, [o](const radio::RobotState& s) { o->state = s; });
+    follow(op, wire::topics::authority, [o](const radio::AuthorityStatus& a) { o->authority = a; });
+    follow(op, wire::topics::behaviour, [o](const radio::BehaviourState& b) { o->behaviour = b; });
+    follow(op, wire::topics::robot_state, [o](const radio::RobotState& s) { o->state = s; });
     keep(op, wire::topics::capabilities, [o](const radio::Capabilities& c) { o->capabilities = c; });
     keep(op, wire::topics::health, [o](const radio::Health& h) { o->health = h; });
     keep(op, wire::topics::link_report, [o](const radio::LinkReport& l) { o->link = l; });
@@ -203,6 +206,14 @@ class AgentBench {
         wire::make_reader(*op.wire, topic, *strand_, [store](const T& s, const wire::SampleInfo&) {
           store(s);
         }).value());
+  }
+  template <class T, class F>
+  void follow(Operator& op, const wire::Topic<T>& topic, F store) {
+    op.readers.push_back(wire::make_reader(*op.wire, topic, *strand_,
+                                           [o = &op, store](const T& s, const wire::SampleInfo& info) {
+                                             if (!o->follows || *o->follows == info.sender) store(s);
+                                           })
+                             .value());
   }
   void drive() {
     pose = pose * Pose2{command.vx * 0.02, command.vy * 0.02, command.wz * 0.02};

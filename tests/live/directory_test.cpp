@@ -19,7 +19,7 @@ class Member {
       edge_ = agent::RadioEdge::open(*wire_, *strand_, name).value();
       seen_ = directory_.list().subscribe(
           *strand_, [this](const auto& list) { list_.use([&](agent::AgentList& copy) { copy = *list; }); });
-      agent::RadioEdge::Parts parts{directory_, [this](const auto& work) { work(commands_); },
+      agent::RadioEdge::Parts parts{directory_, namesakes_, [this](const auto& work) { work(commands_); },
                                     [](const Task& task) { task(); }};
       if (!edge_->listen(std::move(parts))) throw std::runtime_error("the radio cannot be heard");
       timer_ = strand_->every(100ms, [this] { directory_.tick(strand_->now()); });
@@ -57,6 +57,7 @@ class Member {
   agent::FakeRequests requests_{};
   agent::CommandInterface commands_{{.robot = "watcher"}, requests_, {[](const auto&) {}, [] {}}};
   agent::Directory directory_{*strand_};
+  agent::Namesakes namesakes_{wire_->id()};
   Shared<agent::AgentList> list_{};
   std::unique_ptr<agent::RadioEdge> edge_{};
   Subscription seen_{};

@@ -48,6 +48,71 @@ radio::ComponentHealth component(const std::string& name, radio::ComponentState 
   return part;
 }
 
+radio::AuthorityStatus authority(std::uint64_t start) {
+  radio::AuthorityStatus sample;
+  sample.robot("r1");
+  sample.epoch().start(start);
+  return sample;
+}
+
+TEST(Fleet, OfTwoRobotsWithOneNameTheFirstIsShown) {
+  Fleet fleet("op1", own_id);
+  const wire::ParticipantId first{9}, second{10};
+  for (int i = 0; i < 100; ++i) {
+    const Time now{100ms * i};
+    fleet.hear(authority(1), {.sender = first, .received = now});
+    if (i >= 50) fleet.hear(authority(2), {.sender = second, .received = now + 20ms});
+    EXPECT_EQ(fleet.robot("r1")->epoch.start, 1U) << i;
+  }
+  EXPECT_TRUE(fleet.speaks_for("r1", first));
+  EXPECT_FALSE(fleet.speaks_for("r1", second));
+  // What both say to operators is shown.
+  radio::Notification notification;
+  notification.robot("r1");
+  notification.code("name_taken");
+  fleet.hear(notification, {.sender = second, .received = Time(10s)});
+  EXPECT_THAT(codes(fleet), ElementsAre("name_taken"));
+}
+
+TEST(Fleet, ARobotThatGivesWayIsNotShownWhileTheOtherIsOutOfRange) {
+  Fleet fleet("op1", own_id);
+  const wire::ParticipantId first{9}, second{10};
+  radio::Capabilities gives_way;
+  gives_way.name("r1");
+  gives_way.kind(radio::AGENT_ROBOT);
+  gives_way.services({"route", "name_taken:free:0000000000000002"});
+  fleet.hear(authority(1), {.sender = first, .received = Time(0s)});
+  fleet.hear(gives_way, {.sender = second, .received = Time(100ms)});
+  for (int i = 1; i < 50; ++i) fleet.hear(authority(2), {.sender = second, .received = Time(1s * i)});
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 1U);
+  fleet.hear(authority(2), {.sender = second, .received = Time(61s)});
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 2U);
+  fleet.hear(authority(1), {.sender = first, .received = Time(62s)});
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 1U);
+}
+
+TEST(Fleet, AForgerIsShownOnlyWhileTheRobotIsSilent) {
+  Fleet fleet("op1", own_id);
+  const wire::ParticipantId robot{9}, forger{10};
+  fleet.hear(authority(1), {.sender = robot, .received = Time(0s)});
+  fleet.hear(authority(2), {.sender = forger, .received = Time(900ms)});  // as a restart would
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 2U);
+  fleet.hear(authority(1), {.sender = robot, .received = Time(1s)});  // may be a late sample
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 2U);
+  fleet.hear(authority(1), {.sender = robot, .received = Time(2s)});
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 1U);
+  fleet.hear(authority(2), {.sender = forger, .received = Time(4s)});
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 1U);
+}
+
+TEST(Fleet, ManyParticipantsWithOneNameAreBounded) {
+  Fleet fleet("op1", own_id);
+  fleet.hear(authority(1), {.sender = {9}, .received = Time(0s)});
+  for (std::uint8_t i = 10; i < 60; ++i) fleet.hear(authority(i), {.sender = {i}, .received = Time(10ms)});
+  EXPECT_EQ(fleet.robot("r1")->epoch.start, 1U);
+  EXPECT_GT(fleet.ignored(), 0U);
+}
+
 TEST(Fleet, HealthNamesWhatIsNotUp) {
   Fleet fleet("op1", own_id);
   fleet.hear(state("r1"), at(0s));
