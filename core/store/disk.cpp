@@ -35,7 +35,6 @@ Result<void> Disk::replace(const std::string& name, std::span<const std::uint8_t
   const std::string fresh = temporary(name);
   Result<void> done = write_file(fresh, bytes, false);
   // The data before the name: else a power cut could leave the new name with nothing in it.
-  if (done) done = sync_file(fresh);
   if (done) done = rename_file(fresh, name);
   if (!done) {
     (void)remove_file(fresh);  // the first error is the one to tell
@@ -47,7 +46,6 @@ Result<void> Disk::replace(const std::string& name, std::span<const std::uint8_t
 Result<void> Disk::append(const std::string& name, std::span<const std::uint8_t> bytes) {
   if (auto good = check(name); !good) return good;
   if (auto done = write_file(name, bytes, true); !done) return done;
-  if (auto done = sync_file(name); !done) return done;
   return sync_folder();  // the file may be new
 }
 

@@ -47,10 +47,10 @@ class Disk {
 
  protected:
   virtual Result<std::optional<Bytes>> read_file(const std::string& name, std::size_t most) const = 0;
-  /// Writes to a file, which is emptied before or (`append`) goes on. Not durable yet.
+  /// Writes to a file, which is emptied before or (`append`) goes on, and syncs its data. Its name is not
+  /// durable yet.
   virtual Result<void> write_file(const std::string& name, std::span<const std::uint8_t> bytes,
                                   bool append) = 0;
-  virtual Result<void> sync_file(const std::string& name) = 0;
   virtual Result<void> rename_file(const std::string& from, const std::string& to) = 0;
   virtual Result<void> remove_file(const std::string& name) = 0;
   virtual Result<void> sync_folder() = 0;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace adit::store {
 namespace {
@@ -23,6 +24,8 @@ class Fd {
   Fd(const Fd&) = delete;
   Fd& operator=(const Fd&) = delete;
   int get() const { return fd_; }
+  /// False when the file system reports a late error. The descriptor is gone in any case.
+  bool close() { return ::close(std::exchange(fd_, -1)) == 0; }
   explicit operator bool() const { return fd_ >= 0; }
 
  private:
@@ -39,12 +42,23 @@ bool write_all(int fd, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
+/// True also for a folder that we may write to but not read: it cannot be synced.
+bool sync_folder_at(const std::filesystem::path& folder) {
+  const Fd fd(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return fd ? ::fsync(fd.get()) == 0 : errno == EACCES;
+}
+
+/// Each folder that is made is durable before the next one is: its entry is in its parent.
 bool make_folders(const std::filesystem::path& folder) {
   std::filesystem::path made;
   for (const auto& part : folder) {
+    const std::filesystem::path parent = made;
     made /= part;
-    if (::mkdir(made.c_str(), 0700) != 0 && errno != EEXIST && errno != EISDIR && errno != EROFS)
+    if (::mkdir(made.c_str(), 0700) == 0) {
+      if (!sync_folder_at(parent)) return false;
+    } else if (errno != EEXIST && errno != EISDIR && errno != EROFS) {
       return false;
+    }
   }
   return true;
 }
@@ -114,14 +128,11 @@ Result<std::optional<Bytes>> FileDisk::read_file(const std::string& name, std::s
 
 Result<void> FileDisk::write_file(const std::string& name, std::span<const std::uint8_t> bytes, bool append) {
   const int how = O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | (append ? O_APPEND : O_TRUNC);
-  const Fd file(::openat(fd_, name.c_str(), how, 0600));
+  Fd file(::openat(fd_, name.c_str(), how, 0600));
   if (!file || !write_all(file.get(), bytes)) return failed(Reason::cannot_write, "write", name);
-  return {};
-}
-
-Result<void> FileDisk::sync_file(const std::string& name) {
-  const Fd file(::openat(fd_, name.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW));
-  if (!file || ::fsync(file.get()) != 0) return failed(Reason::cannot_write, "sync", name);
+  // By the descriptor that wrote: another one may not be shown an error of writing back.
+  if (::fsync(file.get()) != 0) return failed(Reason::cannot_write, "sync", name);
+  if (!file.close()) return failed(Reason::cannot_write, "close", name);
   return {};
 }
 

@@ -150,15 +150,8 @@ Result<void> MemoryDisk::write_file(const std::string& name, std::span<const std
     file.cached.push_back(byte);
   }
   if (full_ || room < bytes.size()) return {Reason::cannot_write, "no space left for " + name};
-  return {};
-}
-
-Result<void> MemoryDisk::sync_file(const std::string& name) {
-  const std::lock_guard lock(mutex_);
   if (!step()) return dead(Reason::cannot_write);
-  const auto found = names_.find(name);
-  if (found == names_.end()) return missing(name);
-  found->second->durable = found->second->cached;
+  file.durable = file.cached;
   return {};
 }
 

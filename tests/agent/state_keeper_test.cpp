@@ -222,7 +222,6 @@ class SlowDisk final : public store::Disk {
     go.wait(lock, [this] { return let_go; });
     return {};
   }
-  Result<void> sync_file(const std::string&) override { return {}; }
   Result<void> rename_file(const std::string&, const std::string&) override { return {}; }
   Result<void> remove_file(const std::string&) override { return {}; }
   Result<void> sync_folder() override { return {}; }
