@@ -19,12 +19,13 @@ bool AnswerMemory::too_old(const wire::ParticipantId& from, std::uint64_t seq, L
   return (e.newest >= kAnswers && seq <= e.newest - kAnswers) || overtaken || seq < e.floor;
 }
 
-void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answer, Line line, Time now) {
+void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answer, Line line, bool durable,
+                            Time now) {
   if (!entries_.contains(from) && entries_.size() >= kParticipants)
     entries_.erase(std::min_element(entries_.begin(), entries_.end(), [](const auto& a, const auto& b) {
       return a.second.used < b.second.used;
     }));
-  if (answer.reason == Reason::none) ++accepted_;
+  if (durable && answer.reason == Reason::none) ++accepted_;
   Entry& entry = entries_[from];
   if (entry.answers.empty()) entry.answers.resize(kAnswers);
   entry.used = now;

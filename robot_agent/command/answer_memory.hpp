@@ -25,9 +25,10 @@ class AnswerMemory {
   const Answer* find(const wire::ParticipantId& from, std::uint64_t seq) const;
   /// The number is older than everything remembered, or than a newer command of its line.
   bool too_old(const wire::ParticipantId& from, std::uint64_t seq, Line line) const;
-  void remember(const wire::ParticipantId& from, const Answer& answer, Line line, Time now);
+  /// `durable`: when it was accepted, a restart must not forget the answer.
+  void remember(const wire::ParticipantId& from, const Answer& answer, Line line, bool durable, Time now);
 
-  /// Commands accepted since the start of this agent.
+  /// Durable commands accepted since the start of this agent.
   std::uint64_t accepted() const { return accepted_; }
 
   /// What a restart must not forget: the participants heard last, their newest answers.

@@ -33,6 +33,11 @@ bool open_to_all(CommandKind kind) {
          kind == CommandKind::plan || kind == CommandKind::unknown;
 }
 
+/// Given again after a restart, such a command has the same answer and no further effect, unless it changed
+/// the state: then its answer is stored with the state. Those of the holder would be refused, their epoch is
+/// old.
+bool same_after_restart(CommandKind kind) { return open_to_all(kind); }
+
 }  // namespace
 
 CommandInterface::CommandInterface(CommandParams params, Requests& requests, Outputs outputs)
@@ -83,7 +88,7 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   const Answer result = answer(c, outcome);
   // A name that is refused is refused each time, and is not worth a place in the memory or on the disk.
   if (c.seq != 0 && valid_name(c.from.name))
-    memory_.remember(c.from.participant, result, line_of(c.kind), now);
+    memory_.remember(c.from.participant, result, line_of(c.kind), !same_after_restart(c.kind), now);
   if (params_.defects.has(Defect::silent_refusal) && !result.accepted()) return std::nullopt;
   return result;
 }

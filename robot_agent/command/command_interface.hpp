@@ -59,7 +59,7 @@ class CommandInterface {
   /// What must survive a restart of the agent.
   KeptAuthority kept() const;
   std::vector<KeptAnswers> kept_answers() const { return memory_.kept(); }
-  /// Commands accepted since the start of this agent.
+  /// Commands accepted since the start of this agent whose answers a restart must not forget.
   std::uint64_t accepted() const { return memory_.accepted(); }
   /// Comes back with it, before anything was heard: holder, lock and stops as they were, under a new epoch.
   /// Tells nobody.
