@@ -20,8 +20,15 @@ std::uint64_t system_time() {
                                         .count());
 }
 
+std::uint64_t steady_time() {
+  return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        std::chrono::steady_clock::now().time_since_epoch())
+                                        .count());
+}
+
 RecorderParams checked(RecorderParams params) {
   if (!params.clock) params.clock = system_time;
+  if (!params.steady) params.steady = steady_time;
   if (!params.complain) params.complain = [](const std::string&) {};
   return params;
 }
@@ -159,8 +166,7 @@ bool Recorder::write(const std::vector<std::uint8_t>& batch) {
 }
 
 bool Recorder::open() {
-  const std::uint64_t now = params_.clock();
-  if (troubled_ && now < retry_at_) return false;
+  if (troubled_ && params_.steady() < retry_at_) return false;
   auto output = ring_.next();
   if (!output) return lost(output.error());
   file_ = std::make_unique<File>(std::move(*output), params_);
@@ -174,7 +180,7 @@ bool Recorder::open() {
 bool Recorder::lost(const Error& error) {
   if (!troubled_) params_.complain("recording is interrupted: " + error.text);
   troubled_ = true;
-  retry_at_ = params_.clock() + retry_after;
+  retry_at_ = params_.steady() + retry_after;
   file_.reset();
   const std::lock_guard lock(mutex_);
   ++counters_.failed_files;

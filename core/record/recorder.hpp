@@ -24,7 +24,8 @@ struct RecorderParams {
   bool compress{true};               ///< by Zstandard, where the build has it
   std::string library{"adit"};       ///< who wrote it, and its version
   Text about{};                      ///< metadata of every file
-  std::function<std::uint64_t()> clock{};                   ///< ns since 1970; the system's when empty
+  std::function<std::uint64_t()> clock{};   ///< ns since 1970; the system's when empty
+  std::function<std::uint64_t()> steady{};  ///< ns, never steps: for pauses; the system's when empty
   std::function<void(const std::string& text)> complain{};  ///< once per trouble, on the writing thread
 };
 

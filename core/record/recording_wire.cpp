@@ -8,6 +8,10 @@ namespace adit::record {
 namespace {
 
 constexpr std::size_t most_senders = 32;  // of one reader: then the one that was silent longest is given up
+// Samples of one reader that could not be decoded: a peer that sends nothing else must not push the last
+// minutes out of the ring. The wire's counters have the number of all of them.
+constexpr double malformed_burst = 32.0;
+constexpr double malformed_rate = 4.0;  // 1/s
 
 class RecordingWriter final : public wire::RawWriter {
  public:
@@ -31,29 +35,23 @@ class Heard {
  public:
   Heard(Tape& tape, ChannelInfo info) : tape_(tape), info_(std::move(info)) {}
   ~Heard() {
-    for (const auto& [sender, own] : channels_) tape_.release(own.id);
+    for (const auto* channels : {&channels_, &malformed_})
+      for (const auto& [sender, own] : *channels) tape_.release(own.id);
   }
   Heard(const Heard&) = delete;
   Heard& operator=(const Heard&) = delete;
 
   void record(std::span<const std::uint8_t> cdr, const wire::ParticipantId& sender) {
-    auto it = channels_.find(sender);
-    if (it == channels_.end()) {
-      if (channels_.size() >= most_senders) give_one_up();
-      ChannelInfo info = info_;
-      info.metadata["from"] = wire::to_string(sender);
-      it = channels_.try_emplace(sender, Own{tape_.channel(info), 0}).first;
-    }
-    it->second.last = ++count_;
-    tape_.record(it->second.id, cdr);
+    tape_.record(channel(channels_, sender, info_), cdr);
   }
-  void record_malformed(std::span<const std::uint8_t> cdr, const wire::ParticipantId& sender) {
+  void record_malformed(std::span<const std::uint8_t> cdr, const wire::SampleInfo& about) {
+    tokens_ = std::min(malformed_burst, tokens_ + malformed_rate * seconds(about.received - refilled_));
+    refilled_ = about.received;
+    if (tokens_ < 1.0) return;
+    tokens_ -= 1.0;
     ChannelInfo info{info_.topic + "/malformed", info_.dds_type, info_.metadata};
     info.metadata[malformed_key] = "could not be decoded";
-    info.metadata["from"] = wire::to_string(sender);
-    const ChannelId id = tape_.channel(info);
-    tape_.record(id, cdr);
-    tape_.release(id);
+    tape_.record(channel(malformed_, about.sender, std::move(info)), cdr);
   }
 
  private:
@@ -61,18 +59,32 @@ class Heard {
     ChannelId id{};
     std::uint64_t last{};  ///< number of the sample heard last
   };
-  void give_one_up() {
-    const auto oldest =
-        std::min_element(channels_.begin(), channels_.end(),
-                         [](const auto& a, const auto& b) { return a.second.last < b.second.last; });
+  using Senders = std::map<wire::ParticipantId, Own>;
+
+  ChannelId channel(Senders& senders, const wire::ParticipantId& sender, ChannelInfo info) {
+    auto it = senders.find(sender);
+    if (it == senders.end()) {
+      if (senders.size() >= most_senders) give_one_up(senders);
+      info.metadata["from"] = wire::to_string(sender);
+      it = senders.try_emplace(sender, Own{tape_.channel(info), 0}).first;
+    }
+    it->second.last = ++count_;
+    return it->second.id;
+  }
+  void give_one_up(Senders& senders) {
+    const auto oldest = std::min_element(senders.begin(), senders.end(), [](const auto& a, const auto& b) {
+      return a.second.last < b.second.last;
+    });
     tape_.release(oldest->second.id);
-    channels_.erase(oldest);
+    senders.erase(oldest);
   }
 
   Tape& tape_;
   ChannelInfo info_;
-  std::map<wire::ParticipantId, Own> channels_{};
+  Senders channels_{}, malformed_{};
   std::uint64_t count_{};
+  double tokens_{malformed_burst};
+  Time refilled_{};  ///< receiver's clock
 };
 
 }  // namespace
@@ -107,7 +119,7 @@ Result<std::unique_ptr<wire::RawReader>> RecordingWire::make_reader(const wire::
                                             const wire::SampleInfo& about) {
         try {
           const bool decoded = handler(cdr, about);
-          decoded ? heard->record(cdr, about.sender) : heard->record_malformed(cdr, about.sender);
+          decoded ? heard->record(cdr, about.sender) : heard->record_malformed(cdr, about);
           return decoded;
         } catch (...) {
           heard->record(cdr, about.sender);  // above all the one that broke its receiver

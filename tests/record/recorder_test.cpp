@@ -35,13 +35,14 @@ class RecorderTest : public testing::Test {
     out.ring.folder = folder_.path() + "/recordings";
     out.ring.name = "r1";
     out.clock = [this] { return now_ += 1'000'000; };
+    out.steady = [this] { return steady_ += 1'000'000; };
     out.complain = [this](const std::string& text) { complaints_.push_back(text); };
     return out;
   }
   std::vector<fs::path> files() { return files_in(folder_.path() + "/recordings"); }
 
   live::Folder folder_{};
-  std::atomic<std::uint64_t> now_{1'000'000'000};
+  std::atomic<std::uint64_t> now_{1'000'000'000}, steady_{0};
   std::vector<std::string> complaints_{};  // by the writing thread, read once it has ended
 };
 
@@ -188,15 +189,37 @@ TEST_F(RecorderTest, AFullDiskIsToldOnceAndGoesOnWhenThereIsRoom) {
       });
     };
     EXPECT_TRUE(until([&] { return recorder.counters().dropped > 100; }));
-    EXPECT_EQ(recorder.counters().failed_files, 1U) << "it is tried again after 5 s of its clock";
+    EXPECT_EQ(recorder.counters().failed_files, 1U) << "it is tried again after 5 s";
     disk.room = 10'000'000;
     now_ += 10'000'000'000;
+    steady_ += 10'000'000'000;
     const auto before = recorder.counters().files;
     EXPECT_TRUE(until([&] { return recorder.counters().files > before; }));
   }
   EXPECT_THAT(complaints_, testing::ElementsAre(HasSubstr("No space left")));
   EXPECT_GT(heard_in(files().front()).report.bytes, 100U) << "what was written before can be read";
   EXPECT_TRUE(heard_in(files().back()).report.complete);
+}
+
+TEST_F(RecorderTest, AClockThatStepsBackDoesNotLengthenThePauseAfterAnError) {
+  SmallDisk disk;
+  RecorderParams own = params();
+  own.ring.open = disk.opener();
+  own.flush = 1ms;
+  now_ = 7'200'000'000'000;
+  Recorder recorder(own);
+  const auto id = recorder.channel({"out/x", "", {}});
+  const auto until = [&](auto condition) {
+    return live::eventually([&] {
+      recorder.record(id, bytes_of("x"));
+      return condition();
+    });
+  };
+  ASSERT_TRUE(until([&] { return recorder.counters().failed_files > 0; }));
+  disk.room = 10'000'000;
+  now_ -= 3'600'000'000'000;
+  steady_ += 10'000'000'000;
+  EXPECT_TRUE(until([&] { return recorder.counters().files > 0; }));
 }
 
 TEST_F(RecorderTest, AFolderThatCannotBeMadeCostsTheRecordingOnly) {

@@ -119,6 +119,30 @@ TEST_F(Air, WhatCannotBeDecodedStandsApart) {
   EXPECT_TRUE(tape_.channels.back().metadata.contains(malformed_key));
 }
 
+TEST_F(Air, APeerThatSendsRubbishDoesNotWashTheRingAway) {
+  RecordingWire r1(*r1_, tape_, "radio");
+  const auto own = strand("r1");
+  auto reader = wire::make_reader(r1, wire::topics::presence, *own,
+                                  [](const radio::Presence&, const wire::SampleInfo&) {});
+  auto writer = op_->make_writer(wire::topics::presence, "");
+  pass(2s);
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_TRUE((*writer)->write(std::vector<std::uint8_t>{0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}));
+    pass(1ms);
+  }
+  EXPECT_GE(tape_.topics.size(), 32U);
+  EXPECT_LE(tape_.topics.size(), 40U);
+  EXPECT_EQ(tape_.channels.size(), 1U);
+  EXPECT_EQ(tape_.released, 0) << "one channel, not one a sample";
+  const auto before = tape_.topics.size();
+  pass(10s);
+  ASSERT_TRUE((*writer)->write(std::vector<std::uint8_t>{0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}));
+  pass(1s);
+  EXPECT_EQ(tape_.topics.size(), before + 1);
+  reader = Error{Reason::none, {}};
+  EXPECT_EQ(tape_.released, 1);
+}
+
 TEST_F(Air, ASampleThatBreaksItsReceiverIsThere) {
   RecordingWire r1(*r1_, tape_, "radio");
   const auto own = strand("r1");
