@@ -1,12 +1,30 @@
 #include "core/log/log.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
 namespace adit {
 namespace {
 constexpr std::array<std::string_view, 6> names{"trace", "debug", "info", "warn", "error", "off"};
+
+/// Bytes of the UTF-8 character that begins `text`; 0 when there is none, or when it is overlong, a surrogate
+/// or a control character of C1, which terminals obey like those below 0x20.
+std::size_t printable(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first >= 0x20 && first != 0x7f ? 1 : 0;
+  const std::size_t size = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4) return 0;
+  for (std::size_t i = 1; i < size; ++i)
+    if ((byte(i) & 0xc0u) != 0x80) return 0;
+  if (first == 0xc2 && byte(1) < 0xa0) return 0;                                         // C1
+  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90)) return 0;  // overlong
+  if ((first == 0xed && byte(1) > 0x9f) || (first == 0xf4 && byte(1) > 0x8f)) return 0;  // no character
+  return size;
 }
+
+}  // namespace
 
 std::string_view name(LogLevel level) { return names[static_cast<std::size_t>(level)]; }
 
@@ -29,13 +47,14 @@ std::string format(const LogLine& line) {
   }
   std::string out = head;
   out.append(line.component).append(": ");
-  for (const char c : line.text) {
-    // Text may come from the radio: no line breaks, no terminal control.
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += c == '\n' ? " | " : "?";
-    } else {
-      out += c;
-    }
+  // Text may come from the radio: no line breaks, no terminal control.
+  for (std::string_view text = line.text; !text.empty();) {
+    const std::size_t size = printable(text);
+    if (size > 0)
+      out += text.substr(0, size);
+    else
+      out += text.front() == '\n' ? " | " : "?";
+    text.remove_prefix(std::max<std::size_t>(1, size));
   }
   return out;
 }

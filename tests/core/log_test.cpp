@@ -40,6 +40,23 @@ TEST(Log, is_one_line_without_control_characters) {
   EXPECT_THAT(memory->lines(), ElementsAre("[           -] info  wire: a | b?[31mc?"));
 }
 
+TEST(Log, has_no_control_characters_of_c1) {
+  const auto memory = std::make_shared<MemoryLog>();
+  const Log log(memory, "wire");
+  log.info(
+      "a\xc2\x9b"
+      "31mb");  // CSI in UTF-8
+  log.info(
+      "a\x9b"
+      "31mb");                                            // and as a byte alone
+  log.info("caf\xc3\xa9 \xe2\x82\xac \xf0\x9f\xa4\x96");  // text stays
+  log.info("\xc0\x9b \xed\xa0\x80 \xe2\x82");
+  EXPECT_THAT(memory->lines(),
+              ElementsAre("[           -] info  wire: a??31mb", "[           -] info  wire: a?31mb",
+                          "[           -] info  wire: caf\xc3\xa9 \xe2\x82\xac \xf0\x9f\xa4\x96",
+                          "[           -] info  wire: ?? ??? ??"));
+}
+
 TEST(Log, memory_is_bounded) {
   const auto memory = std::make_shared<MemoryLog>(LogLevel::info, 3);
   for (int i = 0; i < 10; ++i) Log(memory, "x").info(std::to_string(i));
