@@ -62,9 +62,11 @@ Result<std::string> find_named(const std::string& folder, const std::string& nam
   if (auto found = find_file(folder + "/" + name + ".yaml", beside)) return found;
   std::set<std::string> known;
   std::error_code error;
+  // Not a range-for: its step throws when a folder cannot be read to its end.
   for (const std::string& place : search_path(beside))
-    for (const auto& entry : fs::directory_iterator(fs::path(place) / folder, error))
-      if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
+    for (fs::directory_iterator it(fs::path(place) / folder, error), end; !error && it != end;
+         it.increment(error))
+      if (it->path().extension() == ".yaml") known.insert(it->path().stem().string());
   if (known.empty()) return find_file(folder + "/" + name + ".yaml", beside);
   std::string names;
   for (const std::string& each : known) names += (names.empty() ? "" : ", ") + each;

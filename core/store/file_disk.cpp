@@ -79,9 +79,10 @@ Result<std::shared_ptr<FileDisk>> FileDisk::open(const std::string& folder) {
   if (fd < 0) return error("open");
   std::shared_ptr<FileDisk> disk(new FileDisk(folder, fd));
   if (::faccessat(fd, ".", W_OK | X_OK, AT_EACCESS) != 0) return error("write to");
-  std::error_code ignored;  // what cannot be listed here cannot be listed later: list() tells
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (const std::string name = entry.path().filename(); is_temporary(name)) (void)disk->remove_file(name);
+  std::error_code unread;  // a folder that cannot be listed here cannot be listed later: list() reports it
+  for (std::filesystem::directory_iterator it(folder, unread), end; !unread && it != end;
+       it.increment(unread))
+    if (const std::string name = it->path().filename(); is_temporary(name)) (void)disk->remove_file(name);
   return disk;
 }
 
