@@ -40,6 +40,14 @@ function(adit_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
+# Tests are compiled without optimisation: what they test is optimised, and their own code takes a quarter less time to
+# compile. Sanitizers keep their own level.
+function(adit_test_options target)
+  if(NOT ADIT_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)
+  endif()
+endfunction()
+
 # The headers that nearly every test parses, parsed once for all of them.
 function(adit_test_headers target)
   if(NOT TARGET adit_test_pch)
@@ -48,6 +56,7 @@ function(adit_test_headers target)
     add_executable(adit_test_pch ${PROJECT_BINARY_DIR}/test_pch.cpp)
     set_target_properties(adit_test_pch PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
     target_link_libraries(adit_test_pch PRIVATE GTest::gmock Eigen3::Eigen Threads::Threads)
+    adit_test_options(adit_test_pch)
     target_precompile_headers(adit_test_pch PRIVATE
       <gmock/gmock.h> <gtest/gtest.h> <chrono> <filesystem> <fstream> <functional> <memory> <string> <thread> <vector>)
   endif()
@@ -84,6 +93,7 @@ function(adit_test name)
   endif()
   add_executable(test_${name} ${arg_SOURCES})
   target_link_libraries(test_${name} PRIVATE ${arg_LINK} adit_folders GTest::gmock GTest::gtest_main)
+  adit_test_options(test_${name})
   adit_test_headers(test_${name})
   # What a sanitizer's build needs: the tests and what they start, nothing else.
   if(NOT TARGET adit_tests)
