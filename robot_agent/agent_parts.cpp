@@ -6,6 +6,8 @@
 namespace adit::agent {
 namespace {
 
+constexpr Duration kDiskDrain = 2s;
+
 KeeperParams keeper_params(const AgentParams& params) {
   KeeperParams k{};
   if (params.defects.has(Defect::acknowledged_lost)) k.lazy = 5s;
@@ -72,7 +74,8 @@ Agent::Parts::Parts(const AgentParams& agent_params, Runtime& agent_runtime)
 Agent::Parts::~Parts() {
   watch_strand->end();
   for (Unit* unit : {&command, &sensors, &planner, &router}) unit->end();
-  if (disk_strand) disk_strand->end();
+  // State that an operator was told to be stored is written first, unless the disk does not answer.
+  if (disk_strand) disk_strand->drain(kDiskDrain);
   if (watch) watch->stop();
   if (edges && edges->radio) edges->radio->close();
   if (edges && edges->driver) edges->driver->close();

@@ -53,8 +53,8 @@ struct Agent::Parts {
   wire::Wire* robot_wire{};
   std::unique_ptr<Edges> edges{};
   Unit command, planner, router, sensors;
-  std::shared_ptr<Executor> watch_strand;
-  std::shared_ptr<Executor> disk_strand{};  ///< null: there is no disk, or one that takes no time
+  std::shared_ptr<Strand> watch_strand;
+  std::shared_ptr<Strand> disk_strand{};  ///< null: there is no disk, or one that takes no time
   std::unique_ptr<PlannerUnit> plans{};
   std::unique_ptr<RouterUnit> routes{};  ///< null: the platform has no router
   std::unique_ptr<Watch> watch{};

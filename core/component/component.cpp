@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "core/exec/hang.hpp"
+#include "core/exec/fault.hpp"
 
 namespace adit {
 
@@ -22,6 +22,7 @@ Result<void> Component::start() {
   life_ = std::make_shared<Life>(Life{this});
   vital_->started(now());
   heartbeat_ = executor_.every(vital_->params().beat, guard([this] { vital_->beat(now()); }));
+  const std::uint64_t failures_before = failures_;
   Result<void> result;
   try {
     result = on_start();
@@ -29,6 +30,11 @@ Result<void> Component::start() {
     const std::string text = current_exception_text();
     fail(text);
     result = Error{Reason::internal, name() + " did not start: " + text};
+  }
+  if (result && failures_ != failures_before) {
+    // A guarded callback threw within on_start(), before anyone could handle the failure.
+    stop();
+    return Error{Reason::internal, name() + " did not start: " + vital_->health(now()).last_failure};
   }
   if (!result) {
     life_->owner = nullptr;
@@ -65,20 +71,6 @@ void Component::inject(ComponentFault fault) {
     if (fault == ComponentFault::hang) hang(executor_);
     throw std::runtime_error("a crash on purpose");
   });
-}
-
-void Component::compute(Duration modelled, Task work, Task done) {
-  auto failure = std::make_shared<std::string>();
-  executor_.compute(
-      modelled,
-      [failure, work = std::move(work)] {
-        try {
-          work();
-        } catch (...) {
-          *failure = "compute: " + current_exception_text();
-        }
-      },
-      guard([this, failure, done = std::move(done)] { failure->empty() ? done() : fail(*failure); }));
 }
 
 }  // namespace adit

@@ -82,10 +82,10 @@ class Component {
   void protect(F callback) {
     guard(std::move(callback))();
   }
-  /// Guarded post, timers and compute. An exception of `work` is a failure of this component.
+  /// Guarded post, timers and compute.
   template <class F>
-  void post(F task) {
-    executor_.post(guard(std::move(task)));
+  bool post(F task) {
+    return executor_.post(guard(std::move(task)));
   }
   template <class F>
   Timer after(Duration delay, F task) {
@@ -95,7 +95,33 @@ class Component {
   Timer every(Duration period, F task) {
     return executor_.every(period, guard(std::move(task)));
   }
-  void compute(Duration modelled, Task work, Task done);
+  /// Executor::compute with a guarded completion: it never comes once this component is stopped. An exception
+  /// of `work` is a failure of this component; when it still runs after that, `done` gets the Error, too.
+  template <class Work, class Done>
+  JobHandle compute(JobSpec spec, Work work, Done done) {
+    using Value = job_value_t<Work>;
+    auto failure = std::make_shared<std::string>();
+    auto checked = [failure, work = std::move(work)](std::stop_token stop) mutable -> Result<Value> {
+      try {
+        if constexpr (std::is_same_v<decltype(run_work(work, stop)), void>) {
+          run_work(work, std::move(stop));
+          return {};
+        } else {
+          return run_work(work, std::move(stop));
+        }
+      } catch (...) {
+        *failure = "compute: " + current_exception_text();
+        return Error{Reason::internal, *failure};
+      }
+    };
+    auto completed = [this, life = std::weak_ptr<Life>(life_), failure,
+                      done = std::move(done)](Result<Value> result) mutable {
+      // The failure is read only once the work has returned: an Error of the executor has another reason.
+      if (result.reason() == Reason::internal && !failure->empty()) fail(*failure);
+      if (const auto alive = life.lock(); alive && alive->owner) done(std::move(result));
+    };
+    return executor_.compute(std::move(spec), std::move(checked), guard(std::move(completed)));
+  }
 
  private:
   struct Life {

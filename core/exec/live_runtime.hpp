@@ -11,28 +11,29 @@
 namespace adit {
 
 struct LiveParams {
-  std::size_t queue{4096};  ///< posts waiting per strand; 1..1e6; more are dropped, counted and reported
-  int compute_threads{1};   ///< 1..16, of low priority
-  std::size_t compute_queue{256};               ///< work waiting; more is dropped, counted and reported
-  int compute_nice{5};                          ///< nice of compute threads and workers, 0..19
-  FailureHandler on_failure{report_on_stderr};  ///< called on the thread concerned: must be thread safe
+  std::size_t queue{4096};  ///< Posts waiting per strand, [1, 1e6]; more are dropped, counted and reported.
+  int compute_threads{1};   ///< [1, 16], of low priority. Disk I/O has one of its own.
+  std::size_t compute_queue{256};  ///< Jobs waiting per pool, and per worker strand, [1, 1e6].
+  int compute_nice{5};             ///< Nice value of compute threads and workers, [0, 19].
+  Duration shutdown{2s};           ///< How long the runtime's end waits for jobs that run, [0, 60 s].
+  FailureHandler on_failure{report_on_stderr};  ///< Called on the thread concerned: must be thread safe.
 };
 
-/// The real clock (steady_clock) and a thread per strand. Dropping a strand joins its thread; tasks that
-/// wait are dropped, one that runs is waited for. Strands may outlive the runtime; their `compute` is
-/// dropped and reported then.
+/// The real clock (steady_clock) and a thread per strand. Dropping a strand joins its thread; queued tasks
+/// are dropped, one that runs is waited for. Strands may outlive the runtime; their jobs are cancelled then.
 class LiveRuntime final : public Runtime {
  public:
   explicit LiveRuntime(LiveParams params = {});
+  /// Waits for jobs that run, at most LiveParams::shutdown: the thread of one that hangs is left behind.
   ~LiveRuntime() override;
   /// The thread carries the first 15 characters of the name.
-  std::shared_ptr<Executor> strand(const std::string& name) override;
-  std::shared_ptr<Executor> worker(const std::string& name) override;
-  /// Exceptions that left a task or work so far.
+  std::shared_ptr<Strand> strand(const std::string& name) override;
+  std::shared_ptr<Strand> worker(const std::string& name) override;
+  /// Exceptions that left a task or a job so far.
   std::uint64_t failures() const;
-  /// Posts and work dropped so far because a queue was full.
+  /// Posts and jobs dropped so far because a queue was full.
   std::uint64_t dropped() const;
-  /// Threads that abandon() left behind so far; one whose task returned ended.
+  /// Threads left behind: of strands so far, one whose task returned included, and of jobs that hang now.
   std::uint64_t left_behind() const;
 
   struct Shared;  // private to the implementation

@@ -1,12 +1,8 @@
 #pragma once
-// What the strands and the compute pool of one LiveRuntime share. Private to core/exec.
-#include <condition_variable>
-#include <deque>
+// What the strands of one LiveRuntime share. Private to core/exec.
 #include <memory>
-#include <mutex>
-#include <thread>
-#include <vector>
 
+#include "core/exec/compute_pool.hpp"
 #include "core/exec/live_runtime.hpp"
 
 namespace adit {
@@ -26,31 +22,8 @@ class WakeWord {
   std::atomic<std::uint32_t> word_{0};  // 1: sleeping or about to
 };
 
-/// Threads of low priority for `compute`.
-class ComputePool {
- public:
-  ComputePool(int threads, std::size_t capacity, int nice);
-  ~ComputePool();
-  ComputePool(const ComputePool&) = delete;
-  ComputePool& operator=(const ComputePool&) = delete;
-  /// False when the queue is full or the pool is stopping.
-  bool add(Task task);
-  /// Drops what waits and joins the threads.
-  void stop();
-
- private:
-  void loop(int nice);
-  std::mutex mutex_{};
-  std::condition_variable added_{};
-  std::deque<Task> queue_{};
-  std::size_t capacity_;
-  bool stopping_{false};
-  std::vector<std::thread> threads_{};
-};
-
 struct LiveRuntime::Shared {
-  explicit Shared(LiveParams p)
-      : params(std::move(p)), pool(params.compute_threads, params.compute_queue, params.compute_nice) {}
+  explicit Shared(LiveParams p) : params(std::move(p)), pool(params) {}
   void fail(const std::string& strand, const std::string& what) {
     if (params.on_failure) params.on_failure(strand, what);
     failures.fetch_add(1, std::memory_order_release);  // whoever sees the count finds the report made
@@ -67,9 +40,7 @@ struct LiveRuntime::Shared {
   ComputePool pool;
 };
 
-std::shared_ptr<Executor> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared,
-                                           const std::string& name, bool heavy);
-/// Of the calling thread. It can only be lowered, which never needs a right.
-void lower_priority(int nice);
+std::shared_ptr<Strand> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name,
+                                         bool heavy);
 
 }  // namespace adit

@@ -3,8 +3,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <condition_variable>
+#include <deque>
 #include <limits>
+#include <mutex>
+#include <thread>
+#include <vector>
 
+#include "core/exec/fault.hpp"
+#include "core/exec/job_queue.hpp"
 #include "core/exec/live_shared.hpp"
 #include "core/exec/processor_use.hpp"
 
@@ -13,9 +20,8 @@ namespace {
 
 using Alive = std::shared_ptr<std::atomic<bool>>;
 
-std::int64_t steady_ns() {
-  return std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+constexpr std::size_t kControlQueue = 65536;  // control posts that wait, beyond those of the queue
+constexpr std::size_t kChunk = 32;            // tasks taken out of the queue at once
 
 struct Alarm {
   std::int64_t when;
@@ -30,23 +36,27 @@ struct Later {
   }
 };
 
-/// Queue and loop of one strand, owned by its thread and by the executor.
-class Loop {
+/// Queue and loop of one strand, owned by its thread, by the executor and by those that post to it.
+class Loop final : public Inbox {
  public:
   Loop(std::shared_ptr<LiveRuntime::Shared> shared, std::string name)
       : shared_(std::move(shared)), name_(std::move(name)) {}
 
-  void post(Task task, bool always) {
+  bool add(Task task, bool control) override {
     {
       const std::lock_guard lock(mutex_);
-      if (stopping_) return;
-      if (always || posted_.size() < shared_->params.queue) {
+      if (stopping_) return false;
+      if (posted_.size() < (control ? shared_->params.queue + kControlQueue : shared_->params.queue)) {
         posted_.push_back(std::move(task));
         task = nullptr;
       }
     }
-    if (task) return shared_->drop(name_, "queue full, post dropped");
+    if (task) {
+      shared_->drop(name_, control ? "queue full, control post dropped" : "queue full, post dropped");
+      return false;
+    }
     wake_.wake();
+    return true;
   }
 
   Timer add_alarm(Duration delay, Duration period, Task task) {
@@ -65,13 +75,32 @@ class Loop {
     return Timer(std::move(alive));
   }
 
+  /// Nothing runs after the task that runs now. The thread drops the queued tasks when that has returned.
   void stop() {
+    stop_now_.store(true, std::memory_order_relaxed);
     {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
     }
-    stop_now_.store(true, std::memory_order_relaxed);
     wake_.wake();
+  }
+
+  /// Drops the queued tasks.
+  void drop() {
+    std::deque<Task> posted;  // dies after the lock
+    std::vector<Alarm> alarms;
+    const std::lock_guard lock(mutex_);
+    posted.swap(posted_);
+    alarms.swap(alarms_);
+    refresh_next();
+  }
+
+  /// True when all posts have run and the loop has returned, false when it did not within `limit`.
+  bool drain(Duration limit) {
+    std::unique_lock lock(mutex_);
+    draining_ = true;
+    wake_.wake();
+    return exited_.wait_for(lock, limit, [this] { return returned_; });
   }
 
   void run() {
@@ -79,15 +108,21 @@ class Loop {
     thread_id_.store(std::this_thread::get_id(), std::memory_order_relaxed);
     pthread_setname_np(pthread_self(), name_.substr(0, 15).c_str());
     std::vector<Task> batch;
+    batch.reserve(kChunk);
     while (!stop_now_.load(std::memory_order_relaxed)) {
       run_alarms();
       wake_.prepare();
-      bool sleep = false;
+      bool sleep = false, drained = false;
       {
         const std::lock_guard lock(mutex_);
-        batch.swap(posted_);
+        while (!posted_.empty() && batch.size() < kChunk) {
+          batch.push_back(std::move(posted_.front()));
+          posted_.pop_front();
+        }
         sleep = batch.empty() && !stopping_;
+        drained = batch.empty() && draining_;
       }
+      if (drained) break;
       if (sleep) {
         wake_.wait(next_alarm_.load(std::memory_order_relaxed));
         continue;
@@ -101,16 +136,17 @@ class Loop {
       }
       batch.clear();
     }
-    // What waits is dropped here, on the strand's own thread, outside the lock.
-    std::vector<Alarm> alarms;
+    batch.clear();
+    stop();
+    drop();
     const std::lock_guard lock(mutex_);
-    batch.swap(posted_);
-    alarms.swap(alarms_);
+    returned_ = true;
+    exited_.notify_all();
   }
 
   int system_id() const { return system_id_.load(std::memory_order_relaxed); }
   const std::string& name() const { return name_; }
-  LiveRuntime::Shared& shared() { return *shared_; }
+  const std::shared_ptr<LiveRuntime::Shared>& shared() const { return shared_; }
   bool on_own_thread() const {
     return std::this_thread::get_id() == thread_id_.load(std::memory_order_relaxed);
   }
@@ -126,7 +162,7 @@ class Loop {
 
   /// Runs what is due now; alarms made meanwhile wait for the next round.
   void run_alarms() {
-    std::int64_t now = steady_ns();
+    const std::int64_t now = steady_ns();
     if (next_alarm_.load(std::memory_order_relaxed) > now) return;
     std::uint64_t made_before = 0;
     {
@@ -157,6 +193,7 @@ class Loop {
     const std::int64_t now = steady_ns();
     if (alarm.when <= now) alarm.when += ((now - alarm.when) / alarm.period + 1) * alarm.period;
     const std::lock_guard lock(mutex_);
+    if (stopping_) return;
     alarm.order = order_++;
     alarms_.push_back(std::move(alarm));
     std::push_heap(alarms_.begin(), alarms_.end(), Later{});
@@ -184,18 +221,41 @@ class Loop {
   std::atomic<std::int64_t> next_alarm_{never};
   WakeWord wake_{};
   std::mutex mutex_{};  // guards what follows
-  std::vector<Task> posted_{};
+  std::deque<Task> posted_{};
   std::vector<Alarm> alarms_{};
   std::uint64_t order_{0};
   std::size_t sweep_at_{1024};
-  bool stopping_{false};
+  bool stopping_{false}, draining_{false}, returned_{false};
+  std::condition_variable exited_{};
 };
 
-class LiveStrand final : public Executor, public OnProcessor {
+/// Jobs of a worker, which run on its own thread.
+struct OwnJobs {
+  explicit OwnJobs(std::size_t capacity) : queue(capacity) {}
+  std::mutex mutex{};  // guards the queue
+  JobQueue queue;
+
+  void run_next() {
+    std::shared_ptr<LiveJob> job;
+    {
+      const std::lock_guard lock(mutex);
+      job = queue.next();
+    }
+    if (!job) return;  // it was replaced or cancelled
+    job->run();
+    const std::lock_guard lock(mutex);
+    queue.finished(*job);
+  }
+};
+
+class LiveStrand final : public Strand, public OnProcessor, public CanHang {
  public:
-  LiveStrand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name, bool heavy)
-      : loop_(std::make_shared<Loop>(std::move(shared), name)), heavy_(heavy), thread_([loop = loop_, heavy] {
-          if (heavy) lower_priority(loop->shared().params.compute_nice);
+  LiveStrand(const std::shared_ptr<Loop>& loop, bool heavy)
+      : Strand(loop),
+        loop_(loop),
+        own_(heavy ? std::make_shared<OwnJobs>(loop->shared()->params.compute_queue) : nullptr),
+        thread_([loop, heavy] {
+          if (heavy) lower_priority(loop->shared()->params.compute_nice);
           loop->run();
         }) {}
 
@@ -206,47 +266,33 @@ class LiveStrand final : public Executor, public OnProcessor {
     if (!thread_.joinable()) return;
     if (loop_->on_own_thread()) {
       // Against the contract of Runtime::strand; the thread ends after the task that runs now.
-      loop_->shared().fail(loop_->name(), "strand dropped on itself");
+      loop_->shared()->fail(loop_->name(), "strand dropped on itself");
       thread_.detach();
     } else {
       thread_.join();
     }
   }
 
-  const std::string& name() const override { return loop_->name(); }
-  Time now() const override { return Time(Duration(steady_ns())); }
-  void post(Task task) override { loop_->post(std::move(task), false); }
-  Timer after(Duration delay, Task task) override { return loop_->add_alarm(delay, 0ns, std::move(task)); }
-  Timer every(Duration period, Task task) override {
-    const Duration p = std::max(period, Duration(1));
-    return loop_->add_alarm(p, p, std::move(task));
-  }
-
-  void compute(Duration /*modelled*/, Task work, Task done) override {
-    auto job = [weak = std::weak_ptr<Loop>(loop_), work = std::move(work), done = std::move(done)]() mutable {
-      std::string failure;
-      try {
-        work();
-      } catch (...) {
-        failure = current_exception_text();
-      }
-      work = nullptr;
-      const auto loop = weak.lock();
-      if (!loop) return;
-      if (!failure.empty()) return loop->shared().fail(loop->name(), "compute: " + failure);
-      loop->post(std::move(done), true);  // bounded by the compute queue
-    };
-    if (heavy_)
-      loop_->post(std::move(job), false);
-    else if (!loop_->shared().pool.add(std::move(job)))
-      loop_->shared().drop(loop_->name(), "compute queue full, work dropped");
+  bool drain(Duration limit) override {
+    const bool drained = loop_->drain(limit);
+    drained ? end() : abandon();
+    return drained;
   }
 
   void abandon() override {
     loop_->stop();
     if (!thread_.joinable()) return;
+    loop_->drop();  // here, for the thread may never return
     thread_.detach();
-    loop_->shared().left_behind.fetch_add(1, std::memory_order_relaxed);
+    loop_->shared()->left_behind.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  const std::string& name() const override { return loop_->name(); }
+  Time now() const override { return Time(Duration(steady_ns())); }
+  Timer after(Duration delay, Task task) override { return loop_->add_alarm(delay, 0ns, std::move(task)); }
+  Timer every(Duration period, Task task) override {
+    const Duration p = std::max(period, Duration(1));
+    return loop_->add_alarm(p, p, std::move(task));
   }
 
   std::optional<ProcessorUse> processor_use() const override {
@@ -254,21 +300,52 @@ class LiveStrand final : public Executor, public OnProcessor {
     return id == 0 ? ProcessorUse{.ready = true} : adit::processor_use(id);
   }
 
- private:
   void block() override {
     for (;;) ::pause();
   }
 
+ private:
+  JobHandle submit(JobSpec spec, JobWork work, JobDone done) override {
+    if (spec.latest_only && spec.lane.empty()) spec.lane = spec.name;
+    auto report = [shared = std::weak_ptr(loop_->shared())](const std::string& strand,
+                                                            const std::string& what) {
+      if (const auto known = shared.lock()) known->fail(strand, what);
+    };
+    const auto job = std::make_shared<LiveJob>(std::move(spec), std::move(work), std::move(done), loop_,
+                                               loop_->name(), std::move(report));
+    job->watch_deadline(*this);
+    const Result<void> taken = own_ ? add_own(job) : loop_->shared()->pool.add(job);
+    if (taken.reason() == Reason::queue_full)
+      loop_->shared()->drop(loop_->name(), "compute queue full, job " + job->spec.name + " dropped");
+    return JobHandle(job);
+  }
+
+  Result<void> add_own(const std::shared_ptr<LiveJob>& job) {
+    JobQueue::Added added;
+    {
+      const std::lock_guard lock(own_->mutex);
+      added = own_->queue.add(job);
+    }
+    if (added.replaced)
+      added.replaced->settle(
+          Error{Reason::cancelled, added.replaced->spec.name + ": replaced by a newer one"});
+    if (added.taken)
+      loop_->post_control([own = own_] { own->run_next(); });  // bounded by that queue
+    else
+      job->settle(added.taken.error());
+    return added.taken;
+  }
+
   std::shared_ptr<Loop> loop_;
-  bool heavy_;
+  std::shared_ptr<OwnJobs> own_;  ///< null: its jobs run on the pools
   std::thread thread_;
 };
 
 }  // namespace
 
-std::shared_ptr<Executor> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared,
-                                           const std::string& name, bool heavy) {
-  return std::make_shared<LiveStrand>(std::move(shared), name, heavy);
+std::shared_ptr<Strand> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name,
+                                         bool heavy) {
+  return std::make_shared<LiveStrand>(std::make_shared<Loop>(std::move(shared), name), heavy);
 }
 
 }  // namespace adit

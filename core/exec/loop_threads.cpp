@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/exec/hang.hpp"
+#include "core/exec/fault.hpp"
 
 namespace adit {
 

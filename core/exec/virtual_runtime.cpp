@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <thread>
 #include <vector>
 
-#include "core/exec/hang.hpp"
+#include "core/exec/fault.hpp"
 #include "core/exec/job_pool.hpp"
 #include "core/exec/loop_threads.hpp"
 #include "core/time/random.hpp"
@@ -84,7 +86,7 @@ struct VirtualScheduler::Core {
     if (heap.size() >= sweep_at) sweep();
   }
 
-  void add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task, Alive alive,
+  bool add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task, Alive alive,
            std::int64_t period, std::shared_ptr<Job> job);
 
   /// Takes out every event that `gone` names; their captures die after the structure is whole again.
@@ -118,6 +120,8 @@ struct VirtualScheduler::Core {
   bool step(std::int64_t limit);
   void run(std::uint32_t slot);
   void run_until(std::int64_t limit);
+  /// Runs the posts of this strand that are due, and those that they post.
+  void drain(const VirtualStrand& strand);
   [[noreturn]] void hang(VirtualStrand& strand);
 
   VirtualParams params;
@@ -144,24 +148,62 @@ namespace {
 
 using Core = VirtualScheduler::Core;
 
-class VirtualStrand final : public Executor {
+/// Where posts to a strand go; it outlives the strand.
+class VirtualInbox final : public Inbox {
  public:
-  VirtualStrand(std::shared_ptr<Core> core, std::uint64_t machine, std::shared_ptr<const Duration> offset,
-                std::string name)
-      : core_(std::move(core)), machine_(machine), offset_(std::move(offset)), name_(std::move(name)) {}
+  explicit VirtualInbox(std::shared_ptr<Core> core) : core_(std::move(core)) {}
+  void open(VirtualStrand& strand) { strand_ = &strand; }
+  void close() { strand_ = nullptr; }
+  VirtualStrand* strand() const { return strand_; }
+
+ private:
+  bool add(Task task, bool control) override;
+  std::shared_ptr<Core> core_;
+  VirtualStrand* strand_{nullptr};  ///< null: it is gone
+};
+
+/// A job from its submission to its completion.
+struct VirtualJob final : public JobControl, public std::enable_shared_from_this<VirtualJob> {
+  void cancel() override;
+
+  JobSpec spec{};
+  JobWork work{};
+  JobDone done{};
+  std::shared_ptr<VirtualInbox> home{};
+  std::shared_ptr<Job> job{};  ///< null: it waits in its lane
+  std::int64_t due{};          ///< once begun
+  std::stop_source stop{};
+  bool settled{false};
+};
+
+/// The jobs of one lane: one runs, the others wait.
+struct Lane {
+  std::shared_ptr<VirtualJob> running{};
+  std::deque<std::shared_ptr<VirtualJob>> waiting{};
+};
+
+constexpr std::size_t kLaneQueue = 256;  // as LiveParams::compute_queue
+
+class VirtualStrand final : public Strand, public CanHang {
+ public:
+  VirtualStrand(const std::shared_ptr<Core>& core, std::uint64_t machine,
+                std::shared_ptr<const Duration> offset, std::string name)
+      : VirtualStrand(core, std::make_shared<VirtualInbox>(core), machine, std::move(offset),
+                      std::move(name)) {}
 
   ~VirtualStrand() override {
     if (core_->running == this) core_->running = nullptr;
-    core_->remove_if([this](const Event& event) { return event.strand == this; });
+    inbox_->close();
+    forget_all();
   }
 
   const std::string& name() const override { return name_; }
   std::uint64_t machine() const { return machine_; }
   Time now() const override { return Time(*offset_ + Duration(core_->now)); }
 
-  void post(Task task) override {
+  bool take(Task task) {
     core_->check_thread();
-    core_->add(this, machine_, core_->now, std::move(task), nullptr, 0, nullptr);
+    return core_->add(this, machine_, core_->now, std::move(task), nullptr, 0, nullptr);
   }
 
   Timer after(Duration delay, Task task) override {
@@ -180,32 +222,152 @@ class VirtualStrand final : public Executor {
     return Timer(std::move(alive));
   }
 
-  void compute(Duration modelled, Task work, Task done) override {
+  /// Completes the job, later, unless it was settled before.
+  void settle(const std::shared_ptr<VirtualJob>& job, Result<void> result) {
+    if (std::exchange(job->settled, true)) return;
+    take([job, result = std::move(result)]() mutable {
+      std::exchange(job->done, nullptr)(std::move(result));
+    });
+  }
+  void cancel(const std::shared_ptr<VirtualJob>& job) {
     core_->check_thread();
-    const std::int64_t due = core_->now + std::max<std::int64_t>(0, modelled.count());
-    auto job = std::make_shared<Job>(std::move(work), due, core_->jobs++);
-    core_->add(this, machine_, due, std::move(done), nullptr, 0, job);
-    if (!over_) core_->pool.add(std::move(job));
+    if (job->settled) return;
+    leave_lane(job);
+    settle(job, Error{Reason::cancelled, job->spec.name + ": cancelled"});
   }
 
+  void end() override {
+    over_ = true;
+    forget_all();
+  }
+  bool drain(Duration) override {
+    core_->check_thread();
+    core_->drain(*this);
+    end();
+    return true;
+  }
   void abandon() override {
     core_->check_thread();
     end();
   }
   void block() override { core_->hang(*this); }
-  void end() override {
-    over_ = true;
-    core_->remove_if([this](const Event& event) { return event.strand == this; });
-  }
   bool over() const { return over_; }
 
  private:
+  VirtualStrand(const std::shared_ptr<Core>& core, const std::shared_ptr<VirtualInbox>& inbox,
+                std::uint64_t machine, std::shared_ptr<const Duration> offset, std::string name)
+      : Strand(inbox),
+        core_(core),
+        inbox_(inbox),
+        machine_(machine),
+        offset_(std::move(offset)),
+        name_(std::move(name)) {
+    inbox_->open(*this);
+  }
+
+  void forget_all() {
+    const auto lanes = std::exchange(lanes_, {});
+    core_->remove_if([this](const Event& event) { return event.strand == this; });
+  }
+
+  JobHandle submit(JobSpec spec, JobWork work, JobDone done) override {
+    core_->check_thread();
+    if (over_) return {};
+    if (spec.latest_only && spec.lane.empty()) spec.lane = spec.name;
+    auto job = std::make_shared<VirtualJob>();
+    job->spec = std::move(spec);
+    job->work = std::move(work);
+    job->done = std::move(done);
+    job->home = inbox_;
+    job->spec.lane.empty() ? begin(job) : enqueue(job);
+    if (job->spec.deadline > Duration{} && !job->settled) {
+      const std::int64_t at = core_->now + job->spec.deadline.count();
+      core_->add(
+          this, machine_, at, [this, job] { missed(job); }, nullptr, 0, nullptr);
+    }
+    return JobHandle(job);
+  }
+
+  void enqueue(const std::shared_ptr<VirtualJob>& job) {
+    Lane& lane = lanes_[job->spec.lane];
+    if (!lane.running) {
+      lane.running = job;
+      return begin(job);
+    }
+    if (job->spec.latest_only) {
+      const auto older = std::find_if(lane.waiting.begin(), lane.waiting.end(),
+                                      [&](const auto& j) { return j->spec.name == job->spec.name; });
+      if (older != lane.waiting.end()) {
+        const auto replaced = std::exchange(*older, job);
+        return settle(replaced, Error{Reason::cancelled, job->spec.name + ": replaced by a newer one"});
+      }
+    }
+    if (lane.waiting.size() >= kLaneQueue)
+      return settle(job, Error{Reason::queue_full, job->spec.name + ": too many jobs"});
+    lane.waiting.push_back(job);
+  }
+
+  void begin(const std::shared_ptr<VirtualJob>& job) {
+    job->due = core_->now + std::max<std::int64_t>(0, job->spec.modelled.count());
+    job->job = std::make_shared<Job>(
+        [work = std::move(job->work), stop = job->stop.get_token()] { work(stop); }, job->due, core_->jobs++);
+    job->work = nullptr;
+    core_->add(
+        this, machine_, job->due, [this, job] { finished(job); }, nullptr, 0, job->job);
+    core_->pool.add(job->job);
+  }
+
+  /// At the job's modelled end: its work is done, and its lane is free.
+  void finished(const std::shared_ptr<VirtualJob>& job) {
+    if (!job->spec.lane.empty()) {
+      Lane& lane = lanes_[job->spec.lane];
+      lane.running = nullptr;
+      if (!lane.waiting.empty()) {
+        lane.running = std::move(lane.waiting.front());
+        lane.waiting.pop_front();
+        begin(lane.running);
+      }
+    }
+    Result<void> result{};
+    if (job->job->failed) {
+      core_->fail(name_, "compute: " + job->job->failure);
+      result = Error{Reason::internal, job->spec.name + ": " + job->job->failure};
+    }
+    if (std::exchange(job->settled, true)) return;
+    std::exchange(job->done, nullptr)(std::move(result));
+  }
+
+  /// A job that has not begun never begins.
+  void leave_lane(const std::shared_ptr<VirtualJob>& job) {
+    if (const auto lane = lanes_.find(job->spec.lane); !job->job && lane != lanes_.end())
+      std::erase(lane->second.waiting, job);
+  }
+
+  void missed(const std::shared_ptr<VirtualJob>& job) {
+    if (job->settled || (job->job && job->due <= core_->now)) return;
+    leave_lane(job);
+    job->settled = true;
+    std::exchange(job->done,
+                  nullptr)(Error{Reason::no_answer, job->spec.name + ": not done by its deadline"});
+  }
+
   std::shared_ptr<Core> core_;
+  std::shared_ptr<VirtualInbox> inbox_;
   std::uint64_t machine_;
   std::shared_ptr<const Duration> offset_;
   std::string name_;
+  std::map<std::string, Lane> lanes_{};
   bool over_{false};
 };
+
+bool VirtualInbox::add(Task task, bool) {
+  core_->check_thread();
+  return strand_ && strand_->take(std::move(task));
+}
+
+void VirtualJob::cancel() {
+  if (auto* strand = home->strand()) strand->cancel(shared_from_this());
+}
 
 class VirtualMachine final : public Runtime {
  public:
@@ -217,7 +379,7 @@ class VirtualMachine final : public Runtime {
 
   void jump(Duration by) { *offset_ += by; }
 
-  std::shared_ptr<Executor> strand(const std::string& name) override {
+  std::shared_ptr<Strand> strand(const std::string& name) override {
     return std::make_shared<VirtualStrand>(core_, machine_, offset_, name_ + "/" + name);
   }
 
@@ -230,9 +392,9 @@ class VirtualMachine final : public Runtime {
 
 }  // namespace
 
-void VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task,
+bool VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task,
                                  Alive alive, std::int64_t period, std::shared_ptr<Job> job) {
-  if (closed || strand->over()) return;  // nothing will run any more
+  if (closed || strand->over()) return false;  // nothing will run any more
   const std::uint32_t slot = take_slot();
   Event& event = events[slot];
   event.strand = strand;
@@ -241,6 +403,7 @@ void VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, s
   event.period = period;
   event.job = std::move(job);
   push(when, machine, slot);
+  return true;
 }
 
 bool VirtualScheduler::Core::step(std::int64_t limit) {
@@ -278,10 +441,7 @@ void VirtualScheduler::Core::run(std::uint32_t slot) {
   events[slot].task = nullptr;
   release(slot);
 
-  if (job) {
-    pool.finish(job);
-    if (job->failed) return fail(strand_name, "compute: " + job->failure);
-  }
+  if (job) pool.finish(job);
   if (alive && period == 0) alive->store(false, std::memory_order_relaxed);
   running = strand;
   in_task = true;
@@ -297,6 +457,30 @@ void VirtualScheduler::Core::run(std::uint32_t slot) {
   running = nullptr;
   if (period > 0 && !dropped && alive->load(std::memory_order_relaxed))
     add(strand, strand->machine(), now + period, std::move(task), std::move(alive), period, nullptr);
+}
+
+void VirtualScheduler::Core::drain(const VirtualStrand& strand) {
+  for (;;) {
+    const auto is_first = [](const Due& a, const Due& b) {
+      return a.when != b.when ? a.when < b.when : a.order < b.order;
+    };
+    auto first = heap.end();
+    for (auto due = heap.begin(); due != heap.end(); ++due) {
+      const Event& event = events[due->slot];
+      const bool post = event.strand == &strand && !event.alive && !event.job && due->when <= now;
+      if (post && (first == heap.end() || is_first(*due, *first))) first = due;
+    }
+    if (first == heap.end()) return;
+    const std::uint32_t slot = first->slot;
+    heap.erase(first);
+    std::make_heap(heap.begin(), heap.end(), Later{});
+    // It may be called within a task of another strand.
+    VirtualStrand* const outer = running;
+    const bool was_in_task = in_task;
+    run(slot);
+    running = outer;
+    in_task = was_in_task;
+  }
 }
 
 void VirtualScheduler::Core::run_until(std::int64_t limit) {

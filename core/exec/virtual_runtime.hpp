@@ -23,7 +23,7 @@ struct VirtualParams {
 /// caller's thread.
 ///
 /// Posting to a strand from inside `compute` work is an error (std::logic_error, reported as a failure
-/// of that work). When work throws, this is reported at its completion time and `done` does not run.
+/// of that work). When work throws, this is reported at its completion time.
 class VirtualScheduler {
  public:
   explicit VirtualScheduler(VirtualParams params);
@@ -51,7 +51,7 @@ class VirtualScheduler {
   std::uint64_t tasks_run() const;
   /// Exceptions that left a task or work so far; each was reported to on_failure.
   std::uint64_t failures() const;
-  /// Tasks that hang, each on a thread of its own (core/exec/hang.hpp). They end with the scheduler.
+  /// Tasks that hang, each on a thread of its own (core/exec/fault.hpp). They end with the scheduler.
   std::size_t hung() const;
 
   struct Core;  // shared with the strands, private to virtual_runtime.cpp
@@ -59,7 +59,7 @@ class VirtualScheduler {
  private:
   std::shared_ptr<Core> core_;
   std::unique_ptr<Runtime> world_;
-  std::shared_ptr<Executor> world_strand_;
+  std::shared_ptr<Strand> world_strand_;
 };
 
 }  // namespace adit

@@ -169,13 +169,14 @@ void Shelf::start(const std::shared_ptr<Batch>& batch) {
       back();
     });
   } else if (writer_) {
-    writer_->post([disk = disk_, batch, back, &home = home_] {
+    writer_->post([disk = disk_, batch, back, home = home_.inbox()] {
       batch->run(*disk);
-      home.post(back);
+      home->post_control(back);
     });
   } else {
     home_.compute(
-        params_.write, [disk = disk_, batch] { batch->run(*disk); }, back);
+        {.name = "findings", .modelled = params_.write, .pool = PoolKind::io},
+        [disk = disk_, batch] { batch->run(*disk); }, [back](const Result<void>&) { back(); });
   }
 }
 

@@ -119,7 +119,13 @@ Result<Overseer::Verdict> Overseer::restart(const std::string& part, Time) {
   courses_[*found].attempts.clear();
   courses_[*found].was_down = true;
   const bool hangs = status_[*found].state == PartState::hung;
+  // A part that does not return does not return sooner because it is restarted: its silence goes on counting.
+  const PartStatus before = status_[*found];
   order(*found, hangs ? Order::Kind::replace : Order::Kind::restart, verdict);
+  if (!hangs) {
+    status_[*found].silent = before.silent;
+    status_[*found].stalled = before.stalled;
+  }
   return verdict;
 }
 

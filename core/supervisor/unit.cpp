@@ -1,6 +1,6 @@
 #include "core/supervisor/unit.hpp"
 
-#include "core/exec/hang.hpp"
+#include "core/exec/fault.hpp"
 
 namespace adit {
 
@@ -38,7 +38,7 @@ void Unit::restart() {
     seat = seat_;
   }
   // The seat outlives its strand's tasks.
-  seat->strand->post([this, seat = seat.get(), record] { begin(*seat, record); });
+  seat->strand->post_control([this, seat = seat.get(), record] { begin(*seat, record); });
   // Now: what is posted by who sees the new number runs after begin().
   instance_.fetch_add(1, std::memory_order_acq_rel);
 }

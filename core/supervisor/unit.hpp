@@ -28,7 +28,7 @@ struct Seat {
   Seat(const Seat&) = delete;
   Seat& operator=(const Seat&) = delete;
   ~Seat();
-  std::shared_ptr<Executor> strand{};
+  std::shared_ptr<Strand> strand{};
   std::unique_ptr<Component> component{};  ///< touched on the strand only, or after its end
   std::shared_ptr<Lease> lease{};          ///< of `component`; likewise
   std::shared_ptr<void> fittings{};        ///< what delivers to the strand; dropped before it

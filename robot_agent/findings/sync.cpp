@@ -157,7 +157,8 @@ void FindingSync::save_tracks(Time now) {
   else if (writer_)
     writer_->post(save);
   else
-    home_.compute(3ms, save, [] {});
+    home_.compute({.name = "findings' tracks", .modelled = 3ms, .pool = PoolKind::io}, save,
+                  [](const Result<void>&) {});
 }
 
 }  // namespace adit::agent

@@ -38,7 +38,7 @@ Planner::Planner(PlannerParams params, Executor& strand, Log log,
 void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
   if (!running()) return;
   compute(
-      params_.planning,
+      {.name = "plan", .modelled = params_.planning, .lane = "map"},
       [job, maps = maps_, params = params_] {
         nav::Navigator& navigator = maps->navigator;
         if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) navigator.clear();
@@ -51,7 +51,9 @@ void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
                   : navigator.plan(job->target, job->pose, stamp);
         navigator.blocked(job->obstacles);
       },
-      std::move(done));
+      [done = std::move(done)](const Result<void>& planned) {
+        if (planned) done();
+      });
 }
 
 }  // namespace adit::agent

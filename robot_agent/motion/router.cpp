@@ -39,7 +39,7 @@ void Router::step(std::shared_ptr<RouteJob> job, Task done) {
     taken_at_ = job->place;
   }
   compute(
-      params_.modelled,
+      {.name = "route step", .modelled = params_.modelled, .lane = "maps"},
       [job, takes, maps = maps_] {
         maps->enter(job->odom_epoch);
         const double stamp = seconds(job->made.time_since_epoch());
@@ -49,18 +49,22 @@ void Router::step(std::shared_ptr<RouteJob> job, Task done) {
         else
           maps->keeper.clear();
       },
-      std::move(done));
+      [done = std::move(done)](const Result<void>& stepped) {
+        if (stepped) done();
+      });
 }
 
 void Router::find(std::shared_ptr<RouteQuery> query, Task done) {
   if (!running()) return;
   compute(
-      params_.modelled,
+      {.name = "route query", .modelled = params_.modelled, .lane = "maps"},
       [query, maps = maps_] {
         maps->enter(query->odom_epoch);
         query->route = maps->planner.plan(query->from, query->to);
       },
-      std::move(done));
+      [done = std::move(done)](const Result<void>& found) {
+        if (found) done();
+      });
 }
 
 Result<std::string> describe(const nav::Route& route, const Pose2& T_map_odom) {

@@ -72,13 +72,14 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
         if (const auto self = back.lock()) self->finished(work(), *bytes);
       });
     } else {
-      strand->post([back, work, bytes, &to = command] {
+      const bool taken = strand->post([back, work, bytes, to = command.inbox()] {
         auto result = std::make_shared<Result<void>>(work());
         if (back.expired()) return;
-        to.post([back, result, bytes] {
+        to->post_control([back, result, bytes] {
           if (const auto self = back.lock()) self->finished(*result, *bytes);
         });
       });
+      if (!taken) finished(Error{Reason::queue_full, "the disk's queue is full"}, *bytes);
     }
   }
 

@@ -189,14 +189,14 @@ void Watch::note(ComponentRow row) {
 
 Result<void> Watch::restart(const std::string& component) {
   if (component == kAgent) {
-    impl_->strand().post([impl = impl_.get()] {
+    impl_->strand().post_control([impl = impl_.get()] {
       impl->tell_escalated("an operator asked for it");
       impl->escalate("an operator asked for it");
     });
     return {};
   }
   if (!impl_->find(component)) return impl_->unknown(component);
-  impl_->strand().post([impl = impl_.get(), component] {
+  impl_->strand().post_control([impl = impl_.get(), component] {
     (void)impl->supervisor().restart(component);
     impl->touched();
   });
@@ -208,7 +208,7 @@ Result<void> Watch::set_policy(const std::string& component, bool automatic) {
   if (!spec) return impl_->unknown(component);
   if (spec->always && !automatic)
     return {Reason::not_supported, component + " takes the operators' word itself: it is always restarted"};
-  impl_->strand().post([impl = impl_.get(), component, automatic] {
+  impl_->strand().post_control([impl = impl_.get(), component, automatic] {
     (void)impl->supervisor().set_policy(component,
                                         automatic ? RestartPolicy::automatic : RestartPolicy::by_operator);
     impl->touched();

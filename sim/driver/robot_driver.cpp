@@ -146,13 +146,14 @@ void RobotDriver::send_battery() {
 void RobotDriver::send_points() {
   if (lidar_silent_ > 0) return;
   auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
-  auto bytes = std::make_shared<std::vector<std::uint8_t>>();
   auto stamp = header(strand_.now(), "base_link");
   std::weak_ptr<Endpoints> alive = endpoints_;
   strand_.compute(
-      params_.scan_delay, [job, bytes, stamp] { *bytes = cloud_bytes(job->compute(), stamp); },
-      [alive, bytes] {
-        if (const auto endpoints = alive.lock()) (void)endpoints->points->write(*bytes);
+      {.name = "scan", .modelled = params_.scan_delay},
+      [job, stamp] { return cloud_bytes(job->compute(), stamp); },
+      [alive](const Result<std::vector<std::uint8_t>>& bytes) {
+        const auto endpoints = alive.lock();
+        if (endpoints && bytes) (void)endpoints->points->write(*bytes);
       });
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/exec/virtual_runtime.hpp"
+#include "core/supervisor/unit.hpp"
 
 namespace adit {
 namespace {
@@ -129,14 +130,51 @@ TEST_F(ComponentTest, a_start_that_fails_is_an_error_and_leaves_nothing_behind) 
 TEST_F(ComponentTest, failed_work_is_a_failure_of_the_component) {
   Sample sample("planner", *strand, log);
   ASSERT_TRUE(sample.start());
-  int done = 0;
+  std::vector<bool> done;
+  const auto note = [&](const Result<void>& result) { done.push_back(result.ok()); };
   sample.compute(
-      100ms, [] { throw std::runtime_error("no grid"); }, [&] { ++done; });
+      {.modelled = 100ms}, [] { throw std::runtime_error("no grid"); }, note);
   sample.compute(
-      100ms, [] {}, [&] { ++done; });
+      {.modelled = 100ms}, [] {}, note);
   scheduler.run_until(1s);
-  EXPECT_EQ(done, 1);
+  EXPECT_THAT(done, ElementsAre(false, true));
   EXPECT_EQ(sample.health().last_failure, "compute: no grid");
+}
+
+/// A callback of it throws while it starts, as one does that gets a sample at once.
+class FailsWhileItStarts final : public Component {
+ public:
+  using Component::Component;
+  ~FailsWhileItStarts() override { stop(); }
+  Result<void> on_start() override {
+    protect([] { throw std::runtime_error("first sample"); });
+    return {};
+  }
+  void on_stop() override { ++stops; }
+  int stops{0};
+};
+
+TEST_F(ComponentTest, a_callback_that_throws_during_the_start_fails_the_start) {
+  FailsWhileItStarts component("slam", *strand, log);
+  const auto result = component.start();
+  ASSERT_FALSE(result);
+  EXPECT_THAT(result.error().text, HasSubstr("first sample"));
+  EXPECT_FALSE(component.running());
+  EXPECT_EQ(component.stops, 1) << "what it started is stopped again";
+}
+
+TEST_F(ComponentTest, a_unit_reports_a_component_that_fails_while_it_starts) {
+  UnitParams params{};
+  params.name = "slam";
+  params.make = [](Executor& on, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(std::make_unique<FailsWhileItStarts>("slam", on));
+  };
+  Unit unit(*machine, params);
+  ASSERT_TRUE(unit.open());
+  unit.restart();
+  scheduler.run_until(1s);
+  EXPECT_TRUE(unit.pulse().failed);
+  EXPECT_THAT(unit.pulse().text, HasSubstr("first sample"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "core/exec/hang.hpp"
+#include "core/exec/fault.hpp"
 
 #include <gmock/gmock.h>
 
@@ -150,7 +150,7 @@ TEST(VirtualHang, only_the_running_task_can_hang) {
   EXPECT_THROW(hang(*a), std::logic_error);
   a->post([&] { hang(*b); });
   a->compute(
-      1ms, [&] { hang(*a); }, [] {});
+      {.modelled = 1ms}, [&] { hang(*a); }, [](const Result<void>&) {});
   scheduler.run_until(1s);
   EXPECT_EQ(failures.size(), 2u);
   EXPECT_EQ(scheduler.hung(), 0u);
@@ -165,7 +165,7 @@ TEST(VirtualAbandon, nothing_runs_on_a_strand_left_behind) {
   strand->abandon();
   strand->post([&] { ++ran; });
   strand->compute(
-      1ms, [] {}, [&] { ++ran; });
+      {.modelled = 1ms}, [] {}, [&](const Result<void>&) { ++ran; });
   const Timer late = strand->after(1ms, [&] { ++ran; });
   scheduler.run_until(1s);
   EXPECT_EQ(ran, 0);
@@ -220,14 +220,14 @@ TEST(LiveWorker, computes_on_its_own_thread) {
   worker->post([&] {
     own = std::this_thread::get_id();
     worker->compute(
-        1ms, [&] { worked = std::this_thread::get_id(); }, [&] { done.set_value(); });
+        {}, [&] { worked = std::this_thread::get_id(); }, [&](const Result<void>&) { done.set_value(); });
   });
   done.get_future().wait();
   EXPECT_EQ(own, worked);
 }
 
-TEST(LiveWorker, work_that_throws_is_a_failure_without_its_end) {
-  std::promise<std::string> told;
+TEST(LiveWorker, work_that_throws_is_a_failure_and_completes_with_an_error) {
+  std::promise<std::string> told, done;
   LiveParams params;
   params.on_failure = [&](const std::string& strand, const std::string& what) {
     told.set_value(strand + ": " + what);
@@ -235,8 +235,10 @@ TEST(LiveWorker, work_that_throws_is_a_failure_without_its_end) {
   LiveRuntime runtime(params);
   const auto worker = runtime.worker("planner");
   worker->compute(
-      1ms, [] { throw std::runtime_error("no way"); }, [] { ADD_FAILURE(); });
-  EXPECT_EQ(told.get_future().get(), "planner: compute: no way");
+      {.name = "plan"}, [] { throw std::runtime_error("no path"); },
+      [&](const Result<void>& result) { done.set_value(result.error().text); });
+  EXPECT_EQ(told.get_future().get(), "planner: compute: no path");
+  EXPECT_EQ(done.get_future().get(), "plan: no path");
 }
 
 }  // namespace

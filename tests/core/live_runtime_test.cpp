@@ -143,9 +143,12 @@ TEST(LiveRuntime, reports_exceptions_of_tasks_timers_and_work_and_goes_on) {
     if (beats < 2) throw std::runtime_error("timer");
   });
   second.get_future().wait();
+  std::promise<Reason> done;
   strand->compute(
-      0ns, [] { throw std::runtime_error("work"); }, [] { FAIL(); });
+      {}, [] { throw std::runtime_error("work"); },
+      [&](const Result<void>& result) { done.set_value(result.reason()); });
   while (runtime.failures() < 3) std::this_thread::yield();
+  EXPECT_EQ(done.get_future().get(), Reason::internal);
   drain(*strand);
   EXPECT_THAT(failures.seen(), ElementsAre("s: task", "s: timer", "s: compute: work"));
 }
@@ -158,8 +161,8 @@ TEST(LiveRuntime, compute_runs_elsewhere_and_comes_back) {
   strand->post([&] {
     own = std::this_thread::get_id();
     strand->compute(
-        1s, [&] { worker = std::this_thread::get_id(); },
-        [&] {
+        {.modelled = 1s}, [&] { worker = std::this_thread::get_id(); },
+        [&](const Result<void>&) {
           back = std::this_thread::get_id();
           done.set_value();
         });
@@ -198,11 +201,97 @@ TEST(LiveRuntime, a_strand_outlives_its_runtime) {
   int ran = 0;
   strand->post([&] { ++ran; });
   drain(*strand);
+  std::promise<Reason> done;
   strand->compute(
-      0ns, [&] { ++ran; }, [&] { ++ran; });
-  drain(*strand);
+      {}, [&] { ++ran; }, [&](const Result<void>& result) { done.set_value(result.reason()); });
+  EXPECT_EQ(done.get_future().get(), Reason::cancelled);
   EXPECT_EQ(ran, 1);
-  EXPECT_THAT(failures.seen(), ElementsAre("s: compute queue full, work dropped"));
+}
+
+TEST(LiveRuntime, ends_in_bounded_time_though_work_hangs) {
+  // Nothing here is of this frame: the thread stays until the process ends.
+  const auto never = std::make_shared<std::promise<void>>();
+  const auto entered = std::make_shared<std::promise<void>>();
+  auto ended = std::async(std::launch::async, [never, entered] {
+    LiveRuntime runtime;
+    const auto strand = runtime.strand("s");
+    strand->compute(
+        {},
+        [never, entered] {
+          entered->set_value();
+          never->get_future().wait();
+        },
+        [](const Result<void>&) {});
+    entered->get_future().wait();
+  });
+  const bool in_time = ended.wait_for(5s) == std::future_status::ready;
+  EXPECT_TRUE(in_time);
+  if (!in_time) never->set_value();
+}
+
+TEST(LiveRuntime, control_posts_run_though_the_queue_is_full) {
+  Failures failures;
+  LiveParams params = failures.params();
+  params.queue = 1;
+  LiveRuntime runtime(params);
+  const auto strand = runtime.strand("s");
+  std::promise<void> entered, go;
+  strand->post([&] {
+    entered.set_value();
+    go.get_future().wait();
+  });
+  entered.get_future().wait();
+  std::vector<std::string> ran;
+  EXPECT_TRUE(strand->post([&] { ran.push_back("post"); }));
+  EXPECT_FALSE(strand->post([&] { ran.push_back("dropped"); }));
+  EXPECT_TRUE(strand->post_control([&] { ran.push_back("control"); }));
+  go.set_value();
+  EXPECT_TRUE(strand->drain(10s));
+  EXPECT_THAT(ran, ElementsAre("post", "control"));
+}
+
+TEST(LiveRuntime, posts_after_the_end_are_refused) {
+  LiveRuntime runtime;
+  auto strand = runtime.strand("s");
+  const auto inbox = strand->inbox();
+  std::promise<void> ran;
+  EXPECT_TRUE(inbox->post([&] { ran.set_value(); }));
+  ran.get_future().wait();
+  strand->end();
+  EXPECT_FALSE(strand->post([] {}));
+  EXPECT_FALSE(strand->post_control([] {}));
+  strand.reset();
+  EXPECT_FALSE(inbox->post([] {})) << "also when the strand is gone";
+}
+
+TEST(LiveRuntime, draining_runs_what_is_queued_and_what_that_posts) {
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("disk");
+  std::promise<void> go;
+  std::vector<int> ran;
+  strand->post([&] { go.get_future().wait(); });
+  for (int i = 0; i < 100; ++i)
+    strand->post([&, i] {
+      ran.push_back(i);
+      if (i == 99) strand->post([&] { ran.push_back(100); });
+    });
+  std::thread other([&] { go.set_value(); });
+  EXPECT_TRUE(strand->drain(10s));
+  other.join();
+  EXPECT_EQ(ran.size(), 101u);
+  EXPECT_FALSE(strand->post([] {}));
+  EXPECT_EQ(runtime.left_behind(), 0u);
+}
+
+TEST(LiveRuntime, draining_a_strand_that_hangs_is_bounded) {
+  // Nothing here is of this frame: the thread stays until the process ends.
+  const auto never = std::make_shared<std::promise<void>>();
+  LiveRuntime runtime;
+  auto strand = runtime.strand("disk");
+  strand->post([never] { never->get_future().wait(); });
+  EXPECT_FALSE(strand->drain(50ms));
+  EXPECT_EQ(runtime.left_behind(), 1u);
+  strand.reset();
 }
 
 }  // namespace

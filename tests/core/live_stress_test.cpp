@@ -55,7 +55,7 @@ TEST(LiveStress, strands_come_and_go_under_fire) {
     a->post([&, raw_a = a.get(), raw_b = b.get()] {
       raw_b->post([&, raw_a] {
         raw_a->compute(
-            1ms, [&] { ++ran; }, [&] { came_back.set_value(); });
+            {}, [&] { ++ran; }, [&](const Result<void>&) { came_back.set_value(); });
       });
     });
     came_back.get_future().wait();
@@ -65,7 +65,7 @@ TEST(LiveStress, strands_come_and_go_under_fire) {
     for (int i = 0; i < 20; ++i)
       (i % 2 ? a : b)
           ->compute(
-              1ms, [&] { ++ran; }, [&] { ++ran; });
+              {}, [&] { ++ran; }, [&](const Result<void>&) { ++ran; });
     if (random.chance(0.5)) a.reset();
     timers.clear();
   }

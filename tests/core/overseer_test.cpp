@@ -240,5 +240,20 @@ TEST_F(OverseerTest, RefusesWhatCannotBe) {
   EXPECT_EQ(overseer.set_policy("command", RestartPolicy::by_operator, now).reason(), Reason::not_supported);
 }
 
+TEST_F(OverseerTest, RestartsByTheOperatorDoNotHideAHang) {
+  comes_up = false;
+  ASSERT_TRUE(overseer.restart("planner", now));
+  pulses[1] = {};
+  stuck[1] = true;
+  std::vector<Order> orders;
+  for (int i = 0; i < 3; ++i) {
+    for (const Order& order : pass(4s)) orders.push_back(order);
+    const auto verdict = overseer.restart("planner", now);
+    ASSERT_TRUE(verdict);
+    for (const Order& order : verdict->orders) orders.push_back(order);
+  }
+  EXPECT_THAT(orders, testing::Contains(Order{Kind::replace, 1}));
+}
+
 }  // namespace
 }  // namespace adit

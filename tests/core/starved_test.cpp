@@ -7,7 +7,7 @@
 #include <map>
 #include <thread>
 
-#include "core/exec/hang.hpp"
+#include "core/exec/fault.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/supervisor/supervisor.hpp"
 
@@ -101,7 +101,7 @@ class Starved : public testing::Test {
   std::vector<std::thread> rivals{};
   LiveRuntime runtime{{.compute_nice = 0}};  // all at equal priority
   Unit starved{runtime, unit("starved", true)}, other{runtime, unit("other", false)};
-  std::shared_ptr<Executor> strand = runtime.strand("watch");
+  std::shared_ptr<Strand> strand = runtime.strand("watch");
   Supervisor supervisor{{},
                         *strand,
                         Log{},

@@ -26,10 +26,9 @@ std::string computed(int workers) {
   int n = 0;
   const Timer timer = strand->every(10ms, [&] {
     const int me = ++n;
-    auto result = std::make_shared<double>(0);
     strand->compute(
-        Duration(1ms * (1 + me * 7 % 13)), [me, result] { *result = burn(me * 5 % 17); },
-        [&, me, result] {
+        {.modelled = 1ms * (1 + me * 7 % 13)}, [me] { return burn(me * 5 % 17); },
+        [&, me](const Result<double>& result) {
           log += std::to_string(me) + "@" + std::to_string(scheduler.elapsed().count()) + "=" +
                  std::to_string(*result) + " ";
         });
@@ -43,13 +42,12 @@ TEST(VirtualCompute, completes_exactly_at_its_modelled_time) {
   const auto machine = scheduler.machine("r1", 0s);
   const auto strand = machine->strand("main");
   Duration done_at{};
-  double result = 0;
   const Timer start = strand->after(1s, [&] {
     strand->compute(
-        30ms, [&result] { result = burn(3); },
-        [&] {
+        {.modelled = 30ms}, [] { return burn(3); },
+        [&](const Result<double>& result) {
           done_at = scheduler.elapsed();
-          EXPECT_GT(result, 7.0);
+          EXPECT_GT(*result, 7.0);
         });
   });
   scheduler.run_until(2s);
@@ -63,7 +61,7 @@ TEST(VirtualCompute, the_number_of_workers_changes_nothing) {
   EXPECT_EQ(one, computed(4));
 }
 
-TEST(VirtualCompute, a_failed_work_is_reported_at_its_time_and_done_does_not_run) {
+TEST(VirtualCompute, work_that_throws_is_reported_at_its_time_and_completes_with_an_error) {
   std::vector<std::string> lines;
   VirtualScheduler scheduler(
       {.seed = 1, .on_failure = [&](const std::string& strand, const std::string& what) {
@@ -71,14 +69,15 @@ TEST(VirtualCompute, a_failed_work_is_reported_at_its_time_and_done_does_not_run
        }});
   const auto machine = scheduler.machine("r1", 0s);
   const auto strand = machine->strand("plan");
-  bool done = false;
+  std::vector<std::string> done;
   strand->compute(
-      1s, [] { throw std::runtime_error("no path"); }, [&] { done = true; });
+      {.name = "plan", .modelled = 1s}, [] { throw std::runtime_error("no path"); },
+      [&](const Result<void>& result) { done.push_back(result.error().text); });
   scheduler.run_until(999ms);
   EXPECT_TRUE(lines.empty());
   scheduler.run_until(1s);
   EXPECT_THAT(lines, ElementsAre("r1/plan: compute: no path"));
-  EXPECT_FALSE(done);
+  EXPECT_THAT(done, ElementsAre("plan: no path"));
 }
 
 TEST(VirtualCompute, work_cannot_touch_a_strand) {
@@ -109,7 +108,7 @@ TEST(VirtualCompute, the_scheduler_can_go_while_work_waits) {
     const auto strand = machine->strand("main");
     for (int i = 0; i < 50; ++i)
       strand->compute(
-          1s, [captured] { burn(5); }, [captured] {});
+          {.modelled = 1s}, [captured] { burn(5); }, [captured](const Result<void>&) {});
   }
   EXPECT_EQ(captured.use_count(), 1);
 }

@@ -125,7 +125,7 @@ TEST(VirtualScheduler, tasks_of_a_dropped_strand_never_run_and_die_at_once) {
   doomed->post([&ran, captured] { ++ran; });
   const Timer timer = doomed->every(1ms, [&ran, captured] { ++ran; });
   doomed->compute(
-      1ms, [captured] {}, [&ran, captured] { ++ran; });
+      {.modelled = 1ms}, [captured] {}, [&ran, captured](const Result<void>&) { ++ran; });
   doomed.reset();
   scheduler.run_until(1s);
   EXPECT_EQ(ran, 0);

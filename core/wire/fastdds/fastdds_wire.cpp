@@ -72,7 +72,7 @@ class Presence final : public dds::DomainParticipantListener {
 
   void tell(ParticipantEvent event) {
     if (!target_) return;
-    strand_->post([target = target_, event] {
+    strand_->post_control([target = target_, event] {
       const std::lock_guard lock(target->mutex);
       if (!target->closed) target->handler(event);
     });
