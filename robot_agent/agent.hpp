@@ -26,6 +26,7 @@ struct PlannerLibrary;
 namespace adit::agent {
 
 class Decider;
+class ModeTable;
 
 struct AgentParams {
   std::string name{"r1"};  ///< 1 to 32 of [A-Za-z0-9_-]
@@ -37,6 +38,7 @@ struct AgentParams {
   /// Behaviour tree, on the configuration's search path. A tree that cannot be read, or contradicts the mode
   /// table, is refused: the agent runs in `hold` with the reason tree_refused.
   std::string tree{"trees/robot.xml"};
+  std::shared_ptr<const ModeTable> modes{};  ///< The robot's modes; null: those that are shipped.
   /// Loads that file, for tests that replace the check against the mode table; empty: Decider::load.
   std::function<Result<std::unique_ptr<Decider>>(const std::string& file)> load_tree{};
   Duration planning{20ms};  ///< what a planning cycle takes in rehearsal

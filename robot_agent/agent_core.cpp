@@ -67,7 +67,6 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       navigation_(navigation_params(params), command, log(), localisation_, *edges.planner, edges.router,
                   navigation_outputs()),
       mux_(navigation_, mux_params(params)),
-      external_(mux_),
       behaviour_(behaviour_params(params), std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
       notices_(params.name, *edges.notifier, log(), [this] { return commands_.authority().holder_name(); }),
@@ -113,7 +112,7 @@ void Agent::Core::battery(float charge) {
 }
 
 void Agent::Core::external(const Twist2& velocity) {
-  protect([&] { external_.heard(velocity, now()); });
+  protect([&] { behaviour_.program(velocity, now()); });
 }
 
 void Agent::Core::rival(const wire::ParticipantId& writer) {
@@ -188,7 +187,8 @@ Result<void> Agent::Core::on_start() {
   if (const auto started = navigation_.start(); !started) return started;
   edges_.core = this;
   edges_.driver->write({});
-  if (edges_.instances == 1) edges_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion);
+  if (edges_.instances == 1)
+    edges_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion, behaviour_.table());
   behaviour_.tick(now());
   notices_.restored(edges_.restored,
                     edges_.restored.snapshot && edges_.restored.snapshot->boot == params_.boot);
@@ -279,7 +279,6 @@ Facts Agent::Core::sense(Time now) const {
   f.driver_alive = localisation_.alive(now);
   f.localised = localisation_.initialised();
   f.terrain_fresh = navigation_.terrain_fresh(now);
-  f.program_fresh = external_.fresh(now);
   return f;
 }
 
@@ -303,6 +302,10 @@ Behaviour::Inputs Agent::Core::behaviour_inputs() {
   // What flies keeps the height that it has.
   if (params_.platform.flies()) inputs.height = [this] { return localisation_.z(); };
   inputs.set_pose = [this](const Pose2& pose) { return set_pose(pose); };
+  inputs.pose = [this]() -> std::optional<Pose2> {
+    if (!localisation_.initialised()) return std::nullopt;
+    return localisation_.pose();
+  };
   return inputs;
 }
 

@@ -13,7 +13,6 @@
 #include "robot_agent/discovery/namesakes.hpp"
 #include "robot_agent/findings/sync.hpp"
 #include "robot_agent/motion/driver.hpp"
-#include "robot_agent/motion/external.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
@@ -101,7 +100,6 @@ class Agent::Core : public Component {
   Localisation localisation_;
   Navigation navigation_;
   Mux mux_;
-  External external_;
   Behaviour behaviour_;
   CommandInterface commands_;
   Notices notices_;

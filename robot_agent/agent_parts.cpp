@@ -16,10 +16,11 @@ KeeperParams keeper_params(const AgentParams& params) {
 
 /// Runs the robot's tree, or holds because it was refused.
 std::unique_ptr<Decider> decider_of(const AgentParams& params) {
+  const ModeTable& table = params.modes ? *params.modes : ModeTable::shipped();
   const auto file = config::find_file(params.tree);
-  if (!file) return Decider::refused(file.error());
-  auto decider = params.load_tree ? params.load_tree(*file) : Decider::load(*file);
-  return decider ? std::move(*decider) : Decider::refused(decider.error());
+  if (!file) return Decider::refused(file.error(), table);
+  auto decider = params.load_tree ? params.load_tree(*file) : Decider::load(*file, table);
+  return decider ? std::move(*decider) : Decider::refused(decider.error(), table);
 }
 
 /// Has `use` ask the component of that unit, on its strand, and calls `done` back on the caller's while the

@@ -4,24 +4,12 @@
 #include <vector>
 
 #include "robot_agent/behaviour/decider.hpp"
+#include "robot_agent/behaviour/mode_module.hpp"
 #include "robot_agent/behaviour/motion_guard.hpp"
 #include "robot_agent/behaviour/stick.hpp"
 #include "robot_agent/command/requests.hpp"
-#include "robot_agent/command/types.hpp"
-#include "robot_agent/motion/mux.hpp"
-#include "robot_agent/state/snapshot.hpp"
 
 namespace adit::agent {
-
-enum class GoalState : std::uint8_t { none, kept, active, blocked, reached };
-
-/// How navigation gets on with the goal.
-struct Progress {
-  bool arrived{};
-  bool blocked{};      ///< every way is blocked
-  bool unreachable{};  ///< no way leads there, not even through what was not seen yet; then `blocked`, too
-  bool operator==(const Progress&) const = default;
-};
 
 /// A mode and whether it could be entered now.
 struct ModeOption {
@@ -42,23 +30,23 @@ struct BehaviourView {
 };
 
 struct BehaviourParams {
-  double farthest_goal{10'000.0};  ///< from the map's origin, m, (0, 1e6]
-  Duration goal_age{500ms};        ///< the mux forgets a source that is silent so long
-  Duration idle_after{60s};        ///< in hold, or at the goal, until the holder is told
-  Duration blocked_after{5s};      ///< until the holder is told
+  Duration idle_after{60s};  ///< in hold, or at the goal, until the holder is told
   Defects defects{};
 };
 
-/// Modes and goals: answers requests by the mode table, has the tree decide, and enables at the mux what the
-/// guard lets through of that. Runs on the command strand; every call takes effect before it returns.
+/// Answers requests by the mode table, has the tree decide, enables at the mux what the guard lets through of
+/// that, and runs the module of the mode. Table and modules are those of the decider. Runs on the command
+/// strand; every call takes effect before it returns.
 class Behaviour : public Requests {
  public:
   struct Inputs {
-    /// driver_alive, localised and terrain_fresh; the rest is known here.
+    /// driver_alive, localised and terrain_fresh; the rest is known here and to the modules.
     std::function<Facts(Time)> sense{};
     /// No known obstacle covers that place (map frame, m).
     std::function<bool(const Eigen::Vector2d&)> goal_free{};
     std::function<double()> height{};  ///< of a goal that was given none, m; empty: it is on the floor
+    /// Where the robot is (map frame); nothing while localisation is not initialised.
+    std::function<std::optional<Pose2>()> pose{};
     /// The robot is at that pose of the map. Errors: no_localisation.
     std::function<Result<void>(const Pose2&)> set_pose{};
   };
@@ -72,12 +60,17 @@ class Behaviour : public Requests {
             Outputs outputs);
 
   Result<void> request_mode(const std::string& mode, Time now) override;
-  Result<void> request_goal(const Eigen::Vector3d& goal, Time now) override;
+  Result<void> request_goal(const Eigen::Vector3d& goal, Time now) override {
+    return request_goal(goal, Commander::holder, now);
+  }
+  Result<void> request_goal(const Eigen::Vector3d& goal, Commander by, Time now);
   Result<void> set_pose(const Pose2& pose, Time now) override;
   void stop_changed(bool stopped, Time now) override;
   void holder_changed(Time now) override;
   void holder_restarted(Time now) override;
   Result<void> stick(const Twist2& twist, Time now) override;
+  /// A velocity of the program that steers in `external`, body frame.
+  void program(const Twist2& velocity, Time now);
   void resume_goal(Time now) override;
 
   /// By the robot itself: falls to hold, the goal is kept.
@@ -93,52 +86,51 @@ class Behaviour : public Requests {
 
   /// At 20 Hz, and by the calls above.
   void tick(Time now);
-  void set_progress(const Progress& progress) { progress_ = progress; }
+  void set_progress(const Progress& progress);
   BehaviourView view() const;
   /// Every mode of the table, and whether it could be entered now.
   std::vector<ModeOption> options(Time now) const;
   const ModeRow& mode() const { return *decision_.mode; }
+  const ModeTable& table() const { return decider_->table(); }
   /// Why the behaviour tree was refused; empty: it runs.
   const std::string& tree_refusal() const { return decider_->refusal(); }
 
  private:
+  /// A row of the table, and its module; null: the mode has none.
+  struct Mode {
+    const ModeRow& row;
+    std::unique_ptr<ModeModule> module{};
+  };
+  ModeModule* module(const ModeRow& row) const;
   Facts facts(Time now) const;
   Result<void> refuse(Reason reason, std::string_view mode) const;
   /// Why the tree does not run the mode; none: it does.
   Reason not_run(const ModeRow& row) const;
   /// Runs a mode that the guard admitted. Errors: the reason why the tree does not.
   Result<void> enter(const ModeRow& row, Time now);
-  void fall(const ModeRow& from, const Decision& decision);
-  void feed_waypoint(Time now);
+  /// Leaves the module of the mode before, if it is another one.
+  void change_to(const ModeRow& row, Time now);
+  void fall(const ModeRow& from, Reason reason);
   void watch(Time now);
-  GoalState goal_state() const;
-
-  struct Goal {
-    bool known{};
-    bool reached{};
-    std::uint32_t id{};
-    Eigen::Vector3d place{Eigen::Vector3d::Zero()};
-    bool on_floor{};  ///< it was given no height
-  };
+  ModeProgress progress() const;
 
   BehaviourParams params_;
   std::unique_ptr<Decider> decider_;
   Mux& mux_;
   Inputs inputs_;
   Outputs outputs_;
-  Mux::Output manual_, smart_, waypoint_;
+  std::vector<Mode> modes_{};  ///< In the order of the table.
 
-  MotionGuard guard_{};
+  MotionGuard guard_;
   Decision decision_;
+  const ModeRow* running_;             ///< The mode whose module was not left.
   Reason fell_because_{Reason::none};  ///< of the last fall to hold, until the next request
   bool stopped_{};
   bool listens_{};
   Stick stick_{};
-  Goal goal_{};
-  Progress progress_{};
   BehaviourView told_{};  ///< when changed() was called last
-  Time idle_since_{}, free_since_{};
-  bool idle_told_{}, blocked_told_{}, unreachable_told_{}, begun_{};
+  Time idle_since_{};
+  bool idle_told_{}, begun_{};
 };
 
 }  // namespace adit::agent

@@ -12,7 +12,7 @@ bt::NodeStatus status(bool holds) { return holds ? bt::NodeStatus::success : bt:
 Result<bt::Registry> Decider::registry() {
   bt::Registry leaves;
   const bt::Ports mode{bt::required_input("mode", bt::PortType::text)};
-  for (const Condition& condition : all_conditions()) {
+  for (const Condition& condition : table_.conditions()) {
     const auto added = leaves.add_condition(std::string(condition.leaf), [this, condition](bt::Leaf&) {
       const bool holds = condition.holds(facts_);
       if (!holds && decision_.reason == Reason::none) decision_.reason = condition.reason;
@@ -39,7 +39,7 @@ Result<bt::Registry> Decider::registry() {
 
 bt::NodeStatus Decider::choose(bt::Leaf& leaf, bool runs) {
   const auto mode = leaf.input<std::string>("mode");
-  const ModeRow* row = mode ? find_mode(*mode) : nullptr;
+  const ModeRow* row = mode ? table_.find(*mode) : nullptr;
   if (!row) return bt::NodeStatus::failure;
   decision_.mode = row;
   decision_.runs = runs;
@@ -47,8 +47,8 @@ bt::NodeStatus Decider::choose(bt::Leaf& leaf, bool runs) {
 }
 
 Result<std::unique_ptr<Decider>> Decider::make(
-    const std::function<Result<bt::Tree>(const bt::Registry&)>& load) {
-  std::unique_ptr<Decider> decider(new Decider);
+    const ModeTable& table, const std::function<Result<bt::Tree>(const bt::Registry&)>& load) {
+  std::unique_ptr<Decider> decider(new Decider(table));
   const auto leaves = decider->registry();
   if (!leaves) return leaves.error();
   auto tree = load(*leaves);
@@ -64,32 +64,33 @@ Result<std::unique_ptr<Decider>> Decider::make(
   return decider;
 }
 
-Result<std::unique_ptr<Decider>> Decider::load_unchecked(const std::string& tree_file) {
-  return make([&](const bt::Registry& leaves) { return bt::load_tree_file(leaves, tree_file); });
-}
-
-Result<std::unique_ptr<Decider>> Decider::load(const std::string& tree_file) {
-  auto decider = load_unchecked(tree_file);
+Result<std::unique_ptr<Decider>> Decider::checked(Result<std::unique_ptr<Decider>> decider) {
   if (!decider) return decider;
-  if (const auto checked = check_tree((*decider)->tree_); !checked) return checked.error();
+  if (const auto agrees = check_tree((*decider)->tree_, (*decider)->table_); !agrees) return agrees.error();
   return decider;
 }
 
-Result<std::unique_ptr<Decider>> Decider::load_text(const std::string& xml) {
-  auto decider = make([&](const bt::Registry& leaves) { return bt::load_tree_text(leaves, xml); });
-  if (!decider) return decider;
-  if (const auto checked = check_tree((*decider)->tree_); !checked) return checked.error();
-  return decider;
+Result<std::unique_ptr<Decider>> Decider::load_unchecked(const std::string& tree_file,
+                                                         const ModeTable& table) {
+  return make(table, [&](const bt::Registry& leaves) { return bt::load_tree_file(leaves, tree_file); });
 }
 
-std::unique_ptr<Decider> Decider::refused(const Error& why) {
-  std::unique_ptr<Decider> decider(new Decider);
+Result<std::unique_ptr<Decider>> Decider::load(const std::string& tree_file, const ModeTable& table) {
+  return checked(load_unchecked(tree_file, table));
+}
+
+Result<std::unique_ptr<Decider>> Decider::load_text(const std::string& xml, const ModeTable& table) {
+  return checked(make(table, [&](const bt::Registry& leaves) { return bt::load_tree_text(leaves, xml); }));
+}
+
+std::unique_ptr<Decider> Decider::refused(const Error& why, const ModeTable& table) {
+  std::unique_ptr<Decider> decider(new Decider(table));
   decider->refusal_ = why.text;
   return decider;
 }
 
 Decision Decider::decide(std::string_view requested, const Facts& facts, Time now) {
-  const ModeRow* hold = &mode_table().front();
+  const ModeRow* hold = &table_.hold();
   if (tree_.empty()) return {hold, false, Reason::tree_refused};
   requested_ = requested;
   facts_ = facts;

@@ -17,12 +17,15 @@ class Decider {
  public:
   /// Loads a tree and checks it against the mode table. Errors: those of the loader and of check_tree(), with
   /// file and line.
-  static Result<std::unique_ptr<Decider>> load(const std::string& tree_file);
-  static Result<std::unique_ptr<Decider>> load_text(const std::string& xml);
+  static Result<std::unique_ptr<Decider>> load(const std::string& tree_file,
+                                               const ModeTable& table = ModeTable::shipped());
+  static Result<std::unique_ptr<Decider>> load_text(const std::string& xml,
+                                                    const ModeTable& table = ModeTable::shipped());
   /// Loads a tree without the check, for tests of what the guard enforces. Errors: those of the loader.
-  static Result<std::unique_ptr<Decider>> load_unchecked(const std::string& tree_file);
+  static Result<std::unique_ptr<Decider>> load_unchecked(const std::string& tree_file,
+                                                         const ModeTable& table = ModeTable::shipped());
   /// Decides for `hold` always, because of a tree that was refused with `why`.
-  static std::unique_ptr<Decider> refused(const Error& why);
+  static std::unique_ptr<Decider> refused(const Error& why, const ModeTable& table = ModeTable::shipped());
   Decider(const Decider&) = delete;
   Decider& operator=(const Decider&) = delete;
 
@@ -30,18 +33,21 @@ class Decider {
   Decision decide(std::string_view requested, const Facts& facts, Time now);
   /// The tree has a Run for that mode.
   bool installed(const ModeRow& row) const { return modes_.contains(row.name); }
+  const ModeTable& table() const { return table_; }
   /// Why the tree was refused; empty: it runs.
   const std::string& refusal() const { return refusal_; }
   /// What a leaf threw in the last tick; empty: nothing.
   const std::string& error() const { return error_; }
 
  private:
-  Decider() = default;
+  explicit Decider(const ModeTable& table) : table_(table) {}
   Result<bt::Registry> registry();
   static Result<std::unique_ptr<Decider>> make(
-      const std::function<Result<bt::Tree>(const bt::Registry&)>& load);
+      const ModeTable& table, const std::function<Result<bt::Tree>(const bt::Registry&)>& load);
+  static Result<std::unique_ptr<Decider>> checked(Result<std::unique_ptr<Decider>> decider);
   bt::NodeStatus choose(bt::Leaf& leaf, bool runs);
 
+  const ModeTable& table_;
   bt::Tree tree_{};
   std::set<std::string, std::less<>> modes_{};  ///< that the tree runs
   std::string_view requested_{};

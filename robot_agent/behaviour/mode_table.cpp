@@ -3,72 +3,107 @@
 #include <algorithm>
 #include <array>
 
+#include "robot_agent/behaviour/modes/external.hpp"
+#include "robot_agent/behaviour/modes/manual.hpp"
+#include "robot_agent/behaviour/modes/waypoint.hpp"
+#include "robot_agent/behaviour/stick.hpp"
+
 namespace adit::agent {
+
+namespace conditions {
+constinit const Condition not_stopped{"NotStopped", Reason::stopped,
+                                      [](const Facts& f) { return !f.stopped; }, Scope::ending};
+constinit const Condition driver_alive{"DriverAlive", Reason::driver_silent,
+                                       [](const Facts& f) { return f.driver_alive; }, Scope::lasting};
+constinit const Condition localised{"Localised", Reason::no_localisation,
+                                    [](const Facts& f) { return f.localised; }, Scope::lasting};
+constinit const Condition terrain_fresh{"TerrainFresh", Reason::terrain_stale,
+                                        [](const Facts& f) { return f.terrain_fresh; }, Scope::lasting};
+constinit const Condition stick_fresh{"StickFresh", Reason::joystick_stale,
+                                      [](const Facts& f) { return f.stick_fresh; }, Scope::entry};
+constinit const Condition stick_centred{"StickCentred", Reason::stick_not_centred,
+                                        [](const Facts& f) { return f.stick_centred; }, Scope::entry};
+constinit const Condition stick_kept{"StickKept", Reason::joystick_stale,
+                                     [](const Facts& f) { return f.stick_kept; }, Scope::ending};
+constinit const Condition goal_known{"GoalKnown", Reason::goal_missing,
+                                     [](const Facts& f) { return f.goal_known; }, Scope::ending};
+constinit const Condition goal_free{"GoalFree", Reason::goal_unreachable,
+                                    [](const Facts& f) { return f.goal_free; }, Scope::entry};
+constinit const Condition program_fresh{"ProgramFresh", Reason::program_silent,
+                                        [](const Facts& f) { return f.program_fresh; }, Scope::lasting};
+}  // namespace conditions
+
 namespace {
 
-constexpr Condition kNotStopped{"NotStopped", Reason::stopped, [](const Facts& f) { return !f.stopped; },
-                                Scope::ending};
-constexpr Condition kDriverAlive{"DriverAlive", Reason::driver_silent,
-                                 [](const Facts& f) { return f.driver_alive; }, Scope::lasting};
-constexpr Condition kLocalised{"Localised", Reason::no_localisation,
-                               [](const Facts& f) { return f.localised; }, Scope::lasting};
-constexpr Condition kTerrainFresh{"TerrainFresh", Reason::terrain_stale,
-                                  [](const Facts& f) { return f.terrain_fresh; }, Scope::lasting};
-constexpr Condition kStickFresh{"StickFresh", Reason::joystick_stale,
-                                [](const Facts& f) { return f.stick_fresh; }, Scope::entry};
-constexpr Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
-                                  [](const Facts& f) { return f.stick_centred; }, Scope::entry};
-constexpr Condition kStickKept{"StickKept", Reason::joystick_stale,
-                               [](const Facts& f) { return f.stick_kept; }, Scope::ending};
-constexpr Condition kGoalKnown{"GoalKnown", Reason::goal_missing, [](const Facts& f) { return f.goal_known; },
-                               Scope::ending};
-constexpr Condition kGoalFree{"GoalFree", Reason::goal_unreachable,
-                              [](const Facts& f) { return f.goal_free; }, Scope::entry};
-constexpr Condition kProgramFresh{"ProgramFresh", Reason::program_silent,
-                                  [](const Facts& f) { return f.program_fresh; }, Scope::lasting};
+using namespace conditions;
 
-constexpr std::array kAll{kNotStopped,   kDriverAlive, kLocalised, kTerrainFresh, kStickFresh,
-                          kStickCentred, kStickKept,   kGoalKnown, kGoalFree,     kProgramFresh};
-
-// StickKept comes last: on entry the clock of the mode has not begun, StickFresh has spoken already.
-constexpr std::array kManual{kNotStopped, kDriverAlive, kStickFresh, kStickCentred, kStickKept};
-constexpr std::array kSmart{kNotStopped, kDriverAlive,  kLocalised, kTerrainFresh,
-                            kStickFresh, kStickCentred, kStickKept};
-constexpr std::array kWaypoint{kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kGoalKnown, kGoalFree};
-
-constexpr std::array kExternal{kNotStopped, kDriverAlive, kProgramFresh};
-
+constexpr Duration kPlannerAge = 500ms;
 constexpr CommandedBy kHolder{true, false}, kHolderOrAgent{true, true};
 
-constexpr std::array kTable{
-    ModeRow{"hold",
-            kHolderOrAgent,
-            Accepts::nothing,
-            GoalOnLeaving::none,
-            OnFailure::falls_to_hold,
-            OnHandover::continues,
-            {}},
-    ModeRow{"manual", kHolder, Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold,
-            OnHandover::falls_to_hold, kManual},
-    ModeRow{"smart_joystick", kHolder, Accepts::stick, GoalOnLeaving::none, OnFailure::falls_to_hold,
-            OnHandover::falls_to_hold, kSmart},
-    ModeRow{"waypoint", kHolderOrAgent, Accepts::goal, GoalOnLeaving::cleared, OnFailure::pauses,
-            OnHandover::continues, kWaypoint},
-    // Falls to hold when its program is silent: one that comes back must not move the robot by that alone.
-    ModeRow{"external", kHolder, Accepts::program, GoalOnLeaving::none, OnFailure::falls_to_hold,
-            OnHandover::continues, kExternal, true},
-};
+std::vector<ModeRow> shipped_rows() {
+  return {
+      {.name = "hold", .commanded_by = kHolderOrAgent},
+      {.name = "manual",
+       .commanded_by = kHolder,
+       .accepts = Accepts::stick,
+       .on_handover = OnHandover::falls_to_hold,
+       // StickKept comes last: StickFresh has spoken already.
+       .conditions = {not_stopped, driver_alive, stick_fresh, stick_centred, stick_kept},
+       .make = ManualMode::make,
+       .source_age = Stick::kFresh},
+      {.name = "smart_joystick",
+       .commanded_by = kHolder,
+       .accepts = Accepts::stick,
+       .on_handover = OnHandover::falls_to_hold,
+       .conditions = {not_stopped, driver_alive, localised, terrain_fresh, stick_fresh, stick_centred,
+                      stick_kept},
+       .make = SmartJoystickMode::make,
+       .source_age = Stick::kFresh},
+      {.name = "waypoint",
+       .commanded_by = kHolderOrAgent,
+       .accepts = Accepts::goal,
+       .goal = GoalOnLeaving::cleared,
+       .on_failure = OnFailure::pauses,
+       .conditions = {not_stopped, driver_alive, localised, terrain_fresh, goal_known, goal_free},
+       .make = WaypointMode::make,
+       .source_age = kPlannerAge},
+      // Falls to hold when its program is silent: one that comes back must not move the robot by that alone.
+      {.name = "external",
+       .commanded_by = kHolder,
+       .accepts = Accepts::program,
+       .conditions = {not_stopped, driver_alive, program_fresh},
+       .make = ExternalMode::make,
+       .source_age = kPlannerAge,
+       .optional = true},
+  };
+}
 
 constexpr std::array<std::string_view, 3> kNotInstalled{"explore", "convoy_follow", "get_out"};
 
 }  // namespace
 
-std::span<const ModeRow> mode_table() { return kTable; }
+ModeTable::ModeTable(std::vector<ModeRow> rows) : rows_(std::move(rows)) {
+  for (const ModeRow& row : rows_)
+    for (const Condition& c : row.conditions)
+      if (std::none_of(conditions_.begin(), conditions_.end(),
+                       [&](const Condition& known) { return known.leaf == c.leaf; }))
+        conditions_.push_back(c);
+}
 
-const ModeRow* find_mode(std::string_view name) {
+const ModeTable& ModeTable::shipped() {
+  static const ModeTable table(shipped_rows());
+  return table;
+}
+
+const ModeRow* ModeTable::find(std::string_view name) const {
+  const auto row = std::find_if(rows_.begin(), rows_.end(), [&](const ModeRow& r) { return r.name == name; });
+  return row == rows_.end() ? nullptr : &*row;
+}
+
+const ModeRow* ModeTable::accepting(Accepts what) const {
   const auto row =
-      std::find_if(kTable.begin(), kTable.end(), [&](const ModeRow& r) { return r.name == name; });
-  return row == kTable.end() ? nullptr : &*row;
+      std::find_if(rows_.begin(), rows_.end(), [&](const ModeRow& r) { return r.accepts == what; });
+  return row == rows_.end() ? nullptr : &*row;
 }
 
 bool known_but_not_installed(std::string_view name) {
@@ -80,7 +115,5 @@ Reason entry_refusal(const ModeRow& row, const Facts& facts) {
     if (!condition.holds(facts)) return condition.reason;
   return Reason::none;
 }
-
-std::span<const Condition> all_conditions() { return kAll; }
 
 }  // namespace adit::agent

@@ -1,25 +1,18 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "core/result/reason.hpp"
+#include "core/time/time.hpp"
+#include "robot_agent/behaviour/facts.hpp"
 
 namespace adit::agent {
 
-/// What the conditions of the modes look at.
-struct Facts {
-  bool stopped{};
-  bool driver_alive{};   ///< odometry within the last 0.5 s
-  bool localised{};      ///< start pose known and odometry heard
-  bool terrain_fresh{};  ///< lidar points within the last 0.5 s
-  bool stick_fresh{};    ///< a sample within the last 0.3 s
-  bool stick_kept{};     ///< a sample, or the entry into the mode, within the last 1 s
-  bool stick_centred{};
-  bool goal_known{};
-  bool goal_free{};      ///< no obstacle that is known covers it
-  bool program_fresh{};  ///< the program that steers from outside spoke within the last 0.5 s
-};
+struct ModeContext;
+class ModeModule;
 
 /// When a condition is asked.
 enum class Scope {
@@ -38,10 +31,16 @@ struct Condition {
   bool entry_only() const { return scope == Scope::entry; }
 };
 
+/// The conditions of the shipped modes, for rows of further ones.
+namespace conditions {
+extern const Condition not_stopped, driver_alive, localised, terrain_fresh, stick_fresh, stick_centred,
+    stick_kept, goal_known, goal_free, program_fresh;
+}
+
 /// Who asks for a mode.
 enum class Commander : std::uint8_t {
-  holder = 1,  ///< The operator who holds the robot.
-  agent = 2,   ///< The robot's own safeguards.
+  holder,  ///< The operator who holds the robot.
+  agent,   ///< The robot's own safeguards.
 };
 /// The commanders that may ask for a mode.
 struct CommandedBy {
@@ -50,41 +49,70 @@ struct CommandedBy {
   constexpr bool allows(Commander who) const { return who == Commander::holder ? holder : agent; }
 };
 
-/// What a mode takes: from its holder, or from a program on the robot.
-enum class Accepts { nothing, stick, goal, program };
-/// What becomes of the goal when the mode is left for another.
+/// What a mode's module is given while the mode lasts.
+enum class Accepts {
+  nothing,
+  stick,    ///< The holder's stick: a manual mode.
+  goal,     ///< The places of `goto`.
+  program,  ///< Velocities of a program on the robot.
+};
+/// What becomes of the mode's goal when another mode is requested. On stop and restart it is always stored.
 enum class GoalOnLeaving { none, cleared };
 /// What the failure of a lasting condition does.
 enum class OnFailure { falls_to_hold, pauses };
 /// What a change of holder does.
 enum class OnHandover { continues, falls_to_hold };
 
+/// A row of the mode table: all that code outside a mode's module knows of the mode.
 struct ModeRow {
   std::string_view name{};
   CommandedBy commanded_by{};
   Accepts accepts{};
-  GoalOnLeaving goal{};  ///< On stop and restart a goal is always stored.
-  OnFailure on_failure{};
+  GoalOnLeaving goal{};
+  OnFailure on_failure{};  ///< `pauses`: it also resumes after a restart.
   OnHandover on_handover{};
-  std::span<const Condition> conditions{};
-
-  bool optional{};  ///< a tree may do without it: then it is not installed
+  /// In the order in which an operator is told of them.
+  std::vector<Condition> conditions{};
+  /// Makes the mode's module; null: nothing moves the robot in this mode.
+  std::unique_ptr<ModeModule> (*make)(const ModeContext&){};
+  Duration source_age{};  ///< What the module wrote counts for so long (rule 6).
+  bool optional{};        ///< A tree may do without it: it is then not installed.
 
   bool manual() const { return accepts == Accepts::stick; }
+  bool moves() const { return make != nullptr; }
   /// Goes on without its operator.
-  bool autonomous() const { return accepts == Accepts::goal || accepts == Accepts::program; }
+  bool autonomous() const { return moves() && !manual(); }
 };
 
-/// The mode table: the tree's leaves, the command interface, BehaviourState and, through it, every
-/// console read it. Reading order is the order in which conditions are told.
-std::span<const ModeRow> mode_table();
-/// The row of that name, null when this robot has no module for it.
-const ModeRow* find_mode(std::string_view name);
-/// A mode of the design for which no module is installed.
+/// The modes of a robot: `hold`, the fallback of all modes, and others. Guard, behaviour tree, command
+/// interface and BehaviourState read it. Decisions point into it: it must outlive who uses it.
+class ModeTable {
+ public:
+  /// The first row must be `hold`; names must be unique.
+  explicit ModeTable(std::vector<ModeRow> rows);
+  ModeTable(const ModeTable&) = delete;
+  ModeTable& operator=(const ModeTable&) = delete;
+
+  /// The modes of this version: hold, manual, smart_joystick, waypoint, external.
+  static const ModeTable& shipped();
+
+  const std::vector<ModeRow>& rows() const { return rows_; }
+  const ModeRow& hold() const { return rows_.front(); }
+  /// The row of that name, null when this robot has no module for it.
+  const ModeRow* find(std::string_view name) const;
+  /// The first row that accepts it, null when there is none.
+  const ModeRow* accepting(Accepts what) const;
+  /// Every distinct condition.
+  const std::vector<Condition>& conditions() const { return conditions_; }
+
+ private:
+  std::vector<ModeRow> rows_;
+  std::vector<Condition> conditions_{};
+};
+
+/// A mode of the design that no shipped module provides.
 bool known_but_not_installed(std::string_view name);
 /// Why the mode cannot be entered now; none when it can.
 Reason entry_refusal(const ModeRow& row, const Facts& facts);
-/// Every distinct condition of the table.
-std::span<const Condition> all_conditions();
 
 }  // namespace adit::agent

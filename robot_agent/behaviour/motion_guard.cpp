@@ -2,7 +2,7 @@
 
 namespace adit::agent {
 
-MotionGuard::MotionGuard() : hold_(&mode_table().front()), admitted_(hold_) {}
+MotionGuard::MotionGuard(const ModeTable& table) : hold_(&table.hold()), admitted_(hold_) {}
 
 Reason MotionGuard::admit(const ModeRow& row, Commander by, const Facts& facts) {
   if (!row.commanded_by.allows(by)) return Reason::not_holder;

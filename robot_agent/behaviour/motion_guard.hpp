@@ -12,8 +12,8 @@ namespace adit::agent {
 /// nothing but a further request brings it back. The guard reads neither tree nor configuration.
 class MotionGuard {
  public:
-  /// Starts in `hold`, the first row of the mode table.
-  MotionGuard();
+  /// Starts in `hold`. `table` must outlive this.
+  explicit MotionGuard(const ModeTable& table);
 
   /// Admits `row` when `by` may ask for it and every condition holds; asking for the manual mode that is
   /// admitted already needs no centred stick. Returns the reason of the refusal, or none.

@@ -19,8 +19,8 @@ bool is_leaf(const Node& node, std::string_view id) {
   return node.kind() != NodeKind::subtree && node.children().empty() && node.id() == id;
 }
 
-bool is_condition(const Node& node) {
-  const auto all = all_conditions();
+bool is_condition(const Node& node, const ModeTable& table) {
+  const auto& all = table.conditions();
   return std::any_of(all.begin(), all.end(), [&](const Condition& c) { return is_leaf(node, c.leaf); });
 }
 
@@ -32,9 +32,9 @@ std::string mode_of(const Node& node) {
 /// The name under which a leaf counts as asked: a condition's, or `Requested mode="NAME"`.
 std::string requested(std::string_view mode) { return "Requested mode=\"" + std::string(mode) + "\""; }
 
-std::optional<std::string> asked_by(const Node& leaf) {
+std::optional<std::string> asked_by(const Node& leaf, const ModeTable& table) {
   if (is_leaf(leaf, "Requested")) return requested(mode_of(leaf));
-  if (is_condition(leaf)) return leaf.id();
+  if (is_condition(leaf, table)) return leaf.id();
   return std::nullopt;
 }
 
@@ -51,17 +51,17 @@ bool is_reactive(const Node& node) {
 
 /// The conditions that were asked in this tick, and held, when the node succeeds. A node with such a
 /// condition is never skipped.
-Names guaranteed(const Node& node) {
+Names guaranteed(const Node& node, const ModeTable& table) {
   if (may_be_passed_over(node)) return {};
-  if (const auto name = asked_by(node)) return {*name};
-  if (node.kind() == NodeKind::subtree) return guaranteed(*node.children().front());
+  if (const auto name = asked_by(node, table)) return {*name};
+  if (node.kind() == NodeKind::subtree) return guaranteed(*node.children().front(), table);
   Names all;
   if (node.id() == "ReactiveSequence") {
-    for (const auto& child : node.children()) all.merge(guaranteed(*child));
+    for (const auto& child : node.children()) all.merge(guaranteed(*child, table));
   } else if (node.id() == "ReactiveFallback") {
-    all = guaranteed(*node.children().front());
+    all = guaranteed(*node.children().front(), table);
     for (const auto& child : node.children()) {
-      const Names other = guaranteed(*child);
+      const Names other = guaranteed(*child, table);
       std::erase_if(all, [&](const std::string& name) { return !other.contains(name); });
     }
   }
@@ -72,10 +72,12 @@ std::string place(const Node& node) { return node.config().file + ":" + std::to_
 
 class Checker {
  public:
+  explicit Checker(const ModeTable& table) : table_(table) {}
+
   Result<void> run(const bt::Tree& tree) {
     visit(tree.root(), {});
     if (error_.empty())
-      for (const ModeRow& row : mode_table())
+      for (const ModeRow& row : table_.rows())
         if (!row.optional && !runs_.contains(row.name))
           refuse(tree.root(), "the tree has no Run for mode " + std::string(row.name));
     if (error_.empty()) return {};
@@ -92,7 +94,7 @@ class Checker {
       (void)row_of(node);
     for (const auto& child : node.children()) {
       visit(*child, asked);
-      if (node.id() == "ReactiveSequence") asked.merge(guaranteed(*child));
+      if (node.id() == "ReactiveSequence") asked.merge(guaranteed(*child, table_));
     }
     path_.pop_back();
   }
@@ -102,7 +104,7 @@ class Checker {
     if (!row) return;
     const bool runs = leaf.id() == "Run";
     if (runs) runs_.insert(row->name);
-    if (row == &mode_table().front()) return;
+    if (row == &table_.hold()) return;
     if (!runs && row->on_failure != OnFailure::pauses)
       return refuse(leaf, std::string(row->name) + " cannot pause: it falls to hold");
     require(leaf, requested(row->name), asked);
@@ -112,7 +114,7 @@ class Checker {
 
   const ModeRow* row_of(const Node& leaf) {
     const std::string mode = mode_of(leaf);
-    const ModeRow* row = find_mode(mode);
+    const ModeRow* row = table_.find(mode);
     if (!row) refuse(leaf, leaf.id() + ": the mode table has no mode '" + mode + "'");
     return row;
   }
@@ -134,9 +136,9 @@ class Checker {
     return " before it";
   }
 
-  static bool find(const Node& node, const std::string& condition, std::vector<const Node*>& way) {
+  bool find(const Node& node, const std::string& condition, std::vector<const Node*>& way) const {
     way.push_back(&node);
-    if (asked_by(node) == condition) return true;
+    if (asked_by(node, table_) == condition) return true;
     for (const auto& child : node.children())
       if (find(*child, condition, way)) return true;
     way.pop_back();
@@ -158,6 +160,7 @@ class Checker {
     if (error_.empty()) error_ = place(node) + ": " + what;
   }
 
+  const ModeTable& table_;
   std::vector<const Node*> path_{};  ///< From the root to the node that is visited.
   std::set<std::string_view> runs_{};
   std::string error_{};
@@ -165,18 +168,18 @@ class Checker {
 
 }  // namespace
 
-Result<void> check_tree(const bt::Tree& tree) { return Checker().run(tree); }
+Result<void> check_tree(const bt::Tree& tree, const ModeTable& table) { return Checker(table).run(tree); }
 
-Result<void> check_tree(const std::string& file) {
-  const auto decider = Decider::load(file);
+Result<void> check_tree(const std::string& file, const ModeTable& table) {
+  const auto decider = Decider::load(file, table);
   return decider ? Result<void>{} : Result<void>{decider.error()};
 }
 
-bool is_robot_tree(const bt::Tree& tree) {
+bool is_robot_tree(const bt::Tree& tree, const ModeTable& table) {
   bool found = false;
   tree.for_each([&](const Node& node, std::size_t) {
     found = found || is_leaf(node, "Run") || is_leaf(node, "Pause") || is_leaf(node, "Requested") ||
-            is_condition(node);
+            is_condition(node, table);
   });
   return found;
 }

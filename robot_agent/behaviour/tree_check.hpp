@@ -2,6 +2,7 @@
 #include <string>
 
 #include "core/bt/tree.hpp"
+#include "robot_agent/behaviour/mode_table.hpp"
 
 namespace adit::agent {
 
@@ -16,14 +17,14 @@ namespace adit::agent {
 ///
 /// The check helps whoever edits a tree. MotionGuard enforces the table whether a tree was checked or not.
 /// Errors: tree_refused, with "file:line: what is missing".
-Result<void> check_tree(const bt::Tree& tree);
+Result<void> check_tree(const bt::Tree& tree, const ModeTable& table);
 
 /// Loads the robot's tree from an XML file and checks it.
 ///
 /// Errors: those of the loader (cannot_read, syntax, ...), and tree_refused; each with file and line.
-Result<void> check_tree(const std::string& file);
+Result<void> check_tree(const std::string& file, const ModeTable& table = ModeTable::shipped());
 
 /// Whether the tree has a leaf of a robot's tree: Run, Pause, Requested or a condition of the mode table.
-bool is_robot_tree(const bt::Tree& tree);
+bool is_robot_tree(const bt::Tree& tree, const ModeTable& table = ModeTable::shipped());
 
 }  // namespace adit::agent

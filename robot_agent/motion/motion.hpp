@@ -34,6 +34,14 @@ struct GoTo {
   }
 };
 
+/// How navigation gets on with the place that was asked for last.
+struct Progress {
+  bool arrived{};
+  bool blocked{};      ///< every path is blocked
+  bool unreachable{};  ///< no path leads there, not even through what was not seen yet; then `blocked`, too
+  bool operator==(const Progress&) const = default;
+};
+
 /// What a source asks of navigation.
 using Motion = std::variant<Stand, Velocity, Guidance, GoTo>;
 

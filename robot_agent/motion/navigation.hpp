@@ -9,7 +9,7 @@
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
-#include "robot_agent/behaviour/behaviour.hpp"
+#include "robot_agent/defects.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/motion.hpp"
 #include "robot_agent/motion/planner.hpp"

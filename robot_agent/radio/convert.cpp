@@ -243,7 +243,7 @@ radio::Health to_radio(const std::vector<ComponentRow>& components, const std::s
 }
 
 radio::Capabilities to_radio(const Platform& platform, const std::string& robot, const Id& id,
-                             std::uint16_t protocol) {
+                             std::uint16_t protocol, const ModeTable& modes) {
   radio::Capabilities out;
   out.name(robot);
   out.kind(radio::AGENT_ROBOT);
@@ -265,7 +265,7 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   if (platform.turns_on_spot()) out.services().push_back("turn_on_spot");
   if (platform.stairs) out.services().push_back("stairs");
   if (platform.flies()) out.services().push_back("flight");
-  for (const ModeRow& row : mode_table()) out.modes().push_back(std::string(row.name));
+  for (const ModeRow& row : modes.rows()) out.modes().push_back(std::string(row.name));
   return out;
 }
 

@@ -39,6 +39,6 @@ radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<Mode
                                const std::string& robot);
 radio::Health to_radio(const std::vector<ComponentRow>& components, const std::string& robot);
 radio::Capabilities to_radio(const Platform& platform, const std::string& robot, const Id& id,
-                             std::uint16_t protocol);
+                             std::uint16_t protocol, const ModeTable& modes);
 
 }  // namespace adit::agent

@@ -203,9 +203,10 @@ void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
   (void)endpoints_->state.write(s);
 }
 
-void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol) {
+void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
+                                  const ModeTable& modes) {
   Endpoints& e = *endpoints_;
-  e.capabilities_sample = to_radio(platform, e.robot, id, protocol);
+  e.capabilities_sample = to_radio(platform, e.robot, id, protocol, modes);
   (void)e.capabilities.write(e.capabilities_sample);
   e.presence_sample.name(e.robot);
   e.presence_sample.kind(radio::AGENT_ROBOT);

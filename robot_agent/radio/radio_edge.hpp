@@ -58,7 +58,8 @@ class RadioEdge {
   void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
   void send_state(const RobotReport& report, std::uint64_t stamp);
   /// And from now on a sign of life once a second, and when somebody appears.
-  void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol);
+  void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
+                         const ModeTable& modes = ModeTable::shipped());
   /// Sends the capabilities once more, with what this robot claims while it gives way to another one of its
   /// name.
   void send_claim(const std::optional<Namesakes::Claim>& claim);

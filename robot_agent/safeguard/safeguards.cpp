@@ -53,7 +53,8 @@ void Safeguards::watch_link(Time now) {
 }
 
 void Safeguards::go_back(const Eigen::Vector2d& place, const std::string& why, Time now) {
-  const auto asked = parts_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, now);
+  const auto asked =
+      parts_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, Commander::agent, now);
   if (!asked) return link_loss_.refused(now);
   parts_.notices.send({{},
                        Severity::warning,

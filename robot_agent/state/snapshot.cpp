@@ -60,6 +60,7 @@ bool read_stops(Unpacker& in, Snapshot& s) {
 bool read_behaviour(Unpacker& in, Snapshot& s) {
   auto value = checked(in, fields::behaviour(in));
   if (!value) return false;
+  value->modes = std::move(s.behaviour.modes);
   s.behaviour = std::move(*value);
   return true;
 }
@@ -67,6 +68,13 @@ bool read_behaviour(Unpacker& in, Snapshot& s) {
 bool read_place(Unpacker& in, Snapshot& s) {
   s.place = checked(in, fields::place(in));
   return s.place.has_value();
+}
+
+bool read_mode(Unpacker& in, Snapshot& s) {
+  auto value = checked(in, fields::mode(in));
+  if (!value || s.behaviour.modes.size() >= Snapshot::kModes || s.behaviour.of(value->mode)) return false;
+  s.behaviour.modes.push_back(std::move(*value));
+  return true;
 }
 
 bool read_answers(Unpacker& in, Snapshot& s) {
@@ -112,6 +120,14 @@ const std::array kRows{
           if (s.place) add_one(add, *s.place);
         },
         read_place},
+    Row{{'M', 'O', 'D', 'E'},
+        1,
+        "state of a mode",
+        false,
+        [](const Snapshot& s, const auto& add) {
+          for (const KeptMode& mode : s.behaviour.modes) add_one(add, mode);
+        },
+        read_mode},
     Row{{'A', 'N', 'S', 'W'},
         1,
         "answers to a station",
@@ -139,6 +155,12 @@ void lose(ReadSnapshot& read, const Row& row) {
 }
 
 }  // namespace
+
+const store::Bytes* KeptBehaviour::of(std::string_view module) const {
+  const auto found =
+      std::find_if(modes.begin(), modes.end(), [&](const KeptMode& m) { return m.mode == module; });
+  return found == modes.end() ? nullptr : &found->bytes;
+}
 
 Snapshot sanitized(Snapshot s) {
   auto stops = fields::sanitized(std::move(s.authority.stops));

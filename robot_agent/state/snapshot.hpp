@@ -44,6 +44,13 @@ struct KeptAuthority {
   bool operator==(const KeptAuthority&) const = default;
 };
 
+/// What the module of a mode stores, beside the goal of `waypoint`.
+struct KeptMode {
+  std::string mode{};
+  store::Bytes bytes{};  ///< At most Snapshot::kModeBytes; only that module reads them.
+  bool operator==(const KeptMode&) const = default;
+};
+
 /// Of the behaviour: what was asked for, not what the tree made of it.
 struct KeptBehaviour {
   std::string mode{"hold"};
@@ -52,12 +59,17 @@ struct KeptBehaviour {
   std::uint32_t goal_id{};
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< map frame, m
   bool goal_on_floor{};                           ///< it was given no height
+  std::vector<KeptMode> modes{};                  ///< At most Snapshot::kModes, each mode once.
+
+  /// The bytes that a mode's module stored; null: none.
+  const store::Bytes* of(std::string_view module) const;
   bool operator==(const KeptBehaviour&) const = default;
 };
 
 /// The last known safe state (rule 7): what an agent comes back with.
 struct Snapshot {
-  static constexpr std::size_t kStops = 16, kParticipants = 8, kAnswers = 8, kText = 64;
+  static constexpr std::size_t kStops = 16, kParticipants = 8, kAnswers = 8, kText = 64, kModes = 8,
+                               kModeBytes = 512;
 
   KeptAuthority authority{};
   KeptBehaviour behaviour{};

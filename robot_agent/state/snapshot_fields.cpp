@@ -114,6 +114,11 @@ KeptBehaviour sanitized(KeptBehaviour b) {
     b.goal.setZero();
     b.goal_known = b.goal_reached = b.goal_on_floor = false;
   }
+  // A module's state that does not fit is left out: the module starts without one.
+  std::erase_if(b.modes, [](const KeptMode& m) {
+    return !valid_name(m.mode) || m.bytes.size() > Snapshot::kModeBytes;
+  });
+  if (b.modes.size() > Snapshot::kModes) b.modes.resize(Snapshot::kModes);
   return b;
 }
 
@@ -150,6 +155,24 @@ KeptPlace sanitized(KeptPlace place) {
   const bool is_pose = odom.position.allFinite() && std::fabs(odom.orientation.norm() - 1.0) < 1e-6;
   if (!is_pose) place.newest.reset();
   return place;
+}
+
+void put(Packer& out, const KeptMode& mode) {
+  out.text(mode.mode).put(static_cast<std::uint16_t>(mode.bytes.size())).raw(mode.bytes);
+}
+
+KeptMode mode(Unpacker& in) {
+  KeptMode m{};
+  m.mode = in.text(kName);
+  m.bytes.resize(in.count(Snapshot::kModeBytes));
+  for (std::uint8_t& byte : m.bytes) byte = in.get<std::uint8_t>();
+  return m;
+}
+
+KeptMode sanitized(KeptMode m) {
+  if (!valid_name(m.mode)) m.mode = "hold";
+  m.bytes.resize(std::min(m.bytes.size(), Snapshot::kModeBytes));
+  return m;
 }
 
 void put(Packer& out, const KeptAnswers& from) {

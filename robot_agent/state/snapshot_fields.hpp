@@ -27,6 +27,10 @@ KeptAuthority sanitized(KeptAuthority authority);  ///< without its stops
 std::vector<Party> sanitized(std::vector<Party> stops);
 KeptBehaviour sanitized(KeptBehaviour behaviour);
 KeptPlace sanitized(KeptPlace place);
+
+void put(store::Packer& out, const KeptMode& mode);
+KeptMode mode(store::Unpacker& in);
+KeptMode sanitized(KeptMode mode);
 KeptAnswers sanitized(KeptAnswers from);
 std::uint8_t sanitized_battery(std::uint8_t level);
 

@@ -53,6 +53,7 @@ class BehaviourTest : public testing::Test {
                       {[this](Time) { return facts; },
                        [this](const Eigen::Vector2d&) { return goal_free; },
                        {},
+                       {},
                        [this](const Pose2& pose) -> Result<void> {
                          set.push_back(pose);
                          return {};

@@ -8,7 +8,7 @@ namespace adit::agent {
 namespace {
 
 const std::string kTree = source_folder() + "/config/trees/robot.xml";
-constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
+const Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
 
 std::unique_ptr<Decider> load() {
   auto decider = Decider::load(kTree);
@@ -19,7 +19,7 @@ std::unique_ptr<Decider> load() {
 TEST(Decider, RunsTheModeAskedForWhileItsConditionsHold) {
   const auto decider = load();
   Time now{};
-  for (const ModeRow& row : mode_table()) {
+  for (const ModeRow& row : ModeTable::shipped().rows()) {
     const Decision d = decider->decide(row.name, kAllGood, now += 50ms);
     EXPECT_EQ(d.mode->name, row.name);
     EXPECT_TRUE(d.runs);
@@ -45,7 +45,7 @@ TEST(Decider, FollowsTheTableWhenAConditionFails) {
     return f;
   };
   Time now{};
-  for (const ModeRow& row : mode_table())
+  for (const ModeRow& row : ModeTable::shipped().rows())
     for (const Condition& condition : row.conditions) {
       const Decision d = decider->decide(row.name, spoilt(condition), now += 50ms);
       if (condition.entry_only()) {

@@ -1,5 +1,5 @@
 // The mode `external`, and a second writer of the driver's velocities.
-#include "robot_agent/motion/external.hpp"
+#include "robot_agent/behaviour/modes/external.hpp"
 
 #include <gmock/gmock.h>
 
@@ -19,11 +19,11 @@ struct Recorder : NavigationInput {
   Motion last{};
 };
 
-class ExternalMode : public testing::Test {
+class External : public testing::Test {
  protected:
   Recorder nav{};
   Mux mux{nav};
-  External external{mux};
+  ExternalMode external{{.output = mux.connect("external", ExternalMode::kFresh)}};
   Time now{Duration{1h}};
 
   void step(Duration time) {
@@ -32,21 +32,21 @@ class ExternalMode : public testing::Test {
   }
 };
 
-TEST_F(ExternalMode, PassesWhileItsSourceIsEnabled) {
-  external.heard({0.4, 0, 0.1}, now);
+TEST_F(External, PassesWhileItsSourceIsEnabled) {
+  external.program({0.4, 0, 0.1}, now);
   step(50ms);
   EXPECT_EQ(nav.last, Motion{Stand{}}) << "nobody enabled it";
   mux.enable("external", now);
   step(100ms);
-  external.heard({0.4, 0, 0.1}, now);
+  external.program({0.4, 0, 0.1}, now);
   step(50ms);
   EXPECT_EQ(nav.last, (Motion{Velocity{{0.4, 0, 0.1}, true}}));
 }
 
-TEST_F(ExternalMode, SilenceIsZeroAfterHalfASecond) {
+TEST_F(External, SilenceIsZeroAfterHalfASecond) {
   mux.enable("external", now);
   step(100ms);
-  external.heard({0.4, 0, 0}, now);
+  external.program({0.4, 0, 0}, now);
   step(450ms);
   EXPECT_NE(nav.last, Motion{Stand{}});
   EXPECT_TRUE(external.fresh(now));
@@ -55,11 +55,11 @@ TEST_F(ExternalMode, SilenceIsZeroAfterHalfASecond) {
   EXPECT_FALSE(external.fresh(now));
 }
 
-TEST_F(ExternalMode, WhatIsNoNumberIsSilence) {
+TEST_F(External, WhatIsNoNumberIsSilence) {
   mux.enable("external", now);
   step(100ms);
-  external.heard({std::numeric_limits<double>::quiet_NaN(), 0, 0}, now);
-  external.heard({0, std::numeric_limits<double>::infinity(), 0}, now);
+  external.program({std::numeric_limits<double>::quiet_NaN(), 0, 0}, now);
+  external.program({0, std::numeric_limits<double>::infinity(), 0}, now);
   step(50ms);
   EXPECT_EQ(nav.last, Motion{Stand{}});
   EXPECT_FALSE(external.fresh(now));
@@ -73,11 +73,11 @@ TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
   const std::string subtree = "<SubTree ID=\"External\" name=\"external\"/>";
   const auto decider = Decider::load_text(xml.erase(xml.find(subtree), subtree.size()));
   ASSERT_TRUE(decider) << decider.error().text;
-  EXPECT_FALSE((*decider)->installed(*find_mode("external")));
-  EXPECT_TRUE((*decider)->installed(*find_mode("waypoint")));
+  EXPECT_FALSE((*decider)->installed(*ModeTable::shipped().find("external")));
+  EXPECT_TRUE((*decider)->installed(*ModeTable::shipped().find("waypoint")));
   const auto whole = Decider::load(source_folder() + "/config/trees/robot.xml");
   ASSERT_TRUE(whole) << whole.error().text;
-  EXPECT_TRUE((*whole)->installed(*find_mode("external")));
+  EXPECT_TRUE((*whole)->installed(*ModeTable::shipped().find("external")));
 }
 
 class Rival : public testing::Test {

@@ -3,7 +3,6 @@
 
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/behaviour/tree_check.hpp"
-#include "robot_agent/motion/external.hpp"
 #include "tests/rehearsal/hostile_trees.hpp"
 
 namespace adit::agent {
@@ -24,7 +23,7 @@ class HostileTree : public testing::TestWithParam<std::string> {
     for (const Time end = now + time; now < end;) {
       now += 50ms;
       if (streaming) (void)behaviour.stick(value, now);
-      if (program) external.heard({0.5, 0, 0}, now);
+      if (program) behaviour.program({0.5, 0, 0}, now);
       behaviour.tick(now);
       mux.step(now);
       moved = moved || nav.last != Motion{Stand{}};
@@ -45,18 +44,11 @@ class HostileTree : public testing::TestWithParam<std::string> {
 
   Recorder nav{};
   Mux mux{nav};
-  External external{mux};
   Facts facts{.driver_alive = true, .localised = true, .terrain_fresh = true};
   Behaviour behaviour{{},
                       Decider::load_unchecked(GetParam()).value(),
                       mux,
-                      {[this](Time at) {
-                         Facts f = facts;
-                         f.program_fresh = external.fresh(at);
-                         return f;
-                       },
-                       [](const Eigen::Vector2d&) { return true; },
-                       {}},
+                      {[this](Time) { return facts; }, [](const Eigen::Vector2d&) { return true; }, {}, {}},
                       {[](const Notice&) {}, [] {}}};
   Time now{Duration{1h}};
   bool streaming{}, program{};

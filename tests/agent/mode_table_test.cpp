@@ -7,7 +7,7 @@
 namespace adit::agent {
 namespace {
 
-constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
+const Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
 
 struct Row {
   const char* mode;
@@ -22,8 +22,8 @@ TEST_P(ModeConditions, EntryIsRefusedWithTheReason) {
   const Row& row = GetParam();
   Facts facts = kAllGood;
   row.spoil(facts);
-  EXPECT_EQ(name(entry_refusal(*find_mode(row.mode), facts)), name(row.reason));
-  EXPECT_EQ(entry_refusal(*find_mode(row.mode), kAllGood), Reason::none);
+  EXPECT_EQ(name(entry_refusal(*ModeTable::shipped().find(row.mode), facts)), name(row.reason));
+  EXPECT_EQ(entry_refusal(*ModeTable::shipped().find(row.mode), kAllGood), Reason::none);
 }
 
 void stop(Facts& f) { f.stopped = true; }
@@ -68,23 +68,24 @@ INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
                          });
 
 TEST(ModeTable, HoldIsFirstAndUnconditional) {
-  EXPECT_EQ(mode_table().front().name, "hold");
-  EXPECT_TRUE(mode_table().front().conditions.empty());
-  EXPECT_EQ(entry_refusal(mode_table().front(), Facts{}), Reason::none);
+  EXPECT_EQ(ModeTable::shipped().hold().name, "hold");
+  EXPECT_TRUE(ModeTable::shipped().hold().conditions.empty());
+  EXPECT_EQ(entry_refusal(ModeTable::shipped().hold(), Facts{}), Reason::none);
 }
 
 TEST(ModeTable, ModesOfTheDesignThatHaveNoModuleAreKnown) {
   for (const char* mode : {"explore", "convoy_follow", "get_out"}) {
-    EXPECT_EQ(find_mode(mode), nullptr);
+    EXPECT_EQ(ModeTable::shipped().find(mode), nullptr);
     EXPECT_TRUE(known_but_not_installed(mode));
   }
   EXPECT_FALSE(known_but_not_installed("fly"));
 }
 
 TEST(ModeTable, EveryConditionOfARowIsALeaf) {
-  for (const ModeRow& row : mode_table())
+  for (const ModeRow& row : ModeTable::shipped().rows())
     for (const Condition& c : row.conditions)
-      EXPECT_THAT(all_conditions(), testing::Contains(testing::Field(&Condition::leaf, c.leaf)));
+      EXPECT_THAT(ModeTable::shipped().conditions(),
+                  testing::Contains(testing::Field(&Condition::leaf, c.leaf)));
 }
 
 }  // namespace

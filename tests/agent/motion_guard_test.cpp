@@ -5,26 +5,27 @@
 namespace adit::agent {
 namespace {
 
-constexpr Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
+const Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
 
 class Guard : public testing::Test {
  protected:
-  const ModeRow& row(std::string_view name) const { return *find_mode(name); }
-  Decision runs(std::string_view name) const { return {find_mode(name), true, Reason::none}; }
-  Decision pauses(std::string_view name) const { return {find_mode(name), false, Reason::none}; }
+  const ModeRow& row(std::string_view name) const { return *table.find(name); }
+  Decision runs(std::string_view name) const { return {table.find(name), true, Reason::none}; }
+  Decision pauses(std::string_view name) const { return {table.find(name), false, Reason::none}; }
 
-  MotionGuard guard{};
+  const ModeTable& table = ModeTable::shipped();
+  MotionGuard guard{table};
 };
 
 TEST_F(Guard, PassesNothingThatWasNotAdmitted) {
-  for (const ModeRow& each : mode_table()) {
+  for (const ModeRow& each : table.rows()) {
     const Decision d = guard.judge({&each, true, Reason::none}, kAllGood);
     EXPECT_EQ(d.mode->name, "hold");
   }
 }
 
 TEST_F(Guard, AdmitsWhenEveryConditionHolds) {
-  for (const ModeRow& each : mode_table()) {
+  for (const ModeRow& each : table.rows()) {
     EXPECT_EQ(guard.admit(each, Commander::holder, kAllGood), Reason::none);
     EXPECT_EQ(&guard.admitted(), &each);
     EXPECT_TRUE(guard.judge(runs(each.name), kAllGood).runs);
@@ -60,7 +61,7 @@ TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
     stopped.stopped = true;
     return stopped;
   };
-  for (const ModeRow& each : mode_table())
+  for (const ModeRow& each : table.rows())
     for (const Condition& c : each.conditions) {
       if (c.entry_only()) continue;
       guard.hold();
@@ -97,7 +98,7 @@ TEST_F(Guard, AManualModeCannotPause) {
 }
 
 TEST_F(Guard, ManualModesEndWithTheirHolder) {
-  for (const ModeRow& each : mode_table()) {
+  for (const ModeRow& each : table.rows()) {
     ASSERT_EQ(guard.admit(each, Commander::holder, kAllGood), Reason::none);
     EXPECT_EQ(guard.holder_changed(), each.manual()) << each.name;
     EXPECT_EQ(guard.admitted().name, each.manual() ? "hold" : each.name);
@@ -105,7 +106,7 @@ TEST_F(Guard, ManualModesEndWithTheirHolder) {
 }
 
 TEST_F(Guard, ARestartReadmitsOnlyWhatPauses) {
-  for (const ModeRow& each : mode_table()) {
+  for (const ModeRow& each : table.rows()) {
     guard.readmit(each);
     EXPECT_EQ(guard.admitted().name, each.name == "waypoint" ? "waypoint" : "hold");
   }

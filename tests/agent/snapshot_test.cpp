@@ -80,6 +80,20 @@ TEST(Snapshot, gives_back_what_was_put) {
   EXPECT_EQ(read_back(Snapshot{}), Snapshot{});
 }
 
+TEST(Snapshot, gives_back_what_the_modes_stored) {
+  Snapshot s = largest();
+  for (const char* mode : {"a", "b", "c", "d", "e", "f", "g", "orbit"})
+    s.behaviour.modes.push_back({mode, store::Bytes(Snapshot::kModeBytes, 7)});
+  EXPECT_EQ(read_back(s), s);
+  ASSERT_TRUE(read_back(s).behaviour.of("orbit"));
+  EXPECT_FALSE(read_back(s).behaviour.of("hold"));
+  s.behaviour.modes.push_back({"one_too_many", {1}});
+  s.behaviour.modes.front().bytes.resize(Snapshot::kModeBytes + 1);
+  const Snapshot back = read_back(s);
+  EXPECT_EQ(back.behaviour.modes.size(), Snapshot::kModes);
+  EXPECT_FALSE(back.behaviour.of("a")) << "too long: the module starts without it";
+}
+
 TEST(Snapshot, is_bounded) {
   EXPECT_LE(encode(largest()).size(), kSnapshotFormat.most);
   Snapshot beyond = largest();

@@ -68,7 +68,7 @@ TEST_P(HostileTreeRun, BreaksNoRule) {
   params.workers = 1;
   params.make_agent = *make_agent_factory({}, [](agent::AgentParams& agent) {
     agent.tree = GetParam();
-    agent.load_tree = agent::Decider::load_unchecked;
+    agent.load_tree = [](const std::string& file) { return agent::Decider::load_unchecked(file); };
   });
   for (params.seed = 1; params.seed <= seeds(); ++params.seed) {
     const auto outcome = rehearse(*scenario, world, params);

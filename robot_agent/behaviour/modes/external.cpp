@@ -1,10 +1,10 @@
-#include "robot_agent/motion/external.hpp"
+#include "robot_agent/behaviour/modes/external.hpp"
 
 #include <cmath>
 
 namespace adit::agent {
 
-void External::heard(const Twist2& velocity, Time now) {
+void ExternalMode::program(const Twist2& velocity, Time now) {
   if (!std::isfinite(velocity.vx) || !std::isfinite(velocity.vy) || !std::isfinite(velocity.wz)) return;
   last_ = now;
   output_.write(Velocity{velocity, true}, now);

@@ -1,0 +1,91 @@
+#include "robot_agent/behaviour/modes/waypoint.hpp"
+
+#include <cmath>
+
+namespace adit::agent {
+
+void WaypointMode::note(Facts& facts, Time) const {
+  facts.goal_known = goal_.known;
+  facts.goal_free = !goal_.known || context_.goal_free(goal_.place.head<2>());
+}
+
+void WaypointMode::enter(Time now) {
+  free_since_ = now;
+  blocked_told_ = false;
+}
+
+void WaypointMode::leave(Time) { unreachable_told_ = blocked_told_ = false; }
+
+void WaypointMode::clear() { goal_ = {.id = goal_.id}; }
+
+void WaypointMode::tick(bool passes, Time now) {
+  if (!goal_.known) return;
+  if (navigated_.arrived && !goal_.reached && passes) {
+    goal_.reached = true;
+    context_.tell_holder({{}, Severity::info, "arrived", Reason::none, "goal reached"});
+  }
+  if (goal_.reached)
+    context_.output.write(Stand{}, now);
+  else
+    context_.output.write(
+        GoTo{{goal_.place.x(), goal_.place.y(), goal_.on_floor ? std::nan("") : goal_.place.z()}}, now);
+  watch(progress(passes).state, now);
+}
+
+void WaypointMode::watch(GoalState state, Time now) {
+  const bool unreachable = state == GoalState::blocked && navigated_.unreachable;
+  if (unreachable && !unreachable_told_)
+    context_.tell_holder(
+        {{}, Severity::warning, "unreachable", Reason::goal_unreachable, "no way leads to the goal"});
+  unreachable_told_ = unreachable;
+  if (state != GoalState::blocked || unreachable) {
+    free_since_ = now;
+    blocked_told_ = false;
+  } else if (!blocked_told_ && now - free_since_ >= kBlockedAfter) {
+    blocked_told_ = true;
+    context_.tell_holder(
+        {{}, Severity::warning, "blocked", Reason::blocked, "every path to the goal is blocked"});
+  }
+}
+
+Result<void> WaypointMode::check_goal(const Eigen::Vector3d& goal, Facts& facts) const {
+  // z is NaN where none was given.
+  if (!goal.head<2>().allFinite() || std::isinf(goal.z()) || goal.head<2>().norm() > kFarthestPlace)
+    return {Reason::out_of_range, "goto: the goal is no place within 10 km"};
+  facts.goal_known = true;
+  facts.goal_free = context_.goal_free(goal.head<2>());
+  return {};
+}
+
+void WaypointMode::set_goal(const Eigen::Vector3d& goal) {
+  const bool given = !std::isnan(goal.z()), on_floor = !given && !context_.height;
+  const double height = given ? goal.z() : on_floor ? 0.0 : context_.height();
+  goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), height}, on_floor};
+  navigated_ = {};
+}
+
+ModeProgress WaypointMode::progress(bool passes) const {
+  ModeProgress p{.state = GoalState::none, .goal_id = goal_.id, .goal = goal_.place};
+  if (!goal_.known) return p;
+  p.state = goal_.reached        ? GoalState::reached
+            : !passes            ? GoalState::kept
+            : navigated_.blocked ? GoalState::blocked
+                                 : GoalState::active;
+  if (p.state == GoalState::blocked)
+    p.reason = navigated_.unreachable ? Reason::goal_unreachable : Reason::blocked;
+  return p;
+}
+
+void WaypointMode::store(KeptBehaviour& kept) const {
+  kept.goal_known = goal_.known;
+  kept.goal_reached = goal_.reached;
+  kept.goal_id = goal_.id;
+  kept.goal = goal_.place;
+  kept.goal_on_floor = goal_.on_floor;
+}
+
+void WaypointMode::restore(const KeptBehaviour& kept) {
+  goal_ = {kept.goal_known, kept.goal_reached, kept.goal_id, kept.goal, kept.goal_on_floor};
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,46 @@
+#pragma once
+#include "robot_agent/behaviour/mode_module.hpp"
+
+namespace adit::agent {
+
+/// The mode `waypoint`: navigation drives to the goal, and stands there.
+class WaypointMode : public ModeModule {
+ public:
+  static constexpr Duration kBlockedAfter = 5s;  ///< Until the holder is notified that every path is blocked.
+
+  explicit WaypointMode(ModeContext context) : context_(std::move(context)) {}
+  static std::unique_ptr<ModeModule> make(const ModeContext& context) {
+    return std::make_unique<WaypointMode>(context);
+  }
+
+  void note(Facts& facts, Time now) const override;
+  void enter(Time now) override;
+  void leave(Time now) override;
+  void clear() override;
+  void tick(bool passes, Time now) override;
+  Result<void> check_goal(const Eigen::Vector3d& goal, Facts& facts) const override;
+  void set_goal(const Eigen::Vector3d& goal) override;
+  void navigated(const Progress& progress) override { navigated_ = progress; }
+  ModeProgress progress(bool passes) const override;
+  void store(KeptBehaviour& kept) const override;
+  void restore(const KeptBehaviour& kept) override;
+
+ private:
+  void watch(GoalState state, Time now);
+
+  struct Goal {
+    bool known{};
+    bool reached{};
+    std::uint32_t id{};
+    Eigen::Vector3d place{Eigen::Vector3d::Zero()};
+    bool on_floor{};  ///< It was given no height.
+  };
+
+  ModeContext context_;
+  Goal goal_{};
+  Progress navigated_{};
+  Time free_since_{};
+  bool blocked_told_{}, unreachable_told_{};
+};
+
+}  // namespace adit::agent

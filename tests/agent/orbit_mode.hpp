@@ -1,0 +1,109 @@
+#pragma once
+#include <cmath>
+#include <numbers>
+
+#include "core/store/pack.hpp"
+#include "robot_agent/behaviour/mode_module.hpp"
+#include "robot_agent/behaviour/mode_table.hpp"
+
+namespace adit::agent {
+
+/// The mode `orbit`, the example of docs/adding_a_mode.md: drives around the point that lay 3 m to the left
+/// of the robot when the mode was entered, counter-clockwise, through eight places on the circle.
+class OrbitMode : public ModeModule {
+ public:
+  static constexpr double kRadius = 3.0;  ///< m
+  static constexpr double kStep = std::numbers::pi / 4;
+  static constexpr double kNear = 1.0;  ///< The next place follows when the robot is nearer than this, m.
+
+  explicit OrbitMode(const ModeContext& context) : context_(context) {}
+  static std::unique_ptr<ModeModule> make(const ModeContext& context) {
+    return std::make_unique<OrbitMode>(context);
+  }
+  static ModeRow row();
+
+  void note(Facts& facts, Time) const override {
+    const auto centre = centre_ ? centre_ : centre_here();
+    if (centre && context_.goal_free(*centre)) facts.also.push_back("orbit_centre_free");
+  }
+  void enter(Time) override {
+    if (!centre_) centre_ = centre_here();
+    target_.reset();
+  }
+  void clear() override { centre_.reset(); }
+
+  void tick(bool, Time now) override {
+    const auto pose = context_.pose();
+    if (!pose || !centre_) return;
+    const Eigen::Vector2d here(pose->x, pose->y);
+    if (!target_ || (here - *target_).norm() < kNear) {
+      const Eigen::Vector2d from_centre = (target_ ? *target_ : here) - *centre_;
+      const double angle = std::atan2(from_centre.y(), from_centre.x()) + kStep;
+      target_ = *centre_ + kRadius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    }
+    context_.output.write(GoTo{{target_->x(), target_->y(), std::nan("")}}, now);
+  }
+
+  ModeProgress progress(bool passes) const override {
+    if (!centre_) return {};
+    return {.state = passes ? GoalState::active : GoalState::kept,
+            .goal_id = 1,
+            .goal = {centre_->x(), centre_->y(), 0.0}};
+  }
+
+  void store(KeptBehaviour& kept) const override {
+    if (centre_) kept.modes.push_back({"orbit", store::Packer{}.put(centre_->x()).put(centre_->y()).bytes()});
+  }
+  void restore(const KeptBehaviour& kept) override {
+    const store::Bytes* bytes = kept.of("orbit");
+    if (!bytes) return;
+    store::Unpacker in(*bytes);
+    const double x = in.number(), y = in.number();
+    if (in.done() && std::isfinite(x) && std::isfinite(y)) centre_ = {x, y};
+  }
+
+ private:
+  std::optional<Eigen::Vector2d> centre_here() const {
+    const auto pose = context_.pose();
+    if (!pose) return std::nullopt;
+    return *pose * Eigen::Vector2d(0.0, kRadius);
+  }
+
+  ModeContext context_;
+  std::optional<Eigen::Vector2d> centre_{}, target_{};  // map frame, m
+};
+
+inline ModeRow OrbitMode::row() {
+  using namespace conditions;
+  static constexpr Condition centre_free{"OrbitCentreFree", Reason::goal_unreachable,
+                                         [](const Facts& f) { return f.has("orbit_centre_free"); },
+                                         Scope::entry};
+  return {.name = "orbit",
+          .commanded_by = {.holder = true},
+          .goal = GoalOnLeaving::cleared,
+          .on_failure = OnFailure::pauses,
+          .conditions = {not_stopped, driver_alive, localised, terrain_fresh, centre_free},
+          .make = OrbitMode::make,
+          .source_age = 500ms};
+}
+
+/// Goes into config/trees/robot.xml, with `<SubTree ID="Orbit"/>` above `<Run mode="hold"/>`.
+inline constexpr const char* kOrbitSubtree = R"(
+  <BehaviorTree ID="Orbit">
+    <ReactiveSequence>
+      <Requested mode="orbit"/>
+      <NotStopped/>
+      <ReactiveFallback>
+        <ReactiveSequence>
+          <DriverAlive/>
+          <Localised/>
+          <TerrainFresh/>
+          <Run mode="orbit"/>
+        </ReactiveSequence>
+        <Pause mode="orbit"/>
+      </ReactiveFallback>
+    </ReactiveSequence>
+  </BehaviorTree>
+)";
+
+}  // namespace adit::agent

@@ -1,0 +1,125 @@
+// A mode that costs one module, one subtree and one row: `orbit`, the example of docs/adding_a_mode.md.
+#include "tests/agent/orbit_mode.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "core/store/memory_disk.hpp"
+#include "robot_agent/behaviour/decider.hpp"
+#include "tests/agent/agent_bench.hpp"
+
+namespace adit::agent {
+namespace {
+
+using namespace radio;  // the command kinds
+using testing::Contains;
+
+std::shared_ptr<const ModeTable> table() {
+  std::vector<ModeRow> rows = ModeTable::shipped().rows();
+  rows.push_back(OrbitMode::row());
+  return std::make_shared<const ModeTable>(std::move(rows));
+}
+
+/// The shipped tree and one subtree.
+std::string write_tree() {
+  std::ifstream shipped(source_folder() + "/config/trees/robot.xml");
+  std::stringstream text;
+  text << shipped.rdbuf();
+  std::string xml = text.str();
+  xml.insert(xml.find("<Run name=\"hold\""), "<SubTree ID=\"Orbit\"/>\n      ");
+  xml.insert(xml.find("  <TreeNodesModel>"), kOrbitSubtree);
+  const std::string file = testing::TempDir() + "/adit_orbit_" +
+                           testing::UnitTest::GetInstance()->current_test_info()->name() + ".xml";
+  std::ofstream(file) << xml;
+  return file;
+}
+
+class Orbit : public testing::Test {
+ protected:
+  Orbit() {
+    op.emplace(&bench.join("op1"));
+    bench.run(2s);
+  }
+  ~Orbit() override { std::filesystem::remove(tree); }
+
+  AgentBench::Operator& station() { return **op; }
+  double radius() const { return (Eigen::Vector2d(bench.pose.x, bench.pose.y) - kCentre).norm(); }
+  double angle() const { return std::atan2(bench.pose.y - kCentre.y(), bench.pose.x - kCentre.x()); }
+  /// The angle driven around the centre, rad; meanwhile the robot stays on the circle.
+  double drive(Duration time) {
+    double driven = 0.0;
+    for (Duration t{}; t < time; t += 500ms) {
+      const double before = angle();
+      bench.run(500ms);
+      driven += wrap_angle(angle() - before);
+      EXPECT_NEAR(radius(), OrbitMode::kRadius, 1.0);
+    }
+    return driven;
+  }
+
+  static inline const Eigen::Vector2d kCentre{0.0, OrbitMode::kRadius};  // the robot starts at the origin
+  const std::string tree = write_tree();
+  std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
+  AgentBench bench{[this] {
+                     AgentParams params{};
+                     params.modes = table();
+                     params.disk = disk;
+                     return params;
+                   }(),
+                   1, tree};
+  std::optional<AgentBench::Operator*> op{};
+};
+
+TEST_F(Orbit, IsAModeLikeAnyOther) {
+  EXPECT_THAT(station().behaviour.modes(),
+              Contains(testing::Property(&radio::ModeOption::mode, testing::Eq("orbit"))));
+  EXPECT_THAT(station().capabilities.modes(), Contains("orbit"));
+  ASSERT_EQ(bench.ask(station(), CMD_TAKE), Reason::none);
+  bench.obstacles.push_back({0.0f, 3.0f, 0.5f});
+  bench.run(1s);
+  EXPECT_EQ(bench.ask(station(), CMD_MODE, "orbit"), Reason::goal_unreachable) << "its own condition";
+}
+
+TEST_F(Orbit, DrivesAroundAPoint) {
+  ASSERT_EQ(bench.ask(station(), CMD_TAKE), Reason::none);
+  ASSERT_EQ(bench.ask(station(), CMD_MODE, "orbit"), Reason::none);
+  EXPECT_GT(drive(60s), 2 * std::numbers::pi);
+  ASSERT_EQ(bench.ask(station(), CMD_STOP), Reason::none);
+  bench.run(1s);
+  EXPECT_EQ(drive(2s), 0.0) << "a stop is enforced for every mode";
+  ASSERT_EQ(bench.ask(station(), CMD_RESET), Reason::none);
+  EXPECT_EQ(drive(2s), 0.0);
+  ASSERT_EQ(bench.ask(station(), CMD_MODE, "orbit"), Reason::none);
+  EXPECT_GT(drive(20s), 1.0) << "around the same point";
+}
+
+TEST_F(Orbit, GoesOnAfterARestart) {
+  ASSERT_EQ(bench.ask(station(), CMD_TAKE), Reason::none);
+  ASSERT_EQ(bench.ask(station(), CMD_MODE, "orbit"), Reason::none);
+  EXPECT_GT(drive(20s), 1.0);
+  bench.stop_agent();
+  bench.command = {};
+  bench.run(500ms);
+  bench.start_agent();
+  bench.run(5s);
+  EXPECT_GT(drive(20s), 1.0) << "around the same point";
+}
+
+TEST_F(Orbit, ATreeThatSkipsItsConditionsIsRefused) {
+  std::ifstream file(tree);
+  std::stringstream text;
+  text << file.rdbuf();
+  std::string xml = text.str();
+  xml.erase(xml.rfind("<TerrainFresh/>", xml.find("<Run mode=\"orbit\"/>")), 15);
+  const auto modes = table();
+  const auto decider = Decider::load_text(xml, *modes);
+  ASSERT_FALSE(decider);
+  EXPECT_THAT(decider.error().text,
+              testing::HasSubstr("Run mode=\"orbit\" lacks the condition TerrainFresh"));
+}
+
+}  // namespace
+}  // namespace adit::agent
