@@ -2,13 +2,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "basestation/command/grammar.hpp"
-#include "basestation/command/words.hpp"
 #include "basestation/findings/report.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
 #include "basestation/station_impl.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station {
 namespace {
@@ -16,101 +15,42 @@ namespace {
 constexpr std::size_t max_waiting = 64;
 constexpr std::size_t max_flows = 64;
 
-bool is_query(Verb verb) {
-  return verb == Verb::list || verb == Verb::status || verb == Verb::net || verb == Verb::health ||
-         verb == Verb::findings || verb == Verb::actions;
-}
-
-Kind kind_of(Verb verb) {
-  switch (verb) {
-    case Verb::take:
-      return Kind::take;
-    case Verb::release:
-      return Kind::release;
-    case Verb::lock:
-      return Kind::lock;
-    case Verb::unlock:
-      return Kind::unlock;
-    case Verb::grant:
-      return Kind::grant;
-    case Verb::mode:
-      return Kind::mode;
-    case Verb::go_to:
-      return Kind::go_to;
-    case Verb::stop:
-      return Kind::stop;
-    case Verb::reset:
-      return Kind::reset;
-    case Verb::restart:
-      return Kind::restart;
-    case Verb::policy:
-      return Kind::policy;
-    case Verb::plan:
-      return Kind::plan;
-    default:
-      return Kind::query;
-  }
-}
-
-/// What an accepted command reads like.
-std::string done_text(const Request& request) {
-  switch (request.verb) {
-    case Verb::take:
-      return "yours";
-    case Verb::release:
-      return "released";
-    case Verb::lock:
-      return "locked";
-    case Verb::unlock:
-      return "unlocked";
-    case Verb::grant:
-      return "granted to " + request.word;
-    case Verb::mode:
-      return "mode " + request.word;
-    case Verb::drive:
-      return "drove for " + fixed(request.duration, 1) + " s";
-    case Verb::go_to:
-      return (request.wait ? "arrived at " : "on its way to ") + fixed(request.numbers[0], 2) + " " +
-             fixed(request.numbers[1], 2);
-    case Verb::plan:
-      return "a way";
-    case Verb::teleop:
-      return "let go";
-    case Verb::stop:
-      return "stopped";
-    case Verb::reset:
-      return "reset";
-    case Verb::restart:
-      return request.word + " is made anew";
-    case Verb::policy:
-      return request.word + " is restarted " + (request.automatic ? "by the robot" : "when you say so");
-    default:
-      return "done";
-  }
-}
+using command::Request;
+using command::Runs;
+using command::verb;
 
 int exit_of(const Answer& answer) {
   if (answer.accepted) return 0;
   return answer.reason == Reason::no_answer ? 3 : 1;
 }
 
-nlohmann::json json_of(Verb verb, int exit_code) {
-  return {{"command", info(verb).name}, {"exit", exit_code}, {"ok", exit_code == 0}};
+nlohmann::json json_of(const Request& request, int exit_code) {
+  return {{"command", request.info->name}, {"exit", exit_code}, {"ok", exit_code == 0}};
 }
 
 std::string unknown_text(const Fleet& fleet) {
-  return "no robot of that name has been heard; known robots: " + joined(fleet.robot_names(), "none");
+  return "no robot of that name has been heard; known robots: " +
+         command::joined(fleet.robot_names(), "none");
 }
 
 Outcome unknown_robot(const Request& request, const Fleet& fleet, const std::string& robot) {
   Outcome outcome{
-      .exit_code = 1, .error = robot + ": " + unknown_text(fleet) + "\n", .json = json_of(request.verb, 1)};
+      .exit_code = 1, .error = robot + ": " + unknown_text(fleet) + "\n", .json = json_of(request, 1)};
   outcome.json["reason"] = name(Reason::unknown_robot);
   outcome.json["error"] = outcome.error;
   return outcome;
 }
 
-bool manual_mode(const std::string& mode) { return mode == "manual" || mode == "smart_joystick"; }
+/// How a command with a joystick stream is driven; nothing for the others.
+std::optional<SteerParams> steering(const Request& request) {
+  const std::string mode = request.word("MODE");
+  if (request.verb == verb("mode") && (mode == "manual" || mode == "smart_joystick"))
+    return SteerParams{.purpose = SteerParams::Purpose::enter, .mode = mode};
+  if (request.verb == verb("teleop")) return SteerParams{.purpose = SteerParams::Purpose::teleop};
+  if (request.verb != verb("drive")) return std::nullopt;
+  return SteerParams{.velocity = {request.number("VX"), request.number("VY"), request.number("WZ")},
+                     .duration = from_seconds(request.number("--for"))};
+}
 
 }  // namespace
 
@@ -129,7 +69,7 @@ bool Station::Impl::complete() const {
 
 bool Station::Impl::must_wait(const Request& request) const {
   if (!known(request) && fresh(params_.discovery_grace)) return true;
-  if (!is_query(request.verb)) return false;
+  if (request.info->runs != Runs::query) return false;
   // The first answers: what is there at once is half of it, and nobody there cannot be told from late.
   return fresh(params_.settle) || (fresh(2 * params_.settle) && !complete());
 }
@@ -137,7 +77,7 @@ bool Station::Impl::must_wait(const Request& request) const {
 std::uint64_t Station::Impl::execute(const Request& request, Done done) {
   const std::uint64_t handle = next_handle_++;
   // What was typed later does not pass what waits for the same robot.
-  const bool behind = request.verb != Verb::stop &&
+  const bool behind = request.verb != verb("stop") &&
                       std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
                         return std::find_first_of(earlier.request.robots.begin(),
                                                   earlier.request.robots.end(), request.robots.begin(),
@@ -159,29 +99,29 @@ std::uint64_t Station::Impl::refuse(const Error& error, const Done& done) {
 }
 
 void Station::Impl::run(std::uint64_t handle, const Request& request, Done done) {
-  if (is_query(request.verb)) return answer_query(request, done);
-  if (request.verb == Verb::up) {
+  if (request.info->runs == Runs::query) return answer_query(request, done);
+  if (request.verb == verb("up")) {
     closed_ = false;
     announce();
-    return done({.text = "station " + params_.name + " is up\n", .json = json_of(request.verb, 0)});
+    return done({.text = "station " + params_.name + " is up\n", .json = json_of(request, 0)});
   }
   if (closed_) {
-    note({.command = std::string(info(request.verb).name),
+    note({.command = std::string(request.info->name),
           .reason = Reason::no_station,
           .text = std::string(describe(Reason::no_station))});
     Outcome outcome{.exit_code = 1, .error = std::string(describe(Reason::no_station)) + "\n"};
-    outcome.json = json_of(request.verb, 1);
+    outcome.json = json_of(request, 1);
     outcome.json["reason"] = name(Reason::no_station);
     return done(outcome);
   }
-  if (request.verb == Verb::down) return down(std::move(done));
-  if (request.verb == Verb::stop && request.all) return stop_all(request, std::move(done));
+  if (request.verb == verb("down")) return down(std::move(done));
+  if (request.verb == verb("stop") && request.all) return stop_all(request, std::move(done));
   command_robots(handle, request, std::move(done));
 }
 
 void Station::Impl::answer_query(const Request& request, const Done& done) {
-  if (request.verb == Verb::findings) {  // what is here stays here when its robot is gone
-    Outcome outcome{.json = json_of(request.verb, 0)};
+  if (request.verb == verb("findings")) {  // what is here stays here when its robot is gone
+    Outcome outcome{.json = json_of(request, 0)};
     outcome.text = findings_text(desk_, fleet_, request.robots);
     outcome.json["findings"] = findings_json(desk_, fleet_, request.robots);
     return done(outcome);
@@ -192,14 +132,14 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
     if (!selection.back()) return done(unknown_robot(request, fleet_, robot));
   }
   const Time at = strand_.now();
-  Outcome outcome{.json = json_of(request.verb, 0)};
-  if (request.verb == Verb::list) {
+  Outcome outcome{.json = json_of(request, 0)};
+  if (request.verb == verb("list")) {
     outcome.text = list_text(fleet_, at);
     outcome.json.update(list_json(fleet_, at));
-  } else if (request.verb == Verb::status && !selection.empty()) {
+  } else if (request.verb == verb("status") && !selection.empty()) {
     outcome.text = status_text(fleet_, *selection.front(), at);
     outcome.json.update(robot_json(fleet_, *selection.front(), at));
-  } else if (request.verb == Verb::status) {
+  } else if (request.verb == verb("status")) {
     const Counts& c = sender_.counts();
     outcome.text = "station " + params_.name + " on " + params_.link + ", up " +
                    fixed(seconds(at - started_), 0) + " s; commands " + std::to_string(c.sent) + " sent, " +
@@ -217,10 +157,10 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
     nlohmann::json notices = nlohmann::json::array();
     for (const Notice& notice : fleet_.notices()) notices.push_back(notice_json(notice, at));
     outcome.json["notifications"] = notices;
-  } else if (request.verb == Verb::net) {
+  } else if (request.verb == verb("net")) {
     outcome.text = net_text(fleet_, at, params_.link, params_.bandwidth);
     outcome.json.update(net_json(fleet_, at));
-  } else if (request.verb == Verb::actions) {
+  } else if (request.verb == verb("actions")) {
     const std::vector<Action> rows = actions(fleet_, selection);
     outcome.text = actions_text(rows);
     outcome.json["actions"] = actions_json(rows);
@@ -252,28 +192,14 @@ void Station::Impl::command_robot(std::uint64_t handle, const std::string& robot
   const auto ended = [this, gather, index](const Answer& answer) { gathered(gather, index, answer); };
   if (!fleet_.robot(robot))
     return ended({.robot = robot, .reason = Reason::unknown_robot, .text = unknown_text(fleet_)});
-  SteerParams steer{.velocity = request.numbers, .duration = from_seconds(request.duration)};
-  if (request.verb == Verb::drive)
-    return add_flow(handle, std::make_shared<Steer>(parts(), robot, steer, ended));
-  if (request.verb == Verb::teleop) {
-    steer.purpose = SteerParams::Purpose::teleop;
-    return add_flow(handle, std::make_shared<Steer>(parts(), robot, steer, ended));
-  }
-  if (request.verb == Verb::mode && manual_mode(request.word)) {
-    steer.purpose = SteerParams::Purpose::enter;
-    steer.mode = request.word;
-    return add_flow(handle, std::make_shared<Steer>(parts(), robot, steer, ended));
-  }
-  if (request.verb == Verb::stop) end_flows(robot, Reason::stopped);
-  if (request.verb == Verb::mode || request.verb == Verb::go_to) end_flows(robot, Reason::cancelled);
-  if (request.verb == Verb::go_to && request.wait)
-    return add_flow(handle, std::make_shared<Arrival>(parts(), robot, request.numbers, ended));
-  sender_.send({.robot = robot,
-                .kind = kind_of(request.verb),
-                .text = request.word,
-                .position = request.numbers,
-                .flag = request.override_stop || request.automatic},
-               ended);
+  if (const auto steer = steering(request))
+    return add_flow(handle, std::make_shared<Steer>(parts(), robot, *steer, ended));
+  if (request.verb == verb("stop")) end_flows(robot, Reason::stopped);
+  if (!request.info->conditions.mode.empty()) end_flows(robot, Reason::cancelled);  // it asks for a mode
+  Order order{.robot = robot, .request = request};
+  if (request.verb == verb("goto") && request.has("--wait"))
+    return add_flow(handle, std::make_shared<Arrival>(parts(), std::move(order), ended));
+  sender_.send(std::move(order), ended);
 }
 
 void Station::Impl::stop_all(const Request& request, Done done) {
@@ -302,7 +228,7 @@ void Station::Impl::finish_stop_all() {
 
 void Station::Impl::gathered(const std::shared_ptr<Gather>& gather, std::size_t index, const Answer& answer) {
   gather->answers[index] = answer;
-  gather->answers[index].command = info(gather->request.verb).name;
+  gather->answers[index].command = gather->request.info->name;
   note(gather->answers[index]);
   if (--gather->missing > 0) return;
   const bool growing = std::any_of(stop_alls_.begin(), stop_alls_.end(),
@@ -318,7 +244,7 @@ void Station::Impl::finish(Gather& gather) {
     const int code = exit_of(answer);
     refused = refused || code == 1;
     silent = silent || code == 3;
-    (code == 0 ? outcome.text : outcome.error) += answer_text(answer, done_text(gather.request));
+    (code == 0 ? outcome.text : outcome.error) += answer_text(answer, command::done_text(gather.request));
     results.push_back(answer_json(answer));
   }
   if (gather.answers.empty()) {
@@ -326,18 +252,17 @@ void Station::Impl::finish(Gather& gather) {
     outcome.error = "no robot has been heard; nothing was stopped\n";
   }
   outcome.exit_code = refused ? 1 : silent ? 3 : 0;
-  outcome.json = json_of(gather.request.verb, outcome.exit_code);
+  outcome.json = json_of(gather.request, outcome.exit_code);
   outcome.json["results"] = results;
   if (const Done done = std::exchange(gather.done, nullptr)) done(outcome);
 }
 
 void Station::Impl::down(Done done) {
-  Request request{.verb = Verb::down};
+  Request request(verb("release"));
   for (const auto& [robot_name, robot] : fleet_.robots())
     if (fleet_.held_by_me(robot)) request.robots.push_back(robot_name);
   auto gather = std::make_shared<Gather>();
   gather->request = request;
-  gather->request.verb = Verb::release;
   gather->answers.resize(request.robots.size());
   gather->missing = request.robots.size();
   gather->done = [this, done = std::move(done)](const Outcome& released) {
@@ -346,7 +271,7 @@ void Station::Impl::down(Done done) {
     Outcome outcome = released;
     outcome.exit_code = 0;
     outcome.text += "station " + params_.name + " is down\n";
-    outcome.json = json_of(Verb::down, 0);
+    outcome.json = json_of(Request(verb("down")), 0);
     outcome.json["results"] = released.json["results"];
     done(outcome);
     if (owner_.on_down) owner_.on_down();
@@ -391,14 +316,14 @@ void Station::Impl::cancel(std::uint64_t handle) {
     if (it->handle != handle) continue;
     const Waiting dropped = std::move(*it);
     waiting_.erase(it);
-    Outcome outcome{.exit_code = 1, .error = "cancelled\n", .json = json_of(dropped.request.verb, 1)};
+    Outcome outcome{.exit_code = 1, .error = "cancelled\n", .json = json_of(dropped.request, 1)};
     outcome.json["reason"] = name(Reason::cancelled);
     return dropped.done(outcome);
   }
 }
 
 std::uint64_t Station::Impl::teleop(const std::string& robot, Done done) {
-  return execute(Request{.verb = Verb::teleop, .robots = {robot}}, std::move(done));
+  return execute(Request(verb("teleop"), {robot}), std::move(done));
 }
 
 void Station::Impl::stick(std::uint64_t handle, const std::array<double, 3>& velocity) {

@@ -7,11 +7,11 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
-#include "basestation/command/grammar.hpp"
-#include "basestation/command/parse.hpp"
-#include "basestation/command/words.hpp"
 #include "basestation/findings/convert.hpp"
 #include "basestation/station_impl.hpp"
+#include "core/command/parse.hpp"
+#include "core/command/vocabulary.hpp"
+#include "core/command/words.hpp"
 #include "core/wire/typed.hpp"
 
 namespace adit::station {
@@ -59,8 +59,8 @@ Result<void> Station::Impl::read(const wire::Topic<T>& topic) {
 }
 
 Result<void> Station::Impl::start() {
-  if (!valid_name(params_.name))
-    return {Reason::bad_argument, "'" + clean(params_.name, 40) +
+  if (!command::valid_name(params_.name))
+    return {Reason::bad_argument, "'" + command::clean(params_.name, 40) +
                                       "' cannot be an operator's name "
                                       "(1 to 32 of A-Z a-z 0-9 _ -); choose another --name"};
   fleet_.on_notice = [this](const Notice& notice) {
@@ -149,11 +149,12 @@ FindingDesk::Outputs Station::Impl::desk_outputs() {
         fleet_.say({.at = strand_.now(),
                     .robot = f.key.robot,
                     .code = "found",
-                    .text = f.key.robot + " found " + clean(f.kind, findings::Finding::kKind) +
-                            (f.text.empty() ? "" : ": " + clean(f.text, findings::Finding::kText))});
+                    .text = f.key.robot + " found " + command::clean(f.kind, findings::Finding::kKind) +
+                            (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText))});
       },
       [this](const std::string& code, const std::string& text) {
-        fleet_.say({.at = strand_.now(), .level = Level::warning, .code = code, .text = clean(text, 240)});
+        fleet_.say(
+            {.at = strand_.now(), .level = Level::warning, .code = code, .text = command::clean(text, 240)});
       }};
 }
 
@@ -216,7 +217,7 @@ void Station::Impl::heard_acknowledgement(const radio::Acknowledgement& sample,
   fleet_.learn_authority(sample.robot(), sample.holder(), {sample.epoch().start(), sample.epoch().counter()});
   if (sample.seq() != 0) return sender_.hear(sample, info);
   const auto reason = static_cast<Reason>(sample.reason());
-  const auto text = clean(sample.text(), 240);
+  const auto text = command::clean(sample.text(), 240);
   for (const auto& [handle, flow] : std::multimap(flows_))
     if (flow->robot() == sample.robot()) flow->stream_refused(reason, text);
 }
@@ -228,15 +229,15 @@ Station::~Station() = default;
 Result<void> Station::start() { return impl_->start(); }
 
 std::uint64_t Station::execute(const std::string& line, Done done) {
-  auto request = parse(line);
+  auto request = command::parse(line);
   if (!request) return impl_->refuse(request.error(), done);
-  if (request->verb == Verb::watch || request->verb == Verb::run || request->verb == Verb::teleop)
+  if (request->info->runs == command::Runs::terminal)
     return impl_->refuse(
-        {Reason::not_supported, std::string(info(request->verb).name) + " works in a terminal only"}, done);
+        {Reason::not_supported, std::string(request->info->name) + " works in a terminal only"}, done);
   return impl_->execute(*request, std::move(done));
 }
 
-std::uint64_t Station::execute(const Request& request, Done done) {
+std::uint64_t Station::execute(const command::Request& request, Done done) {
   return impl_->execute(request, std::move(done));
 }
 void Station::cancel(std::uint64_t handle) { impl_->cancel(handle); }

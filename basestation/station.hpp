@@ -6,10 +6,10 @@
 #include <optional>
 #include <string>
 
-#include "basestation/command/request.hpp"
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/outcome.hpp"
 #include "basestation/send/answer.hpp"
+#include "core/command/request.hpp"
 #include "core/exec/executor.hpp"
 #include "core/store/disk.hpp"
 #include "core/wire/wire.hpp"
@@ -50,7 +50,7 @@ class Station {
   /// Runs one command line; `done` is called once, at once or later. Returns a handle for cancel(). The lines
   /// that need a terminal or files (watch, teleop, run) are refused here with wrong usage.
   std::uint64_t execute(const std::string& line, Done done);
-  std::uint64_t execute(const Request& request, Done done);
+  std::uint64_t execute(const command::Request& request, Done done);
   /// Ends what still runs under the handle: a drive streams zero and lets go, a wait ends. Its `done` gets
   /// `cancelled`. An unknown handle is ignored.
   void cancel(std::uint64_t handle);

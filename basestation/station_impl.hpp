@@ -15,7 +15,7 @@ namespace adit::station {
 
 /// Collects the answers of one command line to several robots.
 struct Gather {
-  Request request{};
+  command::Request request{};
   std::vector<Answer> answers{};  ///< in the order of the robots typed
   std::size_t missing{};
   Station::Done done{};
@@ -27,7 +27,7 @@ class Station::Impl {
   ~Impl();
 
   Result<void> start();
-  std::uint64_t execute(const Request& request, Done done);
+  std::uint64_t execute(const command::Request& request, Done done);
   std::uint64_t refuse(const Error& error, const Done& done);
   void cancel(std::uint64_t handle);
   std::uint64_t teleop(const std::string& robot, Done done);
@@ -49,7 +49,7 @@ class Station::Impl {
   /// A command line that waits for its robots to be discovered.
   struct Waiting {
     std::uint64_t handle{};
-    Request request{};
+    command::Request request{};
     Done done{};
   };
   /// A `stop all` of a station that has only begun to hear robots.
@@ -69,16 +69,16 @@ class Station::Impl {
   void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
 
   // execute.cpp: what is asked
-  bool must_wait(const Request& request) const;
-  bool known(const Request& request) const;
+  bool must_wait(const command::Request& request) const;
+  bool known(const command::Request& request) const;
   /// Somebody was heard, and of each all that `list` shows.
   bool complete() const;
-  void run(std::uint64_t handle, const Request& request, Done done);
-  void answer_query(const Request& request, const Done& done);
-  void command_robots(std::uint64_t handle, const Request& request, Done done);
+  void run(std::uint64_t handle, const command::Request& request, Done done);
+  void answer_query(const command::Request& request, const Done& done);
+  void command_robots(std::uint64_t handle, const command::Request& request, Done done);
   void command_robot(std::uint64_t handle, const std::string& robot, const std::shared_ptr<Gather>& gather,
                      std::size_t index);
-  void stop_all(const Request& request, Done done);
+  void stop_all(const command::Request& request, Done done);
   void ask_stop(StopAll& all, const std::string& robot);
   void finish_stop_all();
   void down(Done done);

@@ -16,6 +16,7 @@ CommandParams command_params(const AgentParams& params, std::uint32_t instance) 
   for (std::uint32_t i = 0; i < instance; ++i) (void)starts.next();
   c.epoch_start = starts.next() | 1u;
   c.lock_lease = params.lock_lease;
+  c.home = {params.start.x, params.start.y, std::nan("")};
   c.protocol = kProtocolVersion;
   c.defects = params.defects;
   return c;

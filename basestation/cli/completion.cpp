@@ -5,8 +5,8 @@
 
 #include "basestation/cli/client.hpp"
 #include "basestation/cli/process/launch.hpp"
-#include "basestation/command/grammar.hpp"
-#include "basestation/command/words.hpp"
+#include "core/command/vocabulary.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station::cli {
 namespace {
@@ -62,28 +62,11 @@ std::vector<std::string> candidates(const std::vector<std::string>& all_words,
   std::vector<std::string> words(
       all_words.begin() + static_cast<std::ptrdiff_t>(std::min(at, all_words.size())), all_words.end());
   if (words.size() <= 1) {
-    std::vector<std::string> out = command_names();
-    out.insert(out.end(), {"help", "completion", "--name", "--link", "--json", "--domain", "--interface",
-                           "--peer", "--at"});
+    std::vector<std::string> out = command::command_names();
+    out.insert(out.end(), {"--name", "--link", "--json", "--domain", "--interface", "--peer", "--at"});
     return out;
   }
-  if (words[0] == "help") return command_names();
-  if (words[0] == "completion") return {"bash", "zsh", "fish"};
-  const CommandInfo* command = find_command(words[0]);
-  if (!command || command->robots_min < 0) return {};
-  std::vector<std::string> out;
-  const bool first = words.size() == 2;
-  if (command->robots_max != 1 || first) out = robots;
-  if (command->verb == Verb::stop && first) out.push_back("all");
-  if (command->verb == Verb::mode && !first) out.insert(out.end(), mode_names().begin(), mode_names().end());
-  if (command->verb == Verb::restart && words.size() == 3)
-    out = {"agent", "command", "planner", "router", "sensors"};
-  if (command->verb == Verb::policy && words.size() == 3) out = {"planner", "router", "sensors"};
-  if (command->verb == Verb::policy && words.size() == 4) out = {"auto", "manual"};
-  if (command->verb == Verb::drive && words.size() > 5) out = {"--for"};
-  if (command->verb == Verb::go_to && words.size() > 4) out = {"--wait"};
-  if (command->verb == Verb::reset && !first) out.push_back("--override");
-  return out;
+  return command::complete(words, robots);
 }
 
 int print_completion(const Options& options, const std::vector<std::string>& words) {
@@ -92,7 +75,7 @@ int print_completion(const Options& options, const std::vector<std::string>& wor
     const std::vector<std::string> typed(words.begin() + 2, words.end());
     Options asked = options;
     for (std::size_t i = 0; i + 1 < typed.size(); ++i)
-      if (typed[i] == "--name" && valid_name(typed[i + 1])) asked.name = typed[i + 1];
+      if (typed[i] == "--name" && command::valid_name(typed[i + 1])) asked.name = typed[i + 1];
     for (const std::string& word : candidates(typed, known_robots(asked))) std::printf("%s\n", word.c_str());
     return exit_done;
   }

@@ -14,17 +14,17 @@
 #include "basestation/cli/stop.hpp"
 #include "basestation/cli/teleop.hpp"
 #include "basestation/cli/watch/watch.hpp"
-#include "basestation/command/grammar.hpp"
-#include "basestation/command/parse.hpp"
-#include "basestation/command/words.hpp"
+#include "core/command/parse.hpp"
+#include "core/command/vocabulary.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station::cli {
 namespace {
 
+using command::verb;
+
 std::string footer() {
-  return "Commands (without one: a prompt that takes them):\n" + help_all() +
-         "  help [COMMAND]              this help, or that of one command\n"
-         "  completion bash|zsh|fish    a completion script for the shell\n"
+  return "Commands (without one: a prompt that takes them):\n" + command::help_all() +
          "\nExamples:\n"
          "  basestation list                          who is there\n"
          "  basestation take r1 r2                    become their holder\n"
@@ -40,11 +40,14 @@ int show_help(const std::vector<std::string>& words, const Options& options) {
     std::printf("usage: basestation [--name op1] [--link wifi] [--json] COMMAND\n\n%s\n", footer().c_str());
     return exit_done;
   }
-  if (const CommandInfo* command = find_command(words[1])) {
-    std::fputs(help(*command).c_str(), stdout);
+  if (words[1] == "--markdown") {  // the table of docs/operators.md
+    std::fputs(command::help_markdown().c_str(), stdout);
     return exit_done;
   }
-  return fail(options, exit_usage, parse(std::vector<std::string>{words[1]}).error());
+  const auto found = command::find_commands(words[1]);
+  for (const command::CommandInfo* row : found) std::fputs(command::help(*row).c_str(), stdout);
+  if (!found.empty()) return exit_done;
+  return fail(options, exit_usage, command::parse(std::vector<std::string>{words[1]}).error());
 }
 
 int down_without_station(const Options& options) {
@@ -56,11 +59,11 @@ int down_without_station(const Options& options) {
 int run_command(const Options& options, const std::vector<std::string>& words) {
   if (words[0] == "help") return show_help(words, options);
   if (words[0] == "completion") return print_completion(options, words);
-  auto request = parse(words);
+  auto request = command::parse(words);
   if (!request) return fail(options, exit_usage, request.error());
   const std::string line = quoted(words);
-  if (request->verb == Verb::stop) return stop(options, line);
-  if (request->verb == Verb::down) {
+  if (request->verb == verb("stop")) return stop(options, line, request->all);
+  if (request->verb == verb("down")) {
     auto path = socket_path(options);
     if (!path) return fail(options, exit_refused, path.error());
     auto socket = LineSocket::connect(*path);
@@ -68,16 +71,16 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
     Client client(std::move(*socket));
     return run_line(client, options, line);
   }
-  if (request->verb == Verb::run) {
-    auto script = read_script(request->word);  // before anything starts
+  if (request->verb == verb("run")) {
+    auto script = read_script(request->word("FILE"));  // before anything starts
     if (!script) return fail(options, exit_usage, script.error());
-    return play(options, *script, request->all_operators);
+    return play(options, *script, request->has("--all"));
   }
   auto socket = connect_or_launch(options);
   if (!socket) return fail(options, exit_without_station(socket.error()), socket.error());
   Client client(std::move(*socket));
-  if (request->verb == Verb::watch) return watch(client, options);
-  if (request->verb == Verb::teleop) return teleop(client, options, request->robots.front());
+  if (request->verb == verb("watch")) return watch(client, options);
+  if (request->verb == verb("teleop")) return teleop(client, options, request->robots.front());
   return run_line(client, options, line);
 }
 
@@ -127,16 +130,16 @@ int main(int argc, char** argv) {
     return fail(options, exit_usage, {Reason::bad_argument, std::string(error.what()) + "; try --help"});
   }
   options.domain_given = domain->count() > 0;
-  if (!valid_name(options.name))
+  if (!command::valid_name(options.name))
     return fail(options, exit_usage,
                 {Reason::bad_argument,
-                 "--name is 1 to 32 of A-Z a-z 0-9 _ -, not '" + clean(options.name, 40) + "'"});
+                 "--name is 1 to 32 of A-Z a-z 0-9 _ -, not '" + command::clean(options.name, 40) + "'"});
   if (served->count() > 0) return serve(options, ready_fd);
 
   std::vector<std::string> words = app.remaining();
   if (!words.empty() && words[0].starts_with('-'))
     return fail(options, exit_usage,
-                {Reason::bad_argument, "no option " + clean(words[0], 40) + "; try --help"});
+                {Reason::bad_argument, "no option " + command::clean(words[0], 40) + "; try --help"});
   // These two are understood behind the command as well.
   if (std::erase(words, "--json") > 0) options.json = true;
   if (std::erase(words, "--help") + std::erase(words, "-h") > 0) words.insert(words.begin(), "help");

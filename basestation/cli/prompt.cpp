@@ -20,14 +20,16 @@
 #include "basestation/cli/stop.hpp"
 #include "basestation/cli/teleop.hpp"
 #include "basestation/cli/watch/watch.hpp"
-#include "basestation/command/grammar.hpp"
-#include "basestation/command/parse.hpp"
-#include "basestation/command/words.hpp"
 #include "basestation/report/table.hpp"
+#include "core/command/parse.hpp"
+#include "core/command/vocabulary.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station::cli {
 namespace {
 
+using command::Request;
+using command::verb;
 using nlohmann::json;
 
 class Prompt {
@@ -44,20 +46,22 @@ class Prompt {
 
   /// False when the line ends the prompt.
   bool execute(const std::string& line) {
-    auto words = split_words(line);
+    auto words = command::split_words(line);
     if (words && words->empty()) return true;
     if (words && (words->front() == "quit" || words->front() == "exit")) return false;
     if (words && words->front() == "help") {
-      const CommandInfo* command = words->size() > 1 ? find_command((*words)[1]) : nullptr;
-      std::fputs((command ? help(*command) : help_all() + "  quit, Ctrl-D                leave the prompt\n")
-                     .c_str(),
-                 stdout);
+      std::string text;
+      if (words->size() > 1)
+        for (const command::CommandInfo* row : command::find_commands((*words)[1]))
+          text += command::help(*row);
+      if (text.empty()) text = command::help_all() + "  quit, Ctrl-D                leave the prompt\n";
+      std::fputs(text.c_str(), stdout);
       return true;
     }
-    auto request = words ? parse(*words) : Result<Request>(words.error());
+    auto request = words ? command::parse(*words) : Result<Request>(words.error());
     const int code = request ? run(*request, line) : fail(options_, exit_usage, request.error());
     if (code != exit_done) code_ = code;
-    return !request || request->verb != Verb::down;
+    return !request || request->verb != verb("down");
   }
 
   /// Prints what came in; true when something was printed.
@@ -98,21 +102,21 @@ class Prompt {
   }
 
   int run(const Request& request, const std::string& line) {
-    if (request.verb == Verb::stop) return stop(options_, line);
-    if (request.verb == Verb::run) {
-      auto script = read_script(request.word);
+    if (request.verb == verb("stop")) return stop(options_, line, request.all);
+    if (request.verb == verb("run")) {
+      auto script = read_script(request.word("FILE"));
       if (!script) return fail(options_, exit_usage, script.error());
-      return play(options_, *script, request.all_operators);
+      return play(options_, *script, request.has("--all"));
     }
     if (!client_ || !client_->connected())
       if (auto connected = connect(); !connected)
         return fail(options_, exit_without_station(connected.error()), connected.error());
-    if (request.verb == Verb::watch || request.verb == Verb::teleop) {
+    if (request.verb == verb("watch") || request.verb == verb("teleop")) {
       auto socket = connect_or_launch(options_);
       if (!socket) return fail(options_, exit_without_station(socket.error()), socket.error());
       Client own(std::move(*socket));
-      return request.verb == Verb::watch ? watch(own, options_)
-                                         : teleop(own, options_, request.robots.front());
+      return request.verb == verb("watch") ? watch(own, options_)
+                                           : teleop(own, options_, request.robots.front());
     }
     return run_line(*client_, options_, line);
   }
@@ -137,7 +141,7 @@ char* next_match(const char*, int state) {
 
 char** complete(const char* text, int start, int) {
   const std::string before(rl_line_buffer, static_cast<std::size_t>(start));
-  auto words = split_words(before);
+  auto words = command::split_words(before);
   rl_attempted_completion_over = 1;
   matches.clear();
   if (!words) return nullptr;

@@ -10,8 +10,8 @@
 #include "basestation/cli/client.hpp"
 #include "basestation/cli/interrupt.hpp"
 #include "basestation/cli/process/launch.hpp"
-#include "basestation/command/parse.hpp"
-#include "basestation/command/words.hpp"
+#include "core/command/parse.hpp"
+#include "core/command/words.hpp"
 #include "core/config/node.hpp"
 
 namespace adit::station::cli {
@@ -104,10 +104,11 @@ Result<std::vector<ScriptLine>> read_script(const std::string& path) {
   for (const config::Node& node : root->list("script")) {
     ScriptLine line{node.number("at", config::within(0.0, 1e6)), node.text("by"), node.text("do"),
                     node.text("say", "")};
-    if (node.has("by") && !valid_name(line.by))
+    if (node.has("by") && !command::valid_name(line.by))
       node.fail(Reason::bad_argument, "by: an operator's name was expected");
     if (node.has("do"))
-      if (auto request = parse(line.line); !request) node.fail(request.error().reason, request.error().text);
+      if (auto request = command::parse(line.line); !request)
+        node.fail(request.error().reason, request.error().text);
     script.push_back(std::move(line));
   }
   if (auto good = root->finish(); !good) return good.error();

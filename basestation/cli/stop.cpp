@@ -37,13 +37,12 @@ std::optional<nlohmann::json> ask_station(const Options& options, const std::str
 
 }  // namespace
 
-int stop(const Options& options, const std::string& line) {
+int stop(const Options& options, const std::string& line, bool all) {
   if (const auto outcome = ask_station(options, line)) return print_outcome(options, *outcome);
   std::fprintf(stderr, "no answer from the station of %s: the stop goes out by itself\n",
                options.name.c_str());
   // Announced often: robots have to know this participant before they believe who it is.
   // A robot that was named is waited for as long as a stop is repeated; `all` are those heard by then.
-  const bool all = line.find("'all'") != std::string::npos;
   auto live = LiveStation::open(options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s});
   if (!live) return fail(options, exit_no_answer, live.error());
   const Outcome outcome = (*live)->execute(line, 25s);

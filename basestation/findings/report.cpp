@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "basestation/command/words.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station {
 namespace {
@@ -40,9 +40,9 @@ std::string findings_text(const FindingDesk& desk, const Fleet& fleet,
     std::vector<std::vector<std::string>> rows{{"ROBOT", "KIND", "X", "Y", "Z", "AGE S", "TEXT", "ID"}};
     for (const Finding* f : list) {
       const double seconds_ago = age(*f, fleet);
-      rows.push_back({f->key.robot, clean(f->kind, Finding::kKind), fixed(f->position[0], 2),
+      rows.push_back({f->key.robot, command::clean(f->kind, Finding::kKind), fixed(f->position[0], 2),
                       fixed(f->position[1], 2), fixed(f->position[2], 2),
-                      seconds_ago < 0 ? "-" : fixed(seconds_ago, 0), clean(f->text, Finding::kText),
+                      seconds_ago < 0 ? "-" : fixed(seconds_ago, 0), command::clean(f->text, Finding::kText),
                       findings::id_text(f->key.id)});
     }
     out = table(rows);
@@ -64,10 +64,10 @@ nlohmann::json findings_json(const FindingDesk& desk, const Fleet& fleet,
   for (const Finding* f : chosen(desk, robots)) {
     nlohmann::json row{{"robot", f->key.robot},
                        {"id", findings::id_text(f->key.id)},
-                       {"kind", clean(f->kind, Finding::kKind)},
+                       {"kind", command::clean(f->kind, Finding::kKind)},
                        {"importance", f->importance},
                        {"position", f->position},
-                       {"text", clean(f->text, Finding::kText)},
+                       {"text", command::clean(f->text, Finding::kText)},
                        {"data", f->data}};
     if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0) row["age"] = seconds_ago;
     out.push_back(std::move(row));

@@ -5,6 +5,8 @@
 namespace adit::station {
 namespace {
 
+using command::CommandInfo;
+
 /// One robot's answers to be.
 class Judge {
  public:
@@ -12,21 +14,14 @@ class Judge {
       : robot_(robot), mine_(fleet.held_by_me(robot)), modes_(modes) {}
 
   std::vector<Action> all() {
-    take();
-    for (const char* command : {"release", "lock", "unlock", "grant"}) add(command, authority());
-    for (const std::string& name : modes_) {
-      Action action = authority();
-      if (action.valid) action = mode(name);
-      add("mode " + name, action);
+    for (const CommandInfo& row : command::table()) {
+      if (row.arguments[0].type != command::Type::robots || row.runs == command::Runs::query) continue;
+      if (row.conditions.mode != "MODE") {
+        add(row, std::string(row.name), judge(row, row.conditions.mode));
+        continue;
+      }
+      for (const std::string& mode : modes_) add(row, std::string(row.name) + " " + mode, judge(row, mode));
     }
-    const bool assisted = robot_.mode == "smart_joystick";
-    add("drive", steering(assisted));
-    go_to();
-    add("plan", Action{.valid = true});
-    add("teleop", steering(assisted));
-    add("stop", Action{.valid = true});
-    reset();
-    for (const char* command : {"restart", "policy"}) add(command, authority());
     return std::move(actions_);
   }
 
@@ -36,15 +31,36 @@ class Judge {
     return {.valid = false, .reason = reason, .text = std::move(text)};
   }
 
-  void add(std::string command, Action action) {
-    action.command = std::move(command);
+  void add(const CommandInfo& row, std::string typed, Action action) {
+    action.info = &row;
+    action.command = std::move(typed);
     // A lost robot hears nothing; a stop is worth trying all the same.
-    if (robot_.lost && action.command != "stop") {
+    if (robot_.lost && row.name != "stop") {
       action.valid = false;
       action.reason = Reason::no_answer;
       action.text = "the robot has not been heard for more than 3 s";
     }
     actions_.push_back(std::move(action));
+  }
+
+  /// By the row's conditions; `take` and `reset` have more of their own.
+  Action judge(const CommandInfo& row, std::string_view mode_wanted) const {
+    if (row.name == "take") return take();
+    if (row.conditions.holder) {
+      Action action = authority();
+      if (!action.valid) return action;
+    }
+    if (row.name == "reset") return reset();
+    if (!row.conditions.in.empty() && robot_.mode != row.conditions.in)
+      return refuse(Reason::wrong_mode,
+                    "only in " + std::string(row.conditions.in) + "; the robot is in " + robot_.mode);
+    if (mode_wanted.empty()) return {.valid = true};
+    // A stick that is pushed in smart_joystick leaves the robot in it.
+    const bool stick = row.name != "mode" && mode_wanted == "manual";
+    Action action = mode(stick && robot_.mode == "smart_joystick" ? robot_.mode : std::string(mode_wanted));
+    // These two speak of the goal there is now, not of the one to be given.
+    const bool goal = action.reason == Reason::goal_missing || action.reason == Reason::goal_unreachable;
+    return goal && row.name != "mode" ? Action{.valid = true} : action;
   }
 
   Action authority() const {
@@ -65,38 +81,24 @@ class Judge {
     return refuse(choice->reason);
   }
 
-  void take() {
-    if (mine_) return add("take", {.valid = true, .text = "you hold it already"});
-    if (robot_.locked) return add("take", refuse(Reason::locked, "locked by " + robot_.holder));
-    if (!robot_.holder.empty()) return add("take", {.valid = true, .text = robot_.holder + " will be told"});
-    add("take", Action{.valid = true});
+  Action take() const {
+    if (mine_) return {.valid = true, .text = "you hold it already"};
+    if (robot_.locked) return refuse(Reason::locked, "locked by " + robot_.holder);
+    if (!robot_.holder.empty()) return {.valid = true, .text = robot_.holder + " will be notified"};
+    return {.valid = true};
   }
 
-  Action steering(bool assisted) const {
-    Action action = authority();
-    return action.valid ? mode(assisted ? "smart_joystick" : "manual") : action;
-  }
-
-  void go_to() {
-    Action action = authority();
-    if (action.valid) action = mode("waypoint");
-    // These two speak of the goal there is now, not of the one to be given.
-    if (action.reason == Reason::goal_missing || action.reason == Reason::goal_unreachable)
-      action = {.valid = true};
-    add("goto", action);
-  }
-
-  void reset() {
-    Action action = authority();
+  /// For the holder.
+  Action reset() const {
     const auto& stops = robot_.stops;
     const bool own = std::any_of(stops.begin(), stops.end(), [&](const StopLatch& stop) {
       return stop.station == robot_.holder && stop.station_id == robot_.holder_id;
     });
-    if (action.valid && stops.empty()) action.text = "no stop is set";
-    if (action.valid && !stops.empty() && !own)
-      action =
-          refuse(Reason::stop_of_another, "stopped by " + stops.front().station + "; use reset --override");
-    add("reset", action);
+    if (stops.empty()) return {.valid = true, .text = "no stop is set"};
+    if (!own)
+      return refuse(Reason::stop_of_another,
+                    "stopped by " + stops.front().station + "; use reset --override");
+    return {.valid = true};
   }
 
   const RobotView& robot_;

@@ -6,7 +6,7 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
-#include "basestation/command/words.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station {
 namespace {
@@ -25,7 +25,7 @@ std::vector<std::string> cleaned(const std::vector<std::string>& words, std::siz
   std::vector<std::string> out;
   for (const std::string& word : words) {
     if (out.size() == most) break;
-    out.push_back(clean(word, name_limit));
+    out.push_back(command::clean(word, name_limit));
   }
   return out;
 }
@@ -67,7 +67,7 @@ RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
     known->second.spoke = info.received;
     return &known->second;
   }
-  if (!valid_name(name) || robots_.size() == max_robots) {
+  if (!command::valid_name(name) || robots_.size() == max_robots) {
     ++ignored_;
     return nullptr;
   }
@@ -90,8 +90,8 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
   RobotView* robot = touch(sample.name(), info);
   if (!robot) return;
   robot->described = true;
-  robot->platform = clean(sample.platform(), name_limit);
-  robot->software = clean(sample.software(), name_limit);
+  robot->platform = command::clean(sample.platform(), name_limit);
+  robot->software = command::clean(sample.software(), name_limit);
   robot->protocol = sample.protocol();
   robot->max_speed = sample.max_speed();
   robot->max_turn = sample.max_turn();
@@ -102,7 +102,7 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
 }
 
 void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
-  if (valid_name(sample.name()) && sample.name() != own_name_ && speaks_for(sample.name(), info.sender))
+  if (command::valid_name(sample.name()) && sample.name() != own_name_ && speaks_for(sample.name(), info.sender))
     links_.heard(sample.name(), sample.seq(), info.received);
   if (sample.kind() != radio::AGENT_STATION) {
     // Its states say more, but where the link is full they come as rarely as this.
@@ -124,7 +124,7 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
     return;
   }
   if (sample.name() == own_name_) return;
-  if (!valid_name(sample.name()) ||
+  if (!command::valid_name(sample.name()) ||
       (!stations_.contains(sample.name()) && stations_.size() == max_stations)) {
     ++ignored_;
     return;
@@ -163,14 +163,14 @@ void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& i
   if (robot->owned && robot->epoch.start == epoch.start && epoch.counter < robot->epoch.counter) return;
   robot->owned = true;
   robot->epoch = epoch;
-  robot->holder = clean(sample.holder(), name_limit);
+  robot->holder = command::clean(sample.holder(), name_limit);
   robot->holder_id = sample.holder_id();
   robot->locked = sample.locked();
   robot->lease_left = sample.lock_lease_left();
   robot->stops.clear();
   for (const auto& stop : sample.stops()) {
     if (robot->stops.size() == 17) break;
-    robot->stops.push_back({clean(stop.station(), name_limit), stop.station_id()});
+    robot->stops.push_back({command::clean(stop.station(), name_limit), stop.station_id()});
   }
 }
 
@@ -178,7 +178,7 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   RobotView* robot = touch(sample.robot(), info);
   if (!robot) return;
   ++robot->behaviour_count;
-  robot->mode = clean(sample.mode(), name_limit);
+  robot->mode = command::clean(sample.mode(), name_limit);
   robot->stopped = sample.stopped();
   robot->moving_allowed = sample.moving_allowed();
   robot->reason = static_cast<Reason>(sample.reason());
@@ -189,8 +189,8 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   robot->choices.clear();
   for (const auto& option : sample.modes()) {
     if (robot->choices.size() == 16) break;
-    robot->choices.push_back(
-        {clean(option.mode(), name_limit), option.available(), static_cast<Reason>(option.reason())});
+    robot->choices.push_back({command::clean(option.mode(), name_limit), option.available(),
+                              static_cast<Reason>(option.reason())});
   }
 }
 
@@ -200,11 +200,11 @@ void Fleet::hear(const radio::Notification& sample, const wire::SampleInfo& info
   const auto severity = static_cast<std::uint32_t>(sample.severity());
   Notice told{.at = info.received,
               .robot = sample.robot(),
-              .operator_name = clean(sample.operator_name(), name_limit),
+              .operator_name = command::clean(sample.operator_name(), name_limit),
               .level = severity <= 2 ? static_cast<Level>(severity) : Level::error,
-              .code = clean(sample.code(), name_limit),
+              .code = command::clean(sample.code(), name_limit),
               .reason = static_cast<Reason>(sample.reason()),
-              .text = clean(sample.text(), text_limit),
+              .text = command::clean(sample.text(), text_limit),
               .said_by = info.sender};
   if (sample.stamp() != 0) told.undated = sample.stamp();
   date(told, *robot);
@@ -231,19 +231,19 @@ void Fleet::hear(const radio::Health& sample, const wire::SampleInfo& info) {
     if (robot->components.size() == 32) break;
     const auto phase = static_cast<std::uint32_t>(part.state());
     robot->components.push_back(
-        {.name = clean(part.name(), name_limit),
+        {.name = command::clean(part.name(), name_limit),
          .phase = phase <= 4 ? static_cast<ComponentPhase>(phase) : ComponentPhase::failed,
          .healthy = part.healthy(),
          .automatic = part.automatic(),
          .silent_for = part.silent_for(),
          .restarts = part.restarts(),
          .hung = part.hung(),
-         .text = clean(part.text(), text_limit)});
+         .text = command::clean(part.text(), text_limit)});
   }
 }
 
 void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) {
-  if (!valid_name(sample.agent()) || sample.agent() == own_name_ ||
+  if (!command::valid_name(sample.agent()) || sample.agent() == own_name_ ||
       (!traffic_.contains(sample.agent()) && traffic_.size() == max_robots + max_stations)) {
     ++ignored_;
     return;
@@ -255,15 +255,15 @@ void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) 
                    .total_out = sample.total_out(),
                    .total_in = sample.total_in(),
                    .malformed = sample.malformed()};
-  view.sender.link = clean(sample.link(), 32);
+  view.sender.link = command::clean(sample.link(), 32);
   view.sender.bandwidth = number(sample.bandwidth());
   view.sender.queue = number(sample.queue());
   view.sender.state_rate = number(sample.state_rate());
   view.sender.dropped = sample.dropped();
   for (const auto& row : sample.topics()) {
     if (view.topics.size() == 16) break;
-    view.topics.push_back({clean(row.topic(), 64), row.bytes_out(), row.samples_out(), row.bytes_in(),
-                           row.samples_in(), row.dropped()});
+    view.topics.push_back({command::clean(row.topic(), 64), row.bytes_out(), row.samples_out(),
+                           row.bytes_in(), row.samples_in(), row.dropped()});
   }
   for (const auto& peer : sample.peers()) {
     if (peer.peer() != own_name_) continue;
@@ -283,7 +283,7 @@ void Fleet::learn_authority(const std::string& robot, const std::string& holder,
   view.owned = true;
   view.epoch = epoch;
   if (!changed) return;
-  view.holder = clean(holder, name_limit);
+  view.holder = command::clean(holder, name_limit);
   // The acknowledgement names the holder only; the next status tells whose station it is.
   view.holder_id = holder == own_name_ ? own_id_ : Id{};
   view.locked = false;  // every change of holder ends a lock

@@ -7,14 +7,15 @@ namespace adit::station {
 
 using namespace std::chrono_literals;
 
-Arrival::Arrival(FlowParts parts, std::string robot, std::array<double, 3> goal, Done done)
-    : Flow(parts, std::move(robot), std::move(done)), goal_(goal) {}
+Arrival::Arrival(FlowParts parts, Order order, Done done)
+    : Flow(parts, order.robot, std::move(done)),
+      order_(std::move(order)),
+      goal_{order_.request.number("X"), order_.request.number("Y")} {}
 
 void Arrival::start() {
-  parts_.sender.send({.robot = robot(), .kind = Kind::go_to, .position = goal_},
-                     [weak = weak_from_this()](const Answer& answer) {
-                       if (auto self = weak.lock()) static_cast<Arrival&>(*self).answered(answer);
-                     });
+  parts_.sender.send(order_, [weak = weak_from_this()](const Answer& answer) {
+    if (auto self = weak.lock()) static_cast<Arrival&>(*self).answered(answer);
+  });
   goal_before_ = view() ? view()->goal_id : 0;
 }
 

@@ -9,7 +9,8 @@ namespace adit::station {
 /// the mode, gets another goal, or is lost for 30 s.
 class Arrival final : public Flow {
  public:
-  Arrival(FlowParts parts, std::string robot, std::array<double, 3> goal, Done done);
+  /// `order`: a goto.
+  Arrival(FlowParts parts, Order order, Done done);
   void start() override;
   void cancel(Reason reason, const std::string& text) override;
 
@@ -18,7 +19,8 @@ class Arrival final : public Flow {
   void poll();
   void end(Reason reason, const std::string& text);
 
-  std::array<double, 3> goal_;
+  Order order_;
+  std::array<double, 2> goal_;  ///< map frame, m
   Answer outcome_{};
   Timer timer_{};
   Time accepted_at_{};

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "basestation/command/words.hpp"
 #include "basestation/report/table.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station {
 
@@ -96,10 +96,11 @@ void Steer::ask() {
   if (!asked_) first_asked_ = parts_.strand.now();
   asked_ = true;
   behaviour_before_ = view() ? view()->behaviour_count : 0;
-  parts_.sender.send({.robot = robot(), .kind = Kind::mode, .text = params_.mode},
-                     [weak = weak_from_this()](const Answer& answer) {
-                       if (auto self = weak.lock()) static_cast<Steer&>(*self).answered(answer);
-                     });
+  Order order{.robot = robot(), .request = command::Request(command::verb("mode"))};
+  order.request.values.push_back({"MODE", {params_.mode}, {}});
+  parts_.sender.send(std::move(order), [weak = weak_from_this()](const Answer& answer) {
+    if (auto self = weak.lock()) static_cast<Steer&>(*self).answered(answer);
+  });
 }
 
 void Steer::answered(const Answer& answer) {
@@ -189,7 +190,7 @@ std::string Steer::clipped() const {
   if (std::hypot(vx, sideways ? 0.0 : vy) > robot_now->max_speed)
     limits.push_back(fixed(robot_now->max_speed, 1) + " m/s");
   if (std::abs(wz) > robot_now->max_turn) limits.push_back(fixed(robot_now->max_turn, 1) + " rad/s");
-  return limits.empty() ? "" : "clipped to what the robot can: " + joined(limits, "");
+  return limits.empty() ? "" : "clipped to what the robot can: " + command::joined(limits, "");
 }
 
 void Steer::settled() {

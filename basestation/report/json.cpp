@@ -70,14 +70,89 @@ json answer_json(const Answer& answer) {
           {"latency", seconds(answer.latency)}};
 }
 
+namespace {
+
+const char* to_string(command::Type type) {
+  switch (type) {
+    case command::Type::robots:
+      return "robots";
+    case command::Type::name:
+      return "name";
+    case command::Type::file:
+      return "file";
+    case command::Type::choice:
+      return "choice";
+    case command::Type::number:
+      return "number";
+    case command::Type::command:
+      return "command";
+    case command::Type::keyword:
+      return "keyword";
+    case command::Type::none:
+      break;
+  }
+  return "none";
+}
+
+const char* to_string(command::Danger danger) {
+  switch (danger) {
+    case command::Danger::none:
+      return "none";
+    case command::Danger::some:
+      return "some";
+    case command::Danger::high:
+      break;
+  }
+  return "high";
+}
+
+json argument_json(const command::Argument& argument) {
+  json out{{"name", argument.name},
+           {"type", to_string(argument.type)},
+           {"least", argument.least},
+           {"most", argument.most}};
+  if (!argument.choices.empty()) out["choices"] = command::choices(argument);
+  if (argument.type == command::Type::number)
+    out.update({{"minimum", argument.minimum},
+                {"maximum", argument.maximum},
+                {"unit", argument.unit},
+                {"group", argument.group}});
+  return out;
+}
+
+/// What a front end has to know of a command to offer it: robots, arguments, options, danger.
+json info_json(const command::CommandInfo& info) {
+  json arguments = json::array(), options = json::array();
+  for (const command::Argument& argument : info.arguments)
+    if (argument && argument.type != command::Type::robots) arguments.push_back(argument_json(argument));
+  for (const command::Option& option : info.options) {
+    if (!option) continue;
+    json values = json::array();
+    for (const command::Argument& value : option.values)
+      if (value) values.push_back(argument_json(value));
+    options.push_back({{"name", option.name}, {"values", values}});
+  }
+  const command::Argument& robots = info.arguments[0];
+  return {{"arguments", arguments},
+          {"options", options},
+          {"danger", to_string(info.danger)},
+          {"robots", {{"least", robots.least}, {"most", robots.most}, {"all", robots.all}}},
+          {"usage", command::usage(info)}};
+}
+
+}  // namespace
+
 json actions_json(const std::vector<Action>& actions) {
   json rows = json::array();
-  for (const Action& action : actions)
-    rows.push_back({{"command", action.command},
-                    {"valid", action.valid},
-                    {"reason", name(action.reason)},
-                    {"text", action.text},
-                    {"robot", action.robot}});
+  for (const Action& action : actions) {
+    json row{{"command", action.command},
+             {"valid", action.valid},
+             {"reason", name(action.reason)},
+             {"text", action.text},
+             {"robot", action.robot}};
+    row.update(info_json(*action.info));
+    rows.push_back(std::move(row));
+  }
   return rows;
 }
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "basestation/command/words.hpp"
 #include "basestation/report/table.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station {
 namespace {
@@ -45,7 +45,7 @@ std::string stops_text(const RobotView& robot) {
   if (robot.stops.empty()) return robot.stopped ? "stopped" : "-";
   std::vector<std::string> names;
   for (const StopLatch& stop : robot.stops) names.push_back(stop.station);
-  return joined(names, "-");
+  return command::joined(names, "-");
 }
 
 std::string list_text(const Fleet& fleet, Time now) {
@@ -85,8 +85,8 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
            fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
   if (robot.described)
     out += "  limits   " + fixed(robot.max_speed, 1) + " m/s, " + fixed(robot.max_turn, 1) +
-           " rad/s\n  sensors  " + joined(robot.sensors, "-") + "\n  can      " +
-           joined(robot.services, "-") + "\n";
+           " rad/s\n  sensors  " + command::joined(robot.sensors, "-") + "\n  can      " +
+           command::joined(robot.services, "-") + "\n";
   out += "  battery  " + battery_text(robot) + "\n";
   for (const ModeChoice& choice : robot.choices) {
     std::string row = "  can " + choice.mode;

@@ -4,44 +4,12 @@
 #include <vector>
 
 #include "adit/command.h"
-#include "basestation/command/words.hpp"
+#include "core/command/words.hpp"
 #include "core/wire/typed.hpp"
 
 namespace adit::station {
 
 using namespace std::chrono_literals;
-
-const char* to_string(Kind kind) {
-  switch (kind) {
-    case Kind::take:
-      return "take";
-    case Kind::release:
-      return "release";
-    case Kind::lock:
-      return "lock";
-    case Kind::unlock:
-      return "unlock";
-    case Kind::grant:
-      return "grant";
-    case Kind::stop:
-      return "stop";
-    case Kind::reset:
-      return "reset";
-    case Kind::mode:
-      return "mode";
-    case Kind::go_to:
-      return "goto";
-    case Kind::query:
-      return "query";
-    case Kind::restart:
-      return "restart";
-    case Kind::policy:
-      return "policy";
-    case Kind::plan:
-      return "plan";
-  }
-  return "unknown";
-}
 
 struct Sender::Pending {
   Order order{};
@@ -53,7 +21,7 @@ struct Sender::Pending {
   bool blind{};      ///< sent before this station knew the authority in force
   bool resting{};    ///< refused for a cause that passes: sent anew at the next repeat
   Answer refusal{};  ///< that refusal
-  bool is_stop() const { return order.kind == Kind::stop; }
+  bool is_stop() const { return order.request.verb == command::verb("stop"); }
 };
 
 struct Sender::Lane {
@@ -86,7 +54,7 @@ void Sender::send(Order order, Done done) {
   Lane* to = lane(order.robot);
   if (!to) {
     return done({.robot = order.robot,
-                 .command = to_string(order.kind),
+                 .command = std::string(order.name()),
                  .reason = Reason::wire_failed,
                  .text = "the network layer has no writer left for this robot"});
   }
@@ -104,7 +72,7 @@ void Sender::send(Order order, Done done) {
   }
   if (to->current && to->queue.size() == max_queue) {
     return pending->done.front()({.robot = pending->order.robot,
-                                  .command = to_string(pending->order.kind),
+                                  .command = std::string(pending->order.name()),
                                   .reason = Reason::queue_full,
                                   .text = "16 commands wait for this robot already"});
   }
@@ -140,10 +108,11 @@ void Sender::renumber(Lane& to, Pending& pending) {
     pending.blind = !robot->owned;
   }
   message.seq(to.next_seq++);
-  message.kind(static_cast<radio::CommandKind>(pending.order.kind));
-  message.text(pending.order.text);
-  message.position({pending.order.position[0], pending.order.position[1], pending.order.position[2]});
-  message.flag(pending.order.flag);
+  const command::Payload payload = command::pack(pending.order.request);
+  message.kind(static_cast<radio::CommandKind>(payload.number));
+  message.words(payload.words);
+  message.numbers(payload.numbers);
+  message.options(payload.options);
   pending.resting = false;
   pending.overtaken = false;
 }
@@ -177,7 +146,10 @@ void Sender::withdraw(Lane& to, const Pending& pending) {
   if (pending.is_stop() || to.stop) return;
   radio::Command question = pending.message;
   question.seq(to.next_seq++);
-  question.kind(radio::CMD_QUERY);
+  question.kind(static_cast<radio::CommandKind>(command::info(command::verb("query")).number));
+  question.words().clear();
+  question.numbers().clear();
+  question.options(0);
   (void)to.writer.write(question);
 }
 
@@ -210,8 +182,8 @@ void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&)
                 .accepted = sample.accepted(),
                 .answered = true,
                 .reason = sample.accepted() ? Reason::none : reason,
-                .text = clean(sample.text(), 240),
-                .holder = clean(sample.holder(), 32),
+                .text = command::clean(sample.text(), 240),
+                .holder = command::clean(sample.holder(), 32),
                 .latency = strand_.now() - pending->first_sent};
   if (!sample.accepted() && worth_another(*pending, sample)) {
     pending->resting = true;
@@ -223,7 +195,7 @@ void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&)
 
 void Sender::finish(Lane& to, const std::shared_ptr<Pending>& pending, Answer answer) {
   answer.robot = pending->order.robot;
-  answer.command = to_string(pending->order.kind);
+  answer.command = pending->order.name();
   if (answer.accepted)
     ++counts_.accepted;
   else

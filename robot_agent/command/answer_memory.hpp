@@ -10,9 +10,7 @@
 
 namespace adit::agent {
 
-/// Commands that must not be overtaken by what was sent before them: what moves the robot among itself, and
-/// what says who may.
-enum class Line : std::uint8_t { none, steering, authority };
+using command::Line;
 
 /// The last answers per participant, so that a repeated command gets its first answer again and no second
 /// effect (rule 1). Bounded.

@@ -5,38 +5,19 @@
 namespace adit::agent {
 namespace {
 
-Line line_of(CommandKind kind) {
-  switch (kind) {
-    case CommandKind::stop:
-    case CommandKind::reset:
-    case CommandKind::mode:
-    case CommandKind::go_to:
-      return Line::steering;
-    case CommandKind::take:
-    case CommandKind::release:
-    case CommandKind::grant:
-    case CommandKind::lock:
-    case CommandKind::unlock:
-      return Line::authority;
-    case CommandKind::query:
-    case CommandKind::restart:
-    case CommandKind::policy:
-    case CommandKind::plan:
-    case CommandKind::unknown:
-      break;
-  }
-  return Line::none;
-}
-/// Take, stop and questions need neither holder nor epoch.
-bool open_to_all(CommandKind kind) {
-  return kind == CommandKind::take || kind == CommandKind::stop || kind == CommandKind::query ||
-         kind == CommandKind::plan || kind == CommandKind::unknown;
+using command::verb;
+
+/// Asks the supervisor, where there is one.
+template <class Function, class... Arguments>
+Result<void> supervised(const Function& function, const Arguments&... arguments) {
+  if (!function) return {Reason::not_supported, std::string(describe(Reason::not_supported))};
+  return function(arguments...);
 }
 
 /// Given again after a restart, such a command has the same answer and no further effect, unless it changed
 /// the state: then its answer is stored with the state. Those of the holder would be refused, their epoch is
 /// old.
-bool same_after_restart(CommandKind kind) { return open_to_all(kind); }
+bool same_after_restart(const command::CommandInfo& row) { return !row.conditions.holder; }
 
 }  // namespace
 
@@ -88,12 +69,14 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   const Answer result = answer(c, outcome);
   // A name that is refused is refused each time, and is not worth a place in the memory or on the disk.
   if (c.seq != 0 && valid_name(c.from.name))
-    memory_.remember(c.from.participant, result, line_of(c.kind), !same_after_restart(c.kind), now);
+    memory_.remember(c.from.participant, result, c.request.info->line, !same_after_restart(*c.request.info),
+                     now);
   if (params_.defects.has(Defect::silent_refusal) && !result.accepted()) return std::nullopt;
   return result;
 }
 
 CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
+  const bool stops = c.request.verb == verb("stop");
   if (c.robot != params_.robot) return {Reason::wrong_robot};
   if (!valid_name(c.from.name)) return {Reason::bad_argument, "a station's name is 1 to 32 of [A-Za-z0-9_-]"};
   if (const Outcome identity = identify(c.from, StationTable::Sign::command, now);
@@ -103,19 +86,17 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
     // A stop needs no authority: neither that this participant is the station it says, nor a place in the
     // table is asked for it (rule 4).
     const Station* known = stations_.find(c.from.name);
-    if (c.kind != CommandKind::stop || (known && known->id != c.from.id)) return identity;
+    if (!stops || (known && known->id != c.from.id)) return identity;
   }
   if (c.seq == 0) return {Reason::bad_argument, "command numbers start at 1"};
-  if (c.kind != CommandKind::stop && !is_meant(c.epoch)) return {Reason::name_taken};
-  if (memory_.too_old(c.from.participant, c.seq,
-                      c.kind == CommandKind::stop ? Line::none : line_of(c.kind)) &&
+  if (!stops && !is_meant(c.epoch)) return {Reason::name_taken};
+  if (memory_.too_old(c.from.participant, c.seq, stops ? Line::none : c.request.info->line) &&
       !params_.defects.has(Defect::repeat_done_twice))
     return {Reason::stale_sequence};
   const Station* station = stations_.find(c.from.name);
-  if (c.kind != CommandKind::stop && station && station->protocol != 0 &&
-      station->protocol != params_.protocol)
+  if (!stops && station && station->protocol != 0 && station->protocol != params_.protocol)
     return {Reason::wrong_protocol};
-  if (!open_to_all(c.kind)) {
+  if (c.request.info->conditions.holder) {
     const Outcome holds = check_holder(c);
     if (holds.reason != Reason::none) return holds;
   }
@@ -149,38 +130,42 @@ CommandInterface::Outcome CommandInterface::check_holder(const Command& c) const
 }
 
 CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) {
-  switch (c.kind) {
-    case CommandKind::take:
+  if (c.request.verb == verb("stop")) return stop(c, now);  // whatever arguments it came with
+  if (c.invalid) return {c.invalid->reason, c.invalid->text};
+  switch (c.request.verb) {
+    case verb("take"):
       return take(c, now);
-    case CommandKind::release:
+    case verb("release"):
       return release(c, now);
-    case CommandKind::grant:
+    case verb("grant"):
       return grant(c, now);
-    case CommandKind::stop:
-      return stop(c, now);
-    case CommandKind::reset:
+    case verb("reset"):
       return reset(c, now);
-    case CommandKind::mode:
-    case CommandKind::go_to:
-      return request(c, now);
-    case CommandKind::lock:
+    case verb("mode"):
+      return asked(c, requests_.request_mode(c.request.word("MODE"), now));
+    case verb("goto"):
+      return asked(c, requests_.request_goal(place_of(c.request), now));
+    case verb("home"):
+      return asked(c, requests_.request_goal(params_.home, now));
+    case verb("lock"):
       authority_.lock();
       outputs_.changed();
       return {};
-    case CommandKind::unlock:
+    case verb("unlock"):
       authority_.unlock();
       outputs_.changed();
       return {};
-    case CommandKind::query:
-    case CommandKind::plan:  // who asks the global planner puts its words into the answer
+    case verb("query"):
+    case verb("plan"):  // RadioEdge asks the global planner and puts the route into the answer
       return {};
-    case CommandKind::restart:
-    case CommandKind::policy:
-      return supervise(c);
-    case CommandKind::unknown:
-      break;
+    case verb("restart"):
+      return outcome(supervised(outputs_.restart, c.request.word("COMPONENT")));
+    case verb("policy"):
+      return outcome(
+          supervised(outputs_.policy, c.request.word("COMPONENT"), c.request.word("POLICY") == "auto"));
+    default:
+      return {Reason::unknown_command};
   }
-  return {Reason::unknown_command};
 }
 
 CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
@@ -208,13 +193,14 @@ CommandInterface::Outcome CommandInterface::release(const Command& c, Time now) 
 }
 
 CommandInterface::Outcome CommandInterface::grant(const Command& c, Time now) {
-  if (c.text == c.from.name) return {Reason::bad_argument, "you hold the robot already"};
-  const Station* heir = stations_.find(c.text);
-  if (!heir || !stations_.heard(c.text, now)) return {Reason::unknown_operator};
-  const std::string text = c.from.name + " granted " + params_.robot + " to " + c.text;
+  const std::string to = c.request.word("OPERATOR");
+  if (to == c.from.name) return {Reason::bad_argument, "you hold the robot already"};
+  const Station* heir = stations_.find(to);
+  if (!heir || !stations_.heard(to, now)) return {Reason::unknown_operator};
+  const std::string text = c.from.name + " granted " + params_.robot + " to " + to;
   authority_.give({heir->name, heir->id}, now);
   requests_.holder_changed(now);
-  tell(c.text, Severity::info, "granted", Reason::none, text);
+  tell(to, Severity::info, "granted", Reason::none, text);
   tell(c.from.name, Severity::info, "granted", Reason::none, text);
   outputs_.changed();
   return {};
@@ -235,12 +221,13 @@ CommandInterface::Outcome CommandInterface::stop(const Command& c, Time now) {
 }
 
 CommandInterface::Outcome CommandInterface::reset(const Command& c, Time now) {
+  const bool others = c.request.has("--override");
   const Party own{c.from.name, c.from.id};
   if (!stops_.any()) return {};
-  if (!c.flag && !stops_.has(own))
+  if (!others && !stops_.has(own))
     return {Reason::stop_of_another, "stopped by " + stops_.all().front().name + "; use reset --override"};
   std::string text{};
-  if (c.flag) {
+  if (others) {
     for (const Party& stopper : stops_.all()) {
       if (stopper == own) continue;
       const std::string told = c.from.name + " reset the stop of " + stopper.name + " on " + params_.robot;
@@ -258,19 +245,10 @@ CommandInterface::Outcome CommandInterface::reset(const Command& c, Time now) {
   return {Reason::none, text};
 }
 
-CommandInterface::Outcome CommandInterface::request(const Command& c, Time now) {
-  const Result<void> result = c.kind == CommandKind::mode ? requests_.request_mode(c.text, now)
-                                                          : requests_.request_goal(c.position, now);
+CommandInterface::Outcome CommandInterface::asked(const Command& c, const Result<void>& result) const {
   if (result) return {};
   tell(c.from.name, Severity::warning, "mode_refused", result.reason(), result.error().text);
   return {result.reason(), result.error().text};
-}
-
-CommandInterface::Outcome CommandInterface::supervise(const Command& c) const {
-  if (!outputs_.restart || !outputs_.policy) return {Reason::not_supported};
-  const Result<void> result =
-      c.kind == CommandKind::restart ? outputs_.restart(c.text) : outputs_.policy(c.text, c.flag);
-  return result ? Outcome{} : Outcome{result.reason(), result.error().text};
 }
 
 std::optional<Answer> CommandInterface::handle(const StickSample& s, Time now) {

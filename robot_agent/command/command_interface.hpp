@@ -1,5 +1,6 @@
 #pragma once
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -19,6 +20,8 @@ struct CommandParams {
   std::uint64_t epoch_start{1};  ///< random id of this start
   Duration lock_lease{300s};     ///< a lock lapses when its holder was silent so long; 0: never
   std::uint16_t protocol{1};     ///< the version we speak
+  Eigen::Vector3d home{0.0, 0.0,
+                       std::numeric_limits<double>::quiet_NaN()};  ///< `home` goes there; map frame, m
   Defects defects{};
 };
 
@@ -85,8 +88,11 @@ class CommandInterface {
   Outcome grant(const Command& c, Time now);
   Outcome stop(const Command& c, Time now);
   Outcome reset(const Command& c, Time now);
-  Outcome request(const Command& c, Time now);
-  Outcome supervise(const Command& c) const;
+  static Outcome outcome(const Result<void>& result) {
+    return result ? Outcome{} : Outcome{result.reason(), result.error().text};
+  }
+  /// The same for what the behaviour was asked; the sender is notified of a refusal, too.
+  Outcome asked(const Command& c, const Result<void>& result) const;
   Outcome judge(const StickSample& s, Time now);
   Answer answer(const Command& c, const Outcome& outcome) const;
   /// Null when nobody holds, or he was not heard.

@@ -2,10 +2,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "core/command/request.hpp"
 #include "core/geometry/pose.hpp"
-#include "core/result/reason.hpp"
+#include "core/result/result.hpp"
 #include "core/wire/wire.hpp"
 
 /// What the command interface speaks, free of generated message types: robot_agent/radio/convert.cpp
@@ -32,32 +34,13 @@ struct Sender {
   wire::ParticipantId participant{};
 };
 
-enum class CommandKind : std::uint8_t {
-  take,
-  release,
-  lock,
-  unlock,
-  grant,
-  stop,
-  reset,
-  mode,
-  go_to,
-  query,
-  restart,
-  policy,
-  plan,
-  unknown
-};
-
 struct Command {
   std::string robot{};
   Sender from{};
   Epoch epoch{};
   std::uint64_t seq{};
-  CommandKind kind{CommandKind::query};
-  std::string text{};  ///< mode: its name; grant: the operator's; restart, policy: the component
-  Eigen::Vector3d position{Eigen::Vector3d::Zero()};  ///< goto, plan: map frame, m; z may be NaN
-  bool flag{};                                        ///< reset: override; policy: automatic
+  command::Request request{command::verb("query")};
+  std::optional<Error> invalid{};  ///< why the arguments are refused; `request` has its row alone then
 };
 
 /// Exactly one per command and repeat.
@@ -92,6 +75,11 @@ struct Notice {
   Reason reason{Reason::none};
   std::string text{};
 };
+
+/// The point that a command names, map frame, m; z is NaN when it was not given.
+inline Eigen::Vector3d place_of(const command::Request& request) {
+  return {request.number("X"), request.number("Y"), request.number("Z")};
+}
 
 /// 1 to 32 of [A-Za-z0-9_-].
 bool valid_name(const std::string& name);

@@ -1,6 +1,7 @@
 #include "robot_agent/radio/convert.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace adit::agent {
@@ -16,39 +17,6 @@ constexpr std::string_view kNameTaken = "name_taken:";
 
 std::string clipped(const std::string& text, std::size_t most) {
   return text.size() <= most ? text : text.substr(0, most - 3) + "...";
-}
-
-// A number that this version does not know is no reason to stop reading.
-CommandKind from_radio(radio::CommandKind kind) {
-  switch (kind) {
-    case radio::CMD_TAKE:
-      return CommandKind::take;
-    case radio::CMD_RELEASE:
-      return CommandKind::release;
-    case radio::CMD_LOCK:
-      return CommandKind::lock;
-    case radio::CMD_UNLOCK:
-      return CommandKind::unlock;
-    case radio::CMD_GRANT:
-      return CommandKind::grant;
-    case radio::CMD_STOP:
-      return CommandKind::stop;
-    case radio::CMD_RESET:
-      return CommandKind::reset;
-    case radio::CMD_MODE:
-      return CommandKind::mode;
-    case radio::CMD_GOTO:
-      return CommandKind::go_to;
-    case radio::CMD_QUERY:
-      return CommandKind::query;
-    case radio::CMD_RESTART:
-      return CommandKind::restart;
-    case radio::CMD_POLICY:
-      return CommandKind::policy;
-    case radio::CMD_PLAN:
-      return CommandKind::plan;
-  }
-  return CommandKind::unknown;
 }
 
 radio::Severity to_radio(Severity severity) {
@@ -106,10 +74,16 @@ Command from_radio(const radio::Command& in, const wire::ParticipantId& sender) 
   c.from = {bounded_name(in.station()), in.station_id(), sender};
   c.epoch = from_radio(in.epoch());
   c.seq = in.seq();
-  c.kind = from_radio(in.kind());
-  c.text = in.text();
-  c.position = {in.position()[0], in.position()[1], in.position()[2]};
-  c.flag = in.flag();
+  const auto number = static_cast<std::int32_t>(in.kind());
+  auto request = command::unpack({number, in.words(), in.numbers(), in.options()});
+  if (request) {
+    c.request = std::move(*request);
+    return c;
+  }
+  // A number that this version does not know is no reason to stop reading; neither are wrong arguments.
+  c.invalid = request.error();
+  if (const command::CommandInfo* row = command::find_number(number))
+    c.request = command::Request(command::verb_of(*row));
   return c;
 }
 
@@ -259,6 +233,7 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   out.max_turn(static_cast<float>(platform.max_turn));
   out.max_acceleration(static_cast<float>(platform.max_acceleration));
   out.step(static_cast<float>(platform.step));
+  out.slope(static_cast<float>(std::atan(platform.max_slope)));
   out.stairs(platform.stairs);
   out.sensors({"lidar", "odometry", "battery"});
   if (platform.router != "none") out.services().push_back("route");

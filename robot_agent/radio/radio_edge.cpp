@@ -131,14 +131,15 @@ Result<void> RadioEdge::listen(Parts parts) {
                  commands([&](CommandInterface& interface) {
                    const Command command = from_radio(c, info.sender);
                    const auto given = interface.handle(command, e.strand.now());
-                   if (!given || !given->accepted() || command.kind != CommandKind::plan)
+                   if (!given || !given->accepted() || command.request.verb != command::verb("plan"))
                      return answer(given);
-                   find_route(command.position, [answer, given = *given](const Result<std::string>& route) {
-                     Answer told = given;
-                     told.reason = route ? Reason::none : route.reason();
-                     told.text = route ? *route : route.error().text;
-                     answer(told);
-                   });
+                   find_route(place_of(command.request),
+                              [answer, given = *given](const Result<std::string>& route) {
+                                Answer told = given;
+                                told.reason = route ? Reason::none : route.reason();
+                                told.text = route ? *route : route.error().text;
+                                answer(told);
+                              });
                  });
                },
                e.robot),

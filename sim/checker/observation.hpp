@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,11 +42,12 @@ enum class Verb {
   stop,
   reset,
   mode,
-  go_to,
+  go_to,  ///< also home, then without a position
   query,
   restart,  ///< of a component, named in the text
   policy,   ///< of a component
   plan,     ///< a question to the global planner
+  pose,     ///< where the robot is
   unknown   ///< a number that the checker does not know
 };
 
@@ -80,7 +82,7 @@ struct CommandHeard {
   Verb verb{Verb::query};
   std::string text{};
   bool flag{};
-  std::array<double, 2> position{};  ///< goto: map frame, m
+  std::optional<std::array<double, 2>> position{};  ///< goto: map frame, m
 };
 struct JoystickHeard {
   wire::ParticipantId from{};

@@ -35,6 +35,7 @@ Verb verb_of(radio::CommandKind kind) {
     case radio::CMD_MODE:
       return Verb::mode;
     case radio::CMD_GOTO:
+    case radio::CMD_HOME:
       return Verb::go_to;
     case radio::CMD_QUERY:
       return Verb::query;
@@ -44,6 +45,8 @@ Verb verb_of(radio::CommandKind kind) {
       return Verb::policy;
     case radio::CMD_PLAN:
       return Verb::plan;
+    case radio::CMD_POSE:
+      return Verb::pose;
   }
   return Verb::unknown;
 }
@@ -67,9 +70,10 @@ Decoded command(std::span<const std::uint8_t> cdr, const wire::ParticipantId& fr
                      c->epoch().counter(),
                      c->seq(),
                      verb_of(c->kind()),
-                     c->text(),
-                     c->flag(),
-                     {c->position()[0], c->position()[1]}};
+                     c->words().empty() ? std::string{} : c->words().front(),
+                     c->options() != 0 || (c->words().size() == 2 && c->words().back() == "auto"),
+                     {}};
+  if (c->numbers().size() >= 2) heard.position = {c->numbers()[0], c->numbers()[1]};
   return DecodedSample{c->robot(), std::move(heard)};
 }
 

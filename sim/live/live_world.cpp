@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "basestation/command/parse.hpp"
+#include "core/command/parse.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
 
 namespace adit::sim {
@@ -32,9 +32,9 @@ Scenario judged_by_truth(const Scenario& scenario) {
 std::vector<Goal> goals_of(const Scenario& scenario) {
   std::vector<Goal> out;
   for (const ScriptLine& line : scenario.script) {
-    const auto request = station::parse(line.command);
-    if (!request || request->verb != station::Verb::go_to || request->robots.empty()) continue;
-    out.push_back({request->robots.front(), {request->numbers[0], request->numbers[1]}});
+    const auto request = command::parse(line.command);
+    if (!request || request->verb != command::verb("goto") || request->robots.empty()) continue;
+    out.push_back({request->robots.front(), {request->number("X"), request->number("Y")}});
   }
   return out;
 }

@@ -58,9 +58,9 @@ void Forger::write() {
   command.epoch().counter(e.stick->epoch_counter());
   command.seq(e.stick->sequence());
   command.kind(kinds[e.step++ % kinds.size()]);
-  command.text(command.kind() == radio::CMD_MODE ? "waypoint" : "");
-  command.position({2.0, 2.0, 0.0});
-  command.flag(true);
+  if (command.kind() == radio::CMD_MODE) command.words({"waypoint"});
+  if (command.kind() == radio::CMD_GOTO) command.numbers({2.0, 2.0});
+  if (command.kind() == radio::CMD_RESET) command.options(1);
   (void)e.command.write(command);  // whether it arrives is what the scenario looks at
 }
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "basestation/command/parse.hpp"
+#include "core/command/parse.hpp"
 #include "core/wire/link_file.hpp"
 #include "sim/rehearsal/random_script.hpp"
 #include "sim/rehearsal/scenario_parts.hpp"
@@ -12,7 +12,7 @@ using config::Node;
 
 void check_command(const Node& line, const std::string& command, const Scenario& scenario) {
   if (!line.has("do")) return;
-  auto request = station::parse(command);
+  auto request = command::parse(command);
   if (!request) return line.child("do").fail(request.error().reason, request.error().text);
   for (const std::string& robot : request->robots)
     if (!scenario.robot(robot))

@@ -122,9 +122,10 @@ class AgentBench {
     c.epoch(op.authority.epoch());
     c.seq(++op.seq);
     c.kind(kind);
-    c.text(text);
-    c.position({x, y, std::nan("")});
-    c.flag(flag);
+    if (!text.empty()) c.words().push_back(text);
+    if (kind == radio::CMD_POLICY) c.words().push_back(flag ? "auto" : "manual");
+    if (kind == radio::CMD_GOTO || kind == radio::CMD_PLAN) c.numbers({x, y});
+    if (kind == radio::CMD_RESET && flag) c.options(1);
     last_command = c;
     (void)op.command.write(c);
     return op.seq;

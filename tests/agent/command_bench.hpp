@@ -3,10 +3,10 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "core/command/parse.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "tests/agent/fake_requests.hpp"
 
@@ -59,19 +59,9 @@ class CommandBench {
     c.from = s.sender;
     c.epoch = interface_->authority().epoch();
     c.seq = ++s.seq;
-    std::istringstream words(line);
-    std::string verb;
-    words >> verb;
-    static const std::map<std::string, CommandKind> kinds{
-        {"take", CommandKind::take},     {"release", CommandKind::release}, {"lock", CommandKind::lock},
-        {"unlock", CommandKind::unlock}, {"grant", CommandKind::grant},     {"stop", CommandKind::stop},
-        {"reset", CommandKind::reset},   {"mode", CommandKind::mode},       {"goto", CommandKind::go_to}};
-    c.kind = kinds.at(verb);
-    if (c.kind == CommandKind::go_to)
-      words >> c.position.x() >> c.position.y();
-    else
-      words >> c.text;
-    c.flag = c.text == "--override";
+    const std::size_t blank = line.find(' ');  // the robot follows the first word
+    const std::string rest = blank == std::string::npos ? "" : line.substr(blank);
+    c.request = command::parse(line.substr(0, blank) + " r1" + rest).value();
     return c;
   }
   Answer say(const std::string& by, const std::string& line) { return send(command(by, line)); }

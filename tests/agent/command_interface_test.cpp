@@ -370,5 +370,31 @@ TEST(CommandInterface, TableOfStationsIsBounded) {
   EXPECT_EQ(bench.interface().stations().size(), StationTable::kCapacity);
 }
 
+TEST(CommandInterface, HomeIsAGoalAtTheStart) {
+  CommandParams params{};
+  params.home = {3.0, -2.0, std::nan("")};
+  CommandBench bench(params);
+  EXPECT_EQ(bench.say("op1", "home").reason, Reason::nobody_holds);
+  bench.say("op1", "take");
+  EXPECT_EQ(bench.say("op1", "home").reason, Reason::none);
+  EXPECT_EQ(bench.requests.goal.head<2>(), Eigen::Vector2d(3.0, -2.0));
+  EXPECT_TRUE(std::isnan(bench.requests.goal.z()));
+  bench.say("op2", "stop");
+  EXPECT_EQ(bench.say("op1", "home").reason, Reason::stopped);
+}
+
+// Rule 4: a stop is obeyed whatever else its message holds.
+TEST(CommandInterface, AStopWithWrongArgumentsStops) {
+  CommandBench bench;
+  Command stop = bench.command("op1", "stop");
+  stop.invalid = Error{Reason::bad_argument, "it came with arguments that do not fit"};
+  EXPECT_EQ(bench.send(stop).reason, Reason::none);
+  EXPECT_TRUE(bench.requests.stopped);
+  Command take = bench.command("op1", "take");
+  take.invalid = stop.invalid;
+  EXPECT_EQ(bench.send(take).reason, Reason::bad_argument);
+  EXPECT_FALSE(bench.interface().authority().holder());
+}
+
 }  // namespace
 }  // namespace adit::agent

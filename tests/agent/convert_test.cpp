@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/command/parse.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 
@@ -57,6 +58,44 @@ TEST(Convert, ShortTextsStay) {
   const auto ack = to_radio(answer, "r1");
   EXPECT_EQ(ack.station(), "op1");
   EXPECT_EQ(ack.text(), "locked by op2");
+}
+
+TEST(Convert, CommandsAreReadByTheCommandTable) {
+  radio::Command sample;
+  sample.robot("r1");
+  for (const command::CommandInfo& row : command::table()) {
+    if (row.runs != command::Runs::robot) continue;
+    const command::Request typed = command::parse(row.example).value();
+    const command::Payload payload = command::pack(typed);
+    sample.kind(static_cast<radio::CommandKind>(payload.number));
+    sample.words(payload.words);
+    sample.numbers(payload.numbers);
+    sample.options(payload.options);
+    std::vector<std::uint8_t> bytes;
+    wire::encode(sample, bytes);
+    radio::Command received;
+    ASSERT_TRUE(wire::decode(bytes, received)) << row.name;
+    const Command read = from_radio(received, {});
+    EXPECT_FALSE(read.invalid) << row.name;
+    EXPECT_EQ(read.request.verb, typed.verb) << row.name;
+  }
+}
+
+TEST(Convert, ACommandThatIsNotUnderstoodSaysWhy) {
+  radio::Command sample;
+  sample.kind(static_cast<radio::CommandKind>(200));
+  EXPECT_EQ(from_radio(sample, {}).invalid->reason, Reason::unknown_command);
+  sample.kind(radio::CMD_GOTO);
+  sample.numbers({1.0, std::nan("")});
+  EXPECT_EQ(from_radio(sample, {}).invalid->reason, Reason::out_of_range);
+  sample.kind(radio::CMD_STOP);
+  EXPECT_EQ(from_radio(sample, {}).request.verb, command::verb("stop"));
+}
+
+TEST(Convert, CapabilitiesNameTheSteepestSlope) {
+  Platform platform{};
+  platform.max_slope = 1.0;
+  EXPECT_NEAR(to_radio(platform, "r1", {}, 1).slope(), 0.785, 1e-3);
 }
 
 }  // namespace

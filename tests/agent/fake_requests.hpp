@@ -12,8 +12,9 @@ struct FakeRequests : Requests {
     calls.push_back("mode " + mode);
     return {};
   }
-  Result<void> request_goal(const Eigen::Vector3d&, Time) override {
+  Result<void> request_goal(const Eigen::Vector3d& to, Time) override {
     if (stopped) return {Reason::stopped, "stopped"};
+    goal = to;
     calls.push_back("goal");
     return {};
   }
@@ -35,6 +36,7 @@ struct FakeRequests : Requests {
   void resume_goal(Time) override { calls.push_back("resume"); }
 
   bool stopped{};
+  Eigen::Vector3d goal{0.0, 0.0, 0.0};  ///< the last one
   bool takes_stick{true};
   std::vector<std::string> calls{};
   std::vector<Twist2> sticks{};

@@ -32,7 +32,7 @@ inline radio::Command as_command(const std::string& line) {
   words >> verb >> text;
   radio::Command command;
   command.kind(kinds.at(verb));
-  command.text(text);
+  if (!text.empty()) command.words({text});
   return command;
 }
 

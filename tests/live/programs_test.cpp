@@ -59,8 +59,8 @@ TEST_F(Programs, ForeignParticipantMovesNothingAndIsReported) {
       command.station("op1");
       command.station_id(id);
       command.kind(kind);
-      command.text("waypoint");
-      command.position({3.0, 0.0, std::nan("")});
+      if (kind == radio::CMD_MODE) command.words({"waypoint"});
+      if (kind == radio::CMD_GOTO) command.numbers({3.0, 0.0});
       foreigner.announce("op1", id);  // as the holder's station would, started again
       const auto answer = foreigner.ask(command);
       ASSERT_TRUE(answer.has_value()) << "not even an answer";

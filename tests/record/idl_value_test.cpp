@@ -31,14 +31,14 @@ TEST(IdlValue, ACommandReadsAsItWasWritten) {
   command.epoch().start(0xFEDCBA9876543210);
   command.seq(7);
   command.kind(radio::CMD_GOTO);
-  command.position({1.5, -2.0, std::nan("")});
-  command.flag(true);
+  command.numbers({1.5, -2.0, std::nan("")});
+  command.options(1);
   const auto json = shown("adit::radio::Command", command);
   ASSERT_TRUE(json) << json.error().text;
   EXPECT_EQ(*json,
             R"({"robot":"r1","station":"op \"1\"\u000a","station_id":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,0],)"
-            R"("epoch":{"start":18364758544493064720,"counter":0},"seq":7,"kind":"CMD_GOTO","text":"",)"
-            R"("position":[1.5,-2,null],"flag":true})");
+            R"("epoch":{"start":18364758544493064720,"counter":0},"seq":7,"kind":"CMD_GOTO","words":[],)"
+            R"("numbers":[1.5,-2,null],"options":1})");
 }
 
 TEST(IdlValue, SequencesOfStructs) {

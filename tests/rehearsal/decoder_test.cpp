@@ -23,8 +23,7 @@ CommandHeard heard(radio::CommandKind kind) {
   command.robot("r1");
   command.station("op1");
   command.kind(kind);
-  command.text("planner");
-  command.flag(true);
+  command.words({"planner", "auto"});
   const auto decoded = decode_received(wire::topics::command.name, bytes_of(command), {});
   EXPECT_TRUE(decoded.has_value());
   EXPECT_EQ(decoded->robot, "r1");
@@ -39,7 +38,8 @@ TEST(RadioDecoder, CommandsAreDecodedAsWhatTheyAre) {
       {radio::CMD_RESET, Verb::reset},     {radio::CMD_MODE, Verb::mode},
       {radio::CMD_GOTO, Verb::go_to},      {radio::CMD_QUERY, Verb::query},
       {radio::CMD_RESTART, Verb::restart}, {radio::CMD_POLICY, Verb::policy},
-      {radio::CMD_PLAN, Verb::plan}};
+      {radio::CMD_PLAN, Verb::plan},       {radio::CMD_HOME, Verb::go_to},
+      {radio::CMD_POSE, Verb::pose}};
   for (const auto& [kind, verb] : kinds) EXPECT_EQ(heard(kind).verb, verb) << kind;
   EXPECT_EQ(heard(radio::CMD_RESTART).text, "planner");
   EXPECT_TRUE(heard(radio::CMD_POLICY).flag);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "basestation/command/parse.hpp"
+#include "core/command/parse.hpp"
 
 namespace adit::sim {
 namespace {
@@ -41,7 +41,7 @@ TEST(RandomScript, AnotherSeedOtherLines) {
 
 TEST(RandomScript, EveryLineIsOneThatAnOperatorCanType) {
   for (const ScriptLine& line : draw_script(spec(), scenario(), Random(6))) {
-    const auto request = station::parse(line.command);
+    const auto request = command::parse(line.command);
     if (line.command.find("explore") != std::string::npos) continue;
     EXPECT_TRUE(request.ok()) << line.command << ": " << (request ? "" : request.error().text);
   }

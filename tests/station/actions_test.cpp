@@ -6,6 +6,7 @@
 
 #include "adit/authority.h"
 #include "adit/robot.h"
+#include "basestation/report/json.hpp"
 
 namespace adit::station {
 namespace {
@@ -132,6 +133,38 @@ TEST_F(Actions, OfASelectionEachRobotMustAccept) {
   EXPECT_TRUE(action("take", {"r1", "r2"}).valid);
   EXPECT_FALSE(action("goto", {"r1", "r2"}).valid);
   EXPECT_EQ(action("goto", {"r1", "r2"}).robot, "r2");
+}
+
+TEST_F(Actions, HomeAsksForWaypointAndPoseForHold) {
+  own("r1", "op1", own_id);
+  behave("r1", Reason::goal_missing);
+  EXPECT_TRUE(action("home").valid);
+  EXPECT_TRUE(action("pose").valid);
+  behave("r1", Reason::none, "waypoint");
+  EXPECT_TRUE(action("home").valid);
+  EXPECT_EQ(action("pose").reason, Reason::wrong_mode);
+}
+
+TEST_F(Actions, SayWhatACommandTakesAndHowDangerousItIs) {
+  own("r1", "op1", own_id);
+  const RobotView* robot = fleet_.robot("r1");
+  nlohmann::json grant, go_to, stop;
+  for (const nlohmann::json& row : actions_json(actions(fleet_, {robot}))) {
+    if (row["command"] == "grant") grant = row;
+    if (row["command"] == "goto") go_to = row;
+    if (row["command"] == "stop") stop = row;
+  }
+  EXPECT_EQ(grant["danger"], "high");
+  EXPECT_EQ(grant["robots"]["most"], 1);
+  EXPECT_EQ(grant["arguments"][0]["name"], "OPERATOR");
+  EXPECT_EQ(go_to["danger"], "some");
+  EXPECT_EQ(go_to["arguments"].size(), 3U);
+  EXPECT_EQ(go_to["arguments"][0]["unit"], "m");
+  EXPECT_EQ(go_to["arguments"][2]["least"], 0);
+  EXPECT_EQ(go_to["options"][0]["name"], "--wait");
+  EXPECT_EQ(stop["danger"], "none");
+  EXPECT_EQ(stop["robots"]["most"], 64);
+  EXPECT_TRUE(stop["robots"]["all"]);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST_F(DriveTest, ZerosThenModeThenTheValueThenZeros) {
   const auto& sticks = r1().sticks();
   EXPECT_EQ(sticks.front().sample.vx(), 0.0F);
   EXPECT_LT(sticks.front().at, r1().commands().back().at) << "the stick is there before the mode is asked";
-  EXPECT_EQ(r1().commands().back().command.text(), "manual");
+  EXPECT_EQ(r1().commands().back().command.words().front(), "manual");
   EXPECT_TRUE(ends_in_zero());
   const std::size_t count = sticks.size();
   run_for(2s);

@@ -98,15 +98,15 @@ TEST_F(ExecuteTest, QueriesShowTheFleet) {
 }
 
 TEST_F(ExecuteTest, RestartAndPolicyNameTheComponent) {
-  EXPECT_EQ(execute("restart r1 planner").text, "r1: planner is made anew\n");
+  EXPECT_EQ(execute("restart r1 planner").text, "r1: planner is restarted\n");
   const auto& restart = robots_[0]->commands().back().command;
   EXPECT_EQ(restart.kind(), radio::CMD_RESTART);
-  EXPECT_EQ(restart.text(), "planner");
+  EXPECT_THAT(restart.words(), ElementsAre("planner"));
   EXPECT_EQ(execute("policy r1 sensors auto").exit_code, 0);
   EXPECT_EQ(robots_[0]->commands().back().command.kind(), radio::CMD_POLICY);
-  EXPECT_TRUE(robots_[0]->commands().back().command.flag());
+  EXPECT_THAT(robots_[0]->commands().back().command.words(), ElementsAre("sensors", "auto"));
   EXPECT_EQ(execute("policy r1 sensors manual").exit_code, 0);
-  EXPECT_FALSE(robots_[0]->commands().back().command.flag());
+  EXPECT_THAT(robots_[0]->commands().back().command.words(), ElementsAre("sensors", "manual"));
   EXPECT_TRUE(robots_[1]->commands().empty());
 }
 
@@ -128,7 +128,7 @@ TEST_F(ExecuteTest, DownReleasesWhatItHoldsAndFallsSilent) {
 TEST_F(ExecuteTest, ObserversSeeWhatGoesOutAndComesBack) {
   std::vector<std::string> seen;
   op_->on_sent = [&](const Order& order, std::uint64_t seq) {
-    seen.push_back(std::string(to_string(order.kind)) + " " + std::to_string(seq));
+    seen.push_back(std::string(order.name()) + " " + std::to_string(seq));
   };
   op_->on_answer = [&](const Answer& answer) { seen.push_back(answer.robot + " " + answer.command); };
   execute("take r1");

@@ -87,14 +87,14 @@ void FakeRobot::act(const radio::Command& command) {
     holder_id = command.kind() == radio::CMD_TAKE ? command.station_id() : Id{};
     ++epoch;
   } else if (command.kind() == radio::CMD_MODE) {
-    behaviour.mode(command.text());
+    behaviour.mode(command.words().at(0));
   } else if (command.kind() == radio::CMD_STOP) {
     behaviour.stopped(true);
     behaviour.mode("hold");
   } else if (command.kind() == radio::CMD_GOTO) {
     behaviour.mode("waypoint");
     behaviour.goal_id(behaviour.goal_id() + 1);
-    behaviour.goal(command.position());
+    behaviour.goal({command.numbers().at(0), command.numbers().at(1), 0.0});
     behaviour.goal_state(radio::GOAL_ACTIVE);
   }
 }

@@ -23,7 +23,7 @@ TEST_F(SenderTest, NumbersRiseByOneFromOne) {
   EXPECT_EQ(execute("lock r1").exit_code, 0);
   EXPECT_EQ(execute("goto r1 4 5").exit_code, 0);
   EXPECT_THAT(r1().numbers(), ElementsAre(1, 2, 3));
-  EXPECT_EQ(r1().commands().back().command.position()[1], 5.0);
+  EXPECT_EQ(r1().commands().back().command.numbers()[1], 5.0);
   EXPECT_EQ(op_->counts().sent, 3U);
   EXPECT_EQ(op_->counts().accepted, 3U);
 }

@@ -49,7 +49,7 @@ inline std::vector<Example> examples() {
   radio::Command command;
   command.robot("r1");
   command.station("op1");
-  command.text("waypoint");
+  command.words({"waypoint"});
   all.push_back(example(topics::command, command));
   radio::Joystick joystick;
   joystick.robot("r1");

@@ -13,7 +13,7 @@
 #include <cstring>
 
 #include "basestation/cli/process/snapshot.hpp"
-#include "basestation/command/words.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station::cli {
 namespace {
@@ -165,7 +165,7 @@ bool Server::handle(std::uint64_t number, Client& client, const std::string& lin
     return found != request.end() && found->is_string();
   };
   if (!text("do") && !text("teleop")) return wrong("no request that this version knows");
-  if (text("teleop") && !valid_name(request["teleop"].get<std::string>()))
+  if (text("teleop") && !command::valid_name(request["teleop"].get<std::string>()))
     return wrong("teleop wants a robot's name");
   if (client.open.contains(id)) return wrong("the id is in use");
   if (client.open.size() >= max_open) return wrong("too many requests at once");

@@ -5,7 +5,7 @@
 
 #include "core/result/result.hpp"
 
-namespace adit::station {
+namespace adit::command {
 
 /// Splits a command line at blanks. 'single' and "double" quotes keep blanks together; outside single
 /// quotes a backslash takes the next character as it is. Errors: syntax (a quote that does not end, a control
@@ -25,4 +25,4 @@ std::string clean(std::string_view text, std::size_t limit);
 /// "a, b, c"; `none` when empty.
 std::string joined(const std::vector<std::string>& words, std::string_view none);
 
-}  // namespace adit::station
+}  // namespace adit::command

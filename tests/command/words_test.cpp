@@ -1,8 +1,8 @@
-#include "basestation/command/words.hpp"
+#include "core/command/words.hpp"
 
 #include <gmock/gmock.h>
 
-namespace adit::station {
+namespace adit::command {
 namespace {
 
 using testing::ElementsAre;
@@ -56,4 +56,4 @@ TEST(Words, CleanKeepsTheTerminalSafe) {
 }
 
 }  // namespace
-}  // namespace adit::station
+}  // namespace adit::command

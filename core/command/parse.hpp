@@ -3,15 +3,15 @@
 #include <string_view>
 #include <vector>
 
-#include "basestation/command/request.hpp"
+#include "core/command/request.hpp"
 #include "core/result/result.hpp"
 
-namespace adit::station {
+namespace adit::command {
 
 /// Parses one command line: the same in the shell, the prompt, a scenario's script and behind buttons.
 /// Errors (all wrong usage): syntax, unknown_command (with the nearest one), bad_argument, out_of_range,
-/// mode_unknown; the text is one line that tells what to type.
-Result<Request> parse(std::string_view line);
-Result<Request> parse(const std::vector<std::string>& words);
+/// mode_unknown; the text is one line that says what to type.
+Result<Request> parse(std::string_view line, Table rows = table());
+Result<Request> parse(const std::vector<std::string>& words, Table rows = table());
 
-}  // namespace adit::station
+}  // namespace adit::command

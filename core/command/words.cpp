@@ -1,8 +1,8 @@
-#include "basestation/command/words.hpp"
+#include "core/command/words.hpp"
 
 #include <algorithm>
 
-namespace adit::station {
+namespace adit::command {
 namespace {
 
 constexpr std::size_t max_line = 4096;
@@ -93,4 +93,4 @@ std::string joined(const std::vector<std::string>& words, std::string_view none)
   return out;
 }
 
-}  // namespace adit::station
+}  // namespace adit::command

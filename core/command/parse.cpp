@@ -1,0 +1,202 @@
+#include "core/command/parse.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "core/command/words.hpp"
+
+namespace adit::command {
+namespace {
+
+/// A whole word as a finite number, with no locale and no hexadecimal.
+bool to_number(std::string_view word, double& out) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
+  return error == std::errc() && end == word.data() + word.size() && std::isfinite(out);
+}
+
+/// An argument in a sentence: "a robot", "X", "auto or manual".
+std::string named(const Argument& argument) {
+  if (!argument.what.empty()) return std::string(argument.what);
+  if (argument.type != Type::choice) return std::string(argument.name);
+  std::string text;
+  for (const std::string& choice : choices(argument)) text += (text.empty() ? "" : " or ") + choice;
+  return text;
+}
+
+/// What a command takes, in a sentence: "a robot and a component", "one robot".
+std::string takes(const CommandInfo& command) {
+  std::vector<std::string> all;
+  for (const Argument& argument : command.arguments)
+    if (argument) all.push_back(named(argument));
+  if (all.empty()) return "takes no arguments";
+  if (all.size() == 1 && command.arguments[0].most == 1) {
+    const std::size_t article = all[0].find(' ');
+    return "takes one" + (article == std::string::npos ? " " + all[0] : all[0].substr(article));
+  }
+  std::string text = "takes " + all[0];
+  for (std::size_t i = 1; i < all.size(); ++i) text += (i + 1 < all.size() ? ", " : " and ") + all[i];
+  return text;
+}
+
+/// Reads the words of one line for one row of the table.
+class Reader {
+ public:
+  Reader(const CommandInfo& row, std::vector<std::string> words) : row_(row), words_(std::move(words)) {}
+
+  Result<Request> run() {
+    request_.info = &row_;
+    if (auto done = take_options(); !done) return done.error();
+    if (names_all()) return std::move(request_);
+    std::size_t argument = 0, word = 0;
+    for (std::size_t i = 0; i < row_.arguments.size(); ++i) {
+      if (row_.arguments[i].type != Type::keyword) continue;
+      const auto found =
+          std::find(words_.begin() + static_cast<std::ptrdiff_t>(word), words_.end(), row_.arguments[i].name);
+      const auto at = static_cast<std::size_t>(found - words_.begin());
+      if (auto done = assign(argument, i, word, at); !done) return done.error();
+      if (found == words_.end()) return wrong(row_, std::string(row_.arguments[i].name) + " is missing");
+      argument = i + 1;
+      word = at + 1;
+    }
+    if (auto done = assign(argument, row_.arguments.size(), word, words_.size()); !done) return done.error();
+    for (Value& option : options_) request_.values.push_back(std::move(option));
+    return std::move(request_);
+  }
+
+ private:
+  Result<void> take_options() {
+    std::vector<std::string> rest;
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      if (!words_[i].starts_with("--")) {
+        rest.push_back(words_[i]);
+        continue;
+      }
+      const std::size_t equals = words_[i].find('=');
+      const std::string name = words_[i].substr(0, equals);
+      const auto option = std::find_if(row_.options.begin(), row_.options.end(),
+                                       [&](const Option& o) { return o && o.name == name; });
+      if (option == row_.options.end() || (equals != std::string::npos && option->count() != 1))
+        return wrong(row_, "no option " + clean(words_[i], 32));
+      Value value{option->name, {}, {}};
+      for (std::size_t v = 0; v < option->count(); ++v) {
+        if (equals == std::string::npos && ++i == words_.size())
+          return wrong(row_, name + " wants " + std::string(option->values[v].name));
+        const std::string& word = words_[i];
+        Argument argument = option->values[v];
+        if (option->count() == 1) argument.name = option->name;
+        if (auto done = put(value, argument, equals == std::string::npos ? word : word.substr(equals + 1));
+            !done)
+          return done.error();
+      }
+      std::erase_if(options_, [&](const Value& given) { return given.name == value.name; });
+      options_.push_back(std::move(value));
+    }
+    words_ = std::move(rest);
+    return {};
+  }
+
+  /// `stop all`: names beside `all` change nothing.
+  bool names_all() {
+    request_.all = row_.arguments[0].all && std::find(words_.begin(), words_.end(), "all") != words_.end();
+    return request_.all;
+  }
+
+  /// Gives the words [from, to) to the arguments [begin, end), of which the optional ones take what is left.
+  Result<void> assign(std::size_t begin, std::size_t end, std::size_t from, std::size_t to) {
+    std::size_t least = 0, most = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Argument& argument = row_.arguments[i];
+      if (!argument) continue;
+      if (to - from >= least && to - from < least + std::size_t{argument.least} * argument.group)
+        missing_ = named(argument);
+      least += std::size_t{argument.least} * argument.group;
+      most += std::size_t{argument.most} * argument.group;
+    }
+    if (to - from < least) return wrong(row_, missing_ + " is missing");
+    if (to - from > most)
+      return wrong(row_, takes(row_) + (most == 0 ? "" : ", not " + std::to_string(to - from) + " words"));
+    std::size_t spare = to - from - least;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Argument& argument = row_.arguments[i];
+      if (!argument) continue;
+      const std::size_t extra =
+          std::min(spare, (std::size_t{argument.most} - argument.least) * argument.group) / argument.group;
+      spare -= extra * argument.group;
+      Value value{argument.name, {}, {}};
+      for (std::size_t n = (argument.least + extra) * argument.group; n > 0; --n)
+        if (auto done = put(value, argument, words_[from++]); !done) return done;
+      if (!value.words.empty() || !value.numbers.empty()) request_.values.push_back(std::move(value));
+    }
+    return spare > 0 ? Result<void>(wrong(row_, "its numbers come in pairs")) : Result<void>();
+  }
+
+  Result<void> put(Value& value, const Argument& argument, const std::string& word) {
+    if (argument.type == Type::robots) {
+      if (auto checked = check_word(row_, argument, word); !checked) return checked;
+      auto& robots = request_.robots;
+      if (std::find(robots.begin(), robots.end(), word) == robots.end()) robots.push_back(word);
+      return {};
+    }
+    if (argument.type != Type::number) {
+      value.words.push_back(word);
+      return check_word(row_, argument, word);
+    }
+    double number = 0.0;
+    if (!argument.unlimited.empty() && word == argument.unlimited)
+      number = std::numeric_limits<double>::infinity();
+    else if (!to_number(word, number))
+      return wrong(row_, std::string(argument.name) + " is a number, not '" + clean(word, 32) + "'");
+    value.numbers.push_back(number);
+    return check_number(row_, argument, number);
+  }
+
+  const CommandInfo& row_;
+  std::vector<std::string> words_;
+  Request request_{};
+  std::vector<Value> options_{};
+  std::string missing_{};
+};
+
+/// Of the rows with one first word, the one whose keyword was typed, else the one that has none.
+Result<const CommandInfo*> choose(const std::vector<const CommandInfo*>& found,
+                                  const std::vector<std::string>& words) {
+  const CommandInfo* plain = nullptr;
+  std::string expected;
+  for (const CommandInfo* row : found) {
+    const std::string_view keyword = row->name.substr(row->first_word().size());
+    if (keyword.empty()) {
+      plain = row;
+      continue;
+    }
+    if (std::find(words.begin() + 1, words.end(), keyword.substr(1)) != words.end()) return row;
+    expected += (expected.empty() ? "" : " or ") + std::string(keyword.substr(1));
+  }
+  if (plain != nullptr) return plain;
+  return wrong(*found.front(), expected + " is missing");
+}
+
+}  // namespace
+
+Result<Request> parse(const std::vector<std::string>& words, Table rows) {
+  if (words.empty()) return {Reason::syntax, "no command; try help"};
+  const auto found = find_commands(words.front(), rows);
+  if (found.empty()) {
+    const std::string meant = nearest(words.front(), command_names(rows));
+    return {Reason::unknown_command, "unknown command '" + clean(words.front(), 40) + "'" +
+                                         (meant.empty() ? "; try help" : ", did you mean " + meant + "?")};
+  }
+  auto row = choose(found, words);
+  if (!row) return row.error();
+  auto request = Reader(**row, {words.begin() + 1, words.end()}).run();
+  if (request) request->verb = static_cast<Verb>(*row - rows.data());
+  return request;
+}
+
+Result<Request> parse(std::string_view line, Table rows) {
+  auto words = split_words(line);
+  if (!words) return words.error();
+  return parse(*words, rows);
+}
+
+}  // namespace adit::command
