@@ -147,6 +147,9 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       return asked(c, requests_.request_goal(place_of(c.request), now));
     case verb("home"):
       return asked(c, requests_.request_goal(params_.home, now));
+    case verb("pose"):
+      return outcome(
+          requests_.set_pose({c.request.number("X"), c.request.number("Y"), c.request.number("YAW")}, now));
     case verb("lock"):
       authority_.lock();
       outputs_.changed();

@@ -125,6 +125,7 @@ class AgentBench {
     if (!text.empty()) c.words().push_back(text);
     if (kind == radio::CMD_POLICY) c.words().push_back(flag ? "auto" : "manual");
     if (kind == radio::CMD_GOTO || kind == radio::CMD_PLAN) c.numbers({x, y});
+    if (kind == radio::CMD_POSE) c.numbers({x, y, 0.0});
     if (kind == radio::CMD_RESET && flag) c.options(1);
     last_command = c;
     (void)op.command.write(c);

@@ -141,6 +141,19 @@ TEST_F(AgentTest, GoalInAnObstacleIsRefused) {
   EXPECT_THAT(op1.told(), Contains("mode_refused"));
 }
 
+TEST_F(AgentTest, PoseMovesNothingAndHomeGoesToTheStart) {
+  take();
+  ASSERT_EQ(bench.ask(op1, radio::CMD_POSE, {}, 3.0, 1.0), Reason::none);
+  bench.run(500ms);
+  EXPECT_NEAR(op1.state.x(), 3.0, 0.05);
+  EXPECT_NEAR(op1.state.y(), 1.0, 0.05);
+  EXPECT_EQ(bench.command, Twist2{});
+  ASSERT_EQ(bench.ask(op1, radio::CMD_HOME), Reason::none);
+  EXPECT_EQ(op1.behaviour.mode(), "waypoint");
+  EXPECT_EQ(op1.behaviour.goal()[0], 0.0) << "where it started in the map";
+  EXPECT_EQ(bench.ask(op1, radio::CMD_POSE, {}, 0.0, 0.0), Reason::wrong_mode);
+}
+
 class RoutedAgentTest : public testing::Test {
  protected:
   static AgentParams params() {

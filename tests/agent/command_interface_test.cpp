@@ -396,5 +396,18 @@ TEST(CommandInterface, AStopWithWrongArgumentsStops) {
   EXPECT_FALSE(bench.interface().authority().holder());
 }
 
+TEST(CommandInterface, PoseIsSetByTheHolderWhereTheBehaviourAllowsIt) {
+  CommandBench bench;
+  EXPECT_EQ(bench.say("op1", "pose 1 2 0.5").reason, Reason::nobody_holds);
+  bench.say("op1", "take");
+  EXPECT_EQ(bench.say("op1", "pose 1 2 0.5").reason, Reason::none);
+  EXPECT_EQ(bench.requests.pose.x, 1.0);
+  EXPECT_EQ(bench.requests.pose.y, 2.0);
+  EXPECT_EQ(bench.requests.pose.yaw, 0.5);
+  bench.requests.holds = false;
+  EXPECT_EQ(bench.say("op1", "pose 3 4 0").reason, Reason::wrong_mode);
+  EXPECT_EQ(bench.requests.pose.x, 1.0);
+}
+
 }  // namespace
 }  // namespace adit::agent

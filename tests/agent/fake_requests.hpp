@@ -18,7 +18,9 @@ struct FakeRequests : Requests {
     calls.push_back("goal");
     return {};
   }
-  Result<void> set_pose(const Pose2&, Time) override {
+  Result<void> set_pose(const Pose2& at, Time) override {
+    if (!holds) return {Reason::wrong_mode, "only in hold"};
+    pose = at;
     calls.push_back("pose");
     return {};
   }
@@ -38,6 +40,8 @@ struct FakeRequests : Requests {
   bool stopped{};
   Eigen::Vector3d goal{0.0, 0.0, 0.0};  ///< the last one
   bool takes_stick{true};
+  bool holds{true};
+  Pose2 pose{};  ///< the last one set
   std::vector<std::string> calls{};
   std::vector<Twist2> sticks{};
 };
