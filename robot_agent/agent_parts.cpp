@@ -6,6 +6,7 @@
 namespace adit::agent {
 namespace {
 
+/// A clean end waits so long for what is not on disk yet. The program ends itself after 3 s.
 constexpr Duration kDiskDrain = 2s;
 
 KeeperParams keeper_params(const AgentParams& params) {
@@ -75,11 +76,18 @@ Agent::Parts::Parts(const AgentParams& agent_params, Runtime& agent_runtime)
 Agent::Parts::~Parts() {
   watch_strand->end();
   for (Unit* unit : {&command, &sensors, &planner, &router}) unit->end();
-  // State that an operator was told to be stored is written first, unless the disk does not answer.
-  if (disk_strand) disk_strand->drain(kDiskDrain);
+  end_disk();
   if (watch) watch->stop();
   if (edges && edges->radio) edges->radio->close();
   if (edges && edges->driver) edges->driver->close();
+}
+
+void Agent::Parts::end_disk() {
+  if (!disk_strand) return;
+  if (edges && edges->driver) edges->driver->write({});  // the disk must not delay the zero
+  if (edges && edges->keeper) edges->keeper->flush();
+  if (edges && edges->findings) edges->findings->flush();
+  disk_strand->drain(kDiskDrain);  // one that does not answer must not keep the process from ending
 }
 
 UnitParams Agent::Parts::command_unit() {

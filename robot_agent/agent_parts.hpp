@@ -60,6 +60,8 @@ struct Agent::Parts {
   std::unique_ptr<Watch> watch{};
 
  private:
+  /// Writes what waits for the disk, for a bounded time.
+  void end_disk();
   std::mutex mutex_{};  // guards the next one: a planner that hangs may still be making it
   std::shared_ptr<const nav::PlannerLibrary> library_{};
 

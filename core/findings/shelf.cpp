@@ -153,10 +153,25 @@ void Shelf::write() {
     return keys;
   };
   for (const auto& [tried, key] : first(dropped_)) batch->remove.push_back(key);
-  for (const auto& [tried, key] : first(unsaved_))
-    batch->save.push_back({key, to_file(all_.at(key)), foreign_.contains(file_name(key))});
+  for (const auto& [tried, key] : first(unsaved_)) add_save(*batch, key);
   writing_ = batch;
   start(batch);
+}
+
+void Shelf::add_save(Batch& batch, const Key& key) const {
+  batch.save.push_back({key, to_file(all_.at(key)), foreign_.contains(file_name(key))});
+}
+
+void Shelf::flush() {
+  if (!disk_ || disk_->instant() || !writer_ || (unsaved_.empty() && dropped_.empty())) return;
+  auto batch = std::make_shared<Batch>();
+  for (const auto& [key, tried] : dropped_) batch->remove.push_back(key);
+  std::vector<const Finding*> left;
+  for (const auto& [key, tried] : unsaved_) left.push_back(&all_.at(key));
+  std::stable_sort(left.begin(), left.end(),
+                   [](const Finding* a, const Finding* b) { return a->importance > b->importance; });
+  for (const Finding* finding : left) add_save(*batch, finding->key);
+  writer_->post([disk = disk_, batch] { batch->run(*disk); });
 }
 
 void Shelf::start(const std::shared_ptr<Batch>& batch) {

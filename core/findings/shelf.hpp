@@ -51,6 +51,9 @@ class Shelf {
   /// False when it is full, or not valid. One that is there already stays as it is.
   bool put(Finding finding);
   void drop(const Key& key);
+  /// At a clean end, after the home strand has ended: hands all that is not on disk yet to the writer's
+  /// strand, the most important first. Nothing without such a strand, so that in rehearsal an end is a crash.
+  void flush();
 
   const std::map<Key, Finding>& all() const { return all_; }
   bool full() const { return all_.size() >= params_.most; }
@@ -64,6 +67,7 @@ class Shelf {
 
   void load_file(const std::string& name, LoadReport& report, std::vector<Finding>& found);
   void write();
+  void add_save(Batch& batch, const Key& key) const;
   void start(const std::shared_ptr<Batch>& batch);
   void written(const Batch& batch);
 

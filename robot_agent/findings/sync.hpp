@@ -44,6 +44,9 @@ class FindingSync {
   /// What to send now to the stations that are heard: none of them, nothing.
   std::vector<const findings::Finding*> due(const std::vector<StationId>& heard, Time now);
 
+  /// At a clean end, after the home strand has ended: hands what is not on disk yet to the writer's strand.
+  void flush() { shelf_.flush(); }
+
   std::size_t size() const { return shelf_.all().size(); }
   /// Given up or not taken since the start.
   std::uint32_t overflowed() const { return overflowed_; }

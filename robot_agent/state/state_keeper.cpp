@@ -164,6 +164,15 @@ void StateKeeper::when_safe(Task task) {
   w.waiting.emplace_back(w.needed, std::move(task));
 }
 
+void StateKeeper::flush() {
+  Writer& w = *writer_;
+  if (!w.disk || w.disk->instant() || !w.strand || !w.next) return;
+  w.strand->post([disk = w.disk, bytes = std::move(*w.next), generation = w.asked, mark = !w.marked] {
+    (void)write(disk, generation, bytes, mark);  // the last one: no strand is left to report an error to
+  });
+  w.next.reset();
+}
+
 void StateKeeper::tick() { writer_->tick(); }
 bool StateKeeper::failing() const { return writer_->failed; }
 const std::optional<Snapshot>& StateKeeper::given() const { return writer_->state; }

@@ -44,6 +44,9 @@ class StateKeeper {
   /// Runs once every state given so far is on disk: at once when it is, or when the disk fails. At most 256
   /// wait: beyond that the first of them is dropped (who sent it repeats).
   void when_safe(Task task);
+  /// At a clean end, after the command strand has ended: hands the newest state to the writer's strand when
+  /// it is not on disk yet. Nothing without such a strand, so that in rehearsal an end is a crash.
+  void flush();
   /// At 20 Hz: patience and retries.
   void tick();
 

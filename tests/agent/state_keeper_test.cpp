@@ -3,11 +3,14 @@
 #include <gmock/gmock.h>
 
 #include <condition_variable>
+#include <future>
 
 #include "core/exec/live_runtime.hpp"
 #include "core/exec/virtual_runtime.hpp"
+#include "core/store/file_disk.hpp"
 #include "core/store/memory_disk.hpp"
 #include "robot_agent/state/restored.hpp"
+#include "tests/store/scratch_folder.hpp"
 
 namespace adit::agent {
 namespace {
@@ -226,6 +229,32 @@ class SlowDisk final : public store::Disk {
   Result<void> remove_file(const std::string&) override { return {}; }
   Result<void> sync_folder() override { return {}; }
 };
+
+TEST(KeeperLive, TheNewestStateIsWrittenAtACleanEnd) {
+  const store::ScratchFolder folder;
+  LiveRuntime runtime;
+  const std::shared_ptr<store::Disk> disk = store::FileDisk::open(folder.path()).value();
+  auto writer = runtime.strand("disk");
+  auto command = runtime.strand("command");
+  std::unique_ptr<StateKeeper> keeper;
+  std::promise<void> given, written;
+  command->post([&] {
+    keeper = std::make_unique<StateKeeper>(KeeperParams{}, disk, *command, writer, 0,
+                                           StateKeeper::Outputs{[](bool, const std::string&) {}});
+    for (std::uint32_t goal = 1; goal <= 3; ++goal)
+      keeper->save(with_goal(goal), [] { return std::vector<KeptAnswers>{}; });
+    given.set_value();
+  });
+  given.get_future().wait();
+  command->end();
+  keeper->flush();
+  writer->post([&] { written.set_value(); });
+  ASSERT_EQ(written.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  writer->end();
+  const Restored r = restore_state(disk);
+  ASSERT_TRUE(r.snapshot);
+  EXPECT_EQ(r.snapshot->behaviour.goal_id, 3u);
+}
 
 TEST(KeeperLive, ADiskThatDoesNotAnswerHoldsUpNothing) {
   LiveRuntime runtime;

@@ -182,6 +182,29 @@ TEST_F(ShelfTest, AFullDiskIsTriedOnceARound) {
   EXPECT_THAT(told, ElementsAre("failing"));
 }
 
+TEST(ShelfLive, WhatIsNotOnDiskYetIsWrittenAtACleanEnd) {
+  const store::ScratchFolder folder;
+  LiveRuntime runtime;
+  auto writer = runtime.strand("disk");
+  auto home = runtime.strand("home");
+  const std::shared_ptr<store::Disk> disk = store::FileDisk::open(folder.path()).value();
+  std::unique_ptr<Shelf> shelf;
+  std::promise<void> reported, written;
+  home->post([&] {
+    shelf = std::make_unique<Shelf>(ShelfParams{}, disk, *home, writer,
+                                    Shelf::Outputs{[](const Key&) {}, [](bool, const std::string&) {}});
+    for (std::uint64_t id = 1; id <= 100; ++id) EXPECT_TRUE(shelf->put(some(id)));
+    reported.set_value();
+  });
+  reported.get_future().wait();
+  home->end();
+  shelf->flush();
+  writer->post([&] { written.set_value(); });
+  ASSERT_EQ(written.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  writer->end();
+  EXPECT_EQ(disk->list().value().size(), 100u);
+}
+
 // A strand that is flooded drops posts, also the one that says that a batch was written.
 TEST(ShelfLive, ALostCompletionDoesNotEndItsWrites) {
   const store::ScratchFolder folder;
