@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/exec/fault.hpp"
+#include "core/exec/in_place.hpp"
 #include "core/exec/job_queue.hpp"
 #include "core/exec/live_shared.hpp"
 #include "core/exec/processor_use.hpp"
@@ -56,6 +57,22 @@ class Loop final : public Inbox {
       return false;
     }
     wake_.wake();
+    return true;
+  }
+
+  bool try_run(const Task& task) {
+    const std::unique_lock running(running_, std::try_to_lock);
+    if (!running) return false;
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_ || !posted_.empty()) return false;
+    }
+    static thread_local const int caller = static_cast<int>(syscall(SYS_gettid));
+    guest_.store(std::this_thread::get_id(), std::memory_order_relaxed);
+    guest_system_id_.store(caller, std::memory_order_relaxed);
+    invoke(task);
+    guest_system_id_.store(0, std::memory_order_relaxed);
+    guest_.store({}, std::memory_order_relaxed);
     return true;
   }
 
@@ -109,6 +126,7 @@ class Loop final : public Inbox {
     pthread_setname_np(pthread_self(), name_.substr(0, 15).c_str());
     std::vector<Task> batch;
     batch.reserve(kChunk);
+    std::unique_lock running(running_);
     while (!stop_now_.load(std::memory_order_relaxed)) {
       run_alarms();
       wake_.prepare();
@@ -124,7 +142,9 @@ class Loop final : public Inbox {
       }
       if (drained) break;
       if (sleep) {
+        running.unlock();  // while it sleeps, another thread may run a task for it
         wake_.wait(next_alarm_.load(std::memory_order_relaxed));
+        running.lock();
         continue;
       }
       wake_.clear();
@@ -144,15 +164,21 @@ class Loop final : public Inbox {
     exited_.notify_all();
   }
 
-  int system_id() const { return system_id_.load(std::memory_order_relaxed); }
+  /// Of the thread that runs its tasks now; 0: it does not run yet.
+  int system_id() const {
+    const int guest = guest_system_id_.load(std::memory_order_relaxed);
+    return guest != 0 ? guest : system_id_.load(std::memory_order_relaxed);
+  }
   const std::string& name() const { return name_; }
   const std::shared_ptr<LiveRuntime::Shared>& shared() const { return shared_; }
   bool on_own_thread() const {
-    return std::this_thread::get_id() == thread_id_.load(std::memory_order_relaxed);
+    const auto self = std::this_thread::get_id();
+    return self == thread_id_.load(std::memory_order_relaxed) ||
+           self == guest_.load(std::memory_order_relaxed);
   }
 
  private:
-  void invoke(Task& task) {
+  void invoke(const Task& task) {
     try {
       task();
     } catch (...) {
@@ -220,7 +246,10 @@ class Loop final : public Inbox {
   std::atomic<bool> stop_now_{false};
   std::atomic<std::int64_t> next_alarm_{never};
   WakeWord wake_{};
-  std::mutex mutex_{};  // guards what follows
+  std::mutex running_{};                  // held by the thread that runs a task of this strand
+  std::atomic<std::thread::id> guest_{};  // which is not its own one
+  std::atomic<int> guest_system_id_{0};   // of that thread
+  std::mutex mutex_{};                    // guards what follows
   std::deque<Task> posted_{};
   std::vector<Alarm> alarms_{};
   std::uint64_t order_{0};
@@ -248,7 +277,7 @@ struct OwnJobs {
   }
 };
 
-class LiveStrand final : public Strand, public OnProcessor, public CanHang {
+class LiveStrand final : public Strand, public OnProcessor, public InPlace, public CanHang {
  public:
   LiveStrand(const std::shared_ptr<Loop>& loop, bool heavy)
       : Strand(loop),
@@ -289,6 +318,10 @@ class LiveStrand final : public Strand, public OnProcessor, public CanHang {
 
   const std::string& name() const override { return loop_->name(); }
   Time now() const override { return Time(Duration(steady_ns())); }
+  bool try_run(const Task& task) override {
+    const auto loop = loop_;  // the strand may be abandoned meanwhile
+    return loop->try_run(task);
+  }
   Timer after(Duration delay, Task task) override { return loop_->add_alarm(delay, 0ns, std::move(task)); }
   Timer every(Duration period, Task task) override {
     const Duration p = std::max(period, Duration(1));
