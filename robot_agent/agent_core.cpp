@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/time/random.hpp"
+#include "robot_agent/behaviour/modes/external.hpp"
 
 namespace adit::agent {
 namespace {
@@ -76,9 +77,9 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
                   commands_, behaviour_}),
       rivals_(now()) {}
 
-void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
+void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received) {
   protect([&] {
-    if (!localisation_.update(odom, twist, stamp, now())) odometry_jumped();
+    if (!localisation_.update(odom, twist, stamp, received)) odometry_jumped();
   });
 }
 
@@ -98,13 +99,13 @@ Result<void> Agent::Core::set_pose(const Pose2& pose) {
   return {};
 }
 
-void Agent::Core::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp) {
+void Agent::Core::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received) {
   protect([&] {
     if (!localisation_.initialised()) return;
     auto scan = std::make_shared<Scan>();
     scan->points = std::move(*points);
     scan->body = localisation_.odom_at(stamp);
-    navigation_.add_scan(std::move(scan), now());
+    navigation_.add_scan(std::move(scan), received, now());
   });
 }
 
@@ -112,13 +113,15 @@ void Agent::Core::battery(float charge) {
   protect([&] { safeguards_.battery(charge, now()); });
 }
 
-void Agent::Core::external(const Twist2& velocity) {
-  protect([&] { behaviour_.program(velocity, now()); });
+void Agent::Core::external(const Twist2& velocity, Time received) {
+  protect([&] {
+    if (now() - received < ExternalMode::kFresh) behaviour_.program(velocity, received);
+  });
 }
 
-void Agent::Core::rival(const wire::ParticipantId& writer) {
+void Agent::Core::rival(const wire::ParticipantId& writer, Time received) {
   protect([&] {
-    if (rivals_.heard(writer, now())) notices_.rival(writer);
+    if (rivals_.heard(writer, received)) notices_.rival(writer);
   });
 }
 

@@ -59,12 +59,12 @@ class Agent::Core : public Component {
   Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider, Edges& edges,
        std::shared_ptr<const Lease> lease);
 
-  void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp);
-  void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp);
+  void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received);
+  void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received);
   void battery(float charge);
-  void external(const Twist2& velocity);
+  void external(const Twist2& velocity, Time received);
   /// Somebody else writes velocities to this robot's driver.
-  void rival(const wire::ParticipantId& writer);
+  void rival(const wire::ParticipantId& writer, Time received);
   void commands(const std::function<void(CommandInterface&)>& use);
   /// The way to a place (map frame, m), in words: `done` is called once, within half a second.
   void find_route(const Eigen::Vector3d& goal, std::function<void(const Result<std::string>&)> done);

@@ -132,9 +132,10 @@ UnitParams Agent::Parts::sensors_unit() {
   unit.make = [this](Executor& strand,
                      std::shared_ptr<const Lease> lease) -> Result<std::unique_ptr<Component>> {
     Executor& to = command_strand();
-    auto output = [&to, lease, edges = edges.get()](std::shared_ptr<PointCloud> points, std::uint64_t stamp) {
-      to.post([lease, edges, points = std::move(points), stamp] {
-        if (lease->valid() && edges->core) edges->core->scan(points, stamp);
+    auto output = [&to, lease, edges = edges.get()](std::shared_ptr<PointCloud> points, std::uint64_t stamp,
+                                                    Time received) {
+      to.post([lease, edges, points = std::move(points), stamp, received] {
+        if (lease->valid() && edges->core) edges->core->scan(points, stamp, received);
       });
     };
     return std::unique_ptr<Component>(std::make_unique<Scans>(
@@ -183,15 +184,16 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
     if (e.core) use(*e.core);
   };
   Driver::Handlers handlers{};
-  handlers.odometry = [with_core](const Pose3& odom, const Twist2& twist, std::uint64_t stamp) {
-    with_core([&](Core& core) { core.odometry(odom, twist, stamp); });
+  handlers.odometry = [with_core](const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
+                                  Time received) {
+    with_core([&](Core& core) { core.odometry(odom, twist, stamp, received); });
   };
   handlers.battery = [with_core](float charge) { with_core([&](Core& core) { core.battery(charge); }); };
-  handlers.external = [with_core](const Twist2& velocity) {
-    with_core([&](Core& core) { core.external(velocity); });
+  handlers.external = [with_core](const Twist2& velocity, Time received) {
+    with_core([&](Core& core) { core.external(velocity, received); });
   };
-  handlers.rival = [with_core](const wire::ParticipantId& writer) {
-    with_core([&](Core& core) { core.rival(writer); });
+  handlers.rival = [with_core](const wire::ParticipantId& writer, Time received) {
+    with_core([&](Core& core) { core.rival(writer, received); });
   };
   auto driver = Driver::open(robot, strand, params.velocity, std::move(handlers));
   if (!driver) return driver.error();
@@ -205,9 +207,9 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   e.planner = plans.get();
   if (routes_it) routes = std::make_unique<RouterUnit>(router, strand);
   e.router = routes.get();
-  auto opened =
-      Watch::open({params.name, params.supervision, Log(params.log, params.name), params.end, params.alive},
-                  *watch_strand, radio, robot, *e.notifier);
+  auto opened = Watch::open({params.name, params.supervision, Log(params.log, params.name), params.end,
+                             params.alive, params.velocity},
+                            *watch_strand, radio, robot, *e.notifier);
   if (!opened) return opened.error();
   watch = std::move(*opened);
   e.watch = watch.get();

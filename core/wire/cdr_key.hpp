@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -20,6 +21,13 @@ inline std::optional<std::string_view> first_string(std::span<const std::uint8_t
   const char* text = reinterpret_cast<const char*>(cdr.data()) + 8;
   if (length > 0 && text[length - 1] == '\0') --length;  // the terminator travels, too
   return std::string_view(text, length);
+}
+
+/// A number for a key (FNV-1a), equal for equal keys.
+inline std::uint64_t key_number(std::string_view key) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
 }
 
 }  // namespace adit::wire

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <string_view>
 
 #include "core/wire/wire.hpp"
@@ -50,6 +51,26 @@ inline Qos reader_qos(const TopicInfo& topic) {
   if (is_ros2(topic)) qos.reliable = false;
   return qos;
 }
+
+/// Keys of one topic that a writer writes, and that a reader stores at a time: those of writers that left
+/// give way to new ones. The library's default of 10 loses every peer beyond the tenth in silence.
+inline constexpr std::size_t max_keys = 256;
+
+/// Samples of one sender and key that wait for a reader's strand; then the newest replaces the oldest. A
+/// request or an answer is not made void by the one after it, although its writer repeats the newest alone.
+inline std::size_t mailbox_depth(const TopicInfo& topic) {
+  constexpr std::uint16_t requests = 8;
+  const bool request = topic.qos == QosClass::urgent && !is_ros2(topic);
+  return std::max<std::uint16_t>(topic.depth, request ? requests : 1);
+}
+/// True: when the strand is idle, the handler runs on the thread that received the sample, which saves the
+/// wake-up of another one. For a velocity on its way to the wheels only: such a handler must not make or drop
+/// endpoints, and while it does not return, its participant receives nothing.
+inline bool handled_in_place(const TopicInfo& topic) {
+  return topic.qos == QosClass::stream || (topic.qos == QosClass::urgent && is_ros2(topic));
+}
+/// Samples that a reader handles in one go; then other tasks of its strand have their turn.
+inline constexpr int samples_in_one_go = 16;
 
 /// Discovery, equal everywhere: with leases of different lengths endpoints are not matched again after a
 /// gap between the two. Any message renews a lease, so announcements can be rare on a thin link.

@@ -36,7 +36,7 @@ struct Topic : TopicInfo {};
 /// What the wire knows of a sample beside its bytes, whatever they say.
 struct SampleInfo {
   ParticipantId sender{};  ///< who really wrote it
-  Time received{};         ///< the receiver's clock
+  Time received{};         ///< when it arrived, by the receiver's clock, however long it waited since
 };
 
 /// Writes one topic; never blocks. An error says why the sample could not be queued; it is counted, too.
@@ -61,6 +61,9 @@ using RawHandler = std::function<bool(std::span<const std::uint8_t> cdr, const S
 struct ParticipantEvent {
   ParticipantId id{};
   bool present{};  ///< false: left, or its lease ran out
+  /// Not empty: it is present, but of a release whose radio contract differs from ours. Says which, for
+  /// people.
+  std::string incompatible{};
 };
 
 /// What passed on one topic between us and one peer since the start. Bytes are what the network
@@ -70,6 +73,7 @@ struct TopicCount {
   ParticipantId peer{};  ///< all zero: to whoever is matched (writers), or not known
   std::uint64_t samples_out{}, bytes_out{}, samples_in{}, bytes_in{};
   std::uint64_t failed_writes{}, malformed{}, lost{};
+  std::uint64_t overwritten{};  ///< samples that a newer one replaced before the reader's strand took them
 };
 
 struct WireCounters {
@@ -79,8 +83,8 @@ struct WireCounters {
 };
 
 /// One participant on one domain: makes the writers and readers of its topics, tells who else is there, and
-/// counts. Goodbye is said when it is destroyed. Errors are bad_argument and wire_failed. Calls are safe from
-/// any thread.
+/// counts. Goodbye is said when it is destroyed. Errors are bad_argument (also: another type, key or bound
+/// than a topic of that name has here already) and wire_failed. Calls are safe from any thread.
 class Wire {
  public:
   virtual ~Wire() = default;
@@ -95,7 +99,8 @@ class Wire {
   virtual Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
                                                          Executor& strand, RawHandler handler) = 0;
   /// Calls `handler` on `strand` for every other participant that comes or goes; those present already
-  /// are reported at once. One handler per wire; an empty one ends it, and `strand` may go.
+  /// are reported at once. One that turns out to be of another release is reported once more. One handler per
+  /// wire; an empty one ends it, and `strand` may go.
   virtual void on_participant(Executor& strand, std::function<void(const ParticipantEvent&)> handler) = 0;
   /// Since this participant was made.
   virtual WireCounters counters() const = 0;

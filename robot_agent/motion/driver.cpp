@@ -5,6 +5,7 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
+#include "geometry_msgs/msg/TwistStamped.h"
 #include "nav_msgs/msg/Odometry.h"
 #include "sensor_msgs/msg/BatteryState.h"
 
@@ -49,18 +50,20 @@ Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command
   if (!cmd_vel) return cmd_vel.error();
   e.cmd_vel = std::move(*cmd_vel);
 
-  auto odom = wire::make_reader(
-      wire, wire::topics::odom, command,
-      [odometry = std::move(handlers.odometry)](const nav_msgs::msg::Odometry& o, const wire::SampleInfo&) {
-        const auto& p = o.pose().pose().position();
-        const auto& q = o.pose().pose().orientation();
-        Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
-        const auto& v = o.twist().twist();
-        const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
-        if (!usable(pose, twist)) return;  // as good as silence: the robot stops when it goes on
-        pose.orientation.normalize();
-        odometry(pose, twist, stamp_of(o.header()));
-      });
+  auto odom =
+      wire::make_reader(wire, wire::topics::odom, command,
+                        [odometry = std::move(handlers.odometry)](const nav_msgs::msg::Odometry& o,
+                                                                  const wire::SampleInfo& info) {
+                          const auto& p = o.pose().pose().position();
+                          const auto& q = o.pose().pose().orientation();
+                          Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
+                          const auto& v = o.twist().twist();
+                          const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
+                          if (!usable(pose, twist))
+                            return;  // as good as silence: the robot stops when it goes on
+                          pose.orientation.normalize();
+                          odometry(pose, twist, stamp_of(o.header()), info.received);
+                        });
   if (!odom) return odom.error();
   e.odom = std::move(*odom);
 
@@ -73,17 +76,20 @@ Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command
 
   auto external = wire::make_reader(
       wire, wire::topics::external_cmd_vel, command,
-      [external = std::move(handlers.external)](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
-        external({t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()});
+      [external = std::move(handlers.external)](const geometry_msgs::msg::Twist& t,
+                                                const wire::SampleInfo& info) {
+        external({t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()}, info.received);
       });
   if (!external) return external.error();
   e.external = std::move(*external);
 
-  auto rival = wire::make_reader(wire, wire::topics::cmd_vel_heard, command,
-                                 [rival = std::move(handlers.rival), self = wire.id()](
-                                     const geometry_msgs::msg::Twist&, const wire::SampleInfo& info) {
-                                   if (info.sender != self) rival(info.sender);
-                                 });
+  const auto heard = [rival = std::move(handlers.rival), self = wire.id()](const auto& /*velocity*/,
+                                                                           const wire::SampleInfo& info) {
+    if (info.sender != self) rival(info.sender, info.received);
+  };
+  auto rival = type == VelocityType::twist_stamped
+                   ? wire::make_reader(wire, wire::topics::cmd_vel_stamped_heard, command, heard)
+                   : wire::make_reader(wire, wire::topics::cmd_vel_heard, command, heard);
   if (!rival) return rival.error();
   e.rival = std::move(*rival);
   return driver;

@@ -13,12 +13,15 @@ namespace adit::agent {
 /// Programs of the robot that steer in the mode `external` speak here, too.
 class Driver {
  public:
-  /// Called on the command strand. Stamps are of the driver's clock, ns.
+  /// Called on the command strand. `stamp`: the driver's clock, ns. `received`: when the sample arrived, by
+  /// our clock; it may have waited for the strand since.
   struct Handlers {
-    std::function<void(const Pose3& odom, const Twist2& twist, std::uint64_t stamp)> odometry{};
-    std::function<void(float charge)> battery{};                     ///< 0..1
-    std::function<void(const Twist2& velocity)> external{};          ///< what a program asks for
-    std::function<void(const wire::ParticipantId& writer)> rival{};  ///< somebody else wrote a velocity
+    std::function<void(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received)>
+        odometry{};
+    std::function<void(float charge)> battery{};                            ///< 0..1
+    std::function<void(const Twist2& velocity, Time received)> external{};  ///< what a program asks for
+    /// Another participant wrote a velocity.
+    std::function<void(const wire::ParticipantId& writer, Time received)> rival{};
   };
 
   /// Strand and wire must outlive the driver's last callback. Errors of the wire.

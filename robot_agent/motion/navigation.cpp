@@ -165,8 +165,8 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
   return t;
 }
 
-void Navigation::add_scan(std::shared_ptr<Scan> scan, Time now) {
-  scanned_ = now;
+void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now) {
+  scanned_ = received;
   monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
   if (planning_.under_way(planner_.instance(), now))
     waiting_ = scan;

@@ -51,7 +51,7 @@ class Navigation : public Component, public NavigationInput {
   void accept(MuxKey, const Motion& motion, Time now) override;
   /// The velocity for the next period, every period.
   void step(Time now);
-  void add_scan(std::shared_ptr<Scan> scan, Time now);
+  void add_scan(std::shared_ptr<Scan> scan, Time received, Time now);
   /// Forgets what was seen and planned in the odometry frame: it is another one now. Until the next scan the
   /// terrain is not fresh.
   void clear();

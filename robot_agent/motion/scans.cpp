@@ -22,27 +22,28 @@ Scans::Scans(Executor& strand, Log log, double lidar_height, Output output)
       lidar_height_(lidar_height),
       output_(std::move(output)) {}
 
-void Scans::give(const std::function<Result<PointCloud>()>& unpack, const std_msgs::msg::Header& header) {
+void Scans::give(const std::function<Result<PointCloud>()>& unpack, const std_msgs::msg::Header& header,
+                 Time received) {
   protect([&] {
     auto points = unpack();
     if (!points) return;  // terrain_stale follows, which the operator sees
     const auto& stamp = header.stamp();
     output_(std::make_shared<PointCloud>(std::move(*points)),
-            static_cast<std::uint64_t>(stamp.sec()) * 1'000'000'000u + stamp.nanosec());
+            static_cast<std::uint64_t>(stamp.sec()) * 1'000'000'000u + stamp.nanosec(), received);
   });
 }
 
-void Scans::take(const sensor_msgs::msg::PointCloud2& cloud) {
-  give([&] { return to_points(cloud); }, cloud.header());
+void Scans::take(const sensor_msgs::msg::PointCloud2& cloud, Time received) {
+  give([&] { return to_points(cloud); }, cloud.header(), received);
 }
 
-void Scans::take(const sensor_msgs::msg::LaserScan& scan) {
-  give([&] { return to_points(scan, lidar_height_); }, scan.header());
+void Scans::take(const sensor_msgs::msg::LaserScan& scan, Time received) {
+  give([&] { return to_points(scan, lidar_height_); }, scan.header(), received);
 }
 
 Result<Scans::Readers> Scans::read(wire::Wire& robot, Executor& strand, std::function<Scans*()> taker) {
-  const auto give = [taker = std::move(taker)](const auto& sample, const wire::SampleInfo&) {
-    if (Scans* scans = taker()) scans->take(sample);
+  const auto give = [taker = std::move(taker)](const auto& sample, const wire::SampleInfo& info) {
+    if (Scans* scans = taker()) scans->take(sample, info.received);
   };
   auto points = wire::make_reader<sensor_msgs::msg::PointCloud2>(robot, wire::topics::points, strand, give);
   if (!points) return points.error();

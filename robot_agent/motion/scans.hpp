@@ -20,14 +20,15 @@ namespace adit::agent {
 /// command strand up.
 class Scans : public Component {
  public:
-  /// Points in the frame of base_link, m; `stamp` is of the driver's clock, ns. On this strand.
-  using Output = std::function<void(std::shared_ptr<PointCloud> points, std::uint64_t stamp)>;
+  /// Points in the frame of base_link, m; `stamp` is of the driver's clock, ns; `received` is when the sample
+  /// arrived, by ours. On this strand.
+  using Output = std::function<void(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received)>;
 
   /// `lidar_height`: of a planar lidar above the ground, m.
   Scans(Executor& strand, Log log, double lidar_height, Output output);
   /// On its strand; nothing when it does not run.
-  void take(const sensor_msgs::msg::PointCloud2& cloud);
-  void take(const sensor_msgs::msg::LaserScan& scan);
+  void take(const sensor_msgs::msg::PointCloud2& cloud, Time received);
+  void take(const sensor_msgs::msg::LaserScan& scan, Time received);
 
   struct Readers {
     std::unique_ptr<wire::RawReader> points{}, scan{};
@@ -37,7 +38,8 @@ class Scans : public Component {
   static Result<Readers> read(wire::Wire& robot, Executor& strand, std::function<Scans*()> taker);
 
  private:
-  void give(const std::function<Result<PointCloud>()>& points, const std_msgs::msg::Header& header);
+  void give(const std::function<Result<PointCloud>()>& points, const std_msgs::msg::Header& header,
+            Time received);
 
   double lidar_height_;
   Output output_;

@@ -138,10 +138,19 @@ class OdometryTest : public testing::Test {
  protected:
   OdometryTest() {
     Driver::Handlers handlers{};
-    handlers.odometry = [this](const Pose3& pose, const Twist2&, std::uint64_t) { seen.push_back(pose); };
+    handlers.odometry = [this](const Pose3& pose, const Twist2&, std::uint64_t, Time received) {
+      seen.push_back(pose);
+      times.push_back(received);
+    };
     handlers.battery = [](float) {};
-    handlers.external = [this](const Twist2& velocity) { asked.push_back(velocity); };
-    handlers.rival = [this](const wire::ParticipantId& who) { rivals.push_back(who); };
+    handlers.external = [this](const Twist2& velocity, Time received) {
+      asked.push_back(velocity);
+      times.push_back(received);
+    };
+    handlers.rival = [this](const wire::ParticipantId& who, Time received) {
+      rivals.push_back(who);
+      times.push_back(received);
+    };
     driver = Driver::open(*agent, *strand, VelocityType::twist, std::move(handlers)).value();
     writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::odom).value();
     run(3s);
@@ -170,6 +179,7 @@ class OdometryTest : public testing::Test {
   std::vector<Pose3> seen{};
   std::vector<Twist2> asked{};
   std::vector<wire::ParticipantId> rivals{};
+  std::vector<Time> times{};
 };
 
 TEST_F(OdometryTest, WhatNoBodyCanHaveIsAsGoodAsSilence) {
@@ -197,6 +207,45 @@ TEST_F(OdometryTest, AProgramsVelocityIsHeardAndASecondWriterTold) {
   EXPECT_EQ(asked[0].vx, 0.3);
   ASSERT_EQ(rivals.size(), 1u);
   EXPECT_EQ(rivals[0], body->id());
+}
+
+TEST_F(OdometryTest, SamplesCarryTheTimeAtWhichTheyCame) {
+  geometry_msgs::msg::Twist twist;
+  auto outside = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::external_cmd_vel).value();
+  auto rival = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::cmd_vel).value();
+  run(3s);
+  const Time before = strand->now();
+  EXPECT_EQ(publish(1.0, 1.0, 0.5), 1u);
+  ASSERT_TRUE(outside.write(twist));
+  ASSERT_TRUE(rival.write(twist));
+  run(1s);
+  ASSERT_EQ(times.size(), 3u);
+  for (const Time at : times) {
+    EXPECT_GT(at, before);
+    EXPECT_LT(at, before + 200ms);
+  }
+}
+
+TEST(Rival, IsHeardInTheDriversOwnType) {
+  VirtualScheduler scheduler{1};
+  wire::Ether ether{scheduler, {}};
+  const std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
+  const std::shared_ptr<Executor> strand{machine->strand("command")};
+  const std::unique_ptr<wire::Wire> agent{ether.join(101, "r1")}, body{ether.join(101, "r1/driver")};
+  std::vector<wire::ParticipantId> rivals;
+  Driver::Handlers handlers{};
+  handlers.odometry = [](const Pose3&, const Twist2&, std::uint64_t, Time) {};
+  handlers.battery = [](float) {};
+  handlers.external = [](const Twist2&, Time) {};
+  handlers.rival = [&](const wire::ParticipantId& who, Time) { rivals.push_back(who); };
+  const auto driver = Driver::open(*agent, *strand, VelocityType::twist_stamped, std::move(handlers)).value();
+  auto rival =
+      wire::Writer<geometry_msgs::msg::TwistStamped>::make(*body, wire::topics::cmd_vel_stamped).value();
+  scheduler.run_until(3s);
+  driver->write({0.1, 0, 0});
+  ASSERT_TRUE(rival.write(geometry_msgs::msg::TwistStamped{}));
+  scheduler.run_until(4s);
+  EXPECT_EQ(rivals, std::vector{body->id()});
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ class NavigationTest : public testing::Test {
     for (float y = -0.5f; y <= 0.3f; y += 0.03f)
       for (float z = 0.1f; z < 0.8f; z += 0.1f)
         scan->points.emplace_back(2.0f - static_cast<float>(seen.x), y, z);
-    navigation.add_scan(scan, strand->now());
+    navigation.add_scan(scan, strand->now(), strand->now());
     run(40ms);
     odometry(stands);
     for (int i = 0; i < 2; ++i) {

@@ -8,7 +8,6 @@ namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
 namespace {
 
-constexpr int max_keys = 256;     // the library's default of 10 loses every peer beyond the tenth in silence
 constexpr int reader_depth = 64;  // unkeyed: samples of all writers together until taken, which is at once
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
@@ -23,7 +22,7 @@ void common(const TopicInfo& topic, const Qos& qos, int depth, EndpointQos& out)
       qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   out.history().depth = depth;
-  const int keys = topic.keyed ? max_keys : 1;
+  const int keys = topic.keyed ? static_cast<int>(max_keys) : 1;
   out.resource_limits().max_instances = keys;
   out.resource_limits().max_samples_per_instance = depth;
   out.resource_limits().max_samples = keys * depth;

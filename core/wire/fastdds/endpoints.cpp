@@ -4,6 +4,7 @@
 #include <fastdds/dds/topic/Topic.hpp>
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/wire/cdr_key.hpp"
 #include "core/wire/cost.hpp"
@@ -15,6 +16,7 @@ namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
+using SteadyClock = std::chrono::steady_clock;
 
 std::vector<TopicCount> SharedCounts::all() const {
   const std::lock_guard lock(mutex_);
@@ -100,10 +102,7 @@ Result<std::unique_ptr<RawReader>> FastDdsReader::make(dds::Subscriber& subscrib
                                                        std::shared_ptr<SharedCounts> counts, Executor& strand,
                                                        RawHandler handler) {
   std::unique_ptr<FastDdsReader> reader(new FastDdsReader(subscriber));
-  reader->target_->handler = std::move(handler);
-  reader->target_->strand = &strand;
-  reader->target_->topic = topic.name;
-  reader->target_->counts = std::move(counts);
+  reader->target_ = std::make_shared<Target>(topic, std::move(counts), strand, std::move(handler));
   reader->reader_ =
       subscriber.create_datareader(&dds_topic, dds_reader_qos(topic), reader.get(),
                                    dds::StatusMask::data_available() << dds::StatusMask::sample_lost());
@@ -115,32 +114,108 @@ Result<std::unique_ptr<RawReader>> FastDdsReader::make(dds::Subscriber& subscrib
 }
 
 FastDdsReader::~FastDdsReader() {
-  {
-    const std::lock_guard lock(target_->mutex);
-    target_->closed = true;
-  }
+  if (target_) target_->close();
   if (reader_ != nullptr) subscriber_.delete_datareader(reader_);  // waits for our listener
 }
 
-void FastDdsReader::Target::run(const std::vector<std::uint8_t>& bytes, const ParticipantId& sender) {
-  const std::lock_guard lock(mutex);
-  if (closed) return;
-  if (!handler(bytes, SampleInfo{sender, strand->now()})) {
-    counts->change(topic, sender, [](TopicCount& c) { ++c.malformed; });
+FastDdsReader::Target::Target(const TopicInfo& info, std::shared_ptr<SharedCounts> shared, Executor& strand,
+                              RawHandler handler)
+    : topic(info.name),
+      keyed(info.keyed),
+      max_bytes(info.max_bytes),
+      counts(std::move(shared)),
+      strand_(strand),
+      in_place_(handled_in_place(info) ? dynamic_cast<InPlace*>(&strand) : nullptr),
+      handler_(std::move(handler)),
+      mailbox_(mailbox_depth(info), info.max_bytes) {}
+
+FastDdsReader::Buffer FastDdsReader::Target::buffer() {
+  const std::lock_guard lock(mutex_);
+  if (spare_.empty()) return {};
+  Buffer buffer = std::move(spare_.back());
+  spare_.pop_back();
+  return buffer;
+}
+
+void FastDdsReader::Target::recycle(Buffer buffer) {
+  constexpr std::size_t most = 2;  // one that is handled, one that is received into
+  if (spare_.size() < most) spare_.push_back(std::move(buffer));
+}
+
+void FastDdsReader::Target::put(Box::Entry entry) {
+  const std::lock_guard lock(mutex_);
+  if (closed_) return;
+  mailbox_.put(std::move(entry), [this](Box::Entry old) {
+    counts->change(topic, old.sender, [](TopicCount& c) { ++c.overwritten; });
+    recycle(std::move(old.payload));
+  });
+}
+
+void FastDdsReader::Target::notify() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (posted_ || closed_ || mailbox_.empty()) return;
+    posted_ = true;
   }
+  if (in_place_ != nullptr && in_place_->try_run([this] { handle(); })) return;
+  post();
+}
+
+void FastDdsReader::Target::post() {
+  strand_.post([self = shared_from_this()] { self->handle(); });
+}
+
+bool FastDdsReader::Target::handle_one() {
+  const std::lock_guard handling(handling_);
+  Box::Entry entry;
+  {
+    const std::lock_guard lock(mutex_);
+    if (closed_ || mailbox_.empty()) {
+      posted_ = false;
+      return false;
+    }
+    entry = mailbox_.take();
+  }
+  if (!handler_(entry.payload, SampleInfo{entry.sender, entry.received}))
+    counts->change(topic, entry.sender, [](TopicCount& c) { ++c.malformed; });
+  const std::lock_guard lock(mutex_);
+  recycle(std::move(entry.payload));
+  return true;
+}
+
+void FastDdsReader::Target::handle() {
+  try {
+    for (int i = 0; i < samples_in_one_go; ++i) {
+      if (!handle_one()) return;
+    }
+  } catch (...) {
+    post();  // the samples behind it are not lost
+    throw;
+  }
+  post();
+}
+
+void FastDdsReader::Target::close() {
+  const std::lock_guard handling(handling_);
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  mailbox_.clear();
 }
 
 void FastDdsReader::on_data_available(dds::DataReader* reader) {
+  Bytes bytes;
+  bytes.most = target_->max_bytes;
+  bytes.in = target_->buffer();
   for (;;) {
-    Bytes bytes;
     dds::SampleInfo info;
     try {
-      if (reader->take_next_sample(&bytes, &info) != ReturnCode_t::RETCODE_OK) return;
+      if (reader->take_next_sample(&bytes, &info) != ReturnCode_t::RETCODE_OK) break;
     } catch (const std::exception&) {
       target_->counts->change(target_->topic, {}, [](TopicCount& c) { ++c.malformed; });
-      return;
+      break;
     }
     if (!info.valid_data) continue;
+    const Time received(std::chrono::duration_cast<Duration>(SteadyClock::now().time_since_epoch()));
     const rtps::GUID_t writer = rtps::iHandle2GUID(info.publication_handle);
     ParticipantId sender{};
     std::copy(std::begin(writer.guidPrefix.value), std::end(writer.guidPrefix.value), sender.begin());
@@ -150,10 +225,12 @@ void FastDdsReader::on_data_available(dds::DataReader* reader) {
       if (bytes.too_long) ++c.malformed;
     });
     if (bytes.too_long) continue;
-    target_->strand->post([target = target_,
-                           in = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes.in)),
-                           sender] { target->run(*in, sender); });
+    const auto key = target_->keyed ? first_string(bytes.in) : std::nullopt;
+    const std::size_t size = bytes.in.size();
+    target_->put({sender, key ? key_number(*key) : 0, received, size, std::move(bytes.in)});
+    bytes.in = target_->buffer();
   }
+  target_->notify();
 }
 
 void FastDdsReader::on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) {

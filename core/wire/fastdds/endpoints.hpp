@@ -11,7 +11,9 @@
 #include <map>
 #include <mutex>
 
+#include "core/exec/in_place.hpp"
 #include "core/wire/fastdds/bytes_type.hpp"
+#include "core/wire/mailbox.hpp"
 #include "core/wire/wire.hpp"
 
 namespace adit::wire {
@@ -71,7 +73,7 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
   std::atomic<int> matched_{0};
 };
 
-/// One Fast DDS DataReader: takes in Fast DDS's thread, hands on to the strand.
+/// One Fast DDS DataReader: takes samples on Fast DDS's threads into a mailbox, which its strand empties.
 class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::DataReaderListener {
  public:
   static Result<std::unique_ptr<RawReader>> make(eprosima::fastdds::dds::Subscriber& subscriber,
@@ -82,15 +84,41 @@ class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::Da
   ~FastDdsReader() override;
 
  private:
+  using Buffer = std::vector<std::uint8_t>;
+  using Box = Mailbox<Buffer>;
+
   /// What a task on the strand needs; outlives the reader while one waits there.
-  struct Target {
-    std::recursive_mutex mutex{};  // recursive: a handler may drop its own reader
-    bool closed{};
-    RawHandler handler{};
-    Executor* strand{};
-    std::string topic{};
-    std::shared_ptr<SharedCounts> counts{};
-    void run(const std::vector<std::uint8_t>& bytes, const ParticipantId& sender);
+  struct Target : std::enable_shared_from_this<Target> {
+    Target(const TopicInfo& topic, std::shared_ptr<SharedCounts> counts, Executor& strand,
+           RawHandler handler);
+    /// A buffer to receive into, of a sample that was handled if there is one. Any thread.
+    Buffer buffer();
+    /// Any thread.
+    void put(Box::Entry entry);
+    /// Has the strand handle what is in the mailbox; one task of it is under way at a time. Any thread.
+    void notify();
+    void close();
+    void handle();
+
+    const std::string topic;
+    const bool keyed;
+    const std::uint32_t max_bytes;
+    const std::shared_ptr<SharedCounts> counts;
+
+   private:
+    void post();
+    bool handle_one();
+    void recycle(Buffer buffer);
+
+    Executor& strand_;
+    InPlace* in_place_;  ///< null: samples are posted to the strand
+    RawHandler handler_;
+    std::recursive_mutex handling_{};  // recursive: a handler may drop its own reader
+    std::mutex mutex_{};               // guards what follows
+    Box mailbox_;
+    std::vector<Buffer> spare_{};
+    bool posted_{};
+    bool closed_{};
   };
 
   explicit FastDdsReader(eprosima::fastdds::dds::Subscriber& subscriber) : subscriber_(subscriber) {}
@@ -100,7 +128,7 @@ class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::Da
 
   eprosima::fastdds::dds::Subscriber& subscriber_;
   eprosima::fastdds::dds::DataReader* reader_{};
-  std::shared_ptr<Target> target_{std::make_shared<Target>()};
+  std::shared_ptr<Target> target_{};
 };
 
 }  // namespace adit::wire

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "core/wire/cost.hpp"
+#include "core/wire/known_topics.hpp"
+#include "core/wire/mailbox.hpp"
 #include "core/wire/memory/ether.hpp"
 #include "core/wire/memory/radio.hpp"
 #include "core/wire/qos.hpp"
@@ -66,6 +68,7 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   };
 
   Result<void> write(std::span<const std::uint8_t> cdr);
+  Error refused(Reason reason, const std::string& why);
   void add(Sample sample);
   void match(EndpointId reader, bool reader_reliable);
   void send(EndpointId reader, const Sample& sample, std::uint16_t frames);
@@ -84,6 +87,7 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   bool discovery{};
   std::uint64_t next{1};
   std::deque<Sample> history{};
+  std::set<std::string> keys{};  ///< written so far
   std::map<EndpointId, Proxy> readers{};
   bool heartbeat_armed{};
   std::deque<Pending> pending{};
@@ -92,6 +96,7 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
 };
 
 struct ReaderState : std::enable_shared_from_this<ReaderState> {
+  using Box = Mailbox<Payload>;
   /// A sample that waits for those before it, or for its own missing frames. No bytes: never coming.
   struct Held {
     Sample sample{};
@@ -109,13 +114,21 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
   void on_gap(EndpointId writer, const std::vector<std::uint64_t>& sequences);
   void drain(EndpointId writer, Proxy& proxy);
   void deliver(EndpointId writer, const Sample& sample);
+  /// Notes the key of a sample. False: there are too many, all of writers that are still there.
+  bool take_key(EndpointId writer, const std::string& key);
+  /// Has the strand handle what is in the mailbox; one task of it is under way at a time.
+  void post();
+  void handle();
 
   Participant* owner{};
   int entity{};
   TopicOf topic{};
   bool discovery{};
-  Executor* strand{};
+  Executor* strand{};  ///< null: the reader is gone
   RawHandler handler{};
+  std::map<std::string, std::set<EndpointId>> keys{};  ///< with those that wrote them
+  Box mailbox{1, 0};
+  bool posted{};
   std::map<EndpointId, Proxy> writers{};
 };
 
@@ -126,6 +139,7 @@ struct Participant : std::enable_shared_from_this<Participant> {
     int tells{};      ///< announcements to it that are left, while it does not know us
     bool telling{};
     std::map<int, TopicOf> writers{}, readers{};  ///< as announced, by entity
+    std::string incompatible{};                   ///< as in ParticipantEvent
   };
 
   void start();
@@ -150,7 +164,7 @@ struct Participant : std::enable_shared_from_this<Participant> {
   void send(int to, Datagram datagram, std::function<void(Participant&, std::uint16_t)> arrive,
             bool discovery);
   Participant* peer_participant(int peer_node) const;
-  void tell(int peer, bool present);
+  void tell(int peer, bool present, const std::string& incompatible = {});
   TopicCount& count(const std::string& topic, const ParticipantId& peer);
 
   Ether::Core* core{};
@@ -160,6 +174,7 @@ struct Participant : std::enable_shared_from_this<Participant> {
   std::string machine{};
   bool stopped{};
   int announced{};
+  KnownTopics known_topics{};
   int next_entity{3};  ///< 1 and 2 are discovery's own writer and reader
   std::map<int, Peer> peers{};
   std::map<int, std::shared_ptr<WriterState>> writers{};

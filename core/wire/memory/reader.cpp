@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "core/wire/cdr_key.hpp"
 #include "core/wire/memory/participant.hpp"
 
 namespace adit::wire {
@@ -119,15 +120,59 @@ void ReaderState::deliver(EndpointId writer, const Sample& sample) {
     return;
   }
   owner->core->show(Frame::Kind::delivered, *sender, owner, topic, sample.bytes);
-  strand->post([weak = weak_from_this(), keep = std::weak_ptr(owner->shared_from_this()),
-                bytes = sample.bytes, sender_id = sender->id] {
-    const auto self = weak.lock();
+  if (strand == nullptr) return;
+  if (topic.keyed && !take_key(writer, sample.key)) {
+    ++in.lost;
+    return;
+  }
+  const std::uint64_t key = topic.keyed ? key_number(sample.key) : 0;
+  mailbox.put({sender->id, key, strand->now(), sample.bytes->size(), sample.bytes},
+              [this](const Box::Entry& old) { ++owner->count(topic.name, old.sender).overwritten; });
+  if (!posted) post();
+}
+
+bool ReaderState::take_key(EndpointId writer, const std::string& key) {
+  const auto known = keys.find(key);
+  if (known != keys.end()) {
+    known->second.insert(writer);
+    return true;
+  }
+  if (keys.size() >= max_keys) {
+    std::erase_if(keys, [this](const auto& entry) {
+      return std::none_of(entry.second.begin(), entry.second.end(),
+                          [this](EndpointId id) { return writers.contains(id); });
+    });
+  }
+  if (keys.size() >= max_keys) return false;
+  keys[key].insert(writer);
+  return true;
+}
+
+void ReaderState::post() {
+  posted = true;
+  strand->post([weak = weak_from_this(), keep = std::weak_ptr(owner->shared_from_this())] {
     const auto participant = keep.lock();
-    if (!self || !participant || self->strand == nullptr || participant->stopped) return;
-    if (!self->handler(*bytes, SampleInfo{sender_id, self->strand->now()})) {
-      ++participant->count(self->topic.name, sender_id).malformed;
-    }
+    if (const auto self = weak.lock(); self && participant) self->handle();
   });
+}
+
+void ReaderState::handle() {
+  for (int i = 0; i < samples_in_one_go; ++i) {
+    if (strand == nullptr || owner->stopped || mailbox.empty()) {
+      posted = false;
+      return;
+    }
+    const Box::Entry entry = mailbox.take();
+    bool good = true;
+    try {
+      good = handler(*entry.payload, SampleInfo{entry.sender, entry.received});
+    } catch (...) {
+      if (strand != nullptr) post();  // the samples behind it are not lost
+      throw;
+    }
+    if (!good) ++owner->count(topic.name, entry.sender).malformed;
+  }
+  if (strand != nullptr) post();
 }
 
 }  // namespace adit::wire

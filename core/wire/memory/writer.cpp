@@ -18,23 +18,21 @@ std::uint64_t number_of(const std::string& key, int writer, int reader) {
 }  // namespace
 
 Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
-  TopicCount& out = owner->count(topic.name, {});
   if (cdr.size() > topic.max_bytes) {
-    ++out.failed_writes;
-    return Error{Reason::out_of_range, topic.name + ": sample of " + std::to_string(cdr.size()) +
-                                           " bytes, at most " + std::to_string(topic.max_bytes) +
-                                           " are allowed"};
+    return refused(Reason::out_of_range, "sample of " + std::to_string(cdr.size()) + " bytes, at most " +
+                                             std::to_string(topic.max_bytes) + " are allowed");
   }
   Sample sample;
   if (topic.keyed) {
     const auto key = first_string(cdr);
-    if (!key) {
-      ++out.failed_writes;
-      return Error{Reason::malformed, topic.name + ": the sample has no key"};
-    }
+    if (!key) return refused(Reason::malformed, "the sample has no key");
     sample.key = *key;
+    if (!keys.contains(sample.key)) {
+      if (keys.size() >= max_keys) return refused(Reason::queue_full, "too many keys");
+      keys.insert(sample.key);
+    }
   }
-  ++out.samples_out;
+  ++owner->count(topic.name, {}).samples_out;
   sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(cdr.begin(), cdr.end());
   const std::uint32_t largest = owner->core->radio->frame_bytes(owner->node);
   sample.frames = WireCost::frames(cdr.size(), largest);
@@ -42,6 +40,11 @@ Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
   if (!owner->stopped) owner->core->show(Frame::Kind::sent, *owner, nullptr, topic, sample.bytes);
   add(std::move(sample));
   return {};
+}
+
+Error WriterState::refused(Reason reason, const std::string& why) {
+  ++owner->count(topic.name, {}).failed_writes;
+  return Error{reason, topic.name + ": " + why};
 }
 
 void WriterState::add(Sample sample) {
