@@ -126,7 +126,12 @@ Result<void> Station::Impl::start() {
 
   // The wire keeps this handler for longer than we may live.
   radio_.on_participant(strand_, [this, alive = std::weak_ptr(alive_)](const wire::ParticipantEvent& event) {
-    if (!alive.expired() && event.present) announce_often();
+    if (alive.expired() || !event.present) return;
+    if (event.incompatible.empty()) return announce_often();
+    fleet_.say({.at = strand_.now(),
+                .level = Level::warning,
+                .code = "other_release",
+                .text = clean(event.incompatible, 240)});
   });
   // Phases drawn apart, so that stations that start together do not talk all at once.
   timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {

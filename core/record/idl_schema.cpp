@@ -78,6 +78,13 @@ struct Index {
 
 std::string scoped_name(std::string_view dds_type) {
   std::string name(dds_type);
+  // The contract's version is part of the type's name on the wire, but no module of the IDL.
+  constexpr std::string_view family = "adit::radio::v";
+  if (name.starts_with(family)) {
+    const std::size_t end = name.find_first_not_of("0123456789", family.size());
+    if (end != std::string::npos && end > family.size() && name.compare(end, 2, "::") == 0)
+      name.erase(family.size() - 1, end + 2 - (family.size() - 1));
+  }
   const std::size_t mangled = name.find("::dds_::");
   if (mangled == std::string::npos || !name.ends_with('_')) return name;
   name.pop_back();

@@ -39,40 +39,42 @@ inline constexpr bool unkeyed = false;
 /// repaired in its turn, which would hold up those behind it for a round trip and more, but repeated by
 /// whoever waits for an answer. Nobody else writes a topic name or a QoS.
 inline constexpr Topic<radio::Capabilities> capabilities{
-    {"adit/capabilities", "adit::radio::Capabilities", QosClass::status, 1, keyed, 4096}};
+    {"adit/capabilities", "adit::radio::v1::Capabilities", QosClass::status, 1, keyed, 4096}};
 inline constexpr Topic<radio::Presence> presence{
-    {"adit/presence", "adit::radio::Presence", QosClass::state, 1, keyed, 256}};
+    {"adit/presence", "adit::radio::v1::Presence", QosClass::state, 1, keyed, 256}};
 inline constexpr Topic<radio::Command> command{
-    {"adit/command", "adit::radio::Command", QosClass::urgent, 1, unkeyed, 512}};
+    {"adit/command", "adit::radio::v1::Command", QosClass::urgent, 1, unkeyed, 512}};
 inline constexpr Topic<radio::Joystick> joystick{
-    {"adit/joystick", "adit::radio::Joystick", QosClass::stream, 1, unkeyed, 256}};
+    {"adit/joystick", "adit::radio::v1::Joystick", QosClass::stream, 1, unkeyed, 256}};
 inline constexpr Topic<radio::Acknowledgement> acknowledgement{
-    {"adit/acknowledgement", "adit::radio::Acknowledgement", QosClass::urgent, 1, unkeyed, 512}};
+    {"adit/acknowledgement", "adit::radio::v1::Acknowledgement", QosClass::urgent, 1, unkeyed, 512}};
 inline constexpr Topic<radio::AuthorityStatus> authority{
-    {"adit/authority", "adit::radio::AuthorityStatus", QosClass::status, 1, keyed, 2048}};
+    {"adit/authority", "adit::radio::v1::AuthorityStatus", QosClass::status, 1, keyed, 2048}};
 inline constexpr Topic<radio::RobotState> robot_state{
-    {"adit/robot_state", "adit::radio::RobotState", QosClass::state, 1, keyed, 256}};
+    {"adit/robot_state", "adit::radio::v1::RobotState", QosClass::state, 1, keyed, 256}};
 inline constexpr Topic<radio::BehaviourState> behaviour{
-    {"adit/behaviour", "adit::radio::BehaviourState", QosClass::status, 1, keyed, 2048}};
+    {"adit/behaviour", "adit::radio::v1::BehaviourState", QosClass::status, 1, keyed, 2048}};
 inline constexpr Topic<radio::Notification> notification{
-    {"adit/notification", "adit::radio::Notification", QosClass::status, 8, keyed, 1024}};
+    {"adit/notification", "adit::radio::v1::Notification", QosClass::status, 8, keyed, 1024}};
 inline constexpr Topic<radio::Health> health{
-    {"adit/health", "adit::radio::Health", QosClass::status, 1, keyed, 4096}};
+    {"adit/health", "adit::radio::v1::Health", QosClass::status, 1, keyed, 4096}};
 inline constexpr Topic<radio::LinkReport> link_report{
-    {"adit/link", "adit::radio::LinkReport", QosClass::state, 1, keyed, 4096}};
+    {"adit/link", "adit::radio::v1::LinkReport", QosClass::state, 1, keyed, 4096}};
 inline constexpr Topic<radio::Finding> finding{
-    {"adit/finding", "adit::radio::Finding", QosClass::bulk, 8, unkeyed, 1024}};
+    {"adit/finding", "adit::radio::v1::Finding", QosClass::bulk, 8, unkeyed, 1024}};
 inline constexpr Topic<radio::FindingsAck> findings_ack{
-    {"adit/findings_ack", "adit::radio::FindingsAck", QosClass::bulk, 8, unkeyed, 1024}};
+    {"adit/findings_ack", "adit::radio::v1::FindingsAck", QosClass::bulk, 8, unkeyed, 1024}};
 
 /// The robot domain: ROS 2 names and types towards drivers.
 inline constexpr Topic<geometry_msgs::msg::Twist> cmd_vel{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::urgent, 1, unkeyed, 64}};
 inline constexpr Topic<geometry_msgs::msg::TwistStamped> cmd_vel_stamped{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_", QosClass::urgent, 1, unkeyed, 256}};
-/// Who listens for a second writer, reliable or not.
+/// The same topic for a reader that looks for a second writer, reliable or not.
 inline constexpr Topic<geometry_msgs::msg::Twist> cmd_vel_heard{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::state, 1, unkeyed, 64}};
+inline constexpr Topic<geometry_msgs::msg::TwistStamped> cmd_vel_stamped_heard{
+    {"rt/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_", QosClass::state, 1, unkeyed, 256}};
 /// What a program of the robot asks for in the mode `external`.
 inline constexpr Topic<geometry_msgs::msg::Twist> external_cmd_vel{
     {"rt/external/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::state, 1, unkeyed, 64}};

@@ -24,9 +24,9 @@ void encode(const T& sample, std::vector<std::uint8_t>& out) {
 }
 
 /// False when the bytes are no sample of T (wrong encapsulation, truncated, a bool of 2, lengths beyond the
-/// data). Never throws. A sequence is never longer than the bytes left, so what is allocated stays below 128
-/// times their number. Bounds of sequences are not checked (the generated code does not): a receiver that
-/// keeps one looks at its length.
+/// data, more than padding behind its end). Never throws. A sequence is never longer than the bytes left, so
+/// what is allocated stays below 128 times their number. Bounds of sequences are not checked (the generated
+/// code does not): a receiver that keeps one looks at its length.
 template <class T>
 bool decode(std::span<const std::uint8_t> bytes, T& sample) {
   if (bytes.size() < 4 || bytes[0] != 0 || bytes[1] > 1)
@@ -39,7 +39,8 @@ bool decode(std::span<const std::uint8_t> bytes, T& sample) {
                                eprosima::fastcdr::Cdr::DDS_CDR);
     cdr.read_encapsulation();
     sample.deserialize(cdr);
-    return true;
+    constexpr std::size_t padding = 3;  // of CDR, to four bytes
+    return bytes.size() - cdr.getSerializedDataLength() <= padding;
   } catch (const std::exception&) {
     return false;  // counted as malformed by the caller
   }

@@ -88,6 +88,7 @@ Result<void> RadioEdge::listen(Parts parts) {
   Namesakes& namesakes = parts.namesakes;
   e.wire.on_participant(e.strand,
                         [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
+                          if (!event.incompatible.empty()) return;  // stations tell their operators
                           directory.participant(event);
                           if (!event.present) namesakes.left(event.id);
                           if (event.present)

@@ -6,7 +6,6 @@
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
-#include "geometry_msgs/msg/Twist.h"
 #include "robot_agent/radio/convert.hpp"
 
 namespace adit::agent {
@@ -49,7 +48,7 @@ class Watch::Impl {
     auto health = wire::Writer<radio::Health>::make(radio, wire::topics::health);
     if (!health) return health.error();
     health_ = std::move(*health);
-    auto zero = wire::Writer<geometry_msgs::msg::Twist>::make(robot, wire::topics::cmd_vel);
+    auto zero = VelocityWriter::make(robot, params_.velocity);
     if (!zero) return zero.error();
     zero_ = std::move(*zero);
     return {};
@@ -139,7 +138,7 @@ class Watch::Impl {
     const PartStatus& command = supervisor_.status().front();
     const bool commands = command.state == PartState::up && command.silent <= kCommandSilent;
     const bool ends = supervisor_.escalated() || ending_.active();
-    if (!commands || ends) (void)zero_.write({});
+    if (!commands || ends) zero_.write({});
     if (commands && !ends && params_.alive) params_.alive();
     say_all();
     if (!changed_ && now - sent_ < kHealthPeriod) return;
@@ -155,7 +154,7 @@ class Watch::Impl {
   Notifier& notifier_;
   Supervisor supervisor_;
   wire::Writer<radio::Health> health_{};
-  wire::Writer<geometry_msgs::msg::Twist> zero_{};
+  VelocityWriter zero_{};
   std::vector<PartSpec> specs_{};  // as at the start: read from any thread
   std::vector<ComponentRow> notes_{};
   std::deque<Notice> unsaid_{};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/supervisor/supervisor.hpp"
+#include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/supervisor/component_row.hpp"
 
@@ -18,6 +19,7 @@ struct WatchParams {
   std::function<void(const std::string& why)> end{};
   /// Supervisor and command component both live: at each look, on the supervisor's strand.
   std::function<void()> alive{};
+  VelocityType velocity{VelocityType::twist};  ///< of the zeros for the driver
 };
 
 /// The supervisor of an agent, on a strand of its own beside the command strand: tells operators of health

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "geometry_msgs/msg/TwistStamped.h"
 #include "tests/agent/agent_bench.hpp"
 
 namespace adit::agent {
@@ -58,6 +59,32 @@ class SupervisionTest : public testing::Test {
   AgentBench bench;
   AgentBench::Operator* op{};
 };
+
+// The zeros of the supervisor are of the type that the driver knows.
+TEST(SupervisionOfAStampedDriver, GetsStampedZerosWhenTheCommandComponentHangs) {
+  std::string ended;
+  AgentParams p{};
+  p.name = "r1";
+  p.velocity = VelocityType::twist_stamped;
+  p.end = [&](const std::string& why) { ended = why; };
+  AgentBench bench(p);
+  const auto machine = bench.machine("driver");
+  const auto strand = machine->strand("driver");
+  const auto wire = bench.ether().join(100, "stamped");
+  std::size_t zeros = 0;
+  const auto reader =
+      wire::make_reader(*wire, wire::topics::cmd_vel_stamped, *strand,
+                        [&](const geometry_msgs::msg::TwistStamped& t, const wire::SampleInfo&) {
+                          if (t.twist().linear().x() == 0.0) ++zeros;
+                        });
+  bench.run(3s);
+  EXPECT_GT(zeros, 0u);
+  ASSERT_TRUE(bench.agent().inject("command", ComponentFault::hang));
+  bench.run(200ms);
+  const std::size_t before = zeros;
+  bench.run(1s);
+  EXPECT_GT(zeros, before);
+}
 
 TEST_F(SupervisionTest, ACrashedPlannerIsBackInATenthOfASecondAndTheRobotDrivesOn) {
   inject("planner", ComponentFault::crash);

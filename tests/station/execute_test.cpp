@@ -145,6 +145,18 @@ TEST_F(ExecuteTest, ALostRobotIsToldToTheOperator) {
   EXPECT_THAT(codes, ElementsAre("lost r1", "back r1"));
 }
 
+TEST_F(ExecuteTest, ARobotOfAnotherReleaseIsToldToTheOperator) {
+  std::vector<std::string> seen;
+  op_->on_notice = [&](const Notice& notice) { seen.push_back(notice.code + ": " + notice.text); };
+  const auto older = ether_.join(77, "r7");
+  constexpr wire::TopicInfo unversioned{
+      "adit/robot_state", "adit::radio::RobotState", wire::QosClass::state, 1, wire::topics::keyed, 256};
+  const auto writer = older->make_writer(unversioned, "");
+  run_for(3s);
+  EXPECT_THAT(seen,
+              ElementsAre(testing::StartsWith("other_release: r7 speaks version 0 of the radio contract")));
+}
+
 class FreshStation : public StationTest {};
 
 TEST_F(FreshStation, WaitsForARobotThatItHasNotDiscoveredYet) {

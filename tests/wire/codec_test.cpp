@@ -119,6 +119,17 @@ TEST(Codec, RandomDamageNeitherThrowsNorAllocatesWithoutBound) {
   }
 }
 
+// What another release wrote behind its end is no padding.
+TEST(Codec, MoreThanPaddingBehindASampleIsRefused) {
+  for (const Example& e : examples()) {
+    auto bytes = e.bytes;
+    bytes.resize(bytes.size() + 3);
+    EXPECT_TRUE(e.decodes(bytes)) << e.topic.name;
+    bytes.resize(bytes.size() + 5);
+    EXPECT_FALSE(e.decodes(bytes)) << e.topic.name;
+  }
+}
+
 TEST(Codec, TheKeyIsTheFirstStringOrNothing) {
   for (const Example& e : examples()) {
     if (e.topic.keyed) {

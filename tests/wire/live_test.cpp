@@ -6,6 +6,11 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <future>
 
 #include "core/wire/fastdds/fastdds_wire.hpp"
 #include "tests/wire/nets.hpp"
@@ -16,6 +21,14 @@ namespace {
 
 constexpr TopicInfo ping{"adit/ping", "Bytes", QosClass::urgent, 16, topics::unkeyed, 1 << 16};
 constexpr TopicInfo pong{"adit/pong", "Bytes", QosClass::urgent, 16, topics::unkeyed, 1 << 16};
+
+/// Resident memory of this process, KiB.
+long resident_kb() {
+  std::ifstream status("/proc/self/statm");
+  long size = 0, pages = 0;
+  status >> size >> pages;
+  return pages * (::sysconf(_SC_PAGESIZE) / 1024);
+}
 
 TEST(LiveWire, TwoProcessesEchoSmallAndLargeSamples) {
   LiveNet net;
@@ -176,6 +189,71 @@ TEST(LiveWire, LargeScansPassWhole) {
     ASSERT_TRUE(writer->write(scan).ok());
     EXPECT_TRUE(net.until([&] { return seen.size() >= i; }, 1s));
   }
+}
+
+// A reader that hangs costs one sample of memory, and has the newest when it goes on.
+TEST(LiveWire, AHungReaderOfScansCostsNoMemory) {
+  LiveNet net;
+  FastDdsParams params{.domain = live::domain(2), .large_samples = true};
+  const auto strand = net.strand("test");
+  const auto sim = std::move(open_fastdds(params)).value(), agent = std::move(open_fastdds(params)).value();
+  Seen<std::pair<int, std::size_t>> seen;
+  const auto reader = agent->make_reader(topics::points, "", *strand, [&](auto bytes, const SampleInfo&) {
+    seen.add({bytes[4], bytes.size()});
+    return true;
+  });
+  const auto writer = std::move(sim->make_writer(topics::points, "")).value();
+  ASSERT_TRUE(net.until([&] { return writer->matched() == 1; }));
+  net.pass(200ms);
+  std::vector<std::uint8_t> scan(1'000'000);
+  scan[1] = 1;
+  const auto received = [&] {
+    std::uint64_t sum = 0;
+    for (const TopicCount& count : agent->counters().topics) sum += count.samples_in;
+    return sum;
+  };
+  // The receive buffer may lose a fragment of a scan: so many are written until enough have come.
+  const auto write_until = [&](std::uint64_t enough) {
+    for (int i = 1; i <= 1000 && received() < enough; ++i) {
+      scan[4] = static_cast<std::uint8_t>(i);
+      ASSERT_TRUE(writer->write(scan).ok());
+      net.pass(5ms);
+    }
+  };
+  write_until(5);
+  std::promise<void> hang;
+  strand->post([&] { hang.get_future().wait(); });
+  net.pass(100ms);
+  const std::size_t before = seen.size();
+  write_until(received() + 3);
+  const long start = resident_kb();
+  write_until(received() + 60);
+  EXPECT_LT(resident_kb() - start, 8 * 1024);
+  hang.set_value();
+  ASSERT_TRUE(net.until([&] { return seen.size() > before; }));
+  net.pass(300ms);
+  EXPECT_LE(seen.size(), before + 2);  // of the one that came while it went on, too
+  EXPECT_EQ(seen.all().back(), (std::pair<int, std::size_t>{scan[4], scan.size()}));
+}
+
+// A ROS 2 robot's environment is its own: our participants take nothing from it.
+TEST(LiveWire, TheEnvironmentOfRos2ChangesNothing) {
+  LiveNet net;
+  const auto strand = net.strand("test");
+  char folder[] = "/tmp/adit-profiles-XXXXXX";
+  ASSERT_NE(::mkdtemp(folder), nullptr);
+  const std::string profiles = std::string(folder) + "/profiles.xml";
+  std::ofstream(profiles) << "<dds><log><use_default>FALSE</use_default></log><library_settings>"
+                             "<intraprocess_delivery>FULL</intraprocess_delivery></library_settings></dds>";
+  ::setenv("ROS_DISCOVERY_SERVER", "127.0.0.1:11811", 1);
+  ::setenv("FASTRTPS_DEFAULT_PROFILES_FILE", profiles.c_str(), 1);
+  const auto a = net.join("a"), b = net.join("b");
+  const auto writer = std::move(a->make_writer(ping, "")).value();
+  const auto reader = b->make_reader(ping, "", *strand, [](auto, const SampleInfo&) { return true; });
+  EXPECT_TRUE(net.until([&] { return writer->matched() == 1; }));
+  ::unsetenv("ROS_DISCOVERY_SERVER");
+  ::unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(LiveWire, WrongParametersAreErrors) {

@@ -12,7 +12,7 @@
 namespace adit::wire {
 namespace rtps = eprosima::fastrtps::rtps;
 
-BytesType::BytesType(const std::string& name, bool keyed, std::uint32_t max_bytes) : max_bytes_(max_bytes) {
+BytesType::BytesType(const std::string& name, bool keyed, std::uint32_t max_bytes) {
   setName(name.c_str());
   m_typeSize = max_bytes;
   m_isGetKeyDefined = keyed;
@@ -31,7 +31,7 @@ bool BytesType::serialize(void* data, rtps::SerializedPayload_t* payload) {
 
 bool BytesType::deserialize(rtps::SerializedPayload_t* payload, void* data) {
   auto& bytes = *static_cast<Bytes*>(data);
-  bytes.too_long = payload->length > max_bytes_;
+  bytes.too_long = payload->length > bytes.most;
   if (bytes.too_long) {
     bytes.in.clear();
   } else {

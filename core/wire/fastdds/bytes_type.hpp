@@ -12,6 +12,7 @@ namespace adit::wire {
 struct Bytes {
   std::span<const std::uint8_t> out{};
   std::vector<std::uint8_t> in{};
+  std::uint32_t most{UINT32_MAX};  ///< readers: a longer sample is not copied, and too_long is set
   bool too_long{};
 };
 
@@ -19,6 +20,7 @@ struct Bytes {
 /// anything, so nothing that a peer sends makes it throw. The key is the first member, a string.
 class BytesType final : public eprosima::fastdds::dds::TopicDataType {
  public:
+  /// `max_bytes`: of a sample, for the library's own bookkeeping.
   BytesType(const std::string& name, bool keyed, std::uint32_t max_bytes);
 
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
@@ -29,9 +31,6 @@ class BytesType final : public eprosima::fastdds::dds::TopicDataType {
   /// Always succeeds: samples without a readable key share one instance, so that a reader gets and counts
   /// them instead of the library dropping them in silence.
   bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle, bool force_md5) override;
-
- private:
-  std::uint32_t max_bytes_;
 };
 
 }  // namespace adit::wire

@@ -8,13 +8,16 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
 #include <algorithm>
-#include <set>
+#include <cstdlib>
+#include <map>
 
+#include "core/wire/contract.hpp"
 #include "core/wire/fastdds/counting_transport.hpp"
 #include "core/wire/fastdds/endpoints.hpp"
 #include "core/wire/fastdds/live_link.hpp"
 #include "core/wire/fastdds/participant_qos.hpp"
 #include "core/wire/fastdds/subnets.hpp"
+#include "core/wire/known_topics.hpp"
 
 namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
@@ -26,6 +29,18 @@ ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
   ParticipantId id{};
   std::copy(std::begin(prefix.value), std::end(prefix.value), id.begin());
   return id;
+}
+
+/// What Fast DDS takes from the environment of a ROS 2 robot would make our participants clients of a
+/// discovery server, or load profiles, and the radio would go deaf.
+void ignore_environment() {
+  for (const char* name : {"ROS_DISCOVERY_SERVER", "FASTRTPS_DEFAULT_PROFILES_FILE",
+                           "FASTDDS_ENVIRONMENT_FILE", "FASTDDS_STATISTICS"}) {
+    if (std::getenv(name) != nullptr) ::unsetenv(name);
+  }
+  constexpr const char* skip = "SKIP_DEFAULT_XML_FILE";  // DEFAULT_FASTRTPS_PROFILES.xml in this folder
+  const char* skipped = std::getenv(skip);
+  if (skipped == nullptr || std::string_view(skipped) != "1") ::setenv(skip, "1", 1);
 }
 
 /// Who is there, told to one handler on its strand.
@@ -40,7 +55,10 @@ class Presence final : public dds::DomainParticipantListener {
     target_ = std::make_shared<Target>();
     target_->handler = std::move(handler);
     strand_ = &strand;
-    for (const ParticipantId& id : present_) tell({id, true});
+    for (const auto& [id, peer] : present_) {
+      tell({id, true, {}});
+      if (!peer.incompatible.empty()) tell({id, true, peer.incompatible});
+    }
   }
   /// The handler is not running when this returns, and will not run again.
   void close() {
@@ -50,6 +68,10 @@ class Presence final : public dds::DomainParticipantListener {
   }
 
  private:
+  struct Peer {
+    std::string name{};          ///< as it announces itself
+    std::string incompatible{};  ///< as in ParticipantEvent
+  };
   struct Target {
     std::recursive_mutex mutex{};
     std::function<void(const ParticipantEvent&)> handler{};
@@ -66,13 +88,31 @@ class Presence final : public dds::DomainParticipantListener {
                       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
     if (gone) traffic_->contact.dropped(id);
     const std::lock_guard lock(mutex_);
-    const bool changed = gone ? present_.erase(id) > 0 : present_.insert(id).second;
-    if (changed) tell({id, !gone});
+    const bool changed =
+        gone ? present_.erase(id) > 0
+             : present_.try_emplace(id, Peer{info.info.m_participantName.to_string(), {}}).second;
+    if (changed) tell({id, !gone, {}});
+  }
+  void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) override {
+    look(info.info.guid().guidPrefix, info.info.typeName().to_string());
+  }
+  void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
+    look(info.info.guid().guidPrefix, info.info.typeName().to_string());
+  }
+  /// An endpoint of a peer has this type.
+  void look(const rtps::GuidPrefix_t& prefix, const std::string& type) {
+    const std::string version = other_release(type);
+    if (version.empty()) return;
+    const std::lock_guard lock(mutex_);
+    const auto peer = present_.find(id_of(prefix));
+    if (peer == present_.end() || !peer->second.incompatible.empty()) return;
+    peer->second.incompatible = describe_release(peer->second.name, version);
+    tell({peer->first, true, peer->second.incompatible});
   }
 
   void tell(ParticipantEvent event) {
     if (!target_) return;
-    strand_->post_control([target = target_, event] {
+    strand_->post_control([target = target_, event = std::move(event)] {
       const std::lock_guard lock(target->mutex);
       if (!target->closed) target->handler(event);
     });
@@ -80,7 +120,7 @@ class Presence final : public dds::DomainParticipantListener {
 
   std::shared_ptr<Traffic> traffic_;
   std::mutex mutex_{};
-  std::set<ParticipantId> present_{};
+  std::map<ParticipantId, Peer> present_{};
   Executor* strand_{};
   std::shared_ptr<Target> target_{};
 };
@@ -100,6 +140,7 @@ class FastDdsWire final : public Wire {
   }
 
   Result<void> open(const FastDdsParams& params) {
+    ignore_environment();
     // Everything passes the transports, also between participants of one process: it is counted there.
     eprosima::fastrtps::LibrarySettingsAttributes settings;
     settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
@@ -202,6 +243,7 @@ class FastDdsWire final : public Wire {
 
  private:
   Result<dds::Topic*> topic_of(const TopicInfo& topic) {
+    if (const auto allowed = known_.add(topic); !allowed) return allowed.error();
     dds::Topic*& known = topics_[topic.name];
     if (known != nullptr) return known;
     dds::TypeSupport type(new BytesType(topic.type, topic.keyed, topic.max_bytes));
@@ -220,6 +262,7 @@ class FastDdsWire final : public Wire {
   std::shared_ptr<SharedCounts> counts_{std::make_shared<SharedCounts>()};
   dds::DomainParticipant* participant_{};
   std::mutex mutex_{};
+  KnownTopics known_{};
   std::map<std::string, dds::Topic*> topics_{};
   std::map<std::string, dds::Publisher*> publishers_{};
   std::map<std::string, dds::Subscriber*> subscribers_{};

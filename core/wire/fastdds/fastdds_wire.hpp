@@ -26,6 +26,12 @@ struct FastDdsParams {
 };
 
 /// Opens the participant. Errors: wire_failed (with what to do), bad_argument.
+///
+/// Fast DDS has two settings that are the whole process's. Its environment: ROS_DISCOVERY_SERVER,
+/// FASTRTPS_DEFAULT_PROFILES_FILE, FASTDDS_ENVIRONMENT_FILE and FASTDDS_STATISTICS are removed from it, and a
+/// file DEFAULT_FASTRTPS_PROFILES.xml is not loaded; call this before other threads read the environment.
+/// Delivery inside the process: it is switched off, also between other participants of a program that embeds
+/// this wire, which then talk through their transports.
 Result<std::unique_ptr<Wire>> open_fastdds(const FastDdsParams& params);
 
 }  // namespace adit::wire

@@ -45,6 +45,7 @@ class MemoryWire final : public Wire {
 
   Result<std::unique_ptr<RawWriter>> make_writer(const TopicInfo& topic,
                                                  const std::string& partition) override {
+    if (const auto allowed = participant_->known_topics.add(topic); !allowed) return allowed.error();
     auto state = std::make_shared<WriterState>();
     state->owner = participant_.get();
     state->entity = participant_->next_entity++;
@@ -55,12 +56,14 @@ class MemoryWire final : public Wire {
 
   Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
                                                  Executor& strand, RawHandler handler) override {
+    if (const auto allowed = participant_->known_topics.add(topic); !allowed) return allowed.error();
     auto state = std::make_shared<ReaderState>();
     state->owner = participant_.get();
     state->entity = participant_->next_entity++;
     state->topic = topic_of(topic, partition, reader_qos(topic));
     state->strand = &strand;
     state->handler = std::move(handler);
+    state->mailbox = ReaderState::Box(mailbox_depth(topic), topic.max_bytes);
     participant_->add_reader(state);
     return std::unique_ptr<RawReader>(std::make_unique<MemoryReader>(participant_, state->entity));
   }
@@ -70,7 +73,10 @@ class MemoryWire final : public Wire {
     if (!handler) return participant_->event_handler.reset();
     participant_->event_handler =
         std::make_shared<std::function<void(const ParticipantEvent&)>>(std::move(handler));
-    for (const auto& [peer, state] : participant_->peers) participant_->tell(peer, true);
+    for (const auto& [peer, state] : participant_->peers) {
+      participant_->tell(peer, true);
+      if (!state.incompatible.empty()) participant_->tell(peer, true, state.incompatible);
+    }
   }
 
   WireCounters counters() const override {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/wire/contract.hpp"
+
 namespace adit::wire {
 namespace {
 
@@ -121,6 +123,13 @@ void Participant::on_endpoint(int from, int entity) {
   const EndpointId endpoint{from, entity};
   const auto writer = other->writers.find(entity);
   const auto reader = other->readers.find(entity);
+  const std::string version = writer != other->writers.end()   ? other_release(writer->second->topic.type)
+                              : reader != other->readers.end() ? other_release(reader->second->topic.type)
+                                                               : std::string{};
+  if (!version.empty() && peer->second.incompatible.empty()) {
+    peer->second.incompatible = describe_release(other->machine, version);
+    tell(from, true, peer->second.incompatible);
+  }
   if (writer != other->writers.end()) {
     peer->second.writers[entity] = writer->second->topic;
     for (const auto& [own, state] : readers) {
@@ -249,10 +258,10 @@ Participant* Participant::peer_participant(int peer_node) const {
   return core->participants[static_cast<std::size_t>(peer_node)].get();
 }
 
-void Participant::tell(int peer, bool present) {
+void Participant::tell(int peer, bool present, const std::string& incompatible) {
   if (!event_handler || stopped) return;
   event_strand->post([handler = std::weak_ptr(event_handler),
-                      event = ParticipantEvent{peer_participant(peer)->id, present}] {
+                      event = ParticipantEvent{peer_participant(peer)->id, present, incompatible}] {
     if (const auto call = handler.lock()) (*call)(event);
   });
 }

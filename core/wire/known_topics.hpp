@@ -1,0 +1,42 @@
+#pragma once
+#include <map>
+#include <string>
+
+#include "core/wire/wire.hpp"
+
+namespace adit::wire {
+
+/// The topics of one participant. DDS has one type per topic name and one kind of key per type name: what
+/// contradicts that is refused here, equally by both adapters.
+class KnownTopics {
+ public:
+  /// Notes the topic. Error bad_argument: a topic of this name has another type, key or bound, or the type
+  /// has a key elsewhere and none here.
+  Result<void> add(const TopicInfo& topic) {
+    const auto known = topics_.find(topic.name);
+    if (known != topics_.end() && known->second != Known{topic.type, topic.keyed, topic.max_bytes}) {
+      return Error{Reason::bad_argument,
+                   std::string(topic.name) + " is a topic of type " + known->second.type +
+                       " already, with another type, key or bound than asked for (" + topic.type + ")"};
+    }
+    const auto type = types_.try_emplace(topic.type, topic.keyed).first;
+    if (type->second != topic.keyed) {
+      return Error{Reason::bad_argument, std::string(topic.name) + ": its type " + topic.type +
+                                             " is used both with and without a key"};
+    }
+    topics_.try_emplace(topic.name, Known{topic.type, topic.keyed, topic.max_bytes});
+    return {};
+  }
+
+ private:
+  struct Known {
+    std::string type{};
+    bool keyed{};
+    std::uint32_t max_bytes{};
+    bool operator==(const Known&) const = default;
+  };
+  std::map<std::string, Known> topics_{};
+  std::map<std::string, bool> types_{};  // keyed?
+};
+
+}  // namespace adit::wire
