@@ -194,7 +194,7 @@ TEST_F(NavigationTest, AJumpOfTheOdometryEmptiesEveryMap) {
 
   auto scan = std::make_shared<Scan>();
   scan->points.emplace_back(-3.0f, 0.0f, 0.5f);  // Nothing is seen where the post was.
-  navigation.add_scan(scan, strand->now());
+  navigation.add_scan(scan, strand->now(), strand->now());
   run(100ms);
   EXPECT_TRUE(navigation.goal_free({2, 0})) << "the planner's map";
   EXPECT_EQ(router.last->odom_epoch, 2u);
@@ -204,7 +204,7 @@ TEST_F(NavigationTest, APlanOfTheOldFrameIsNotFollowed) {
   for (int i = 0; i < 10; ++i) cycle({}, {});
   auto scan = std::make_shared<Scan>();
   scan->points.emplace_back(2.0f, 0.0f, 0.5f);
-  navigation.add_scan(scan, strand->now());
+  navigation.add_scan(scan, strand->now(), strand->now());
   ASSERT_FALSE(localisation.update(Pose3::level({1e5, 0, 0}, 0), {}, ++stamp, strand->now()));
   navigation.clear();
   run(100ms);  // The plan comes back now.
