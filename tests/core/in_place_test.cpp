@@ -24,7 +24,7 @@ class InPlaceTest : public testing::Test {
   std::vector<std::string> failures{};
   LiveRuntime runtime{
       {.on_failure = [this](const std::string&, const std::string& what) { failures.push_back(what); }}};
-  std::shared_ptr<Executor> strand{runtime.strand("test")};
+  std::shared_ptr<Strand> strand{runtime.strand("test")};
 };
 
 TEST_F(InPlaceTest, AnIdleStrandsTaskRunsOnTheCallersThread) {

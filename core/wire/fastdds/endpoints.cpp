@@ -162,7 +162,10 @@ void FastDdsReader::Target::notify() {
 }
 
 void FastDdsReader::Target::post() {
-  strand_.post([self = shared_from_this()] { self->handle(); });
+  // Not bounded by the strand's queue: a reader has one such task.
+  if (strand_.post_control([self = shared_from_this()] { self->handle(); })) return;
+  const std::lock_guard lock(mutex_);
+  posted_ = false;
 }
 
 bool FastDdsReader::Target::handle_one() {

@@ -149,8 +149,7 @@ bool ReaderState::take_key(EndpointId writer, const std::string& key) {
 }
 
 void ReaderState::post() {
-  posted = true;
-  strand->post([weak = weak_from_this(), keep = std::weak_ptr(owner->shared_from_this())] {
+  posted = strand->post_control([weak = weak_from_this(), keep = std::weak_ptr(owner->shared_from_this())] {
     const auto participant = keep.lock();
     if (const auto self = weak.lock(); self && participant) self->handle();
   });
