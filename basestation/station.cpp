@@ -131,7 +131,7 @@ Result<void> Station::Impl::start() {
     fleet_.say({.at = strand_.now(),
                 .level = Level::warning,
                 .code = "other_release",
-                .text = clean(event.incompatible, 240)});
+                .text = command::clean(event.incompatible, 240)});
   });
   // Phases drawn apart, so that stations that start together do not talk all at once.
   timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {

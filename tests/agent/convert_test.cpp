@@ -95,7 +95,7 @@ TEST(Convert, ACommandThatIsNotUnderstoodSaysWhy) {
 TEST(Convert, CapabilitiesNameTheSteepestSlope) {
   Platform platform{};
   platform.max_slope = 1.0;
-  EXPECT_NEAR(to_radio(platform, "r1", {}, 1).slope(), 0.785, 1e-3);
+  EXPECT_NEAR(to_radio(platform, "r1", {}, 1, ModeTable::shipped()).slope(), 0.785, 1e-3);
 }
 
 }  // namespace
