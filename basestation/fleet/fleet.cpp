@@ -102,7 +102,8 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
 }
 
 void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
-  if (command::valid_name(sample.name()) && sample.name() != own_name_ && speaks_for(sample.name(), info.sender))
+  if (command::valid_name(sample.name()) && sample.name() != own_name_ &&
+      speaks_for(sample.name(), info.sender))
     links_.heard(sample.name(), sample.seq(), info.received);
   if (sample.kind() != radio::AGENT_STATION) {
     // Its states say more, but where the link is full they come as rarely as this.
