@@ -40,27 +40,28 @@ function(adit_program name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
-# Tests are compiled without optimisation: what they test is optimised, and their own code takes a quarter less time to
-# compile. Sanitizers keep their own level.
-function(adit_test_options target)
-  if(NOT ADIT_SANITIZE)
-    target_compile_options(${target} PRIVATE -O0)
+# The headers that nearly every test parses, parsed once for all tests of one optimisation level. Tests are compiled without
+# optimisation: the libraries under test are optimised, and a test takes a quarter less time to compile. Tests of folders that
+# compute much themselves stay optimised; sanitizers have a level of their own.
+function(adit_test_headers target optimised)
+  set(pch adit_test_pch)
+  set(level -O0)
+  if(optimised OR ADIT_SANITIZE)
+    set(level "")
+    string(APPEND pch _optimised)
   endif()
-endfunction()
-
-# The headers that nearly every test parses, parsed once for all of them.
-function(adit_test_headers target)
-  if(NOT TARGET adit_test_pch)
+  if(NOT TARGET ${pch})
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/test_pch.cpp CONTENT "int main() { return 0; }\n")
     # A program, as the tests are: the header must be compiled with the same -fPIE.
-    add_executable(adit_test_pch ${PROJECT_BINARY_DIR}/test_pch.cpp)
-    set_target_properties(adit_test_pch PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
-    target_link_libraries(adit_test_pch PRIVATE GTest::gmock Eigen3::Eigen Threads::Threads)
-    adit_test_options(adit_test_pch)
-    target_precompile_headers(adit_test_pch PRIVATE
+    add_executable(${pch} ${PROJECT_BINARY_DIR}/test_pch.cpp)
+    set_target_properties(${pch} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+    target_link_libraries(${pch} PRIVATE GTest::gmock Eigen3::Eigen Threads::Threads)
+    target_compile_options(${pch} PRIVATE ${level})
+    target_precompile_headers(${pch} PRIVATE
       <gmock/gmock.h> <gtest/gtest.h> <chrono> <filesystem> <fstream> <functional> <memory> <string> <thread> <vector>)
   endif()
-  target_precompile_headers(${target} REUSE_FROM adit_test_pch)
+  target_compile_options(${target} PRIVATE ${level})
+  target_precompile_headers(${target} REUSE_FROM ${pch})
   # A test whose other libraries set a flag that the header was not compiled with parses it again, quietly.
   set_target_properties(${target} PROPERTIES PCH_WARN_INVALID OFF)
 endfunction()
@@ -93,8 +94,12 @@ function(adit_test name)
   endif()
   add_executable(test_${name} ${arg_SOURCES})
   target_link_libraries(test_${name} PRIVATE ${arg_LINK} adit_folders GTest::gmock GTest::gtest_main)
-  adit_test_options(test_${name})
-  adit_test_headers(test_${name})
+  # These folders' tests generate and search clouds and maps.
+  set(optimised FALSE)
+  if(part MATCHES "^(nav|navtool|sim)$")
+    set(optimised TRUE)
+  endif()
+  adit_test_headers(test_${name} ${optimised})
   # What a sanitizer's build needs: the tests and what they start, nothing else.
   if(NOT TARGET adit_tests)
     add_custom_target(adit_tests)

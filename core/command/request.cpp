@@ -40,6 +40,12 @@ std::string shown(const Request& request, std::string_view field) {
   return shown(request.number(name), point + 1 < field.size() ? field[point + 1] - '0' : 2);
 }
 
+/// Checks a word from the radio. Only the robot knows all choices of an open argument.
+Result<void> check_received(const CommandInfo& command, const Argument& argument, const std::string& word) {
+  if (argument.open && valid_name(word)) return {};
+  return check_word(command, argument, word);
+}
+
 /// Takes the values of a row out of a payload, front to back.
 class Unpacker {
  public:
@@ -92,7 +98,7 @@ class Unpacker {
     for (std::size_t i = 0; i < count; ++i) {
       if (sends_words(argument)) {
         value.words.push_back(payload_.words[next_word_++]);
-        if (checked_) checked_ = check_word(row_, argument, value.words.back());
+        if (checked_) checked_ = check_received(row_, argument, value.words.back());
       } else {
         value.numbers.push_back(payload_.numbers[next_number_++]);
         if (checked_) checked_ = check_number(row_, argument, value.numbers.back());

@@ -27,7 +27,8 @@ struct Argument {
   Type type{Type::none};
   std::string_view what{};     ///< in messages: "an operator"; empty: the name
   std::string_view choices{};  ///< separated by |; of a name or a file only what completion proposes
-  Reason refusal{Reason::bad_argument};                      ///< for a word that is no choice
+  Reason refusal{Reason::bad_argument};  ///< for a word that is no choice
+  bool open{false};  ///< A robot may know more choices: what it receives need only be a valid name.
   double minimum{-std::numeric_limits<double>::infinity()};  ///< of a number, in `unit`
   double maximum{std::numeric_limits<double>::infinity()};
   bool above{false};               ///< the minimum itself is out of range

@@ -235,7 +235,7 @@ TEST(Ether, BandwidthIsSharedByAllThatASenderSends) {
   auto writer = station.commands("r1");
   scheduler.run_until(5s);
   radio::Command big = numbered_command(1);
-  big.text(std::string(380, 'x'));
+  big.words({std::string(380, 'x')});
   const std::uint64_t before = station.wire->counters().total_out;
   for (int i = 1; i <= 10; ++i) {
     big.seq(static_cast<std::uint64_t>(i));
