@@ -114,10 +114,14 @@ KeptBehaviour sanitized(KeptBehaviour b) {
     b.goal.setZero();
     b.goal_known = b.goal_reached = b.goal_on_floor = false;
   }
-  // A module's state that does not fit is left out: the module starts without one.
-  std::erase_if(b.modes, [](const KeptMode& m) {
-    return !valid_name(m.mode) || m.bytes.size() > Snapshot::kModeBytes;
-  });
+  // A module's state that does not fit, or is its second one, is left out: the module starts without it.
+  std::vector<KeptMode> modes;
+  for (KeptMode& m : b.modes) {
+    const bool twice =
+        std::any_of(modes.begin(), modes.end(), [&](const KeptMode& other) { return other.mode == m.mode; });
+    if (valid_name(m.mode) && m.bytes.size() <= Snapshot::kModeBytes && !twice) modes.push_back(std::move(m));
+  }
+  b.modes = std::move(modes);
   if (b.modes.size() > Snapshot::kModes) b.modes.resize(Snapshot::kModes);
   return b;
 }

@@ -134,6 +134,16 @@ Snapshot hostile(Random& random) {
                  static_cast<std::uint32_t>(random.next()),
                  {hostile_number(random), hostile_number(random), hostile_number(random)},
                  random.chance(0.5)};
+  for (std::uint64_t n = random.below(12); n > 0; --n)
+    s.behaviour.modes.push_back(
+        {random.chance(0.5) ? "orbit" : hostile_text(random), store::Bytes(random.below(600), 7)});
+  if (random.chance(0.7)) {
+    s.place.emplace();
+    s.place->T_map_odom = {hostile_number(random), 1.0, hostile_number(random)};
+    s.place->newest.emplace();
+    s.place->newest->T_odom_base.position.x() = hostile_number(random);
+    s.place->newest->T_odom_base.orientation.w() = hostile_number(random);
+  }
   s.boot = random.next();
   s.battery = static_cast<std::uint8_t>(random.next());
   for (std::uint64_t n = random.below(20); n > 0; --n) {
