@@ -6,21 +6,13 @@
 
 #include "core/wire/contract.hpp"
 #include "core/wire/topics.hpp"
+#include "tests/wire/keyed_sample.hpp"
 #include "tests/wire/nets.hpp"
 
 namespace adit::wire {
 namespace {
 
 using Payload = std::vector<std::uint8_t>;
-
-/// A sample whose first member, the key, is this string.
-Payload keyed(const std::string& key) {
-  Payload bytes(8 + (key.size() / 4 + 1) * 4);
-  bytes[1] = 1;
-  bytes[4] = static_cast<std::uint8_t>(key.size() + 1);
-  std::copy(key.begin(), key.end(), bytes.begin() + 8);
-  return bytes;
-}
 
 template <class Net>
 class TopicConformance : public testing::Test {
