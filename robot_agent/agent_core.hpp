@@ -8,7 +8,7 @@
 #include "robot_agent/agent.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
-#include "robot_agent/command/rate_limit.hpp"
+#include "robot_agent/common/rate_limit.hpp"
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
 #include "robot_agent/findings/sync.hpp"

@@ -51,6 +51,29 @@ check_includes() {
     }'
 }
 
+# --- circles: within a part, no folder includes another one that includes it, directly or through others ------
+# A file directly in the part's folder counts as a folder of its own: such a header may be used by everybody, or
+# compose everything, but not both.
+check_circles() {
+  cpp | xargs -r awk '
+    /^[ \t]*#[ \t]*include[ \t]*"/ {
+      file = $0; sub(/^[^"]*"/, "", file); sub(/".*/, "", file)
+      split(FILENAME, path, "/"); split(file, parts, "/")
+      if (path[1] == "tests" || path[1] == "bench" || path[1] != parts[1] || path[2] == parts[2]) next
+      from = path[1] "/" path[2]; to = parts[1] "/" parts[2]
+      node[from] = node[to] = 1
+      reach[from, to] = 1
+      line[++lines] = FILENAME ":" FNR; of[lines] = from; into[lines] = to
+    }
+    END {
+      for (via in node) for (from in node) if ((from, via) in reach)
+        for (to in node) if ((via, to) in reach) reach[from, to] = 1
+      for (i = 1; i <= lines; ++i)
+        if ((into[i], of[i]) in reach)
+          printf "%s: a circle: %s includes %s, whose includes lead back to %s\n", line[i], of[i], into[i], of[i]
+    }'
+}
+
 # --- sizes: median at most 120 lines, nine of ten at most 400, none above 600 -------------------------
 check_sizes() {
   cpp | xargs -r wc -l | awk '$2 != "total" { print $1, $2 }' | sort -n | awk '
@@ -90,7 +113,7 @@ check_shell() {
 }
 
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes sizes words sleeps format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words sleeps format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

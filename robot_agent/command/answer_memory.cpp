@@ -47,20 +47,20 @@ std::vector<KeptAnswers> AnswerMemory::kept() const {
     std::sort(answers.begin(), answers.end(),
               [](const Answer* a, const Answer* b) { return a->seq < b->seq; });
     if (answers.empty()) continue;
-    if (answers.size() > Snapshot::kAnswers) {
-      answers.erase(answers.begin(), answers.end() - Snapshot::kAnswers);
+    if (answers.size() > KeptAnswers::kAnswers) {
+      answers.erase(answers.begin(), answers.end() - KeptAnswers::kAnswers);
       k.floor = std::max(k.floor, answers.front()->seq);
     }
     k.station = answers.back()->station;
     k.station_id = answers.back()->station_id;
     for (const Answer* a : answers)
-      k.answers.push_back({a->seq, a->reason, a->text.substr(0, Snapshot::kText)});
+      k.answers.push_back({a->seq, a->reason, a->text.substr(0, KeptAnswer::kText)});
     all.emplace_back(entry.used, std::move(k));
   }
   std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<KeptAnswers> kept;
   for (auto& [used, answers] : all)
-    if (kept.size() < Snapshot::kParticipants) kept.push_back(std::move(answers));
+    if (kept.size() < KeptAnswers::kParticipants) kept.push_back(std::move(answers));
   return kept;
 }
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/time/time.hpp"
+#include "robot_agent/command/kept.hpp"
 #include "robot_agent/command/types.hpp"
-#include "robot_agent/state/snapshot.hpp"
 
 namespace adit::agent {
 

@@ -6,11 +6,11 @@
 
 #include "robot_agent/command/answer_memory.hpp"
 #include "robot_agent/command/authority.hpp"
-#include "robot_agent/command/rate_limit.hpp"
 #include "robot_agent/command/requests.hpp"
 #include "robot_agent/command/station_table.hpp"
 #include "robot_agent/command/stick_gate.hpp"
 #include "robot_agent/command/stop_latches.hpp"
+#include "robot_agent/common/rate_limit.hpp"
 #include "robot_agent/defects.hpp"
 
 namespace adit::agent {

@@ -4,13 +4,6 @@
 
 namespace adit::agent {
 
-bool valid_name(const std::string& name) {
-  const auto good = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  };
-  return !name.empty() && name.size() <= 32 && std::all_of(name.begin(), name.end(), good);
-}
-
 StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, bool holds, Time now) {
   const auto found =
       std::find_if(stations_.begin(), stations_.end(), [&](const Station& s) { return s.name == from.name; });

@@ -1,6 +1,5 @@
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,29 +8,18 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
 #include "core/wire/wire.hpp"
+#include "robot_agent/common/identity.hpp"
+#include "robot_agent/common/notice.hpp"
 
 /// What the command interface speaks, free of generated message types: robot_agent/radio/convert.cpp
 /// converts at the edge.
 namespace adit::agent {
-
-/// Of the radio contract.
-inline constexpr std::uint16_t kProtocolVersion = 1;
-
-/// 128 random bits kept on the owner's disk.
-using Id = std::array<std::uint8_t, 16>;
 
 /// Who rules since when; compared for equality only.
 struct Epoch {
   std::uint64_t start{};    ///< drawn anew at each start of the agent
   std::uint32_t counter{};  ///< rises with every change of holder
   bool operator==(const Epoch&) const = default;
-};
-
-/// Who a message says it is from, and the participant that really sent it.
-struct Sender {
-  std::string name{};
-  Id id{};
-  wire::ParticipantId participant{};
 };
 
 struct Command {
@@ -65,23 +53,9 @@ struct StickSample {
   Twist2 twist{};        ///< body frame
 };
 
-enum class Severity : std::uint8_t { info, warning, error };
-
-/// Something an operator should know.
-struct Notice {
-  std::string operator_name{};  ///< whom it concerns; empty: everybody
-  Severity severity{Severity::info};
-  std::string code{};
-  Reason reason{Reason::none};
-  std::string text{};
-};
-
 /// The point that a command names, map frame, m; z is NaN when it was not given.
 inline Eigen::Vector3d place_of(const command::Request& request) {
   return {request.number("X"), request.number("Y"), request.number("Z")};
 }
-
-/// 1 to 32 of [A-Za-z0-9_-].
-bool valid_name(const std::string& name);
 
 }  // namespace adit::agent

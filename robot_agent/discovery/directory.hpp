@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/topic/topic.hpp"
-#include "robot_agent/command/types.hpp"
+#include "robot_agent/common/identity.hpp"
 #include "robot_agent/discovery/binding.hpp"
 
 namespace adit::agent {

@@ -3,7 +3,7 @@
 
 #include "core/time/time.hpp"
 #include "core/wire/wire.hpp"
-#include "robot_agent/command/rate_limit.hpp"
+#include "robot_agent/common/rate_limit.hpp"
 
 namespace adit::agent {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/log/log.hpp"
-#include "robot_agent/command/types.hpp"
+#include "robot_agent/common/notice.hpp"
 #include "robot_agent/motion/navigation.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/state/restored.hpp"

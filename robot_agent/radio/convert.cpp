@@ -4,20 +4,17 @@
 #include <cmath>
 #include <cstdio>
 
+#include "robot_agent/common/clipped.hpp"
+
 namespace adit::agent {
 namespace {
 
-// What others made long must not make our message too large for its topic: it would not be sent at all, and
-// a refusal would be silent. A whole acknowledgement stays below 512 bytes, a notification below 1 kB.
+// A message that is too large for its topic would not be sent at all, and a refusal would be silent. A
+// complete acknowledgement stays below 512 bytes, a notification below 1 kB.
 constexpr std::size_t kAnswerText = 200;
 constexpr std::size_t kNoticeText = 500;
-constexpr std::size_t kHealthText = 200;
 constexpr std::size_t kName = 32;
 constexpr std::string_view kNameTaken = "name_taken:";
-
-std::string clipped(const std::string& text, std::size_t most) {
-  return text.size() <= most ? text : text.substr(0, most - 3) + "...";
-}
 
 radio::Severity to_radio(Severity severity) {
   switch (severity) {
@@ -29,22 +26,6 @@ radio::Severity to_radio(Severity severity) {
       return radio::SEVERITY_ERROR;
   }
   return radio::SEVERITY_ERROR;
-}
-
-radio::ComponentState to_radio(PartState state) {
-  switch (state) {
-    case PartState::starting:
-      return radio::COMPONENT_STARTING;
-    case PartState::up:
-      return radio::COMPONENT_UP;
-    case PartState::waiting:
-      return radio::COMPONENT_WAITING;
-    case PartState::failed:
-      return radio::COMPONENT_FAILED;
-    case PartState::hung:
-      return radio::COMPONENT_HUNG;
-  }
-  return radio::COMPONENT_FAILED;
 }
 
 radio::GoalState to_radio(GoalState state) {
@@ -194,24 +175,6 @@ radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<Mode
     mode.available(option.reason == Reason::none);
     mode.reason(static_cast<std::uint16_t>(option.reason));
     out.modes().push_back(mode);
-  }
-  return out;
-}
-
-radio::Health to_radio(const std::vector<ComponentRow>& components, const std::string& robot) {
-  radio::Health out;
-  out.robot(robot);
-  for (const ComponentRow& c : components) {
-    radio::ComponentHealth part;
-    part.name(c.name);
-    part.state(to_radio(c.state));
-    part.healthy(c.healthy);
-    part.automatic(c.automatic);
-    part.silent_for(static_cast<float>(seconds(c.silent)));
-    part.restarts(c.restarts);
-    part.hung(c.hung);
-    part.text(clipped(c.text, kHealthText));
-    out.components().push_back(part);
   }
   return out;
 }

@@ -11,7 +11,6 @@
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
-#include "robot_agent/supervisor/component_row.hpp"
 
 namespace adit::agent {
 
@@ -37,7 +36,6 @@ radio::Notification to_radio(const Notice& notice, const std::string& robot);
 radio::AuthorityStatus to_radio(const CommandInterface& commands, const std::string& robot, Time now);
 radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<ModeOption>& options,
                                const std::string& robot);
-radio::Health to_radio(const std::vector<ComponentRow>& components, const std::string& robot);
 radio::Capabilities to_radio(const Platform& platform, const std::string& robot, const Id& id,
                              std::uint16_t protocol, const ModeTable& modes);
 

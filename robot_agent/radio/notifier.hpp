@@ -5,7 +5,7 @@
 #include "core/exec/executor.hpp"
 #include "core/result/result.hpp"
 #include "core/wire/wire.hpp"
-#include "robot_agent/command/types.hpp"
+#include "robot_agent/common/notice.hpp"
 
 namespace adit::agent {
 

@@ -79,7 +79,7 @@ bool read_mode(Unpacker& in, Snapshot& s) {
 
 bool read_answers(Unpacker& in, Snapshot& s) {
   auto value = checked(in, fields::answers(in));
-  if (!value || s.answers.size() >= Snapshot::kParticipants) return false;
+  if (!value || s.answers.size() >= KeptAnswers::kParticipants) return false;
   s.answers.push_back(std::move(*value));
   return true;
 }
@@ -169,7 +169,7 @@ Snapshot sanitized(Snapshot s) {
   s.behaviour = fields::sanitized(std::move(s.behaviour));
   s.battery = fields::sanitized_battery(s.battery);
   if (s.place) s.place = fields::sanitized(*s.place);
-  if (s.answers.size() > Snapshot::kParticipants) s.answers.resize(Snapshot::kParticipants);
+  if (s.answers.size() > KeptAnswers::kParticipants) s.answers.resize(KeptAnswers::kParticipants);
   for (KeptAnswers& from : s.answers) from = fields::sanitized(std::move(from));
   return s;
 }
@@ -236,7 +236,7 @@ std::optional<ReadSnapshot> decode_snapshot_v2(std::span<const std::uint8_t> byt
   rest("mode and goal", s.behaviour, fields::behaviour(in));
   rest("boot and battery", s.boot, in.get<std::uint64_t>());
   if (const auto battery = in.get<std::uint8_t>(); in.good()) s.battery = battery;
-  for (std::size_t left = in.count(Snapshot::kParticipants); left > 0 && in.good(); --left)
+  for (std::size_t left = in.count(KeptAnswers::kParticipants); left > 0 && in.good(); --left)
     if (KeptAnswers from = fields::answers(in); in.good()) s.answers.push_back(std::move(from));
   if (!in.done()) read.lost.emplace_back("answers to a station");
   const KeptAuthority written = s.authority;

@@ -1,48 +1,15 @@
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/store/state_file.hpp"
-#include "robot_agent/command/authority.hpp"
-#include "robot_agent/command/types.hpp"
-#include "robot_agent/discovery/binding.hpp"
+#include "robot_agent/command/kept.hpp"
 #include "robot_agent/motion/kept_place.hpp"
 
 namespace adit::agent {
-
-/// An answer that was given: enough to give it again.
-struct KeptAnswer {
-  std::uint64_t seq{};
-  Reason reason{Reason::none};
-  std::string text{};  ///< shortened to 64 bytes
-  bool operator==(const KeptAnswer&) const = default;
-};
-
-/// The last answers to one participant, its highest numbers.
-struct KeptAnswers {
-  wire::ParticipantId participant{};
-  std::string station{};
-  Id station_id{};
-  std::uint64_t newest{};                    ///< highest number seen
-  std::array<std::uint64_t, 3> newest_of{};  ///< of each line of commands that must not be overtaken
-  std::uint64_t floor{};                     ///< lower numbers that are not among the answers are too old
-  std::vector<KeptAnswer> answers{};
-  bool operator==(const KeptAnswers&) const = default;
-};
-
-/// Of the command interface.
-struct KeptAuthority {
-  Epoch epoch{};  ///< the counter goes on; the start is drawn anew
-  std::optional<Party> holder{};
-  std::optional<Binding::Kept> speaker{};  ///< for the holder
-  bool locked{};
-  std::vector<Party> stops{};
-  bool operator==(const KeptAuthority&) const = default;
-};
 
 /// What the module of a mode stores, beside the goal of `waypoint`.
 struct KeptMode {
@@ -68,8 +35,7 @@ struct KeptBehaviour {
 
 /// The last known safe state (rule 7): what an agent comes back with.
 struct Snapshot {
-  static constexpr std::size_t kStops = 16, kParticipants = 8, kAnswers = 8, kText = 64, kModes = 8,
-                               kModeBytes = 512;
+  static constexpr std::size_t kStops = 16, kModes = 8, kModeBytes = 512;
 
   KeptAuthority authority{};
   KeptBehaviour behaviour{};

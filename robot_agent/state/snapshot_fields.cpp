@@ -196,11 +196,11 @@ KeptAnswers answers(Unpacker& in) {
   from.newest = in.get<std::uint64_t>();
   from.floor = in.get<std::uint64_t>();
   for (std::uint64_t& newest : from.newest_of) newest = in.get<std::uint64_t>();
-  for (std::size_t left = in.count(Snapshot::kAnswers); left > 0; --left) {
+  for (std::size_t left = in.count(KeptAnswers::kAnswers); left > 0; --left) {
     KeptAnswer a{};
     a.seq = in.get<std::uint64_t>();
     a.reason = static_cast<Reason>(in.get<std::uint16_t>());
-    a.text = in.text(Snapshot::kText);
+    a.text = in.text(KeptAnswer::kText);
     from.answers.push_back(std::move(a));
   }
   return from;
@@ -211,13 +211,13 @@ KeptAnswers sanitized(KeptAnswers from) {
   if (!valid_name(from.station)) from.station.clear();
   const auto invalid = [&](const KeptAnswer& a) { return a.seq == 0 || a.seq > from.newest; };
   std::erase_if(from.answers, invalid);
-  if (from.answers.size() > Snapshot::kAnswers) {
-    from.answers.erase(from.answers.begin(), from.answers.end() - Snapshot::kAnswers);
+  if (from.answers.size() > KeptAnswers::kAnswers) {
+    from.answers.erase(from.answers.begin(), from.answers.end() - KeptAnswers::kAnswers);
     const auto before = [](const KeptAnswer& a, const KeptAnswer& b) { return a.seq < b.seq; };
     from.floor =
         std::max(from.floor, std::min_element(from.answers.begin(), from.answers.end(), before)->seq);
   }
-  for (KeptAnswer& a : from.answers) a.text.resize(std::min(a.text.size(), Snapshot::kText));
+  for (KeptAnswer& a : from.answers) a.text.resize(std::min(a.text.size(), KeptAnswer::kText));
   return from;
 }
 

@@ -6,7 +6,7 @@
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
-#include "robot_agent/radio/convert.hpp"
+#include "robot_agent/supervisor/health_message.hpp"
 
 namespace adit::agent {
 namespace {

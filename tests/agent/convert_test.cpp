@@ -5,6 +5,7 @@
 #include "core/command/parse.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
+#include "robot_agent/supervisor/health_message.hpp"
 
 namespace adit::agent {
 namespace {

@@ -27,7 +27,7 @@ put core/a.hpp '#include "core/b.hpp"\n#include <vector>\n'
 put nav/a.hpp '#include "core/geometry/pose.hpp"\n#include "nav/b.hpp"\n'
 put core/wire/w.cpp '#include <fastdds/dds/x.hpp>\n#include "adit/command.h"\n'
 put tests/t.cpp '#include "robot_agent/a.hpp"\n#include <fastdds/dds/x.hpp>\n'
-for check in includes sizes words sleeps; do expect $check ""; done
+for check in includes circles sizes words sleeps; do expect $check ""; done
 
 put core/up.hpp '\n#include "robot_agent/agent.hpp"\n'
 expect includes 'core/up.hpp:2: core may not include robot_agent/agent.hpp'
@@ -41,6 +41,16 @@ put nav/m.cpp '#include "geometry_msgs/msg/Twist.h"\n'
 expect includes 'nav/m.cpp:1: generated types'
 put core/rel.cpp '#include "../x.hpp"\n'
 expect includes 'core/rel.cpp:1: includes are written from the root'
+
+put core/b/b.hpp '#include "core/c/c.hpp"\n#include "core/top.hpp"\n'
+put core/top.hpp '#include "core/d/d.hpp"\n'
+put core/all.cpp '#include "core/b/b.hpp"\n#include "core/all.hpp"\n'
+put sim/b/b.hpp '#include "sim/c/c.hpp"\n'
+put core/c/c.hpp '#include "sim/b/b.hpp"\n'
+expect circles ""
+put core/d/d.cpp '\n#include "core/b/b.hpp"\n'
+expect circles 'core/d/d.cpp:2: a circle: core/d includes core/b, whose includes lead back to core/d'
+expect circles 'core/top.hpp:1: a circle: core/top.hpp includes core/d, whose includes lead back to core/top.hpp'
 
 put sim/long.cpp "$(printf 'x\\n%.0s' $(seq 601))"
 expect sizes 'sim/long.cpp: 601 lines'
