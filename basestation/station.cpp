@@ -118,6 +118,7 @@ Result<void> Station::Impl::start() {
   if (params_.place) {
     self.placed(true);
     self.place(*params_.place);
+    fleet_.stand_at(*params_.place);
     const auto& [x, y, z] = *params_.place;
     radio_.set_place(radio_.id(), {x, y, z});
   }

@@ -1,6 +1,7 @@
 #include "basestation/fleet/fleet.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "adit/authority.h"
 #include "adit/discovery.h"
@@ -18,8 +19,9 @@ constexpr std::size_t name_limit = 32;
 constexpr Duration forget_after = 60s;
 constexpr Duration oldest_notice = 240h;  // what a robot may claim
 
-/// What a report says of an amount; 0 for what is none.
-double number(float value) { return value >= 0.0F && value < 1e12F ? static_cast<double>(value) : 0.0; }
+/// What a sample says of an amount; 0 for a value that cannot be one.
+float amount(float value) { return value >= 0.0F && value < 1e12F ? value : 0.0F; }
+double number(float value) { return static_cast<double>(amount(value)); }
 
 std::vector<std::string> cleaned(const std::vector<std::string>& words, std::size_t most) {
   std::vector<std::string> out;
@@ -85,7 +87,14 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
     presence.name(sample.name());
     presence.kind(radio::AGENT_STATION);
     presence.id(sample.id());
-    return hear(presence, info);
+    hear(presence, info);
+    const auto station = stations_.find(sample.name());
+    if (station == stations_.end()) return;
+    station->second.place.reset();
+    const bool finite = std::all_of(sample.place().begin(), sample.place().end(),
+                                    [](float metres) { return std::isfinite(metres); });
+    if (sample.placed() && finite) station->second.place = sample.place();
+    return;
   }
   RobotView* robot = touch(sample.name(), info);
   if (!robot) return;
@@ -95,7 +104,12 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
   robot->protocol = sample.protocol();
   robot->max_speed = sample.max_speed();
   robot->max_turn = sample.max_turn();
+  robot->max_acceleration = amount(sample.max_acceleration());
   robot->holonomic = sample.holonomic();
+  robot->size = {amount(sample.length()), amount(sample.width()), amount(sample.height())};
+  robot->max_step = amount(sample.step());
+  robot->max_slope = amount(sample.slope());
+  robot->climbs_stairs = sample.stairs();
   robot->modes = cleaned(sample.modes(), 32);
   robot->sensors = cleaned(sample.sensors(), 16);
   robot->services = cleaned(sample.services(), 32);
@@ -130,7 +144,12 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
     ++ignored_;
     return;
   }
-  stations_[sample.name()] = {sample.name(), sample.id(), info.sender, info.received};
+  StationView& station = stations_[sample.name()];
+  if (station.id != sample.id()) station.place.reset();  // another station of that name
+  station.name = sample.name();
+  station.id = sample.id();
+  station.participant = info.sender;
+  station.last_heard = info.received;
 }
 
 void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) {

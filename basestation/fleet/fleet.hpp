@@ -33,6 +33,9 @@ class Fleet {
   void hear(const radio::LinkReport& sample, const wire::SampleInfo& info);
   /// What an acknowledgement says of the holder and the epoch in force.
   void learn_authority(const std::string& robot, const std::string& holder, const Epoch& epoch);
+  /// Where this station stands, map frame, m.
+  void stand_at(const std::array<float, 3>& place) { own_place_ = place; }
+  const std::optional<std::array<float, 3>>& own_place() const { return own_place_; }
   /// This station's own report.
   void own_traffic(TrafficView traffic);
   /// Marks silent robots lost, and forgets stations and reports that were silent for a minute.
@@ -87,6 +90,7 @@ class Fleet {
 
   std::string own_name_;
   Id own_id_;
+  std::optional<std::array<float, 3>> own_place_{};
   std::map<std::string, RobotView> robots_{};
   std::map<std::pair<std::string, wire::ParticipantId>, Namesake> namesakes_{};
   std::map<std::string, StationView> stations_{};

@@ -48,6 +48,13 @@ struct ComponentView {
   std::string text{};
 };
 
+/// The box around a robot's body, m; 0: not known.
+struct Size {
+  float length{};  ///< along x of the body frame
+  float width{};
+  float height{};
+};
+
 /// All that was heard of one robot. Positions in the map frame (m, rad), speeds in the body frame (m/s,
 /// rad/s).
 struct RobotView {
@@ -63,9 +70,14 @@ struct RobotView {
   std::string platform{};
   std::string software{};
   std::uint16_t protocol{};
-  float max_speed{};  ///< m/s
-  float max_turn{};   ///< rad/s
-  bool holonomic{};   ///< moves sideways, too
+  float max_speed{};         ///< m/s
+  float max_turn{};          ///< rad/s
+  float max_acceleration{};  ///< m/s2; 0: not known
+  bool holonomic{};          ///< moves sideways, too
+  Size size{};
+  float max_step{};      ///< height of a step that it climbs, m; 0: none
+  float max_slope{};     ///< rad; 0: not known
+  bool climbs_stairs{};  ///< takes stairs
   std::vector<std::string> modes{};
   std::vector<std::string> sensors{};
   std::vector<std::string> services{};
@@ -103,6 +115,7 @@ struct StationView {
   Id id{};
   wire::ParticipantId participant{};
   Time last_heard{};
+  std::optional<std::array<float, 3>> place{};  ///< where it stands, map frame, m; nothing: not known
 };
 
 enum class Level : std::uint8_t { info, warning, error };

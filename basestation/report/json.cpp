@@ -6,6 +6,27 @@ namespace adit::station {
 
 using nlohmann::json;
 
+namespace {
+
+json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+/// 0 stands for an amount that is not known.
+json known(float amount) { return amount > 0.0F ? json(amount) : json(nullptr); }
+
+json abilities_json(const RobotView& robot) {
+  return {{"size",
+           {{"length", known(robot.size.length)},
+            {"width", known(robot.size.width)},
+            {"height", known(robot.size.height)}}},
+          {"max_acceleration", known(robot.max_acceleration)},
+          {"holonomic", robot.holonomic},
+          {"max_step", robot.max_step},
+          {"max_slope", known(robot.max_slope)},
+          {"climbs_stairs", robot.climbs_stairs}};
+}
+
+}  // namespace
+
 json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
   json stops = json::array();
   for (const StopLatch& stop : robot.stops) stops.push_back(stop.station);
@@ -19,6 +40,7 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
   json out{{"robot", robot.name},
            {"age", seconds(now - robot.last_heard)},
            {"lost", robot.lost},
+           {"described", robot.described},
            {"kind", robot.platform},
            {"software", robot.software},
            {"protocol", robot.protocol},
@@ -40,6 +62,7 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
            {"goal_id", robot.goal_id},
            {"modes", modes},
            {"troubles", troubles}};
+  if (robot.described) out.update(abilities_json(robot));
   if (robot.located) {
     out["pose"] = {robot.x, robot.y, robot.z, robot.yaw};
     out["velocity"] = {robot.vx, robot.vy, robot.wz};
@@ -158,8 +181,6 @@ json actions_json(const std::vector<Action>& actions) {
 
 namespace {
 
-json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
 json sender_json(const SenderView& sender) {
   json dropped = json::object();
   for (std::size_t p = 0; p < wire::priorities; ++p) dropped[priority_name(p)] = sender.dropped[p];
@@ -230,11 +251,14 @@ json list_json(const Fleet& fleet, Time now) {
   for (const auto& [robot_name, robot] : fleet.robots()) robots.push_back(robot_json(fleet, robot, now));
   json stations = json::array();
   stations.push_back({{"station", fleet.own_name()}, {"self", true}, {"age", 0.0}, {"lost", false}});
-  for (const auto& [station_name, station] : fleet.stations())
+  if (const auto& place = fleet.own_place()) stations.back()["place"] = *place;
+  for (const auto& [station_name, station] : fleet.stations()) {
     stations.push_back({{"station", station_name},
                         {"self", false},
                         {"age", seconds(now - station.last_heard)},
                         {"lost", now - station.last_heard > Fleet::lost_after}});
+    if (station.place) stations.back()["place"] = *station.place;
+  }
   return {{"robots", robots}, {"stations", stations}};
 }
 

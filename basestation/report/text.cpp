@@ -27,6 +27,33 @@ std::string holder_text(const Fleet& fleet, const RobotView& robot) {
 
 }  // namespace
 
+namespace {
+
+std::string place_text(const std::array<float, 3>& place) {
+  return " at " + fixed(place[0], 1) + " " + fixed(place[1], 1) + " " + fixed(place[2], 1);
+}
+
+/// "0.90 x 0.60 x 0.50 m"; "-" when the robot did not say it.
+std::string size_text(const Size& size) {
+  if (size.length <= 0.0F || size.width <= 0.0F) return "-";
+  return fixed(size.length, 2) + " x " + fixed(size.width, 2) +
+         (size.height > 0.0F ? " x " + fixed(size.height, 2) : "") + " m";
+}
+
+/// What the robot says of its own limits.
+std::string limits_text(const RobotView& robot) {
+  std::vector<std::string> limits{fixed(robot.max_speed, 1) + " m/s", fixed(robot.max_turn, 1) + " rad/s"};
+  if (robot.max_acceleration > 0.0F) limits.push_back(fixed(robot.max_acceleration, 1) + " m/s2");
+  if (robot.max_step > 0.0F) limits.push_back("steps of " + fixed(robot.max_step, 2) + " m");
+  if (robot.max_slope > 0.0F)
+    limits.push_back("slopes of " + fixed(robot.max_slope * 180.0 / std::numbers::pi, 0) + " degrees");
+  limits.push_back(robot.climbs_stairs ? "climbs stairs" : "no stairs");
+  if (robot.holonomic) limits.push_back("moves sideways");
+  return command::joined(limits, "-");
+}
+
+}  // namespace
+
 std::string mode_text(const RobotView& robot) { return robot.behaviour_count == 0 ? "?" : robot.mode; }
 
 std::string pose_text(const RobotView& robot) {
@@ -58,8 +85,10 @@ std::string list_text(const Fleet& fleet, Time now) {
                     battery_text(robot), age_text(robot, now)});
   std::string out = rows.size() == 1 ? "no robot has been heard\n" : table(rows);
   out += "stations: " + fleet.own_name() + " (this one)";
+  if (fleet.own_place()) out += place_text(*fleet.own_place());
   for (const auto& [station_name, station] : fleet.stations())
-    out += ", " + station_name + (now - station.last_heard > Fleet::lost_after ? " (silent)" : "");
+    out += ", " + station_name + (now - station.last_heard > Fleet::lost_after ? " (silent)" : "") +
+           (station.place ? place_text(*station.place) : "");
   return out + "\n";
 }
 
@@ -84,9 +113,9 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
            " m, yaw " + fixed(robot.yaw * 180.0 / std::numbers::pi, 1) + " degrees\n  speed    " +
            fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
   if (robot.described)
-    out += "  limits   " + fixed(robot.max_speed, 1) + " m/s, " + fixed(robot.max_turn, 1) +
-           " rad/s\n  sensors  " + command::joined(robot.sensors, "-") + "\n  can      " +
-           command::joined(robot.services, "-") + "\n";
+    out += "  size     " + size_text(robot.size) + "\n  limits   " + limits_text(robot) + "\n  sensors  " +
+           command::joined(robot.sensors, "-") + "\n  can      " + command::joined(robot.services, "-") +
+           "\n";
   out += "  battery  " + battery_text(robot) + "\n";
   for (const ModeChoice& choice : robot.choices) {
     std::string row = "  can " + choice.mode;

@@ -28,6 +28,86 @@ TEST(Table, NumbersWithoutNegativeZero) {
   EXPECT_EQ(fixed(std::nan(""), 2), "-");
 }
 
+radio::Capabilities described() {
+  radio::Capabilities sample;
+  sample.name("r1");
+  sample.kind(radio::AGENT_ROBOT);
+  sample.platform("tracked");
+  sample.length(0.9F);
+  sample.width(0.6F);
+  sample.height(0.5F);
+  sample.max_speed(1.2F);
+  sample.max_turn(1.0F);
+  sample.max_acceleration(0.8F);
+  sample.step(0.25F);
+  sample.slope(0.7854F);
+  sample.stairs(true);
+  return sample;
+}
+
+TEST(Report, StatusSaysHowLargeARobotIsAndWhatItClimbs) {
+  Fleet fleet("op1", {1});
+  fleet.hear(described(), {.received = Time(1s)});
+  const std::string text = status_text(fleet, *fleet.robot("r1"), Time(1s));
+  EXPECT_THAT(text, HasSubstr("0.90 x 0.60 x 0.50 m"));
+  EXPECT_THAT(text, HasSubstr("1.2 m/s, 1.0 rad/s, 0.8 m/s2, steps of 0.25 m, slopes of 45 degrees, "
+                              "climbs stairs"));
+  const auto json = robot_json(fleet, *fleet.robot("r1"), Time(1s));
+  EXPECT_FLOAT_EQ(json["size"]["length"].get<float>(), 0.9F);
+  EXPECT_FLOAT_EQ(json["size"]["width"].get<float>(), 0.6F);
+  EXPECT_FLOAT_EQ(json["size"]["height"].get<float>(), 0.5F);
+  EXPECT_FLOAT_EQ(json["max_step"].get<float>(), 0.25F);
+  EXPECT_FLOAT_EQ(json["max_slope"].get<float>(), 0.7854F);
+  EXPECT_FLOAT_EQ(json["max_acceleration"].get<float>(), 0.8F);
+  EXPECT_TRUE(json["climbs_stairs"].get<bool>());
+}
+
+TEST(Report, AmountsThatARobotCannotMeanAreNotKnown) {
+  Fleet fleet("op1", {1});
+  radio::Capabilities sample = described();
+  sample.length(std::nanf(""));
+  sample.width(-1.0F);
+  sample.step(INFINITY);
+  sample.slope(std::nanf(""));
+  fleet.hear(sample, {.received = Time(1s)});
+  const auto json = robot_json(fleet, *fleet.robot("r1"), Time(1s));
+  EXPECT_TRUE(json["size"]["length"].is_null());
+  EXPECT_TRUE(json["size"]["width"].is_null());
+  EXPECT_EQ(json["max_step"], 0.0);
+  EXPECT_TRUE(json["max_slope"].is_null());
+  EXPECT_THAT(status_text(fleet, *fleet.robot("r1"), Time(1s)), HasSubstr("size     -\n"));
+}
+
+TEST(Report, ListSaysWhereStationsStand) {
+  Fleet fleet("op1", {1});
+  fleet.stand_at({1.0F, -2.0F, 0.5F});
+  radio::Capabilities sample;
+  sample.name("op2");
+  sample.kind(radio::AGENT_STATION);
+  sample.id({2});
+  sample.placed(true);
+  sample.place({30.0F, 4.0F, 0.0F});
+  fleet.hear(sample, {.received = Time(1s)});
+  radio::Presence presence;
+  presence.name("op2");
+  presence.kind(radio::AGENT_STATION);
+  presence.id({2});
+  fleet.hear(presence, {.received = Time(2s)});
+  EXPECT_THAT(list_text(fleet, Time(2s)), HasSubstr("op1 (this one) at 1.0 -2.0 0.5, op2 at 30.0 4.0 0.0\n"));
+  const auto stations = list_json(fleet, Time(2s))["stations"];
+  EXPECT_EQ(stations[0]["place"], (std::array{1.0F, -2.0F, 0.5F}));
+  EXPECT_EQ(stations[1]["place"], (std::array{30.0F, 4.0F, 0.0F}));
+
+  sample.place({std::nanf(""), 0.0F, 0.0F});  // no place
+  fleet.hear(sample, {.received = Time(3s)});
+  EXPECT_FALSE(fleet.stations().at("op2").place);
+  sample.place({30.0F, 4.0F, 0.0F});
+  fleet.hear(sample, {.received = Time(4s)});
+  presence.id({3});  // another station of that name
+  fleet.hear(presence, {.received = Time(5s)});
+  EXPECT_FALSE(fleet.stations().at("op2").place);
+}
+
 TEST(Report, ListSaysWhoIsThere) {
   Fleet fleet("op1", {1});
   EXPECT_THAT(list_text(fleet, Time(1s)), HasSubstr("no robot has been heard"));
