@@ -341,6 +341,7 @@ std::vector<std::string> Fleet::robot_names() const {
 }
 
 void Fleet::notice(Notice notice) {
+  notice.id = ++last_notice_;
   notice.mine = notice.operator_name.empty() || notice.operator_name == own_name_;
   if (notices_.size() == max_notices) notices_.pop_front();
   notices_.push_back(notice);

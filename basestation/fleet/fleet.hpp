@@ -98,6 +98,7 @@ class Fleet {
   wire::PeerMeter links_{};
   PeerRates peer_rates_{};
   std::deque<Notice> notices_{};
+  std::uint64_t last_notice_{};  ///< its id
   Time last_clash_{};
   bool clashed_{false};
   std::uint64_t ignored_{};

@@ -122,7 +122,8 @@ enum class Level : std::uint8_t { info, warning, error };
 
 /// Something an operator should know, from a robot or from this station (lost, back).
 struct Notice {
-  Time at{};  ///< when it arose, by this station's clock
+  std::uint64_t id{};  ///< unique in this run of the station, rising from 1; it never changes
+  Time at{};           ///< when it arose, by this station's clock
   std::string robot{};
   std::string operator_name{};  ///< whom it concerns; empty: everybody
   Level level{Level::info};

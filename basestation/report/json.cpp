@@ -73,7 +73,8 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
 }
 
 json notice_json(const Notice& notice, Time now) {
-  return {{"age", seconds(now - notice.at)},
+  return {{"id", notice.id},
+          {"age", seconds(now - notice.at)},
           {"robot", notice.robot},
           {"operator", notice.operator_name},
           {"level", to_string(notice.level)},

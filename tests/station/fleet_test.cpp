@@ -238,6 +238,23 @@ TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
   EXPECT_FALSE(fleet.notices().back().mine);
 }
 
+TEST(Fleet, EveryNoticeHasAnIdThatStays) {
+  Fleet fleet("op1", own_id);
+  std::vector<std::uint64_t> seen;
+  fleet.on_notice = [&](const Notice& notice) { seen.push_back(notice.id); };
+  radio::Notification sample;
+  sample.robot("r1");
+  sample.code("stopped");
+  sample.stamp(to_stamp(Time(1000s)));
+  for (std::size_t i = 0; i < Fleet::max_notices + 2; ++i) fleet.hear(sample, at(0s));  // all the same
+  fleet.hear(state("r1"), at(1s));                                                      // dates them
+  ASSERT_EQ(seen.size(), Fleet::max_notices + 2);
+  for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 1);
+  EXPECT_EQ(fleet.notices().front().id, 3U) << "the first two made room";
+  EXPECT_EQ(notice_json(fleet.notices().back(), Time(2s))["id"], seen.back());
+  EXPECT_EQ(notice_json(fleet.notices().back(), Time(9s))["id"], seen.back());
+}
+
 /// r1's clock is 1000 s ahead of this station's.
 radio::RobotState stamped_state(Duration here) {
   radio::RobotState sample = state("r1");
