@@ -68,7 +68,8 @@ bool Station::Impl::complete() const {
 }
 
 bool Station::Impl::must_wait(const Request& request) const {
-  if (!known(request) && fresh(params_.discovery_grace)) return true;
+  // A stop does not wait for anything: it goes out to robots that were not heard yet, too.
+  if (request.verb != verb("stop") && !known(request) && fresh(params_.discovery_grace)) return true;
   if (request.info->runs != Runs::query) return false;
   // The first answers: what is there at once is half of it, and nobody there cannot be told from late.
   return fresh(params_.settle) || (fresh(2 * params_.settle) && !complete());
@@ -190,15 +191,15 @@ void Station::Impl::command_robot(std::uint64_t handle, const std::string& robot
                                   const std::shared_ptr<Gather>& gather, std::size_t index) {
   const Request& request = gather->request;
   const auto ended = [this, gather, index](const Answer& answer) { gathered(gather, index, answer); };
-  if (!fleet_.robot(robot))
+  if (!fleet_.robot(robot) && request.verb != verb("stop"))
     return ended({.robot = robot, .reason = Reason::unknown_robot, .text = unknown_text(fleet_)});
   if (const auto steer = steering(request))
-    return add_flow(handle, std::make_shared<Steer>(parts(), robot, *steer, ended));
+    return add_flow(handle, std::make_shared<Steer>(parts(), robot, *steer, ended), ended);
   if (request.verb == verb("stop")) end_flows(robot, Reason::stopped);
   if (!request.info->conditions.mode.empty()) end_flows(robot, Reason::cancelled);  // it asks for a mode
   Order order{.robot = robot, .request = request};
   if (request.verb == verb("goto") && request.has("--wait"))
-    return add_flow(handle, std::make_shared<Arrival>(parts(), std::move(order), ended));
+    return add_flow(handle, std::make_shared<Arrival>(parts(), std::move(order), ended), ended);
   sender_.send(std::move(order), ended);
 }
 
@@ -267,9 +268,13 @@ void Station::Impl::down(Done done) {
   gather->missing = request.robots.size();
   gather->done = [this, done = std::move(done)](const Outcome& released) {
     closed_ = true;
+    const std::vector<std::string> unheard = sender_.drop_unheard();
     // A robot that does not answer keeps its holder; the station goes down all the same, and says so.
     Outcome outcome = released;
     outcome.exit_code = 0;
+    if (!unheard.empty())
+      outcome.text +=
+          "never acknowledged a stop, which no longer goes out: " + command::joined(unheard, "") + "\n";
     outcome.text += "station " + params_.name + " is down\n";
     outcome.json = json_of(Request(verb("down")), 0);
     outcome.json["results"] = released.json["results"];
@@ -292,15 +297,34 @@ void Station::Impl::note(const Answer& answer) {
   if (owner_.on_answer) owner_.on_answer(answer);
 }
 
-void Station::Impl::add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow) {
+void Station::Impl::late_stop(const Answer& answer) {
+  note(answer);
+  const std::string end = answer.accepted ? "acknowledged the stop that was sent before it was heard"
+                          : answer.answered
+                              ? "refused the stop that was sent before it was heard: " + answer.text
+                              : "did not acknowledge the stop: " + answer.text;
+  fleet_.say({.at = strand_.now(),
+              .robot = answer.robot,
+              .level = answer.accepted ? Level::info : Level::warning,
+              .code = answer.accepted ? "stop_acknowledged" : "stop_not_acknowledged",
+              .reason = answer.reason,
+              .text = answer.robot + " " + end});
+}
+
+void Station::Impl::add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, const Flow::Done& ended) {
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
+  const auto others = std::count_if(flows_.begin(), flows_.end(), [&](const auto& entry) {
+    return entry.second->robot() != flow->robot() || !dynamic_cast<Steer*>(entry.second.get());
+  });
+  if (static_cast<std::size_t>(others) >= max_flows)
+    return ended({.robot = flow->robot(),
+                  .reason = Reason::queue_full,
+                  .text = "64 drives and waits are going on at this station already"});
   for (const auto& [other, running] : std::multimap(flows_))
     if (running->robot() == flow->robot() && dynamic_cast<Steer*>(running.get())) running->hand_over();
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
   flows_.emplace(handle, flow);
   flow->start();
-  if (flows_.size() > max_flows)
-    flows_.begin()->second->cancel(Reason::queue_full, "too much is going on at once");
 }
 
 void Station::Impl::end_flows(const std::string& robot, Reason reason) {

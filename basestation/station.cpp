@@ -39,7 +39,8 @@ Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire
       strand_(strand),
       radio_(radio),
       fleet_(params_.name, params_.id),
-      sender_({.name = params_.name, .id = params_.id}, strand, radio, fleet_),
+      sender_({.name = params_.name, .id = params_.id, .discovery_grace = params_.discovery_grace}, strand,
+              radio, fleet_),
       stick_(params_.id, strand, radio, fleet_),
       started_(strand.now()),
       random_(params_.seed),
@@ -73,6 +74,7 @@ Result<void> Station::Impl::start() {
   sender_.on_sent = [this](const Order& order, std::uint64_t seq) {
     if (owner_.on_sent) owner_.on_sent(order, seq);
   };
+  sender_.on_late = [this](const Answer& answer) { late_stop(answer); };
 
   auto presence = wire::Writer<radio::Presence>::make(radio_, wire::topics::presence);
   if (!presence) return presence.error();

@@ -85,7 +85,10 @@ class Station::Impl {
   void gathered(const std::shared_ptr<Gather>& gather, std::size_t index, const Answer& answer);
   void finish(Gather& gather);
   void note(const Answer& answer);
-  void add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow);
+  /// Notifies the operator of the end of a stop that was reported as not acknowledged.
+  void late_stop(const Answer& answer);
+  /// Starts the flow; when too many are going on, `ended` gets `queue_full` instead.
+  void add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, const Flow::Done& ended);
   void end_flows(const std::string& robot, Reason reason);
   FlowParts parts() { return {strand_, fleet_, sender_, stick_}; }
   bool fresh(Duration span) const { return strand_.now() - started_ < span; }

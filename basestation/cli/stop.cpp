@@ -42,10 +42,12 @@ int stop(const Options& options, const std::string& line, bool all) {
   std::fprintf(stderr, "no answer from the station of %s: the stop goes out by itself\n",
                options.name.c_str());
   // Announced often: robots have to know this participant before they believe who it is.
-  // A robot that was named is waited for as long as a stop is repeated; `all` are those heard by then.
+  // A stop to a robot that was named is repeated for 10 s, heard or not; `all` are those heard within 5 s.
   auto live = LiveStation::open(options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s});
   if (!live) return fail(options, exit_no_answer, live.error());
   const Outcome outcome = (*live)->execute(line, 25s);
+  if (outcome.exit_code == exit_no_answer)
+    std::fprintf(stderr, "no station runs: the stop no longer goes out\n");
   return print_outcome(options, {{"exit", outcome.exit_code},
                                  {"text", outcome.text},
                                  {"error", outcome.error},

@@ -1,5 +1,6 @@
 #include "basestation/send/sender.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct Sender::Pending {
   std::vector<Done> done{};
   radio::Command message{};
   Time first_sent{};
+  Time waits_since{};  ///< of the limit; of a robot that was not heard yet it has not begun
+  Time repeated{};
   Timer timer{};
   bool overtaken{};  ///< a stop went out after it, with a higher number
   bool blind{};      ///< sent before this station knew the authority in force
@@ -40,7 +43,7 @@ Sender::~Sender() = default;
 Sender::Lane* Sender::lane(const std::string& robot) {
   const auto found = lanes_.find(robot);
   if (found != lanes_.end()) return found->second.get();
-  if (lanes_.size() == Fleet::max_robots) return nullptr;
+  if (lanes_.size() == Fleet::max_robots + max_unheard) return nullptr;
   auto writer = wire::Writer<radio::Command>::make(radio_, wire::topics::command, robot);
   if (!writer) return nullptr;
   auto made = std::make_unique<Lane>();
@@ -51,6 +54,15 @@ Sender::Lane* Sender::lane(const std::string& robot) {
 void Sender::prepare(const std::string& robot) { lane(robot); }
 
 void Sender::send(Order order, Done done) {
+  if (unheard(order.robot) && !lanes_.contains(order.robot) &&
+      static_cast<std::size_t>(std::count_if(lanes_.begin(), lanes_.end(), [this](const auto& entry) {
+        return unheard(entry.first);
+      })) >= max_unheard) {
+    return done({.robot = order.robot,
+                 .command = std::string(order.name()),
+                 .reason = Reason::queue_full,
+                 .text = "16 robots that were not heard yet were sent a stop already"});
+  }
   Lane* to = lane(order.robot);
   if (!to) {
     return done({.robot = order.robot,
@@ -85,7 +97,7 @@ void Sender::send(Order order, Done done) {
 }
 
 void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
-  pending->first_sent = strand_.now();
+  pending->first_sent = pending->waits_since = pending->repeated = strand_.now();
   renumber(to, *pending);
   ++counts_.sent;
   if (on_sent) on_sent(pending->order, pending->message.seq());
@@ -123,9 +135,16 @@ void Sender::transmit(Lane& to, Pending& pending) {
 }
 
 void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pending) {
+  constexpr Duration slow = 1s;
   Lane& to = *lanes_.at(robot);
+  const Time now = strand_.now();
   const Duration limit = pending->is_stop() ? params_.give_up_stop : params_.give_up;
-  if (strand_.now() - pending->first_sent >= limit) {
+  if (pending->is_stop() && unheard(robot)) {
+    pending->waits_since = now;
+    report_unheard(*pending);
+    if (now - pending->first_sent >= limit && now - pending->repeated < slow) return;
+  }
+  if (now - pending->waits_since >= limit) {
     if (pending->resting) return finish(to, pending, pending->refusal);
     withdraw(to, *pending);
     const std::string text = "no answer within " + std::to_string(limit / 1s) + " s";
@@ -137,7 +156,33 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
   } else {
     ++counts_.repeats;
   }
+  pending->repeated = now;
   transmit(to, *pending);
+}
+
+void Sender::report_unheard(Pending& pending) const {
+  const Time now = strand_.now();
+  if (now - started_ < params_.discovery_grace || now - pending.first_sent < 1s) return;
+  const Answer answer{
+      .robot = pending.order.robot,
+      .command = std::string(pending.order.name()),
+      .seq = pending.message.seq(),
+      .reason = Reason::no_answer,
+      .text = "sent, not acknowledged yet: no robot of that name has been heard (known robots: " +
+              command::joined(fleet_.robot_names(), "none") +
+              "); while this station runs, the stop goes out until it is acknowledged"};
+  for (const Done& done : std::exchange(pending.done, {})) done(answer);
+}
+
+std::vector<std::string> Sender::drop_unheard() {
+  std::vector<std::string> names;
+  for (const auto& [robot, lane] : lanes_) {
+    if (!lane->stop || !unheard(robot)) continue;
+    names.push_back(robot);
+    const std::shared_ptr<Pending> pending = lane->stop;
+    finish(*lane, pending, {.reason = Reason::no_answer, .text = "not acknowledged, and no longer sent"});
+  }
+  return names;
 }
 
 void Sender::withdraw(Lane& to, const Pending& pending) {
@@ -211,6 +256,7 @@ void Sender::finish(Lane& to, const std::shared_ptr<Pending>& pending, Answer an
       start(to, to.current);
     }
   }
+  if (pending->done.empty() && on_late) on_late(answer);
   for (const Done& done : pending->done) done(answer);
 }
 

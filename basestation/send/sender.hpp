@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/send/answer.hpp"
@@ -19,14 +20,19 @@ struct SenderParams {
   Duration repeat_stop{std::chrono::milliseconds(50)};  ///< between repeats of a stop
   Duration give_up{std::chrono::seconds(3)};            ///< no_answer after this
   Duration give_up_stop{std::chrono::seconds(10)};
+  Duration discovery_grace{std::chrono::seconds(5)};  ///< after the start: robots may not be discovered yet
 };
 
 /// Sends commands and repeats each until it is acknowledged. One lane per robot: its commands go one after
 /// the other, robots never wait for each other, and a stop overtakes all that waits.
+///
+/// A stop goes out to a robot that was not heard yet, too. It is reported as sent and not acknowledged, and
+/// is repeated until that robot answers it, or is heard and does not answer within `give_up_stop`.
 class Sender {
  public:
   using Done = std::function<void(const Answer&)>;
-  static constexpr std::size_t max_queue = 16;  ///< commands that wait for one robot
+  static constexpr std::size_t max_queue = 16;    ///< commands that wait for one robot
+  static constexpr std::size_t max_unheard = 16;  ///< robots that were sent a stop and were not heard yet
 
   Sender(SenderParams params, Executor& strand, wire::Wire& radio, Fleet& fleet);
   ~Sender();
@@ -39,9 +45,14 @@ class Sender {
   /// True when nothing waits for that robot.
   bool idle(const std::string& robot) const;
 
+  /// Ends the stops of robots that were not heard yet, and returns the names of those robots.
+  std::vector<std::string> drop_unheard();
+
   const Counts& counts() const { return counts_; }
   /// Each command as it first goes out.
   std::function<void(const Order&, std::uint64_t seq)> on_sent{};
+  /// How a stop ended that had been reported as not acknowledged.
+  std::function<void(const Answer&)> on_late{};
 
  private:
   struct Pending;
@@ -51,6 +62,9 @@ class Sender {
   void transmit(Lane& lane, Pending& pending);
   void renumber(Lane& lane, Pending& pending);
   void tick(const std::string& robot, const std::shared_ptr<Pending>& pending);
+  bool unheard(const std::string& robot) const { return fleet_.robot(robot) == nullptr; }
+  /// Reports a stop of a robot that was not heard as sent and not acknowledged.
+  void report_unheard(Pending& pending) const;
   /// What the operator was told is without answer must not be obeyed when the link comes back.
   void withdraw(Lane& lane, const Pending& pending);
   void finish(Lane& lane, const std::shared_ptr<Pending>& pending, Answer answer);

@@ -204,6 +204,7 @@ inline constexpr std::array kTable{
                 .number = 5,
                 .line = Line::steering,
                 .summary = "software stop: needs no authority, latches until reset",
+                .details = "a robot that is named is sent the stop even when it was not heard yet",
                 .example = "stop all",
                 .done = "stopped"},
     CommandInfo{.name = "reset",

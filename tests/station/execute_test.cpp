@@ -135,6 +135,68 @@ TEST_F(ExecuteTest, ObserversSeeWhatGoesOutAndComesBack) {
   EXPECT_THAT(seen, ElementsAre("take 1", "r1 take"));
 }
 
+TEST_F(ExecuteTest, AFlowTooManyIsRefusedAndCancelsNoOther) {
+  // 64 waits for goals that no robot answers.
+  for (const char* name : {"r3", "r4", "r5"}) add(name);
+  run_for(3s);
+  for (const auto& robot : robots_) robot->answering = [](const radio::Command&) { return std::nullopt; };
+  for (int i = 0; i < 64; ++i) begin("goto r" + std::to_string(1 + i / 16) + " 4 5 --wait");
+  ASSERT_TRUE(late_.empty());
+  begin("goto r5 4 5 --wait");
+  ASSERT_EQ(late_.size(), 1U);
+  EXPECT_EQ(late_[0].exit_code, 1);
+  EXPECT_THAT(late_[0].error, HasSubstr("r5: refused: "));
+  EXPECT_THAT(late_[0].error, HasSubstr("[queue_full]"));
+}
+
+TEST_F(ExecuteTest, ANamedStopReachesARobotThatIsHeardLater) {
+  std::vector<std::string> codes;
+  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  const Duration before = scheduler_.elapsed();
+  const Outcome outcome = execute("stop r1 r9");
+  EXPECT_LT(seconds(scheduler_.elapsed() - before), 1.5);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_EQ(outcome.text, "r1: stopped\n");
+  EXPECT_THAT(outcome.error, HasSubstr("r9: sent, not acknowledged yet"));
+  EXPECT_THAT(outcome.error, HasSubstr("known robots: r1, r2"));
+  run_for(60s);
+  add("r9");
+  run_for(5s);
+  EXPECT_TRUE(robots_.back()->behaviour.stopped());
+  EXPECT_THAT(codes, testing::Contains("stop_acknowledged r9"));
+  const std::size_t commands = robots_.back()->commands().size();
+  run_for(5s);
+  EXPECT_EQ(robots_.back()->commands().size(), commands) << "it ends with the acknowledgement";
+}
+
+TEST_F(ExecuteTest, ARobotThatIsHeardAndDoesNotAcknowledgeTheStopIsToldToTheOperator) {
+  std::vector<std::string> codes;
+  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  EXPECT_EQ(execute("stop r9").exit_code, 3);
+  run_for(30s);
+  add("r9").answering = [](const radio::Command&) { return std::nullopt; };
+  run_for(15s);
+  EXPECT_THAT(codes, testing::Contains("stop_not_acknowledged r9"));
+}
+
+TEST_F(ExecuteTest, StopsOfUnheardRobotsAreBoundedAndTakeNoPlaceFromOthers) {
+  for (int i = 0; i < 16; ++i) begin("stop x" + std::to_string(i));
+  run_for(2s);
+  const Outcome refused = execute("stop x16");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.error, HasSubstr("[queue_full]"));
+  EXPECT_EQ(execute("stop x3").exit_code, 3) << "one that is on its way already";
+  EXPECT_EQ(execute("take r1").exit_code, 0);
+}
+
+TEST_F(ExecuteTest, AStationThatIsDownSendsNoStopToARobotThatIsHeardLater) {
+  EXPECT_EQ(execute("stop r9").exit_code, 3);
+  EXPECT_THAT(execute("down").text, HasSubstr("no longer goes out: r9"));
+  add("r9");
+  run_for(5s);
+  EXPECT_TRUE(robots_.back()->commands().empty());
+}
+
 TEST_F(ExecuteTest, ALostRobotIsToldToTheOperator) {
   std::vector<std::string> codes;
   op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
@@ -191,6 +253,14 @@ TEST_F(FreshStation, KeepsTheOrderOfWhatWaits) {
   EXPECT_EQ(late_.size(), 2U);
   ASSERT_EQ(robots_[0]->numbers().size(), 2U);
   EXPECT_EQ(robots_[0]->commands().back().command.kind(), radio::CMD_GOTO);
+}
+
+TEST_F(FreshStation, ANamedStopGoesOutBeforeTheRobotIsHeard) {
+  add("r1").alive = false;
+  start();
+  begin("stop r1");
+  run_for(2s);
+  EXPECT_FALSE(robots_[0]->commands().empty());
 }
 
 TEST_F(FreshStation, StopAllCatchesRobotsThatAppear) {
