@@ -102,13 +102,16 @@ class Loop final : public Inbox {
     wake_.wake();
   }
 
-  /// Drops the queued tasks.
+  /// Drops the queued tasks, and those that the thread has taken and not run. Any thread.
   void drop() {
-    std::deque<Task> posted;  // dies after the lock
+    std::deque<Task> posted;  // these die after the lock
     std::vector<Alarm> alarms;
-    const std::lock_guard lock(mutex_);
+    std::vector<Task> batch;
+    const std::scoped_lock lock(mutex_, batch_mutex_);
     posted.swap(posted_);
     alarms.swap(alarms_);
+    batch.swap(batch_);
+    next_in_batch_ = 0;
     refresh_next();
   }
 
@@ -124,21 +127,21 @@ class Loop final : public Inbox {
     system_id_.store(static_cast<int>(syscall(SYS_gettid)), std::memory_order_relaxed);
     thread_id_.store(std::this_thread::get_id(), std::memory_order_relaxed);
     pthread_setname_np(pthread_self(), name_.substr(0, 15).c_str());
-    std::vector<Task> batch;
-    batch.reserve(kChunk);
     std::unique_lock running(running_);
     while (!stop_now_.load(std::memory_order_relaxed)) {
       run_alarms();
       wake_.prepare();
       bool sleep = false, drained = false;
       {
-        const std::lock_guard lock(mutex_);
-        while (!posted_.empty() && batch.size() < kChunk) {
-          batch.push_back(std::move(posted_.front()));
+        const std::scoped_lock lock(mutex_, batch_mutex_);
+        batch_.clear();
+        next_in_batch_ = 0;
+        while (!posted_.empty() && batch_.size() < kChunk) {
+          batch_.push_back(std::move(posted_.front()));
           posted_.pop_front();
         }
-        sleep = batch.empty() && !stopping_;
-        drained = batch.empty() && draining_;
+        sleep = batch_.empty() && !stopping_;
+        drained = batch_.empty() && draining_;
       }
       if (drained) break;
       if (sleep) {
@@ -148,15 +151,11 @@ class Loop final : public Inbox {
         continue;
       }
       wake_.clear();
-      for (Task& task : batch) {
-        if (stop_now_.load(std::memory_order_relaxed)) break;
+      while (const Task task = next_of_batch()) {
         invoke(task);
-        task = nullptr;
         run_alarms();  // a flood of posts must not hold timers up
       }
-      batch.clear();
     }
-    batch.clear();
     stop();
     drop();
     const std::lock_guard lock(mutex_);
@@ -178,6 +177,13 @@ class Loop final : public Inbox {
   }
 
  private:
+  /// Null at the end of the batch, or when nothing runs any more.
+  Task next_of_batch() {
+    const std::lock_guard lock(batch_mutex_);
+    if (stop_now_.load(std::memory_order_relaxed) || next_in_batch_ >= batch_.size()) return nullptr;
+    return std::move(batch_[next_in_batch_++]);
+  }
+
   void invoke(const Task& task) {
     try {
       task();
@@ -249,6 +255,9 @@ class Loop final : public Inbox {
   std::mutex running_{};                  // held by the thread that runs a task of this strand
   std::atomic<std::thread::id> guest_{};  // which is not its own one
   std::atomic<int> guest_system_id_{0};   // of that thread
+  std::mutex batch_mutex_{};              // guards the next two
+  std::vector<Task> batch_{};             // taken out of the queue by the thread
+  std::size_t next_in_batch_{0};          // the first that was not run
   std::mutex mutex_{};                    // guards what follows
   std::deque<Task> posted_{};
   std::vector<Alarm> alarms_{};

@@ -94,7 +94,7 @@ void Overseer::hung(std::size_t part, Verdict& verdict) {
   if (++left_behind_ > params_.hangs) return escalate(part, "hangs, and so does another component", verdict);
   if (status.spec.policy == RestartPolicy::automatic) return order(part, Order::Kind::replace, verdict);
   status.state = PartState::hung;
-  verdict.orders.push_back({Order::Kind::revoke, part});
+  verdict.orders.push_back({Order::Kind::abandon, part});
 }
 
 void Overseer::order(std::size_t part, Order::Kind kind, Verdict& verdict) {

@@ -65,7 +65,7 @@ struct Order {
   enum class Kind : std::uint8_t {
     restart,  ///< make the component anew on its strand
     replace,  ///< leave its strand behind and make it anew on another
-    revoke,   ///< its outputs count no more; nothing else
+    abandon,  ///< Leave its strand behind; the operator restarts it.
     escalate  ///< restart the agent
   };
   Kind kind{};

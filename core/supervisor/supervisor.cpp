@@ -57,8 +57,8 @@ void Supervisor::carry_out(const Overseer::Verdict& verdict) {
       case Order::Kind::replace:
         unit.replace();
         break;
-      case Order::Kind::revoke:
-        unit.revoke();
+      case Order::Kind::abandon:
+        unit.abandon();
         break;
       case Order::Kind::escalate:
         unit.revoke();

@@ -104,6 +104,11 @@ void Unit::revoke() {
   record_->lease->revoke();
 }
 
+void Unit::abandon() {
+  revoke();
+  seat()->strand->abandon();
+}
+
 void Unit::end() {
   if (const auto now = seat()) now->strand->end();
 }

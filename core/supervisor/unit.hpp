@@ -57,7 +57,8 @@ struct UnitParams {
 /// instance hands to other strands counts only while its lease is valid. An exception that leaves a callback
 /// of the component ends that instance on the spot.
 ///
-/// restart(), replace() and revoke() are the supervisor's, on its strand; the rest is for any thread.
+/// restart(), replace(), revoke() and abandon() are the supervisor's, on its strand; the rest is for any
+/// thread.
 class Unit {
  public:
   Unit(Runtime& runtime, UnitParams params);
@@ -72,7 +73,10 @@ class Unit {
 
   void restart();
   void replace();
+  /// What the instance hands out no longer counts.
   void revoke();
+  /// Revokes an instance that hangs and leaves its strand behind: queued tasks are dropped, posts refused.
+  void abandon();
   /// Ends the strand: nothing of this component runs any more.
   void end();
 

@@ -212,6 +212,28 @@ TEST(LiveAbandon, a_task_that_returns_late_ends_its_thread) {
   while (held.use_count() > 1) std::this_thread::yield();
 }
 
+// Also those that its thread took out of the queue together with the one that never returns.
+TEST(LiveAbandon, DropsEveryTaskBehindTheOneThatHangs) {
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("stuck");
+  std::promise<void> gate, entered, go_on;
+  const auto held = std::make_shared<int>(0);
+  strand->post([open = gate.get_future().share()] { open.wait(); });
+  strand->post([&entered, go = go_on.get_future().share()] {
+    entered.set_value();
+    go.wait();
+  });
+  for (int i = 0; i < 100; ++i) strand->post([held] {});
+  const Timer timer = strand->after(1h, [held] {});
+  gate.set_value();
+  entered.get_future().wait();
+  strand->abandon();
+  EXPECT_EQ(held.use_count(), 1);
+  EXPECT_FALSE(strand->post([held] {}));
+  EXPECT_EQ(held.use_count(), 1);
+  go_on.set_value();
+}
+
 TEST(LiveWorker, computes_on_its_own_thread) {
   LiveRuntime runtime;
   const auto worker = runtime.worker("planner");

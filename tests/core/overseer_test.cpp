@@ -227,7 +227,7 @@ TEST_F(OverseerTest, ByTheOperatorsPolicyItWaits) {
 TEST_F(OverseerTest, AHungOneOfTheOperatorsIsSilencedAndReplacedOnHisWord) {
   ASSERT_TRUE(overseer.set_policy("planner", RestartPolicy::by_operator, now));
   stuck[1] = true;
-  EXPECT_THAT(pass(1s), ElementsAre(Order{Kind::revoke, 1}));
+  EXPECT_THAT(pass(1s), ElementsAre(Order{Kind::abandon, 1}));
   EXPECT_EQ(state(1), PartState::hung);
   const auto verdict = overseer.set_policy("planner", RestartPolicy::automatic, now);
   ASSERT_TRUE(verdict);

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cmath>
 
 #include "core/wire/topics.hpp"
@@ -47,6 +48,8 @@ class PlainDriver {
     double last{};
   };
   Told told() const { return told_.get(); }
+  /// From now on each cloud has at least so many bytes of points.
+  void enlarge_clouds(std::size_t bytes) { cloud_bytes_.store(bytes); }
 
  private:
   void step() {
@@ -65,6 +68,8 @@ class PlainDriver {
         const float a = static_cast<float>(i) * 0.0174533F;
         ground.insert(ground.end(), {r * std::cos(a), r * std::sin(a), 0.0F});
       }
+    while (ground.size() * sizeof(float) < cloud_bytes_.load())
+      ground.insert(ground.end(), {4.0F, 0.0F, 0.0F});
     sensor_msgs::msg::PointCloud2 c = cloud_of(ground);
     stamp(c.header());
     (void)points_.write(c);
@@ -84,6 +89,7 @@ class PlainDriver {
   wire::Writer<sensor_msgs::msg::PointCloud2> points_{};
   std::unique_ptr<wire::RawReader> cmd_vel_{};
   std::vector<Timer> timers_{};
+  std::atomic<std::size_t> cloud_bytes_{0};
   double velocity_{}, x_{};  // on the strand
 };
 

@@ -14,6 +14,14 @@ namespace {
 
 double ms(Duration d) { return seconds(d) * 1000.0; }
 
+/// Resident memory of a process, MB; 0 when it is gone.
+double resident_memory(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("VmRSS:")) return std::stod(line.substr(6)) / 1024.0;
+  return 0.0;
+}
+
 }  // namespace
 
 FailureLab::FailureLab()
@@ -170,6 +178,39 @@ FailureLab::Failed FailureLab::crash(const std::string& component) {
 }
 FailureLab::Failed FailureLab::hang(const std::string& component) {
   return fault("hang", component, "component_hung");
+}
+
+std::optional<FailureLab::Hung> FailureLab::stay_hung(const std::string& component, std::size_t cloud_bytes,
+                                                      Duration time) {
+  if (op_->ask("policy r1 " + component + " manual").exit_code != 0) return std::nullopt;
+  const Time since = now();
+  if (console("fault hang " + component) != "done\n") return std::nullopt;
+  if (!eventually([&] { return notice("component_hung " + component, since).has_value(); }))
+    return std::nullopt;
+  const auto strand = net_->machine("witness").strand("witness");
+  const auto wire = net_->join_robot("witness");
+  std::atomic<int> clouds{0};
+  const auto reader = wire->make_reader(wire::topics::points, "", *strand, [&](auto bytes, const auto&) {
+    if (bytes.size() >= cloud_bytes) ++clouds;
+    return true;
+  });
+  driver_.enlarge_clouds(cloud_bytes);
+  Hung hung{};
+  double first = 0.0;
+  const pid_t pid = agent();
+  constexpr int kClouds = 10;  // received, so that stored ones would show; most are lost on small sockets
+  const Time begin = now();
+  const auto goes_on = [&] {
+    return now() - begin < time || (clouds.load() < kClouds && now() - begin < time + 30s);
+  };
+  for (; goes_on(); net_->pass(100ms)) {
+    hung.megabytes = std::max(hung.megabytes, resident_memory(pid));
+    if (now() - begin < time / 10) first = hung.megabytes;
+  }
+  hung.growth = hung.megabytes - first;
+  hung.clouds = clouds.load();
+  driver_.enlarge_clouds(0);
+  return agent() == pid ? std::optional(hung) : std::nullopt;
 }
 
 bool FailureLab::fresh_agent() {

@@ -38,6 +38,14 @@ class FailureLab {
   /// Through the robot's console.
   Failed crash(const std::string& component);
   Failed hang(const std::string& component);
+  /// A component hangs that only the operator may replace, while the driver's clouds have `cloud_bytes` and
+  /// come ten times a second for `time`. Nothing when it did not come about.
+  struct Hung {
+    double megabytes{};  ///< Resident memory of the agent at its largest, sampled ten times a second.
+    double growth{};     ///< Of it, since the first tenth of the time, MB.
+    int clouds{};        ///< That another reader on the robot's inner network received.
+  };
+  std::optional<Hung> stay_hung(const std::string& component, std::size_t cloud_bytes, Duration time);
   /// Moves nothing, and is in hold.
   bool calm();
   /// A line at the robot's own console.

@@ -2,6 +2,8 @@
 // it takes, fifty times each: bench_failures.
 #include <gmock/gmock.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include "tests/live/failure_lab.hpp"
@@ -60,6 +62,24 @@ TEST(Components, AHungAgentEndsWithItsParentAndLeavesNothing) {
   EXPECT_EQ(lab.end(), 0);
   for (const auto& entry : std::filesystem::directory_iterator(lab.folder().path() + "/adit"))
     EXPECT_FALSE(entry.is_socket()) << entry.path();
+}
+
+/// ADIT_HUNG_SECONDS: how long the clouds arrive, s.
+Duration hung_time() {
+  const char* text = std::getenv("ADIT_HUNG_SECONDS");
+  return text ? from_seconds(std::stod(text)) : 6s;
+}
+
+TEST(Memory, StaysBoundedWhileSensorsHangAndLargeCloudsArrive) {
+  constexpr std::size_t cloud = 1'600'000;  // bytes
+  FailureLab lab;
+  ASSERT_TRUE(lab.ready()) << lab.err();
+  const auto hung = lab.stay_hung("sensors", cloud, hung_time());
+  ASSERT_TRUE(hung) << lab.err();
+  std::printf("resident %.1f MB, growth %.1f MB, %d clouds\n", hung->megabytes, hung->growth, hung->clouds);
+  EXPECT_LT(hung->megabytes, 200.0);
+  EXPECT_LT(hung->growth, 8.0);
+  EXPECT_GE(hung->clouds, 10) << "too few arrive to show anything";
 }
 
 }  // namespace
