@@ -35,8 +35,8 @@ void Steer::enter_phase(Phase phase) {
   phase_since_ = parts_.strand.now();
 }
 
-void Steer::stream(const std::array<double, 3>& velocity) {
-  if (auto streamed = parts_.stick.stream(robot(), velocity); !streamed)
+void Steer::stream(const std::array<double, 3>& velocity, Stick::Source source) {
+  if (auto streamed = parts_.stick.stream(robot(), velocity, source); !streamed)
     end(streamed.error().reason, streamed.error().text);
 }
 
@@ -129,7 +129,7 @@ void Steer::move() {
 void Steer::set_velocity(const std::array<double, 3>& velocity) {
   if (phase_ != Phase::moving) return;
   stick_at_ = parts_.strand.now();
-  stream(velocity);
+  stream(velocity, Stick::Source::live);
 }
 
 bool Steer::left_mode(Reason& reason, std::string& text) {

@@ -45,7 +45,7 @@ class Steer final : public Flow {
   /// What of the velocity asked for is beyond the robot; empty when nothing.
   std::string clipped() const;
   bool left_mode(Reason& reason, std::string& text);
-  void stream(const std::array<double, 3>& velocity);
+  void stream(const std::array<double, 3>& velocity, Stick::Source source = Stick::Source::held);
 
   SteerParams params_;
   Phase phase_{Phase::waiting};

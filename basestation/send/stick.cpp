@@ -1,5 +1,7 @@
 #include "basestation/send/stick.hpp"
 
+#include <algorithm>
+
 #include "adit/command.h"
 #include "core/wire/typed.hpp"
 
@@ -9,7 +11,13 @@ struct Stick::Stream {
   std::string robot{};
   wire::Writer<radio::Joystick> writer{};
   radio::Joystick sample{};
+  Source source{Source::held};
+  bool active{false};
+  bool pushed{false};  ///< the last sample that went out was not centred
+  Time earliest{};     ///< of the next sample at 20 a second
   Timer timer{};
+
+  bool centred() const { return sample.vx() == 0.0F && sample.vy() == 0.0F && sample.wz() == 0.0F; }
 };
 
 Stick::Stick(Id id, Executor& strand, wire::Wire& radio, Fleet& fleet)
@@ -17,7 +25,7 @@ Stick::Stick(Id id, Executor& strand, wire::Wire& radio, Fleet& fleet)
 
 Stick::~Stick() = default;
 
-Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>& velocity) {
+Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>& velocity, Source source) {
   auto& stream = streams_[robot];
   if (!stream) {
     auto writer = wire::Writer<radio::Joystick>::make(radio_, wire::topics::joystick, robot);
@@ -30,24 +38,52 @@ Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>
     stream->writer = std::move(*writer);
     stream->sample.robot(robot);
     stream->sample.station_id(id_);
+    stream->earliest = strand_.now();
   }
-  stream->sample.vx(static_cast<float>(velocity[0]));
-  stream->sample.vy(static_cast<float>(velocity[1]));
-  stream->sample.wz(static_cast<float>(velocity[2]));
-  if (stream->timer.active()) return {};
-  stream->timer = strand_.every(period, [this, &to = *stream] { transmit(to); });
-  transmit(*stream);
+  radio::Joystick& sample = stream->sample;
+  const std::array<float, 3> before{sample.vx(), sample.vy(), sample.wz()};
+  sample.vx(static_cast<float>(velocity[0]));
+  sample.vy(static_cast<float>(velocity[1]));
+  sample.wz(static_cast<float>(velocity[2]));
+  const bool changed = before != std::array{sample.vx(), sample.vy(), sample.wz()};
+  const bool repeat_suffices = stream->active && !changed && source == Source::held;
+  const bool slower = stream->source == Source::live && source == Source::held;
+  stream->source = source;
+  stream->active = true;
+  if (repeat_suffices && !slower) return {};
+  const Time now = strand_.now();
+  const bool lets_go = stream->pushed && stream->centred();  // a zero waits for nothing; what follows it does
+  if (lets_go || now + tolerance >= stream->earliest)
+    send(*stream, now);
+  else
+    arm(*stream, stream->earliest - tolerance);
   return {};
+}
+
+void Stick::send(Stream& stream, Time at) {
+  stream.earliest = std::max(stream.earliest, at) + period;
+  arm(stream, at + (stream.source == Source::live ? live_repeat : period));
+  stream.pushed = !stream.centred();
+  transmit(stream);
+}
+
+void Stick::arm(Stream& stream, Time due) {
+  const Time now = strand_.now();
+  // A strand that was held up does not send what it missed.
+  if (due < now) due = now;
+  stream.timer = strand_.after(due - now, [this, &stream, due] { send(stream, due); });
 }
 
 void Stick::end(const std::string& robot) {
   const auto found = streams_.find(robot);
-  if (found != streams_.end()) found->second->timer.cancel();  // the writer stays: its sequence goes on
+  if (found == streams_.end()) return;
+  found->second->timer.cancel();
+  found->second->active = false;  // the writer stays: its sequence goes on
 }
 
 bool Stick::streaming(const std::string& robot) const {
   const auto found = streams_.find(robot);
-  return found != streams_.end() && found->second->timer.active();
+  return found != streams_.end() && found->second->active;
 }
 
 void Stick::transmit(Stream& stream) {

@@ -9,23 +9,38 @@
 
 namespace adit::station {
 
-/// Streams joystick samples at 20 Hz to robots, each with the last RobotState stamp that was heard. A stream
-/// ends only when it is told to: the last samples before that are the caller's to choose.
+/// Streams joystick samples to robots, each with the last RobotState stamp that was heard.
+///
+/// A new value goes out when it comes, and the last one is repeated: 20 samples a second on average, however
+/// often values come. A stream goes on until end(); the caller chooses the last samples before that.
 class Stick {
  public:
+  enum class Source : std::uint8_t {
+    held,  ///< one value for a while: repeated each `period`
+    live,  ///< a stick that is renewed each `period` or more often: repeated only when a renewal is missing
+  };
   static constexpr Duration period = std::chrono::milliseconds(50);
+  /// A live value is repeated after this time without another one.
+  static constexpr Duration live_repeat = std::chrono::milliseconds(75);
+  /// A sample may go out so much earlier than the rate says: one period, whatever the phase of the renewals
+  /// is, and their jitter.
+  static constexpr Duration tolerance = std::chrono::milliseconds(70);
 
   Stick(Id id, Executor& strand, wire::Wire& radio, Fleet& fleet);
   ~Stick();
 
-  /// Streams this velocity (m/s, m/s, rad/s, body frame) from now on; the first sample goes out at once.
-  Result<void> stream(const std::string& robot, const std::array<double, 3>& velocity);
+  /// Streams this velocity (m/s, m/s, rad/s, body frame) from now on. Error: wire_failed.
+  Result<void> stream(const std::string& robot, const std::array<double, 3>& velocity,
+                      Source source = Source::held);
   /// Lets go: the robot hears nothing more.
   void end(const std::string& robot);
   bool streaming(const std::string& robot) const;
 
  private:
   struct Stream;
+  /// `at`: now, or when the sample was due.
+  void send(Stream& stream, Time at);
+  void arm(Stream& stream, Time due);
   void transmit(Stream& stream);
 
   Id id_;

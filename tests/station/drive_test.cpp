@@ -37,6 +37,7 @@ TEST_F(DriveTest, ZerosThenModeThenTheValueThenZeros) {
   EXPECT_LT(sticks.front().at, r1().commands().back().at) << "the stick is there before the mode is asked";
   EXPECT_EQ(r1().commands().back().command.words().front(), "manual");
   EXPECT_TRUE(ends_in_zero());
+  run_for(10ms);  // the last one is under way
   const std::size_t count = sticks.size();
   run_for(2s);
   EXPECT_EQ(sticks.size(), count) << "it let go";
@@ -194,6 +195,77 @@ TEST_F(DriveTest, ALiveStickThatIsNotRenewedIsZero) {
   strand_->post([&] { op_->cancel(handle); });
   run_for(1s);
   EXPECT_TRUE(ended);
+}
+
+class LiveStick : public DriveTest {
+ protected:
+  LiveStick() {
+    strand_->post([&] { handle_ = op_->teleop("r1", [](const Outcome&) {}); });
+    run_for(1s);
+    EXPECT_EQ(r1().behaviour.mode(), "manual");
+  }
+  void push(double vx) {
+    strand_->post([&, vx] { op_->stick(handle_, {vx, 0.0, 0.0}); });
+    pushed_at_[static_cast<float>(vx)] = scheduler_.elapsed();
+  }
+  /// From a push to the robot's first sample of that value.
+  std::optional<Duration> delay_of(float vx) const {
+    for (const FakeRobot::HeardStick& stick : robots_[0]->sticks())
+      if (stick.sample.vx() == vx) return stick.at - pushed_at_.at(vx);
+    return std::nullopt;
+  }
+  std::uint64_t handle_{};
+  std::map<float, Duration> pushed_at_{};
+};
+
+TEST_F(LiveStick, GoesOutWhenItComesAndCostsNoMoreSamples) {
+  for (const Duration phase : {0ms, 3ms, 17ms, 31ms, 49ms}) {
+    run_for(phase);
+    const std::size_t before = r1().sticks().size();
+    const Duration jitter[] = {0ms, 4ms, -6ms, 9ms, -2ms};
+    Duration late{};
+    for (int i = 0; i < 40; ++i) {
+      const auto vx = static_cast<float>(0.001 * (i + 1) + 0.1 * static_cast<double>(phase / 1ms));
+      push(vx);
+      run_for(50ms + jitter[i % 5] - late);
+      late = jitter[i % 5];
+      ASSERT_TRUE(delay_of(vx)) << vx;
+      EXPECT_LE(*delay_of(vx), 5ms) << vx << " phase " << phase / 1ms;
+    }
+    EXPECT_NEAR(static_cast<double>(r1().sticks().size() - before), 40.0, 1.0);
+  }
+}
+
+TEST_F(LiveStick, KeepsTheRateHoweverOftenItIsRenewed) {
+  const std::size_t before = r1().sticks().size();
+  for (int i = 0; i < 400; ++i) {
+    push(0.1 + 0.001 * i);
+    run_for(5ms);
+  }
+  EXPECT_LE(r1().sticks().size() - before, 44U) << "20 a second for 2 s";
+  EXPECT_GE(r1().sticks().size() - before, 38U);
+  run_for(50ms);
+  EXPECT_FLOAT_EQ(r1().sticks().back().sample.vx(), 0.499F) << "the newest value is not lost";
+}
+
+TEST_F(LiveStick, AZeroWaitsForNothingAndBuysNoRate) {
+  push(0.3);
+  run_for(10ms);
+  push(0.0);
+  run_for(5ms);
+  EXPECT_TRUE(ends_in_zero());
+  const std::size_t before = r1().sticks().size();
+  for (int i = 0; i < 400; ++i) {
+    push(i % 2 == 0 ? 0.3 : 0.0);
+    run_for(5ms);
+  }
+  EXPECT_LE(r1().sticks().size() - before, 44U);
+}
+
+TEST_F(LiveStick, IsRepeatedWhenARenewalIsMissing) {
+  push(0.3);
+  run_for(200ms);
+  EXPECT_GE(pushed(), 3) << "the robot lets go after 300 ms without a sample";
 }
 
 }  // namespace
