@@ -2,6 +2,7 @@
 
 #include <poll.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -39,10 +40,21 @@ void Client::handle(const std::string& line) {
   if (!object.is_object()) return;  // a station of another version; what it says is not for us
   if (object.contains("snapshot") && on_snapshot) on_snapshot(object["snapshot"]);
   if (object.contains("notice") && on_notice) on_notice(object["notice"]);
+  if (object.contains("missed") && on_missed) on_missed(object.value("missed", std::size_t{0}));
+  if (object.contains("cut_off")) cut_off_ = object.value("cut_off", std::string());
+  if (object.contains("event")) {
+    if (object["event"] == "command" && on_command) on_command(object);
+    return;
+  }
   if (!object.contains("id")) return;
   const auto id = object.value("id", std::int64_t{0});
   if (object.contains("begun") && on_begun) on_begun(id);
   if (object.contains("outcome") && on_outcome) on_outcome(id, object["outcome"]);
+}
+
+std::string Client::gone() const {
+  return cut_off_.empty() ? "the station ended before it answered"
+                          : "the station ended the connection: " + cut_off_;
 }
 
 bool Client::wait(int timeout_ms, int other_fd) {
@@ -89,7 +101,7 @@ int run_line(Client& client, const Options& options, const std::string& line) {
   std::optional<Clock::time_point> cancelled;
   while (!outcome) {
     if (!client.wait(200) && !outcome)
-      return fail(options, exit_no_answer, {Reason::no_answer, "the station ended before it answered"});
+      return fail(options, exit_no_answer, {Reason::no_answer, client.gone()});
     const auto now = Clock::now();
     if (!begun && !outcome && now - started > std::chrono::seconds(5))
       return fail(
@@ -105,6 +117,18 @@ int run_line(Client& client, const Options& options, const std::string& line) {
   }
   const int code = print_outcome(options, *outcome);
   return cancelled ? 130 : code;
+}
+
+std::string command_of_another(const json& event) {
+  if (event.value("mine", true) || event.value("query", true) ||
+      event.value("phase", std::string()) != "ended")
+    return {};
+  const json by = event.value("by", json::object());
+  std::string answer = event.value("text", std::string()) + event.value("error", std::string());
+  while (answer.ends_with('\n')) answer.pop_back();
+  std::replace(answer.begin(), answer.end(), '\n', ' ');
+  return "in another " + by.value("front_end", std::string("program")) + ": " +
+         event.value("line", std::string()) + " -> " + answer;
 }
 
 std::string quoted(const std::vector<std::string>& words) {

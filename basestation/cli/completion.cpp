@@ -38,7 +38,7 @@ std::vector<std::string> known_robots(const Options& options) {
   if (!path) return robots;
   auto socket = LineSocket::connect(*path);
   if (!socket) return robots;
-  Client client(std::move(*socket));
+  Client client(std::move(*socket), "completion");
   bool answered = false;
   client.on_outcome = [&](std::int64_t, const nlohmann::json& outcome) {
     answered = true;

@@ -68,7 +68,7 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
     if (!path) return fail(options, exit_refused, path.error());
     auto socket = LineSocket::connect(*path);
     if (!socket) return down_without_station(options);
-    Client client(std::move(*socket));
+    Client client(std::move(*socket), "shell");
     return run_line(client, options, line);
   }
   if (request->verb == verb("run")) {
@@ -78,7 +78,8 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
   }
   auto socket = connect_or_launch(options);
   if (!socket) return fail(options, exit_without_station(socket.error()), socket.error());
-  Client client(std::move(*socket));
+  const bool terminal = request->info->runs == command::Runs::terminal;
+  Client client(std::move(*socket), terminal ? std::string(request->info->name) : "shell");
   if (request->verb == verb("watch")) return watch(client, options);
   if (request->verb == verb("teleop")) return teleop(client, options, request->robots.front());
   return run_line(client, options, line);

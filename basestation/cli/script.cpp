@@ -33,7 +33,7 @@ class Play {
     auto socket = connect_or_launch(own);
     if (!socket) return socket.error();
     Player& player = players_[name];
-    player.client = std::make_unique<Client>(std::move(*socket));
+    player.client = std::make_unique<Client>(std::move(*socket), "script");
     player.client->on_notice = [this, name](const nlohmann::json& notice) {
       if (!options_.json && notice.value("mine", false) && players_.contains(name))
         std::printf("%7.1f %s* %s\n", now(), name.c_str(), notice.value("text", std::string()).c_str());

@@ -20,7 +20,7 @@ std::optional<nlohmann::json> ask_station(const Options& options, const std::str
   if (!path) return std::nullopt;
   auto socket = LineSocket::connect(*path);
   if (!socket) return std::nullopt;
-  Client client(std::move(*socket));
+  Client client(std::move(*socket), "shell");
   bool begun = false;
   std::optional<nlohmann::json> outcome;
   client.on_begun = [&](std::int64_t) { begun = true; };

@@ -94,7 +94,7 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next - Clock::now()).count();
     if (!client.wait(static_cast<int>(std::max<long>(left, 0)) + 1, STDIN_FILENO)) {
       terminal.write("\r\n");
-      return fail(options, exit_no_answer, {Reason::no_answer, "the station went away"});
+      return fail(options, exit_no_answer, {Reason::no_answer, client.gone()});
     }
   }
   terminal.write("\r\x1b[K");

@@ -1,6 +1,8 @@
 #include "basestation/cli/process/line_socket.hpp"
 
 #include <fcntl.h>
+#include <linux/sockios.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 
@@ -48,10 +50,32 @@ std::optional<std::string> LineSocket::line() {
   return text;
 }
 
-bool LineSocket::send(const nlohmann::json& object) {
+std::string LineSocket::text_of(const nlohmann::json& object) {
+  return object.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+}
+
+bool LineSocket::send(const nlohmann::json& object) { return send_line(text_of(object)); }
+
+bool LineSocket::send_line(const std::string& text) {
   if (out_.size() > max_backlog) return false;
-  out_ += object.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) + "\n";
+  out_ += text + "\n";
   return flush();
+}
+
+bool LineSocket::is_read() const {
+  int unread = 0;
+  return out_.empty() && ::ioctl(file_.get(), SIOCOUTQ, &unread) == 0 && unread == 0;
+}
+
+void LineSocket::stop_reading() {
+  ::shutdown(file_.get(), SHUT_RD);
+  in_.clear();
+}
+
+pid_t LineSocket::peer_pid() const {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  return ::getsockopt(file_.get(), SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 ? peer.pid : 0;
 }
 
 bool LineSocket::flush() {

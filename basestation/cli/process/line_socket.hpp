@@ -1,4 +1,6 @@
 #pragma once
+#include <sys/types.h>
+
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -27,9 +29,19 @@ class LineSocket {
   std::optional<std::string> line();
   /// Queues an object and sends what fits; false when the other side is gone or does not read.
   bool send(const nlohmann::json& object);
+  /// The same for an object that text_of() wrote.
+  bool send_line(const std::string& text);
+  /// One line without its end; bytes that are no UTF-8 are replaced.
+  static std::string text_of(const nlohmann::json& object);
   /// Sends what waits; false when the other side is gone.
   bool flush();
   bool has_backlog() const { return !out_.empty(); }
+  /// True when the other side has read all that was sent.
+  bool is_read() const;
+  /// Reads nothing more; what the other side writes from now on fails there.
+  void stop_reading();
+  /// The process at the other end; 0 when it is not known.
+  pid_t peer_pid() const;
 
  private:
   File file_{};

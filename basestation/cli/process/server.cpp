@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include "basestation/cli/process/snapshot.hpp"
+#include "core/command/parse.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::station::cli {
@@ -22,7 +23,8 @@ using nlohmann::json;
 using namespace std::chrono_literals;
 
 constexpr int snapshot_period_ms = 200;
-constexpr std::size_t max_replies = 4096;
+constexpr const char* unread_text = "the program did not read what the station answered";
+constexpr std::size_t max_event_text = 400;  // of an outcome, in the event for the others
 
 json outcome_json(std::int64_t id, const Outcome& outcome) {
   return {{"id", id},
@@ -80,35 +82,80 @@ Server::~Server() {
   if (listener_) ::unlink(path_.c_str());
 }
 
-void Server::reply(std::uint64_t client, json object) {
-  {
-    const std::lock_guard guard(mutex_);
-    if (replies_.size() < max_replies) replies_.push_back({client, std::move(object)});
-  }
+void Server::wake() {
   const std::uint64_t one = 1;
   (void)!::write(wake_.get(), &one, sizeof one);  // full means that it wakes anyway
 }
 
-void Server::end() {
-  ending_ = true;
-  const std::uint64_t one = 1;
-  (void)!::write(wake_.get(), &one, sizeof one);
+void Server::hand_over(Reply reply) {
+  {
+    const std::lock_guard guard(mutex_);
+    // Answers are bounded by the requests that are open.
+    if (reply.kind != Reply::Kind::answer && handed_over_ == max_handed_over) {
+      ++lost_;
+    } else {
+      handed_over_ += reply.kind == Reply::Kind::answer ? 0 : 1;
+      replies_.push_back(std::move(reply));
+    }
+  }
+  wake();
 }
 
-void Server::tell(const json& notice) { reply(0, {{"notice", notice}}); }
+void Server::end() {
+  ending_ = true;
+  wake();
+}
+
+void Server::tell(const json& notice) { hand_over({Reply::Kind::notice, 0, {{"notice", notice}}}); }
 
 void Server::accept_client() {
-  File socket(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-  if (!socket || clients_.size() >= max_clients || !allowed(socket.get())) return;
-  clients_[next_client_++].socket = LineSocket(std::move(socket));
+  File file(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+  if (!file || !allowed(file.get())) return;
+  LineSocket socket(std::move(file));
+  if (clients_.size() >= max_clients) {
+    const auto leaving =
+        std::find_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.cut_off; });
+    if (leaving == clients_.end()) {
+      socket.send(
+          {{"cut_off", std::to_string(max_clients) + " programs are connected to the station already"}});
+      return;
+    }
+    drop(leaving->first);
+  }
+  Client& client = clients_[next_client_++];
+  client.pid = socket.peer_pid();
+  client.socket = std::move(socket);
+}
+
+void Server::cancel_all(Client& client) {
+  for (const auto& [id, handle] : std::exchange(client.open, {}))
+    strand_->post([station = station_, h = handle] { station->cancel(*h); });
 }
 
 void Server::drop(std::uint64_t number) {
   const auto found = clients_.find(number);
   if (found == clients_.end()) return;
-  for (const auto& [id, handle] : found->second.open)
-    strand_->post([station = station_, h = handle] { station->cancel(*h); });
+  cancel_all(found->second);
   clients_.erase(found);
+}
+
+void Server::cut_off(Client& client, const std::string& why) {
+  if (client.cut_off) return;
+  client.cut_off = true;
+  cancel_all(client);
+  client.socket.stop_reading();
+  client.outbox.clear();
+  (void)client.outbox.reply(LineSocket::text_of({{"cut_off", why}}));
+}
+
+bool Server::push(Client& client) {
+  if (!client.socket.flush()) return false;
+  while (!client.socket.has_backlog()) {
+    const auto line = client.outbox.next(client.socket.is_read());
+    if (!line) return !client.cut_off;
+    if (!client.socket.send_line(*line)) return false;
+  }
+  return true;
 }
 
 void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const json& request) {
@@ -120,31 +167,62 @@ void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const 
   };
   const std::string line = text("do");
   const std::string robot = text("teleop");
-  strand_->post([this, number, id, line, robot, handle] {
-    const auto done = [this, number, id](const Outcome& outcome) {
-      reply(number, outcome_json(id, outcome));
+  const json by{{"client", number}, {"front_end", client.front_end}, {"pid", client.pid}};
+  const auto answer = [this, number, id](const Outcome& outcome) {
+    hand_over({Reply::Kind::answer, number, outcome_json(id, outcome)});
+  };
+  const bool posted = strand_->post([this, number, id, line, robot, handle, by, answer] {
+    const auto parsed = command::parse(line);
+    json event{{"event", "command"},
+               {"id", ++last_command_},
+               {"phase", "begun"},
+               {"line", robot.empty() ? line : "teleop " + robot},
+               {"query", robot.empty() && parsed && parsed->info->runs == command::Runs::query},
+               {"by", by}};
+    const auto done = [this, number, event, answer](const Outcome& outcome) {
+      answer(outcome);
+      json ended = event;
+      ended["phase"] = "ended";
+      ended["exit"] = outcome.exit_code;
+      ended["text"] = outcome.text.substr(0, max_event_text);
+      ended["error"] = outcome.error.substr(0, max_event_text);
+      hand_over({Reply::Kind::event, number, std::move(ended)});
     };
-    reply(number, {{"id", id}, {"begun", true}});
+    hand_over({Reply::Kind::answer, number, {{"id", id}, {"begun", true}}});
+    hand_over({Reply::Kind::event, number, std::move(event)});
     *handle = robot.empty() ? station_->execute(line, done) : station_->teleop(robot, done);
   });
+  if (posted) return;
+  Outcome outcome{.exit_code = 1, .error = "the station has too much to do\n"};
+  outcome.json = {{"exit", 1}, {"ok", false}, {"reason", name(Reason::queue_full)}, {"error", outcome.error}};
+  answer(outcome);
 }
 
-bool Server::handle(std::uint64_t number, Client& client, const std::string& line) {
+void Server::handle(std::uint64_t number, Client& client, const std::string& line) {
   const json request = json::parse(line, nullptr, false);
-  const auto wrong = [&](const char* text) { return client.socket.send({{"wrong", text}}); };
+  const auto answer = [&](const json& object) {
+    if (!client.outbox.reply(LineSocket::text_of(object))) cut_off(client, unread_text);
+  };
+  const auto wrong = [&](const char* text) { answer({{"wrong", text}}); };
   if (!request.is_object()) return wrong("a JSON object was expected");
   const auto integer = [&](const char* key) -> std::int64_t {
     const auto found = request.find(key);
     return found != request.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
   };
-  if (request.contains("hello")) return client.socket.send({{"hello", hello_}});
-  if (request.contains("watch")) return client.watches = true;
-  if (request.contains("notices")) return client.notices = true;
+  if (request.contains("hello")) return answer({{"hello", hello_}});
+  if (request.contains("watch")) return void(client.watches = true);
+  if (request.contains("notices")) return void(client.notices = true);
+  if (const auto name = request.find("front_end"); name != request.end()) {
+    if (!name->is_string() || !command::valid_name(name->get<std::string>()))
+      return wrong("a front end has a name of 1 to 32 of A-Z a-z 0-9 _ -");
+    client.front_end = name->get<std::string>();
+    return;
+  }
   if (request.contains("cancel")) {
     const auto found = client.open.find(integer("cancel"));
     if (found != client.open.end())
       strand_->post([station = station_, h = found->second] { station->cancel(*h); });
-    return true;
+    return;
   }
   const std::int64_t id = integer("id");
   if (id <= 0) return wrong("an id above 0 was expected");
@@ -158,7 +236,7 @@ bool Server::handle(std::uint64_t number, Client& client, const std::string& lin
     const auto found = client.open.find(id);
     if (found != client.open.end())
       strand_->post([station = station_, h = found->second, velocity] { station->stick(*h, velocity); });
-    return true;
+    return;
   }
   const auto text = [&](const char* key) {
     const auto found = request.find(key);
@@ -170,31 +248,48 @@ bool Server::handle(std::uint64_t number, Client& client, const std::string& lin
   if (client.open.contains(id)) return wrong("the id is in use");
   if (client.open.size() >= max_open) return wrong("too many requests at once");
   begin(number, client, id, request);
-  return true;
+}
+
+void Server::deliver(const Reply& reply) {
+  const std::string text = reply.kind == Reply::Kind::event ? "" : LineSocket::text_of(reply.object);
+  if (reply.kind == Reply::Kind::answer) {
+    const auto found = clients_.find(reply.client);
+    if (found == clients_.end() || found->second.cut_off) return;
+    Client& client = found->second;
+    if (reply.object.contains("outcome")) client.open.erase(reply.object.value("id", std::int64_t{0}));
+    if (!client.outbox.reply(text)) cut_off(client, unread_text);
+    return;
+  }
+  for (auto& [number, client] : clients_) {
+    if (client.cut_off) continue;
+    if (reply.kind == Reply::Kind::notice) {
+      if (client.notices) client.outbox.event(text);
+      continue;
+    }
+    json event = reply.object;
+    event["mine"] = number == reply.client;
+    client.outbox.event(LineSocket::text_of(event));
+  }
 }
 
 void Server::deliver() {
   std::vector<Reply> replies;
+  std::optional<json> snapshot;
+  std::size_t lost = 0;
   {
     const std::lock_guard guard(mutex_);
     replies.swap(replies_);
+    snapshot.swap(snapshot_);
+    handed_over_ = 0;
+    lost = std::exchange(lost_, 0);
   }
-  for (Reply& next : replies) {
-    if (next.client == 0) {
-      const bool snapshot = next.object.contains("snapshot");
-      if (snapshot) snapshot_asked_ = false;
-      std::vector<std::uint64_t> gone;
-      for (auto& [number, client] : clients_)
-        if ((snapshot ? client.watches : client.notices) && !client.socket.send(next.object))
-          gone.push_back(number);
-      for (const std::uint64_t number : gone) drop(number);
-      continue;
-    }
-    const auto found = clients_.find(next.client);
-    if (found == clients_.end()) continue;
-    Client& client = found->second;
-    if (next.object.contains("outcome")) client.open.erase(next.object.value("id", std::int64_t{0}));
-    if (!client.socket.send(next.object)) drop(next.client);
+  for (const Reply& next : replies) deliver(next);
+  const std::string text = snapshot ? LineSocket::text_of({{"snapshot", *snapshot}}) : "";
+  if (snapshot) snapshot_asked_ = false;
+  for (auto& [number, client] : clients_) {
+    if (client.cut_off) continue;
+    if (lost > 0) client.outbox.lost(lost);
+    if (snapshot && client.watches) client.outbox.snapshot(text);
   }
 }
 
@@ -202,8 +297,22 @@ void Server::ask_snapshot() {
   const bool wanted =
       std::any_of(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.watches; });
   if (!wanted || snapshot_asked_) return;
-  snapshot_asked_ = true;
-  strand_->post([this] { reply(0, {{"snapshot", snapshot_json(*station_)}}); });
+  snapshot_asked_ = strand_->post([this] {
+    json snapshot = snapshot_json(*station_);
+    {
+      const std::lock_guard guard(mutex_);
+      snapshot_ = std::move(snapshot);
+    }
+    wake();
+  });
+}
+
+void Server::read(std::uint64_t number, Client& client) {
+  const bool open = client.socket.pump();
+  // What came with the last bytes of a client that closed is done all the same.
+  for (auto line = client.socket.line(); line && !client.cut_off; line = client.socket.line())
+    handle(number, client, *line);
+  if (!open) drop(number);
 }
 
 void Server::serve(Station& station, Executor& strand, const json& hello, int stop_fd) {
@@ -216,7 +325,8 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
     std::vector<std::uint64_t> numbers;
     bool watched = false;
     for (const auto& [number, client] : clients_) {
-      const short events = static_cast<short>(POLLIN | (client.socket.has_backlog() ? POLLOUT : 0));
+      const short events =
+          static_cast<short>((client.cut_off ? 0 : POLLIN) | (client.socket.has_backlog() ? POLLOUT : 0));
       fds.push_back({client.socket.fd(), events, 0});
       numbers.push_back(number);
       watched = watched || client.watches;
@@ -228,17 +338,19 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
       (void)!::read(wake_.get(), &count, sizeof count);
       deliver();
     }
-    if (fds[2].revents != 0) accept_client();
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       const auto found = clients_.find(numbers[i]);
-      if (found == clients_.end() || fds[i + 3].revents == 0) continue;
-      Client& client = found->second;
-      bool good = client.socket.pump() && client.socket.flush();
-      // What came with the last bytes of a client that closed is done all the same.
-      for (auto line = client.socket.line(); line; line = client.socket.line())
-        if (!handle(numbers[i], client, *line)) good = false;
-      if (!good) drop(numbers[i]);
+      if (found == clients_.end() || (fds[i + 3].revents & ~POLLOUT) == 0) continue;
+      if (found->second.cut_off)
+        drop(numbers[i]);  // it has gone
+      else
+        read(numbers[i], found->second);
     }
+    if (fds[2].revents != 0) accept_client();
+    std::vector<std::uint64_t> gone;
+    for (auto& [number, client] : clients_)
+      if (!push(client)) gone.push_back(number);
+    for (const std::uint64_t number : gone) drop(number);
     if (const auto now = std::chrono::steady_clock::now(); now >= next_snapshot) {
       ask_snapshot();
       next_snapshot = now + std::chrono::milliseconds(snapshot_period_ms - 10);
@@ -248,8 +360,8 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
   deliver();
   for (auto& [number, client] : clients_) {
     pollfd writable{client.socket.fd(), POLLOUT, 0};
-    for (int i = 0; i < 10 && client.socket.has_backlog(); ++i)
-      if (::poll(&writable, 1, 20) < 0 || !client.socket.flush()) break;
+    for (int i = 0; i < 10 && push(client) && client.socket.has_backlog(); ++i)
+      if (::poll(&writable, 1, 20) < 0) break;
   }
 }
 
