@@ -39,7 +39,7 @@ class Prompt {
   Result<void> connect() {
     auto socket = connect_or_launch(options_);
     if (!socket) return socket.error();
-    client_.emplace(std::move(*socket));
+    client_.emplace(std::move(*socket), "prompt");
     listen();
     return {};
   }
@@ -97,6 +97,16 @@ class Prompt {
       for (const json& robot : snapshot.value("robots", json::array()))
         robots_.push_back(robot.value("robot", std::string()));
     };
+    client_->on_command = [this](const json& event) {
+      if (const std::string text = command_of_another(event); !text.empty()) {
+        std::printf("\r\x1b[K* %s\n", text.c_str());
+        printed_ = true;
+      }
+    };
+    client_->on_missed = [this](std::size_t count) {
+      std::printf("\r\x1b[K* %zu notifications were not shown\n", count);
+      printed_ = true;
+    };
     client_->notices();
     client_->watch();
   }
@@ -114,7 +124,7 @@ class Prompt {
     if (request.verb == verb("watch") || request.verb == verb("teleop")) {
       auto socket = connect_or_launch(options_);
       if (!socket) return fail(options_, exit_without_station(socket.error()), socket.error());
-      Client own(std::move(*socket));
+      Client own(std::move(*socket), std::string(request.info->name));
       return request.verb == verb("watch") ? watch(own, options_)
                                            : teleop(own, options_, request.robots.front());
     }

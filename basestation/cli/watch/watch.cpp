@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <deque>
 #include <map>
 
 #include "basestation/cli/interrupt.hpp"
@@ -32,6 +33,13 @@ class Dashboard {
         state_.selected = names.empty() ? "" : names.front();
     };
     client_.on_outcome = [this](std::int64_t id, const json& outcome) { ended(id, outcome); };
+    client_.on_command = [this](const json& event) {
+      const std::string text = command_of_another(event);
+      if (text.empty()) return;
+      others_.push_back({Clock::now(), text});
+      if (others_.size() > 30) others_.pop_front();
+      dirty_ = true;
+    };
     client_.watch();
   }
 
@@ -68,12 +76,30 @@ class Dashboard {
 
   void draw() {
     dirty_ = false;
-    const auto lines = render(snapshot_, state_, terminal_.rows(), terminal_.columns(), true);
+    const auto lines = render(with_others(), state_, terminal_.rows(), terminal_.columns(), true);
     std::string out = redraw_ ? "\x1b[2J" : "";
     redraw_ = false;
     for (std::size_t i = 0; i < lines.size(); ++i)
       out += "\x1b[" + std::to_string(i + 1) + ";1H" + lines[i] + "\x1b[K";
     terminal_.write(out);
+  }
+
+  /// The snapshot with the commands of other front ends among its notices, by age.
+  json with_others() const {
+    json snapshot = snapshot_;
+    json& notices = snapshot["notices"];
+    if (!notices.is_array()) notices = json::array();
+    for (const auto& [when, text] : others_)
+      notices.push_back({{"age", std::chrono::duration<double>(Clock::now() - when).count()},
+                         {"mine", true},
+                         {"text", text}});
+    const auto age = [](const json& notice) {
+      const auto found = notice.find("age");
+      return found != notice.end() && found->is_number() ? found->get<double>() : 0.0;
+    };
+    std::stable_sort(notices.begin(), notices.end(),
+                     [&](const json& a, const json& b) { return age(a) > age(b); });
+    return snapshot;
   }
 
   void say(const std::string& text, bool refused) {
@@ -205,6 +231,7 @@ class Dashboard {
   WatchState state_{};
   KeyStick stick_{};
   std::map<std::int64_t, std::string> asked_{};
+  std::deque<std::pair<Clock::time_point, std::string>> others_{};
   std::int64_t drive_{};
   Clock::time_point heard_{Clock::now()};
   Clock::time_point next_stick_{};
@@ -225,7 +252,7 @@ int watch(Client& client, const Options& options) {
     good = Dashboard(client, terminal).run();
   }
   if (good) return exit_done;
-  return fail(options, exit_no_answer, {Reason::no_answer, "the station went away"});
+  return fail(options, exit_no_answer, {Reason::no_answer, client.gone()});
 }
 
 }  // namespace adit::station::cli
