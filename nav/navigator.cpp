@@ -12,12 +12,16 @@ constexpr std::size_t kMostPredicted = 8192;  ///< places of what moves
 
 Navigator::Navigator(const Platform& platform, const TerrainParams& terrain,
                      const LocalPlannerParams& planner, std::shared_ptr<const PlannerLibrary> library)
+    : Navigator(platform, terrain, [platform, planner, library = std::move(library)] {
+        return make_planner(platform, planner, library).value();
+      }) {}
+
+Navigator::Navigator(const Platform& platform, const TerrainParams& terrain, PlannerFactory planner)
     : platform_(platform),
-      planner_params_(planner),
-      library_(std::move(library)),
+      make_planner_(std::move(planner)),
       terrain_(platform, terrain),
       tracker_(platform),
-      planner_(make_planner(platform, planner, library_).value()) {
+      planner_(make_planner_()) {
   if (platform.flies()) air_.emplace(platform);
   obstacles_.reserve(std::max<std::size_t>(TerrainMap::kMaxCells, AirMap::kMost) + kMostPredicted);
 }
@@ -80,7 +84,7 @@ void Navigator::clear() {
   terrain_.clear();
   if (air_) air_->clear();
   tracker_.clear();
-  planner_ = make_planner(platform_, planner_params_, library_).value();
+  planner_ = make_planner_();
   has_scan_ = false;
   last_stamp_s_ = -std::numeric_limits<double>::infinity();
 }

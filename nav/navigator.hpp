@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <limits>
 #include <optional>
 
@@ -9,6 +10,9 @@
 
 namespace adit::nav {
 
+/// Makes the local planner of a Navigator: at its construction, and again when clear() forgets everything.
+using PlannerFactory = std::function<std::unique_ptr<Planner>()>;
+
 /// The heavy half of navigation, a scan in and a plan out: terrain map, what moves, and local planner. Has no
 /// thread and no clock; calls must not overlap. The light half, a Controller, shares nothing with it but the
 /// plan.
@@ -18,6 +22,9 @@ class Navigator {
   explicit Navigator(const Platform& platform, const TerrainParams& terrain = {},
                      const LocalPlannerParams& planner = {},
                      std::shared_ptr<const PlannerLibrary> library = nullptr);
+  /// With a local planner of the caller's instead of the one that the platform names. `planner` never returns
+  /// null.
+  Navigator(const Platform& platform, const TerrainParams& terrain, PlannerFactory planner);
 
   /// See TerrainMap::add_scan.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
@@ -38,8 +45,7 @@ class Navigator {
   double speed(const Pose2& pose, double stamp_s);
 
   Platform platform_;
-  LocalPlannerParams planner_params_;
-  std::shared_ptr<const PlannerLibrary> library_;
+  PlannerFactory make_planner_;
   TerrainMap terrain_;
   std::optional<AirMap> air_{};  ///< of what flies, in place of the former
   Tracker tracker_;

@@ -14,14 +14,14 @@
 #include "core/supervisor/overseer.hpp"
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
-#include "robot_agent/defects.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/battery_watch.hpp"
 #include "robot_agent/safeguard/link_loss.hpp"
 
 namespace adit::nav {
+class Planner;
 struct PlannerLibrary;
-}
+}  // namespace adit::nav
 
 namespace adit::agent {
 
@@ -42,10 +42,11 @@ struct AgentParams {
   /// Loads that file, for tests that replace the check against the mode table; empty: Decider::load.
   std::function<Result<std::unique_ptr<Decider>>(const std::string& file)> load_tree{};
   Duration planning{20ms};  ///< what a planning cycle takes in rehearsal
-  Defects defects{};        ///< effective in adit::agent_defects only
   std::shared_ptr<LogSink> log{};
   /// What the local planner of that platform looks up, when several robots share it; empty: made here.
   std::function<std::shared_ptr<const nav::PlannerLibrary>(const Platform&)> library{};
+  /// Makes a local planner of its own; empty: the one that the platform names.
+  std::function<std::unique_ptr<nav::Planner>()> local_planner{};
   std::shared_ptr<store::Disk> disk{};  ///< what outlives the agent; null: nothing is kept
   std::uint64_t
       boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known

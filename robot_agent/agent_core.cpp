@@ -19,26 +19,12 @@ CommandParams command_params(const AgentParams& params, std::uint32_t instance) 
   c.lock_lease = params.lock_lease;
   c.home = {params.start.x, params.start.y, std::nan("")};
   c.protocol = kProtocolVersion;
-  c.defects = params.defects;
   return c;
-}
-
-MuxParams mux_params(const AgentParams& params) {
-  MuxParams m{};
-  m.defects = params.defects;
-  return m;
-}
-
-BehaviourParams behaviour_params(const AgentParams& params) {
-  BehaviourParams b{};
-  b.defects = params.defects;
-  return b;
 }
 
 NavigationParams navigation_params(const AgentParams& params) {
   NavigationParams n{};
   n.platform = params.platform;
-  n.defects = params.defects;
   return n;
 }
 
@@ -68,8 +54,8 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       localisation_(params.start, params.platform),
       navigation_(navigation_params(params), command, log(), localisation_, *edges.planner, edges.router,
                   navigation_outputs()),
-      mux_(navigation_, mux_params(params)),
-      behaviour_(behaviour_params(params), std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
+      mux_(navigation_),
+      behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
       notices_(params.name, *edges.notifier, log(), [this] { return commands_.authority().holder_name(); }),
       safeguards_(safeguard_params(params), {commands_.authority(), behaviour_, localisation_, notices_}),

@@ -9,12 +9,6 @@ namespace {
 /// A clean end waits so long for what is not on disk yet. The program ends itself after 3 s.
 constexpr Duration kDiskDrain = 2s;
 
-KeeperParams keeper_params(const AgentParams& params) {
-  KeeperParams k{};
-  if (params.defects.has(Defect::acknowledged_lost)) k.lazy = 5s;
-  return k;
-}
-
 /// Runs the robot's tree, or holds because it was refused.
 std::unique_ptr<Decider> decider_of(const AgentParams& params) {
   const ModeTable& table = params.modes ? *params.modes : ModeTable::shipped();
@@ -107,8 +101,8 @@ UnitParams Agent::Parts::planner_unit() {
   unit.heavy = true;
   unit.make = [this](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
     return std::unique_ptr<Component>(
-        std::make_unique<Planner>(PlannerParams{params.platform, params.planning, params.defects}, strand,
-                                  Log(params.log, params.name), library()));
+        std::make_unique<Planner>(PlannerParams{params.platform, params.planning, params.local_planner},
+                                  strand, Log(params.log, params.name), library()));
   };
   return unit;
 }
@@ -168,7 +162,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
 
   e.restored = restore_state(params.disk);
   if (params.disk && !params.disk->instant()) disk_strand = runtime.strand("disk");
-  e.keeper = std::make_unique<StateKeeper>(keeper_params(params), params.disk, strand, disk_strand,
+  e.keeper = std::make_unique<StateKeeper>(KeeperParams{}, params.disk, strand, disk_strand,
                                            e.restored.generation, keeper_outputs());
 
   e.findings =

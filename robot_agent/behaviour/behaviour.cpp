@@ -33,7 +33,7 @@ Facts Behaviour::facts(Time now) const {
   f.stopped = stopped_;
   f.stick_fresh = stick_.fresh(now);
   f.stick_kept = stick_.kept(now);
-  f.stick_centred = stick_.centred() || params_.defects.has(Defect::enter_off_centre);
+  f.stick_centred = stick_.centred();
   for (const Mode& mode : modes_)
     if (mode.module) mode.module->note(f, now);
   return f;
@@ -108,7 +108,6 @@ void Behaviour::stop_changed(bool stopped, Time now) {
 }
 
 void Behaviour::holder_changed(Time now) {
-  if (params_.defects.has(Defect::manual_survives_handover)) return;
   stick_.forget();
   idle_since_ = now;
   idle_told_ = false;
@@ -117,7 +116,6 @@ void Behaviour::holder_changed(Time now) {
 }
 
 void Behaviour::holder_restarted(Time now) {
-  if (params_.defects.has(Defect::manual_survives_handover)) return;
   // A stick that is held pushed across the restart must not go on by itself: manual modes fall to hold.
   stick_.forget();
   tick(now);
@@ -125,8 +123,6 @@ void Behaviour::holder_restarted(Time now) {
 
 Result<void> Behaviour::stick(const Twist2& twist, Time now) {
   stick_.update(twist, now);
-  if (params_.defects.has(Defect::two_sources) && !decision_.mode->manual())
-    module(*table().find("manual"))->stick(twist, now);
   if (!decision_.mode->manual())
     return twist.zero() ? Result<void>{} : refuse(Reason::wrong_mode, decision_.mode->name);
   if (ModeModule* current = module(*decision_.mode)) current->stick(twist, now);
@@ -140,12 +136,6 @@ void Behaviour::program(const Twist2& velocity, Time now) {
 
 void Behaviour::set_progress(const Progress& progress) {
   if (ModeModule* current = module(*decision_.mode)) current->navigated(progress);
-}
-
-void Behaviour::resume_goal(Time now) {
-  if (!facts(now).goal_known) return;
-  guard_.readmit(*table().find("waypoint"));
-  tick(now);
 }
 
 void Behaviour::hold(Reason reason, Time now) {

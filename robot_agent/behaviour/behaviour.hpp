@@ -31,7 +31,6 @@ struct BehaviourView {
 
 struct BehaviourParams {
   Duration idle_after{60s};  ///< in hold, or at the goal, until the holder is told
-  Defects defects{};
 };
 
 /// Answers requests by the mode table, has the tree decide, enables at the mux what the guard lets through of
@@ -71,7 +70,6 @@ class Behaviour : public Requests {
   Result<void> stick(const Twist2& twist, Time now) override;
   /// A velocity of the program that steers in `external`, body frame.
   void program(const Twist2& velocity, Time now);
-  void resume_goal(Time now) override;
 
   /// By the robot itself: falls to hold, the goal is kept.
   void hold(Reason reason, Time now);

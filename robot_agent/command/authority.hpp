@@ -47,8 +47,6 @@ class Authority {
     heard_ = now;
     epoch_.counter = counter + 1;
   }
-  /// Only called in a build with defects (Defect::epoch_kept_at_restart).
-  void keep_epoch(const Epoch& epoch) { epoch_ = epoch; }
 
   /// The holder gave a sign of life.
   void hear(Time now) { heard_ = now; }

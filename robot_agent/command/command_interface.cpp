@@ -40,10 +40,8 @@ const Station* CommandInterface::holders_station() const {
 }
 
 void CommandInterface::restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now) {
-  const bool locked = kept.locked && !params_.defects.has(Defect::lock_forgotten);
-  authority_.restore(kept.holder, locked, kept.epoch.counter, now);
+  authority_.restore(kept.holder, kept.locked, kept.epoch.counter, now);
   if (kept.holder && kept.speaker) stations_.restore(kept.holder->name, kept.holder->id, *kept.speaker, now);
-  if (params_.defects.has(Defect::epoch_kept_at_restart)) authority_.keep_epoch(kept.epoch);
   for (const Party& stopper : kept.stops) stops_.set(stopper);
   memory_.restore(answers, now);
 }
@@ -55,8 +53,7 @@ void CommandInterface::hear(const Sender& from, std::uint16_t protocol, Time now
 }
 
 std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
-  if (const Answer* first = memory_.find(c.from.participant, c.seq);
-      first && !params_.defects.has(Defect::repeat_done_twice)) {
+  if (const Answer* first = memory_.find(c.from.participant, c.seq)) {
     identify(c.from, StationTable::Sign::command, now);  // a repeat is a sign of life, too
     Answer again = *first;
     if (again.epoch == Epoch{}) {  // given before a restart: what is in force is not what was
@@ -71,7 +68,6 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   if (c.seq != 0 && valid_name(c.from.name))
     memory_.remember(c.from.participant, result, c.request.info->line, !same_after_restart(*c.request.info),
                      now);
-  if (params_.defects.has(Defect::silent_refusal) && !result.accepted()) return std::nullopt;
   return result;
 }
 
@@ -90,8 +86,7 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
   }
   if (c.seq == 0) return {Reason::bad_argument, "command numbers start at 1"};
   if (!stops && !is_meant(c.epoch)) return {Reason::name_taken};
-  if (memory_.too_old(c.from.participant, c.seq, stops ? Line::none : c.request.info->line) &&
-      !params_.defects.has(Defect::repeat_done_twice))
+  if (memory_.too_old(c.from.participant, c.seq, stops ? Line::none : c.request.info->line))
     return {Reason::stale_sequence};
   const Station* station = stations_.find(c.from.name);
   if (!stops && station && station->protocol != 0 && station->protocol != params_.protocol)
@@ -120,12 +115,10 @@ CommandInterface::Outcome CommandInterface::identify(const Sender& from, Station
 }
 
 CommandInterface::Outcome CommandInterface::check_holder(const Command& c) const {
-  if (params_.defects.has(Defect::obey_stranger)) return {};
   if (!authority_.holder()) return {Reason::nobody_holds};
   if (!authority_.held_by(c.from.name, c.from.id))
     return {Reason::not_holder, "held by " + authority_.holder_name() + "; take it first"};
-  if (c.epoch != authority_.epoch() && !params_.defects.has(Defect::accept_without_epoch))
-    return {Reason::stale_epoch};
+  if (c.epoch != authority_.epoch()) return {Reason::stale_epoch};
   return {};
 }
 
@@ -175,7 +168,7 @@ CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
   if (authority_.held_by(c.from.name, c.from.id)) return {};
   tick(now);  // a lock that lapsed since the last second
   const std::string former = authority_.holder_name();
-  if (authority_.locked() && !params_.defects.has(Defect::ignore_lock)) {
+  if (authority_.locked()) {
     tell(former, Severity::info, "asked", Reason::locked, c.from.name + " asked for " + params_.robot);
     return {Reason::locked, "locked by " + former + ", who was told that you asked"};
   }
@@ -211,8 +204,6 @@ CommandInterface::Outcome CommandInterface::grant(const Command& c, Time now) {
 
 CommandInterface::Outcome CommandInterface::stop(const Command& c, Time now) {
   const Party stopper{c.from.name, c.from.id};
-  if (params_.defects.has(Defect::stop_needs_holder) && !authority_.held_by(stopper.name, stopper.id))
-    return {Reason::not_holder};
   const bool fresh = !stops_.has(stopper);
   stops_.set(stopper);
   requests_.stop_changed(true, now);
@@ -243,7 +234,6 @@ CommandInterface::Outcome CommandInterface::reset(const Command& c, Time now) {
     if (stops_.any()) text = "still stopped by " + stops_.all().front().name;
   }
   requests_.stop_changed(stops_.any(), now);
-  if (params_.defects.has(Defect::move_on_reset)) requests_.resume_goal(now);
   outputs_.changed();
   return {Reason::none, text};
 }
@@ -256,7 +246,7 @@ CommandInterface::Outcome CommandInterface::asked(const Command& c, const Result
 
 std::optional<Answer> CommandInterface::handle(const StickSample& s, Time now) {
   const Outcome outcome = judge(s, now);
-  if (outcome.reason == Reason::none || params_.defects.has(Defect::silent_refusal)) return std::nullopt;
+  if (outcome.reason == Reason::none) return std::nullopt;
   if (!stream_refusals_.pass(s.participant, now)) return std::nullopt;
   const Station* station = stations_.by_participant(s.participant);
   Command as_command{};
@@ -271,29 +261,17 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
   if (!holder) return {Reason::nobody_holds};
   const Station* bound = holders_station();
   const bool right_one = bound && bound->binding.participant() == s.participant;
-  if (!right_one && !params_.defects.has(Defect::obey_stranger)) {
+  if (!right_one) {
     if (s.station_id != holder->id)
       return {Reason::not_holder, "held by " + holder->name + "; take it first"};
     if (!may_be_back({holder->name, s.station_id, s.participant}))
       report_intruder(holder->name, s.participant, now);
     return {Reason::identity_mismatch};
   }
-  if (s.station_id != holder->id && !params_.defects.has(Defect::obey_stranger))
-    return {Reason::identity_mismatch};
-  if (s.epoch != authority_.epoch() && !params_.defects.has(Defect::accept_without_epoch) &&
-      !params_.defects.has(Defect::obey_stranger))
-    return {Reason::stale_epoch};
+  if (s.station_id != holder->id) return {Reason::identity_mismatch};
+  if (s.epoch != authority_.epoch()) return {Reason::stale_epoch};
   stick_heard_ = now;
-  if (const Reason reason = gate_.judge(s, now);
-      reason != Reason::none &&
-      !(reason == Reason::sample_stale && params_.defects.has(Defect::accept_stale_joystick)))
-    return {reason};
-  if (params_.defects.has(Defect::joystick_clears_stop) && stops_.any()) {
-    stops_.clear_all();
-    requests_.stop_changed(false, now);
-    requests_.resume_goal(now);
-    outputs_.changed();
-  }
+  if (const Reason reason = gate_.judge(s, now); reason != Reason::none) return {reason};
   identify({holder->name, holder->id, s.participant}, StationTable::Sign::command, now);  // a sign of life
   const Result<void> taken = requests_.stick(s.twist, now);
   return taken ? Outcome{} : Outcome{taken.reason(), taken.error().text};

@@ -11,7 +11,6 @@
 #include "robot_agent/command/stick_gate.hpp"
 #include "robot_agent/command/stop_latches.hpp"
 #include "robot_agent/common/rate_limit.hpp"
-#include "robot_agent/defects.hpp"
 
 namespace adit::agent {
 
@@ -22,7 +21,6 @@ struct CommandParams {
   std::uint16_t protocol{1};     ///< the version we speak
   Eigen::Vector3d home{0.0, 0.0,
                        std::numeric_limits<double>::quiet_NaN()};  ///< `home` goes there; map frame, m
-  Defects defects{};
 };
 
 /// Everything that arrives by radio enters the robot here (rules 1 to 4, and 7 where it concerns the
@@ -46,7 +44,7 @@ class CommandInterface {
   void hear(const Sender& from, std::uint16_t protocol, Time now);
   /// A participant left, or its lease ran out.
   void departed(const wire::ParticipantId& participant) { stations_.leave(participant); }
-  /// Does what is asked, or not, and answers. No answer (a defect) is the only exception.
+  /// Does what is asked, or not, and answers.
   std::optional<Answer> handle(const Command& command, Time now);
   /// The answer to a refused sample; nothing when it was taken, or when that sender was told within a second.
   std::optional<Answer> handle(const StickSample& sample, Time now);

@@ -28,8 +28,6 @@ class Requests {
   /// A fresh sample of the holder's stick. Refused with wrong_mode when it is pushed and the mode does not
   /// take it.
   virtual Result<void> stick(const Twist2& twist, Time now) = 0;
-  /// Only called in a build with defects (Defect::move_on_reset).
-  virtual void resume_goal(Time now) = 0;
 };
 
 }  // namespace adit::agent

@@ -14,7 +14,6 @@ void Mux::enable(std::string_view name, Time now) {
   if (next == enabled_) return;
   enabled_ = next;
   if (next != kNone) inputs_[next].written = false;  // what it said before it was enabled moves nothing
-  if (params_.defects.has(Defect::change_without_zero)) return;
   settled_ = now + params_.settle;
   pass(Stand{}, now);
 }
@@ -24,8 +23,7 @@ void Mux::write(std::size_t index, const Motion& motion, Time now) {
   input.motion = motion;
   input.written = true;
   input.at = now;
-  const bool passes = index == enabled_ && now >= settled_;
-  if (passes || params_.defects.has(Defect::two_sources)) pass(motion, now);
+  if (index == enabled_ && now >= settled_) pass(motion, now);
 }
 
 bool Mux::fresh(Time now) const {
@@ -35,10 +33,7 @@ bool Mux::fresh(Time now) const {
 }
 
 void Mux::step(Time now) {
-  if (enabled_ == kNone && params_.defects.has(Defect::two_sources)) return;
-  const bool stale = !fresh(now) && !(enabled_ != kNone && inputs_[enabled_].written &&
-                                      params_.defects.has(Defect::no_zero_on_stale));
-  if (enabled_ == kNone || stale || now < settled_)
+  if (!fresh(now) || now < settled_)
     pass(Stand{}, now);
   else
     pass(inputs_[enabled_].motion, now);

@@ -3,7 +3,6 @@
 #include <string_view>
 #include <vector>
 
-#include "robot_agent/defects.hpp"
 #include "robot_agent/motion/motion.hpp"
 
 namespace adit::agent {
@@ -12,7 +11,6 @@ struct MuxParams {
   /// The output stays zero for so long when the source changes: one period of the driver, so that the zero
   /// is seen by a reader that keeps only the last command.
   Duration settle{50ms};
-  Defects defects{};
 };
 
 /// Passes exactly one source to navigation, the one that the behaviour tree enabled (rule 5), and zero when

@@ -74,7 +74,6 @@ void Navigation::step(Time now) {
 
 nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
                                                    nav::CollisionMonitor::Policy policy) const {
-  if (params_.defects.has(Defect::blind_and_unwatched)) return {wanted, nav::CollisionMonitor::Cause::none};
   Twist2 moves = localisation_.twist();
   moves.vz = 0;
   if (!params_.platform.sideways()) moves.vy = 0;
@@ -176,8 +175,6 @@ void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now) {
 }
 
 const nav::RouteStep* Navigation::step_on(Time now) const {
-  const Defects& defects = params_.defects;  // who plans blindly is not led either
-  if (defects.has(Defect::blind_planner) || defects.has(Defect::blind_and_unwatched)) return nullptr;
   return step_ && now - step_made_ < params_.step_age ? &*step_ : nullptr;
 }
 

@@ -9,7 +9,6 @@
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
-#include "robot_agent/defects.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/motion/motion.hpp"
 #include "robot_agent/motion/planner.hpp"
@@ -25,7 +24,6 @@ struct NavigationParams {
   Duration scan_age{500ms};     ///< older points: the terrain is not known
   Duration held_after{1500ms};  ///< a robot that its collision monitor keeps on the spot this long is blocked
   Duration warned_for{2s};      ///< a warning is told anew when its cause was away for longer
-  Defects defects{};
 };
 
 /// Why the operator of a manual mode is warned.

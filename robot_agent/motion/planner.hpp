@@ -4,7 +4,6 @@
 
 #include "core/component/component.hpp"
 #include "nav/navigator.hpp"
-#include "robot_agent/defects.hpp"
 
 namespace adit::agent {
 
@@ -30,7 +29,8 @@ struct PlanJob {
 struct PlannerParams {
   Platform platform{};
   Duration planning{20ms};  ///< what a cycle takes in rehearsal
-  Defects defects{};
+  /// Makes the local planner; empty: the one that the platform names.
+  nav::PlannerFactory local_planner{};
 };
 
 /// The planning work: terrain map and local planner, on a strand of its own. When it is made anew its map

@@ -95,9 +95,9 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
     }
     release(done);
     // A newer state is tried at once, whatever became of this one: answers wait for it.
-    if (next && params.lazy == Duration{0}) return start();
+    if (next) return start();
     if (result) return;
-    if (!next) next = bytes;
+    next = bytes;
     retry = command.now() + params.retry;
   }
 
@@ -123,7 +123,6 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
       release(asked);
     }
     if (retry && now >= *retry) start();
-    if (params.lazy > Duration{0} && now - since >= params.lazy) start();
   }
 };
 
@@ -154,12 +153,12 @@ void StateKeeper::save(Snapshot state, const std::function<std::vector<KeptAnswe
   w.next = encode(*w.state);
   ++w.asked;
   if (!same) w.needed = w.asked;
-  if (w.params.lazy == Duration{0}) w.start();
+  w.start();
 }
 
 void StateKeeper::when_safe(Task task) {
   Writer& w = *writer_;
-  if (w.done >= w.needed || w.stuck || w.params.lazy > Duration{0}) return task();
+  if (w.done >= w.needed || w.stuck) return task();
   if (w.waiting.size() >= kWaiting) w.waiting.pop_front();
   w.waiting.emplace_back(w.needed, std::move(task));
 }

@@ -15,7 +15,6 @@ struct KeeperParams {
   Duration patience{1s};  ///< a write that takes longer holds back no answer any more
   Duration retry{1s};     ///< after a write that failed
   Duration place{1s};     ///< Between two writes of the place of a robot that drives, (0, 1 s].
-  Duration lazy{0};       ///< of a build with defects: writes only so often, and lets answers go before
 };
 
 /// Writes the last known safe state, and holds back what must not be said before it is on disk. One write at

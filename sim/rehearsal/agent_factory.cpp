@@ -6,14 +6,20 @@
 
 #include "nav/local_planner.hpp"
 #include "robot_agent/agent.hpp"
+#include "sim/defects/defect.hpp"
+#include "sim/defects/intercepted_wire.hpp"
 
 namespace adit::sim {
 namespace {
 
 class ProductAgent final : public RehearsedAgent {
  public:
-  ProductAgent(agent::AgentParams params, const AgentContext& context)
-      : agent_(std::move(params), context.runtime, context.radio, context.robot) {}
+  ProductAgent(agent::AgentParams params, const AgentContext& context, Decoration decoration)
+      : decoration_(std::move(decoration)),
+        radio_(intercepted(context.radio)),
+        robot_(intercepted(context.robot)),
+        agent_(std::move(params), context.runtime, radio_ ? *radio_ : context.radio,
+               robot_ ? *robot_ : context.robot) {}
   Result<void> start() { return agent_.start(); }
   Result<void> inject(const std::string& component, ComponentFault fault) override {
     return agent_.inject(component, fault);
@@ -24,6 +30,11 @@ class ProductAgent final : public RehearsedAgent {
   }
 
  private:
+  std::unique_ptr<InterceptedWire> intercepted(wire::Wire& inner) {
+    return decoration_.wires ? std::make_unique<InterceptedWire>(inner, *decoration_.wires) : nullptr;
+  }
+  Decoration decoration_;
+  std::unique_ptr<InterceptedWire> radio_, robot_;
   agent::Agent agent_;
 };
 
@@ -50,22 +61,21 @@ class Libraries {
 
 Result<AgentFactory> make_agent_factory(const std::string& defect,
                                         std::function<void(agent::AgentParams&)> adjust) {
-  agent::Defects defects;
-  if (!defect.empty()) {
-    const auto known = agent::defect_from_name(defect);
-    if (!known) return Error{Reason::bad_argument, "no defect of that name: " + defect};
-    defects.active = *known;
-  }
-  return AgentFactory([defects, adjust = std::move(adjust), libraries = std::make_shared<Libraries>()](
+  const Defect* known = find_defect(defect);
+  if (!defect.empty() && !known) return Error{Reason::bad_argument, "no defect of that name: " + defect};
+  return AgentFactory([known, adjust = std::move(adjust), libraries = std::make_shared<Libraries>()](
                           const AgentContext& context) -> Result<std::unique_ptr<RehearsedAgent>> {
+    Decoration decoration =
+        known ? known->decorate({context.spec.id, context.platform, context.runtime, context.disk})
+              : Decoration{};
     agent::AgentParams params = agent::agent_params(context.spec.settings);
     params.seed = context.seed;
-    params.defects = defects;
     params.library = [libraries](const Platform& platform) { return libraries->of(platform); };
-    params.disk = context.disk;
+    params.disk = decoration.disk ? decoration.disk : context.disk;
     params.end = context.end;
     if (adjust) adjust(params);
-    auto agent = std::make_unique<ProductAgent>(std::move(params), context);
+    if (decoration.parameters) decoration.parameters(params);
+    auto agent = std::make_unique<ProductAgent>(std::move(params), context, std::move(decoration));
     if (auto started = agent->start(); !started) return started.error();
     return std::unique_ptr<RehearsedAgent>(std::move(agent));
   });

@@ -48,9 +48,9 @@ struct AgentContext {
 /// defects in its place.
 using AgentFactory = std::function<Result<std::unique_ptr<RehearsedAgent>>(const AgentContext&)>;
 
-/// The product's agent. `defect`: one of robot_agent/defects.hpp, in the library adit::rehearsal_defects
-/// only; there the empty name means none. Reason::bad_argument for a name it does not know. `adjust`, for
-/// tests: changes what each agent is made of.
+/// The product's agent. `defect`: one of sim/defects/defect.hpp, which decorates what the agent is made of
+/// and speaks through; empty: none. Errors: bad_argument for a name that no defect has. `adjust`, for tests:
+/// changes what each agent is made of.
 Result<AgentFactory> make_agent_factory(const std::string& defect = {},
                                         std::function<void(agent::AgentParams&)> adjust = {});
 

@@ -35,7 +35,6 @@ struct FakeRequests : Requests {
     sticks.push_back(twist);
     return {};
   }
-  void resume_goal(Time) override { calls.push_back("resume"); }
 
   bool stopped{};
   Eigen::Vector3d goal{0.0, 0.0, 0.0};  ///< the last one

@@ -52,7 +52,7 @@ TEST(MonitorManual, ADeadLidarLeavesThirtyCentimetresASecond) {
   const RunReport report = run("wheeled",
                                "  - {at: 4, by: op1, do: drive r1 -1 0 0 --for 12}\n"
                                "faults:\n  - {at: 3, sensor_silent: r1, sensor: lidar, for: 20}\n",
-                               "none");
+                               "");
   EXPECT_NEAR(report.robots.at("r1").distance, 0.3 * 12, 0.5);
   EXPECT_EQ(report.robots.at("r1").collisions, 0);
 }

@@ -6,6 +6,7 @@
 
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
+#include "sim/defects/defect.hpp"
 #include "sim/rehearsal/program/complain.hpp"
 #include "sim/rehearsal/program/interrupt.hpp"
 #include "sim/rehearsal/program/shrink_seeds.hpp"
@@ -90,6 +91,13 @@ int run_many(const Scenario& scenario, const std::shared_ptr<const World>& world
   return out.failed.empty() ? 0 : exit_failed;
 }
 
+std::string defect_list() {
+  std::string list;
+  for (const Defect& defect : defects())
+    list += "\n  " + std::string(defect.name) + ": " + std::string(defect.what);
+  return list;
+}
+
 // Chaos needs something to draw: what a scenario does not say is as in team_chaos.yaml.
 void add_chaos(Scenario& scenario) {
   const Duration from = scenario.duration / 20, to = scenario.duration * 19 / 20;
@@ -135,9 +143,7 @@ int main(int argc, char** argv) {
   app.add_option("--shrink-to", shrink_to, "the file it is written to (default NAME-seedN-ruleM.yaml)")
       ->needs(chaos_option);
   app.add_flag("--until-failure", until_failure, "begin no further seed once one has failed");
-#ifdef ADIT_DEFECTS
-  app.add_option("--defect", defect, "a deliberate defect of the agents (robot_agent/defects.hpp)");
-#endif
+  app.add_option("--defect", defect, "break a rule on purpose, to see who finds it; one of:" + defect_list());
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,181 @@
+// Defects of commands and of who may give them.
+#include <algorithm>
+#include <set>
+
+#include "sim/defects/decorations.hpp"
+#include "sim/defects/numbered_interceptor.hpp"
+
+namespace adit::sim {
+namespace {
+
+/// Takes, stops and questions need no holder.
+bool needs_holder(radio::CommandKind kind) {
+  return kind != radio::CMD_TAKE && kind != radio::CMD_STOP && kind != radio::CMD_QUERY &&
+         kind != radio::CMD_PLAN;
+}
+
+bool is_manual(const radio::Command& command) {
+  return command.kind() == radio::CMD_MODE && !command.words().empty() &&
+         (command.words().front() == "manual" || command.words().front() == "smart_joystick");
+}
+
+class AcceptWithoutEpoch final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    CommandFrom current = command;
+    if (held_by(command.sample.station_id())) current.sample.epoch(authority().epoch());
+    out.push_back(arrival(current));
+  }
+  void on_stick(const StickFrom& stick, std::vector<Arrival>& out) override {
+    StickFrom current = stick;
+    if (held_by(stick.sample.station_id())) current.sample.epoch(authority().epoch());
+    out.push_back(arrival(current));
+  }
+};
+
+class RepeatDoneTwice final : public NumberedInterceptor {
+ public:
+  using NumberedInterceptor::NumberedInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    if (seen_.emplace(command.info.sender, command.sample.seq()).second)
+      pass(command, out);
+    else
+      pass_as_new(command, out);
+  }
+
+ private:
+  std::set<std::pair<wire::ParticipantId, std::uint64_t>> seen_{};
+};
+
+class ObeyStranger final : public NumberedInterceptor {
+ public:
+  using NumberedInterceptor::NumberedInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    if (needs_holder(command.sample.kind()) && !held_by(command.sample.station_id()))
+      pass_as_holders(command, out);
+    else
+      pass(command, out);
+  }
+};
+
+class AcceptStaleJoystick final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  void on_stick(const StickFrom& stick, std::vector<Arrival>& out) override {
+    StickFrom fresh = stick;
+    fresh.sample.echo(stamp());
+    out.push_back(arrival(fresh));
+  }
+};
+
+class IgnoreLock final : public NumberedInterceptor {
+ public:
+  using NumberedInterceptor::NumberedInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    const radio::Command& c = command.sample;
+    if (c.kind() == radio::CMD_TAKE && authority().locked() && !held_by(c.station_id()))
+      give(radio::CMD_UNLOCK, out);
+    pass(command, out);
+  }
+};
+
+class SilentRefusal final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  bool on_answer(radio::Acknowledgement& answer) override { return answer.accepted(); }
+};
+
+/// A stop of another station is judged as a reset, which it may not give.
+class StopNeedsHolder final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    CommandFrom judged = command;
+    if (command.sample.kind() == radio::CMD_STOP && !held_by(command.sample.station_id()))
+      judged.sample.kind(radio::CMD_RESET);
+    out.push_back(arrival(judged));
+  }
+};
+
+class JoystickClearsStop final : public NumberedInterceptor {
+ public:
+  using NumberedInterceptor::NumberedInterceptor;
+  void on_stick(const StickFrom& stick, std::vector<Arrival>& out) override {
+    constexpr Duration kPeriod = 500ms;  // The robot publishes within it that the stops are gone.
+    const bool due = !given_ || now() - *given_ >= kPeriod;
+    if (due && held_by(stick.sample.station_id()) && stick.sample.epoch() == authority().epoch() &&
+        !authority().stops().empty()) {
+      given_ = now();
+      give(radio::CMD_RESET, out, {}, 1);  // --override
+      give(radio::CMD_MODE, out, "waypoint");
+    }
+    out.push_back(arrival(stick));
+  }
+
+ private:
+  std::optional<Time> given_{};
+};
+
+class MoveOnReset final : public NumberedInterceptor {
+ public:
+  using NumberedInterceptor::NumberedInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    pass(command, out);
+    if (command.sample.kind() == radio::CMD_RESET && held_by(command.sample.station_id()))
+      give(radio::CMD_MODE, out, "waypoint");
+  }
+};
+
+/// A centred sample arrives before each request for a manual mode. Numbers of samples are doubled, so that it
+/// fits between two of them.
+class EnterOffCentre final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    if (is_manual(command.sample) && last_ && held_by(command.sample.station_id())) {
+      StickFrom centred = *last_;
+      centred.sample.seq(centred.sample.seq() + 1);
+      centred.sample.echo(stamp());
+      centred.sample.vx(0);
+      centred.sample.vy(0);
+      centred.sample.wz(0);
+      out.push_back(arrival(centred));
+    }
+    out.push_back(arrival(command));
+  }
+  void on_stick(const StickFrom& stick, std::vector<Arrival>& out) override {
+    StickFrom spaced = stick;
+    spaced.sample.seq(2 * stick.sample.seq());
+    if (held_by(stick.sample.station_id())) last_ = spaced;
+    out.push_back(arrival(spaced));
+  }
+
+ private:
+  std::optional<StickFrom> last_{};
+};
+
+template <class T>
+Decoration on_wires(const Subject& subject) {
+  Decoration decoration;
+  decoration.wires = std::make_unique<T>(subject.runtime.strand("defect"));
+  return decoration;
+}
+
+}  // namespace
+
+namespace decorations {
+
+Decoration accept_without_epoch(const Subject& s) { return on_wires<AcceptWithoutEpoch>(s); }
+Decoration repeat_done_twice(const Subject& s) { return on_wires<RepeatDoneTwice>(s); }
+Decoration obey_stranger(const Subject& s) { return on_wires<ObeyStranger>(s); }
+Decoration accept_stale_joystick(const Subject& s) { return on_wires<AcceptStaleJoystick>(s); }
+Decoration ignore_lock(const Subject& s) { return on_wires<IgnoreLock>(s); }
+Decoration silent_refusal(const Subject& s) { return on_wires<SilentRefusal>(s); }
+Decoration stop_needs_holder(const Subject& s) { return on_wires<StopNeedsHolder>(s); }
+Decoration joystick_clears_stop(const Subject& s) { return on_wires<JoystickClearsStop>(s); }
+Decoration move_on_reset(const Subject& s) { return on_wires<MoveOnReset>(s); }
+Decoration enter_off_centre(const Subject& s) { return on_wires<EnterOffCentre>(s); }
+
+}  // namespace decorations
+}  // namespace adit::sim

@@ -1,0 +1,86 @@
+// Defects of a part of the agent that a double replaces, and of what its sensors see.
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "nav/planner.hpp"
+#include "sensor_msgs/msg/PointCloud2.h"
+#include "sim/defects/decorations.hpp"
+
+namespace adit::sim {
+namespace {
+
+/// Plans straight at the goal, through everything.
+class StraightPlanner final : public nav::Planner {
+ public:
+  explicit StraightPlanner(double max_speed) : max_speed_(max_speed) {}
+  nav::Plan plan(const nav::Target& target, const Pose2& pose, std::span<const nav::ObstaclePoint>,
+                 double stamp_s) override {
+    nav::Plan plan{};
+    plan.stamp_s = stamp_s;
+    if (target.kind != nav::Target::Kind::goal) return plan;
+    const Eigen::Vector2d way = target.goal - pose.position();
+    constexpr double kSpacing = 0.05;  // m
+    const double yaw = std::atan2(way.y(), way.x());
+    plan.max_speed = max_speed_;
+    while (plan.pose_count < nav::Plan::kMaxPath && kSpacing * plan.pose_count <= way.norm()) {
+      const Eigen::Vector2d at = pose.position() + kSpacing * plan.pose_count * way.normalized();
+      plan.poses[plan.pose_count++] = {at.x(), at.y(), yaw};
+    }
+    plan.length = kSpacing * (plan.pose_count - 1);
+    return plan;
+  }
+
+ private:
+  double max_speed_;
+};
+
+/// Takes out of every scan what stands on the ground.
+class SeesGroundAlone final : public Interceptor {
+ public:
+  std::vector<Arrival> received(Arrival arrival) override {
+    sensor_msgs::msg::PointCloud2 cloud;
+    if (arrival.topic->name == std::string_view(wire::topics::points.name) &&
+        wire::decode(arrival.cdr, cloud)) {
+      flatten(cloud);
+      wire::encode(cloud, arrival.cdr);
+    }
+    return Interceptor::received(std::move(arrival));
+  }
+
+ private:
+  static void flatten(sensor_msgs::msg::PointCloud2& cloud) {
+    constexpr float kGround = 0.05f;  // m, in the frame of base_link
+    const std::uint32_t step = cloud.point_step();
+    const float away = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t at = 0; step >= 12 && at + step <= cloud.data().size(); at += step) {
+      float z = 0.0f;
+      std::memcpy(&z, cloud.data().data() + at + 8, sizeof z);
+      if (z > kGround) std::memcpy(cloud.data().data() + at + 8, &away, sizeof away);
+    }
+  }
+};
+
+}  // namespace
+
+namespace decorations {
+
+Decoration blind_planner(const Subject& subject) {
+  Decoration decoration;
+  decoration.parameters = [speed = subject.platform.max_speed](agent::AgentParams& params) {
+    params.local_planner = [speed] { return std::make_unique<StraightPlanner>(speed); };
+    params.platform.router = "none";  // one that plans blindly is not led either
+  };
+  return decoration;
+}
+
+Decoration blind_and_unwatched(const Subject& subject) {
+  Decoration decoration = blind_planner(subject);
+  decoration.wires = std::make_unique<SeesGroundAlone>();
+  return decoration;
+}
+
+}  // namespace decorations
+}  // namespace adit::sim
