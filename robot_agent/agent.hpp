@@ -78,7 +78,7 @@ class Agent {
   /// Errors: bad_argument (name, platform), those of the wires.
   Result<void> start();
 
-  /// The robot's own console: "status", "unlock", "health", "restart COMPONENT", "policy COMPONENT
+  /// The robot's own console: "status", "unlock", "peers", "health", "restart COMPONENT", "policy COMPONENT
   /// auto|manual". `answer` runs on a strand of the agent, or never when that hangs. From any thread, after
   /// start().
   void at_console(const std::string& line, std::function<void(const std::string&)> answer);

@@ -58,7 +58,8 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
       notices_(params.name, *edges.notifier, log(), [this] { return commands_.authority().holder_name(); }),
-      safeguards_(safeguard_params(params), {commands_.authority(), behaviour_, localisation_, notices_}),
+      safeguards_(safeguard_params(params),
+                  {commands_.authority(), edges.peers, behaviour_, localisation_, notices_}),
       telemetry_({*edges.radio, *edges.wire, edges.rate, *edges.driver, *edges.watch, localisation_,
                   commands_, behaviour_}),
       rivals_(now()) {}
@@ -158,6 +159,7 @@ void Agent::Core::restore() {
   if (!edges_.restored.snapshot) return;
   const Snapshot& s = *edges_.restored.snapshot;
   commands_.restore(s.authority, s.answers, started_);  // listen_first asks who was heard since
+  note_holder();
   if (s.place) localisation_.restore(*s.place);
   // Without a pose to compare with, nobody knows whether the odometry is still the same. With one, the first
   // sample tells.
@@ -272,9 +274,15 @@ Facts Agent::Core::sense(Time now) const {
   return f;
 }
 
+void Agent::Core::note_holder() {
+  const auto& holder = commands_.authority().holder();
+  edges_.peers.set_holder(holder ? holder->name : std::string{}, holder ? holder->id : Id{});
+}
+
 CommandInterface::Outputs Agent::Core::command_outputs() {
   return {[this](const Notice& notice) { notices_.send(notice); },
           [this] {
+            note_holder();
             keep();
             edges_.keeper->when_safe(guard([this] { telemetry_.send_authority(now()); }));
           },
@@ -282,7 +290,8 @@ CommandInterface::Outputs Agent::Core::command_outputs() {
           [this](const std::string& component, bool automatic) {
             return edges_.watch->set_policy(component, automatic);
           },
-          [this](const Epoch& epoch) { return edges_.namesakes.obeys(epoch.start); }};
+          [this](const Epoch& epoch) { return edges_.namesakes.obeys(epoch.start); },
+          [this](const Sender& station) { edges_.peers.accept_station(station, now()); }};
 }
 
 Behaviour::Inputs Agent::Core::behaviour_inputs() {
@@ -317,9 +326,10 @@ Navigation::Outputs Agent::Core::navigation_outputs() {
 
 std::string Agent::Core::at_console(const std::string& line) {
   if (line == "unlock") return commands_.unlock_at_console() ? "unlocked\n" : "there was no lock\n";
+  if (line == "peers") return describe(edges_.peers, now());
   if (line != "status")
     return "unknown: " + line +
-           " (status, unlock, health, restart COMPONENT, policy COMPONENT auto|manual)\n";
+           " (status, unlock, peers, health, restart COMPONENT, policy COMPONENT auto|manual)\n";
   const Authority& authority = commands_.authority();
   const BehaviourView view = behaviour_.view();
   return params_.name + ": " +

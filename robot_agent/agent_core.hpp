@@ -11,6 +11,7 @@
 #include "robot_agent/common/rate_limit.hpp"
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
+#include "robot_agent/discovery/peer_table.hpp"
 #include "robot_agent/findings/sync.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/localisation.hpp"
@@ -32,11 +33,13 @@ namespace adit::agent {
 /// safe state, and the way to the components beside it. Touched on the command strand, but for what says
 /// otherwise.
 struct Agent::Edges {
-  Edges(Executor& command, const wire::ParticipantId& own) : directory(command), namesakes(own) {}
+  Edges(Executor& command, const wire::ParticipantId& own)
+      : peers(command), directory(peers), namesakes(own) {}
 
   std::unique_ptr<Notifier> notifier{};  ///< from any thread
   std::unique_ptr<RadioEdge> radio{};
   std::unique_ptr<Driver> driver{};
+  PeerTable peers;
   Directory directory;
   Namesakes namesakes;
   Restored restored{};  ///< what was there at the start, or when the component was made anew
@@ -90,6 +93,8 @@ class Agent::Core : public Component {
   void send_findings();
   Facts sense(Time now) const;
   CommandInterface::Outputs command_outputs();
+  /// The table of peers never evicts the holder.
+  void note_holder();
   Behaviour::Inputs behaviour_inputs();
   Behaviour::Outputs behaviour_outputs();
   Navigation::Outputs navigation_outputs();

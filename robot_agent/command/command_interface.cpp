@@ -100,11 +100,12 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
 
 CommandInterface::Outcome CommandInterface::identify(const Sender& from, StationTable::Sign sign, Time now) {
   const bool holds = authority_.held_by(from.name, from.id);
-  const auto verdict = stations_.hear(from, sign, holds, now);
+  const auto verdict = stations_.hear(from, sign, authority_.holder(), now);
   if (verdict.found_out) report_intruder(from.name, *verdict.found_out, now);
   // Already when it claims to be back: a manual mode does not go on meanwhile.
   if (holds && verdict.restarted) requests_.holder_restarted(now);
   if (verdict.reason == Reason::none) {
+    if (outputs_.accepted) outputs_.accepted(from);
     if (holds) authority_.hear(now);
     return {};
   }

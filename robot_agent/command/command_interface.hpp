@@ -36,6 +36,8 @@ class CommandInterface {
     /// Whether what was given under that epoch is for this robot and not for another one of the same name.
     /// Null: always.
     std::function<bool(const Epoch& epoch)> is_meant{};
+    /// A station gave a sign of life that is its own.
+    std::function<void(const Sender& station)> accepted{};
   };
 
   CommandInterface(CommandParams params, Requests& requests, Outputs outputs);

@@ -4,10 +4,12 @@
 
 namespace adit::agent {
 
-StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, bool holds, Time now) {
+StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, const std::optional<Party>& holder,
+                                         Time now) {
+  const bool holds = holder == Party{from.name, from.id};
   const auto found =
       std::find_if(stations_.begin(), stations_.end(), [&](const Station& s) { return s.name == from.name; });
-  if (found == stations_.end()) return {add(from, now) ? Reason::none : Reason::unknown_station};
+  if (found == stations_.end()) return {add(from, holder, now) ? Reason::none : Reason::unknown_station};
   Station& station = *found;
   if (station.id != from.id) {
     // The holder has the better right to his name than whoever used it while he was away.
@@ -23,12 +25,15 @@ StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, bool hol
           verdict.found_out};
 }
 
-Station* StationTable::add(const Sender& from, Time now) {
+Station* StationTable::add(const Sender& from, const std::optional<Party>& holder, Time now) {
   if (stations_.size() >= kCapacity) {
-    const auto oldest = std::min_element(
-        stations_.begin(), stations_.end(),
-        [](const Station& a, const Station& b) { return a.binding.heard() < b.binding.heard(); });
-    if (oldest->binding.alive(now, kHeardFor)) return nullptr;
+    const auto rank = [&](const Station& s) {
+      return std::pair(holder == Party{s.name, s.id}, s.binding.heard());
+    };
+    const auto oldest =
+        std::min_element(stations_.begin(), stations_.end(),
+                         [&](const Station& a, const Station& b) { return rank(a) < rank(b); });
+    if (oldest->binding.alive(now, kHeardFor) && holder != Party{from.name, from.id}) return nullptr;
     stations_.erase(oldest);
   }
   stations_.push_back({from.name, from.id, Binding(from.participant, now)});

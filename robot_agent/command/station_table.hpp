@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/time/time.hpp"
+#include "robot_agent/command/authority.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/discovery/binding.hpp"
 
@@ -19,7 +20,8 @@ struct Station {
   bool holds{};              ///< the robot, when it was heard last
 };
 
-/// Which stations are on the air, and which participant speaks for each name (rule 1). Bounded.
+/// Which stations are on the air, and which participant speaks for each name (rule 1). Bounded; the holder is
+/// never evicted, and it alone finds room in a table full of stations that are heard.
 ///
 /// - Same name and id from a new participant: the operator came back, as Binding judges. Of the holder a
 ///   presence is asked; of others a command tells as much.
@@ -36,8 +38,8 @@ class StationTable {
     std::optional<wire::ParticipantId> found_out{};  ///< one that claimed an identity that is another's
   };
 
-  /// Judges a sign of life and records it when it is genuine. `holds`: name and id are the holder's.
-  Verdict hear(const Sender& from, Sign sign, bool holds, Time now);
+  /// Judges a sign of life and records it when it is genuine. `holder`: of the robot.
+  Verdict hear(const Sender& from, Sign sign, const std::optional<Party>& holder, Time now);
   /// After a restart, before anything was heard: `name` and `id` are the holder's, and this is who speaks for
   /// them.
   void restore(const std::string& name, const Id& id, const Binding::Kept& speaker, Time now);
@@ -53,7 +55,7 @@ class StationTable {
   std::size_t size() const { return stations_.size(); }
 
  private:
-  Station* add(const Sender& from, Time now);
+  Station* add(const Sender& from, const std::optional<Party>& holder, Time now);
 
   std::vector<Station> stations_{};
 };

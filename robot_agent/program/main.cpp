@@ -266,12 +266,13 @@ int main(int argc, char** argv) {
   app.add_flag("--reports", options.reports)->group("");  // set by the parent
   // For measurements that kill the agent again and again.
   app.add_option("--good-run", options.good_run)->group("")->check(CLI::Range(0.0, 3600.0));
-  auto* console = app.add_subcommand("console", "the robot's own console: status, unlock, health, restart");
+  auto* console =
+      app.add_subcommand("console", "the robot's own console: status, unlock, peers, health, restart");
   std::vector<std::string> words;
   std::string robot;
   console
       ->add_option("command", words,
-                   "status | unlock | health | restart COMPONENT | policy COMPONENT auto|manual")
+                   "status | unlock | peers | health | restart COMPONENT | policy COMPONENT auto|manual")
       ->required();
   console->add_option("--name", robot, "the robot")->required();
   try {

@@ -78,8 +78,8 @@ StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sen
           {in.vx(), in.vy(), in.wz()}};
 }
 
-AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender) {
-  AgentRecord r{};
+Peer from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender) {
+  Peer r{};
   r.name = bounded_name(in.name());
   r.id = in.id();
   r.station = in.kind() == radio::AGENT_STATION;
@@ -89,8 +89,11 @@ AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId&
   r.platform = in.platform();
   r.length = in.length();
   r.width = in.width();
+  r.height = in.height();
   r.max_speed = in.max_speed();
   r.modes = in.modes();
+  const Eigen::Vector3d place(in.place()[0], in.place()[1], in.place()[2]);
+  if (r.station && in.placed() && place.allFinite()) r.place = place;
   return r;
 }
 

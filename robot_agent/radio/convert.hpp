@@ -29,7 +29,7 @@ inline Epoch from_radio(const radio::Epoch& epoch) { return {epoch.start(), epoc
 
 Command from_radio(const radio::Command& in, const wire::ParticipantId& sender);
 StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sender);
-AgentRecord from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender);
+Peer from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender);
 
 radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot);
 radio::Notification to_radio(const Notice& notice, const std::string& robot);

@@ -104,7 +104,10 @@ Result<void> RadioEdge::listen(Parts parts) {
                  if (p.kind() == radio::AGENT_STATION && valid_name(p.name()))
                    e.stations.heard(p.name(), p.seq(), now);
                  if (p.kind() == radio::AGENT_STATION) namesakes.station(now);
-                 if (p.kind() == radio::AGENT_ROBOT && p.name() == e.robot) namesakes.heard(info.sender, now);
+                 if (p.kind() == radio::AGENT_ROBOT && p.name() == e.robot && info.sender != e.wire.id()) {
+                   namesakes.heard(info.sender, now);
+                   directory.namesake(p.name(), p.id(), info.sender, now);
+                 }
                  if (p.kind() == radio::AGENT_STATION)
                    commands([&](CommandInterface& interface) {
                      interface.hear({p.name(), p.id(), info.sender}, p.protocol(), now);

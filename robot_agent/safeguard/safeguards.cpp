@@ -24,7 +24,9 @@ void Safeguards::watch_link(Time now) {
   const Localisation& at = parts_.localisation;
   LinkLoss::Inputs in{};
   in.held = authority.holder().has_value();
-  in.heard = authority.heard();
+  // A restart of the command component begins the lease anew, but the holder is not heard by it.
+  const Peer* peer = parts_.peers.holder();
+  in.heard = peer ? peer->heard : authority.heard();
   in.autonomous = parts_.behaviour.mode().autonomous();
   in.arrived = parts_.behaviour.view().goal_state == GoalState::reached;
   if (at.initialised()) in.place = Eigen::Vector2d(at.pose().x, at.pose().y);

@@ -4,6 +4,7 @@
 
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/authority.hpp"
+#include "robot_agent/discovery/peer_table.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/notices/notices.hpp"
 #include "robot_agent/safeguard/battery_watch.hpp"
@@ -26,6 +27,7 @@ class Safeguards {
   /// What it watches and acts on; all of it must outlive the safeguards.
   struct Parts {
     const Authority& authority;
+    const PeerTable& peers;
     Behaviour& behaviour;
     const Localisation& localisation;
     const Notices& notices;

@@ -282,6 +282,15 @@ TEST_F(AgentTest, ConsoleEndsALock) {
   EXPECT_THAT(answer, testing::HasSubstr("held by op1"));
 }
 
+TEST_F(AgentTest, ConsoleShowsThePeers) {
+  take();
+  bench.run(1s);
+  std::string answer;
+  bench.agent().at_console("peers", [&](const std::string& a) { answer = a; });
+  bench.run(10ms);
+  EXPECT_THAT(answer, testing::ContainsRegex("op1 +station +present +heard 0[.][0-9] s ago, the holder\n"));
+}
+
 TEST(AgentRun, SameSeedSameRun) {
   const auto run = [](std::uint64_t seed) {
     AgentBench bench({}, seed);

@@ -370,6 +370,20 @@ TEST(CommandInterface, TableOfStationsIsBounded) {
   EXPECT_EQ(bench.interface().stations().size(), StationTable::kCapacity);
 }
 
+// Others could take its name and id while it is silent, and it would be shut out.
+TEST(CommandInterface, NoNumberOfStationsEvictsTheHolder) {
+  CommandBench bench;
+  bench.say("op1", "take");
+  bench.say("op1", "lock");
+  bench.kill("op1");
+  bench.wait(4s);
+  for (int i = 0; i < 100; ++i) bench.say("s" + std::to_string(i), "take");
+  ASSERT_TRUE(bench.interface().kept().speaker);
+  EXPECT_EQ(bench.interface().kept().speaker->participant, bench.station("op1").sender.participant);
+  EXPECT_EQ(bench.interface().stations().size(), StationTable::kCapacity);
+  EXPECT_FALSE(bench.interface().handle(bench.stick("op1"), bench.now)) << "no refusal";
+}
+
 TEST(CommandInterface, HomeIsAGoalAtTheStart) {
   CommandParams params{};
   params.home = {3.0, -2.0, std::nan("")};

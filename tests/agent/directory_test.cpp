@@ -10,13 +10,13 @@ namespace {
 class DirectoryTest : public testing::Test {
  protected:
   DirectoryTest() {
-    seen = directory.list().subscribe(*strand, [this](const auto& list) {
+    seen = peers.follow(*strand, [this](const auto& list) {
       last = *list;
       ++published;
     });
   }
-  AgentRecord record(const std::string& name, std::uint8_t participant, bool station = false) {
-    AgentRecord r{};
+  Peer record(const std::string& name, std::uint8_t participant, bool station = false) {
+    Peer r{};
     r.name = name;
     r.id = of(name);
     r.participant[0] = participant;
@@ -33,9 +33,10 @@ class DirectoryTest : public testing::Test {
   VirtualScheduler scheduler{1};
   std::unique_ptr<Runtime> machine{scheduler.machine("m", 0s)};
   std::shared_ptr<Executor> strand{machine->strand("s")};
-  Directory directory{*strand};
+  PeerTable peers{*strand};
+  Directory directory{peers};
   Subscription seen{};
-  AgentList last{};
+  PeerList last{};
   int published{};
   Time now{Duration{1h}};
 };
@@ -44,7 +45,7 @@ TEST_F(DirectoryTest, AppearanceAndChangesArePublishedOnce) {
   directory.capabilities(record("r2", 1), now);
   directory.capabilities(record("r2", 1), now + 1s);
   EXPECT_EQ(published, 1);
-  AgentRecord better = record("r2", 1);
+  Peer better = record("r2", 1);
   better.modes = {"explore"};
   directory.capabilities(better, now);
   EXPECT_EQ(published, 2);
@@ -85,7 +86,7 @@ TEST_F(DirectoryTest, ReturnUnderAnotherAddressIsTheSameEntry) {
   directory.capabilities(record("r2", 1), now);
   directory.presence("r2", of("r2"), id(1), now + 1s);
   // Killed, and started again at once; what it can do now is told once only.
-  AgentRecord back = record("r2", 2);
+  Peer back = record("r2", 2);
   back.modes = {"explore"};
   directory.capabilities(back, now + 1500ms);
   EXPECT_EQ(last[0].participant, id(1)) << "it may be a forger's";
@@ -107,7 +108,7 @@ TEST_F(DirectoryTest, ReturnAfterAGoodbyeIsAtOnce) {
 }
 
 TEST_F(DirectoryTest, NobodyTakesThePlaceOfOneThatIsThere) {
-  AgentRecord real = record("r2", 1), forged = record("r2", 2), other = record("r2", 3);
+  Peer real = record("r2", 1), forged = record("r2", 2), other = record("r2", 3);
   real.modes = {"hold"};
   other.id = of("other");
   directory.capabilities(real, now);
@@ -116,14 +117,14 @@ TEST_F(DirectoryTest, NobodyTakesThePlaceOfOneThatIsThere) {
     directory.capabilities(forged, now + i * 100ms);
     directory.capabilities(other, now + i * 100ms);
     directory.tick(now + i * 100ms);
-    ASSERT_EQ(directory.agents().size(), 1u);
-    EXPECT_EQ(directory.agents()[0].participant, id(1));
-    EXPECT_THAT(directory.agents()[0].modes, testing::ElementsAre("hold"));
+    ASSERT_EQ(peers.all().size(), 1u);
+    EXPECT_EQ(peers.all()[0].participant, id(1));
+    EXPECT_THAT(peers.all()[0].modes, testing::ElementsAre("hold"));
   }
 }
 
 TEST_F(DirectoryTest, TheRealOneHasItsPlaceBackAfterAGapOfTheRadio) {
-  AgentRecord real = record("r2", 1);
+  Peer real = record("r2", 1);
   real.modes = {"hold"};
   directory.capabilities(real, now);
   directory.capabilities(record("r2", 2), now + 2s);
@@ -137,7 +138,7 @@ TEST_F(DirectoryTest, TheRealOneHasItsPlaceBackAfterAGapOfTheRadio) {
 
 TEST_F(DirectoryTest, ANameWithAnotherIdIsFreeAfterSilence) {
   directory.capabilities(record("r2", 1), now);
-  AgentRecord other = record("r2", 2);
+  Peer other = record("r2", 2);
   other.id = of("other");
   directory.capabilities(other, now + 1s);
   EXPECT_EQ(last[0].participant, id(1));
@@ -150,7 +151,7 @@ TEST_F(DirectoryTest, BoundedAndPicky) {
   directory.capabilities(record("no good", 1), now);
   EXPECT_EQ(published, 0);
   for (int i = 0; i < 200; ++i) directory.capabilities(record("r" + std::to_string(i), 1), now);
-  EXPECT_EQ(directory.agents().size(), Directory::kCapacity);
+  EXPECT_EQ(peers.all().size(), PeerTable::kCapacity);
 }
 
 }  // namespace

@@ -56,6 +56,16 @@ TEST_F(Safeguards, GoesOnWithoutItsHolder) {
   EXPECT_THAT(op1->told(), Contains("link_back"));
 }
 
+TEST_F(Safeguards, ARestartOfTheCommandComponentIsNoSignOfLifeOfTheHolder) {
+  begin(with(OnLoss::go_on));
+  go(60);
+  lose(true);
+  bench->run(3s);
+  ASSERT_TRUE(bench->agent().inject("command", ComponentFault::crash));
+  bench->run(3500ms);
+  EXPECT_THAT(op2->told(), Contains("link_lost")) << "6.5 s after the last sign of life";
+}
+
 TEST_F(Safeguards, HoldsWithoutItsHolderAndDoesNotGoOnByItself) {
   begin(with(OnLoss::hold));
   go(60);

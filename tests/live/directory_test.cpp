@@ -17,8 +17,8 @@ class Member {
       : net_(net), strand_(net.machine(name).strand("command")), wire_(net.join_radio(name)) {
     net_.on(*strand_, [&] {
       edge_ = agent::RadioEdge::open(*wire_, *strand_, name).value();
-      seen_ = directory_.list().subscribe(
-          *strand_, [this](const auto& list) { list_.use([&](agent::AgentList& copy) { copy = *list; }); });
+      seen_ = peers_.follow(
+          *strand_, [this](const auto& list) { list_.use([&](agent::PeerList& copy) { copy = *list; }); });
       agent::RadioEdge::Parts parts{directory_, namesakes_, [this](const auto& work) { work(commands_); },
                                     [](const Task& task) { task(); }};
       if (!edge_->listen(std::move(parts))) throw std::runtime_error("the radio cannot be heard");
@@ -45,7 +45,7 @@ class Member {
   }
   /// True when the list holds that agent, present or not, with that platform.
   bool lists(const std::string& name, bool present, const std::string& platform) const {
-    for (const agent::AgentRecord& record : list_.get())
+    for (const agent::Peer& record : list_.get())
       if (record.name == name) return record.present == present && record.platform == platform;
     return false;
   }
@@ -56,9 +56,10 @@ class Member {
   std::unique_ptr<wire::Wire> wire_;
   agent::FakeRequests requests_{};
   agent::CommandInterface commands_{{.robot = "watcher"}, requests_, {[](const auto&) {}, [] {}}};
-  agent::Directory directory_{*strand_};
+  agent::PeerTable peers_{*strand_};
+  agent::Directory directory_{peers_};
   agent::Namesakes namesakes_{wire_->id()};
-  Shared<agent::AgentList> list_{};
+  Shared<agent::PeerList> list_{};
   std::unique_ptr<agent::RadioEdge> edge_{};
   Subscription seen_{};
   Timer timer_{};

@@ -1,0 +1,162 @@
+#include "robot_agent/discovery/peer_table.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <tuple>
+
+namespace adit::agent {
+namespace {
+
+/// Without the ages.
+auto content(const Peer& p) {
+  return std::tie(p.name, p.id, p.station, p.participant, p.described, p.protocol, p.software, p.platform,
+                  p.length, p.width, p.height, p.max_speed, p.modes, p.place, p.namesake, p.present);
+}
+
+bool before(const Peer& a, const Peer& b) {
+  return std::tie(a.name, a.namesake, a.participant) < std::tie(b.name, b.namesake, b.participant);
+}
+
+}  // namespace
+
+const Peer* PeerTable::find(const std::string& name) const {
+  const auto found = std::find_if(peers_.begin(), peers_.end(),
+                                  [&](const Peer& peer) { return peer.name == name && !peer.namesake; });
+  return found == peers_.end() ? nullptr : &*found;
+}
+
+Peer* PeerTable::edit(const std::string& name) {
+  const Peer* found = find(name);
+  return found ? &peers_[static_cast<std::size_t>(found - peers_.data())] : nullptr;
+}
+
+const Peer* PeerTable::holder() const {
+  const Peer* known = find(holder_);
+  return known && is_holder(*known) ? known : nullptr;
+}
+
+const Peer* PeerTable::by_participant(const wire::ParticipantId& participant) const {
+  const auto found = std::find_if(peers_.begin(), peers_.end(),
+                                  [&](const Peer& peer) { return peer.participant == participant; });
+  return found == peers_.end() ? nullptr : &*found;
+}
+
+Peer* PeerTable::add(Peer peer, Time now) {
+  if (peers_.size() >= kCapacity) {
+    auto oldest = peers_.end();
+    for (auto at = peers_.begin(); at != peers_.end(); ++at) {
+      if (is_holder(*at) || (at->present && !is_holder(peer))) continue;
+      if (oldest == peers_.end() ||
+          std::tie(at->present, at->heard) < std::tie(oldest->present, oldest->heard))
+        oldest = at;
+    }
+    if (oldest == peers_.end()) return nullptr;
+    peers_.erase(oldest);
+  }
+  peer.first_heard = peer.heard = now;
+  peer.present = true;
+  const auto place = std::lower_bound(peers_.begin(), peers_.end(), peer, before);
+  return &*peers_.insert(place, std::move(peer));
+}
+
+void PeerTable::touch(Peer& peer, Time now) {
+  peer.heard = now;
+  if (std::exchange(peer.present, true)) return;
+  publish();
+}
+
+bool PeerTable::put(Peer peer, Time now) {
+  peer.present = true;
+  Peer* known = edit(peer.name);
+  if (!known) {
+    if (!add(std::move(peer), now)) return false;
+    publish();
+    return true;
+  }
+  peer.first_heard = known->id == peer.id ? known->first_heard : now;
+  peer.heard = now;
+  const bool changed = content(*known) != content(peer);
+  *known = std::move(peer);
+  if (changed) publish();
+  return true;
+}
+
+void PeerTable::accept_station(const Sender& from, Time now) {
+  Peer peer{};
+  peer.name = from.name;
+  peer.id = from.id;
+  peer.station = true;
+  peer.participant = from.participant;
+  Peer* known = edit(from.name);
+  if (known && known->station && known->id == from.id) return touch(*known, now);
+  // A name belongs to its id while that is heard; the holder alone has the better right to it.
+  if (known && known->present && !is_holder(peer)) return;
+  put(std::move(peer), now);
+}
+
+void PeerTable::hear_namesake(const std::string& name, const Id& id, const wire::ParticipantId& participant,
+                              Time now) {
+  std::size_t others = 0;
+  for (Peer& peer : peers_) {
+    if (!peer.namesake) continue;
+    if (peer.participant == participant) return touch(peer, now);
+    ++others;
+  }
+  if (others >= kNamesakes) {
+    const auto gone = std::find_if(peers_.begin(), peers_.end(),
+                                   [](const Peer& peer) { return peer.namesake && !peer.present; });
+    if (gone == peers_.end()) return;
+    peers_.erase(gone);
+  }
+  Peer peer{};
+  peer.name = name;
+  peer.id = id;
+  peer.participant = participant;
+  peer.namesake = true;
+  if (add(std::move(peer), now)) publish();
+}
+
+void PeerTable::leave(const wire::ParticipantId& participant) {
+  bool changed = false;
+  for (Peer& peer : peers_) {
+    if (peer.participant != participant || !peer.present) continue;
+    peer.present = false;
+    changed = true;
+  }
+  if (changed) publish();
+}
+
+void PeerTable::tick(Time now) {
+  bool changed = false;
+  for (Peer& peer : peers_) {
+    if (!peer.present || peer.age(now) < kSilence) continue;
+    peer.present = false;
+    changed = true;
+  }
+  if (changed) publish();
+}
+
+std::string describe(const PeerTable& peers, Time now) {
+  std::string text;
+  for (const Peer& peer : peers.all()) {
+    char line[256];
+    const std::string kind = peer.station            ? "station"
+                             : peer.platform.empty() ? "robot"
+                                                     : command::clean(peer.platform, 32);
+    std::snprintf(line, sizeof line, "%-16s %-8s %-8s heard %.1f s ago", peer.name.c_str(), kind.c_str(),
+                  peer.namesake  ? "namesake"
+                  : peer.present ? "present"
+                                 : "silent",
+                  seconds(peer.age(now)));
+    text += line;
+    if (peer.place) {
+      std::snprintf(line, sizeof line, ", at %.1f %.1f %.1f", peer.place->x(), peer.place->y(),
+                    peer.place->z());
+      text += line;
+    }
+    text += peers.holder() == &peer ? ", the holder\n" : "\n";
+  }
+  return text.empty() ? "no peers\n" : text;
+}
+
+}  // namespace adit::agent

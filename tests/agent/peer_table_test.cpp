@@ -1,0 +1,175 @@
+#include "robot_agent/discovery/peer_table.hpp"
+
+#include <gmock/gmock.h>
+
+#include "core/exec/virtual_runtime.hpp"
+#include "robot_agent/discovery/directory.hpp"
+
+namespace adit::agent {
+namespace {
+
+class PeerTableTest : public testing::Test {
+ protected:
+  static Id id_of(const std::string& name) {
+    Id id{};
+    std::copy_n(name.begin(), std::min<std::size_t>(name.size(), 16), id.begin());
+    return id;
+  }
+  static wire::ParticipantId participant(int number) {
+    return {static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(number >> 8)};
+  }
+  static Peer peer(const std::string& name, int number, bool station = false) {
+    Peer p{};
+    p.name = name;
+    p.id = id_of(name);
+    p.participant = participant(number);
+    p.station = station;
+    return p;
+  }
+  static Sender sender(const std::string& name, int number) {
+    return {name, id_of(name), participant(number)};
+  }
+  const Peer* find(const std::string& name) const { return peers.find(name); }
+
+  VirtualScheduler scheduler{1};
+  std::unique_ptr<Runtime> machine{scheduler.machine("m", 0s)};
+  std::shared_ptr<Executor> strand{machine->strand("s")};
+  PeerTable peers{*strand};
+  Directory directory{peers};
+  Time now{Duration{1h}};
+};
+
+TEST_F(PeerTableTest, AgesCountFromTheLastSignOfLife) {
+  directory.capabilities(peer("r2", 1), now);
+  directory.presence("r2", id_of("r2"), participant(1), now + 2s);
+  EXPECT_EQ(find("r2")->age(now + 3s), 1s);
+  EXPECT_EQ(find("r2")->first_heard, now);
+  directory.tick(now + 4400ms);
+  EXPECT_TRUE(find("r2")->present);
+  directory.tick(now + 4500ms);
+  EXPECT_FALSE(find("r2")->present);
+  EXPECT_EQ(find("r2")->age(now + 10s), 8s) << "its age goes on";
+}
+
+TEST_F(PeerTableTest, APeerThatReturnsUnderAnotherAddressIsTheSameOne) {
+  directory.capabilities(peer("r2", 1), now);
+  directory.participant({participant(1), false});
+  EXPECT_FALSE(find("r2")->present);
+  directory.capabilities(peer("r2", 7), now + 20s);
+  ASSERT_EQ(peers.all().size(), 1U);
+  EXPECT_TRUE(find("r2")->present);
+  EXPECT_EQ(find("r2")->first_heard, now);
+  EXPECT_EQ(peers.by_participant(participant(7)), find("r2"));
+  EXPECT_EQ(peers.by_participant(participant(1)), nullptr);
+}
+
+TEST_F(PeerTableTest, AFullTableEvictsTheAbsentPeerHeardLongestAgo) {
+  for (int i = 0; i < static_cast<int>(PeerTable::kCapacity); ++i)
+    directory.capabilities(peer("r" + std::to_string(i), i), now + i * 1ms);
+  directory.capabilities(peer("late", 500), now + 200ms);
+  EXPECT_EQ(find("late"), nullptr) << "all the others are there";
+  directory.participant({participant(9), false});
+  directory.participant({participant(4), false});
+  directory.capabilities(peer("late", 500), now + 300ms);
+  EXPECT_NE(find("late"), nullptr);
+  EXPECT_EQ(find("r4"), nullptr);
+  EXPECT_NE(find("r9"), nullptr);
+  EXPECT_EQ(peers.all().size(), PeerTable::kCapacity);
+  // The one that had to go comes back like any other.
+  directory.capabilities(peer("r4", 4), now + 400ms);
+  EXPECT_NE(find("r4"), nullptr);
+  EXPECT_EQ(find("r9"), nullptr);
+}
+
+TEST_F(PeerTableTest, TheHolderIsNeverEvicted) {
+  directory.capabilities(peer("op1", 1000, true), now);
+  peers.set_holder("op1", id_of("op1"));
+  directory.participant({participant(1000), false});
+  for (int i = 0; i < 300; ++i) {
+    directory.capabilities(peer("r" + std::to_string(i), i), now + i * 1s);
+    directory.tick(now + i * 1s);
+  }
+  EXPECT_EQ(peers.all().size(), PeerTable::kCapacity);
+  ASSERT_NE(peers.holder(), nullptr);
+  EXPECT_EQ(peers.holder()->name, "op1");
+  EXPECT_EQ(peers.holder()->age(now + 300s), 300s);
+}
+
+TEST_F(PeerTableTest, TheHolderFindsRoomWhereAllOthersArePresent) {
+  for (int i = 0; i < static_cast<int>(PeerTable::kCapacity); ++i)
+    directory.capabilities(peer("r" + std::to_string(i), i), now + i * 1ms);
+  peers.set_holder("op1", id_of("op1"));
+  EXPECT_EQ(peers.holder(), nullptr) << "not heard yet";
+  peers.accept_station(sender("op1", 500), now + 1s);
+  ASSERT_NE(peers.holder(), nullptr);
+  EXPECT_EQ(find("r0"), nullptr) << "it was heard longest ago";
+  EXPECT_EQ(peers.all().size(), PeerTable::kCapacity);
+}
+
+TEST_F(PeerTableTest, TheHolderIsNameAndId) {
+  directory.capabilities(peer("op1", 1, true), now);
+  peers.set_holder("op1", id_of("another"));
+  EXPECT_EQ(peers.holder(), nullptr);
+  peers.set_holder("", {});
+  EXPECT_EQ(peers.holder(), nullptr);
+}
+
+TEST_F(PeerTableTest, AStationIsKnownByItsCommandsAloneUntilItDescribesItself) {
+  peers.accept_station(sender("op1", 1), now);
+  ASSERT_NE(find("op1"), nullptr);
+  EXPECT_TRUE(find("op1")->station);
+  EXPECT_FALSE(find("op1")->described);
+  Peer said = peer("op1", 1, true);
+  said.place = Eigen::Vector3d(1.0, 2.0, 0.0);
+  directory.capabilities(said, now + 1s);
+  EXPECT_TRUE(find("op1")->described);
+  EXPECT_EQ(find("op1")->place, said.place);
+  EXPECT_EQ(find("op1")->first_heard, now);
+  peers.accept_station(sender("op1", 1), now + 2s);
+  EXPECT_EQ(find("op1")->heard, now + 2s);
+  EXPECT_EQ(find("op1")->place, said.place);
+}
+
+TEST_F(PeerTableTest, ADescriptionByAnotherParticipantDoesNotTakeAStationThatCommands) {
+  peers.accept_station(sender("op1", 1), now);
+  directory.capabilities(peer("op1", 2, true), now + 100ms);
+  EXPECT_EQ(find("op1")->participant, participant(1));
+  EXPECT_FALSE(find("op1")->described);
+  Peer other = peer("op1", 3, true);
+  other.id = id_of("other");
+  directory.capabilities(other, now + 200ms);
+  EXPECT_EQ(find("op1")->id, id_of("op1"));
+}
+
+TEST_F(PeerTableTest, NamesakesAreEntriesOfTheirOwnAndBounded) {
+  for (int i = 0; i < 20; ++i) directory.namesake("r1", id_of(std::to_string(i)), participant(i), now + 1s);
+  EXPECT_EQ(peers.all().size(), PeerTable::kNamesakes);
+  EXPECT_EQ(find("r1"), nullptr) << "the name is this robot's own";
+  ASSERT_NE(peers.by_participant(participant(3)), nullptr);
+  EXPECT_TRUE(peers.by_participant(participant(3))->namesake);
+  EXPECT_EQ(peers.by_participant(participant(3))->age(now + 4s), 3s);
+  directory.participant({participant(3), false});
+  directory.namesake("r1", id_of("x"), participant(99), now + 2s);
+  EXPECT_EQ(peers.by_participant(participant(3)), nullptr) << "one that left makes room";
+  EXPECT_NE(peers.by_participant(participant(99)), nullptr);
+  EXPECT_EQ(peers.all().size(), PeerTable::kNamesakes);
+}
+
+TEST_F(PeerTableTest, IsShownToPeopleWithAgesAndPlaces) {
+  EXPECT_EQ(describe(peers, now), "no peers\n");
+  Peer station = peer("op1", 1, true);
+  station.place = Eigen::Vector3d(1.0, 2.0, 0.5);
+  directory.capabilities(station, now);
+  peers.set_holder("op1", id_of("op1"));
+  Peer robot = peer("r2", 2);
+  robot.platform = "whe\x1b[2Jeled";
+  directory.capabilities(robot, now);
+  directory.tick(now + 1s);
+  const std::string text = describe(peers, now + 1s);
+  EXPECT_THAT(text, testing::HasSubstr("heard 1.0 s ago, at 1.0 2.0 0.5, the holder\n"));
+  EXPECT_THAT(text, testing::HasSubstr("r2 "));
+  EXPECT_THAT(text, testing::Not(testing::HasSubstr("\x1b")));
+}
+
+}  // namespace
+}  // namespace adit::agent
