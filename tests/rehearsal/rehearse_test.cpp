@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "sim/rehearsal/scenario_file.hpp"
@@ -11,12 +13,13 @@
 namespace adit::sim {
 namespace {
 
-RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2) {
+RunOutcome run(const Scenario& scenario, std::uint64_t seed, int workers = 2,
+               std::shared_ptr<const World> world = nullptr) {
   RunParams params;
   params.seed = seed;
   params.workers = workers;
   params.make_agent = *make_agent_factory();
-  auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  auto outcome = rehearse(scenario, world ? world : *make_world(scenario.world), params);
   EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
   return std::move(*outcome);
 }
@@ -27,6 +30,28 @@ TEST(Rehearse, SameSeedSameDigestWhateverTheWorkers) {
   EXPECT_EQ(run(scenario, 3).report.digest, digest);
   EXPECT_EQ(run(scenario, 3, 1).report.digest, digest);
 }
+
+struct Shortened {
+  const char* file{};
+  Duration duration{};  ///< Instead of the scenario's, unless ADIT_WHOLE_SCENARIOS is set.
+};
+class RehearsalThreads : public testing::TestWithParam<Shortened> {};
+
+TEST_P(RehearsalThreads, OneTwoAndFourGiveTheSameDigestTwice) {
+  Scenario scenario = load_shipped(GetParam().file);
+  if (std::getenv("ADIT_WHOLE_SCENARIOS") == nullptr) {
+    scenario.duration = GetParam().duration;
+    scenario.expectations.clear();  // a run lasts until the last of them
+  }
+  const auto world = make_world(scenario.world).value();
+  const std::string digest = run(scenario, scenario.seed, 1, world).report.digest;
+  for (const int threads : {2, 4, 1, 2, 4})
+    EXPECT_EQ(run(scenario, scenario.seed, threads, world).report.digest, digest) << threads << " threads";
+  std::printf("%s: %s\n", GetParam().file, digest.c_str());
+}
+// In five seconds of the demo three robots are taken and set off.
+INSTANTIATE_TEST_SUITE_P(Shipped, RehearsalThreads,
+                         testing::Values(Shortened{"demo.yaml", 5s}, Shortened{"fault_storm.yaml", 30s}));
 
 TEST(Rehearse, AnotherSeedAnotherDigest) {
   const Scenario scenario = load_shipped("handover.yaml");

@@ -135,11 +135,19 @@ int main(int argc, char** argv) {
       ->excludes(report_option)
       ->excludes(picture_option)
       ->excludes(record_option);
+  auto* threads_option = app.add_option("--threads", params.workers,
+                                        "for the heavy work of the run, 1 to 64 (2 if left out); the run is "
+                                        "the same with any number")
+                             ->check(CLI::Range(1, 64));
+  threads_option->excludes(seeds_option);
   auto* chaos_option =
       app.add_flag("--chaos", chaos,
                    "faults (and commands) drawn from the seed; a seed that fails is shrunk to the "
                    "fewest faults, and written as a scenario that fails by itself");
-  chaos_option->excludes(report_option)->excludes(picture_option)->excludes(record_option);
+  chaos_option->excludes(report_option)
+      ->excludes(picture_option)
+      ->excludes(record_option)
+      ->excludes(threads_option);
   app.add_option("--shrink-to", shrink_to, "the file it is written to (default NAME-seedN-ruleM.yaml)")
       ->needs(chaos_option);
   app.add_flag("--until-failure", until_failure, "begin no further seed once one has failed");
