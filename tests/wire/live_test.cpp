@@ -191,6 +191,42 @@ TEST(LiveWire, LargeScansPassWhole) {
   }
 }
 
+// The driver edge reads what others write on rt/cmd_vel, to notice a second master.
+TEST(LiveWire, AVelocityCostsOneDatagramToASingleDriver) {
+  LiveNet net;
+  FastDdsParams params{.domain = live::domain(2), .large_samples = true};
+  const auto strand = net.strand("test");
+  const auto agent = std::move(open_fastdds(params)).value(),
+             driver = std::move(open_fastdds(params)).value();
+  Seen<ParticipantId> wheels, rivals;
+  const auto heard = [](Seen<ParticipantId>& seen) {
+    return [&seen](auto, const SampleInfo& info) {
+      seen.add(info.sender);
+      return true;
+    };
+  };
+  const auto reader = driver->make_reader(topics::cmd_vel, "", *strand, heard(wheels));
+  const auto writer = std::move(agent->make_writer(topics::cmd_vel, "")).value();
+  ASSERT_TRUE(net.until([&] { return writer->matched() >= 1; }));
+  std::vector<std::uint8_t> velocity(52);
+  velocity[1] = 1;
+  const auto bytes_per_velocity = [&] {
+    net.pass(300ms);
+    constexpr std::size_t kSamples = 200;
+    const std::uint64_t before = agent->counters().total_out;
+    const std::size_t seen = wheels.size();
+    for (std::size_t i = 1; i <= kSamples; ++i) {
+      EXPECT_TRUE(writer->write(velocity).ok());
+      EXPECT_TRUE(net.until([&] { return wheels.size() >= seen + i; }));
+    }
+    return static_cast<double>(agent->counters().total_out - before) / kSamples;
+  };
+  const double alone = bytes_per_velocity();
+  const auto rival = agent->make_reader(topics::cmd_vel_heard, "", *strand, heard(rivals));
+  EXPECT_LT(bytes_per_velocity(), 1.2 * alone);
+  EXPECT_EQ(rivals.size(), 0U);
+}
+
 // A reader that hangs costs one sample of memory, and has the newest when it goes on.
 TEST(LiveWire, AHungReaderOfScansCostsNoMemory) {
   LiveNet net;

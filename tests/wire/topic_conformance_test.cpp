@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/wire/contract.hpp"
+#include "core/wire/cost.hpp"
 #include "core/wire/topics.hpp"
 #include "tests/wire/keyed_sample.hpp"
 #include "tests/wire/nets.hpp"
@@ -99,6 +100,43 @@ TYPED_TEST(TopicConformance, TwoWritersOfOneTopicAreBothHeard) {
   ASSERT_TRUE(second->write(Payload(8, 2)).ok());
   ASSERT_TRUE(this->net.until([&] { return this->seen.size() == 2; }));
   for (const ParticipantId& id : this->senders.all()) EXPECT_EQ(id, this->station->id());
+}
+
+// A reader of what others write on one's own topic costs its writer nothing.
+TYPED_TEST(TopicConformance, AParticipantDoesNotHearItsOwnWriters) {
+  for (const QosClass qos : {QosClass::state, QosClass::status}) {
+    const TopicInfo topic{qos == QosClass::state ? "adit/test_own_state" : "adit/test_own_status",
+                          "Own",
+                          qos,
+                          1,
+                          topics::unkeyed,
+                          256};
+    Seen<ParticipantId> own;
+    const auto reader = this->read(topic);
+    const auto rival =
+        this->station->make_reader(topic, "", *this->strand, [&](auto, const SampleInfo& info) {
+          own.add(info.sender);
+          return true;
+        });
+    const auto writer = std::move(this->station->make_writer(topic, "")).value();
+    ASSERT_TRUE(this->net.until([&] { return writer->matched() >= 1; }));
+    this->net.pass(300ms);
+    EXPECT_EQ(writer->matched(), 1U);
+    const std::size_t before = this->seen.size();
+    const std::uint64_t bytes = this->station->counters().total_out;
+    constexpr std::size_t kSamples = 100;
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      ASSERT_TRUE(writer->write(Payload(200, 1)).ok());
+      ASSERT_TRUE(this->net.until([&] { return this->seen.size() > before + i; }));
+    }
+    EXPECT_LT(this->station->counters().total_out - bytes, kSamples * WireCost::sample(200) * 3 / 2);
+    EXPECT_EQ(own.size(), 0U);
+    // It hears others all the same.
+    const auto other = std::move(this->robot->make_writer(topic, "")).value();
+    ASSERT_TRUE(this->net.until([&] { return other->matched() == 1; }));
+    ASSERT_TRUE(this->net.until([&] { return other->write(Payload(200, 2)).ok() && own.size() > 0; }));
+    EXPECT_EQ(own.all().back(), this->robot->id());
+  }
 }
 
 // Authority moves: the robot is addressed by another partition from now on.

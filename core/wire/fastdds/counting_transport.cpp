@@ -54,11 +54,16 @@ bool CountingTransport::OpenInputChannel(const rtps::Locator_t& locator,
   return true;
 }
 
+bool CountingTransport::is_unwanted(std::span<const std::uint8_t> message, in_addr_t address,
+                                    std::uint16_t port) const {
+  if (!traffic_->is_own(address, port)) return false;
+  const auto writer = peek(message).writer;
+  return writer && traffic_->to_others.contains(*writer);
+}
+
 void CountingTransport::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
   message = message.first(without_statistics(message));
-  // Robots read what they write, of their own as well: that is no radio traffic.
-  if (traffic_->own_addresses.contains(address) && traffic_->own_ports.contains(port))
-    return (void)traffic_->outlet->send(message, address, port);
+  if (traffic_->is_own(address, port)) return (void)traffic_->outlet->send(message, address, port);
   const Duration now = std::chrono::steady_clock::now().time_since_epoch();
   std::vector<std::uint8_t> changed;
   if (is_discovery_port(port)) {
@@ -84,6 +89,7 @@ bool CountingTransport::send(rtps::SenderResource* low_sender_resource, const rt
     in_addr_t address{};
     std::memcpy(&address, rtps::IPLocator::getIPv4(locator), sizeof address);
     const std::uint16_t port = rtps::IPLocator::getPhysicalPort(locator);
+    if (is_unwanted({send_buffer, send_buffer_size}, address, port)) continue;
     if (traffic_->link) {
       send({send_buffer, send_buffer_size}, address, port);
       continue;

@@ -61,6 +61,26 @@ class OwnPorts {
   std::atomic<std::size_t> used_{};
 };
 
+/// Entity ids, added and removed by one thread and asked for by others. Beyond its bound it takes no more.
+class EntitySet {
+ public:
+  void add(std::uint32_t entity) {
+    for (auto& slot : entities_)
+      if (std::uint32_t empty = 0; slot.compare_exchange_strong(empty, entity)) return;
+  }
+  void remove(std::uint32_t entity) {
+    for (auto& slot : entities_)
+      if (std::uint32_t same = entity; slot.compare_exchange_strong(same, 0)) return;
+  }
+  bool contains(std::uint32_t entity) const {
+    return std::any_of(entities_.begin(), entities_.end(),
+                       [entity](const auto& slot) { return slot.load(std::memory_order_relaxed) == entity; });
+  }
+
+ private:
+  std::array<std::atomic<std::uint32_t>, 64> entities_{};
+};
+
 /// Bytes that went through a participant's sockets, UDP and IP headers included.
 struct Traffic {
   std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
@@ -69,9 +89,14 @@ struct Traffic {
   /// Of a radio: what is sent to others leaves by it, without what is of no use there. Null: by the library's
   /// own sockets, as it is.
   std::shared_ptr<LiveLink> link{};
-  std::shared_ptr<Outlet> outlet{};     ///< of a radio: what goes to ourselves
   std::set<in_addr_t> own_addresses{};  ///< network order
   OwnPorts own_ports{};
+  std::shared_ptr<Outlet> outlet{};  ///< of a radio: what goes to ourselves
+  EntitySet to_others{};             ///< writers whose samples do not go to ourselves
+  /// Whether a datagram to that place would come back to this participant.
+  bool is_own(in_addr_t address, std::uint16_t port) const {
+    return own_ports.contains(port) && own_addresses.contains(address);
+  }
   HeartbeatFilter heartbeats{Discovery::heartbeat};
   Contact contact{};
   std::unique_ptr<ContactThread> repeats{};  ///< by radio
@@ -84,6 +109,10 @@ struct Traffic {
 
 /// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them, takes from
 /// those that leave by radio what is of no use there, and hands them to the link model where one is named.
+///
+/// The library matches a participant's readers with its own writers and, in this version, cannot be told not
+/// to. A sample that none of them has to acknowledge is not sent to ourselves: it would cost a call of the
+/// system and the wake-up of a thread.
 class CountingTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
   CountingTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
@@ -104,6 +133,8 @@ class CountingTransport final : public eprosima::fastdds::rtps::ChainingTranspor
                const eprosima::fastrtps::rtps::Locator_t& remote_locator) override;
 
  private:
+  /// A sample to ourselves that no reader of ours takes.
+  bool is_unwanted(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
   /// Sends by radio what the library sends to one address, as far as it is needed.
   void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 

@@ -8,6 +8,7 @@
 
 #include "core/wire/cdr_key.hpp"
 #include "core/wire/cost.hpp"
+#include "core/wire/fastdds/counting_transport.hpp"
 #include "core/wire/fastdds/endpoint_qos.hpp"
 #include "core/wire/fastdds/live_link.hpp"
 #include "core/wire/qos.hpp"
@@ -28,22 +29,23 @@ std::vector<TopicCount> SharedCounts::all() const {
 Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher, dds::Topic& dds_topic,
                                                        const TopicInfo& topic,
                                                        std::shared_ptr<SharedCounts> counts,
-                                                       std::shared_ptr<LiveLink> link) {
+                                                       std::shared_ptr<Traffic> traffic) {
   std::unique_ptr<FastDdsWriter> writer(new FastDdsWriter(publisher, topic, std::move(counts)));
-  writer->writer_ =
-      publisher.create_datawriter(&dds_topic, dds_writer_qos(topic, link && link->profile() != nullptr),
-                                  writer.get(), dds::StatusMask::publication_matched());
+  writer->writer_ = publisher.create_datawriter(
+      &dds_topic, dds_writer_qos(topic, traffic->link && traffic->link->profile() != nullptr), writer.get(),
+      dds::StatusMask::publication_matched());
   if (writer->writer_ == nullptr) {
     return Error{Reason::wire_failed,
                  std::string(topic.name) + ": Fast DDS refused the writer; its log says why"};
   }
-  if (link) {
-    const Qos qos = writer_qos(topic);
-    const auto& id = writer->writer_->guid().entityId.value;
-    writer->entity_ = static_cast<std::uint32_t>(id[0]) << 24 | id[1] << 16 | id[2] << 8 | id[3];
-    link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable, topic.keyed);
-    writer->link_ = std::move(link);
-  }
+  const Qos qos = writer_qos(topic);
+  const auto& id = writer->writer_->guid().entityId.value;
+  writer->entity_ = static_cast<std::uint32_t>(id[0]) << 24 | id[1] << 16 | id[2] << 8 | id[3];
+  // A reader of ours that is reliable has to acknowledge, or the writer would go on to ask all others, too.
+  if (!qos.reliable || !reader_qos(topic).reliable) traffic->to_others.add(writer->entity_);
+  if (traffic->link)
+    traffic->link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable, topic.keyed);
+  writer->traffic_ = std::move(traffic);
   return std::unique_ptr<RawWriter>(std::move(writer));
 }
 
@@ -57,7 +59,9 @@ FastDdsWriter::FastDdsWriter(dds::Publisher& publisher, const TopicInfo& topic,
 
 FastDdsWriter::~FastDdsWriter() {
   if (writer_ != nullptr) publisher_.delete_datawriter(writer_);
-  if (link_) link_->remove_writer(entity_);
+  if (!traffic_) return;
+  traffic_->to_others.remove(entity_);
+  if (traffic_->link) traffic_->link->remove_writer(entity_);
 }
 
 Result<void> FastDdsWriter::failed(Reason reason, const std::string& why) {
@@ -93,8 +97,11 @@ Result<void> FastDdsWriter::write(std::span<const std::uint8_t> cdr) {
   return {};
 }
 
-void FastDdsWriter::on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) {
-  matched_.store(status.current_count);
+void FastDdsWriter::on_publication_matched(dds::DataWriter* writer,
+                                           const dds::PublicationMatchedStatus& status) {
+  const rtps::GUID_t reader = rtps::iHandle2GUID(status.last_subscription_handle);
+  if (reader.guidPrefix == writer->guid().guidPrefix) own_ += status.current_count_change;
+  matched_.store(status.current_count - own_);
 }
 
 Result<std::unique_ptr<RawReader>> FastDdsReader::make(dds::Subscriber& subscriber, dds::Topic& dds_topic,
@@ -220,6 +227,7 @@ void FastDdsReader::on_data_available(dds::DataReader* reader) {
     if (!info.valid_data) continue;
     const Time received(std::chrono::duration_cast<Duration>(SteadyClock::now().time_since_epoch()));
     const rtps::GUID_t writer = rtps::iHandle2GUID(info.publication_handle);
+    if (writer.guidPrefix == reader->guid().guidPrefix) continue;  // one of this participant
     ParticipantId sender{};
     std::copy(std::begin(writer.guidPrefix.value), std::end(writer.guidPrefix.value), sender.begin());
     target_->counts->change(target_->topic, sender, [&](TopicCount& c) {

@@ -18,7 +18,7 @@
 
 namespace adit::wire {
 
-class LiveLink;
+struct Traffic;
 
 /// Counts of a wire, touched by the application's strands and by Fast DDS's threads.
 class SharedCounts {
@@ -50,7 +50,7 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
   static Result<std::unique_ptr<RawWriter>> make(eprosima::fastdds::dds::Publisher& publisher,
                                                  eprosima::fastdds::dds::Topic& dds_topic,
                                                  const TopicInfo& topic, std::shared_ptr<SharedCounts> counts,
-                                                 std::shared_ptr<LiveLink> link);
+                                                 std::shared_ptr<Traffic> traffic);
   ~FastDdsWriter() override;
   Result<void> write(std::span<const std::uint8_t> cdr) override;
   std::size_t matched() const override { return static_cast<std::size_t>(matched_.load()); }
@@ -68,12 +68,14 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
   bool keyed_;
   std::uint32_t max_bytes_;
   std::shared_ptr<SharedCounts> counts_;
-  std::shared_ptr<LiveLink> link_{};
+  std::shared_ptr<Traffic> traffic_{};
   std::uint32_t entity_{};
+  int own_{};  ///< matched readers of this participant, which get nothing; changed by the listener alone
   std::atomic<int> matched_{0};
 };
 
-/// One Fast DDS DataReader: takes samples on Fast DDS's threads into a mailbox, which its strand empties.
+/// One Fast DDS DataReader: takes samples on Fast DDS's threads into a mailbox, which its strand empties. The
+/// participant's own samples are left out.
 class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::DataReaderListener {
  public:
   static Result<std::unique_ptr<RawReader>> make(eprosima::fastdds::dds::Subscriber& subscriber,

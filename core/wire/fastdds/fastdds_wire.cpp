@@ -197,7 +197,7 @@ class FastDdsWire final : public Wire {
       if (publisher == nullptr)
         return Error{Reason::wire_failed, "Fast DDS refused the partition " + partition};
     }
-    return FastDdsWriter::make(*publisher, **dds_topic, topic, counts_, traffic_->link);
+    return FastDdsWriter::make(*publisher, **dds_topic, topic, counts_, traffic_);
   }
 
   Result<std::unique_ptr<RawReader>> make_reader(const TopicInfo& topic, const std::string& partition,
