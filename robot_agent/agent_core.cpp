@@ -169,7 +169,7 @@ void Agent::Core::restore() {
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);
   // A copy of this robot's disk in another computer proves nothing.
   if (edges_.instances == 1 && s.authority.holder && s.boot == params_.boot) edges_.namesakes.held_before();
-  safeguards_.restore(static_cast<BatteryLevel>(s.battery));
+  safeguards_.restore(s.battery, started_);
 }
 
 Result<void> Agent::Core::on_start() {
@@ -194,7 +194,7 @@ Result<void> Agent::Core::on_start() {
   }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
-    safeguards_.watch_link(now());
+    safeguards_.tick(now());
     telemetry_.send_periodic(now());
     send_findings();
   }));
@@ -236,7 +236,7 @@ void Agent::Core::keep() {
       {commands_.kept(),
        behaviour_.kept(),
        params_.boot,
-       static_cast<std::uint8_t>(safeguards_.level()),
+       safeguards_.kept(),
        localisation_.kept(),
        {}},
       [this] { return commands_.kept_answers(); }, commands_.accepted());

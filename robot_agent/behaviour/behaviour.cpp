@@ -56,6 +56,7 @@ Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, mode);
   if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
     return refuse(reason, mode);
+  ++holder_requests_;
   return enter(*row, now);
 }
 
@@ -67,6 +68,7 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Commander by, 
   if (const auto checked = driver->check_goal(goal, f); !checked) return checked;
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, "goto");
   if (const Reason reason = guard_.admit(*row, by, f); reason != Reason::none) return refuse(reason, "goto");
+  if (by == Commander::holder) ++holder_requests_;
   driver->set_goal(goal);
   return enter(*row, now);
 }

@@ -63,6 +63,8 @@ class Behaviour : public Requests {
     return request_goal(goal, Commander::holder, now);
   }
   Result<void> request_goal(const Eigen::Vector3d& goal, Commander by, Time now);
+  /// Modes and goals that holders requested and that were accepted, since the start.
+  std::uint64_t holder_requests() const { return holder_requests_; }
   Result<void> set_pose(const Pose2& pose, Time now) override;
   void stop_changed(bool stopped, Time now) override;
   void holder_changed(Time now) override;
@@ -129,6 +131,7 @@ class Behaviour : public Requests {
   BehaviourView told_{};  ///< when changed() was called last
   Time idle_since_{};
   bool idle_told_{}, begun_{};
+  std::uint64_t holder_requests_{};
 };
 
 }  // namespace adit::agent

@@ -1,9 +1,16 @@
 #include "robot_agent/safeguard/safeguards.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace adit::agent {
 namespace {
+
+constexpr auto kLastLevel = static_cast<std::uint8_t>(BatteryLevel::last);
+
+std::string place_text(const Eigen::Vector2d& place) {
+  return std::to_string(std::lround(place.x())) + " " + std::to_string(std::lround(place.y()));
+}
 
 LinkLossParams link_loss_params(const SafeguardParams& params) {
   LinkLossParams l = params.link_loss;
@@ -18,6 +25,21 @@ Safeguards::Safeguards(SafeguardParams params, const Parts& parts)
       parts_(parts),
       link_loss_(link_loss_params(params_)),
       battery_watch_(params_.battery) {}
+
+void Safeguards::restore(std::uint8_t kept, Time now) {
+  battery_watch_.restore(static_cast<BatteryLevel>(std::min(kept, kLastLevel)));
+  if (kept > kLastLevel) battery_return_.begin(parts_.behaviour.holder_requests(), now);
+}
+
+std::uint8_t Safeguards::kept() const {
+  const auto level = static_cast<std::uint8_t>(battery_watch_.level());
+  return level == kLastLevel && battery_return_.pending() ? kLastLevel + 1 : level;
+}
+
+void Safeguards::tick(Time now) {
+  watch_link(now);
+  watch_return(now);
+}
 
 void Safeguards::watch_link(Time now) {
   const Authority& authority = parts_.authority;
@@ -51,19 +73,37 @@ void Safeguards::watch_link(Time now) {
                          params_.robot + " holds until it hears " + holder +
                              " again and is told to go on; its goal is kept"});
   }
-  if (step.go_to) go_back(*step.go_to, "its holder is not heard", now);
+  if (step.go_to && !go_back(*step.go_to, "its holder is not heard", now)) link_loss_.refused(now);
 }
 
-void Safeguards::go_back(const Eigen::Vector2d& place, const std::string& why, Time now) {
-  const auto asked =
-      parts_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, Commander::agent, now);
-  if (!asked) return link_loss_.refused(now);
+Result<void> Safeguards::go_back(const Eigen::Vector2d& place, const std::string& why, Time now) {
+  auto asked = parts_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, Commander::agent, now);
+  if (asked)
+    parts_.notices.send({{},
+                         Severity::warning,
+                         "returning",
+                         Reason::none,
+                         params_.robot + " goes back to " + place_text(place) + ": " + why});
+  return asked;
+}
+
+void Safeguards::watch_return(Time now) {
+  const Behaviour& behaviour = parts_.behaviour;
+  if (behaviour.listens()) return;  // A stop given during a restart comes first.
+  const BatteryReturn::Inputs in{.autonomous = behaviour.mode().autonomous(),
+                                 .nearly_empty = battery_watch_.level() == BatteryLevel::last,
+                                 .requests = behaviour.holder_requests()};
+  if (!battery_return_.due(in, now)) return;
+  const Eigen::Vector2d start(params_.start.x, params_.start.y);
+  const auto asked = go_back(start, "its battery is nearly empty", now);
+  if (asked) return battery_return_.accepted();
+  if (!battery_return_.refused(asked.reason(), now)) return;
   parts_.notices.send({{},
-                       Severity::warning,
-                       "returning",
-                       Reason::none,
-                       params_.robot + " goes back to " + std::to_string(std::lround(place.x())) + " " +
-                           std::to_string(std::lround(place.y())) + ": " + why});
+                       Severity::error,
+                       "return_refused",
+                       asked.reason(),
+                       params_.robot + " cannot go back to " + place_text(start) + " yet (" +
+                           asked.error().text + "); it tries again until you request something else"});
 }
 
 void Safeguards::battery(float charge, Time now) {
@@ -83,8 +123,10 @@ void Safeguards::battery_fell(BatteryLevel level, Time now) {
        params_.robot + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left"});
   // An operator who drives by hand sees it, and decides.
   if (level != BatteryLevel::last || !parts_.behaviour.mode().autonomous()) return;
-  if (params_.return_at_last_battery)
-    return go_back({params_.start.x, params_.start.y}, "its battery is nearly empty", now);
+  if (params_.return_at_last_battery) {
+    battery_return_.begin(parts_.behaviour.holder_requests(), now);
+    return watch_return(now);
+  }
   parts_.behaviour.hold(Reason::none, now);
   parts_.notices.send({{},
                        Severity::warning,

@@ -7,6 +7,7 @@
 #include "robot_agent/discovery/peer_table.hpp"
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/notices/notices.hpp"
+#include "robot_agent/safeguard/battery_return.hpp"
 #include "robot_agent/safeguard/battery_watch.hpp"
 #include "robot_agent/safeguard/link_loss.hpp"
 
@@ -35,24 +36,30 @@ class Safeguards {
 
   Safeguards(SafeguardParams params, const Parts& parts);
 
-  /// After a restart: the threshold that was passed last.
-  void restore(BatteryLevel level) { battery_watch_.restore(level); }
-  /// Once a second.
-  void watch_link(Time now);
+  /// After a restart, what kept() gave.
+  void restore(std::uint8_t kept, Time now);
+  /// What must survive a restart: the threshold that was passed last, and whether a return that it asked for
+  /// is still to be accepted. See Snapshot::battery.
+  std::uint8_t kept() const;
+  /// Once a second: the link to the holder, and a return that was refused.
+  void tick(Time now);
   /// A new state of charge, [0, 1]; anything that is not finite counts as unknown.
   void battery(float charge, Time now);
   /// State of charge, [0, 1]; negative while unknown.
   float charge() const { return charge_; }
-  BatteryLevel level() const { return battery_watch_.level(); }
 
  private:
+  void watch_link(Time now);
   void battery_fell(BatteryLevel level, Time now);
-  void go_back(const Eigen::Vector2d& place, const std::string& why, Time now);
+  /// Attempts the return that the battery asks for, when it is due.
+  void watch_return(Time now);
+  Result<void> go_back(const Eigen::Vector2d& place, const std::string& why, Time now);
 
   SafeguardParams params_;
   Parts parts_;
   LinkLoss link_loss_;
   BatteryWatch battery_watch_;
+  BatteryReturn battery_return_{};
   float charge_{-1.0f};
 };
 

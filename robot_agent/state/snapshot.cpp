@@ -111,7 +111,7 @@ const std::array kRows{
         true,
         [](const Snapshot& s, const auto& add) { add_one(add, s.behaviour); },
         read_behaviour},
-    Row{{'H', 'O', 'S', 'T'}, 1, "boot and battery", true, write_host, read_host},
+    Row{{'H', 'O', 'S', 'T'}, 2, "boot and battery", true, write_host, read_host},
     Row{{'P', 'L', 'A', 'C'},
         1,
         "place",

@@ -221,6 +221,6 @@ KeptAnswers sanitized(KeptAnswers from) {
   return from;
 }
 
-std::uint8_t sanitized_battery(std::uint8_t level) { return std::min<std::uint8_t>(level, 3); }
+std::uint8_t sanitized_battery(std::uint8_t level) { return std::min<std::uint8_t>(level, 4); }
 
 }  // namespace adit::agent::fields

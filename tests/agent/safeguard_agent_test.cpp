@@ -171,6 +171,73 @@ TEST_F(Batteries, TheLastOneReturnsWhereThatIsWanted) {
   EXPECT_EQ(op1->behaviour.goal()[0], 0.0);
 }
 
+class RefusedReturn : public Batteries {
+ protected:
+  /// The lidar is silent when the charge passes the last threshold: the return is refused.
+  void SetUp() override {
+    AgentParams params;
+    params.return_at_last_battery = true;
+    begin(params);
+    go(60);
+    bench->lidar_alive = false;
+    bench->run(700ms);
+    charge(0.05F);
+    ASSERT_EQ(op1->behaviour.mode(), "waypoint");
+    ASSERT_EQ(op1->behaviour.goal()[0], 60.0);
+  }
+  void see_again() {
+    bench->lidar_alive = true;
+    bench->run(20s);
+  }
+};
+
+TEST_F(RefusedReturn, IsRepeatedUntilItIsAccepted) {
+  bench->run(10s);
+  EXPECT_EQ(count("returning"), 0);
+  EXPECT_EQ(count("return_refused"), 1) << "one notification, though it was refused several times";
+  see_again();
+  EXPECT_EQ(op1->behaviour.goal()[0], 0.0);
+  EXPECT_EQ(count("returning"), 1);
+}
+
+TEST_F(RefusedReturn, EndsWhenTheHolderRequestsSomething) {
+  ASSERT_EQ(bench->ask(*op1, CMD_MODE, "hold"), Reason::none);
+  bench->commands.clear();
+  see_again();
+  EXPECT_THAT(bench->commands, testing::Each(Twist2{}));
+}
+
+TEST_F(RefusedReturn, EndsWhenTheHolderGivesAnotherGoal) {
+  bench->lidar_alive = true;
+  bench->run(150ms);  // The next attempt is not due yet.
+  ASSERT_EQ(bench->ask(*op1, CMD_GOTO, "", 50, 0), Reason::none);
+  bench->run(20s);
+  EXPECT_EQ(op1->behaviour.goal()[0], 50.0);
+}
+
+TEST_F(RefusedReturn, EndsWhenTheBatteryRecovers) {
+  charge(0.9F);
+  see_again();
+  EXPECT_EQ(op1->behaviour.goal()[0], 60.0);
+}
+
+TEST_F(RefusedReturn, MovesNoRobotThatWasStopped) {
+  ASSERT_EQ(bench->ask(*op2, CMD_STOP), Reason::none);
+  bench->commands.clear();
+  bench->lidar_alive = true;
+  bench->run(5s);
+  ASSERT_EQ(bench->ask(*op1, CMD_RESET, "", 0, 0, true), Reason::none);
+  bench->run(40s);
+  EXPECT_THAT(bench->commands, testing::Each(Twist2{}));
+}
+
+TEST_F(RefusedReturn, SurvivesARestart) {
+  bench->stop_agent();
+  bench->start_agent();
+  see_again();
+  EXPECT_EQ(op1->behaviour.goal()[0], 0.0);
+}
+
 TEST_F(Batteries, ARestartTellsNothingAgain) {
   begin();
   charge(0.25F);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "robot_agent/safeguard/battery_return.hpp"
 #include "robot_agent/safeguard/battery_watch.hpp"
 #include "robot_agent/safeguard/link_loss.hpp"
 
@@ -114,6 +115,37 @@ TEST_F(LinkLossTest, BeginsAnewWithTheNextLoss) {
   EXPECT_TRUE(step.lost);
   ASSERT_TRUE(step.go_to);
   EXPECT_EQ(*step.go_to, Eigen::Vector2d(6, 0));
+}
+
+TEST(BatteryReturn, PausesLongerAfterEachRefusalUpToABound) {
+  BatteryReturn back;
+  const BatteryReturn::Inputs in{.autonomous = true, .nearly_empty = true, .requests = 7};
+  Time now{1h};
+  back.begin(7, now);
+  std::vector<double> pauses;
+  Time last = now;
+  for (int refusals = 0; refusals < 8; now += 1s) {
+    if (!back.due(in, now)) continue;
+    pauses.push_back(seconds(now - last));
+    last = now;
+    EXPECT_EQ(back.refused(Reason::terrain_stale, now), refusals == 0);
+    ++refusals;
+  }
+  EXPECT_THAT(pauses, testing::ElementsAre(0, 1, 2, 4, 8, 16, 30, 30));
+  EXPECT_TRUE(back.refused(Reason::goal_unreachable, now)) << "another reason";
+}
+
+TEST(BatteryReturn, EndsWithItsCauseOrByTheHolder) {
+  const BatteryReturn::Inputs same{.autonomous = true, .nearly_empty = true, .requests = 7};
+  for (const auto& end : {BatteryReturn::Inputs{.autonomous = false, .nearly_empty = true, .requests = 7},
+                          BatteryReturn::Inputs{.autonomous = true, .nearly_empty = false, .requests = 7},
+                          BatteryReturn::Inputs{.autonomous = true, .nearly_empty = true, .requests = 8}}) {
+    BatteryReturn back;
+    back.begin(7, Time{1h});
+    ASSERT_TRUE(back.due(same, Time{1h}));
+    EXPECT_FALSE(back.due(end, Time{1h}));
+    EXPECT_FALSE(back.due(same, Time{2h})) << "it does not begin again by itself";
+  }
 }
 
 TEST(BatteryWatch, TellsEachThresholdOnce) {

@@ -1,0 +1,55 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "core/result/reason.hpp"
+#include "core/time/time.hpp"
+
+namespace adit::agent {
+
+/// Repeats the return to the start that a nearly empty battery asks for, until it is accepted. A refused
+/// attempt is repeated after 1 s, and each pause is twice as long as the one before, up to 30 s. The return
+/// ends without success when the battery recovers, when the robot is no longer in an autonomous mode (a robot
+/// that holds is not made to move), or when the holder requested something since. A pure state machine.
+class BatteryReturn {
+ public:
+  static constexpr Duration kFirstPause = 1s, kLongestPause = 30s;
+
+  struct Inputs {
+    bool autonomous{};         ///< The mode follows goals by itself.
+    bool nearly_empty{};       ///< The charge is below the last threshold.
+    std::uint64_t requests{};  ///< Of the holder that were accepted so far.
+  };
+
+  /// The return is due. `requests`: as in Inputs, at this time.
+  void begin(std::uint64_t requests, Time now) {
+    requests_ = requests;
+    next_ = now;
+    pause_ = kFirstPause;
+    refused_because_ = Reason::none;
+  }
+  /// Whether it is to be attempted now; accepted() or refused() follows.
+  bool due(const Inputs& in, Time now) {
+    if (!in.autonomous || !in.nearly_empty || in.requests != requests_) next_.reset();
+    return next_ && now >= *next_;
+  }
+  void accepted() { next_.reset(); }
+  /// Returns whether operators do not know of this refusal yet: it is the first one, or has another reason.
+  [[nodiscard]] bool refused(Reason reason, Time now) {
+    next_ = now + pause_;
+    pause_ = std::min(2 * pause_, kLongestPause);
+    const bool unknown = reason != refused_because_;
+    refused_because_ = reason;
+    return unknown;
+  }
+  bool pending() const { return next_.has_value(); }
+
+ private:
+  std::uint64_t requests_{};
+  std::optional<Time> next_{};  ///< Of the next attempt; empty: no return is due.
+  Duration pause_{kFirstPause};
+  Reason refused_because_{Reason::none};
+};
+
+}  // namespace adit::agent
