@@ -34,6 +34,7 @@ struct AgentParams {
   Id id{};                    ///< kept on the robot's disk; all zero: drawn from the seed
   std::uint64_t seed{1};      ///< of the epoch; another one at each start
   Pose2 start{};              ///< map frame, where odometry begins
+  double start_height{};      ///< Of the ground there, map frame, m; odometry's z counts from it.
   Duration lock_lease{300s};  ///< a lock lapses when its holder was silent so long; 0: never
   /// Behaviour tree, on the configuration's search path. A tree that cannot be read, or contradicts the mode
   /// table, is refused: the agent runs in `hold` with the reason tree_refused.

@@ -51,7 +51,7 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       params_(params),
       edges_(edges),
       lease_(std::move(lease)),
-      localisation_(params.start, params.platform),
+      localisation_(params.start, params.platform, params.start_height),
       navigation_(navigation_params(params), command, log(), localisation_, *edges.planner, edges.router,
                   navigation_outputs()),
       mux_(navigation_),
@@ -139,12 +139,10 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
     question->patience = after(500ms, [answer] {
       answer({Reason::no_answer, "the router does not answer; see health"});
     });
-    const Pose2 pose = localisation_.odom().planar();
-    const Eigen::Vector2d to = localisation_.to_odom(goal.head<2>());
     auto query = std::make_shared<RouteQuery>();
     query->odom_epoch = localisation_.odom_epoch();
-    query->from = {pose.x, pose.y, localisation_.z()};
-    query->to = {to.x(), to.y(), goal.z()};
+    query->from = localisation_.odom().position;
+    query->to = localisation_.to_odom(goal);
     edges_.router->find(query, guard([this, query, answer] {
                           if (query->odom_epoch != localisation_.odom_epoch())
                             return answer({Reason::odometry_jumped, "the odometry jumped meanwhile"});
@@ -233,12 +231,7 @@ void Agent::Core::listen_first(Time at) {
 
 void Agent::Core::keep() {
   edges_.keeper->save(
-      {commands_.kept(),
-       behaviour_.kept(),
-       params_.boot,
-       safeguards_.kept(),
-       localisation_.kept(),
-       {}},
+      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), localisation_.kept(), {}},
       [this] { return commands_.kept_answers(); }, commands_.accepted());
 }
 

@@ -12,8 +12,9 @@ class Localisation {
  public:
   static constexpr Duration kAlive = 500ms;  ///< Odometry older than this: the driver is silent.
 
-  /// `start`: of the odometry frame in the map.
-  Localisation(const Pose2& start, const Platform& platform) : bound_(platform), T_map_odom_(start) {}
+  /// `start` and `start_height` (m): of the odometry frame in the map.
+  Localisation(const Pose2& start, const Platform& platform, double start_height = 0.0)
+      : bound_(platform), T_map_odom_(start), start_height_(start_height) {}
 
   /// Takes a sample. `stamp`: of the driver's clock, ns. False when the body cannot have driven there from
   /// the sample before: then the odometry frame is another one, odom_epoch() rises, and the robot is taken to
@@ -57,9 +58,14 @@ class Localisation {
   std::uint32_t odom_epoch() const { return odom_epoch_; }
   /// Map frame.
   Pose2 pose() const { return T_map_odom_ * odom().planar(); }
-  double z() const { return odom().position.z(); }
+  double z() const { return odom().position.z() + start_height_; }
   const Pose2& T_map_odom() const { return T_map_odom_; }
   Eigen::Vector2d to_odom(const Eigen::Vector2d& map) const { return T_map_odom_.inverse() * map; }
+  /// The same for a place with a height; a height that is not a number stays one.
+  Eigen::Vector3d to_odom(const Eigen::Vector3d& map) const {
+    const Eigen::Vector2d planar = to_odom(Eigen::Vector2d(map.head<2>()));
+    return {planar.x(), planar.y(), map.z() - start_height_};
+  }
 
   /// The body at a stamp of the driver's clock (both stamps are his), else the newest one.
   Pose3 odom_at(std::uint64_t stamp) const {
@@ -82,6 +88,7 @@ class Localisation {
 
   MotionBound bound_;
   Pose2 T_map_odom_;
+  double start_height_;
   std::uint32_t odom_epoch_{};
   std::optional<OdometrySample> newest_{};
   Twist2 twist_{};

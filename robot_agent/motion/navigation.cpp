@@ -132,7 +132,7 @@ bool Navigation::at_height() const {
 nav::Target Navigation::target() const {
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     const auto* step = step_on(now());
-    if (!step) return nav::Target::to(localisation_.to_odom(go->goal.head<2>()));
+    if (!step) return nav::Target::to(localisation_.to_odom(Eigen::Vector2d(go->goal.head<2>())));
     return nav::target_of(*step);
   }
   const auto* guidance = std::get_if<Guidance>(&motion_);
@@ -183,11 +183,9 @@ void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
   if (routing_.under_way(router_->instance(), now)) return;
   auto job = std::make_shared<RouteJob>();
   job->scan = scan;
-  const Pose2 pose = localisation_.odom().planar();
-  job->place = {pose.x, pose.y, localisation_.z()};
+  job->place = localisation_.odom().position;
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
-    const Eigen::Vector2d goal = localisation_.to_odom(go->goal.head<2>());
-    job->goal = {goal.x(), goal.y(), go->goal.z()};
+    job->goal = localisation_.to_odom(go->goal);
     job->blocked = blocked_;
   }
   job->odom_epoch = localisation_.odom_epoch();

@@ -68,6 +68,7 @@ Result<RobotConfig> load(const Options& options) {
     return Error{Reason::bad_argument,
                  "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + config->name + "'"};
   if (!options.pose.empty()) config->start = {options.pose[0], options.pose[1], options.pose[2]};
+  if (options.pose.size() > 3) config->start_height = options.pose[3];
   if (options.domain >= 0) config->radio.domain = static_cast<std::uint32_t>(options.domain);
   if (options.robot_domain >= 0) config->robot_domain = static_cast<std::uint32_t>(options.robot_domain);
   if (!options.link.empty()) {
@@ -83,8 +84,11 @@ Result<RobotConfig> load(const Options& options) {
   return config;
 }
 
-wire::FastDdsParams robot_wire(const RobotConfig& config) {
+Result<wire::FastDdsParams> robot_wire(const RobotConfig& config) {
   wire::FastDdsParams params{};
+  auto addresses = addresses_of(config.robot_interfaces);
+  if (!addresses) return addresses.error();
+  params.interfaces = std::move(*addresses);
   params.domain = config.robot_domain;
   params.name = config.name;
   params.large_samples = true;
@@ -143,12 +147,14 @@ void end_soon() {
 int run_agent(const RobotConfig& config, const Options& options) {
   auto log = make_live_log({config.log});
   if (!log) return fail(log.error(), 1);
+  const auto inner = robot_wire(config);
+  if (!inner) return fail(inner.error(), 2);
   LiveRuntime runtime;
   auto over = config.radio;
   over.link_seed = drawn_seed();
   auto radio = wire::open_fastdds(over);
   if (!radio) return fail(radio.error(), 1);
-  auto robot = wire::open_fastdds(robot_wire(config));
+  auto robot = wire::open_fastdds(*inner);
   if (!robot) return fail(robot.error(), 1);
   record::Keeper keeper(
       {.folder = config.record,
@@ -207,6 +213,8 @@ int run_agent(const RobotConfig& config, const Options& options) {
 }
 
 int run_parent(const RobotConfig& config, const Options& options, int argc, char** argv) {
+  const auto inner = robot_wire(config);
+  if (!inner) return fail(inner.error(), 2);
   ParentParams params{};
   params.good_run = from_seconds(options.good_run);
   params.command.push_back("robot_agent");
@@ -217,7 +225,7 @@ int run_parent(const RobotConfig& config, const Options& options, int argc, char
   Parent parent(
       params,
       [&] {
-        if (const auto opened = zero.open(robot_wire(config), config.velocity); !opened)
+        if (const auto opened = zero.open(*inner, config.velocity); !opened)
           std::cerr << "robot_agent: the parent cannot send zero: " << opened.error().text << "\n";
       },
       [&] { zero.send(); });
@@ -246,7 +254,8 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("--config", options.config, "robot file, as config/robots/r1.yaml");
   app.add_option("--name", options.name, "another name than the file's");
-  app.add_option("--pose", options.pose, "start pose X Y YAW in the map: m, m, rad")->expected(3);
+  app.add_option("--pose", options.pose, "start pose X Y YAW [HEIGHT] in the map: m, m, rad, m")
+      ->expected(3, 4);
   app.add_option("--domain", options.domain, "DDS domain of the radio")->check(CLI::Range(0, 232));
   app.add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
       ->check(CLI::Range(0, 232));

@@ -1,11 +1,15 @@
 #include "robot_agent/program/robot_config.hpp"
 
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 
 #include "core/config/node.hpp"
 #include "core/config/platform_file.hpp"
@@ -27,6 +31,21 @@ void read_radio(const config::Node& node, const std::string& file, wire::FastDds
     radio.link = std::move(*link);
   else
     node.child("link").fail(link.error().reason, link.error().text);
+}
+
+/// Whether this machine has them is asked when the robot domain is opened: a robot's file is also read on
+/// other machines.
+void read_interfaces(const config::Node& root, RobotInterfaces& interfaces) {
+  if (!root.has("robot_interfaces")) return;
+  const config::Node node = root.child("robot_interfaces");
+  interfaces.where = node.where();
+  for (const config::Node& entry : node.as_list()) {
+    interfaces.names.push_back(entry.as_text());
+    const std::string& name = interfaces.names.back();
+    const bool is_name = !name.empty() && name.size() < IFNAMSIZ && name.find_first_of("/ \t") == name.npos;
+    if (!is_name)
+      entry.fail(Reason::out_of_range, "robot_interfaces: expected names of network interfaces, as eth1");
+  }
 }
 
 void read_link_loss(const config::Node& node, LinkLossParams& loss) {
@@ -79,6 +98,34 @@ std::string state_folder(const RobotConfig& config) {
   return base + "/adit/robot-" + config.name;
 }
 
+Result<std::vector<std::string>> addresses_of(const RobotInterfaces& interfaces) {
+  std::vector<std::string> addresses{"127.0.0.1"};
+  ifaddrs* first = nullptr;
+  if (::getifaddrs(&first) != 0) first = nullptr;
+  const std::unique_ptr<ifaddrs, decltype(&::freeifaddrs)> all(first, &::freeifaddrs);
+  for (const std::string& name : interfaces.names) {
+    bool known = false, usable = false;
+    for (const ifaddrs* at = all.get(); at != nullptr; at = at->ifa_next) {
+      if (name != at->ifa_name) continue;
+      known = true;
+      if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
+      if ((at->ifa_flags & IFF_RUNNING) == 0) continue;
+      char text[INET_ADDRSTRLEN]{};
+      const auto* address = reinterpret_cast<const sockaddr_in*>(at->ifa_addr);
+      if (::inet_ntop(AF_INET, &address->sin_addr, text, sizeof text) == nullptr) continue;
+      usable = true;
+      if (std::find(addresses.begin(), addresses.end(), text) == addresses.end())
+        addresses.emplace_back(text);
+    }
+    if (usable) continue;
+    return Error{Reason::bad_argument,
+                 interfaces.where + ": robot_interfaces: " +
+                     (known ? "'" + name + "' is down or has no IPv4 address"
+                            : "this machine has no interface '" + name + "'; see ip link")};
+  }
+  return addresses;
+}
+
 void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& c) {
   if (node.has("cmd_vel")) {
     const std::string velocity = node.text("cmd_vel");
@@ -86,6 +133,7 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
     if (velocity != "twist" && velocity != "twist_stamped")
       node.child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
   }
+  if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
   if (node.has("tree")) c.tree = find_tree(node.text("tree"), file);
   read_link_loss(node, c.link_loss);
@@ -103,6 +151,7 @@ AgentParams agent_params(const RobotConfig& config) {
   params.name = config.name;
   params.platform = config.platform;
   params.start = config.start;
+  params.start_height = config.start_height.value_or(0.0);
   params.lock_lease = config.lock_lease;
   params.tree = config.tree;
   params.link_loss = config.link_loss;
@@ -125,6 +174,7 @@ Result<RobotConfig> load_robot_config(const std::string& file) {
   c.start = {pose[0], pose[1], wrap_angle(pose[2])};
   if (const auto radio = root->child_if("radio"); radio.present()) read_radio(radio, file, c.radio);
   c.robot_domain = static_cast<std::uint32_t>(root->integer("robot_domain", 0, 232, 0));
+  read_interfaces(*root, c.robot_interfaces);
   c.memory_limit = root->number("memory_limit", config::within(0.0, 1e6), c.memory_limit);
   read_robot_keys(*root, file, c);
   if (!root->has("tree")) c.tree = find_tree(c.tree, file);

@@ -1,5 +1,7 @@
 #pragma once
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
@@ -18,15 +20,24 @@ namespace adit::agent {
 
 struct AgentParams;
 
+/// `robot_interfaces`: what the robot domain uses beside loopback.
+struct RobotInterfaces {
+  std::vector<std::string> names{};  ///< Of network interfaces, as `ip link` lists them.
+  std::string where{};               ///< "file:line" of the key, for errors.
+};
+
 /// What config/robots/NAME.yaml says; docs/configuration.md lists the keys.
 struct RobotConfig {
   std::string name{};  ///< 1 to 32 of [A-Za-z0-9_-]
   Platform platform{};
-  Pose2 start{};                  ///< map frame: m, m, rad
+  Pose2 start{};  ///< map frame: m, m, rad
+  /// Height of the ground at the start, map frame, m; empty: not given.
+  std::optional<double> start_height{};
   wire::FastDdsParams radio{};    ///< radio domain
-  std::uint32_t robot_domain{0};  ///< of the driver, on loopback, [0, 232]
-  VelocityType velocity{};        ///< `cmd_vel: twist` or `twist_stamped`
-  Duration lock_lease{300s};      ///< 0: never
+  std::uint32_t robot_domain{0};  ///< of the driver, [0, 232]
+  RobotInterfaces robot_interfaces{};
+  VelocityType velocity{};    ///< `cmd_vel: twist` or `twist_stamped`
+  Duration lock_lease{300s};  ///< 0: never
   std::string tree{"trees/robot.xml"};
   std::string state{};              ///< folder of what survives a restart; empty: the usual one; "none"
   bool resume_after_restart{true};  ///< `after_restart: resume`, else `hold`
@@ -44,10 +55,14 @@ struct RobotConfig {
 std::string state_folder(const RobotConfig& config);
 
 /// Reads the keys that mean the same in a robot's file and for a robot of a scenario: cmd_vel, lock_lease,
-/// tree, on_link_loss, link_loss_after, battery, after_restart. A missing key leaves `config` as it is; a
-/// wrong one is noted at `node`. `file`: the tree is looked for beside it first, and becomes an absolute
-/// path.
+/// start_height, tree, on_link_loss, link_loss_after, battery, after_restart. A missing key leaves `config`
+/// as it is; a wrong one is noted at `node`. `file`: the tree is looked for beside it first, and becomes an
+/// absolute path.
 void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& config);
+
+/// IPv4 addresses of the named interfaces, 127.0.0.1 first. Errors: bad_argument with file and line, for an
+/// interface that this machine does not have, or that is down or has no IPv4 address.
+Result<std::vector<std::string>> addresses_of(const RobotInterfaces& interfaces);
 
 /// An agent's parameters as far as the file gives them: the rest (seed, log, disk, boot, handlers) is the
 /// caller's.

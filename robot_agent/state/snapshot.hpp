@@ -39,7 +39,7 @@ struct Snapshot {
 
   KeptAuthority authority{};
   KeptBehaviour behaviour{};
-  std::uint64_t boot{};              ///< of the computer when it was written; 0: not known
+  std::uint64_t boot{};  ///< of the computer when it was written; 0: not known
   /// Threshold of the charge that was passed last: 0 none, 1 warning, 2 low, 3 last; 4: last, and the return
   /// to the start that it asked for was not accepted yet.
   std::uint8_t battery{};

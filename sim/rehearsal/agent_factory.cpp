@@ -69,6 +69,8 @@ Result<AgentFactory> make_agent_factory(const std::string& defect,
         known ? known->decorate({context.spec.id, context.platform, context.runtime, context.disk})
               : Decoration{};
     agent::AgentParams params = agent::agent_params(context.spec.settings);
+    // The map is the world's frame: the ground of the start is where the world has it, unless a key says so.
+    params.start_height = context.spec.settings.start_height.value_or(context.start_ground);
     params.seed = context.seed;
     params.library = [libraries](const Platform& platform) { return libraries->of(platform); };
     params.disk = decoration.disk ? decoration.disk : context.disk;

@@ -41,7 +41,8 @@ struct AgentContext {
   wire::Wire& robot;
   std::shared_ptr<store::Disk> disk{};  ///< the robot's; it outlives the agent. Null: none
   std::function<void(const std::string& why)>
-      end{};  ///< the agent's process ends itself, to be started again
+      end{};              ///< the agent's process ends itself, to be started again
+  double start_ground{};  ///< Height of the ground at the robot's start, world frame, m
 };
 
 /// Makes and starts an agent. The rehearsal knows nothing more of it, so tests put agents with deliberate

@@ -90,12 +90,13 @@ Result<void> RobotMachine::start_agent() {
   agent->radio = stage_.ether.join(Witness::radio_domain, spec_.id);
   agent->robot = stage_.ether.join(domain_, spec_.id);
   stage_.witness.agent_started(spec_.id, stage_.scheduler.elapsed(), agent->radio->id());
-  auto program =
-      stage_.make_agent({spec_, stage_.simulation.platform(index_), random_.next(), *agent->runtime,
-                         *agent->radio, *agent->robot, disk_, [this](const std::string&) {
-                           // Not on the agent's own strand: that goes with it.
-                           stage_.scheduler.at(stage_.scheduler.elapsed(), [this] { crash(); });
-                         }});
+  auto program = stage_.make_agent({spec_, stage_.simulation.platform(index_), random_.next(),
+                                    *agent->runtime, *agent->radio, *agent->robot, disk_,
+                                    [this](const std::string&) {
+                                      // Not on the agent's own strand: that goes with it.
+                                      stage_.scheduler.at(stage_.scheduler.elapsed(), [this] { crash(); });
+                                    },
+                                    stage_.simulation.start_ground(index_)});
   if (!program) return program.error();
   agent->program = std::move(*program);
   agent_ = std::move(agent);

@@ -71,6 +71,7 @@ RobotSpec read_spec(const Node& robot, const Scenario& scenario, Duration lock_l
   if (!has_file || robot.has("pose")) {
     const std::vector<double> pose = robot.numbers("pose", 3, 3, config::within(-1e5, 1e5));
     if (pose.size() == 3) spec.pose = {pose[0], pose[1], wrap_angle(pose[2])};
+    spec.settings.start_height.reset();  // The file's belongs to the file's pose.
   }
   agent::read_robot_keys(robot, scenario.file.string(), spec.settings);
   read_battery(robot, spec);

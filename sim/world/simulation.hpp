@@ -90,6 +90,8 @@ class Simulation {
   const Odometry& odometry(std::size_t robot) const { return robots_[robot].odometry; }
   /// Height above where it started as odometry has it, m; of what flies as it measures it.
   double altitude(std::size_t robot) const;
+  /// Of the ground where it started, world frame, m: odometry's height counts from it.
+  double start_ground(std::size_t robot) const { return robots_[robot].start_ground; }
   /// In the order they began; the first 1000 of them.
   const std::vector<Collision>& collisions() const { return collisions_; }
 

@@ -43,7 +43,7 @@ class ToldRouter final : public RouteService {
 /// the test.
 class NavigationTest : public testing::Test {
  protected:
-  NavigationTest() {
+  explicit NavigationTest(double start_height = 0.0) : localisation(Pose2{}, anything_goes(), start_height) {
     EXPECT_TRUE(navigation.start());
     mux.enable("goal", strand->now());
     run(100ms);  // through zero
@@ -93,7 +93,7 @@ class NavigationTest : public testing::Test {
   Duration elapsed{};
   std::unique_ptr<Runtime> machine{scheduler.machine("robot", 1h)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
-  Localisation localisation{Pose2{}, anything_goes()};
+  Localisation localisation;
   std::uint64_t stamp{};
   Twist2 velocity{};
   Progress progress{};
@@ -198,6 +198,18 @@ TEST_F(NavigationTest, AJumpOfTheOdometryEmptiesEveryMap) {
   run(100ms);
   EXPECT_TRUE(navigation.goal_free({2, 0})) << "the planner's map";
   EXPECT_EQ(router.last->odom_epoch, 2u);
+}
+
+class NavigationUpstairs : public NavigationTest {
+ protected:
+  NavigationUpstairs() : NavigationTest(3.0) {}
+};
+
+TEST_F(NavigationUpstairs, AsksTheRouterForHeightsOfTheOdometryFrame) {
+  cycle({}, {});
+  ASSERT_TRUE(router.last && router.last->goal);
+  EXPECT_EQ(router.last->place.z(), 0.0);
+  EXPECT_EQ(router.last->goal->z(), -3.0) << "the goal is at height 0 of the map";
 }
 
 TEST_F(NavigationTest, APlanOfTheOldFrameIsNotFollowed) {

@@ -1,4 +1,7 @@
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
+#include <ifaddrs.h>
+#include <net/if.h>
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -62,6 +65,49 @@ TEST(RobotConfig, StateIsKeptWhereItSaysOrInTheUsualPlace) {
   EXPECT_THAT(state(""), HasSubstr("/adit/robot-r1"));
 }
 
+TEST(RobotConfig, TheRobotDomainIsOnLoopbackAndTheNamedInterfaces) {
+  const live::Folder folder;
+  const auto addresses = [&](const std::string& line) {
+    const auto config = load_robot_config(folder.write("r.yaml", "name: r1\nplatform: wheeled\n" + line));
+    EXPECT_TRUE(config) << config.error().text;
+    return addresses_of(config->robot_interfaces);
+  };
+  EXPECT_THAT(addresses("").value(), testing::ElementsAre("127.0.0.1"));
+  EXPECT_THAT(addresses("robot_interfaces: []\n").value(), testing::ElementsAre("127.0.0.1"));
+  EXPECT_THAT(addresses("robot_interfaces: [lo]\n").value(), testing::ElementsAre("127.0.0.1"));
+  const auto unknown = addresses("robot_interfaces:\n  - lo\n  - nosuch0\n");
+  ASSERT_FALSE(unknown) << "another machine's file is read, but its robot domain is not opened";
+  EXPECT_THAT(unknown.error().text, testing::AllOf(HasSubstr("r.yaml:"), HasSubstr("'nosuch0'")));
+  EXPECT_THAT(addresses("robot_interfaces: [10.0.0.1]\n").error().text, HasSubstr("'10.0.0.1'"));
+}
+
+TEST(RobotConfig, TheRobotDomainIsOnEveryAddressOfAnInterface) {
+  ifaddrs* all = nullptr;
+  ASSERT_EQ(::getifaddrs(&all), 0);
+  for (const ifaddrs* at = all; at != nullptr; at = at->ifa_next) {
+    if (at->ifa_addr == nullptr || at->ifa_addr->sa_family != AF_INET) continue;
+    if ((at->ifa_flags & IFF_RUNNING) == 0) continue;
+    char text[INET_ADDRSTRLEN]{};
+    (void)::inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(at->ifa_addr)->sin_addr, text,
+                      sizeof text);
+    const auto addresses = addresses_of({{at->ifa_name}, "r.yaml:3"});
+    ASSERT_TRUE(addresses) << addresses.error().text;
+    EXPECT_THAT(*addresses, testing::AllOf(testing::Contains("127.0.0.1"), testing::Contains(text)));
+  }
+  ::freeifaddrs(all);
+}
+
+TEST(RobotConfig, TheStartHasAHeight) {
+  const live::Folder folder;
+  const auto height = [&](const std::string& line) {
+    return load_robot_config(folder.write("r.yaml", "name: r1\nplatform: wheeled\n" + line))
+        .value()
+        .start_height;
+  };
+  EXPECT_EQ(height(""), std::nullopt);
+  EXPECT_EQ(height("start_height: -3.5\n"), -3.5);
+}
+
 struct BadFile {
   const char* name;
   const char* text;
@@ -88,6 +134,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "no 'hovercraft' in config/platforms; there are: aerial, car, legged, tracked, wheeled"},
         BadFile{"radio_key", "name: r1\nplatform: wheeled\nradio: {domian: 3}\n", "domian"},
         BadFile{"domain_range", "name: r1\nplatform: wheeled\nrobot_domain: 500\n", "r.yaml:3"},
+        BadFile{"interfaces", "name: r1\nplatform: wheeled\nrobot_interfaces: [a b]\n", "r.yaml:3"},
+        BadFile{"start_height", "name: r1\nplatform: wheeled\nstart_height: high\n", "r.yaml:3"},
         BadFile{"lease", "name: r1\nplatform: wheeled\nlock_lease: -1\n", "r.yaml:3"},
         BadFile{"link_loss", "name: r1\nplatform: wheeled\non_link_loss: cry\n", "r.yaml:3"},
         BadFile{"link_loss_after", "name: r1\nplatform: wheeled\nlink_loss_after: 0\n", "r.yaml:3"},

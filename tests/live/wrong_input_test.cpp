@@ -81,6 +81,11 @@ INSTANTIATE_TEST_SUITE_P(
               "name: r1\nplatform: wheeled\nradio: {interfaces: [10.255.255.1]}\n",
               {"robot_agent", "--config", "FILE"},
               {"10.255.255.1"}},
+        Wrong{"robot_interface",
+              "r.yaml",
+              "name: r1\nplatform: wheeled\nrobot_interfaces: [nosuch0]\n",
+              {"robot_agent", "--config", "FILE"},
+              {"r.yaml:3", "nosuch0"}},
         Wrong{"operator_name", "", "", {"basestation", "--name", "a/b", "list"}, {"--name"}}),
     [](const auto& each) { return std::string(each.param.name); });
 

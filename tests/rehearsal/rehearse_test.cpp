@@ -7,8 +7,10 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "robot_agent/agent.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 #include "tests/rehearsal/run_text.hpp"
+#include "tests/sim/scratch.hpp"
 
 namespace adit::sim {
 namespace {
@@ -52,6 +54,27 @@ TEST_P(RehearsalThreads, OneTwoAndFourGiveTheSameDigestTwice) {
 // In five seconds of the demo three robots are taken and set off.
 INSTANTIATE_TEST_SUITE_P(Shipped, RehearsalThreads,
                          testing::Values(Shortened{"demo.yaml", 5s}, Shortened{"fault_storm.yaml", 30s}));
+
+/// The height at which the agent starts in a world whose floor is at 2 m; `key`: of its robot.
+double started_at(const std::string& key) {
+  const std::string text =
+      "world: {boxes: [], floor: 2, ceiling: 5}\nduration: 0.2\nbasestations:\n  - {id: op1}\n"
+      "robots:\n  - {id: r1, platform: wheeled, pose: [0, 0, 0]" +
+      key + "}\n";
+  const Scratch scratch;
+  const Scenario scenario = load_scenario(scratch.write("s.yaml", text).string()).value();
+  double height = std::nan("");
+  RunParams params{};
+  params.make_agent =
+      make_agent_factory({}, [&](agent::AgentParams& agent) { height = agent.start_height; }).value();
+  (void)rehearse(scenario, make_world(scenario.world).value(), params);
+  return height;
+}
+
+TEST(Rehearse, ARobotStartsOnTheGroundOfTheWorldUnlessItsHeightIsGiven) {
+  EXPECT_EQ(started_at(""), 2.0);
+  EXPECT_EQ(started_at(", start_height: 7"), 7.0);
+}
 
 TEST(Rehearse, AnotherSeedAnotherDigest) {
   const Scenario scenario = load_shipped("handover.yaml");

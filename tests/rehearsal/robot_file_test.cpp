@@ -18,6 +18,7 @@ on_link_loss: return
 link_loss_after: 4
 battery: {warning: 0.5, low: 0.4, last: 0.3, at_last: return}
 after_restart: hold
+start_height: 5
 )";
 
 /// A scenario with that line in `robots`, which is line 4.
@@ -56,6 +57,16 @@ TEST_F(RobotFiles, GiveEverythingThatTheScenarioDoesNotSay) {
   EXPECT_DOUBLE_EQ(r.settings.battery.low, 0.4);
   EXPECT_TRUE(r.settings.return_at_last_battery);
   EXPECT_FALSE(r.settings.resume_after_restart);
+  EXPECT_EQ(r.settings.start_height, 5.0);
+}
+
+TEST_F(RobotFiles, TheHeightOfTheStartBelongsToThePose) {
+  scratch.write("scout.yaml", robot_file);
+  const auto height = [&](const std::string& keys) {
+    return read("{file: scout.yaml" + keys + "}").value().robots.at(0).settings.start_height;
+  };
+  EXPECT_EQ(height(", pose: [0, 0, 0]"), std::nullopt);
+  EXPECT_EQ(height(", pose: [0, 0, 0], start_height: 7"), 7.0);
 }
 
 TEST_F(RobotFiles, TheScenariosKeysGoBeforeTheFiles) {
