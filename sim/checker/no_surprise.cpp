@@ -1,17 +1,23 @@
+#include <cmath>
+
 #include "sim/checker/rule.hpp"
 
 namespace adit::sim {
 namespace {
 
 constexpr Duration program_silence{500ms};  // of what steers in mode external
+constexpr double fastest = 5.0;             // m/s: no body of ours is faster
+constexpr double fastest_turn = 6.0;        // rad/s
+constexpr double odometry_noise = 0.5;      // m, rad: between two samples
 
 /// Rule 7: nothing moves by surprise. Motion needs a request that was accepted since the last start, stop,
-/// fall to hold, or change of holder in a manual mode; a manual mode is entered with a fresh, centred stick,
-/// external with a fresh program.
+/// fall to hold, jump of the odometry, or change of holder in a manual mode; a manual mode is entered with a
+/// fresh, centred stick, external with a fresh program.
 class NoSurprise : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
     if (std::get_if<AgentStarted>(&event)) see_start(robot);
+    if (const auto* odometry = std::get_if<OdometryHeard>(&event)) see_odometry(robot, odometry->pose);
     // A late repeat of a stop that was answered, and reset since, has no second effect.
     if (const auto* command = std::get_if<CommandHeard>(&event);
         command && command->verb == Verb::stop && !robot.first_answer(RobotModel::key(*command)))
@@ -41,11 +47,23 @@ class NoSurprise : public Rule {
   // An autonomous mode goes on when it was on, or was asked for when the agent ended; a manual one does not.
   void see_start(const RobotModel& robot) {
     first_velocity_ = true;
+    odometry_.reset();
     bool goes_on = allowed_ && robot.mode() == "waypoint";
     for (const RobotModel::Pending& p : robot.unanswered())
       goes_on = goes_on || p.command.verb == Verb::go_to ||
                 (p.command.verb == Verb::mode && p.command.text == "waypoint");
     if (!goes_on) revoke("a start of its agent");
+  }
+
+  void see_odometry(const RobotModel& robot, const Pose2& pose) {
+    const auto before = std::exchange(odometry_, std::pair{pose, robot.now()});
+    if (!before) return;
+    const double time = seconds(robot.now() - before->second);
+    const double way = (pose.position() - before->first.position()).norm();
+    const double turn = std::fabs(wrap_angle(pose.yaw - before->first.yaw));
+    if (way < fastest * time + odometry_noise && turn < fastest_turn * time + odometry_noise) return;
+    revoke("a jump of its odometry");
+    jumped_ = robot.now();
   }
 
   // The holder speaks as a participant that was never heard before: his station was started again, and a
@@ -114,6 +132,7 @@ class NoSurprise : public Rule {
     }
     // A velocity sent in the very instant in which motion was forbidden may have come before.
     if (allowed_ || told_ || robot.mode_changed() == robot.now()) return;
+    if (jumped_ && robot.now() - *jumped_ < reaction) return;
     if (RobotModel::asked(robot.pending(), {Verb::go_to, Verb::mode}))
       return;  // its answer waits for the disk
     told_ = true;
@@ -123,7 +142,8 @@ class NoSurprise : public Rule {
   bool allowed_{}, told_{}, first_velocity_{};
   std::string why_not_{"a start of its agent"};
   Duration granted_at_{-1};
-  std::optional<Duration> manual_must_end_{};
+  std::optional<Duration> manual_must_end_{}, jumped_{};
+  std::optional<std::pair<Pose2, Duration>> odometry_{};  ///< The last sample, and when it came
 };
 
 }  // namespace

@@ -96,6 +96,10 @@ struct JoystickHeard {
 
 /// A scan of its lidar reached the robot.
 struct ScanHeard {};
+/// A sample of its driver's odometry reached the robot.
+struct OdometryHeard {
+  Pose2 pose{};  ///< odometry frame
+};
 /// A velocity of the program that steers in mode `external` reached the robot.
 struct ProgramHeard {
   Twist2 velocity{};  ///< body frame
@@ -147,9 +151,10 @@ struct ClockJumped {
   Duration by{};
 };
 
-using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
-                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion,
-                           ClockJumped, ComponentFaulted, DiskChanged, ScanHeard, ProgramHeard>;
+using Event =
+    std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent, AuthoritySent,
+                 BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion, ClockJumped,
+                 ComponentFaulted, DiskChanged, ScanHeard, ProgramHeard, OdometryHeard>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

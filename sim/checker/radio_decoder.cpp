@@ -1,5 +1,7 @@
 #include "sim/checker/radio_decoder.hpp"
 
+#include <cmath>
+
 #include "adit/authority.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
@@ -8,6 +10,7 @@
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
 #include "geometry_msgs/msg/TwistStamped.h"
+#include "nav_msgs/msg/Odometry.h"
 
 namespace adit::sim {
 namespace {
@@ -141,6 +144,15 @@ Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cd
   if (is(topic, topics::presence)) return station(cdr, from, true);
   if (is(topic, topics::capabilities)) return station(cdr, from, false);
   if (is(topic, topics::points)) return DecodedSample{{}, ScanHeard{}};
+  if (is(topic, topics::odom)) {
+    const auto o = read<nav_msgs::msg::Odometry>(cdr);
+    if (!o) return std::nullopt;
+    const auto& p = o->pose().pose().position();
+    const auto& q = o->pose().pose().orientation();
+    const double yaw =
+        std::atan2(2 * (q.w() * q.z() + q.x() * q.y()), 1 - 2 * (q.y() * q.y() + q.z() * q.z()));
+    return DecodedSample{{}, OdometryHeard{{p.x(), p.y(), yaw}}};
+  }
   if (is(topic, topics::external_cmd_vel)) {
     const auto t = read<geometry_msgs::msg::Twist>(cdr);
     if (!t) return std::nullopt;

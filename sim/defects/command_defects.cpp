@@ -127,6 +127,18 @@ class MoveOnReset final : public NumberedInterceptor {
   }
 };
 
+class KindByPosition final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    CommandFrom next = command;
+    const auto kind = command.sample.kind();
+    if (kind >= radio::CMD_LOCK && kind < radio::CMD_POSE)
+      next.sample.kind(static_cast<radio::CommandKind>(kind + 1));
+    out.push_back(arrival(next));
+  }
+};
+
 /// A centred sample arrives before each request for a manual mode. Numbers of samples are doubled, so that it
 /// fits between two of them.
 class EnterOffCentre final : public RadioInterceptor {
@@ -176,6 +188,7 @@ Decoration stop_needs_holder(const Subject& s) { return on_wires<StopNeedsHolder
 Decoration joystick_clears_stop(const Subject& s) { return on_wires<JoystickClearsStop>(s); }
 Decoration move_on_reset(const Subject& s) { return on_wires<MoveOnReset>(s); }
 Decoration enter_off_centre(const Subject& s) { return on_wires<EnterOffCentre>(s); }
+Decoration kind_by_position(const Subject& s) { return on_wires<KindByPosition>(s); }
 
 }  // namespace decorations
 }  // namespace adit::sim

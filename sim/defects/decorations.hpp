@@ -14,6 +14,7 @@ Decoration stop_needs_holder(const Subject& subject);
 Decoration joystick_clears_stop(const Subject& subject);
 Decoration move_on_reset(const Subject& subject);
 Decoration enter_off_centre(const Subject& subject);
+Decoration kind_by_position(const Subject& subject);
 Decoration accept_stale_joystick(const Subject& subject);
 
 // Of what moves the robot.
@@ -22,13 +23,24 @@ Decoration change_without_zero(const Subject& subject);
 Decoration no_zero_on_stale(const Subject& subject);
 Decoration manual_survives_handover(const Subject& subject);
 
+// Of what its sensors tell.
+Decoration age_at_handling(const Subject& subject);
+Decoration odometry_jump_accepted(const Subject& subject);
+
 // Of what survives a restart.
 Decoration epoch_kept_at_restart(const Subject& subject);
 Decoration lock_forgotten(const Subject& subject);
 Decoration acknowledged_lost(const Subject& subject);
+Decoration state_lost_whole(const Subject& subject);
+Decoration findings_deleted_at_start(const Subject& subject);
 
 // Of a part that a double replaces.
 Decoration blind_planner(const Subject& subject);
 Decoration blind_and_unwatched(const Subject& subject);
+Decoration drives_through_stop(const Subject& subject);
+
+// Of its parent process.
+Decoration none(const Subject& subject);
+std::unique_ptr<wire::Wire> zero_of_other_type(std::unique_ptr<wire::Wire> parents);
 
 }  // namespace adit::sim::decorations

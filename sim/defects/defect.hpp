@@ -32,6 +32,8 @@ struct Defect {
   std::string_view what{};  ///< What the robot does wrong, in one line
   /// Decorates one start of one robot's agent.
   Decoration (*decorate)(const Subject&){};
+  /// Decorates the wire of the robot's parent process; null: nothing does.
+  std::unique_ptr<wire::Wire> (*parent)(std::unique_ptr<wire::Wire>){};
 };
 
 /// Every defect, in the order of the rules.

@@ -1,6 +1,7 @@
 // Defects of what survives a restart, made of the disk and of the seed of the epoch.
 #include <string_view>
 
+#include "core/findings/finding.hpp"
 #include "robot_agent/state/restored.hpp"
 #include "sim/defects/decorations.hpp"
 #include "sim/defects/disk_filter.hpp"
@@ -21,6 +22,17 @@ class ForgetsLock final : public DiskFilter {
     read->snapshot.authority.locked = false;
     return std::optional(
         store::seal(agent::kSnapshotFormat, state.generation, agent::encode(read->snapshot)));
+  }
+};
+
+/// Reads an earlier state as one that makes no sense.
+class LosesStateWhole final : public DiskFilter {
+ public:
+  using DiskFilter::DiskFilter;
+  Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t most) const override {
+    auto bytes = DiskFilter::on_read(name, most);
+    if (name == agent::kStateFile && bytes && *bytes) (*bytes)->resize((*bytes)->size() / 8);
+    return bytes;
   }
 };
 
@@ -75,6 +87,21 @@ Decoration acknowledged_lost(const Subject& subject) {
   if (subject.disk)
     decoration.disk = std::make_shared<AcknowledgesEarly>(subject.disk, subject.runtime.strand("defect"));
   return decoration;
+}
+
+Decoration state_lost_whole(const Subject& subject) {
+  Decoration decoration;
+  if (subject.disk) decoration.disk = std::make_shared<LosesStateWhole>(subject.disk);
+  return decoration;
+}
+
+Decoration findings_deleted_at_start(const Subject& subject) {
+  if (!subject.disk) return {};
+  const auto names = subject.disk->list();
+  if (!names) return {};
+  for (const std::string& name : *names)
+    if (findings::is_finding_file(name)) (void)subject.disk->remove(name);  // a full disk removes, too
+  return {};
 }
 
 }  // namespace decorations

@@ -1,11 +1,14 @@
 // Defects of a part of the agent that a double replaces, and of what its sensors see.
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "nav/planner.hpp"
+#include "robot_agent/behaviour/decider.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "sim/defects/decorations.hpp"
 
@@ -36,6 +39,16 @@ class StraightPlanner final : public nav::Planner {
  private:
   double max_speed_;
 };
+
+/// The shipped modes without the condition that the robot is not stopped.
+std::shared_ptr<const agent::ModeTable> modes_without_stop() {
+  std::vector<agent::ModeRow> rows = agent::ModeTable::shipped().rows();
+  for (agent::ModeRow& row : rows)
+    std::erase_if(row.conditions, [](const agent::Condition& condition) {
+      return condition.leaf == agent::conditions::not_stopped.leaf;
+    });
+  return std::make_shared<const agent::ModeTable>(std::move(rows));
+}
 
 /// Takes out of every scan what stands on the ground.
 class SeesGroundAlone final : public Interceptor {
@@ -79,6 +92,23 @@ Decoration blind_planner(const Subject& subject) {
 Decoration blind_and_unwatched(const Subject& subject) {
   Decoration decoration = blind_planner(subject);
   decoration.wires = std::make_unique<SeesGroundAlone>();
+  return decoration;
+}
+
+Decoration drives_through_stop(const Subject&) {
+  Decoration decoration;
+  decoration.parameters = [](agent::AgentParams& params) {
+    params.modes = modes_without_stop();
+    params.load_tree =
+        [modes = params.modes](const std::string& file) -> Result<std::unique_ptr<agent::Decider>> {
+      std::ifstream in(file);
+      std::string tree(std::istreambuf_iterator<char>(in), {});
+      const std::string leaf = "<" + std::string(agent::conditions::not_stopped.leaf) + "/>";
+      for (auto at = tree.find(leaf); at != std::string::npos; at = tree.find(leaf))
+        tree.erase(at, leaf.size());
+      return agent::Decider::load_text(tree, *modes);
+    };
+  };
   return decoration;
 }
 

@@ -83,4 +83,9 @@ Result<AgentFactory> make_agent_factory(const std::string& defect,
   });
 }
 
+WireDecorator make_parent_decorator(const std::string& defect) {
+  const Defect* known = find_defect(defect);
+  return known && known->parent ? WireDecorator(known->parent) : WireDecorator{};
+}
+
 }  // namespace adit::sim

@@ -49,10 +49,15 @@ struct AgentContext {
 /// defects in its place.
 using AgentFactory = std::function<Result<std::unique_ptr<RehearsedAgent>>(const AgentContext&)>;
 
+/// Decorates a wire.
+using WireDecorator = std::function<std::unique_ptr<wire::Wire>(std::unique_ptr<wire::Wire>)>;
+
 /// The product's agent. `defect`: one of sim/defects/defect.hpp, which decorates what the agent is made of
 /// and speaks through; empty: none. Errors: bad_argument for a name that no defect has. `adjust`, for tests:
 /// changes what each agent is made of.
 Result<AgentFactory> make_agent_factory(const std::string& defect = {},
                                         std::function<void(agent::AgentParams&)> adjust = {});
+/// What the defect puts around the wire of each robot's parent process; empty: nothing, or no such defect.
+WireDecorator make_parent_decorator(const std::string& defect);
 
 }  // namespace adit::sim

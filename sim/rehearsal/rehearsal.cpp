@@ -65,7 +65,7 @@ class Run {
         ether_(scheduler_, ether_params(scenario, random_.next())),
         checker_(facts_of(scenario, simulation_)),
         witness_(checker_, ids_of(scenario.robots), ids_of(scenario.stations)),
-        stage_{scenario_, scheduler_, ether_, simulation_, witness_, params_.make_agent},
+        stage_{scenario_, scheduler_, ether_, simulation_, witness_, params_.make_agent, params_.parent_wire},
         expectations_(scenario) {}
 
   Result<RunOutcome> go() {

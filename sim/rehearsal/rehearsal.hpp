@@ -17,6 +17,7 @@ struct RunParams {
   std::uint64_t seed{1};
   int workers{2};  ///< threads for the heavy work of one run, [1, 64]
   AgentFactory make_agent{};
+  WireDecorator parent_wire{};  ///< Decorates the wire of each robot's parent process; empty: nothing does
   std::function<void(Duration)> progress{};  ///< told the virtual time, every second of it
   std::string record{};                      ///< an MCAP file that everything said goes into; empty: none
 };

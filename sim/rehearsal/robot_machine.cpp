@@ -78,6 +78,7 @@ Result<void> RobotMachine::start() {
   parent_->runtime = stage_.scheduler.machine(name, clock_offset_);
   parent_->strand = parent_->runtime->strand("parent");
   parent_->wire = stage_.ether.join(domain_, name);
+  if (stage_.parent_wire) parent_->wire = stage_.parent_wire(std::move(parent_->wire));
   auto writer = agent::VelocityWriter::make(*parent_->wire, spec_.settings.velocity);
   if (!writer) return writer.error();
   parent_->cmd_vel = std::move(*writer);

@@ -19,6 +19,7 @@ struct Stage {
   Simulation& simulation;
   Witness& witness;
   const AgentFactory& make_agent;
+  const WireDecorator& parent_wire;
 };
 
 /// One robot: its computer with the agent and the agent's parent, and its driver, on one clock. The

@@ -19,6 +19,20 @@ TEST(CheckerMotion, HealthyDriveBreaksNothing) {
   EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
 }
 
+TEST(CheckerMotion, AVelocityAfterAJumpOfTheOdometryNeedsANewRequest) {
+  Record r;
+  r.take(1);
+  r.enter("waypoint");
+  for (int i = 0; i < 10; ++i) {
+    r.see(OdometryHeard{{0.05 * i, 0, 0}});
+    r.pass(100ms, forward);
+  }
+  EXPECT_THAT(r.broken(), ElementsAre()) << r.texts();
+  r.see(OdometryHeard{{-5, 0, 0}});
+  r.pass(200ms, forward);
+  EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
+}
+
 TEST(CheckerMotion, VelocityInHold) {
   Record r;
   r.take(1);

@@ -16,8 +16,7 @@ inline Scenario load_shipped(const std::string& file) {
   return *scenario;
 }
 
-/// What a scenario written in a test comes to; `defect`: one that is compiled into the agent, none when
-/// empty.
+/// What a scenario written in a test comes to; `defect`: one of sim/defects, none when empty.
 inline RunReport run_text(const std::string& yaml, const char* file, const std::string& defect = "") {
   auto scenario = parse_scenario(yaml, file);
   EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
@@ -25,6 +24,8 @@ inline RunReport run_text(const std::string& yaml, const char* file, const std::
   EXPECT_TRUE(factory.ok());
   RunParams params;
   params.make_agent = *factory;
+  params.parent_wire = make_parent_decorator(defect);
+  params.seed = scenario->seed;
   auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
   EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
   return outcome->report;

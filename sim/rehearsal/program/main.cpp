@@ -173,6 +173,7 @@ int main(int argc, char** argv) {
   if (chaos) add_chaos(*scenario);
   params.seed = seed_option->count() > 0 ? seed : scenario->seed;
   params.make_agent = *factory;
+  params.parent_wire = make_parent_decorator(defect);
   if (seeds_text.empty() && !chaos) return run_one(*scenario, *world, params, report_file, picture_file);
   auto seeds =
       seeds_text.empty() ? Result<SeedRange>(SeedRange{params.seed, params.seed}) : parse_seeds(seeds_text);
