@@ -89,7 +89,8 @@ while read -r name platform x y yaw; do
   pids+=("$!")
 done <<< "$robots"
 for name in $operators; do
-  "$bin/basestation" --name "$name" --domain "$domain" up > "$home/$name.log" 2>&1 ||
+  read -ra at <<< "$(sed -n "/^basestations:/,/^[a-z]*:$/s/^ *- {id: $name, pose: \[\([^],]*\), *\([^],]*\).*/--at \1 \2 0/p" "$scenario")"
+  "$bin/basestation" --name "$name" --domain "$domain" "${at[@]}" up > "$home/$name.log" 2>&1 ||
     { cat "$home/$name.log" >&2; exit 1; }
 done
 for name in $operators; do

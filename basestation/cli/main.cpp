@@ -108,8 +108,10 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--peer", options.peers, "ADDRESS[:PORT] of an agent, for networks without multicast")
       ->allow_extra_args(false);
-  app.add_option("--at", options.at,
-                 "Where the station stands, X Y Z of the map in m, for links with a range or that fade")
+  app.add_option(
+         "--at", options.at,
+         "Where the station stands, X Y Z of the map in m; others are told, and a link with a range or "
+         "that fades reckons with it")
       ->expected(3)
       ->allow_extra_args(false);
   app.add_option(

@@ -10,13 +10,13 @@ struct Options {
   std::string name{"op1"};  ///< the operator's
   std::string link{};  ///< profile of config/links, or a .yaml file, that what is sent keeps to; empty: none
   bool json{false};
-  std::uint32_t domain{77};                 ///< radio domain, [0, 232]
-  bool domain_given{false};                 ///< a station that runs must be on `domain`
-  std::vector<std::string> interfaces{};    ///< addresses; none: loopback
-  std::vector<std::string> peers{};         ///< for networks without multicast
-  std::vector<float> at{0.0F, 0.0F, 0.0F};  ///< where the station stands, map frame, m
-  std::string record{};                     ///< folder of recordings, "none"; empty: below the state folder
-  std::string program{};                    ///< path of this program, to start a station with
+  std::uint32_t domain{77};               ///< radio domain, [0, 232]
+  bool domain_given{false};               ///< a station that runs must be on `domain`
+  std::vector<std::string> interfaces{};  ///< addresses; none: loopback
+  std::vector<std::string> peers{};       ///< for networks without multicast
+  std::vector<float> at{};                ///< X Y Z of the station, map frame, m; empty: not known
+  std::string record{};                   ///< folder of recordings, "none"; empty: below the state folder
+  std::string program{};                  ///< path of this program, to start a station with
 };
 
 /// Exit codes of the program.

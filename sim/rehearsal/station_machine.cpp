@@ -33,7 +33,8 @@ StationMachine::~StationMachine() = default;
 Result<void> StationMachine::start() {
   const Eigen::Vector2d& at = spec_.position;
   const auto floor = stage_.simulation.world().ground_height(at.x(), at.y(), headroom);
-  stage_.ether.set_position(spec_.id, at.x(), at.y(), floor ? *floor : 0.0);  // none: beside the map
+  place_ = {at.x(), at.y(), floor ? *floor : 0.0};  // none: beside the map
+  stage_.ether.set_position(spec_.id, place_.x(), place_.y(), place_.z());
   return start_process();
 }
 
@@ -49,6 +50,8 @@ Result<void> StationMachine::start_process() {
   params.software = "rehearsal";
   params.link = stage_.scenario.link.name;
   params.bandwidth = stage_.scenario.link.bandwidth;
+  params.place = {static_cast<float>(place_.x()), static_cast<float>(place_.y()),
+                  static_cast<float>(place_.z())};
   params.disk = disk_;
   process->station = std::make_unique<station::Station>(params, *process->strand, *process->radio);
   if (auto started = process->station->start(); !started) return started;

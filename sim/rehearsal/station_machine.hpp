@@ -36,6 +36,7 @@ class StationMachine {
 
   Stage& stage_;
   const StationSpec& spec_;
+  Eigen::Vector3d place_{Eigen::Vector3d::Zero()};  ///< World frame, m
   Random random_;
   Duration clock_offset_;
   station::Id id_{};

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "core/command/parse.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
@@ -97,6 +99,21 @@ TEST(Convert, CapabilitiesNameTheSteepestSlope) {
   Platform platform{};
   platform.max_slope = 1.0;
   EXPECT_NEAR(to_radio(platform, "r1", {}, 1, ModeTable::shipped()).slope(), 0.785, 1e-3);
+}
+
+TEST(Convert, AStationsPlaceIsTakenWhereItSaysAPossibleOne) {
+  radio::Capabilities said;
+  said.name("op1");
+  said.kind(radio::AGENT_STATION);
+  said.place({1.0F, 2.0F, 0.5F});
+  EXPECT_FALSE(from_radio(said, {}).place) << "it has none";
+  said.placed(true);
+  EXPECT_EQ(from_radio(said, {}).place, Eigen::Vector3d(1.0, 2.0, 0.5));
+  said.place({std::numeric_limits<float>::quiet_NaN(), 2.0F, 0.5F});
+  EXPECT_FALSE(from_radio(said, {}).place);
+  said.place({1.0F, 2.0F, 0.5F});
+  said.kind(radio::AGENT_ROBOT);
+  EXPECT_FALSE(from_radio(said, {}).place) << "a robot's state says where it is";
 }
 
 }  // namespace

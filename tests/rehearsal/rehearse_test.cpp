@@ -2,11 +2,17 @@
 #include "sim/rehearsal/rehearsal.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "adit/discovery.h"
+#include "core/record/mcap_reader.hpp"
+#include "core/wire/typed.hpp"
 #include "robot_agent/agent.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 #include "tests/rehearsal/run_text.hpp"
@@ -84,6 +90,33 @@ TEST(Rehearse, AnotherSeedAnotherDigest) {
 TEST(Rehearse, SameSeedSameDigestThroughACrash) {
   const Scenario scenario = load_shipped("agent_crash.yaml");
   EXPECT_EQ(run(scenario, 1).report.digest, run(scenario, 1).report.digest);
+}
+
+TEST(Rehearse, StationsAnnounceWhereTheScenarioPutsThem) {
+  Scenario scenario = load_shipped("handover.yaml");
+  scenario.duration = 2s;
+  scenario.script.clear();
+  scenario.expectations.clear();
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / ("adit_places_" + std::to_string(::getpid()) + ".mcap");
+  RunParams params;
+  params.make_agent = *make_agent_factory();
+  params.record = file.string();
+  ASSERT_TRUE(rehearse(scenario, *make_world(scenario.world), params).ok());
+  std::map<std::string, std::array<float, 3>> places;
+  std::ifstream in(file, std::ios::binary);
+  record::Visitor visitor;
+  visitor.message = [&](const record::Channel& channel, const record::Message& message) {
+    radio::Capabilities said;
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(message.data.data()), message.data.size());
+    if (channel.topic.find("adit/capabilities") != std::string::npos && wire::decode(bytes, said) &&
+        said.kind() == radio::AGENT_STATION && said.placed())
+      places[said.name()] = said.place();
+  };
+  ASSERT_TRUE(record::read_mcap(in, visitor).ok());
+  std::filesystem::remove(file);
+  EXPECT_EQ(places, (std::map<std::string, std::array<float, 3>>{{"op1", {0.0F, 3.0F, 0.0F}},
+                                                                 {"op2", {0.0F, -3.0F, 0.0F}}}));
 }
 
 TEST(Rehearse, FailedExpectationsFailTheRun) {

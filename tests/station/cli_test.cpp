@@ -116,6 +116,13 @@ TEST_F(Cli, UnknownRobotIsExitOneAndNobodyThereIsExitThree) {
   EXPECT_EQ(run({"stop", "all"}).exit_code, 3);
 }
 
+TEST_F(Cli, AStationSaysWhereItStandsWhenItWasToldSo) {
+  EXPECT_THAT(run({"list"}).out, testing::Not(HasSubstr(" at ")));
+  EXPECT_THAT(run({"--name", "op2", "--at", "4", "5", "0.5", "list"}).out,
+              HasSubstr("op2 (this one) at 4.0 5.0 0.5"));
+  EXPECT_THAT(run({"list"}).out, HasSubstr("op2 at 4.0 5.0 0.5"));
+}
+
 TEST_F(Cli, OneStationPerName) {
   EXPECT_EQ(run({"up"}).exit_code, 0);
   const Finished second = run({"--serve", "-1"});

@@ -25,7 +25,7 @@ std::vector<std::string> arguments(const Options& options) {
   if (!options.link.empty()) words.insert(words.end(), {"--link", options.link});
   for (const std::string& address : options.interfaces) words.insert(words.end(), {"--interface", address});
   for (const std::string& peer : options.peers) words.insert(words.end(), {"--peer", peer});
-  words.push_back("--at");
+  if (!options.at.empty()) words.push_back("--at");
   for (const float metres : options.at) words.push_back(std::to_string(metres));
   if (!options.record.empty()) words.insert(words.end(), {"--record", options.record});
   words.insert(words.end(), {"--serve", std::to_string(ready_fd)});

@@ -38,9 +38,9 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
                        .software = ADIT_VERSION,
                        .link = link->name,
                        .bandwidth = link->bandwidth,
-                       .place = std::array{options.at[0], options.at[1], options.at[2]},
                        .presence = hooks.presence,
                        .discovery_grace = hooks.discovery_grace};
+  if (options.at.size() == 3) params.place = {options.at[0], options.at[1], options.at[2]};
   for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
   // A disk that cannot be used is no reason not to stop a robot: findings stay in memory then.
   if (const auto folder = state_folder()) {
