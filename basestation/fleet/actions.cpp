@@ -20,7 +20,10 @@ class Judge {
         add(row, std::string(row.name), judge(row, row.conditions.mode));
         continue;
       }
-      for (const std::string& mode : modes_) add(row, std::string(row.name) + " " + mode, judge(row, mode));
+      for (const std::string& mode : modes_) {
+        add(row, std::string(row.name) + " " + mode, judge(row, mode));
+        actions_.back().mode = mode;
+      }
     }
     return std::move(actions_);
   }
@@ -117,6 +120,21 @@ std::vector<std::string> offered(const std::vector<const RobotView*>& selection)
 }
 
 }  // namespace
+
+std::string id_of(const Action& action) {
+  std::string id = action.command;
+  std::replace(id.begin(), id.end(), ' ', '_');
+  return id;
+}
+
+std::string label_of(const Action& action) {
+  if (action.mode.empty() && !action.info->label.empty()) return std::string(action.info->label);
+  std::string label = action.mode.empty() ? action.command : action.mode;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  if (!label.empty() && label[0] >= 'a' && label[0] <= 'z')
+    label[0] = static_cast<char>(label[0] - 'a' + 'A');
+  return label;
+}
 
 std::vector<Action> actions(const Fleet& fleet, const std::vector<const RobotView*>& selection) {
   const std::vector<std::string> modes = offered(selection);

@@ -11,11 +11,17 @@ namespace adit::station {
 struct Action {
   const command::CommandInfo* info{};  ///< its arguments, how dangerous it is, how many robots it takes
   std::string command{};               ///< as typed: "take", "mode waypoint"
+  std::string mode{};                  ///< of `mode`: the one asked for
   bool valid{};
   Reason reason{Reason::none};
   std::string text{};   ///< why not, or a remark on what it would do
   std::string robot{};  ///< in a selection of several: the first that would refuse
 };
+
+/// What a front end knows the action by: "take", "mode_waypoint". It never changes.
+std::string id_of(const Action& action);
+/// What stands on its button: "Take", "Waypoint", "Go to".
+std::string label_of(const Action& action);
 
 /// Every command for a selection of robots, in the order of the command table: valid when each of them would
 /// accept it, by its authority, its stops and the modes it offers. What only a robot knows (is the goal

@@ -144,11 +144,14 @@ json argument_json(const command::Argument& argument) {
   return out;
 }
 
-/// What a front end has to know of a command to offer it: robots, arguments, options, danger.
-json info_json(const command::CommandInfo& info) {
+/// What a front end has to know of an action to offer it: robots, arguments, options, danger.
+json info_json(const Action& action) {
+  const command::CommandInfo& info = *action.info;
   json arguments = json::array(), options = json::array();
   for (const command::Argument& argument : info.arguments)
-    if (argument && argument.type != command::Type::robots) arguments.push_back(argument_json(argument));
+    if (argument && argument.type != command::Type::robots &&
+        (action.mode.empty() || argument.name != info.conditions.mode))
+      arguments.push_back(argument_json(argument));
   for (const command::Option& option : info.options) {
     if (!option) continue;
     json values = json::array();
@@ -157,10 +160,8 @@ json info_json(const command::CommandInfo& info) {
     options.push_back({{"name", option.name}, {"values", values}});
   }
   const command::Argument& robots = info.arguments[0];
-  return {{"arguments", arguments},
-          {"options", options},
-          {"danger", to_string(info.danger)},
-          {"robots", {{"least", robots.least}, {"most", robots.most}, {"all", robots.all}}},
+  return {{"arguments", arguments},       {"options", options},        {"danger", to_string(info.danger)},
+          {"robots_min", robots.least},   {"robots_max", robots.most}, {"all_robots", robots.all},
           {"usage", command::usage(info)}};
 }
 
@@ -169,12 +170,10 @@ json info_json(const command::CommandInfo& info) {
 json actions_json(const std::vector<Action>& actions) {
   json rows = json::array();
   for (const Action& action : actions) {
-    json row{{"command", action.command},
-             {"valid", action.valid},
-             {"reason", name(action.reason)},
-             {"text", action.text},
+    json row{{"id", id_of(action)},   {"label", label_of(action)},     {"command", action.command},
+             {"valid", action.valid}, {"reason", name(action.reason)}, {"text", action.text},
              {"robot", action.robot}};
-    row.update(info_json(*action.info));
+    row.update(info_json(action));
     rows.push_back(std::move(row));
   }
   return rows;

@@ -94,7 +94,8 @@ struct CommandInfo {
   std::string_view summary{};  ///< one line
   std::string_view details{};  ///< what the page for operators says beside it
   std::string_view example{};
-  std::string_view done{};  ///< what an accepted command reads like; see done_text()
+  std::string_view done{};   ///< what an accepted command reads like; see done_text()
+  std::string_view label{};  ///< of a button, where the name itself does not read well
 
   constexpr std::string_view first_word() const { return name.substr(0, name.find(' ')); }
 };

@@ -148,14 +148,24 @@ TEST_F(Actions, HomeAsksForWaypointAndPoseForHold) {
 TEST_F(Actions, SayWhatACommandTakesAndHowDangerousItIs) {
   own("r1", "op1", own_id);
   const RobotView* robot = fleet_.robot("r1");
-  nlohmann::json grant, go_to, stop;
+  nlohmann::json grant, go_to, stop, waypoint;
   for (const nlohmann::json& row : actions_json(actions(fleet_, {robot}))) {
     if (row["command"] == "grant") grant = row;
     if (row["command"] == "goto") go_to = row;
     if (row["command"] == "stop") stop = row;
+    if (row["command"] == "mode waypoint") waypoint = row;
   }
+  EXPECT_EQ(grant["id"], "grant");
+  EXPECT_EQ(grant["label"], "Grant");
+  EXPECT_EQ(go_to["id"], "goto");
+  EXPECT_EQ(go_to["label"], "Go to");
+  EXPECT_EQ(waypoint["id"], "mode_waypoint");
+  EXPECT_EQ(waypoint["label"], "Waypoint");
+  EXPECT_TRUE(waypoint["arguments"].empty()) << "its mode is chosen";
+  EXPECT_EQ(go_to["arguments"][0]["minimum"], -1e4);
+  EXPECT_EQ(go_to["arguments"][0]["maximum"], 1e4);
   EXPECT_EQ(grant["danger"], "high");
-  EXPECT_EQ(grant["robots"]["most"], 1);
+  EXPECT_EQ(grant["robots_max"], 1);
   EXPECT_EQ(grant["arguments"][0]["name"], "OPERATOR");
   EXPECT_EQ(go_to["danger"], "some");
   EXPECT_EQ(go_to["arguments"].size(), 3U);
@@ -163,8 +173,9 @@ TEST_F(Actions, SayWhatACommandTakesAndHowDangerousItIs) {
   EXPECT_EQ(go_to["arguments"][2]["least"], 0);
   EXPECT_EQ(go_to["options"][0]["name"], "--wait");
   EXPECT_EQ(stop["danger"], "none");
-  EXPECT_EQ(stop["robots"]["most"], 64);
-  EXPECT_TRUE(stop["robots"]["all"]);
+  EXPECT_EQ(stop["robots_max"], 64);
+  EXPECT_EQ(stop["robots_min"], 1);
+  EXPECT_TRUE(stop["all_robots"]);
 }
 
 }  // namespace
