@@ -117,9 +117,9 @@ void Agent::Core::commands(const std::function<void(CommandInterface&)>& use) {
 }
 
 void Agent::Core::find_route(const Eigen::Vector3d& goal,
-                             std::function<void(const Result<std::string>&)> done) {
+                             std::function<void(const Result<PlannedRoute>&)> done) {
   struct Question {
-    std::function<void(const Result<std::string>&)> done{};
+    std::function<void(const Result<PlannedRoute>&)> done{};
     Timer patience{};
   };
   protect([&] {
@@ -132,9 +132,9 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
     auto question = std::make_shared<Question>();
     question->done = std::move(done);
     // Answered once, by whichever comes first.
-    const auto answer = [question](const Result<std::string>& text) {
+    const auto answer = [question](const Result<PlannedRoute>& route) {
       question->patience.cancel();
-      if (const auto tell = std::exchange(question->done, {})) tell(text);
+      if (const auto tell = std::exchange(question->done, {})) tell(route);
     };
     question->patience = after(500ms, [answer] {
       answer({Reason::no_answer, "the router does not answer; see health"});
@@ -146,7 +146,7 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
     edges_.router->find(query, guard([this, query, answer] {
                           if (query->odom_epoch != localisation_.odom_epoch())
                             return answer({Reason::odometry_jumped, "the odometry jumped meanwhile"});
-                          answer(describe(query->route, localisation_.T_map_odom()));
+                          answer(planned_route(query->route, localisation_.T_map_odom()));
                         }));
   });
 }

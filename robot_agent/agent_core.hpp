@@ -69,8 +69,8 @@ class Agent::Core : public Component {
   /// Somebody else writes velocities to this robot's driver.
   void rival(const wire::ParticipantId& writer, Time received);
   void commands(const std::function<void(CommandInterface&)>& use);
-  /// The way to a place (map frame, m), in words: `done` is called once, within half a second.
-  void find_route(const Eigen::Vector3d& goal, std::function<void(const Result<std::string>&)> done);
+  /// The route to a place (map frame, m): `done` is called once, within half a second.
+  void find_route(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done);
   std::string at_console(const std::string& line);
   /// What must survive, as it is now.
   void keep();

@@ -85,13 +85,19 @@ json notice_json(const Notice& notice, Time now) {
 }
 
 json answer_json(const Answer& answer) {
-  return {{"robot", answer.robot},
-          {"accepted", answer.accepted},
-          {"answered", answer.answered},
-          {"reason", name(answer.reason)},
-          {"text", answer.text},
-          {"holder", answer.holder},
-          {"latency", seconds(answer.latency)}};
+  json out{{"robot", answer.robot},
+           {"accepted", answer.accepted},
+           {"answered", answer.answered},
+           {"reason", name(answer.reason)},
+           {"text", answer.text},
+           {"holder", answer.holder},
+           {"latency", seconds(answer.latency)}};
+  if (answer.route)
+    out["route"] = {{"length", answer.route->length},
+                    {"unknown_length", answer.route->unknown_length},
+                    {"complete", answer.route->corners <= answer.route->points.size()},
+                    {"points", answer.route->points}};
+  return out;
 }
 
 namespace {

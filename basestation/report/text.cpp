@@ -227,9 +227,20 @@ std::string actions_text(const std::vector<Action>& actions) {
   return table(rows);
 }
 
+std::string route_text(const Route& route) {
+  constexpr std::size_t most = 12;  // corners after the start
+  std::string out = fixed(route.length, 1) + " m";
+  if (route.unknown_length > 0.0) out += ", " + fixed(route.unknown_length, 1) + " m of it not seen yet";
+  for (std::size_t i = 1; i < route.points.size() && i <= most; ++i)
+    out += (i == 1 ? ": " : ", ") + fixed(route.points[i][0], 1) + " " + fixed(route.points[i][1], 1);
+  return out + (route.corners > most + 1 ? " ..." : "");
+}
+
 std::string answer_text(const Answer& answer, const std::string& done) {
-  if (answer.accepted)
-    return answer.robot + ": " + done + (answer.text.empty() ? "" : "; " + answer.text) + "\n";
+  if (answer.accepted) {
+    const std::string remark = answer.route ? route_text(*answer.route) : answer.text;
+    return answer.robot + ": " + done + (remark.empty() ? "" : "; " + remark) + "\n";
+  }
   std::string why = answer.text.empty() ? std::string(describe(answer.reason)) : answer.text;
   const bool named = answer.holder.empty() || answer.reason == Reason::cancelled ||
                      why.find(answer.holder) != std::string::npos;

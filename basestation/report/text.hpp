@@ -20,6 +20,8 @@ const char* word(ComponentPhase phase);
 std::string health_text(const RobotView& robot);
 /// A row for each command: whether it is valid now, and why not.
 std::string actions_text(const std::vector<Action>& actions);
+/// "12.3 m, 4.0 m of it not seen yet: 3.0 0.0, 12.0 0.5": its corners after the start.
+std::string route_text(const Route& route);
 /// "r1: taken" or "r1: refused: ... [locked]".
 std::string answer_text(const Answer& answer, const std::string& done);
 

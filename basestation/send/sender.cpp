@@ -1,6 +1,7 @@
 #include "basestation/send/sender.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,22 @@
 namespace adit::station {
 
 using namespace std::chrono_literals;
+
+namespace {
+
+/// Nothing when it is no route: numbers that are not finite, or a corner cut in two. A height may be unknown.
+std::optional<Route> from_radio(const radio::PlannedRoute& in) {
+  Route route{in.length(), in.unknown_length(), in.corners(), {}};
+  if (!std::isfinite(route.length) || !std::isfinite(route.unknown_length) || in.points().size() % 3 != 0)
+    return std::nullopt;
+  for (std::size_t i = 0; i < in.points().size(); i += 3) {
+    if (!std::isfinite(in.points()[i]) || !std::isfinite(in.points()[i + 1])) return std::nullopt;
+    route.points.push_back({in.points()[i], in.points()[i + 1], in.points()[i + 2]});
+  }
+  return route;
+}
+
+}  // namespace
 
 struct Sender::Pending {
   Order order{};
@@ -230,6 +247,7 @@ void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&)
                 .text = command::clean(sample.text(), 240),
                 .holder = command::clean(sample.holder(), 32),
                 .latency = strand_.now() - pending->first_sent};
+  if (sample.accepted() && !sample.route().empty()) answer.route = from_radio(sample.route().front());
   if (!sample.accepted() && worth_another(*pending, sample)) {
     pending->resting = true;
     pending->refusal = std::move(answer);

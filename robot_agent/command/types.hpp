@@ -10,6 +10,7 @@
 #include "core/wire/wire.hpp"
 #include "robot_agent/common/identity.hpp"
 #include "robot_agent/common/notice.hpp"
+#include "robot_agent/common/planned_route.hpp"
 
 /// What the command interface speaks, free of generated message types: robot_agent/radio/convert.cpp
 /// converts at the edge.
@@ -40,6 +41,7 @@ struct Answer {
   std::string text{};
   std::string holder{};
   Epoch epoch{};
+  std::optional<PlannedRoute> route{};  ///< of an accepted plan
   bool accepted() const { return reason == Reason::none; }
 };
 

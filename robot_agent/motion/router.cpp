@@ -67,7 +67,7 @@ void Router::find(std::shared_ptr<RouteQuery> query, Task done) {
       });
 }
 
-Result<std::string> describe(const nav::Route& route, const Pose2& T_map_odom) {
+Result<PlannedRoute> planned_route(const nav::Route& route, const Pose2& T_map_odom) {
   switch (route.status) {
     case nav::RouteStatus::found:
       break;
@@ -78,22 +78,14 @@ Result<std::string> describe(const nav::Route& route, const Pose2& T_map_odom) {
     case nav::RouteStatus::too_far:
       return {Reason::goal_unreachable, "too far: the search ended before it came there"};
   }
-  constexpr std::size_t most = 12;  // corners told
-  char text[64];
-  std::snprintf(text, sizeof text, "%.1f m", route.length);
-  std::string told = text;
-  if (route.attempt()) {
-    std::snprintf(text, sizeof text, ", %.1f m of it not seen yet", route.unknown_length);
-    told += text;
+  PlannedRoute planned{
+      .length = route.length, .unknown_length = route.unknown_length, .corners = route.points.size()};
+  for (const Eigen::Vector3d& point : route.points) {
+    if (planned.points.size() == PlannedRoute::kMaxCorners) break;
+    const Eigen::Vector2d corner = T_map_odom * Eigen::Vector2d(point.head<2>());
+    planned.points.push_back({corner.x(), corner.y(), point.z()});
   }
-  told += ": ";
-  for (std::size_t i = 1; i < route.points.size(); ++i) {
-    if (i > most) return told + " ...";
-    const Eigen::Vector2d corner = T_map_odom * Eigen::Vector2d(route.points[i].head<2>());
-    std::snprintf(text, sizeof text, "%s%.1f %.1f", i > 1 ? ", " : "", corner.x(), corner.y());
-    told += text;
-  }
-  return told;
+  return planned;
 }
 
 }  // namespace adit::agent

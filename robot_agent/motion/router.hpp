@@ -4,6 +4,7 @@
 
 #include "core/component/component.hpp"
 #include "nav/route/route_keeper.hpp"
+#include "robot_agent/common/planned_route.hpp"
 #include "robot_agent/motion/planner.hpp"
 
 namespace adit::agent {
@@ -65,8 +66,8 @@ class RouteService {
   virtual void find(std::shared_ptr<RouteQuery> query, Task done) = 0;
 };
 
-/// A route for people, its corners in the map frame; goal_unreachable, with why, when there is none.
+/// The route in the map frame, its first corners; goal_unreachable, with why, when there is none.
 /// `T_map_odom`: of the route's frame.
-Result<std::string> describe(const nav::Route& route, const Pose2& T_map_odom);
+Result<PlannedRoute> planned_route(const nav::Route& route, const Pose2& T_map_odom);
 
 }  // namespace adit::agent

@@ -127,6 +127,20 @@ radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot) 
   out.text(clipped(answer.text, kAnswerText));
   out.holder(answer.holder);
   out.epoch(to_radio(answer.epoch));
+  if (answer.route) out.route({to_radio(*answer.route)});
+  return out;
+}
+
+radio::PlannedRoute to_radio(const PlannedRoute& route) {
+  radio::PlannedRoute out;
+  out.length(static_cast<float>(route.length));
+  out.unknown_length(static_cast<float>(route.unknown_length));
+  out.corners(static_cast<std::uint16_t>(std::min<std::size_t>(route.corners, UINT16_MAX)));
+  for (const Eigen::Vector3d& corner : route.points) {
+    if (out.points().size() == 3 * PlannedRoute::kMaxCorners) break;
+    for (const double metres : {corner.x(), corner.y(), corner.z()})
+      out.points().push_back(static_cast<float>(metres));
+  }
   return out;
 }
 

@@ -31,6 +31,7 @@ Command from_radio(const radio::Command& in, const wire::ParticipantId& sender);
 StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sender);
 Peer from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender);
 
+radio::PlannedRoute to_radio(const PlannedRoute& route);
 radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot);
 radio::Notification to_radio(const Notice& notice, const std::string& robot);
 radio::AuthorityStatus to_radio(const CommandInterface& commands, const std::string& robot, Time now);

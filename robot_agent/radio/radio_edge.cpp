@@ -138,10 +138,13 @@ Result<void> RadioEdge::listen(Parts parts) {
                    if (!given || !given->accepted() || command.request.verb != command::verb("plan"))
                      return answer(given);
                    find_route(place_of(command.request),
-                              [answer, given = *given](const Result<std::string>& route) {
+                              [answer, given = *given](const Result<PlannedRoute>& route) {
                                 Answer told = given;
                                 told.reason = route ? Reason::none : route.reason();
-                                told.text = route ? *route : route.error().text;
+                                if (route)
+                                  told.route = *route;
+                                else
+                                  told.text = route.error().text;
                                 answer(told);
                               });
                  });

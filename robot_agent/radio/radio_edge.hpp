@@ -32,8 +32,8 @@ class RadioEdge {
     std::function<void(const std::function<void(CommandInterface&)>&)> commands;
     /// Runs what gives an answer once all that it tells of is on disk.
     std::function<void(Task)> settle{};
-    /// The way to a place (map frame, m), in words: `done` is called once, within half a second.
-    std::function<void(const Eigen::Vector3d& goal, std::function<void(const Result<std::string>&)> done)>
+    /// The route to a place (map frame, m): `done` is called once, within half a second.
+    std::function<void(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done)>
         find_route{};
     /// A station has these findings of ours on its disk.
     std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};

@@ -170,10 +170,16 @@ TEST_F(RoutedAgentTest, TellsTheWayToAnybodyAndStays) {
   const auto way = [&](double x, double y) {
     op1.answers.clear();
     EXPECT_EQ(bench.ask(op1, radio::CMD_PLAN, {}, x, y), Reason::none);
-    return op1.answers.empty() ? "" : op1.answers.back().text();
+    const bool planned = !op1.answers.empty() && op1.answers.back().route().size() == 1;
+    EXPECT_TRUE(planned);
+    return planned ? op1.answers.back().route().front() : radio::PlannedRoute();
   };
-  EXPECT_THAT(way(3.0, 0.0), testing::StartsWith("3.0 m"));
-  EXPECT_THAT(way(60.0, 0.0), testing::AllOf(HasSubstr("not seen yet: "), testing::EndsWith("60.0 0.0")));
+  EXPECT_NEAR(way(3.0, 0.0).length(), 3.0, 0.1);
+  const radio::PlannedRoute far = way(60.0, 0.0);
+  EXPECT_GT(far.unknown_length(), 10.0);
+  ASSERT_GE(far.points().size(), 6U);
+  EXPECT_EQ(far.points().size(), 3U * far.corners());
+  EXPECT_NEAR(far.points()[far.points().size() - 3], 60.0, 0.2);
   EXPECT_EQ(bench.ask(op1, radio::CMD_PLAN, {}, std::nan(""), 0.0), Reason::out_of_range);
   bench.run(1s);
   EXPECT_EQ(bench.command, Twist2{});

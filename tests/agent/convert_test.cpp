@@ -40,6 +40,21 @@ TEST(Convert, LongTextsFitTheirTopics) {
   EXPECT_LE(encoded(to_radio(std::vector<ComponentRow>(8, part), name)), wire::topics::health.max_bytes);
 }
 
+TEST(Convert, ARouteOfAnyLengthFitsItsTopic) {
+  const std::string name(32, 'n');
+  Answer answer{};
+  answer.station = answer.holder = name;
+  answer.route = PlannedRoute{.length = 120.5, .unknown_length = 3.0, .corners = 100'000, .points = {}};
+  answer.route->points.resize(40, {1.0, 2.0, 3.0});
+  const auto ack = to_radio(answer, name);
+  EXPECT_LE(encoded(ack), wire::topics::acknowledgement.max_bytes);
+  ASSERT_EQ(ack.route().size(), 1U);
+  EXPECT_EQ(ack.route()[0].points().size(), 3 * PlannedRoute::kMaxCorners);
+  EXPECT_EQ(ack.route()[0].corners(), 65535);
+  EXPECT_EQ(ack.route()[0].points()[5], 3.0F);
+  EXPECT_TRUE(to_radio(Answer{}, name).route().empty());
+}
+
 // A name that is cut must not become the valid name of another station.
 TEST(Convert, OverlongNamesAreBoundedAndStayInvalid) {
   radio::Command command;

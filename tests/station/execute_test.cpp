@@ -1,4 +1,6 @@
 // Command lines at a station: exit codes, texts, several robots.
+#include <cmath>
+
 #include "tests/station/fake_robot.hpp"
 
 namespace adit::station {
@@ -95,6 +97,43 @@ TEST_F(ExecuteTest, QueriesShowTheFleet) {
   const Outcome net = execute("net");
   EXPECT_THAT(net.text, HasSubstr("adit/presence"));
   EXPECT_GT(net.json["agents"][0]["total_out"].get<float>(), 0.0F);
+}
+
+TEST_F(ExecuteTest, PlanGivesTheRouteInPointsAndInWords) {
+  radio::PlannedRoute& route = robots_[0]->route.emplace();
+  route.length(12.5F);
+  route.unknown_length(4.0F);
+  route.corners(3);
+  route.points({0.0F, 0.0F, 0.0F, 3.0F, -1.0F, 0.5F, 12.0F, 0.5F, std::nanf("")});
+  const Outcome outcome = execute("plan r1 12 0.5");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.text, "r1: a route; 12.5 m, 4.0 m of it not seen yet: 3.0 -1.0, 12.0 0.5\n");
+  const nlohmann::json planned = outcome.json["results"][0]["route"];
+  EXPECT_EQ(planned["length"], 12.5);
+  EXPECT_EQ(planned["unknown_length"], 4.0);
+  EXPECT_EQ(planned["complete"], true);
+  ASSERT_EQ(planned["points"].size(), 3U);
+  EXPECT_EQ(planned["points"][1], nlohmann::json({3.0, -1.0, 0.5}));
+  EXPECT_EQ(nlohmann::json::parse(planned.dump())["points"][2][2], nullptr) << "a height that is not known";
+
+  route.corners(40);
+  EXPECT_EQ(execute("plan r1 12 0.5").json["results"][0]["route"]["complete"], false);
+  robots_[0]->answering = [](const radio::Command&) { return Reason::goal_unreachable; };
+  const Outcome refused = execute("plan r1 12 0.5");
+  EXPECT_EQ(refused.json["results"][0]["reason"], "goal_unreachable");
+  EXPECT_FALSE(refused.json["results"][0].contains("route"));
+}
+
+TEST_F(ExecuteTest, ARouteThatIsNoneIsNotShown) {
+  radio::PlannedRoute& route = robots_[0]->route.emplace();
+  for (const std::vector<float>& points :
+       {std::vector{1.0F, 2.0F}, std::vector{std::nanf(""), 2.0F, 0.0F}, std::vector{1.0F, INFINITY, 0.0F}}) {
+    route.points(points);
+    EXPECT_FALSE(execute("plan r1 1 2").json["results"][0].contains("route"));
+  }
+  route.points({});
+  route.length(std::nanf(""));
+  EXPECT_FALSE(execute("plan r1 1 2").json["results"][0].contains("route"));
 }
 
 TEST_F(ExecuteTest, RestartAndPolicyNameTheComponent) {

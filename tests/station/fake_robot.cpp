@@ -116,6 +116,7 @@ void FakeRobot::answer(const radio::Command& command) {
   sample.holder(holder);
   sample.epoch().start(epoch_start);
   sample.epoch().counter(epoch);
+  if (route && sample.accepted() && command.kind() == radio::CMD_PLAN) sample.route({*route});
   answered_[command.seq()] = sample;
   (void)answers_.write(sample);
   publish();

@@ -44,6 +44,7 @@ class FakeRobot {
   std::uint32_t epoch{1};
   radio::BehaviourState behaviour{};
   Answering answering{};
+  std::optional<radio::PlannedRoute> route{};  ///< its answer to `plan`
 
   /// Authority and behaviour as they are now.
   void publish();

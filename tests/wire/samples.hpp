@@ -58,6 +58,8 @@ inline std::vector<Example> examples() {
   acknowledgement.robot("r1");
   acknowledgement.station("op1");
   acknowledgement.text("locked by op2");
+  acknowledgement.route().resize(1);
+  acknowledgement.route()[0].points({1.0F, 2.0F, 0.0F});
   all.push_back(example(topics::acknowledgement, acknowledgement));
   radio::AuthorityStatus authority;
   authority.robot("r1");
