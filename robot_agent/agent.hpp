@@ -15,8 +15,7 @@
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
-#include "robot_agent/safeguard/battery_watch.hpp"
-#include "robot_agent/safeguard/link_loss.hpp"
+#include "robot_agent/safeguard/safeguard_params.hpp"
 
 namespace adit::nav {
 class Planner;
@@ -52,11 +51,9 @@ struct AgentParams {
   std::uint64_t
       boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known
   bool resume_after_restart{true};  ///< an autonomous mode goes on after a restart; false: hold, goal kept
-  LinkLossParams link_loss{};       ///< its `start` is the start pose above
   VelocityType velocity{};          ///< what the driver's /cmd_vel is
-  BatteryParams battery{};
-  bool return_at_last_battery{};  ///< back to the start when the charge passes the last threshold, else hold
-  std::size_t findings{512};      ///< kept at most, [1, 65536]
+  SafeguardParams safeguards{};
+  std::size_t findings{512};  ///< kept at most, [1, 65536]
   SupervisionParams supervision{};
   /// The agent's process is to end and to be started anew: a component could not be brought back. Called
   /// once, on a strand of the agent; empty: the agent stays as it is, with zero at the driver.

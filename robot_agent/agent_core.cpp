@@ -28,16 +28,6 @@ NavigationParams navigation_params(const AgentParams& params) {
   return n;
 }
 
-SafeguardParams safeguard_params(const AgentParams& params) {
-  SafeguardParams s{};
-  s.robot = params.name;
-  s.start = params.start;
-  s.link_loss = params.link_loss;
-  s.battery = params.battery;
-  s.return_at_last_battery = params.return_at_last_battery;
-  return s;
-}
-
 constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
@@ -58,7 +48,7 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
       notices_(params.name, *edges.notifier, log(), [this] { return commands_.authority().holder_name(); }),
-      safeguards_(safeguard_params(params),
+      safeguards_(params.safeguards, params.name, params.start,
                   {commands_.authority(), edges.peers, behaviour_, localisation_, notices_}),
       telemetry_({*edges.radio, *edges.wire, edges.rate, *edges.driver, *edges.watch, localisation_,
                   commands_, behaviour_}),
@@ -151,6 +141,11 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
   });
 }
 
+bool Agent::Core::same_boot() const {
+  const auto& snapshot = edges_.restored.snapshot;
+  return snapshot && snapshot->boot == params_.boot;
+}
+
 void Agent::Core::restore() {
   // Made anew within this process it goes on from what it gave last, else from what is on the disk.
   if (const auto& last = edges_.keeper->given()) edges_.restored = restored_from(*last);
@@ -162,11 +157,10 @@ void Agent::Core::restore() {
   // Without a pose to compare with, nobody knows whether the odometry is still the same. With one, the first
   // sample tells.
   const bool comparable = s.place && s.place->newest;
-  const bool resume =
-      params_.resume_after_restart && s.boot == params_.boot && comparable && !edges_.restored.hold;
+  const bool resume = params_.resume_after_restart && same_boot() && comparable && !edges_.restored.hold;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, edges_.instances == 1);
   // A copy of this robot's disk in another computer proves nothing.
-  if (edges_.instances == 1 && s.authority.holder && s.boot == params_.boot) edges_.namesakes.held_before();
+  if (edges_.instances == 1 && s.authority.holder && same_boot()) edges_.namesakes.held_before();
   safeguards_.restore(s.battery, started_);
 }
 
@@ -180,8 +174,7 @@ Result<void> Agent::Core::on_start() {
   if (edges_.instances == 1)
     edges_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion, behaviour_.table());
   behaviour_.tick(now());
-  notices_.restored(edges_.restored,
-                    edges_.restored.snapshot && edges_.restored.snapshot->boot == params_.boot);
+  notices_.restored(edges_.restored, same_boot());
   if (const std::string& why = behaviour_.tree_refusal(); !why.empty()) notices_.tree_refused(why);
   keep();
   telemetry_.start(now(), started_);

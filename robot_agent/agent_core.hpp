@@ -82,6 +82,8 @@ class Agent::Core : public Component {
  private:
   /// The last known safe state, before anything is sent or heard.
   void restore();
+  /// What was restored is of this computer's present start.
+  bool same_boot() const;
   void beat();
   void listen_first(Time at);
   void watch_driver();

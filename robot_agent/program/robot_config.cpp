@@ -63,7 +63,7 @@ void read_link_loss(const config::Node& node, LinkLossParams& loss) {
   loss.after = from_seconds(node.number("link_loss_after", config::within(1.0, 3600.0), seconds(loss.after)));
 }
 
-void read_battery(const config::Node& node, RobotConfig& c) {
+void read_battery(const config::Node& node, SafeguardParams& c) {
   const auto battery = node.child_if("battery");
   if (!battery.present()) return;
   c.battery.warning = battery.number("warning", config::within(0.0, 1.0), c.battery.warning);
@@ -136,8 +136,8 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
   if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
   if (node.has("tree")) c.tree = find_tree(node.text("tree"), file);
-  read_link_loss(node, c.link_loss);
-  read_battery(node, c);
+  read_link_loss(node, c.safeguards.link_loss);
+  read_battery(node, c.safeguards);
   if (node.has("after_restart")) {
     const std::string after = node.text("after_restart");
     c.resume_after_restart = after == "resume";
@@ -154,10 +154,8 @@ AgentParams agent_params(const RobotConfig& config) {
   params.start_height = config.start_height.value_or(0.0);
   params.lock_lease = config.lock_lease;
   params.tree = config.tree;
-  params.link_loss = config.link_loss;
-  params.battery = config.battery;
+  params.safeguards = config.safeguards;
   params.velocity = config.velocity;
-  params.return_at_last_battery = config.return_at_last_battery;
   params.resume_after_restart = config.resume_after_restart;
   return params;
 }

@@ -9,8 +9,7 @@
 #include "core/result/result.hpp"
 #include "core/wire/fastdds/fastdds_wire.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
-#include "robot_agent/safeguard/battery_watch.hpp"
-#include "robot_agent/safeguard/link_loss.hpp"
+#include "robot_agent/safeguard/safeguard_params.hpp"
 
 namespace adit::config {
 class Node;
@@ -42,9 +41,7 @@ struct RobotConfig {
   std::string state{};              ///< folder of what survives a restart; empty: the usual one; "none"
   bool resume_after_restart{true};  ///< `after_restart: resume`, else `hold`
   double memory_limit{0.0};         ///< MB that the agent may use, [0, 1e6]; 0: no limit
-  LinkLossParams link_loss{};
-  BatteryParams battery{};
-  bool return_at_last_battery{};  ///< `battery.at_last: return`, else `hold`
+  SafeguardParams safeguards{};
   LogLevel log{LogLevel::info};
   std::string record{};  ///< folder of recordings, "none"; empty: below the state folder
 };

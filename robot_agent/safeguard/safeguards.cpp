@@ -12,18 +12,19 @@ std::string place_text(const Eigen::Vector2d& place) {
   return std::to_string(std::lround(place.x())) + " " + std::to_string(std::lround(place.y()));
 }
 
-LinkLossParams link_loss_params(const SafeguardParams& params) {
-  LinkLossParams l = params.link_loss;
-  l.start = {params.start.x, params.start.y};
-  return l;
+LinkLossParams starting_at(const Pose2& start, LinkLossParams params) {
+  params.start = {start.x, start.y};
+  return params;
 }
 
 }  // namespace
 
-Safeguards::Safeguards(SafeguardParams params, const Parts& parts)
-    : params_(std::move(params)),
+Safeguards::Safeguards(SafeguardParams params, std::string robot, const Pose2& start, const Parts& parts)
+    : params_(params),
+      robot_(std::move(robot)),
+      start_(start),
       parts_(parts),
-      link_loss_(link_loss_params(params_)),
+      link_loss_(starting_at(start, params.link_loss)),
       battery_watch_(params_.battery) {}
 
 void Safeguards::restore(std::uint8_t kept, Time now) {
@@ -59,19 +60,19 @@ void Safeguards::watch_link(Time now) {
                          Severity::warning,
                          "link_lost",
                          Reason::no_answer,
-                         params_.robot + " has not heard " + holder + " for " +
+                         robot_ + " has not heard " + holder + " for " +
                              std::to_string(std::lround(seconds(step.silence))) + " s"});
   if (step.found)
     parts_.notices.send(
-        {{}, Severity::info, "link_back", Reason::none, params_.robot + " hears " + holder + " again"});
+        {{}, Severity::info, "link_back", Reason::none, robot_ + " hears " + holder + " again"});
   if (step.hold) {
     parts_.behaviour.hold(Reason::no_answer, now);
-    parts_.notices.send({{},
-                         Severity::warning,
-                         "mode_changed",
-                         Reason::no_answer,
-                         params_.robot + " holds until it hears " + holder +
-                             " again and is told to go on; its goal is kept"});
+    parts_.notices.send(
+        {{},
+         Severity::warning,
+         "mode_changed",
+         Reason::no_answer,
+         robot_ + " holds until it hears " + holder + " again and is told to go on; its goal is kept"});
   }
   if (step.go_to && !go_back(*step.go_to, "its holder is not heard", now)) link_loss_.refused(now);
 }
@@ -83,7 +84,7 @@ Result<void> Safeguards::go_back(const Eigen::Vector2d& place, const std::string
                          Severity::warning,
                          "returning",
                          Reason::none,
-                         params_.robot + " goes back to " + place_text(place) + ": " + why});
+                         robot_ + " goes back to " + place_text(place) + ": " + why});
   return asked;
 }
 
@@ -94,7 +95,7 @@ void Safeguards::watch_return(Time now) {
                                  .nearly_empty = battery_watch_.level() == BatteryLevel::last,
                                  .requests = behaviour.holder_requests()};
   if (!battery_return_.due(in, now)) return;
-  const Eigen::Vector2d start(params_.start.x, params_.start.y);
+  const Eigen::Vector2d start(start_.x, start_.y);
   const auto asked = go_back(start, "its battery is nearly empty", now);
   if (asked) return battery_return_.accepted();
   if (!battery_return_.refused(asked.reason(), now)) return;
@@ -102,8 +103,8 @@ void Safeguards::watch_return(Time now) {
                        Severity::error,
                        "return_refused",
                        asked.reason(),
-                       params_.robot + " cannot go back to " + place_text(start) + " yet (" +
-                           asked.error().text + "); it tries again until you request something else"});
+                       robot_ + " cannot go back to " + place_text(start) + " yet (" + asked.error().text +
+                           "); it tries again until you request something else"});
 }
 
 void Safeguards::battery(float charge, Time now) {
@@ -120,7 +121,7 @@ void Safeguards::battery_fell(BatteryLevel level, Time now) {
        level == BatteryLevel::last ? Severity::error : Severity::warning,
        code,
        Reason::none,
-       params_.robot + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left"});
+       robot_ + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left"});
   // An operator who drives by hand sees it, and decides.
   if (level != BatteryLevel::last || !parts_.behaviour.mode().autonomous()) return;
   if (params_.return_at_last_battery) {
@@ -132,7 +133,7 @@ void Safeguards::battery_fell(BatteryLevel level, Time now) {
                        Severity::warning,
                        "mode_changed",
                        Reason::none,
-                       params_.robot + " holds: its battery is nearly empty; its goal is kept"});
+                       robot_ + " holds: its battery is nearly empty; its goal is kept"});
 }
 
 }  // namespace adit::agent

@@ -8,18 +8,9 @@
 #include "robot_agent/motion/localisation.hpp"
 #include "robot_agent/notices/notices.hpp"
 #include "robot_agent/safeguard/battery_return.hpp"
-#include "robot_agent/safeguard/battery_watch.hpp"
-#include "robot_agent/safeguard/link_loss.hpp"
+#include "robot_agent/safeguard/safeguard_params.hpp"
 
 namespace adit::agent {
-
-struct SafeguardParams {
-  std::string robot{};
-  Pose2 start{};  ///< Start pose, map frame.
-  LinkLossParams link_loss{};
-  BatteryParams battery{};
-  bool return_at_last_battery{};  ///< At the last threshold: true drives back to the start, false holds.
-};
 
 /// Acts without an operator when the link to the holder is lost or the battery is nearly empty (rule 9).
 /// Only autonomous modes are changed. Runs on the command strand.
@@ -34,7 +25,8 @@ class Safeguards {
     const Notices& notices;
   };
 
-  Safeguards(SafeguardParams params, const Parts& parts);
+  /// `robot`: its name. `start`: its start pose, map frame.
+  Safeguards(SafeguardParams params, std::string robot, const Pose2& start, const Parts& parts);
 
   /// After a restart, what kept() gave.
   void restore(std::uint8_t kept, Time now);
@@ -56,6 +48,8 @@ class Safeguards {
   Result<void> go_back(const Eigen::Vector2d& place, const std::string& why, Time now);
 
   SafeguardParams params_;
+  std::string robot_;
+  Pose2 start_;
   Parts parts_;
   LinkLoss link_loss_;
   BatteryWatch battery_watch_;

@@ -25,8 +25,8 @@ class Safeguards : public testing::Test {
   }
   static AgentParams with(OnLoss action) {
     AgentParams params;
-    params.link_loss.action = action;
-    params.link_loss.after = 5s;
+    params.safeguards.link_loss.action = action;
+    params.safeguards.link_loss.after = 5s;
     return params;
   }
   void go(double x) {
@@ -162,7 +162,7 @@ TEST_F(Batteries, TheLastOneHolds) {
 
 TEST_F(Batteries, TheLastOneReturnsWhereThatIsWanted) {
   AgentParams params;
-  params.return_at_last_battery = true;
+  params.safeguards.return_at_last_battery = true;
   begin(params);
   go(60);
   charge(0.05F);
@@ -176,7 +176,7 @@ class RefusedReturn : public Batteries {
   /// The lidar is silent when the charge passes the last threshold: the return is refused.
   void SetUp() override {
     AgentParams params;
-    params.return_at_last_battery = true;
+    params.safeguards.return_at_last_battery = true;
     begin(params);
     go(60);
     bench->lidar_alive = false;

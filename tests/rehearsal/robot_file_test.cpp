@@ -52,10 +52,10 @@ TEST_F(RobotFiles, GiveEverythingThatTheScenarioDoesNotSay) {
   EXPECT_DOUBLE_EQ(r.settings.start.yaw, 0.5);
   EXPECT_EQ(r.settings.velocity, agent::VelocityType::twist_stamped);
   EXPECT_EQ(r.settings.lock_lease, Duration(20s));
-  EXPECT_EQ(r.settings.link_loss.action, agent::OnLoss::back);
-  EXPECT_EQ(r.settings.link_loss.after, Duration(4s));
-  EXPECT_DOUBLE_EQ(r.settings.battery.low, 0.4);
-  EXPECT_TRUE(r.settings.return_at_last_battery);
+  EXPECT_EQ(r.settings.safeguards.link_loss.action, agent::OnLoss::back);
+  EXPECT_EQ(r.settings.safeguards.link_loss.after, Duration(4s));
+  EXPECT_DOUBLE_EQ(r.settings.safeguards.battery.low, 0.4);
+  EXPECT_TRUE(r.settings.safeguards.return_at_last_battery);
   EXPECT_FALSE(r.settings.resume_after_restart);
   EXPECT_EQ(r.settings.start_height, 5.0);
 }
@@ -82,9 +82,9 @@ TEST_F(RobotFiles, TheScenariosKeysGoBeforeTheFiles) {
   EXPECT_DOUBLE_EQ(r.settings.start.x, 0.0);
   EXPECT_TRUE(r.settings.resume_after_restart);
   EXPECT_EQ(r.settings.velocity, agent::VelocityType::twist);
-  EXPECT_DOUBLE_EQ(r.settings.battery.warning, 0.5);
-  EXPECT_DOUBLE_EQ(r.settings.battery.low, 0.35);
-  EXPECT_TRUE(r.settings.return_at_last_battery);
+  EXPECT_DOUBLE_EQ(r.settings.safeguards.battery.warning, 0.5);
+  EXPECT_DOUBLE_EQ(r.settings.safeguards.battery.low, 0.35);
+  EXPECT_TRUE(r.settings.safeguards.return_at_last_battery);
   const DriverParams driver = make_driver_params(r);
   EXPECT_DOUBLE_EQ(driver.charge, 0.6);
   EXPECT_DOUBLE_EQ(driver.drain, 0.01);

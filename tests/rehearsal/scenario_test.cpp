@@ -51,10 +51,10 @@ TEST(Scenario, ReadsWhatRobotsFindAndDoByThemselves) {
   EXPECT_EQ(find.robot, "r2");
   EXPECT_EQ(find.importance, 7);
   EXPECT_EQ(to_yaml(s->faults[0]), "{at: 20.000, finds: \"a rope\", robot: r2, importance: 7}");
-  EXPECT_EQ(s->robots[0].settings.link_loss.action, agent::OnLoss::go_on);
-  EXPECT_EQ(s->robots[0].settings.link_loss.after, Duration(10s));
-  EXPECT_EQ(s->robots[1].settings.link_loss.action, agent::OnLoss::back);
-  EXPECT_EQ(s->robots[1].settings.link_loss.after, Duration(4s));
+  EXPECT_EQ(s->robots[0].settings.safeguards.link_loss.action, agent::OnLoss::go_on);
+  EXPECT_EQ(s->robots[0].settings.safeguards.link_loss.after, Duration(10s));
+  EXPECT_EQ(s->robots[1].settings.safeguards.link_loss.action, agent::OnLoss::back);
+  EXPECT_EQ(s->robots[1].settings.safeguards.link_loss.after, Duration(4s));
   const auto& expected = std::get<FindingsExpectation>(s->expectations[1].what);
   EXPECT_EQ(expected.by, "op2");
   EXPECT_EQ(expected.findings, 3u);
