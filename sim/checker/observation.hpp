@@ -117,6 +117,12 @@ struct AckSent {
   std::uint64_t start{};
   std::uint32_t counter{};
 };
+/// Another robot of the same name answered a command.
+struct NamesakeAnswered {
+  StationId id{};
+  std::uint64_t seq{};
+  bool accepted{};
+};
 struct AuthoritySent {
   Authority authority{};
   std::vector<Latch> stops{};
@@ -154,7 +160,7 @@ struct ClockJumped {
 using Event =
     std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent, AuthoritySent,
                  BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion, ClockJumped,
-                 ComponentFaulted, DiskChanged, ScanHeard, ProgramHeard, OdometryHeard>;
+                 ComponentFaulted, DiskChanged, ScanHeard, ProgramHeard, OdometryHeard, NamesakeAnswered>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

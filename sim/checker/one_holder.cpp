@@ -12,10 +12,16 @@ bool needs_holder(Verb verb) {
 }
 
 /// Rule 1: a command counts only with the holder's identity, the current epoch and a new sequence number;
-/// every change of holder raises the epoch; a repeat gets its first answer again.
+/// every change of holder raises the epoch; a repeat gets its first answer again. Of two robots of one name
+/// one obeys.
 class OneHolder : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+    if (const auto* command = std::get_if<CommandHeard>(&event)) see_command(*command);
+    if (const auto* other = std::get_if<NamesakeAnswered>(&event); other && other->accepted)
+      obey(other->id, other->seq, Obeyed::other, broken);
+    if (const auto* ack = std::get_if<AckSent>(&event); ack && ack->accepted)
+      obey(ack->id, ack->seq, Obeyed::own, broken);
     if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
     if (const auto* status = std::get_if<AuthoritySent>(&event); status && !robot.ahead_of_answer(*status))
       see_status(robot, status->authority, broken);
@@ -23,6 +29,28 @@ class OneHolder : public Rule {
   }
 
  private:
+  enum class Obeyed { nobody, own, other, both };
+
+  // A station that was started again counts from 1 anew.
+  void see_command(const CommandHeard& command) {
+    if (!needs_holder(command.verb) && command.verb != Verb::take) return;
+    auto& [from, by] = obeyed_[{command.id, command.seq}];
+    if (from != command.from) by = Obeyed::nobody;
+    from = command.from;
+  }
+
+  void obey(const StationId& station, std::uint64_t seq, Obeyed by, const Report& broken) {
+    const auto command = obeyed_.find({station, seq});
+    if (command == obeyed_.end()) return;
+    Obeyed& before = command->second.second;
+    if (before == by || before == Obeyed::both) return;
+    if (before != Obeyed::nobody) {
+      broken("command " + std::to_string(seq) + " was obeyed by another robot of its name, too");
+      by = Obeyed::both;
+    }
+    before = by;
+  }
+
   void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
     if (ack.seq == 0) return;
     const RobotModel::Pending* pending = robot.answered_by(ack);
@@ -105,6 +133,8 @@ class OneHolder : public Rule {
     if (!robot.in_mode("manual") && !robot.in_mode("smart_joystick")) return;
     broken("moved by a joystick sample it must not obey: " + forbidden->first);
   }
+
+  std::map<std::pair<StationId, std::uint64_t>, std::pair<wire::ParticipantId, Obeyed>> obeyed_{};
 };
 
 }  // namespace

@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <set>
 
+#include "adit/discovery.h"
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
 #include "sim/defects/decorations.hpp"
 #include "sim/defects/numbered_interceptor.hpp"
 
@@ -139,6 +142,26 @@ class KindByPosition final : public RadioInterceptor {
   }
 };
 
+/// Does not hear other robots of its own name.
+class IgnoresNamesakes final : public Interceptor {
+ public:
+  explicit IgnoresNamesakes(std::string name) : name_(std::move(name)) {}
+  std::vector<Arrival> received(Arrival arrival) override {
+    const std::string_view topic = arrival.topic->name;
+    if (topic == wire::topics::presence.name && is_namesake<radio::Presence>(arrival)) return {};
+    if (topic == wire::topics::capabilities.name && is_namesake<radio::Capabilities>(arrival)) return {};
+    return Interceptor::received(std::move(arrival));
+  }
+
+ private:
+  template <class T>
+  bool is_namesake(const Arrival& arrival) const {
+    T sample;
+    return wire::decode(arrival.cdr, sample) && sample.kind() == radio::AGENT_ROBOT && sample.name() == name_;
+  }
+  std::string name_;
+};
+
 /// A centred sample arrives before each request for a manual mode. Numbers of samples are doubled, so that it
 /// fits between two of them.
 class EnterOffCentre final : public RadioInterceptor {
@@ -188,6 +211,11 @@ Decoration stop_needs_holder(const Subject& s) { return on_wires<StopNeedsHolder
 Decoration joystick_clears_stop(const Subject& s) { return on_wires<JoystickClearsStop>(s); }
 Decoration move_on_reset(const Subject& s) { return on_wires<MoveOnReset>(s); }
 Decoration enter_off_centre(const Subject& s) { return on_wires<EnterOffCentre>(s); }
+Decoration both_namesakes_obey(const Subject& s) {
+  Decoration decoration;
+  decoration.wires = std::make_unique<IgnoresNamesakes>(s.robot);
+  return decoration;
+}
 Decoration kind_by_position(const Subject& s) { return on_wires<KindByPosition>(s); }
 
 }  // namespace decorations

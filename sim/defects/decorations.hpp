@@ -14,6 +14,7 @@ Decoration stop_needs_holder(const Subject& subject);
 Decoration joystick_clears_stop(const Subject& subject);
 Decoration move_on_reset(const Subject& subject);
 Decoration enter_off_centre(const Subject& subject);
+Decoration both_namesakes_obey(const Subject& subject);
 Decoration kind_by_position(const Subject& subject);
 Decoration accept_stale_joystick(const Subject& subject);
 
@@ -26,6 +27,7 @@ Decoration manual_survives_handover(const Subject& subject);
 // Of what its sensors tell.
 Decoration age_at_handling(const Subject& subject);
 Decoration odometry_jump_accepted(const Subject& subject);
+Decoration return_forgotten(const Subject& subject);
 
 // Of what survives a restart.
 Decoration epoch_kept_at_restart(const Subject& subject);

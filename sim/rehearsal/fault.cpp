@@ -88,6 +88,9 @@ std::pair<const char*, std::string> parts(const Fault& fault) {
           [](const OdometryReset& f) {
             return Parts{"odometry_reset", f.robot};
           },
+          [](const Twin& f) {
+            return Parts{"twin", f.robot + window(f.duration)};
+          },
       },
       fault.what);
 }

@@ -95,11 +95,17 @@ struct Steer {
 struct OdometryReset {
   std::string robot{};
 };
+/// A second computer with the name of that robot comes on the air: an agent with a disk of its own and no
+/// driver.
+struct Twin {
+  std::string robot{};
+  Duration duration{};
+};
 
 struct Fault {
   Duration at{};
   std::variant<Crash, Hang, CutLink, DegradeLink, Partition, Reorder, Duplicate, ClockJump, SensorSilent,
-               StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset>
+               StuckDrive, DiskFull, Forge, StuckStick, Find, Steer, OdometryReset, Twin>
       what{};
 };
 

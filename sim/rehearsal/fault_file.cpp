@@ -149,8 +149,9 @@ void read_link_fault(const Node& fault, const std::string& kind, const Scenario&
 
 Fault read_fault(const Node& node, const Scenario& scenario) {
   static const std::vector<std::string> kinds{
-      "crash",         "hang",  "cut",       "degrade", "partition", "reorder", "duplicate",     "clock_jump",
-      "sensor_silent", "stuck", "disk_full", "forge",   "finds",     "steers",  "odometry_reset"};
+      "crash",          "hang",          "cut",   "degrade",   "partition", "reorder", "duplicate",
+      "clock_jump",     "sensor_silent", "stuck", "disk_full", "forge",     "finds",   "steers",
+      "odometry_reset", "twin"};
   Fault fault;
   fault.at = read_time(node, "at", scenario);
   std::string kind, all;
@@ -188,6 +189,8 @@ Fault read_fault(const Node& node, const Scenario& scenario) {
     fault.what = read_steer(node, scenario);
   } else if (kind == "odometry_reset") {
     fault.what = OdometryReset{read_robot(node, "odometry_reset", scenario)};
+  } else if (kind == "twin") {
+    fault.what = Twin{read_robot(node, "twin", scenario), read_length(node)};
   } else {
     read_link_fault(node, kind, scenario, fault);
   }

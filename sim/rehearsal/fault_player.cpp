@@ -117,6 +117,8 @@ void FaultPlayer::play(const OdometryReset& fault) {
   stage_.simulation.reset_odometry(stage_.simulation.find(fault.robot).value());
 }
 
+void FaultPlayer::play(const Twin& fault) { note(robots_.at(fault.robot)->add_twin(fault.duration)); }
+
 void FaultPlayer::play(const Find& find) {
   const Eigen::Vector3d place =
       stage_.simulation.truth(stage_.simulation.find(find.robot).value()).pose.position;

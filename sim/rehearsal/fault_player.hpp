@@ -41,6 +41,7 @@ class FaultPlayer {
   void play(const Find& find);
   void play(const Steer& steer);
   void play(const OdometryReset& fault);
+  void play(const Twin& fault);
   void disturb(wire::Disturbance disturbance, Duration duration);
   void later(Duration duration, Task task);
   void note(Result<void> result);

@@ -22,6 +22,7 @@ constexpr Duration parent_notices{20ms};
 constexpr Duration zero_period{50ms};
 constexpr Duration restart_after{500ms};
 constexpr std::uint32_t first_robot_domain = 101;
+constexpr std::uint32_t first_twin_domain = 10001;
 
 }  // namespace
 
@@ -154,6 +155,30 @@ Result<void> RobotMachine::steer(const Twist2& velocity, Duration duration) {
   program_ = std::move(program);
   stage_.scheduler.at(stage_.scheduler.elapsed() + duration, [this, p = program_.get()] {
     if (program_.get() == p) program_.reset();
+  });
+  return {};
+}
+
+Result<void> RobotMachine::add_twin(Duration duration) {
+  const std::string machine = Witness::twin_machine(spec_.id);
+  const std::uint32_t domain = first_twin_domain + static_cast<std::uint32_t>(index_);
+  auto twin = std::make_unique<Agent>();
+  twin->runtime = stage_.scheduler.machine(machine, clock_offset_ + 1h);
+  twin->radio = stage_.ether.join(Witness::radio_domain, machine);
+  twin->robot = stage_.ether.join(domain, machine);
+  auto program = stage_.make_agent({spec_,
+                                    stage_.simulation.platform(index_),
+                                    random_.next(),
+                                    *twin->runtime,
+                                    *twin->radio,
+                                    *twin->robot,
+                                    std::make_shared<store::MemoryDisk>(random_.next()),
+                                    {}});
+  if (!program) return program.error();
+  twin->program = std::move(*program);
+  twin_ = std::move(twin);
+  stage_.scheduler.at(stage_.scheduler.elapsed() + duration, [this, t = twin_.get()] {
+    if (twin_.get() == t) twin_.reset();
   });
   return {};
 }

@@ -39,6 +39,8 @@ class RobotMachine {
   Result<void> find(findings::Finding finding);
   /// A program beside the agent writes that velocity (body frame) for mode `external`, 20 times a second.
   Result<void> steer(const Twist2& velocity, Duration duration);
+  /// A second agent with this robot's name, on a computer of its own without a driver.
+  Result<void> add_twin(Duration duration);
   /// The computer's clock goes on by so much at once.
   void jump_clock(Duration by);
   void silence(Sensor sensor, bool silent) { driver_->silence(sensor, silent); }
@@ -69,6 +71,7 @@ class RobotMachine {
   std::unique_ptr<Parent> parent_{};
   std::unique_ptr<Agent> agent_{};
   std::unique_ptr<Program> program_{};
+  std::unique_ptr<Agent> twin_{};
   Result<void> health_{};
 };
 

@@ -60,6 +60,7 @@ void Witness::sent(const wire::Frame& frame) {
     if (asked_.try_emplace({asked->robot, command.id, command.seq}, entry).second) ++commands_.sent;
     return;
   }
+  if (of_twin(frame)) return;
   const std::string robot = robot_of(frame.from_name);
   if (robot.empty()) return;
   const auto decoded = decode_sent(frame.topic, frame.type, frame.bytes);
@@ -87,6 +88,16 @@ void Witness::sent(const wire::Frame& frame) {
     note(robot, frame.at, "no way to its goal");
   if (const auto* ack = std::get_if<AckSent>(&decoded->event)) count(robot, *ack);
   checker_.observe(robot, frame.at, decoded->event);
+}
+
+bool Witness::of_twin(const wire::Frame& frame) {
+  const std::string robot(frame.from_name.substr(0, frame.from_name.find('/')));
+  if (frame.from_name != twin_machine(robot)) return false;
+  const auto decoded = decode_sent(frame.topic, frame.type, frame.bytes);
+  if (!decoded || !words_.contains(robot)) return true;
+  if (const auto* answer = std::get_if<AckSent>(&decoded->event))
+    checker_.observe(robot, frame.at, NamesakeAnswered{answer->id, answer->seq, answer->accepted});
+  return true;
 }
 
 void Witness::count(const std::string& robot, const AckSent& ack) {

@@ -38,6 +38,8 @@ class Witness {
   /// The machine that runs a robot's driver; its parent's is `ROBOT/parent`.
   static std::string driver_machine(const std::string& robot) { return robot + "/driver"; }
   static std::string parent_machine(const std::string& robot) { return robot + "/parent"; }
+  /// A second computer with the robot's name.
+  static std::string twin_machine(const std::string& robot) { return robot + "/twin"; }
 
   /// The robot's driver obeys a /cmd_vel of that type alone; others are no word to it.
   void obeys(const std::string& robot, agent::VelocityType type);
@@ -64,6 +66,8 @@ class Witness {
  private:
   void sent(const wire::Frame& frame);
   void delivered(const wire::Frame& frame);
+  /// Whether the frame is of a twin; what that answered is observed.
+  bool of_twin(const wire::Frame& frame);
   void count(const std::string& robot, const AckSent& ack);
   void note(const std::string& robot, Duration at, std::string text);
   /// The robot whose agent or parent runs on that machine; empty: none.

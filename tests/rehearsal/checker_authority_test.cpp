@@ -219,6 +219,26 @@ TEST(CheckerAuthority, StreamAnsweredMoreThanOnceASecond) {
   EXPECT_THAT(r.broken(), ElementsAre(3)) << r.texts();
 }
 
+TEST(CheckerAuthority, ANamesakeThatObeysTheSameCommand) {
+  Record r;
+  r.take(1);
+  const CommandHeard lock = r.ask(1, Verb::lock);
+  r.see(NamesakeAnswered{lock.id, lock.seq, false});
+  r.authority.locked = true;
+  r.answer(lock);
+  r.publish();
+  const CommandHeard stop = r.ask(1, Verb::stop);
+  r.answer(stop);
+  r.see(NamesakeAnswered{stop.id, stop.seq, true});
+  r.stops = {{"op1", station_id(1)}};
+  r.publish();
+  r.behave("hold", true);
+  EXPECT_THAT(r.broken(), ElementsAre()) << r.texts();
+  r.pass(20ms);
+  r.see(NamesakeAnswered{lock.id, lock.seq, true});
+  EXPECT_THAT(r.broken(), ElementsAre(1)) << r.texts();
+}
+
 TEST(CheckerAuthority, ARestartOrAPolicyOfWhoDoesNotHoldIt) {
   for (const Verb verb : {Verb::restart, Verb::policy}) {
     Record r;

@@ -56,6 +56,8 @@ const std::vector<Broken>& table() {
       {"accept_stale_joystick", 1, 1, drive,
        "faults:\n  - {at: 4, degrade: [op1, r1], loss: 0, delay: 0.4, for: 6}\n"},
       {"epoch_kept_at_restart", 1, 1, "", crash},
+      {"both_namesakes_obey", 1, 1, "  - {at: 6, by: op2, do: take r1}\n",
+       "faults:\n  - {at: 3, twin: r1, for: 6}\n"},
       {"kind_by_position", 2, 1, lock},
       {"ignore_lock", 2, 1, "  - {at: 3, by: op1, do: lock r1}\n  - {at: 5, by: op2, do: take r1}\n"},
       {"silent_refusal", 3, 1, "  - {at: 5, by: op2, do: lock r1}\n"},
@@ -89,6 +91,11 @@ const std::vector<Broken>& table() {
        "faults:\n  - {at: 2.5, cut: [op1, r1], for: 3}\n  - {at: 2.5, cut: [op2, r1], for: 3}\n"
        "  - {at: 3, finds: person, robot: r1}\n  - {at: 4, crash: r1}\n"
        "expect:\n  - {at: 9.9, by_operator: op1, findings: 1}\n"},
+      // The lidar is silent when the charge passes the last threshold: a return is refused then.
+      {"return_forgotten", 0, 1, "  - {at: 2, by: op1, do: goto r1 1.5 0}\n",
+       "faults:\n  - {at: 3.2, sensor_silent: r1, sensor: lidar, for: 1.5}\n"
+       "expect:\n  - {at: 9.9, robot: r1, near: [0, 0, 0.6]}\n",
+       ", battery: {warning: 0.57, low: 0.55, last: 0.5, at_last: return, charge: 0.58, drain: 0.02}"},
   };
   return all;
 }

@@ -167,7 +167,8 @@ TEST(Scenario, EveryFaultIsWrittenAsItIsRead) {
       "{at: 14.000, disk_full: r1, for: 2.000}",
       "{at: 15.000, forge: [op1, r1], for: 2.000}",
       "{at: 16.000, steers: r1, velocity: [0.500, 0.000, -0.250], for: 2.000}",
-      "{at: 17.000, odometry_reset: r1}"};
+      "{at: 17.000, odometry_reset: r1}",
+      "{at: 18.000, twin: r1, for: 2.000}"};
   std::string all;
   for (const std::string& fault : faults) all += "  - " + fault + "\n";
   const auto s = parse_scenario(with("  - {at: 20, crash: r1}\n", all), "b.yaml");
@@ -249,6 +250,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"stuck_three", "crash: r1", "stuck: [op1, r1, r2], for: 3", 15, "[BASESTATION, ROBOT]"},
         Bad{"steers_nothing", "crash: r1", "steers: op1, velocity: [1, 0, 0], for: 3", 15, "op1"},
         Bad{"steers_nowhere", "crash: r1", "steers: r1, velocity: [1, 0], for: 3", 15, "3"},
+        Bad{"twin_of_a_station", "crash: r1", "twin: op1, for: 3", 15, "op1"},
         Bad{"odometry_of_a_station", "crash: r1", "odometry_reset: op1", 15, "op1"},
         Bad{"full_disk_of_a_station", "crash: r1", "disk_full: op1, for: 3", 15, "op1"},
         Bad{"find_by_nobody", "crash: r1", "finds: artifact", 15, "robot"},
