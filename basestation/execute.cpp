@@ -122,6 +122,12 @@ void Station::Impl::run(std::uint64_t handle, const Request& request, Done done)
 
 void Station::Impl::answer_query(const Request& request, const Done& done) {
   if (request.verb == verb("findings")) {  // what is here stays here when its robot is gone
+    for (const std::string& robot : request.robots) {
+      const auto& all = desk_.all();
+      const bool found =
+          std::any_of(all.begin(), all.end(), [&](const auto& entry) { return entry.first.robot == robot; });
+      if (!found && !fleet_.robot(robot)) return done(unknown_robot(request, fleet_, robot));
+    }
     Outcome outcome{.json = json_of(request, 0)};
     outcome.text = findings_text(desk_, fleet_, request.robots);
     outcome.json["findings"] = findings_json(desk_, fleet_, request.robots);
@@ -142,7 +148,8 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
     outcome.json.update(robot_json(fleet_, *selection.front(), at));
   } else if (request.verb == verb("status")) {
     const Counts& c = sender_.counts();
-    outcome.text = "station " + params_.name + " on " + params_.link + ", up " +
+    outcome.text = "station " + params_.name +
+                   (params_.link.empty() ? ", no link profile" : " on " + params_.link) + ", up " +
                    fixed(seconds(at - started_), 0) + " s; commands " + std::to_string(c.sent) + " sent, " +
                    std::to_string(c.accepted) + " accepted, " + std::to_string(c.refused) + " refused, " +
                    std::to_string(c.unanswered) + " unanswered\n" + list_text(fleet_, at);
@@ -170,10 +177,9 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
       for (const auto& [robot_name, robot] : fleet_.robots()) selection.push_back(&robot);
     outcome.json["robots"] = nlohmann::json::array();
     for (const RobotView* robot : selection) {
-      outcome.text += health_text(*robot);
       outcome.json["robots"].push_back(health_json(*robot));
     }
-    if (selection.empty()) outcome.text = "no robot has been heard\n";
+    outcome.text = selection.empty() ? "no robot has been heard\n" : health_text(selection);
   }
   done(outcome);
 }
@@ -230,6 +236,7 @@ void Station::Impl::finish_stop_all() {
 void Station::Impl::gathered(const std::shared_ptr<Gather>& gather, std::size_t index, const Answer& answer) {
   gather->answers[index] = answer;
   gather->answers[index].command = gather->request.info->name;
+  if (answer.route) gather->answers[index].text = route_text(*answer.route);
   note(gather->answers[index]);
   if (--gather->missing > 0) return;
   const bool growing = std::any_of(stop_alls_.begin(), stop_alls_.end(),
@@ -245,7 +252,8 @@ void Station::Impl::finish(Gather& gather) {
     const int code = exit_of(answer);
     refused = refused || code == 1;
     silent = silent || code == 3;
-    (code == 0 ? outcome.text : outcome.error) += answer_text(answer, command::done_text(gather.request));
+    (code == 0 ? outcome.text : outcome.error) +=
+        answer_text(answer, command::done_text(gather.request), params_.name);
     results.push_back(answer_json(answer));
   }
   if (gather.answers.empty()) {

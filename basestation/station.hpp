@@ -22,7 +22,7 @@ struct StationParams {
   Id id{};                                            ///< 128 random bits kept on the station's disk
   std::uint64_t seed{1};                              ///< phase of the periodic messages
   std::string software{};                             ///< version, for the others to see
-  std::string link{"lan"};                            ///< name of the link profile, for `net`
+  std::string link{};                                 ///< name of the link profile; empty: none limits it
   double bandwidth{0.0};                              ///< of that link, bit/s; 0: not known
   std::optional<std::array<float, 3>> place{};        ///< where it stands, map frame, m
   std::shared_ptr<store::Disk> disk{};                ///< where findings are kept; null: in memory alone

@@ -1,6 +1,7 @@
 #include "basestation/cli/client.hpp"
 
 #include <poll.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -124,6 +125,7 @@ std::string command_of_another(const json& event) {
       event.value("phase", std::string()) != "ended")
     return {};
   const json by = event.value("by", json::object());
+  if (by.value("pid", 0) == ::getpid()) return {};  // a stop has a connection of its own
   std::string answer = event.value("text", std::string()) + event.value("error", std::string());
   while (answer.ends_with('\n')) answer.pop_back();
   std::replace(answer.begin(), answer.end(), '\n', ' ');

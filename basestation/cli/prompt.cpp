@@ -68,7 +68,7 @@ class Prompt {
   bool poll_notices(int timeout_ms, int other_fd) {
     printed_ = false;
     if (client_ && client_->connected() && !client_->wait(timeout_ms, other_fd)) {
-      std::printf("\r\x1b[Kthe station has ended; the next command starts one\n");
+      std::printf("%sthe station has ended; the next command starts one\n", clear_);
       printed_ = true;
     } else if (!client_ || !client_->connected()) {
       pollfd input{other_fd, POLLIN, 0};
@@ -88,7 +88,7 @@ class Prompt {
       const std::string text = notice.value("text", std::string());
       const bool named = robot.empty() || text.find(robot) != std::string::npos;
       const std::string when = ago(notice.value("age", 0.0));
-      std::printf("\r\x1b[K* %s%s%s\n", named ? "" : (robot + ": ").c_str(), text.c_str(),
+      std::printf("%s* %s%s%s\n", clear_, named ? "" : (robot + ": ").c_str(), text.c_str(),
                   when.empty() ? "" : (" (" + when + ")").c_str());
       printed_ = true;
     };
@@ -99,12 +99,12 @@ class Prompt {
     };
     client_->on_command = [this](const json& event) {
       if (const std::string text = command_of_another(event); !text.empty()) {
-        std::printf("\r\x1b[K* %s\n", text.c_str());
+        std::printf("%s* %s\n", clear_, text.c_str());
         printed_ = true;
       }
     };
     client_->on_missed = [this](std::size_t count) {
-      std::printf("\r\x1b[K* %zu notifications were not shown\n", count);
+      std::printf("%s* %zu notifications were not shown\n", clear_, count);
       printed_ = true;
     };
     client_->notices();
@@ -132,6 +132,7 @@ class Prompt {
   }
 
   Options options_;
+  const char* clear_{::isatty(STDOUT_FILENO) != 0 ? "\r\x1b[K" : ""};  ///< takes the typed line away
   std::optional<Client> client_{};
   std::vector<std::string> robots_{};
   int code_{exit_done};

@@ -76,12 +76,7 @@ class Judge {
     const auto choice = std::find_if(robot_.choices.begin(), robot_.choices.end(),
                                      [&](const ModeChoice& c) { return c.mode == name; });
     if (choice == robot_.choices.end()) return refuse(Reason::mode_not_installed);
-    if (choice->available) return {.valid = true};
-    // The station brings a centred stick along when it asks for these modes.
-    const bool stick = name == "manual" || name == "smart_joystick";
-    if (stick && (choice->reason == Reason::joystick_stale || choice->reason == Reason::stick_not_centred))
-      return {.valid = true};
-    return refuse(choice->reason);
+    return can_enter(*choice) ? Action{.valid = true} : refuse(choice->reason);
   }
 
   Action take() const {
@@ -120,6 +115,12 @@ std::vector<std::string> offered(const std::vector<const RobotView*>& selection)
 }
 
 }  // namespace
+
+bool can_enter(const ModeChoice& choice) {
+  const bool stick = choice.mode == "manual" || choice.mode == "smart_joystick";
+  return choice.available ||
+         (stick && (choice.reason == Reason::joystick_stale || choice.reason == Reason::stick_not_centred));
+}
 
 std::string id_of(const Action& action) {
   std::string id = action.command;

@@ -18,6 +18,9 @@ struct Action {
   std::string robot{};  ///< in a selection of several: the first that would refuse
 };
 
+/// Whether the robot would enter the mode now. For the manual modes the station brings a centred stick along.
+bool can_enter(const ModeChoice& choice);
+
 /// What a front end knows the action by: "take", "mode_waypoint". It never changes.
 std::string id_of(const Action& action);
 /// What stands on its button: "Take", "Waypoint", "Go to".

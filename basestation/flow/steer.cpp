@@ -190,7 +190,7 @@ std::string Steer::clipped() const {
   if (std::hypot(vx, sideways ? 0.0 : vy) > robot_now->max_speed)
     limits.push_back(fixed(robot_now->max_speed, 1) + " m/s");
   if (std::abs(wz) > robot_now->max_turn) limits.push_back(fixed(robot_now->max_turn, 1) + " rad/s");
-  return limits.empty() ? "" : "clipped to what the robot can: " + command::joined(limits, "");
+  return limits.empty() ? "" : "limited to what the robot can do: " + command::joined(limits, "");
 }
 
 void Steer::settled() {

@@ -15,13 +15,16 @@ bool is_number(const std::string& cell) {
 
 std::string table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> width;
-  std::vector<bool> right;
+  std::vector<bool> right, digits;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     width.resize(std::max(width.size(), rows[r].size()), 0);
     right.resize(width.size(), rows.size() > 1);
+    digits.resize(width.size(), false);
     for (std::size_t c = 0; c < rows[r].size(); ++c) {
       width[c] = std::max(width[c], rows[r][c].size());
-      if (r > 0 && !is_number(rows[r][c])) right[c] = false;
+      if (r == 0) continue;
+      if (!is_number(rows[r][c])) right[c] = false;
+      if (rows[r][c].find_first_of("0123456789") != std::string::npos) digits[c] = true;
     }
   }
   std::string out;
@@ -29,7 +32,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
     std::string line;
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string space(width[c] - row[c].size(), ' ');
-      line += right[c] ? space + row[c] : row[c] + space;
+      line += right[c] && digits[c] ? space + row[c] : row[c] + space;
       line += "  ";
     }
     line.erase(line.find_last_not_of(' ') + 1);

@@ -5,8 +5,7 @@
 namespace adit::station {
 
 /// Columns of text, aligned: the first row is the heading. A column whose cells below the heading are all
-/// numbers or
-/// "-" is aligned right.
+/// numbers or "-", with one number at least, is aligned right.
 std::string table(const std::vector<std::vector<std::string>>& rows);
 
 /// A number with `decimals` digits, without a negative zero; "-" when not finite.

@@ -114,13 +114,13 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
            fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
   if (robot.described)
     out += "  size     " + size_text(robot.size) + "\n  limits   " + limits_text(robot) + "\n  sensors  " +
-           command::joined(robot.sensors, "-") + "\n  can      " + command::joined(robot.services, "-") +
+           command::joined(robot.sensors, "-") + "\n  services " + command::joined(robot.services, "-") +
            "\n";
   out += "  battery  " + battery_text(robot) + "\n";
   for (const ModeChoice& choice : robot.choices) {
-    std::string row = "  can " + choice.mode;
-    row.resize(std::max<std::size_t>(row.size() + 1, 22), ' ');
-    out += row + (choice.available ? "yes" : "no: " + std::string(describe(choice.reason))) + "\n";
+    std::string row = "  mode " + choice.mode;
+    row.resize(std::max<std::size_t>(row.size() + 1, 23), ' ');
+    out += row + (can_enter(choice) ? "possible" : "not now: " + std::string(describe(choice.reason))) + "\n";
   }
   return out;
 }
@@ -205,15 +205,18 @@ const char* word(ComponentPhase phase) {
   return "FAILED";
 }
 
-std::string health_text(const RobotView& robot) {
-  if (robot.components.empty()) return robot.name + ": no health report has been heard\n";
+std::string health_text(const std::vector<const RobotView*>& robots) {
   std::vector<std::vector<std::string>> rows{
       {"ROBOT", "COMPONENT", "STATE", "POLICY", "SILENT S", "RESTARTS", "HUNG", "REMARK"}};
-  for (const ComponentView& part : robot.components)
-    rows.push_back({robot.name, part.name, word(part.phase), part.automatic ? "auto" : "manual",
-                    fixed(part.silent_for, 1), std::to_string(part.restarts), std::to_string(part.hung),
-                    part.text});
-  return table(rows);
+  std::string silent;
+  for (const RobotView* robot : robots) {
+    if (robot->components.empty()) silent += robot->name + ": no health report has been heard\n";
+    for (const ComponentView& part : robot->components)
+      rows.push_back({robot->name, part.name, word(part.phase), part.automatic ? "auto" : "manual",
+                      fixed(part.silent_for, 1), std::to_string(part.restarts), std::to_string(part.hung),
+                      part.text});
+  }
+  return (rows.size() == 1 ? "" : table(rows)) + silent;
 }
 
 std::string actions_text(const std::vector<Action>& actions) {
@@ -236,14 +239,13 @@ std::string route_text(const Route& route) {
   return out + (route.corners > most + 1 ? " ..." : "");
 }
 
-std::string answer_text(const Answer& answer, const std::string& done) {
+std::string answer_text(const Answer& answer, const std::string& done, const std::string& own_name) {
   if (answer.accepted) {
-    const std::string remark = answer.route ? route_text(*answer.route) : answer.text;
-    return answer.robot + ": " + done + (remark.empty() ? "" : "; " + remark) + "\n";
+    return answer.robot + ": " + done + (answer.text.empty() ? "" : "; " + answer.text) + "\n";
   }
   std::string why = answer.text.empty() ? std::string(describe(answer.reason)) : answer.text;
-  const bool named = answer.holder.empty() || answer.reason == Reason::cancelled ||
-                     why.find(answer.holder) != std::string::npos;
+  const bool named = answer.holder.empty() || answer.holder == own_name ||
+                     answer.reason == Reason::cancelled || why.find(answer.holder) != std::string::npos;
   if (!named) why += " (holder: " + answer.holder + ")";
   if (answer.reason == Reason::cancelled) return answer.robot + ": ended: " + why + " [cancelled]\n";
   const bool refused = answer.answered || answer.reason != Reason::no_answer;

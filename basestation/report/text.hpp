@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "basestation/fleet/actions.hpp"
 #include "basestation/fleet/fleet.hpp"
@@ -16,14 +17,15 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now);
 std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth);
 /// "up", "FAILED", ...
 const char* word(ComponentPhase phase);
-/// A row for each component.
-std::string health_text(const RobotView& robot);
+/// A row for each component of the robots.
+std::string health_text(const std::vector<const RobotView*>& robots);
 /// A row for each command: whether it is valid now, and why not.
 std::string actions_text(const std::vector<Action>& actions);
 /// "12.3 m, 4.0 m of it not seen yet: 3.0 0.0, 12.0 0.5": its corners after the start.
 std::string route_text(const Route& route);
 /// "r1: taken" or "r1: refused: ... [locked]".
-std::string answer_text(const Answer& answer, const std::string& done);
+/// `own_name`: the operator who reads it, who need not be named as the holder.
+std::string answer_text(const Answer& answer, const std::string& done, const std::string& own_name = {});
 
 /// What stands in a MODE column: the mode, and why it does not move where that matters.
 std::string mode_text(const RobotView& robot);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/command/vocabulary.hpp"
+#include "tests/folders/folders.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::station {
@@ -138,6 +139,25 @@ TEST_F(Cli, AStationOnAnotherDomainIsNotAskedByMistake) {
       live::run({"basestation", "--domain", other, "list"}, folder_.environment(), Seconds(20));
   EXPECT_EQ(asked.exit_code, 2);
   EXPECT_THAT(asked.err, HasSubstr("runs on domain " + std::to_string(live::domain())));
+}
+
+TEST_F(Cli, ALinkForAStationThatRunsWithoutOneIsReported) {
+  ASSERT_EQ(run({"up"}).exit_code, 0);
+  const Finished asked = run({"--link", "wifi", "list"});
+  EXPECT_EQ(asked.exit_code, 0);
+  EXPECT_THAT(asked.err, HasSubstr("runs without a link profile; --link counts only when a station starts"));
+}
+
+TEST_F(Cli, APipedPromptPrintsTextAlone) {
+  ASSERT_EQ(run({"up"}).exit_code, 0);
+  const Finished piped =
+      live::run({"/bin/sh", "-c",
+                 "printf 'list\\nstop r9\\nlist\\n' | \"$0\" --domain " + std::to_string(live::domain()),
+                 program_folder() + "/basestation"},
+                folder_.environment(), Seconds(20));
+  EXPECT_THAT(piped.out, HasSubstr("stations: op1"));
+  EXPECT_EQ(piped.out.find('\x1b'), std::string::npos);
+  EXPECT_EQ(piped.out.find("in another"), std::string::npos) << "its own stop is nobody else's";
 }
 
 TEST_F(Cli, AnAddressDoesNotSwallowTheCommand) {

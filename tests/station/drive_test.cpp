@@ -50,9 +50,9 @@ TEST_F(DriveTest, SaysWhatTheRobotClips) {
   r1().describe(2.0F, 1.5F, false);
   run_for(1s);
   EXPECT_EQ(drive("2 0 -1.5"), "r1: drove for 0.2 s\n");
-  EXPECT_EQ(drive("5 0 0"), "r1: drove for 0.2 s; clipped to what the robot can: 2.0 m/s\n");
+  EXPECT_EQ(drive("5 0 0"), "r1: drove for 0.2 s; limited to what the robot can do: 2.0 m/s\n");
   EXPECT_EQ(drive("0 0.5 -3"),
-            "r1: drove for 0.2 s; clipped to what the robot can: it cannot move sideways, 1.5 rad/s\n");
+            "r1: drove for 0.2 s; limited to what the robot can do: it cannot move sideways, 1.5 rad/s\n");
   r1().describe(2.0F, 1.5F, true);
   run_for(1s);
   EXPECT_EQ(drive("0 1 0"), "r1: drove for 0.2 s\n");

@@ -65,6 +65,8 @@ TEST_F(ExecuteTest, AnUnknownRobotNamesTheKnownOnes) {
   EXPECT_EQ(op_->last_answer()->reason, Reason::unknown_robot);
   EXPECT_EQ(execute("status r9").exit_code, 1);
   EXPECT_EQ(execute("actions r1 r9").exit_code, 1);
+  EXPECT_EQ(execute("findings r9").exit_code, 1);
+  EXPECT_EQ(execute("findings r1").exit_code, 0);
 }
 
 TEST_F(ExecuteTest, WrongUsageIsExitTwo) {
@@ -94,6 +96,7 @@ TEST_F(ExecuteTest, QueriesShowTheFleet) {
   EXPECT_EQ(execute("status").json["commands"]["accepted"], 1);
   EXPECT_THAT(execute("actions r1").text, HasSubstr("release"));
   EXPECT_THAT(execute("health").text, HasSubstr("r1: no health report"));
+  EXPECT_THAT(execute("status").text, HasSubstr("station op1, no link profile"));
   const Outcome net = execute("net");
   EXPECT_THAT(net.text, HasSubstr("adit/presence"));
   EXPECT_GT(net.json["agents"][0]["total_out"].get<float>(), 0.0F);
@@ -109,6 +112,7 @@ TEST_F(ExecuteTest, PlanGivesTheRouteInPointsAndInWords) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.text, "r1: a route; 12.5 m, 4.0 m of it not seen yet: 3.0 -1.0, 12.0 0.5\n");
   const nlohmann::json planned = outcome.json["results"][0]["route"];
+  EXPECT_EQ(outcome.json["results"][0]["text"], "12.5 m, 4.0 m of it not seen yet: 3.0 -1.0, 12.0 0.5");
   EXPECT_EQ(planned["length"], 12.5);
   EXPECT_EQ(planned["unknown_length"], 4.0);
   EXPECT_EQ(planned["complete"], true);

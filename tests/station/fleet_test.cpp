@@ -127,7 +127,7 @@ TEST(Fleet, HealthNamesWhatIsNotUp) {
   EXPECT_EQ(robot.components[1].phase, ComponentPhase::hung);
   EXPECT_EQ(robot.components[1].hung, 1u);
   EXPECT_EQ(robot.components[2].phase, ComponentPhase::failed) << "a state of a later version";
-  EXPECT_THAT(health_text(robot), testing::HasSubstr("HUNG"));
+  EXPECT_THAT(health_text({&robot}), testing::HasSubstr("HUNG"));
   EXPECT_THAT(health_json(robot)["components"][0]["policy"], "manual");
   EXPECT_THAT(robot_json(fleet, robot, Time{})["troubles"], testing::SizeIs(2));
 }

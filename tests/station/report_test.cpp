@@ -22,6 +22,13 @@ TEST(Table, AlignsTextLeftAndNumbersRight) {
             "long_name  10.5\n");
 }
 
+TEST(Table, AColumnWithoutAnyNumberIsText) {
+  EXPECT_EQ(table({{"HOLDER", "N"}, {"-", "-"}, {"-", "1"}}),
+            "HOLDER  N\n"
+            "-       -\n"
+            "-       1\n");
+}
+
 TEST(Table, NumbersWithoutNegativeZero) {
   EXPECT_EQ(fixed(-0.001, 2), "0.00");
   EXPECT_EQ(fixed(-0.01, 2), "-0.01");
@@ -60,6 +67,33 @@ TEST(Report, StatusSaysHowLargeARobotIsAndWhatItClimbs) {
   EXPECT_FLOAT_EQ(json["max_slope"].get<float>(), 0.7854F);
   EXPECT_FLOAT_EQ(json["max_acceleration"].get<float>(), 0.8F);
   EXPECT_TRUE(json["climbs_stairs"].get<bool>());
+}
+
+TEST(Report, StatusSaysThatTheStationBringsTheStick) {
+  Fleet fleet("op1", {1});
+  radio::BehaviourState sample;
+  sample.robot("r1");
+  sample.mode("hold");
+  for (const auto& [mode, reason] :
+       {std::pair{"manual", Reason::joystick_stale}, std::pair{"waypoint", Reason::goal_missing}}) {
+    radio::ModeOption row;
+    row.mode(mode);
+    row.reason(static_cast<std::uint16_t>(reason));
+    sample.modes().push_back(row);
+  }
+  fleet.hear(sample, {.received = Time(1s)});
+  const std::string text = status_text(fleet, *fleet.robot("r1"), Time(1s));
+  EXPECT_THAT(text, HasSubstr("mode manual          possible\n"));
+  EXPECT_THAT(text, HasSubstr("mode waypoint        not now: there is no goal"));
+}
+
+TEST(Report, HealthOfSeveralRobotsIsOneTable) {
+  RobotView first{.name = "r1"}, second{.name = "r2"}, silent{.name = "r3"};
+  first.components = second.components = {{.name = "planner", .phase = ComponentPhase::up, .text = {}}};
+  const std::string text = health_text({&first, &second, &silent});
+  EXPECT_EQ(text.find("COMPONENT"), text.rfind("COMPONENT"));
+  EXPECT_THAT(text, HasSubstr("r2     planner"));
+  EXPECT_THAT(text, HasSubstr("r3: no health report has been heard\n"));
 }
 
 TEST(Report, AmountsThatARobotCannotMeanAreNotKnown) {
@@ -227,6 +261,10 @@ TEST(Report, ARefusalNamesReasonAndHolder) {
   EXPECT_THAT(text, HasSubstr("(holder: op2)"));
   EXPECT_THAT(text, HasSubstr("[not_holder]"));
   EXPECT_EQ(answer_text({.robot = "r1", .accepted = true}, "yours"), "r1: yours\n");
+  const Answer own{
+      .robot = "r1", .answered = true, .reason = Reason::goal_missing, .text = "no goal", .holder = "op1"};
+  EXPECT_EQ(answer_text(own, "", "op1"), "r1: refused: no goal [goal_missing]\n");
+  EXPECT_EQ(answer_text(own, "", "op2"), "r1: refused: no goal (holder: op1) [goal_missing]\n");
 }
 
 TEST(Report, NotANumberStaysValidJson) {

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 
@@ -54,21 +55,40 @@ std::vector<std::string> arguments(const Options& options) {
   ::_exit(127);
 }
 
-/// A station on another domain would take the command to other robots than those that were meant. One that
-/// does not answer is told by the command itself.
-Result<void> check_domain(LineSocket& socket, const Options& options) {
+/// What the station says of itself; null when it does not answer at once: the command itself reports that.
+nlohmann::json ask_hello(LineSocket& socket) {
   if (!socket.send({{"hello", true}})) return {};
-  pollfd readable{socket.fd(), POLLIN, 0};
-  if (::poll(&readable, 1, hello_limit_ms) <= 0 || !socket.pump()) return {};
-  const auto line = socket.line();
-  const auto answer = nlohmann::json::parse(line.value_or(""), nullptr, false);
-  if (!answer.is_object() || !answer.contains("hello")) return {};
-  const auto domain = answer["hello"].value("domain", options.domain);
-  if (domain == options.domain) return {};
-  return {Reason::bad_argument,
-          "the station of " + options.name + " runs on domain " + std::to_string(domain) +
-              "; leave --domain out, choose another --name, or end it: basestation --name " + options.name +
-              " down"};
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(hello_limit_ms);
+  for (;;) {
+    // Events of other programs' commands may come first.
+    while (const auto line = socket.line()) {
+      const auto answer = nlohmann::json::parse(*line, nullptr, false);
+      if (answer.is_object() && answer.contains("hello") && answer["hello"].is_object())
+        return answer["hello"];
+    }
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    pollfd readable{socket.fd(), POLLIN, 0};
+    if (left.count() <= 0 || ::poll(&readable, 1, static_cast<int>(left.count())) <= 0 || !socket.pump())
+      return {};
+  }
+}
+
+/// A station on another domain would take the command to other robots than those that were meant.
+Result<void> check_running(LineSocket& socket, const Options& options) {
+  const nlohmann::json hello = ask_hello(socket);
+  if (hello.is_null()) return {};
+  const auto domain = hello.value("domain", options.domain);
+  if (options.domain_given && domain != options.domain)
+    return {Reason::bad_argument,
+            "the station of " + options.name + " runs on domain " + std::to_string(domain) +
+                "; leave --domain out, choose another --name, or end it: basestation --name " + options.name +
+                " down"};
+  const auto link = hello.value("link", options.link);
+  if (!options.link.empty() && link != options.link)
+    std::fprintf(stderr, "the station of %s runs %s; --link counts only when a station starts\n",
+                 options.name.c_str(), link.empty() ? "without a link profile" : ("on " + link).c_str());
+  return {};
 }
 
 }  // namespace
@@ -127,8 +147,8 @@ Result<LineSocket> connect_or_launch(const Options& options) {
   auto path = socket_path(options);
   if (!path) return path.error();
   auto socket = LineSocket::connect(*path);
-  if (socket && options.domain_given)
-    if (const auto same = check_domain(*socket, options); !same) return same.error();
+  if (socket && (options.domain_given || !options.link.empty()))
+    if (const auto same = check_running(*socket, options); !same) return same.error();
   if (socket || socket.reason() != Reason::no_station) return socket;
   if (const auto link = wire::load_link(options.link.empty() ? "lan" : options.link); !link)
     return Error{Reason::bad_argument, "--link: " + link.error().text};

@@ -36,8 +36,8 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
   StationParams params{.name = options.name,
                        .id = *id,
                        .software = ADIT_VERSION,
-                       .link = link->name,
-                       .bandwidth = link->bandwidth,
+                       .link = options.link.empty() ? "" : link->name,
+                       .bandwidth = options.link.empty() ? 0.0 : link->bandwidth,
                        .presence = hooks.presence,
                        .discovery_grace = hooks.discovery_grace};
   if (options.at.size() == 3) params.place = {options.at[0], options.at[1], options.at[2]};

@@ -240,10 +240,11 @@ std::vector<std::string> render(const json& snapshot, const WatchState& state, i
   const int footer = std::min(rows, 2);  // always in view: what was typed and answered, and the keys
   Page page(rows - footer, columns, colour);
   const json counts = snapshot.value("commands", json::object());
-  std::string title = " ADIT  " + text(snapshot, "station") + "  link " + text(snapshot, "link") +
-                      "  commands " + fixed(number(counts, "accepted"), 0) + " done " +
-                      fixed(number(counts, "refused"), 0) + " refused " +
-                      fixed(number(counts, "unanswered"), 0) + " unanswered";
+  std::string title =
+      " ADIT  " + text(snapshot, "station") +
+      (text(snapshot, "link").empty() ? "  no link profile" : "  link " + text(snapshot, "link")) +
+      "  commands " + fixed(number(counts, "accepted"), 0) + " done " + fixed(number(counts, "refused"), 0) +
+      " refused " + fixed(number(counts, "unanswered"), 0) + " unanswered";
   std::string others;
   for (const json& station : snapshot.value("stations", json::array()))
     if (!flag(station, "self")) others += (others.empty() ? "  with " : ", ") + text(station, "station");
