@@ -37,7 +37,7 @@ void Directory::add(const Peer& said, Time now) {
 void Directory::hear(Entry& entry, const Peer& said, Time now) {
   const Peer& known = *peers_.find(entry.name);
   if (known.id != said.id) {
-    if (entry.binding.alive(now, PeerTable::kSilence)) return wait(entry, said, now);
+    if (known.present || entry.binding.alive(now, PeerTable::kSilence)) return wait(entry, said, now);
     entry.binding = Binding(said.participant, now);
     return adopt(entry, said, now);
   }
@@ -89,6 +89,7 @@ void Directory::participant(const wire::ParticipantEvent& event) {
 }
 
 void Directory::tick(Time now) {
+  peers_.tick(now);
   for (Entry& entry : entries_) {
     const Peer* peer = peers_.find(entry.name);
     if (!peer || !entry.waiting || now - entry.waiting->heard >= PeerTable::kSilence) continue;
@@ -96,7 +97,6 @@ void Directory::tick(Time now) {
     if (!entry.binding.alive(now, same_id ? Binding::kQuiet : PeerTable::kSilence))
       hear(entry, Peer(*entry.waiting), now);
   }
-  peers_.tick(now);
 }
 
 }  // namespace adit::agent

@@ -141,6 +141,22 @@ TEST_F(PeerTableTest, ADescriptionByAnotherParticipantDoesNotTakeAStationThatCom
   EXPECT_EQ(find("op1")->id, id_of("op1"));
 }
 
+TEST_F(PeerTableTest, WhoHadTheHoldersNameWhileItWasAwayDoesNotKeepIt) {
+  peers.set_holder("op1", id_of("op1"));
+  Peer other = peer("op1", 2, true);
+  other.id = id_of("other");
+  directory.capabilities(other, now);
+  peers.accept_station(sender("op1", 1), now + 1s);
+  ASSERT_NE(peers.holder(), nullptr);
+  EXPECT_EQ(peers.holder()->participant, participant(1));
+  for (int i = 2; i < 20; ++i) {
+    peers.accept_station(sender("op1", 1), now + i * 1s);
+    directory.capabilities(other, now + i * 1s);
+    directory.tick(now + i * 1s);
+    ASSERT_NE(peers.holder(), nullptr) << i;
+  }
+}
+
 TEST_F(PeerTableTest, NamesakesAreEntriesOfTheirOwnAndBounded) {
   for (int i = 0; i < 20; ++i) directory.namesake("r1", id_of(std::to_string(i)), participant(i), now + 1s);
   EXPECT_EQ(peers.all().size(), PeerTable::kNamesakes);
