@@ -76,6 +76,15 @@ void Agent::report(findings::Finding finding) {
   });
 }
 
+void Agent::correct_map(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch,
+                        std::function<void(const Result<void>&)> done) {
+  parts_->command_strand().post(
+      [edges = parts_->edges.get(), T_map_odom, stamp, odom_epoch, done = std::move(done)] {
+        done(edges->core ? edges->core->correct_map(T_map_odom, stamp, odom_epoch)
+                         : Result<void>{Reason::no_localisation, "the command component is away"});
+      });
+}
+
 Result<void> Agent::inject(const std::string& component, ComponentFault fault) {
   Unit* unit = parts_ ? parts_->find(component) : nullptr;
   if (!unit) return {Reason::bad_argument, "no component is named " + component};

@@ -86,6 +86,12 @@ class Agent {
   /// everybody. From any thread live, after start().
   void report(findings::Finding finding);
 
+  /// Corrects the place of the odometry frame in the map, as SLAM does; no robot moves by that (rule 7).
+  /// Arguments and errors are those of Frames::correct; no_localisation while the command component is away.
+  /// `done` runs on the command strand. From any thread live, after start().
+  void correct_map(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch,
+                   std::function<void(const Result<void>&)> done);
+
   /// For tests and rehearsals: a callback on the strand of that component throws or never returns.
   /// Components: command, planner, sensors. Errors: bad_argument for another name. From any thread live,
   /// after start().

@@ -8,7 +8,7 @@
 namespace adit::agent {
 namespace {
 
-CommandParams command_params(const AgentParams& params, std::uint32_t instance) {
+CommandParams command_params(const AgentParams& params, const Frames& frames, std::uint32_t instance) {
   CommandParams c{};
   c.robot = params.name;
   // Another one for each instance of the component. Zero is what a message holds that nobody filled in: no
@@ -17,7 +17,7 @@ CommandParams command_params(const AgentParams& params, std::uint32_t instance) 
   for (std::uint32_t i = 0; i < instance; ++i) (void)starts.next();
   c.epoch_start = starts.next() | 1u;
   c.lock_lease = params.lock_lease;
-  c.home = {params.start.x, params.start.y, std::nan("")};
+  c.home = {frames.T_map_start().x, frames.T_map_start().y, std::nan("")};
   c.protocol = kProtocolVersion;
   return c;
 }
@@ -41,23 +41,29 @@ Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<
       params_(params),
       edges_(edges),
       lease_(std::move(lease)),
-      localisation_(params.start, params.platform, params.start_height),
-      navigation_(navigation_params(params), command, log(), localisation_, *edges.planner, edges.router,
+      frames_(params.start, params.platform, params.start_height),
+      navigation_(navigation_params(params), command, log(), frames_, *edges.planner, edges.router,
                   navigation_outputs()),
       mux_(navigation_),
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
-      commands_(command_params(params, edges.instances++), behaviour_, command_outputs()),
+      commands_(command_params(params, frames_, edges.instances++), behaviour_, command_outputs()),
       notices_(params.name, *edges.notifier, log(), [this] { return commands_.authority().holder_name(); }),
-      safeguards_(params.safeguards, params.name, params.start,
-                  {commands_.authority(), edges.peers, behaviour_, localisation_, notices_}),
-      telemetry_({*edges.radio, *edges.wire, edges.rate, *edges.driver, *edges.watch, localisation_,
-                  commands_, behaviour_}),
+      safeguards_(params.safeguards, params.name, frames_.T_map_start(),
+                  {commands_.authority(), edges.peers, behaviour_, frames_, notices_}),
+      telemetry_({*edges.radio, *edges.wire, edges.rate, *edges.driver, *edges.watch, frames_, commands_,
+                  behaviour_}),
       rivals_(now()) {}
 
 void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received) {
   protect([&] {
-    if (!localisation_.update(odom, twist, stamp, received)) odometry_jumped();
+    if (!frames_.update(odom, twist, stamp, received)) odometry_jumped();
+    if (waiting_scan_ && !is_ahead(waiting_scan_->stamp)) add_waiting_scan();
   });
+}
+
+Result<void> Agent::Core::correct_map(const Pose3& T_map_odom, std::uint64_t stamp,
+                                      std::uint32_t odom_epoch) {
+  return frames_.correct(T_map_odom, stamp, odom_epoch);
 }
 
 void Agent::Core::odometry_jumped() {
@@ -66,24 +72,39 @@ void Agent::Core::odometry_jumped() {
   behaviour_.hold(Reason::odometry_jumped, now());
   if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
   jump_told_ = now();
-  notices_.odometry_jumped(localisation_.pose());
+  notices_.odometry_jumped(frames_.T_map_base());
 }
 
 Result<void> Agent::Core::set_pose(const Pose2& pose) {
-  if (!localisation_.initialised())
+  if (!frames_.initialised())
     return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
-  localisation_.set_pose(pose);
+  frames_.set_pose(pose);
   return {};
 }
 
 void Agent::Core::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received) {
   protect([&] {
-    if (!localisation_.initialised()) return;
-    auto scan = std::make_shared<Scan>();
-    scan->points = std::move(*points);
-    scan->body = localisation_.odom_at(stamp);
-    navigation_.add_scan(std::move(scan), received, now());
+    if (!frames_.initialised()) return;
+    if (waiting_scan_) add_waiting_scan();
+    waiting_scan_ = {std::move(points), stamp, received};
+    if (!is_ahead(stamp)) add_waiting_scan();
   });
+}
+
+bool Agent::Core::is_ahead(std::uint64_t stamp) const {
+  constexpr std::uint64_t kLongest = 200'000'000;  // ns; farther ahead, the lidar has another clock.
+  const std::uint64_t newest = frames_.newest_stamp();
+  return newest != 0 && stamp > newest && stamp - newest <= kLongest;
+}
+
+void Agent::Core::add_waiting_scan() {
+  const WaitingScan waiting = *std::exchange(waiting_scan_, std::nullopt);
+  auto scan = std::make_shared<Scan>();
+  scan->points = std::move(*waiting.points);
+  const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
+  // Without a common clock the newest pose is the best guess.
+  scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
+  navigation_.add_scan(std::move(scan), waiting.received, now());
 }
 
 void Agent::Core::battery(float charge) {
@@ -117,8 +138,7 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
       return done({Reason::out_of_range, "a place has finite coordinates"});
     if (!edges_.router)
       return done({Reason::not_supported, "this robot has no router: its platform says none"});
-    if (!localisation_.initialised())
-      return done({Reason::no_localisation, "the robot does not know where it is"});
+    if (!frames_.initialised()) return done({Reason::no_localisation, "the robot does not know where it is"});
     auto question = std::make_shared<Question>();
     question->done = std::move(done);
     // Answered once, by whichever comes first.
@@ -130,13 +150,13 @@ void Agent::Core::find_route(const Eigen::Vector3d& goal,
       answer({Reason::no_answer, "the router does not answer; see health"});
     });
     auto query = std::make_shared<RouteQuery>();
-    query->odom_epoch = localisation_.odom_epoch();
-    query->from = localisation_.odom().position;
-    query->to = localisation_.to_odom(goal);
+    query->odom_epoch = frames_.odom_epoch();
+    query->from = frames_.T_odom_base().position;
+    query->to = frames_.to_odom(goal);
     edges_.router->find(query, guard([this, query, answer] {
-                          if (query->odom_epoch != localisation_.odom_epoch())
+                          if (query->odom_epoch != frames_.odom_epoch())
                             return answer({Reason::odometry_jumped, "the odometry jumped meanwhile"});
-                          answer(planned_route(query->route, localisation_.T_map_odom()));
+                          answer(planned_route(query->route, frames_));
                         }));
   });
 }
@@ -153,7 +173,7 @@ void Agent::Core::restore() {
   const Snapshot& s = *edges_.restored.snapshot;
   commands_.restore(s.authority, s.answers, started_);  // listen_first asks who was heard since
   note_holder();
-  if (s.place) localisation_.restore(*s.place);
+  if (s.place) frames_.restore(*s.place);
   // Without a pose to compare with, nobody knows whether the odometry is still the same. With one, the first
   // sample tells.
   const bool comparable = s.place && s.place->newest;
@@ -224,7 +244,7 @@ void Agent::Core::listen_first(Time at) {
 
 void Agent::Core::keep() {
   edges_.keeper->save(
-      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), localisation_.kept(), {}},
+      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), frames_.kept(), {}},
       [this] { return commands_.kept_answers(); }, commands_.accepted());
 }
 
@@ -254,8 +274,8 @@ void Agent::Core::send_findings() {
 
 Facts Agent::Core::sense(Time now) const {
   Facts f{};
-  f.driver_alive = localisation_.alive(now);
-  f.localised = localisation_.initialised();
+  f.driver_alive = frames_.alive(now);
+  f.localised = frames_.initialised();
   f.terrain_fresh = navigation_.terrain_fresh(now);
   return f;
 }
@@ -285,11 +305,11 @@ Behaviour::Inputs Agent::Core::behaviour_inputs() {
                            [this](const Eigen::Vector2d& place) { return navigation_.goal_free(place); },
                            {}};
   // What flies keeps the height that it has.
-  if (params_.platform.flies()) inputs.height = [this] { return localisation_.z(); };
+  if (params_.platform.flies()) inputs.height = [this] { return frames_.height(); };
   inputs.set_pose = [this](const Pose2& pose) { return set_pose(pose); };
   inputs.pose = [this]() -> std::optional<Pose2> {
-    if (!localisation_.initialised()) return std::nullopt;
-    return localisation_.pose();
+    if (!frames_.initialised()) return std::nullopt;
+    return frames_.T_map_base();
   };
   return inputs;
 }

@@ -14,7 +14,7 @@
 #include "robot_agent/discovery/peer_table.hpp"
 #include "robot_agent/findings/sync.hpp"
 #include "robot_agent/motion/driver.hpp"
-#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
 #include "robot_agent/motion/rival.hpp"
@@ -64,6 +64,8 @@ class Agent::Core : public Component {
 
   void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received);
   void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received);
+  /// See Frames::correct.
+  Result<void> correct_map(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch);
   void battery(float charge);
   void external(const Twist2& velocity, Time received);
   /// Somebody else writes velocities to this robot's driver.
@@ -90,6 +92,9 @@ class Agent::Core : public Component {
   /// The odometry began again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
   Result<void> set_pose(const Pose2& pose);
+  /// Whether that stamp is a little newer than the odometry: the next sample brings the pose of then.
+  bool is_ahead(std::uint64_t stamp) const;
+  void add_waiting_scan();
   /// Holds while this robot gives way to another one of its name.
   void watch_namesakes(Time at);
   void send_findings();
@@ -104,7 +109,7 @@ class Agent::Core : public Component {
   AgentParams params_;
   Edges& edges_;
   std::shared_ptr<const Lease> lease_;
-  Localisation localisation_;
+  Frames frames_;
   Navigation navigation_;
   Mux mux_;
   Behaviour behaviour_;
@@ -112,6 +117,12 @@ class Agent::Core : public Component {
   Notices notices_;
   Safeguards safeguards_;
   Telemetry telemetry_;
+  struct WaitingScan {
+    std::shared_ptr<PointCloud> points{};
+    std::uint64_t stamp{};
+    Time received{};
+  };
+  std::optional<WaitingScan> waiting_scan_{};  ///< For odometry as new as it is.
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First time since the start that the holder was heard.
   std::optional<Time> jump_told_{};

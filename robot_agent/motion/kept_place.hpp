@@ -24,8 +24,10 @@ struct KeptPlace {
   Pose2 T_map_odom{};
   std::uint32_t odom_epoch{};              ///< Rises when the odometry begins again elsewhere.
   std::optional<OdometrySample> newest{};  ///< The last pose in the odometry frame; empty: there was none.
+  /// Of the odometry frame's origin in the map, m; empty: a version that did not know it wrote the place.
+  std::optional<double> height{};
   bool same_frame(const KeptPlace& other) const {
-    return T_map_odom == other.T_map_odom && odom_epoch == other.odom_epoch;
+    return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch;
   }
   bool operator==(const KeptPlace&) const = default;
 };

@@ -11,14 +11,15 @@ namespace {
 constexpr double kTurnLooksAhead = 0.6;  // s: how far a stick's turn rate shifts the direction asked for
 constexpr double kTurningSpeed = 0.05;   // m/s: of a stick that only turns
 constexpr Duration kCycleLost = 2s;
+constexpr double kGoalMoved = 0.05;  // m: by a correction of the map
 
 }  // namespace
 
-Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
+Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const Frames& frames,
                        PlanService& planner, RouteService* router, Outputs outputs)
     : Component("navigation", strand, std::move(log)),
       params_(std::move(params)),
-      localisation_(localisation),
+      frames_(frames),
       planner_(planner),
       router_(router),
       outputs_(std::move(outputs)),
@@ -74,10 +75,10 @@ void Navigation::step(Time now) {
 
 nav::CollisionMonitor::Verdict Navigation::guarded(const Twist2& wanted,
                                                    nav::CollisionMonitor::Policy policy) const {
-  Twist2 moves = localisation_.twist();
+  Twist2 moves = frames_.twist();
   moves.vz = 0;
   if (!params_.platform.sideways()) moves.vy = 0;
-  return monitor_.check(wanted, localisation_.odom().planar(), seconds(now().time_since_epoch()), policy,
+  return monitor_.check(wanted, frames_.T_odom_base().planar(), seconds(now().time_since_epoch()), policy,
                         {moves, sent_speed_});
 }
 
@@ -101,13 +102,13 @@ void Navigation::watch_warning(nav::CollisionMonitor::Cause cause, Time now) {
 Twist2 Navigation::along_plan(Time now) {
   const auto* guidance = std::get_if<Guidance>(&motion_);
   const bool centred = guidance && guidance->stick.zero();
-  if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !localisation_.alive(now))
+  if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !frames_.alive(now))
     return controller_->stop_now();
-  const Twist2 wanted = controller_->follow(localisation_.odom().planar(), seconds(params_.period));
+  const Twist2 wanted = controller_->follow(frames_.T_odom_base().planar(), seconds(params_.period));
   const auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
   if (verdict.cause != nav::CollisionMonitor::Cause::none) controller_->sent(verdict.velocity);
-  held_.look(verdict.cause == nav::CollisionMonitor::Cause::stopped, localisation_.odom().planar().position(),
-             seconds(now.time_since_epoch()));
+  held_.look(verdict.cause == nav::CollisionMonitor::Cause::stopped,
+             frames_.T_odom_base().planar().position(), seconds(now.time_since_epoch()));
   Twist2 velocity = verdict.velocity;
   if (terrain_fresh(now)) velocity.vz = climb();
   return velocity;
@@ -117,7 +118,7 @@ double Navigation::climb() const {
   constexpr double kThere = 0.05;  // m
   const auto* go = std::get_if<GoTo>(&motion_);
   if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return 0.0;
-  const double off = go->goal.z() - localisation_.z();
+  const double off = go->goal.z() - frames_.height();
   const double most = params_.platform.max_climb;
   return std::fabs(off) < kThere ? 0.0 : std::clamp(off, -most, most);
 }
@@ -126,13 +127,18 @@ bool Navigation::at_height() const {
   constexpr double kThere = 0.2;  // m
   const auto* go = std::get_if<GoTo>(&motion_);
   if (!params_.platform.flies() || !go || !std::isfinite(go->goal.z())) return true;
-  return std::fabs(go->goal.z() - localisation_.z()) < kThere;
+  return std::fabs(go->goal.z() - frames_.height()) < kThere;
+}
+
+bool Navigation::is_goal(const Eigen::Vector2d& goal) const {
+  const auto* go = std::get_if<GoTo>(&motion_);
+  return go && (frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())) - goal).norm() < kGoalMoved;
 }
 
 nav::Target Navigation::target() const {
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     const auto* step = step_on(now());
-    if (!step) return nav::Target::to(localisation_.to_odom(Eigen::Vector2d(go->goal.head<2>())));
+    if (!step) return nav::Target::to(frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())));
     return nav::target_of(*step);
   }
   const auto* guidance = std::get_if<Guidance>(&motion_);
@@ -175,7 +181,11 @@ void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now) {
 }
 
 const nav::RouteStep* Navigation::step_on(Time now) const {
-  return step_ && now - step_made_ < params_.step_age ? &*step_ : nullptr;
+  if (!step_ || now - step_made_ >= params_.step_age) return nullptr;
+  // The goal itself has moved in the odometry frame since.
+  const bool outdated =
+      step_->last && step_->state != nav::RouteStep::State::unreachable && !is_goal(step_goal_);
+  return outdated ? nullptr : &*step_;
 }
 
 void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
@@ -183,12 +193,12 @@ void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
   if (routing_.under_way(router_->instance(), now)) return;
   auto job = std::make_shared<RouteJob>();
   job->scan = scan;
-  job->place = localisation_.odom().position;
+  job->place = frames_.T_odom_base().position;
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
-    job->goal = localisation_.to_odom(go->goal);
+    job->goal = frames_.to_odom(go->goal);
     job->blocked = blocked_;
   }
-  job->odom_epoch = localisation_.odom_epoch();
+  job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
   job->made = now;
   routing_ = {now, router_->instance()};
@@ -197,11 +207,14 @@ void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
 
 void Navigation::routed(const RouteJob& job) {
   routing_ = {};
-  if (job.odom_epoch != localisation_.odom_epoch()) return;
+  if (job.odom_epoch != frames_.odom_epoch()) return;
   if (!job.goal || job.generation != goal_generation_ || !std::holds_alternative<GoTo>(motion_)) return;
+  const bool unreachable = job.step.state == nav::RouteStep::State::unreachable;
+  if (unreachable && !is_goal(job.goal->head<2>())) return;
   step_ = job.step;
+  step_goal_ = job.goal->head<2>();
   step_made_ = job.made;
-  if (job.step.state != nav::RouteStep::State::unreachable) return;
+  if (!unreachable) return;
   has_plan_ = false;  // it stands: every way would be a wrong one
   outputs_.progress({.blocked = true, .unreachable = true});
 }
@@ -218,8 +231,10 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->target.held = held_.held(seconds(now.time_since_epoch()), 2 * seconds(params_.held_after));
   const auto* step = step_on(now);
   job->last = !step || step->last;
-  job->pose = localisation_.odom().planar();
-  job->odom_epoch = localisation_.odom_epoch();
+  if (const auto* go = std::get_if<GoTo>(&motion_))
+    job->goal = step ? step_goal_ : frames_.to_odom(Eigen::Vector2d(go->goal.head<2>()));
+  job->pose = frames_.T_odom_base().planar();
+  job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
   job->made = now;
   planning_ = {now, planner_.instance()};
@@ -229,7 +244,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
 
 void Navigation::planned(const PlanJob& job) {
   planning_ = {};
-  if (job.odom_epoch == localisation_.odom_epoch()) take(job);
+  if (job.odom_epoch == frames_.odom_epoch()) take(job);
   if (waiting_) plan(std::exchange(waiting_, nullptr), now());
 }
 
@@ -245,14 +260,15 @@ void Navigation::take(const PlanJob& job) {
     const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
     if (for_goal) {
       blocked_ = job.plan.blocked || held;
-      outputs_.progress({.arrived = job.plan.arrived && job.last && at_height(), .blocked = blocked_});
+      outputs_.progress(
+          {.arrived = job.plan.arrived && job.last && is_goal(job.goal) && at_height(), .blocked = blocked_});
     }
   }
 }
 
 bool Navigation::goal_free(const Eigen::Vector2d& place) const {
   if (!obstacles_) return true;
-  const Eigen::Vector2f at = localisation_.to_odom(place).cast<float>();
+  const Eigen::Vector2f at = frames_.to_odom(place).cast<float>();
   const float radius = static_cast<float>(std::min(params_.platform.width, params_.platform.length) / 2);
   return std::none_of(obstacles_->begin(), obstacles_->end(),
                       [&](const Eigen::Vector2f& o) { return (o - at).squaredNorm() < radius * radius; });

@@ -9,7 +9,7 @@
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
-#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/motion.hpp"
 #include "robot_agent/motion/planner.hpp"
 #include "robot_agent/motion/router.hpp"
@@ -42,8 +42,8 @@ class Navigation : public Component, public NavigationInput {
     std::function<void(Warning)> warn{};              ///< once, as long as it lasts; may be empty
   };
 
-  Navigation(NavigationParams params, Executor& strand, Log log, const Localisation& localisation,
-             PlanService& planner, RouteService* router, Outputs outputs);
+  Navigation(NavigationParams params, Executor& strand, Log log, const Frames& frames, PlanService& planner,
+             RouteService* router, Outputs outputs);
 
   /// Velocities and zero go to the driver within the call.
   void accept(MuxKey, const Motion& motion, Time now) override;
@@ -59,6 +59,9 @@ class Navigation : public Component, public NavigationInput {
   bool goal_free(const Eigen::Vector2d& place) const;
 
  private:
+  /// Whether `goal` (odometry frame, m) is still where the goal asked for last lies: a correction of the map
+  /// moves it.
+  bool is_goal(const Eigen::Vector2d& goal) const;
   /// What is asked of another component; one that failed or hung never reports back.
   struct Cycle {
     std::optional<Time> since{};
@@ -84,7 +87,7 @@ class Navigation : public Component, public NavigationInput {
   void take(const PlanJob& job);
 
   NavigationParams params_;
-  const Localisation& localisation_;
+  const Frames& frames_;
   PlanService& planner_;
   RouteService* router_;  // null: there is none
   Outputs outputs_;
@@ -103,6 +106,7 @@ class Navigation : public Component, public NavigationInput {
   std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning
   Cycle routing_{};
   std::optional<nav::RouteStep> step_{};  // of the goal asked for last
+  Eigen::Vector2d step_goal_{0, 0};       // where that goal was then, odometry frame
   Time step_made_{};
   bool blocked_{};  // the last plan towards the goal was
   std::optional<Time> scanned_{};

@@ -18,6 +18,7 @@ struct PlanJob {
   std::shared_ptr<Scan> scan{};
   nav::Target target{};        ///< kind none: the scan enters the map, nothing is planned
   bool last{true};             ///< `target` is the goal itself, no place on the way there
+  Eigen::Vector2d goal{0, 0};  ///< where the goal was that `target` leads to, odometry frame, m
   Pose2 pose{};                ///< odometry frame
   std::uint32_t odom_epoch{};  ///< Of that frame; what was mapped in another one is forgotten.
   std::uint64_t generation{};  ///< of the goal, for whoever asked

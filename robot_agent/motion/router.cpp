@@ -67,7 +67,7 @@ void Router::find(std::shared_ptr<RouteQuery> query, Task done) {
       });
 }
 
-Result<PlannedRoute> planned_route(const nav::Route& route, const Pose2& T_map_odom) {
+Result<PlannedRoute> planned_route(const nav::Route& route, const Frames& frames) {
   switch (route.status) {
     case nav::RouteStatus::found:
       break;
@@ -82,8 +82,7 @@ Result<PlannedRoute> planned_route(const nav::Route& route, const Pose2& T_map_o
       .length = route.length, .unknown_length = route.unknown_length, .corners = route.points.size()};
   for (const Eigen::Vector3d& point : route.points) {
     if (planned.points.size() == PlannedRoute::kMaxCorners) break;
-    const Eigen::Vector2d corner = T_map_odom * Eigen::Vector2d(point.head<2>());
-    planned.points.push_back({corner.x(), corner.y(), point.z()});
+    planned.points.push_back(frames.to_map(point));
   }
   return planned;
 }

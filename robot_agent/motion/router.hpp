@@ -5,6 +5,7 @@
 #include "core/component/component.hpp"
 #include "nav/route/route_keeper.hpp"
 #include "robot_agent/common/planned_route.hpp"
+#include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/planner.hpp"
 
 namespace adit::agent {
@@ -67,7 +68,7 @@ class RouteService {
 };
 
 /// The route in the map frame, its first corners; goal_unreachable, with why, when there is none.
-/// `T_map_odom`: of the route's frame.
-Result<PlannedRoute> planned_route(const nav::Route& route, const Pose2& T_map_odom);
+/// The route is in the odometry frame of `frames`.
+Result<PlannedRoute> planned_route(const nav::Route& route, const Frames& frames);
 
 }  // namespace adit::agent

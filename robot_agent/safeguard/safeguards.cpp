@@ -44,7 +44,7 @@ void Safeguards::tick(Time now) {
 
 void Safeguards::watch_link(Time now) {
   const Authority& authority = parts_.authority;
-  const Localisation& at = parts_.localisation;
+  const Frames& at = parts_.frames;
   LinkLoss::Inputs in{};
   in.held = authority.holder().has_value();
   // A restart of the command component begins the lease anew, but the holder is not heard by it.
@@ -52,7 +52,7 @@ void Safeguards::watch_link(Time now) {
   in.heard = peer ? peer->heard : authority.heard();
   in.autonomous = parts_.behaviour.mode().autonomous();
   in.arrived = parts_.behaviour.view().goal_state == GoalState::reached;
-  if (at.initialised()) in.place = Eigen::Vector2d(at.pose().x, at.pose().y);
+  if (at.initialised()) in.place = Eigen::Vector2d(at.T_map_base().x, at.T_map_base().y);
   const LinkLoss::Step step = link_loss_.tick(in, now);
   const std::string holder = authority.holder_name();
   if (step.lost)

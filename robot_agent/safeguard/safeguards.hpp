@@ -5,7 +5,7 @@
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/authority.hpp"
 #include "robot_agent/discovery/peer_table.hpp"
-#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/motion/frames.hpp"
 #include "robot_agent/notices/notices.hpp"
 #include "robot_agent/safeguard/battery_return.hpp"
 #include "robot_agent/safeguard/safeguard_params.hpp"
@@ -21,7 +21,7 @@ class Safeguards {
     const Authority& authority;
     const PeerTable& peers;
     Behaviour& behaviour;
-    const Localisation& localisation;
+    const Frames& frames;
     const Notices& notices;
   };
 

@@ -129,24 +129,30 @@ KeptBehaviour sanitized(KeptBehaviour b) {
 void put(Packer& out, const KeptPlace& place) {
   for (const double value : {place.T_map_odom.x, place.T_map_odom.y, place.T_map_odom.yaw}) out.put(value);
   out.put(place.odom_epoch).flag(place.newest.has_value());
-  if (!place.newest) return;
-  const Eigen::Vector3d& p = place.newest->T_odom_base.position;
-  const Eigen::Quaterniond& q = place.newest->T_odom_base.orientation;
-  for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) out.put(value);
-  out.put(place.newest->stamp).put(to_stamp(place.newest->received));
+  if (place.newest) {
+    const Eigen::Vector3d& p = place.newest->T_odom_base.position;
+    const Eigen::Quaterniond& q = place.newest->T_odom_base.orientation;
+    for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) out.put(value);
+    out.put(place.newest->stamp).put(to_stamp(place.newest->received));
+  }
+  out.flag(place.height.has_value());
+  if (place.height) out.put(*place.height);
 }
 
 KeptPlace place(Unpacker& in) {
   KeptPlace kept{};
   for (double* value : {&kept.T_map_odom.x, &kept.T_map_odom.y, &kept.T_map_odom.yaw}) *value = in.number();
   kept.odom_epoch = in.get<std::uint32_t>();
-  if (!in.flag()) return kept;
-  OdometrySample& newest = kept.newest.emplace();
-  for (double& value : newest.T_odom_base.position) value = in.number();
-  auto& q = newest.T_odom_base.orientation;
-  for (double* value : {&q.w(), &q.x(), &q.y(), &q.z()}) *value = in.number();
-  newest.stamp = in.get<std::uint64_t>();
-  newest.received = from_stamp(in.get<std::uint64_t>());
+  if (in.flag()) {
+    OdometrySample& newest = kept.newest.emplace();
+    for (double& value : newest.T_odom_base.position) value = in.number();
+    auto& q = newest.T_odom_base.orientation;
+    for (double* value : {&q.w(), &q.x(), &q.y(), &q.z()}) *value = in.number();
+    newest.stamp = in.get<std::uint64_t>();
+    newest.received = from_stamp(in.get<std::uint64_t>());
+  }
+  if (in.done()) return kept;  // Version 1 of the section ends here.
+  if (in.flag()) kept.height = in.number();
   return kept;
 }
 
@@ -154,6 +160,7 @@ KeptPlace place(Unpacker& in) {
 KeptPlace sanitized(KeptPlace place) {
   const Pose2& frame = place.T_map_odom;
   if (!std::isfinite(frame.x) || !std::isfinite(frame.y) || !std::isfinite(frame.yaw)) return {};
+  if (place.height && !std::isfinite(*place.height)) return {};
   if (!place.newest) return place;
   const Pose3& odom = place.newest->T_odom_base;
   const bool is_pose = odom.position.allFinite() && std::fabs(odom.orientation.norm() - 1.0) < 1e-6;

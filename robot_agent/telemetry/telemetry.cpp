@@ -15,8 +15,8 @@ void Telemetry::follow_link(Time now) {
   const wire::SenderState sender = parts_.wire.sender();
   parts_.rate.observe(now, sender.waiting(wire::status_priority), sender.lost(wire::status_priority));
   parts_.rate.set_floor(parts_.commands.stick_used(now) ? kRateWithStick : 0.0);
-  if (const Localisation& at = parts_.localisation; at.initialised())
-    parts_.wire.set_place(parts_.wire.id(), {at.pose().x, at.pose().y, at.z()});
+  if (const Frames& at = parts_.frames; at.initialised())
+    parts_.wire.set_place(parts_.wire.id(), {at.T_map_base().x, at.T_map_base().y, at.height()});
 }
 
 void Telemetry::send_state(Time now, float charge) {
@@ -24,8 +24,9 @@ void Telemetry::send_state(Time now, float charge) {
   if (!parts_.rate.due(now)) return;
   const std::uint64_t stamp = to_stamp(now);
   parts_.commands.sent_stamp(stamp);
-  const Localisation& at = parts_.localisation;
-  parts_.radio.send_state({at.pose(), at.z(), at.initialised() ? at.twist() : Twist2{}, charge}, stamp);
+  const Frames& at = parts_.frames;
+  parts_.radio.send_state({at.T_map_base(), at.height(), at.initialised() ? at.twist() : Twist2{}, charge},
+                          stamp);
 }
 
 void Telemetry::send_periodic(Time now) {
@@ -47,7 +48,7 @@ void Telemetry::send_behaviour(Time now) {
 }
 
 bool Telemetry::driver_fell_silent(Time now) {
-  const bool alive = parts_.localisation.alive(now), was_alive = driver_was_alive_;
+  const bool alive = parts_.frames.alive(now), was_alive = driver_was_alive_;
   if (alive == was_alive) return false;
   driver_was_alive_ = alive;
   report_driver(now);
@@ -55,12 +56,12 @@ bool Telemetry::driver_fell_silent(Time now) {
 }
 
 void Telemetry::report_driver(Time now) {
-  const bool alive = parts_.localisation.alive(now);
+  const bool alive = parts_.frames.alive(now);
   ComponentRow driver{};
   driver.name = "driver";
   driver.state = alive ? PartState::up : PartState::failed;
   driver.healthy = alive;
-  if (!alive) driver.heard = now - parts_.localisation.silence(now, started_);
+  if (!alive) driver.heard = now - parts_.frames.silence(now, started_);
   if (!alive) driver.text = "no odometry";
   parts_.watch.note(driver);
 }

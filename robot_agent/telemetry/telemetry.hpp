@@ -6,7 +6,7 @@
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/motion/driver.hpp"
-#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/motion/frames.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/supervisor/watch.hpp"
 
@@ -23,7 +23,7 @@ class Telemetry {
     wire::RateControl& rate;  ///< Rate of RobotState; the other reports follow it.
     Driver& driver;
     Watch& watch;
-    const Localisation& localisation;
+    const Frames& frames;
     CommandInterface& commands;
     const Behaviour& behaviour;
   };

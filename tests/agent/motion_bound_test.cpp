@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/time/random.hpp"
-#include "robot_agent/motion/localisation.hpp"
+#include "robot_agent/motion/frames.hpp"
 
 namespace adit::agent {
 namespace {
@@ -37,7 +37,7 @@ class OdometryJump : public testing::Test {
     return jumps;
   }
 
-  Localisation where{Pose2{10, 20, 0}, wheeled()};
+  Frames where{Pose2{10, 20, 0}, wheeled()};
   Pose2 pose{};
   bool stamps{true};
   std::uint64_t driver_start{5'000'000'000'000};
@@ -88,14 +88,13 @@ TEST_F(OdometryJump, NoiseIsNoJump) {
 
 TEST_F(OdometryJump, ADriverThatBeginsAgainAtZeroJumps) {
   ASSERT_EQ(drive(1.0, 0.0, 3s, 20ms), 0);
-  const Pose2 before = where.pose();
+  const Pose2 before = where.T_map_base();
   EXPECT_FALSE(sample({}));
   EXPECT_EQ(where.odom_epoch(), 1u);
-  EXPECT_NEAR(where.pose().x, before.x, 1e-9) << "the guess: it is where it was";
-  EXPECT_NEAR(where.odom_at(driver_start + 2'900'000'000).position.x(), 0, 1e-9)
-      << "no pose of the old frame";
+  EXPECT_NEAR(where.T_map_base().x, before.x, 1e-9) << "the guess: it is where it was";
+  EXPECT_FALSE(where.T_odom_base_at(driver_start + 2'900'000'000)) << "no pose of the old frame";
   EXPECT_TRUE(sample({0.02, 0, 0})) << "and goes on from there";
-  EXPECT_NEAR(where.pose().x, before.x + 0.02, 1e-9);
+  EXPECT_NEAR(where.T_map_base().x, before.x + 0.02, 1e-9);
 }
 
 TEST_F(OdometryJump, StampsThatGoBackwardsDoNotHideIt) {
@@ -134,12 +133,12 @@ TEST_F(OdometryJump, AStepIsClimbedBetweenTwoSamples) {
 
 TEST_F(OdometryJump, ThePoseThatIsSetIsInTheMapAlone) {
   ASSERT_EQ(drive(1.0, 0.0, 3s, 20ms), 0);
-  const Pose2 odom = where.odom().planar();
+  const Pose2 odom = where.T_odom_base().planar();
   where.set_pose({-4, 2, 1});
-  EXPECT_NEAR(where.pose().x, -4, 1e-9);
-  EXPECT_NEAR(where.pose().y, 2, 1e-9);
-  EXPECT_NEAR(where.pose().yaw, 1, 1e-9);
-  EXPECT_EQ(where.odom().planar(), odom);
+  EXPECT_NEAR(where.T_map_base().x, -4, 1e-9);
+  EXPECT_NEAR(where.T_map_base().y, 2, 1e-9);
+  EXPECT_NEAR(where.T_map_base().yaw, 1, 1e-9);
+  EXPECT_EQ(where.T_odom_base().planar(), odom);
   EXPECT_EQ(where.odom_epoch(), 0u);
 }
 
@@ -147,7 +146,7 @@ TEST_F(OdometryJump, ARestartComparesWithThePlaceThatWasKept) {
   ASSERT_EQ(drive(1.0, 0.0, 5s, 20ms), 0);
   const KeptPlace kept = where.kept();
   const auto back_at = [&](const Pose2& odom, Duration later) {
-    Localisation again(Pose2{}, wheeled());
+    Frames again(Pose2{}, wheeled());
     again.restore(kept);
     return again.update(Pose3::level(odom, 0), {}, 1, Time(100s + measured + later));
   };

@@ -43,7 +43,7 @@ class ToldRouter final : public RouteService {
 /// the test.
 class NavigationTest : public testing::Test {
  protected:
-  explicit NavigationTest(double start_height = 0.0) : localisation(Pose2{}, anything_goes(), start_height) {
+  explicit NavigationTest(double start_height = 0.0) : frames(Pose2{}, anything_goes(), start_height) {
     EXPECT_TRUE(navigation.start());
     mux.enable("goal", strand->now());
     run(100ms);  // through zero
@@ -65,7 +65,7 @@ class NavigationTest : public testing::Test {
     scheduler.run_until(elapsed);
   }
   void odometry(const Pose2& pose) {
-    EXPECT_TRUE(localisation.update(Pose3::level(pose, 0), {}, ++stamp, strand->now()));
+    EXPECT_TRUE(frames.update(Pose3::level(pose, 0), {}, ++stamp, strand->now()));
   }
 
   /// One tenth of a second in which the scan and the plan are made at `seen`, and the robot is at `stands`
@@ -93,7 +93,7 @@ class NavigationTest : public testing::Test {
   Duration elapsed{};
   std::unique_ptr<Runtime> machine{scheduler.machine("robot", 1h)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
-  Localisation localisation;
+  Frames frames;
   std::uint64_t stamp{};
   Twist2 velocity{};
   Progress progress{};
@@ -103,7 +103,7 @@ class NavigationTest : public testing::Test {
       NavigationParams{},
       *strand,
       {},
-      localisation,
+      frames,
       planner,
       &router,
       {[this](const Twist2& v) { velocity = v; }, [this](const Progress& p) { progress = p; }}};
@@ -184,7 +184,7 @@ TEST_F(NavigationTest, AJumpOfTheOdometryEmptiesEveryMap) {
   ASSERT_GT(velocity.vx, 0.3);
   // There and back, so that the second frame lies where the first one did.
   for (const double x : {1e5, 0.0}) {
-    ASSERT_FALSE(localisation.update(Pose3::level({x, 0, 0}, 0), {}, ++stamp, strand->now()));
+    ASSERT_FALSE(frames.update(Pose3::level({x, 0, 0}, 0), {}, ++stamp, strand->now()));
     navigation.clear();
   }
   EXPECT_FALSE(navigation.terrain_fresh(strand->now()));
@@ -217,12 +217,12 @@ TEST_F(NavigationTest, APlanOfTheOldFrameIsNotFollowed) {
   auto scan = std::make_shared<Scan>();
   scan->points.emplace_back(2.0f, 0.0f, 0.5f);
   navigation.add_scan(scan, strand->now(), strand->now());
-  ASSERT_FALSE(localisation.update(Pose3::level({1e5, 0, 0}, 0), {}, ++stamp, strand->now()));
+  ASSERT_FALSE(frames.update(Pose3::level({1e5, 0, 0}, 0), {}, ++stamp, strand->now()));
   navigation.clear();
   run(100ms);  // The plan comes back now.
   navigation.step(strand->now());
   EXPECT_TRUE(velocity.zero());
-  EXPECT_TRUE(navigation.goal_free(localisation.pose() * Eigen::Vector2d(2, 0)));
+  EXPECT_TRUE(navigation.goal_free(frames.T_map_base() * Eigen::Vector2d(2, 0)));
 }
 
 TEST_F(NavigationTest, TheRouterIsToldOfWhatIsBlocked) {

@@ -33,8 +33,10 @@ Snapshot full() {
   s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}, true};
   s.boot = 0x1122334455667788;
   s.battery = 2;
-  s.place = KeptPlace{
-      {4, -3, 1.5}, 2, OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)}};
+  s.place = KeptPlace{{4, -3, 1.5},
+                      2,
+                      OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
+                      3.5};
   KeptAnswers a;
   a.participant[3] = 4;
   a.station = "op1";
