@@ -10,7 +10,9 @@
 #include <future>
 #include <thread>
 
+#include "basestation/cli/client.hpp"
 #include "basestation/cli/process/outbox.hpp"
+#include "core/command/words.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/memory/ether.hpp"
 
@@ -235,6 +237,30 @@ TEST_F(ServerTest, ACommandOfAClientThatLeftEndsForTheOthersToo) {
   EXPECT_EQ(dashboard.next("event")["line"], "teleop r9");
   leaver.reset();
   EXPECT_EQ(dashboard.next("event")["phase"], "ended");
+}
+
+TEST(Client, QuotesTheWordsThatNeedIt) {
+  EXPECT_EQ(quoted({"goto", "r1", "-1.5", "0", "--wait"}), "goto r1 -1.5 0 --wait");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"a b", ""}, {"it's", "\"x\"", "back\\slash"}, {"", "#", "$x"}}) {
+    EXPECT_EQ(command::split_words(quoted(words)).value(), words) << quoted(words);
+  }
+}
+
+TEST(Client, ShowsTheCommandsOfOtherFrontEndsWhenTheyEnd) {
+  json event{{"event", "command"}, {"phase", "ended"},
+             {"line", "take r1"},  {"query", false},
+             {"mine", false},      {"text", "r1: yours\n"},
+             {"error", ""},        {"by", {{"client", 1}, {"front_end", "script"}, {"pid", 1}}}};
+  EXPECT_EQ(command_of_another(event), "in another script: take r1 -> r1: yours");
+  for (const auto& [key, value] :
+       {std::pair<const char*, json>{"phase", "begun"}, {"query", true}, {"mine", true}}) {
+    json hidden = event;
+    hidden[key] = value;
+    EXPECT_EQ(command_of_another(hidden), "") << key;
+  }
+  event["by"]["pid"] = ::getpid();
+  EXPECT_EQ(command_of_another(event), "") << "another connection of this program";
 }
 
 TEST(Outbox, KeepsRepliesInOrderAndDropsTheOldestEvents) {
