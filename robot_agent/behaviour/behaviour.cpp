@@ -106,6 +106,7 @@ void Behaviour::change_to(const ModeRow& row, Time now) {
 
 void Behaviour::stop_changed(bool stopped, Time now) {
   stopped_ = stopped;
+  if (!stopped && fell_because_ == Reason::stopped) fell_because_ = Reason::none;
   tick(now);
 }
 

@@ -171,7 +171,7 @@ CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
   const std::string former = authority_.holder_name();
   if (authority_.locked()) {
     tell(former, Severity::info, "asked", Reason::locked, c.from.name + " asked for " + params_.robot);
-    return {Reason::locked, "locked by " + former + ", who was told that you asked"};
+    return {Reason::locked, "locked by " + former + ", who is notified of your request"};
   }
   authority_.give({c.from.name, c.from.id}, now);
   requests_.holder_changed(now);

@@ -101,6 +101,7 @@ TEST_F(AgentTest, StopOfAnotherIsZeroAtOnce) {
   EXPECT_EQ(bench.ask(op1, radio::CMD_RESET, {}, 0, 0, true), Reason::none);
   bench.stream(op1, 0.5, 300ms);
   EXPECT_EQ(bench.command, Twist2{});  // in hold: a reset moves nothing
+  EXPECT_EQ(op1.behaviour.reason(), static_cast<std::uint16_t>(Reason::none)) << "the stop is gone";
 }
 
 TEST_F(AgentTest, DrivesToItsGoal) {
