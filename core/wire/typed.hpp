@@ -5,6 +5,7 @@
 
 #include <exception>
 
+#include "core/exec/generation.hpp"
 #include "core/wire/wire.hpp"
 
 /// Typed writers and readers over the byte-level wire, for IDL-generated types. Include it in .cpp files,
@@ -59,9 +60,14 @@ class Writer {
     writer.raw_ = std::move(*raw);
     return writer;
   }
+  /// From now on it writes while `generation` is valid: that of the component that owns it. Before others use
+  /// the writer.
+  void bind(std::shared_ptr<const Generation> generation) { generation_ = std::move(generation); }
   /// Serialises and queues; never blocks. An error says why it could not be queued, and is counted by the
-  /// wire.
+  /// wire; `cancelled`: its generation was revoked, by any thread, and nothing was written.
   Result<void> write(const T& sample) {
+    if (generation_ && !generation_->valid())
+      return Error{Reason::cancelled, "the component that writes this topic was replaced"};
     encode(sample, buffer_);
     return raw_->write(buffer_);
   }
@@ -70,21 +76,26 @@ class Writer {
 
  private:
   std::unique_ptr<RawWriter> raw_{};
+  std::shared_ptr<const Generation> generation_{};
   std::vector<std::uint8_t> buffer_{};  // reused: no allocation per sample once warm
 };
 
-/// A reader of T: `handler(const T&, const SampleInfo&)` runs on `strand`.
+/// A reader of T: `handler(const T&, const SampleInfo&)` runs on `strand`, while `generation`, when there is
+/// one, is valid; afterwards samples are dropped.
 template <class T, class Handler>
 Result<std::unique_ptr<RawReader>> make_reader(Wire& wire, const Topic<T>& topic, Executor& strand,
-                                               Handler handler, const std::string& partition = {}) {
-  return wire.make_reader(topic, partition, strand,
-                          [handler = std::move(handler), sample = std::make_shared<T>()](
-                              std::span<const std::uint8_t> bytes, const SampleInfo& info) mutable {
-                            *sample = T{};
-                            if (!decode(bytes, *sample)) return false;
-                            handler(static_cast<const T&>(*sample), info);
-                            return true;
-                          });
+                                               Handler handler, const std::string& partition = {},
+                                               std::shared_ptr<const Generation> generation = nullptr) {
+  return wire.make_reader(
+      topic, partition, strand,
+      [handler = std::move(handler), sample = std::make_shared<T>(), generation = std::move(generation)](
+          std::span<const std::uint8_t> bytes, const SampleInfo& info) mutable {
+        if (generation && !generation->valid()) return true;
+        *sample = T{};
+        if (!decode(bytes, *sample)) return false;
+        handler(static_cast<const T&>(*sample), info);
+        return true;
+      });
 }
 
 }  // namespace adit::wire

@@ -67,6 +67,45 @@ TYPED_TEST(Conformance, CommandsArriveInOrderInTheirPartitionOnly) {
   EXPECT_EQ(other.size(), 0U);
 }
 
+TYPED_TEST(Conformance, ARevokedWriterWritesNothing) {
+  Seen<std::uint64_t> seen;
+  const auto reader = this->hear(*this->robot, "r1", seen);
+  auto writer = this->commands(*this->station, "r1");
+  const auto generation = std::make_shared<Generation>();
+  writer.bind(generation);
+  ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1; }));
+  ASSERT_TRUE(writer.write(numbered_command(1)).ok());
+  ASSERT_TRUE(this->net.until([&] { return seen.size() == 1; }));
+  generation->revoke();
+  EXPECT_EQ(writer.write(numbered_command(2)).reason(), Reason::cancelled);
+  auto next = this->commands(*this->station, "r1");
+  ASSERT_TRUE(this->net.until([&] { return next.matched() == 1; }));
+  ASSERT_TRUE(next.write(numbered_command(3)).ok());
+  ASSERT_TRUE(this->net.until([&] { return seen.size() == 2; }));
+  EXPECT_EQ(seen.all(), (Seqs{1, 3}));
+}
+
+TYPED_TEST(Conformance, ARevokedReaderHandlesNothing) {
+  Seen<std::uint64_t> revoked, other;
+  const auto generation = std::make_shared<Generation>();
+  const auto reader = std::move(make_reader(
+                                    *this->robot, topics::command, *this->strand,
+                                    [&](const radio::Command& c, const SampleInfo&) { revoked.add(c.seq()); },
+                                    "r1", generation))
+                          .value();
+  const auto beside = this->hear(*this->robot, "r1", other);
+  auto writer = this->commands(*this->station, "r1");
+  ASSERT_TRUE(this->net.until([&] { return writer.matched() == 2; }));
+  ASSERT_TRUE(writer.write(numbered_command(1)).ok());
+  ASSERT_TRUE(this->net.until([&] { return revoked.size() == 1 && other.size() == 1; }));
+  generation->revoke();
+  ASSERT_TRUE(writer.write(numbered_command(2)).ok());
+  ASSERT_TRUE(this->net.until([&] { return total(*this->robot, &TopicCount::samples_in) == 4; }));
+  ASSERT_TRUE(this->net.until([&] { return other.size() == 2; }));
+  EXPECT_EQ(revoked.all(), Seqs{1});
+  EXPECT_EQ(total(*this->robot, &TopicCount::malformed), 0U);
+}
+
 TYPED_TEST(Conformance, TheSenderIsKnownWhateverTheSampleSays) {
   Seen<ParticipantId> senders;
   const auto reader =
