@@ -32,20 +32,20 @@ class [[nodiscard]] Subscription {
 
 /// A typed topic inside one process. One writer strand, any number of subscribers; a published value is
 /// shared, never copied, and immutable. A subscriber on the writer's strand is called directly, any
-/// other through its own strand. Subscribing and publishing happen on the owner's strand or at start-up,
-/// before the strands run.
+/// other through the inbox of its own strand; one whose strand has ended gets nothing. Subscribing and
+/// publishing happen on the owner's strand or at start-up, before the strands run.
 template <class T>
 class Topic {
  public:
   using Value = std::shared_ptr<const T>;
   using Handler = std::function<void(const Value&)>;
 
-  explicit Topic(Executor& owner) : owner_(owner) {}
+  explicit Topic(Executor& owner) : owner_(owner.inbox()) {}
 
   /// Calls `handler` on `strand` for each value published from now on.
   Subscription subscribe(Executor& strand, Handler handler) {
     auto alive = std::make_shared<std::atomic<bool>>(true);
-    subscribers_.push_back({&strand, std::make_shared<Handler>(std::move(handler)), alive});
+    subscribers_.push_back({strand.inbox(), std::make_shared<Handler>(std::move(handler)), alive});
     return Subscription(alive);
   }
 
@@ -58,42 +58,21 @@ class Topic {
       auto deliver = [handler = entry.handler, alive = entry.alive, value] {
         if (alive->load(std::memory_order_relaxed)) (*handler)(value);
       };
-      if (entry.strand == &owner_)
+      if (entry.inbox == owner_)
         deliver();
       else
-        entry.strand->post(std::move(deliver));
+        entry.inbox->post(std::move(deliver));
     }
   }
 
  private:
   struct Entry {
-    Executor* strand;
+    std::shared_ptr<Inbox> inbox;
     std::shared_ptr<Handler> handler;
     std::shared_ptr<std::atomic<bool>> alive;
   };
-  Executor& owner_;
+  std::shared_ptr<Inbox> owner_;
   std::vector<Entry> subscribers_{};
-};
-
-/// A function that one component offers to every other of its process: the request runs on the server's
-/// strand, the answer comes back on the caller's.
-template <class Request, class Response>
-class Service {
- public:
-  using Handler = std::function<Response(const Request&)>;
-  Service(Executor& server, Handler handler)
-      : server_(server), handler_(std::make_shared<Handler>(std::move(handler))) {}
-
-  void call(Executor& caller, Request request, std::function<void(const Response&)> answer) const {
-    server_.post([handler = handler_, &caller, request = std::move(request), answer = std::move(answer)] {
-      auto response = std::make_shared<const Response>((*handler)(request));
-      caller.post([answer, response] { answer(*response); });
-    });
-  }
-
- private:
-  Executor& server_;
-  std::shared_ptr<Handler> handler_;
 };
 
 }  // namespace adit

@@ -6,6 +6,7 @@
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/supervisor/unit.hpp"
+#include "core/topic/topic.hpp"
 
 namespace adit {
 namespace {
@@ -54,6 +55,22 @@ TEST_F(ComponentTest, beats_while_its_loop_turns) {
   EXPECT_TRUE(h.healthy);
   EXPECT_EQ(h.beats, 10u);
   EXPECT_LE(h.beat_age, 200ms);
+}
+
+// A replaced strand is gone while the writer of a topic still knows its subscriber.
+TEST_F(ComponentTest, a_topic_outlives_the_strands_of_its_subscribers) {
+  Topic<int> topic(*strand);
+  std::vector<int> seen;
+  auto old = machine->strand("old");
+  const Subscription gone = topic.subscribe(*old, [&](const auto& x) { seen.push_back(-*x); });
+  const Subscription here = topic.subscribe(*strand, [&](const auto& x) { seen.push_back(*x); });
+  topic.publish(1);
+  scheduler.run_until(1s);
+  old.reset();
+  const auto next = machine->strand("next");  // most likely at the address of the one that is gone
+  topic.publish(2);
+  scheduler.run_until(2s);
+  EXPECT_THAT(seen, ElementsAre(1, -1, 2));
 }
 
 TEST_F(ComponentTest, a_silent_loop_is_unhealthy_for_a_watcher) {
