@@ -24,6 +24,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives of these from inside std::string, std::variant and Eigen.
   add_compile_options(-Wno-restrict -Wno-maybe-uninitialized -Wno-null-dereference
                       -Wno-array-bounds -Wno-stringop-overflow)
+  if(CMAKE_UNITY_BUILD)
+    # The presets compile up to eight files of a target together, in less than half the time, so names in the
+    # anonymous namespaces of one target are unique. Every file is an included one for GCC then, and it would
+    # warn of anonymous namespaces.
+    add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  endif()
 endif()
 
 set(ADIT_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize= (address,undefined or thread)")

@@ -8,23 +8,23 @@
 namespace adit::bench {
 namespace {
 
-constexpr double kCell = 0.1;      // m
-constexpr double kBeside = 14.0;   // m of free ground around start and goal
-constexpr double kSight = 20.0;    // m
-constexpr int kRays = 720;         // of a turn
-constexpr std::size_t kEvery = 5;  // poses from one look to the next
+constexpr double kKnowableCell = 0.1;  // m
+constexpr double kFreeBeside = 14.0;   // m of free ground around start and goal
+constexpr double kSight = 20.0;        // m
+constexpr int kRays = 720;             // of a turn
+constexpr std::size_t kEvery = 5;      // poses from one look to the next
 
 /// What was seen to stand, grown by the disc's radius.
 class Seen {
  public:
   Seen(const Course& course, double pass)
-      : origin_(course.start.cwiseMin(course.goal) - Eigen::Vector2d(kBeside, kBeside)),
-        pass_(static_cast<int>(std::ceil(pass / kCell))),
-        pass2_(pass * pass / (kCell * kCell)) {
+      : origin_(course.start.cwiseMin(course.goal) - Eigen::Vector2d(kFreeBeside, kFreeBeside)),
+        pass_(static_cast<int>(std::ceil(pass / kKnowableCell))),
+        pass2_(pass * pass / (kKnowableCell * kKnowableCell)) {
     const Eigen::Vector2d size =
-        course.start.cwiseMax(course.goal) + Eigen::Vector2d(kBeside, kBeside) - origin_;
-    nx_ = static_cast<int>(size.x() / kCell);
-    ny_ = static_cast<int>(size.y() / kCell);
+        course.start.cwiseMax(course.goal) + Eigen::Vector2d(kFreeBeside, kFreeBeside) - origin_;
+    nx_ = static_cast<int>(size.x() / kKnowableCell);
+    ny_ = static_cast<int>(size.y() / kKnowableCell);
     stands_.assign(static_cast<std::size_t>(nx_) * static_cast<std::size_t>(ny_), false);
     closed_ = stands_;
   }
@@ -32,7 +32,7 @@ class Seen {
   void look(const sim::StandingMap& map, const Eigen::Vector2d& from) {
     for (int k = 0; k < kRays; ++k) {
       const Eigen::Vector2d way(std::cos(2 * M_PI * k / kRays), std::sin(2 * M_PI * k / kRays));
-      for (double r = 0; r < kSight; r += kCell / 2) {
+      for (double r = 0; r < kSight; r += kKnowableCell / 2) {
         const Eigen::Vector2d p = from + r * way;
         if (!map.blocked(p.x(), p.y())) continue;
         stand(column(p.x() - origin_.x()), column(p.y() - origin_.y()));
@@ -61,7 +61,7 @@ class Seen {
   }
 
  private:
-  static int column(double v) { return static_cast<int>(std::floor(v / kCell)); }
+  static int column(double v) { return static_cast<int>(std::floor(v / kKnowableCell)); }
   std::size_t index(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(i);
   }

@@ -14,13 +14,13 @@ namespace adit::nav {
 namespace {
 
 using test::Bench;
-using test::kDt;
+using test::kWaveDt;
 
 template <class Model>
 std::array<Reference, Ilqr<Model>::kHorizon> ahead(double t) {
   std::array<Reference, Ilqr<Model>::kHorizon> references;
   for (std::size_t k = 0; k < references.size(); ++k)
-    references[k] = test::wave(t + kDt * static_cast<double>(k + 1), 0.7);
+    references[k] = test::wave(t + kWaveDt * static_cast<double>(k + 1), 0.7);
   return references;
 }
 
@@ -35,12 +35,12 @@ typename Ilqr<Model>::X beside_the_wave() {
 /// As a controller does it: step after step along the wave, pushed aside by 3 cm once a second.
 template <class Model>
 void solve(benchmark::State& state) {
-  Ilqr<Model> solver(Bench<Model>::model(), Bench<Model>::limits(), {}, kDt);
+  Ilqr<Model> solver(Bench<Model>::model(), Bench<Model>::limits(), {}, kWaveDt);
   auto x = beside_the_wave<Model>();
   int step = 0;
   double iterations = 0;
   for (auto _ : state) {
-    iterations += solver.solve(x, ahead<Model>(kDt * step)).iterations;
+    iterations += solver.solve(x, ahead<Model>(kWaveDt * step)).iterations;
     x = solver.state(1);
     if (++step % 20 == 0) x[1] += 0.03;
     if (step == 400) {
@@ -53,7 +53,7 @@ void solve(benchmark::State& state) {
 
 template <class Model>
 void ceres_solve(benchmark::State& state) {
-  test::CeresProblem<Model> problem({Bench<Model>::model(), Bench<Model>::limits(), {}, kDt},
+  test::CeresProblem<Model> problem({Bench<Model>::model(), Bench<Model>::limits(), {}, kWaveDt},
                                     beside_the_wave<Model>(), ahead<Model>(0));
   for (auto _ : state) benchmark::DoNotOptimize(problem.solve());
 }
@@ -83,9 +83,9 @@ double error_mm(const std::string& name, const Platform& platform) {
       controller->set_plan(plan);
       Pose2 robot{0, 0.05, 0};
       for (int i = 0; i < 300; ++i) {
-        const Twist2 v = controller->follow(robot, kDt);
+        const Twist2 v = controller->follow(robot, kWaveDt);
         for (int n = 0; n < 10; ++n)
-          robot = robot * Pose2{0.1 * v.vx * kDt, 0.1 * v.vy * kDt, 0.1 * v.wz * kDt};
+          robot = robot * Pose2{0.1 * v.vx * kWaveDt, 0.1 * v.vy * kWaveDt, 0.1 * v.wz * kWaveDt};
         double best = 1e9;
         for (std::size_t k = 0; k + 1 < plan.pose_count; ++k) {
           const Eigen::Vector2d a = plan.poses[k].position(), b = plan.poses[k + 1].position();
@@ -106,8 +106,8 @@ void step(benchmark::State& state, const std::string& name, const Platform& plat
   Pose2 robot{0, 0.05, 0};
   for (auto _ : state) {
     controller->set_plan(plan);
-    const Twist2 v = controller->follow(robot, kDt);
-    robot = robot * Pose2{v.vx * kDt, v.vy * kDt, v.wz * kDt};
+    const Twist2 v = controller->follow(robot, kWaveDt);
+    robot = robot * Pose2{v.vx * kWaveDt, v.vy * kWaveDt, v.wz * kWaveDt};
     if ((robot.position() - plan.poses[70].position()).norm() < 0.3) robot = {0, 0.05, 0};
   }
   state.counters["error_mm"] = error_mm(name, platform);

@@ -31,7 +31,7 @@ struct Alarm {
   Task task;
   Alive alive;
 };
-struct Later {
+struct LaterAlarm {
   bool operator()(const Alarm& a, const Alarm& b) const {
     return a.when != b.when ? a.when > b.when : a.order > b.order;
   }
@@ -84,7 +84,7 @@ class Loop final : public Inbox {
       if (stopping_) return Timer(std::move(alive));
       alarms_.push_back({steady_ns() + std::max<std::int64_t>(0, delay.count()), order_++, period.count(),
                          std::move(task), alive});
-      std::push_heap(alarms_.begin(), alarms_.end(), Later{});
+      std::push_heap(alarms_.begin(), alarms_.end(), LaterAlarm{});
       if (alarms_.size() >= sweep_at_) sweep(dead);
       next_alarm_.store(alarms_.front().when, std::memory_order_relaxed);
     }
@@ -206,7 +206,7 @@ class Loop final : public Inbox {
       {
         const std::lock_guard lock(mutex_);
         if (alarms_.empty() || alarms_.front().when > now || alarms_.front().order >= made_before) break;
-        std::pop_heap(alarms_.begin(), alarms_.end(), Later{});
+        std::pop_heap(alarms_.begin(), alarms_.end(), LaterAlarm{});
         alarm = std::move(alarms_.back());
         alarms_.pop_back();
         refresh_next();
@@ -228,7 +228,7 @@ class Loop final : public Inbox {
     if (stopping_) return;
     alarm.order = order_++;
     alarms_.push_back(std::move(alarm));
-    std::push_heap(alarms_.begin(), alarms_.end(), Later{});
+    std::push_heap(alarms_.begin(), alarms_.end(), LaterAlarm{});
     refresh_next();
   }
 
@@ -240,7 +240,7 @@ class Loop final : public Inbox {
     for (Alarm& alarm : alarms_)
       if (!alarm.alive->load(std::memory_order_relaxed)) dead.push_back(std::move(alarm));
     std::erase_if(alarms_, [](const Alarm& a) { return !a.alive; });
-    std::make_heap(alarms_.begin(), alarms_.end(), Later{});
+    std::make_heap(alarms_.begin(), alarms_.end(), LaterAlarm{});
     sweep_at_ = std::max<std::size_t>(1024, 2 * alarms_.size());
   }
 

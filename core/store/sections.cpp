@@ -10,7 +10,7 @@ namespace adit::store {
 namespace {
 
 constexpr std::uint16_t kLayout = 1;
-constexpr std::size_t kDirectoryHeader = 4, kEntry = 10, kChecksum = 4;
+constexpr std::size_t kDirectoryHeader = 4, kEntry = 10, kSectionChecksum = 4;
 
 struct Entry {
   SectionTag tag{};
@@ -46,7 +46,7 @@ Bytes directory(std::span<const Section> sections) {
 /// Reads a directory of `count` entries at the front of `bytes`; nothing when it is damaged.
 std::optional<std::vector<Entry>> read_directory(std::span<const std::uint8_t> bytes, std::size_t count) {
   const std::size_t size = kDirectoryHeader + count * kEntry;
-  if (bytes.size() < size + kChecksum) return std::nullopt;
+  if (bytes.size() < size + kSectionChecksum) return std::nullopt;
   if (Unpacker(bytes.subspan(size)).get<std::uint32_t>() != crc32c(bytes.first(size))) return std::nullopt;
   Unpacker in(bytes.first(size));
   if (in.get<std::uint16_t>() != kLayout || in.get<std::uint16_t>() != count) return std::nullopt;
@@ -68,7 +68,7 @@ std::optional<std::vector<Entry>> find_directory(std::span<const std::uint8_t> b
   if (written <= kMaxSections)
     if (auto entries = read_directory(bytes, written)) return entries;
   for (std::size_t count = 0; count <= kMaxSections; ++count) {
-    const std::size_t size = kDirectoryHeader + count * kEntry + kChecksum;
+    const std::size_t size = kDirectoryHeader + count * kEntry + kSectionChecksum;
     if (bytes.size() < size) break;
     if (auto entries = read_directory(bytes.subspan(size), count)) return entries;
   }
@@ -93,18 +93,18 @@ SectionList unpack_sections(std::span<const std::uint8_t> bytes) {
   const auto entries = find_directory(bytes);
   if (!entries) return {};
   SectionList list{true, {}, {}};
-  bytes =
-      bytes.subspan(std::min(bytes.size(), 2 * (kDirectoryHeader + entries->size() * kEntry + kChecksum)));
+  bytes = bytes.subspan(
+      std::min(bytes.size(), 2 * (kDirectoryHeader + entries->size() * kEntry + kSectionChecksum)));
   for (std::size_t i = 0; i < entries->size(); ++i) {
     const Entry& entry = (*entries)[i];
     Section section{entry.tag, entry.version, {}};
-    const std::size_t whole = std::size_t{entry.size} + kChecksum;
+    const std::size_t whole = std::size_t{entry.size} + kSectionChecksum;
     const auto part = bytes.first(std::min(bytes.size(), whole));
     bytes = bytes.subspan(part.size());
     const bool good =
-        part.size() == whole && Unpacker(part.last(kChecksum)).get<std::uint32_t>() ==
+        part.size() == whole && Unpacker(part.last(kSectionChecksum)).get<std::uint32_t>() ==
                                     checksum(i, entry.tag, entry.version, part.first(entry.size));
-    if (good) section.payload.assign(part.begin(), part.end() - kChecksum);
+    if (good) section.payload.assign(part.begin(), part.end() - kSectionChecksum);
     (good ? list.good : list.damaged).push_back(std::move(section));
   }
   return list;

@@ -10,8 +10,9 @@ namespace adit::wire {
 /// Bytes that a message costs on the network, RTPS, UDP and IP headers included; as Fast DDS sends them
 /// (docs/wire.md has the measurement).
 struct WireCost {
-  static constexpr std::uint32_t frame = 1400;           ///< largest one, where no link says otherwise
-  static constexpr std::uint32_t headers = 20 + 20 + 8;  ///< RTPS, IP, UDP: once per frame
+  static constexpr std::uint32_t frame = 1400;               ///< largest one, where no link says otherwise
+  static constexpr std::uint32_t udp_and_ip = 20 + 8;        ///< headers of a datagram
+  static constexpr std::uint32_t headers = 20 + udp_and_ip;  ///< RTPS, UDP and IP: once per frame
   static constexpr std::uint32_t data = headers + 16 + 12 + 24;  ///< + INFO_DST, INFO_TS, DATA
   static constexpr std::uint32_t heartbeat = headers + 16 + 32;
   static constexpr std::uint32_t piggyback = 32;  ///< a heartbeat that goes with a sample

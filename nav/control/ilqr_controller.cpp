@@ -7,9 +7,9 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStep = 0.05;      ///< s, of the look ahead
-constexpr double kShortest = 0.05;  ///< m: what is left of the path when it is over
-constexpr double kCreep = 0.02;     ///< m/s: slower would not reach the path's end
+constexpr double kLookAheadStep = 0.05;  ///< s, of the look ahead
+constexpr double kShortestPath = 0.05;   ///< m: what is left of the path when it is over
+constexpr double kCreepSpeed = 0.02;     ///< m/s: slower would not reach the path's end
 
 /// Walks along a plan's path.
 class Walk {
@@ -88,11 +88,11 @@ class IlqrController final : public Controller {
       : Controller(platform, params.common),
         params_(params),
         model_(model),
-        solver_(model, limits, params.solver, kStep) {}
+        solver_(model, limits, params.solver, kLookAheadStep) {}
 
  protected:
   Twist2 track(const Pose2& odom, const Place& place, double dt) override {
-    if (place.remaining < kShortest) {
+    if (place.remaining < kShortestPath) {
       rest();
       return {};
     }
@@ -128,9 +128,9 @@ class IlqrController final : public Controller {
                 params().braking_share * platform().max_acceleration, top_);
     double speed = std::min(cruise, std::hypot(command().vx, command().vy));
     for (Reference& r : references_) {
-      speed = std::min(walk.at(top_), speed + platform().max_acceleration * kStep);
-      speed = std::max(speed, kCreep);
-      walk.advance(speed * kStep);
+      speed = std::min(walk.at(top_), speed + platform().max_acceleration * kLookAheadStep);
+      speed = std::max(speed, kCreepSpeed);
+      walk.advance(speed * kLookAheadStep);
       r.pose = walk.pose();
       const double turn = walk.curvature() * speed;
       r.twist = walk.remaining() > 0 ? Twist2{sign * speed, 0, turn} : Twist2{};

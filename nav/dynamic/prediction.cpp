@@ -8,15 +8,15 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStep = 0.1;      // s between the places of one mover
-constexpr float kOwn = 0.1f;       // m around the footprint: what comes there cannot be driven around
-constexpr float kUnsure = 0.6f;    // cost of a place that may be taken
-constexpr float kLeft = 0.4f;      // cost of the side that is given away
-constexpr float kSpacing = 0.15f;  // m between its points
-constexpr double kSlower = 0.5;    // of its speed is the least that the robot is reckoned with
-constexpr double kHeadOn = 0.8;    // m: who passes farther off does not come head on
-constexpr float kAhead = 0.7f;     // cosine of the sector in which he does
-constexpr double kClosing = 0.3;   // m/s: and comes nearer by
+constexpr double kPredictionStep = 0.1;  // s between the places of one mover
+constexpr float kOwn = 0.1f;             // m around the footprint: what comes there cannot be driven around
+constexpr float kUnsure = 0.6f;          // cost of a place that may be taken
+constexpr float kLeft = 0.4f;            // cost of the side that is given away
+constexpr float kSpacing = 0.15f;        // m between its points
+constexpr double kSlower = 0.5;          // of its speed is the least that the robot is reckoned with
+constexpr double kHeadOn = 0.8;          // m: who passes farther off does not come head on
+constexpr float kAhead = 0.7f;           // cosine of the sector in which he does
+constexpr double kClosing = 0.3;         // m/s: and comes nearer by
 
 /// Ways that the robot can have made after a time, m.
 struct Reach {
@@ -58,7 +58,7 @@ void predict(std::span<const Mover> movers, double age, const Pose2& pose, doubl
     const Eigen::Vector2f velocity = local(mover.velocity);
     const Eigen::Vector2f middle = local(mover.position - origin) + static_cast<float>(age) * velocity;
     const bool gives_way = head_on(middle, velocity);
-    for (double t = kStep; t <= params.horizon; t += kStep) {
+    for (double t = kPredictionStep; t <= params.horizon; t += kPredictionStep) {
       const Reach way = reach(platform, speed, t);
       const Eigen::Vector2f moved = static_cast<float>(age + t) * velocity;
       const float cost = t <= params.sure ? 1.0f : kUnsure;

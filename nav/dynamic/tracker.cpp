@@ -13,7 +13,7 @@ constexpr float kFarthest = 1e3f;      // m
 constexpr float kSteepest = 1e2f;      // of a ray's elevation, tangent
 constexpr double kLeastPeriod = 0.08;  // s between the images that are kept
 constexpr double kBreak = 1.0;         // s without a scan: nothing of before counts
-constexpr int kGap = 2;                // columns without a return within one thing
+constexpr int kGapColumns = 2;         // columns without a return within one thing
 constexpr float kStep = 0.45f;         // m between neighbouring columns of one thing
 constexpr int kFewest = 2;             // columns
 constexpr int kConfirmed = 3;          // times; of what moved before, one less
@@ -125,7 +125,7 @@ void Tracker::observe() {
   int start = -1;  // begins behind a gap, so that nothing is cut at the seam
   for (int c = 0; c < Panorama::kColumns; ++c) {
     bool gap = true;
-    for (int k = 0; k <= kGap; ++k)
+    for (int k = 0; k <= kGapColumns; ++k)
       gap &= columns_[(c + Panorama::kColumns - k) % Panorama::kColumns].returns == 0;
     if (gap && start < 0) start = c;
   }
@@ -139,7 +139,7 @@ void Tracker::observe() {
       const auto& begin = columns_[(start + first) % Panorama::kColumns].at;
       const bool apart = there && ((columns_[c].at - at).norm() > kStep ||
                                    (columns_[c].at - begin).norm() > static_cast<float>(params_.largest));
-      if (k - last > kGap + 1 || apart || k == Panorama::kColumns) {
+      if (k - last > kGapColumns + 1 || apart || k == Panorama::kColumns) {
         add_observation((start + first) % Panorama::kColumns, last - first + 1);
         first = -1;
       }

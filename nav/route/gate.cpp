@@ -6,7 +6,7 @@ namespace adit::nav {
 namespace {
 
 constexpr double kOpposite = 0.5;   // the sides are this much, as a cosine, on opposite sides of the way
-constexpr int kLongest = 6;         // samples: of a passage its mouth counts
+constexpr int kLongestMouth = 6;    // samples: of a passage its mouth counts
 constexpr double kNarrower = 0.15;  // m: than the passage that a route begins in a door at its end is
 
 // What stands on both sides of a place.
@@ -83,7 +83,7 @@ std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vect
       right += sides.right;
       along = direction;
       z = at.z();
-      if (++samples == kLongest) return gate();
+      if (++samples == kLongestMouth) return gate();
     }
     passed += length;
   }

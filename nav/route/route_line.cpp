@@ -6,10 +6,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kResample = 0.5;  // m
-constexpr double kLongest = 40.0;  // m: of a leg
-constexpr int kGiveUp = 3;         // corners in a row that are not seen
-constexpr double kLetOut = 0.5;    // m: of a way's ends, where it is too narrow but nothing stands
+constexpr double kResample = 0.5;     // m
+constexpr double kLongestLeg = 40.0;  // m: of a leg
+constexpr int kGiveUp = 3;            // corners in a row that are not seen
+constexpr double kLetOut = 0.5;       // m: of a way's ends, where it is too narrow but nothing stands
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void RouteLine::shorten_once(std::vector<Eigen::Vector3d>& points) {
     std::size_t best = anchor + 1;
     int unseen = 0;
     for (std::size_t j = anchor + 2; j < points.size() && unseen < kGiveUp; ++j) {
-      if ((points[j] - points[anchor]).squaredNorm() > kLongest * kLongest) break;
+      if ((points[j] - points[anchor]).squaredNorm() > kLongestLeg * kLongestLeg) break;
       const double most = before[j] - before[anchor] + 1e-3;
       const LineCost direct = line(points[anchor], points[j], {.most = most});
       if (direct.passable && direct.cost <= most) {

@@ -10,12 +10,11 @@ namespace {
 
 constexpr float kStack = 0.15f;      // m: returns this near above each other are of one thing
 constexpr float kNextReturn = 1.0f;  // m: 16 rays over 30 degrees are so far apart in 28 m
-constexpr float kCellF = static_cast<float>(kRouteCell);
-constexpr float kRun = 0.8f;       // m: over more than this nobody knows how the ground goes on
-constexpr float kWallGap = 1.5f;   // m
-constexpr float kStraight = 0.1f;  // m
-constexpr float kGap = 0.5f;       // m
-constexpr float kFirst = 1.5f;     // m: nothing is known of the ground this far around a lidar of few rings
+constexpr float kRun = 0.8f;         // m: over more than this nobody knows how the ground goes on
+constexpr float kWallGap = 1.5f;     // m
+constexpr float kStraight = 0.1f;    // m
+constexpr float kGap = 0.5f;         // m
+constexpr float kFirst = 1.5f;       // m: nothing is known of the ground this far around a lidar of few rings
 
 // As std::atan2 within 1e-5 rad, by an odd minimax polynomial of degree 11: this runs for every return.
 float bearing(float y, float x) {
@@ -136,7 +135,7 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
         if (pieces_.size() > first) pieces_.back().z_to = base;
       }
       map.see_obstacle(r.x, r.y, base, r.z - base);
-      pieces_.push_back({at, r.range - kCellF, begins ? ground_ : base, base, r.z});
+      pieces_.push_back({at, r.range - kRouteCellF, begins ? ground_ : base, base, r.z});
       hit = {r.range, r.x, r.y, base, r.z - base};
       z = base;
       ended = true;
@@ -173,7 +172,7 @@ void ScanProfile::close_gaps(SurfaceMap& map) const {
       return c.range > 0 && std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) < kStraight * gap;
     };
     if (gap > kWallGap || (gap > kGap && !(in_line(at(d + kDirections - 1)) && in_line(at(d + 2))))) continue;
-    const int parts = static_cast<int>(std::ceil(gap / kCellF));
+    const int parts = static_cast<int>(std::ceil(gap / kRouteCellF));
     for (int i = 1; i < parts; ++i) {
       const float t = static_cast<float>(i) / static_cast<float>(parts);
       map.see_obstacle(a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.base, std::min(a.top, b.top));
@@ -216,7 +215,7 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
       const float r = quarter_[i].range;
       const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
       const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
-      const bool there = p.to - r < kCellF;  // at a return, or at the foot of what stands there
+      const bool there = p.to - r < kRouteCellF;  // at a return, or at the foot of what stands there
       map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z),
                    there ? SurfaceMap::Seen::measured : SurfaceMap::Seen::between);
     }

@@ -7,7 +7,8 @@
 namespace adit::nav {
 
 inline constexpr double kRouteCell = 0.1;  ///< m
-inline constexpr int kTileSide = 16;       ///< cells
+inline constexpr float kRouteCellF = static_cast<float>(kRouteCell);
+inline constexpr int kTileSide = 16;  ///< cells
 inline constexpr int kTileArea = kTileSide * kTileSide;
 inline constexpr int kTileHalo = 8;         ///< clearance is known up to this many cells
 inline constexpr int kTileNodes = 16;       ///< at most; the widest openings of a side are kept

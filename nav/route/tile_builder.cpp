@@ -13,7 +13,6 @@ namespace {
 
 constexpr float kUnit = 16.0f;  // of a cell's cost
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kCellF = static_cast<float>(kRouteCell);
 constexpr double kAsideOfGap = 0.03;  // m
 constexpr int kSteep = 5;             // cells, and fewer: a step is looked for over them
 constexpr int kLongSteep = 13;        // when it was seen from afar
@@ -287,7 +286,7 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
         const bool across = dx != 0 && dy != 0;
         if (across && (cost_of(here + dx) == 0 || cost_of(here + dy * kWide) == 0)) continue;
         const int next = static_cast<int>(at) + dy * kTileSide + dx;
-        const float step = kCellF * (across ? 1.41421356f : 1.0f);
+        const float step = kRouteCellF * (across ? 1.41421356f : 1.0f);
         const float d = so_far + step * static_cast<float>(cost + own) / (2 * kUnit);
         if (d >= distance_[static_cast<std::size_t>(next)]) continue;
         distance_[static_cast<std::size_t>(next)] = d;

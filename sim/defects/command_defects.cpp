@@ -190,13 +190,6 @@ class EnterOffCentre final : public RadioInterceptor {
   std::optional<StickFrom> last_{};
 };
 
-template <class T>
-Decoration on_wires(const Subject& subject) {
-  Decoration decoration;
-  decoration.wires = std::make_unique<T>(subject.runtime.strand("defect"));
-  return decoration;
-}
-
 }  // namespace
 
 namespace decorations {

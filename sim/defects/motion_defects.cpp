@@ -68,13 +68,6 @@ class ManualSurvivesHandover final : public RadioInterceptor {
   std::string mode_{};
 };
 
-template <class T>
-Decoration on_wires(const Subject& subject) {
-  Decoration decoration;
-  decoration.wires = std::make_unique<T>(subject.runtime.strand("defect"));
-  return decoration;
-}
-
 }  // namespace
 
 namespace decorations {

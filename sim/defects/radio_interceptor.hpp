@@ -8,6 +8,7 @@
 #include "adit/robot.h"
 #include "core/geometry/pose.hpp"
 #include "sim/checker/observation.hpp"
+#include "sim/defects/defect.hpp"
 #include "sim/defects/interceptor.hpp"
 
 namespace adit::sim {
@@ -81,5 +82,13 @@ class RadioInterceptor : public Interceptor {
   std::optional<Time> stick_at_{};
   bool stands_{true};
 };
+
+/// A decoration of both wires of a robot by an interceptor with a strand of its own.
+template <class T>
+Decoration on_wires(const Subject& subject) {
+  Decoration decoration;
+  decoration.wires = std::make_unique<T>(subject.runtime.strand("defect"));
+  return decoration;
+}
 
 }  // namespace adit::sim

@@ -16,10 +16,10 @@ namespace adit::sim::navtool {
 namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
-constexpr double kStep = 0.05;      // m: between points of the path
-constexpr double kPeriod = 0.05;    // s
-constexpr double kLongest = 300.0;  // s
-constexpr double kBehind = 0.3;     // m: of the path that is given behind the robot
+constexpr double kStep = 0.05;         // m: between points of the path
+constexpr double kTrackPeriod = 0.05;  // s
+constexpr double kLongest = 300.0;     // s
+constexpr double kBehind = 0.3;        // m: of the path that is given behind the robot
 
 /// Points at equal distances along a line.
 Points dense(const Points& corners) {
@@ -108,10 +108,10 @@ Run drive(nav::Controller& controller, const Platform& platform, const Points& p
     const auto behind = static_cast<std::size_t>(kBehind / kStep);
     controller.set_plan(plan_from(path, std::min(nearest > behind ? nearest - behind : 0, path.size() - 2),
                                   platform.max_speed, ahead));
-    const Twist2 v = controller.follow(pose * Pose2{ahead, 0, 0}, kPeriod);
+    const Twist2 v = controller.follow(pose * Pose2{ahead, 0, 0}, kTrackPeriod);
     for (int k = 0; k < 5; ++k)
-      pose = pose * Pose2{v.vx * kPeriod / 5, v.vy * kPeriod / 5, v.wz * kPeriod / 5};
-    run.seconds += kPeriod;
+      pose = pose * Pose2{v.vx * kTrackPeriod / 5, v.vy * kTrackPeriod / 5, v.wz * kTrackPeriod / 5};
+    run.seconds += kTrackPeriod;
     run.driven.push_back(pose.position());
     double error = 1e9;  // to the line, not to its points
     for (std::size_t i = nearest > 5 ? nearest - 5 : 0; i + 1 < std::min(path.size(), nearest + 20); ++i) {

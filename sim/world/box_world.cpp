@@ -8,7 +8,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr double resolution = 0.05;
+constexpr double kResolution = 0.05;
 /// Open ground around the boxes that belongs to the grid, m: clearances are measured there.
 constexpr double margin = 2.0;
 
@@ -34,8 +34,8 @@ struct Span {
   int begin, end;
 };
 Span columns(double low, double high, double origin) {
-  const int begin = static_cast<int>(std::lround((low - origin) / resolution));
-  return {begin, std::max(begin + 1, static_cast<int>(std::lround((high - origin) / resolution)))};
+  const int begin = static_cast<int>(std::lround((low - origin) / kResolution));
+  return {begin, std::max(begin + 1, static_cast<int>(std::lround((high - origin) / kResolution)))};
 }
 
 }  // namespace
@@ -57,17 +57,17 @@ Result<World> make_box_world(std::span<const Box> boxes, double floor, double ce
     y1 = n == 0 ? box[3] : std::max(y1, box[3]);
   }
   // The origin is a whole number of columns, so that boxes on multiples of 0.05 m are exact.
-  const double ox = std::floor((x0 - margin) / resolution) * resolution;
-  const double oy = std::floor((y0 - margin) / resolution) * resolution;
-  const std::int64_t nx = std::llround(std::ceil((x1 + margin - ox) / resolution));
-  const std::int64_t ny = std::llround(std::ceil((y1 + margin - oy) / resolution));
+  const double ox = std::floor((x0 - margin) / kResolution) * kResolution;
+  const double oy = std::floor((y0 - margin) / kResolution) * kResolution;
+  const std::int64_t nx = std::llround(std::ceil((x1 + margin - ox) / kResolution));
+  const std::int64_t ny = std::llround(std::ceil((y1 + margin - oy) / kResolution));
   std::vector<double> levels = cut_levels(boxes, floor, ceiling);
   const int layers = static_cast<int>(levels.size()) - 1;
   if (nx * ny * layers > VoxelGrid::max_cells)
     return {Reason::bad_argument,
             fmt::format("boxes: a world of {:.0f} x {:.0f} m with {} different heights is too large", x1 - x0,
                         y1 - y0, layers)};
-  VoxelGrid grid({ox, oy}, resolution, static_cast<int>(nx), static_cast<int>(ny), std::move(levels), true);
+  VoxelGrid grid({ox, oy}, kResolution, static_cast<int>(nx), static_cast<int>(ny), std::move(levels), true);
   for (int k = 0; k < layers; ++k)
     for (int j = 0; j < grid.ny(); ++j)
       for (int i = 0; i < grid.nx(); ++i) grid.set(i, j, k, false);

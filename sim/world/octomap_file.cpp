@@ -15,7 +15,7 @@ constexpr int half_tree = 1 << (depth_levels - 1);
 constexpr std::size_t max_leaves = 50'000'000;
 
 /// Two bits for each of a node's eight children, the first child in the lowest bits.
-enum Child : unsigned { unknown = 0, free_leaf = 1, occupied_leaf = 2, inner = 3 };
+enum Child : unsigned { unknown_child = 0, free_leaf = 1, occupied_leaf = 2, inner = 3 };
 
 class Reader {
  public:
@@ -31,7 +31,7 @@ class Reader {
     for (const bool leaves : {true, false}) {
       for (int child = 0; child < 8; ++child) {
         const unsigned kind = bits >> (2 * child) & 3u;
-        if (kind == unknown || (kind != inner) != leaves) continue;
+        if (kind == unknown_child || (kind != inner) != leaves) continue;
         const int cx = x + (child & 1 ? half : 0), cy = y + (child & 2 ? half : 0),
                   cz = z + (child & 4 ? half : 0);
         if (kind == inner) {

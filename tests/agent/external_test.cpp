@@ -14,14 +14,14 @@
 namespace adit::agent {
 namespace {
 
-struct Recorder : NavigationInput {
+struct ExternalMotion : NavigationInput {
   void accept(MuxKey, const Motion& motion, Time) override { last = motion; }
   Motion last{};
 };
 
 class External : public testing::Test {
  protected:
-  Recorder nav{};
+  ExternalMotion nav{};
   Mux mux{nav};
   ExternalMode external{{.output = mux.connect("external", ExternalMode::kFresh)}};
   Time now{Duration{1h}};

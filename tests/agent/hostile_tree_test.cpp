@@ -8,7 +8,7 @@
 namespace adit::agent {
 namespace {
 
-struct Recorder : NavigationInput {
+struct LastMotion : NavigationInput {
   void accept(MuxKey, const Motion& motion, Time) override { last = motion; }
   Motion last{};
 };
@@ -42,7 +42,7 @@ class HostileTree : public testing::TestWithParam<std::string> {
     EXPECT_FALSE(step(2s)) << "moves after a reset that nobody followed by a request";
   }
 
-  Recorder nav{};
+  LastMotion nav{};
   Mux mux{nav};
   Facts facts{.driver_alive = true, .localised = true, .terrain_fresh = true};
   Behaviour behaviour{{},

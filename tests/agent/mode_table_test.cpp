@@ -7,7 +7,7 @@
 namespace adit::agent {
 namespace {
 
-const Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
+const Facts kAllMet{false, true, true, true, true, true, true, true, true, true};
 
 struct Row {
   const char* mode;
@@ -20,10 +20,10 @@ class ModeConditions : public testing::TestWithParam<Row> {};
 
 TEST_P(ModeConditions, EntryIsRefusedWithTheReason) {
   const Row& row = GetParam();
-  Facts facts = kAllGood;
+  Facts facts = kAllMet;
   row.spoil(facts);
   EXPECT_EQ(name(entry_refusal(*ModeTable::shipped().find(row.mode), facts)), name(row.reason));
-  EXPECT_EQ(entry_refusal(*ModeTable::shipped().find(row.mode), kAllGood), Reason::none);
+  EXPECT_EQ(entry_refusal(*ModeTable::shipped().find(row.mode), kAllMet), Reason::none);
 }
 
 void stop(Facts& f) { f.stopped = true; }

@@ -9,7 +9,7 @@
 namespace adit::agent {
 namespace {
 
-Platform wheeled() {
+Platform jumper() {
   Platform p{};
   p.max_speed = 2.0;
   p.max_turn = 1.5;
@@ -37,7 +37,7 @@ class OdometryJump : public testing::Test {
     return jumps;
   }
 
-  Frames where{Pose2{10, 20, 0}, wheeled()};
+  Frames where{Pose2{10, 20, 0}, jumper()};
   Pose2 pose{};
   bool stamps{true};
   std::uint64_t driver_start{5'000'000'000'000};
@@ -128,7 +128,7 @@ TEST_F(OdometryJump, ATurnOnTheSpotAndAHeightAreJumpsToo) {
 
 TEST_F(OdometryJump, AStepIsClimbedBetweenTwoSamples) {
   EXPECT_TRUE(sample({}, 20ms, 0ms, 0));
-  EXPECT_TRUE(sample({}, 20ms, 0ms, wheeled().step));
+  EXPECT_TRUE(sample({}, 20ms, 0ms, jumper().step));
 }
 
 TEST_F(OdometryJump, ThePoseThatIsSetIsInTheMapAlone) {
@@ -146,7 +146,7 @@ TEST_F(OdometryJump, ARestartComparesWithThePlaceThatWasKept) {
   ASSERT_EQ(drive(1.0, 0.0, 5s, 20ms), 0);
   const KeptPlace kept = where.kept();
   const auto back_at = [&](const Pose2& odom, Duration later) {
-    Frames again(Pose2{}, wheeled());
+    Frames again(Pose2{}, jumper());
     again.restore(kept);
     return again.update(Pose3::level(odom, 0), {}, 1, Time(100s + measured + later));
   };

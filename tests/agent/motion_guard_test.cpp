@@ -5,7 +5,7 @@
 namespace adit::agent {
 namespace {
 
-const Facts kAllGood{false, true, true, true, true, true, true, true, true, true};
+const Facts kAllConditions{false, true, true, true, true, true, true, true, true, true};
 
 class Guard : public testing::Test {
  protected:
@@ -19,33 +19,33 @@ class Guard : public testing::Test {
 
 TEST_F(Guard, PassesNothingThatWasNotAdmitted) {
   for (const ModeRow& each : table.rows()) {
-    const Decision d = guard.judge({&each, true, Reason::none}, kAllGood);
+    const Decision d = guard.judge({&each, true, Reason::none}, kAllConditions);
     EXPECT_EQ(d.mode->name, "hold");
   }
 }
 
 TEST_F(Guard, AdmitsWhenEveryConditionHolds) {
   for (const ModeRow& each : table.rows()) {
-    EXPECT_EQ(guard.admit(each, Commander::holder, kAllGood), Reason::none);
+    EXPECT_EQ(guard.admit(each, Commander::holder, kAllConditions), Reason::none);
     EXPECT_EQ(&guard.admitted(), &each);
-    EXPECT_TRUE(guard.judge(runs(each.name), kAllGood).runs);
+    EXPECT_TRUE(guard.judge(runs(each.name), kAllConditions).runs);
   }
 }
 
 TEST_F(Guard, RefusesAnEntryOffCentre) {
-  Facts pushed = kAllGood;
+  Facts pushed = kAllConditions;
   pushed.stick_centred = false;
   EXPECT_EQ(guard.admit(row("manual"), Commander::holder, pushed), Reason::stick_not_centred);
   EXPECT_EQ(guard.admitted().name, "hold");
-  ASSERT_EQ(guard.admit(row("manual"), Commander::holder, kAllGood), Reason::none);
+  ASSERT_EQ(guard.admit(row("manual"), Commander::holder, kAllConditions), Reason::none);
   EXPECT_EQ(guard.admit(row("manual"), Commander::holder, pushed), Reason::none) << "it goes on already";
   EXPECT_EQ(guard.admit(row("smart_joystick"), Commander::holder, pushed), Reason::stick_not_centred);
 }
 
 TEST_F(Guard, OnlyTheHolderCommandsManualModes) {
   for (const char* mode : {"manual", "smart_joystick", "external"})
-    EXPECT_EQ(guard.admit(row(mode), Commander::agent, kAllGood), Reason::not_holder) << mode;
-  EXPECT_EQ(guard.admit(row("waypoint"), Commander::agent, kAllGood), Reason::none);
+    EXPECT_EQ(guard.admit(row(mode), Commander::agent, kAllConditions), Reason::not_holder) << mode;
+  EXPECT_EQ(guard.admit(row("waypoint"), Commander::agent, kAllConditions), Reason::none);
 }
 
 TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
@@ -53,11 +53,11 @@ TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
     for (bool Facts::*fact : {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh,
                               &Facts::stick_fresh, &Facts::stick_kept, &Facts::stick_centred,
                               &Facts::goal_known, &Facts::goal_free, &Facts::program_fresh}) {
-      Facts f = kAllGood;
+      Facts f = kAllConditions;
       f.*fact = false;
       if (!c.holds(f)) return f;
     }
-    Facts stopped = kAllGood;
+    Facts stopped = kAllConditions;
     stopped.stopped = true;
     return stopped;
   };
@@ -65,41 +65,41 @@ TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
     for (const Condition& c : each.conditions) {
       if (c.entry_only()) continue;
       guard.hold();
-      ASSERT_EQ(guard.admit(each, Commander::holder, kAllGood), Reason::none);
+      ASSERT_EQ(guard.admit(each, Commander::holder, kAllConditions), Reason::none);
       const Decision d = guard.judge(runs(each.name), fails(c));
       EXPECT_FALSE(d.runs) << each.name << " " << c.leaf;
       EXPECT_EQ(d.reason, c.reason);
       const bool ends = c.scope == Scope::ending || each.on_failure == OnFailure::falls_to_hold;
       EXPECT_EQ(d.mode->name, ends ? "hold" : each.name) << c.leaf;
       // What ended needs a request; what paused goes on.
-      EXPECT_EQ(guard.judge(runs(each.name), kAllGood).mode->name, ends ? "hold" : each.name);
+      EXPECT_EQ(guard.judge(runs(each.name), kAllConditions).mode->name, ends ? "hold" : each.name);
     }
 }
 
 TEST_F(Guard, TheTreeCanAskForLess) {
-  ASSERT_EQ(guard.admit(row("waypoint"), Commander::holder, kAllGood), Reason::none);
-  EXPECT_FALSE(guard.judge(pauses("waypoint"), kAllGood).runs);
-  EXPECT_TRUE(guard.judge(runs("waypoint"), kAllGood).runs);
-  EXPECT_EQ(guard.judge(runs("hold"), kAllGood).mode->name, "hold");
-  EXPECT_EQ(guard.judge(runs("waypoint"), kAllGood).mode->name, "hold") << "that was the end of it";
+  ASSERT_EQ(guard.admit(row("waypoint"), Commander::holder, kAllConditions), Reason::none);
+  EXPECT_FALSE(guard.judge(pauses("waypoint"), kAllConditions).runs);
+  EXPECT_TRUE(guard.judge(runs("waypoint"), kAllConditions).runs);
+  EXPECT_EQ(guard.judge(runs("hold"), kAllConditions).mode->name, "hold");
+  EXPECT_EQ(guard.judge(runs("waypoint"), kAllConditions).mode->name, "hold") << "that was the end of it";
 }
 
 TEST_F(Guard, TheTreeCannotAskForAnotherMode) {
-  ASSERT_EQ(guard.admit(row("manual"), Commander::holder, kAllGood), Reason::none);
-  const Decision d = guard.judge(runs("waypoint"), kAllGood);
+  ASSERT_EQ(guard.admit(row("manual"), Commander::holder, kAllConditions), Reason::none);
+  const Decision d = guard.judge(runs("waypoint"), kAllConditions);
   EXPECT_EQ(d.mode->name, "hold");
   EXPECT_EQ(d.reason, Reason::tree_refused);
 }
 
 TEST_F(Guard, AManualModeCannotPause) {
-  ASSERT_EQ(guard.admit(row("manual"), Commander::holder, kAllGood), Reason::none);
-  EXPECT_EQ(guard.judge(pauses("manual"), kAllGood).mode->name, "hold");
-  EXPECT_EQ(guard.judge(runs("manual"), kAllGood).mode->name, "hold");
+  ASSERT_EQ(guard.admit(row("manual"), Commander::holder, kAllConditions), Reason::none);
+  EXPECT_EQ(guard.judge(pauses("manual"), kAllConditions).mode->name, "hold");
+  EXPECT_EQ(guard.judge(runs("manual"), kAllConditions).mode->name, "hold");
 }
 
 TEST_F(Guard, ManualModesEndWithTheirHolder) {
   for (const ModeRow& each : table.rows()) {
-    ASSERT_EQ(guard.admit(each, Commander::holder, kAllGood), Reason::none);
+    ASSERT_EQ(guard.admit(each, Commander::holder, kAllConditions), Reason::none);
     EXPECT_EQ(guard.holder_changed(), each.manual()) << each.name;
     EXPECT_EQ(guard.admitted().name, each.manual() ? "hold" : each.name);
   }

@@ -5,7 +5,7 @@
 namespace adit::agent {
 namespace {
 
-struct Recorder : NavigationInput {
+struct MotionLog : NavigationInput {
   void accept(MuxKey, const Motion& motion, Time) override { passed.push_back(motion); }
   std::vector<Motion> passed{};
 };
@@ -16,7 +16,7 @@ concept AnyoneCanWrite = requires(Input& input) {
   input.accept({}, Motion{Stand{}}, Time{});
 };
 static_assert(!AnyoneCanWrite<NavigationInput>);
-static_assert(!AnyoneCanWrite<Recorder>);
+static_assert(!AnyoneCanWrite<MotionLog>);
 static_assert(!std::is_default_constructible_v<MuxKey>);
 static_assert(!std::is_aggregate_v<MuxKey>);
 
@@ -31,7 +31,7 @@ class MuxTest : public testing::Test {
     mux.step(now);
     nav.passed.clear();
   }
-  Recorder nav{};
+  MotionLog nav{};
   Mux mux{nav};
   Mux::Output a{mux.connect("a", 300ms)}, b{mux.connect("b", 300ms)};
   Time now{Duration{1h}};

@@ -6,11 +6,11 @@ namespace adit::agent {
 namespace {
 
 using Verdict = Namesakes::Verdict;
-constexpr wire::ParticipantId own{1}, other{2}, third{3};
+constexpr wire::ParticipantId kOwn{1}, kOther{2}, kThird{3};
 
 /// A robot with start id 50, and what it hears of others with its name.
 struct Robot {
-  Namesakes names{own};
+  Namesakes names{kOwn};
   Time now{100s};
   void pass(Duration time) { now += time; }
   /// Signs of life once a second.
@@ -30,9 +30,9 @@ TEST(Namesakes, ARobotThatAStationHeardFirstStaysWhateverOthersClaim) {
   robot.held(false);
   robot.names.station(robot.now);
   robot.pass(Namesakes::kSettled);
-  EXPECT_EQ(robot.hear(other, 1), Verdict::alone);  // may be a late sample of its own former agent
-  EXPECT_EQ(robot.hear(other, 5), Verdict::stays);
-  EXPECT_EQ(robot.hear(third, 5, Namesakes::Claim{true, 1}), Verdict::stays);
+  EXPECT_EQ(robot.hear(kOther, 1), Verdict::alone);  // may be a late sample of its own former agent
+  EXPECT_EQ(robot.hear(kOther, 5), Verdict::stays);
+  EXPECT_EQ(robot.hear(kThird, 5, Namesakes::Claim{true, 1}), Verdict::stays);
   EXPECT_TRUE(robot.names.obeys(0));
   EXPECT_TRUE(robot.names.obeys(50));
   EXPECT_FALSE(robot.names.obeys(7));  // a station that means another one
@@ -42,32 +42,32 @@ TEST(Namesakes, AHeldRobotStaysAfterARestartOfItsAgent) {
   Robot robot;
   robot.names.held_before();
   robot.held(true);
-  EXPECT_EQ(robot.hear(other, 5), Verdict::stays);
+  EXPECT_EQ(robot.hear(kOther, 5), Verdict::stays);
 }
 
 TEST(Namesakes, ANewerRobotObeysNobodyFromTheFirstSignOn) {
   Robot robot;
   robot.held(false);
   robot.names.station(robot.now);
-  EXPECT_EQ(robot.hear(other, 1), Verdict::undecided);
+  EXPECT_EQ(robot.hear(kOther, 1), Verdict::undecided);
   EXPECT_FALSE(robot.names.obeys(50));
-  EXPECT_EQ(robot.hear(other, 4), Verdict::gives_way);
+  EXPECT_EQ(robot.hear(kOther, 4), Verdict::gives_way);
   EXPECT_FALSE(robot.names.obeys(50));
   EXPECT_EQ(robot.names.announced(), (Namesakes::Claim{false, 50}));
 }
 
 TEST(Namesakes, ItGivesWayWhileTheOtherIsOutOfRangeAndNotWhenItLeft) {
   Robot robot;
-  robot.hear(other, 5);
+  robot.hear(kOther, 5);
   robot.pass(50s);
   robot.names.tick(robot.now);
   EXPECT_EQ(robot.names.verdict(), Verdict::gives_way);
   robot.pass(10s);
   robot.names.tick(robot.now);
   EXPECT_EQ(robot.names.verdict(), Verdict::alone);
-  robot.names = Namesakes(own);
-  robot.hear(other, 5);
-  robot.names.left(other);
+  robot.names = Namesakes(kOwn);
+  robot.hear(kOther, 5);
+  robot.names.left(kOther);
   robot.names.tick(robot.now);
   EXPECT_EQ(robot.names.verdict(), Verdict::alone);
 }
@@ -77,8 +77,8 @@ TEST(Namesakes, OfSeveralThatGiveWayTheHeldOneStaysThenTheLowerStart) {
     Robot robot;
     robot.held(held);
     for (int i = 0; i < 4; ++i, robot.pass(1s)) {
-      robot.names.described(other, claim, robot.now);
-      robot.names.described(third, last, robot.now);
+      robot.names.described(kOther, claim, robot.now);
+      robot.names.described(kThird, last, robot.now);
       robot.names.tick(robot.now);
     }
     return robot.names.verdict();
@@ -93,9 +93,9 @@ TEST(Namesakes, OfSeveralThatGiveWayTheHeldOneStaysThenTheLowerStart) {
 TEST(Namesakes, OnlyWhenAllOthersGiveWay) {
   Robot robot;
   robot.held(false);
-  EXPECT_EQ(robot.hear(other, 4), Verdict::gives_way);
-  EXPECT_EQ(robot.hear(third, 4, Namesakes::Claim{false, 60}), Verdict::gives_way);
-  EXPECT_EQ(robot.hear(other, 4, Namesakes::Claim{false, 60}), Verdict::stays);
+  EXPECT_EQ(robot.hear(kOther, 4), Verdict::gives_way);
+  EXPECT_EQ(robot.hear(kThird, 4, Namesakes::Claim{false, 60}), Verdict::gives_way);
+  EXPECT_EQ(robot.hear(kOther, 4, Namesakes::Claim{false, 60}), Verdict::stays);
 }
 
 TEST(Namesakes, AreBounded) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 #include <random>
 #include <vector>
@@ -9,6 +10,11 @@
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {
+
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The middle of a cell of 0.1 m, m.
+inline Eigen::Vector3d middle(int x, int y, double z = 0) { return {(x + 0.5) * 0.1, (y + 0.5) * 0.1, z}; }
 
 /// A flat world of 0.1 m cells, `#` walls, for planners that are told it.
 struct GridWorld {

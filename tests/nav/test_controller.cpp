@@ -7,7 +7,7 @@
 namespace adit::nav::test {
 namespace {
 
-constexpr double kDt = 0.02;
+constexpr double kControlPeriod = 0.02;
 
 /// A straight plan of `length` metres along `yaw` from the origin.
 Plan straight(double length, double yaw = 0.0, double speed = 10.0) {
@@ -22,17 +22,18 @@ Plan straight(double length, double yaw = 0.0, double speed = 10.0) {
 
 /// Follows until it stands or for `seconds`; checks the platform's limits on the way.
 Pose2 run(Controller& follower, const Platform& p, Pose2 pose, double seconds) {
-  for (double t = 0; t < seconds; t += kDt) {
+  for (double t = 0; t < seconds; t += kControlPeriod) {
     const Twist2 before = follower.command();
-    const Twist2 v = follower.follow(pose, kDt);
+    const Twist2 v = follower.follow(pose, kControlPeriod);
     EXPECT_LE(std::hypot(v.vx, v.vy), p.max_speed + 1e-9);
     EXPECT_LE(std::fabs(v.wz), p.max_turn + 1e-9);
-    EXPECT_LE(std::hypot(v.vx - before.vx, v.vy - before.vy), p.max_acceleration * kDt + 1e-9);
-    EXPECT_LE(std::fabs(follower.command().wz - before.wz), p.max_turn_acceleration * kDt + 1e-9);
+    EXPECT_LE(std::hypot(v.vx - before.vx, v.vy - before.vy), p.max_acceleration * kControlPeriod + 1e-9);
+    EXPECT_LE(std::fabs(follower.command().wz - before.wz), p.max_turn_acceleration * kControlPeriod + 1e-9);
     if (!p.sideways()) {
       EXPECT_EQ(v.vy, 0.0);
     }
-    pose = pose * Pose2{v.vx * kDt, v.vy * kDt, (1 - p.turn_slip) * v.wz * kDt};
+    pose =
+        pose * Pose2{v.vx * kControlPeriod, v.vy * kControlPeriod, (1 - p.turn_slip) * v.wz * kControlPeriod};
   }
   return pose;
 }
@@ -62,16 +63,16 @@ TEST_P(ControllerTest, LearnsHowMuchOfATurnTheGroundSwallows) {
   circle.pose_count = Plan::kMaxPath;
   circle.length = 0.05 * (Plan::kMaxPath - 1);
   Pose2 pose;
-  for (double t = 0; t < 5.0; t += kDt) {
+  for (double t = 0; t < 5.0; t += kControlPeriod) {
     Pose2 ahead = pose;
     for (Pose2& p : circle.poses) p = ahead, ahead = ahead * Pose2{0.05, 0, 0.05};
     follower->set_plan(circle);
-    const Twist2 v = follower->follow(pose, kDt);
+    const Twist2 v = follower->follow(pose, kControlPeriod);
     const double turn = v.wz * 2 / 3;
     if (t > 3.0) {
       EXPECT_NEAR(turn, follower->command().wz, 0.02) << t;
     }
-    pose = pose * Pose2{v.vx * kDt, v.vy * kDt, turn * kDt};
+    pose = pose * Pose2{v.vx * kControlPeriod, v.vy * kControlPeriod, turn * kControlPeriod};
   }
 }
 
@@ -137,7 +138,7 @@ TEST_P(ControllerTest, AnEmptyPlanIsASmoothStopAndStopNowIsZeroAtOnce) {
   pose = run(follower, wheeled(), pose, 0.04);
   EXPECT_GT(follower.command().vx, 0.3);
   EXPECT_TRUE(follower.stop_now().zero());
-  EXPECT_TRUE(follower.follow(pose, kDt).zero());
+  EXPECT_TRUE(follower.follow(pose, kControlPeriod).zero());
 }
 
 TEST_P(ControllerTest, GoesOnFromWhatWasSent) {
@@ -147,7 +148,7 @@ TEST_P(ControllerTest, GoesOnFromWhatWasSent) {
   const Pose2 pose = run(follower, wheeled(), {}, 0.6);
   ASSERT_GT(follower.command().vx, 0.5);
   follower.sent({});  // as a collision monitor does
-  EXPECT_LE(follower.follow(pose, kDt).vx, wheeled().max_acceleration * kDt + 1e-9);
+  EXPECT_LE(follower.follow(pose, kControlPeriod).vx, wheeled().max_acceleration * kControlPeriod + 1e-9);
 }
 
 }  // namespace

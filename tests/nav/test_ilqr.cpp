@@ -20,7 +20,7 @@ class IlqrTest : public testing::Test {
   static References ahead(double t, double speed = 0.7) {
     References references;
     for (std::size_t k = 0; k < references.size(); ++k)
-      references[k] = wave(t + kDt * static_cast<double>(k + 1), speed);
+      references[k] = wave(t + kWaveDt * static_cast<double>(k + 1), speed);
     return references;
   }
   static X at(const Pose2& pose, const Twist2& twist) {
@@ -30,7 +30,7 @@ class IlqrTest : public testing::Test {
     return x;
   }
   static Solver make(const IlqrParams& params = {}) {
-    return Solver(Bench<Model>::model(), Bench<Model>::limits(), params, kDt);
+    return Solver(Bench<Model>::model(), Bench<Model>::limits(), params, kWaveDt);
   }
   Solver solver = make();
 };
@@ -41,7 +41,7 @@ TYPED_TEST(IlqrTest, KeepsToAWaveWithinMillimetres) {
   auto x = this->at({0, 0.1, 0.5}, {0.5, 0, 0});
   double worst = 0;
   for (int i = 0; i < 200; ++i) {
-    const auto references = this->ahead(kDt * i);
+    const auto references = this->ahead(kWaveDt * i);
     this->solver.solve(x, references);
     x = this->solver.state(1);
     const Pose2& r = references.front().pose;
@@ -94,7 +94,7 @@ TYPED_TEST(IlqrTest, CeresFindsNothingBetter) {
     const auto references = this->ahead(0);
     const double ours = this->make(params).solve(x, references).cost;
     const double theirs =
-        CeresProblem<TypeParam>({Bench<TypeParam>::model(), Bench<TypeParam>::limits(), params, kDt}, x,
+        CeresProblem<TypeParam>({Bench<TypeParam>::model(), Bench<TypeParam>::limits(), params, kWaveDt}, x,
                                 references)
             .solve();
     EXPECT_LE(ours, 1.001 * theirs);

@@ -5,10 +5,10 @@
 namespace adit::nav {
 namespace {
 
-const Footprint kBody(0.4, 0.2);
+const Footprint kTurningBody(0.4, 0.2);
 
 TurnRoom room_with(double x, double y) {
-  const RotationTable table(kBody);
+  const RotationTable table(kTurningBody);
   const int ring = CorrespondenceGrid::ring_of(static_cast<float>(std::hypot(x, y)));
   const int angle = (static_cast<int>(std::floor(std::atan2(y, x) * 180 / M_PI)) + 360) % 360;
   TurnRoom room;

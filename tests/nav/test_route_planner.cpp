@@ -10,9 +10,6 @@ namespace adit::nav::test {
 namespace {
 
 constexpr double kHard = 0.22;  // m: half the width of wheeled(), and a cell aside of a gap
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-Eigen::Vector3d middle(int x, int y, double z = 0) { return {(x + 0.5) * 0.1, (y + 0.5) * 0.1, z}; }
 
 TEST(RoutePlanner, StraightOverOpenGround) {
   GridWorld world(200, 100);

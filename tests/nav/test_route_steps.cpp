@@ -10,10 +10,6 @@
 namespace adit::nav::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-Eigen::Vector3d middle(int x, int y, double z = 0) { return {(x + 0.5) * 0.1, (y + 0.5) * 0.1, z}; }
-
 TEST(RouteSteps, AStepThatWasOnlySeenFromAfarProvesNothing) {
   // Rings far apart on ground that rises 0.3 m in 2 m look like a step; from near it is a ramp.
   for (const double robot : {0.0, 5.0}) {

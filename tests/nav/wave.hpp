@@ -6,7 +6,7 @@
 /// A tracking problem for each motion model, for tests and benchmarks.
 namespace adit::nav::test {
 
-inline constexpr double kDt = 0.05;  ///< s
+inline constexpr double kWaveDt = 0.05;  ///< s
 
 template <class Model>
 struct Bench {

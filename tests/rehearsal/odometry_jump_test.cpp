@@ -4,7 +4,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr const char* head = R"(world: {boxes: [], floor: 0, ceiling: 3}
+constexpr const char* kJumpScenario = R"(world: {boxes: [], floor: 0, ceiling: 3}
 duration: 20
 link: wifi
 lidar: planar
@@ -17,8 +17,8 @@ script:
   - {at: 3, by: op1, do: goto r1 14 8}
 )";
 
-RunReport run(const std::string& rest) {
-  const RunReport report = run_text(head + rest, "jump.yaml");
+RunReport run_jump(const std::string& rest) {
+  const RunReport report = run_text(kJumpScenario + rest, "jump.yaml");
   for (const RuleResult& rule : report.rules) EXPECT_EQ(rule.violations, 0U) << rule.title;
   return report;
 }
@@ -29,9 +29,9 @@ constexpr const char* stands = R"(expect:
 )";
 
 TEST(OdometryReset, EndsInHold) {
-  EXPECT_EQ(run(std::string("faults:\n  - {at: 7, odometry_reset: r1}\n") + stands).complaints(),
+  EXPECT_EQ(run_jump(std::string("faults:\n  - {at: 7, odometry_reset: r1}\n") + stands).complaints(),
             std::vector<std::string>{});
-  EXPECT_FALSE(run(stands).ok()) << "the fault makes no difference";
+  EXPECT_FALSE(run_jump(stands).ok()) << "the fault makes no difference";
 }
 
 TEST(OdometryReset, WhileTheDriverIsSilentEndsInHold) {
@@ -39,7 +39,7 @@ TEST(OdometryReset, WhileTheDriverIsSilentEndsInHold) {
   - {at: 7, sensor_silent: r1, sensor: odometry, for: 5}
   - {at: 9, odometry_reset: r1}
 )";
-  EXPECT_EQ(run(std::string(faults) + "expect:\n  - {at: 19, robot: r1, mode: hold}\n").complaints(),
+  EXPECT_EQ(run_jump(std::string(faults) + "expect:\n  - {at: 19, robot: r1, mode: hold}\n").complaints(),
             std::vector<std::string>{});
 }
 
@@ -48,11 +48,11 @@ TEST(OdometryReset, WhileTheAgentIsAwayEndsInHold) {
   - {at: 7, crash: r1}
   - {at: 7.2, odometry_reset: r1}
 )";
-  EXPECT_EQ(run(std::string(faults) + stands).complaints(), std::vector<std::string>{});
+  EXPECT_EQ(run_jump(std::string(faults) + stands).complaints(), std::vector<std::string>{});
 }
 
 TEST(OdometryReset, AnAgentThatComesBackAloneGoesOn) {
-  EXPECT_EQ(run("faults:\n  - {at: 7, crash: r1}\nexpect:\n  - {by: 20, robot: r1, near: [14, 8, 1]}\n")
+  EXPECT_EQ(run_jump("faults:\n  - {at: 7, crash: r1}\nexpect:\n  - {by: 20, robot: r1, near: [14, 8, 1]}\n")
                 .complaints(),
             std::vector<std::string>{});
 }

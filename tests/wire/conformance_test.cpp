@@ -42,14 +42,7 @@ class Conformance : public testing::Test {
   std::unique_ptr<Wire> station{net.join("op1")}, robot{net.join("r1")};
 };
 
-struct Names {
-  template <class Net>
-  static std::string GetName(int) {
-    return std::is_same_v<Net, MemoryNet> ? "Memory" : "FastDds";
-  }
-};
-using Nets = testing::Types<MemoryNet, LiveNet>;
-TYPED_TEST_SUITE(Conformance, Nets, Names);
+TYPED_TEST_SUITE(Conformance, Nets, NetNames);
 
 TYPED_TEST(Conformance, CommandsArriveInOrderInTheirPartitionOnly) {
   Seen<std::uint64_t> own, other;

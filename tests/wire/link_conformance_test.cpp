@@ -67,14 +67,7 @@ class LinkConformance : public testing::Test {
   std::vector<std::unique_ptr<RawReader>> readers{};
 };
 
-struct Names {
-  template <class Net>
-  static std::string GetName(int) {
-    return std::is_same_v<Net, MemoryNet> ? "Memory" : "FastDds";
-  }
-};
-using Nets = testing::Types<MemoryNet, LiveNet>;
-TYPED_TEST_SUITE(LinkConformance, Nets, Names);
+TYPED_TEST_SUITE(LinkConformance, Nets, NetNames);
 
 TYPED_TEST(LinkConformance, LatencyIsTheLinksAndTheAirs) {
   this->open({.bandwidth = 100e3, .latency = 0.1});

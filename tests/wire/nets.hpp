@@ -1,8 +1,11 @@
 #pragma once
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/exec/live_runtime.hpp"
@@ -85,5 +88,14 @@ class Seen {
   mutable std::mutex mutex_{};
   std::vector<T> values_{};
 };
+
+/// For typed tests that both wires must pass.
+struct NetNames {
+  template <class Net>
+  static std::string GetName(int) {
+    return std::is_same_v<Net, MemoryNet> ? "Memory" : "FastDds";
+  }
+};
+using Nets = testing::Types<MemoryNet, LiveNet>;
 
 }  // namespace adit::wire

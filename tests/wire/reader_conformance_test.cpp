@@ -74,14 +74,7 @@ class ReaderConformance : public testing::Test {
   Seen<Got> got{};
 };
 
-struct Names {
-  template <class Net>
-  static std::string GetName(int) {
-    return std::is_same_v<Net, MemoryNet> ? "Memory" : "FastDds";
-  }
-};
-using Nets = testing::Types<MemoryNet, LiveNet>;
-TYPED_TEST_SUITE(ReaderConformance, Nets, Names);
+TYPED_TEST_SUITE(ReaderConformance, Nets, NetNames);
 
 TYPED_TEST(ReaderConformance, ASampleIsStampedWhenItComes) {
   const auto reader = this->hear(newest);

@@ -39,14 +39,7 @@ class TopicConformance : public testing::Test {
   Seen<ParticipantId> senders{};
 };
 
-struct Names {
-  template <class Net>
-  static std::string GetName(int) {
-    return std::is_same_v<Net, MemoryNet> ? "Memory" : "FastDds";
-  }
-};
-using Nets = testing::Types<MemoryNet, LiveNet>;
-TYPED_TEST_SUITE(TopicConformance, Nets, Names);
+TYPED_TEST_SUITE(TopicConformance, Nets, NetNames);
 
 TYPED_TEST(TopicConformance, ATopicHasOneTypeKeyAndBound) {
   const auto writer = this->robot->make_writer(topics::cmd_vel_stamped, "");

@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "core/wire/cost.hpp"
 #include "core/wire/fastdds/live_link.hpp"
 #include "core/wire/fastdds/ports.hpp"
 #include "core/wire/fastdds/rtps_peek.hpp"
@@ -12,14 +13,8 @@
 namespace adit::wire {
 namespace rtps = eprosima::fastrtps::rtps;
 
-namespace {
-
-constexpr std::uint64_t udp_and_ip = 28;
-
-}  // namespace
-
 void Traffic::sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
-  const std::uint64_t bytes = message.size() + udp_and_ip;
+  const std::uint64_t bytes = message.size() + WireCost::udp_and_ip;
   total_out.fetch_add(bytes, std::memory_order_relaxed);
   if (is_discovery_port(port)) discovery_out.fetch_add(bytes, std::memory_order_relaxed);
   peers.sent(peek(message), address, port, bytes);
@@ -28,7 +23,7 @@ void Traffic::sent(std::span<const std::uint8_t> message, in_addr_t address, std
 void Traffic::received(std::span<const std::uint8_t> message, std::uint32_t port) {
   const RtpsPeek seen = peek(message);
   if (seen.source && contact.is_own(*seen.source)) return;  // did not come by radio
-  const std::uint64_t bytes = message.size() + udp_and_ip;
+  const std::uint64_t bytes = message.size() + WireCost::udp_and_ip;
   total_in.fetch_add(bytes, std::memory_order_relaxed);
   if (is_discovery_port(port)) discovery_in.fetch_add(bytes, std::memory_order_relaxed);
   peers.received(seen, bytes);

@@ -8,7 +8,6 @@ namespace adit::wire {
 namespace {
 
 constexpr std::size_t most_waiting = 4096;  // datagrams; the queue's age bounds them long before
-constexpr std::uint32_t udp_and_ip = 28;
 /// Between two tries to give a full socket more. The kernel holds 40 kB (outlet.cpp), so that a radio of less
 /// than 300 Mbit/s does not run dry meanwhile. Polling the socket would not do: the interface's queue can be
 /// full while the socket's is not.
@@ -178,11 +177,12 @@ Duration LiveLink::refill(Duration at) {
 
 Duration LiveLink::airtime(const Packet& packet) const {
   if (!link_ || link_->window > 0.0) return Duration{};
-  return from_seconds(static_cast<double>(packet.bytes.size() + udp_and_ip) * 8.0 / link_->bandwidth);
+  return from_seconds(static_cast<double>(packet.bytes.size() + WireCost::udp_and_ip) * 8.0 /
+                      link_->bandwidth);
 }
 
 void LiveLink::put_on_air(Packet packet, Duration at, Duration airtime) {
-  const auto bytes = static_cast<std::uint32_t>(packet.bytes.size()) + udp_and_ip;
+  const auto bytes = static_cast<std::uint32_t>(packet.bytes.size()) + WireCost::udp_and_ip;
   if (link_->window > 0.0 && !window_.admit(*link_, bytes, at)) {
     queue_.note_dropped(packet.priority);
     return;

@@ -25,8 +25,7 @@ constexpr std::uint32_t loopback_datagram = 65000;
 /// Whole scans must wait here until they are read; the kernel gives at most net.core.rmem_max.
 constexpr std::uint32_t scan_buffer = 4 << 20;
 constexpr std::uint32_t participants_per_host = 16;  // ports tried at an address that is named without one
-constexpr std::uint32_t udp_and_ip = 28;
-constexpr std::uint32_t send_buffer = 212992;  // B, as Linux has it
+constexpr std::uint32_t send_buffer = 212992;        // B, as Linux has it
 /// The library keeps room in each message for statistics, 60 B that are cut off again, and for a heartbeat,
 /// 32 B, which hardly ever goes with a fragment. With 20 of these an endpoint fits one frame of 500 B.
 constexpr std::uint32_t never_sent = 60 + 20;
@@ -122,7 +121,8 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   udp->maxMessageSize = params.large_samples ? loopback_datagram : WireCost::frame + never_sent;
   if (params.large_samples) udp->receiveBufferSize = scan_buffer;
   if (params.link) {
-    udp->maxMessageSize = std::min(udp->maxMessageSize, params.link->frame_bytes() - udp_and_ip + never_sent);
+    udp->maxMessageSize =
+        std::min(udp->maxMessageSize, params.link->frame_bytes() - WireCost::udp_and_ip + never_sent);
     const Budget budget;
     add_flow(bulk_flow, budget.share[5], *params.link, qos);
     add_flow(video_flow, budget.share[6], *params.link, qos);
