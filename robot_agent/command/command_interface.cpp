@@ -14,10 +14,12 @@ Result<void> supervised(const Function& function, const Arguments&... arguments)
   return function(arguments...);
 }
 
-/// Given again after a restart, such a command has the same answer and no further effect, unless it changed
-/// the state: then its answer is stored with the state. Those of the holder would be refused, their epoch is
-/// old.
-bool same_after_restart(const command::CommandInfo& row) { return !row.conditions.holder; }
+/// A question changes nothing, however often it is asked. The answer to every other accepted command is
+/// stored before it is sent, also when the command changed nothing: a repeat after a restart must not have
+/// the effect that it lacked the first time.
+bool is_question(const command::CommandInfo& row) {
+  return !row.conditions.holder && row.line == command::Line::none;
+}
 
 }  // namespace
 
@@ -66,8 +68,7 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   const Answer result = answer(c, outcome);
   // A name that is refused is refused each time, and is not worth a place in the memory or on the disk.
   if (c.seq != 0 && valid_name(c.from.name))
-    memory_.remember(c.from.participant, result, c.request.info->line, !same_after_restart(*c.request.info),
-                     now);
+    memory_.remember(c.from.participant, result, c.request.info->line, !is_question(*c.request.info), now);
   return result;
 }
 
