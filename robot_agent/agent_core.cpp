@@ -36,13 +36,12 @@ constexpr Duration kPulse = 50ms;
 }  // namespace
 
 Agent::Core::Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider,
-                  Edges& edges, std::shared_ptr<const Lease> lease)
+                  Edges& edges)
     : Component("command", command, Log(params.log, params.name), {.beat = kPulse}),
       params_(params),
       edges_(edges),
-      lease_(std::move(lease)),
       frames_(params.start, params.platform, params.start_height),
-      navigation_(navigation_params(params), command, log(), frames_, *edges.planner, edges.router,
+      navigation_(navigation_params(params), command, log(), frames_, edges.planner, edges.router.get(),
                   navigation_outputs()),
       mux_(navigation_),
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
@@ -129,35 +128,23 @@ void Agent::Core::commands(const std::function<void(CommandInterface&)>& use) {
 
 void Agent::Core::find_route(const Eigen::Vector3d& goal,
                              std::function<void(const Result<PlannedRoute>&)> done) {
-  struct Question {
-    std::function<void(const Result<PlannedRoute>&)> done{};
-    Timer patience{};
-  };
   protect([&] {
     if (!goal.head<2>().allFinite() || std::isinf(goal.z()))
       return done({Reason::out_of_range, "a place has finite coordinates"});
     if (!edges_.router)
       return done({Reason::not_supported, "this robot has no router: its platform says none"});
     if (!frames_.initialised()) return done({Reason::no_localisation, "the robot does not know where it is"});
-    auto question = std::make_shared<Question>();
-    question->done = std::move(done);
-    // Answered once, by whichever comes first.
-    const auto answer = [question](const Result<PlannedRoute>& route) {
-      question->patience.cancel();
-      if (const auto tell = std::exchange(question->done, {})) tell(route);
-    };
-    question->patience = after(500ms, [answer] {
-      answer({Reason::no_answer, "the router does not answer; see health"});
-    });
-    auto query = std::make_shared<RouteQuery>();
-    query->odom_epoch = frames_.odom_epoch();
-    query->from = frames_.T_odom_base().position;
-    query->to = frames_.to_odom(goal);
-    edges_.router->find(query, guard([this, query, answer] {
-                          if (query->odom_epoch != frames_.odom_epoch())
-                            return answer({Reason::odometry_jumped, "the odometry jumped meanwhile"});
-                          answer(planned_route(query->route, frames_));
-                        }));
+    RouteQuery query{};
+    query.odom_epoch = frames_.odom_epoch();
+    query.from = frames_.T_odom_base().position;
+    query.to = frames_.to_odom(goal);
+    call(edges_.router->find, query, {.deadline = 500ms},
+         [this, epoch = query.odom_epoch, done = std::move(done)](const Result<nav::Route>& route) {
+           if (!route) return done({Reason::no_answer, "the router does not answer; see health"});
+           if (epoch != frames_.odom_epoch())
+             return done({Reason::odometry_jumped, "the odometry jumped meanwhile"});
+           done(planned_route(*route, frames_));
+         });
   });
 }
 
@@ -188,7 +175,12 @@ Result<void> Agent::Core::on_start() {
   started_ = now();
   restore();
   navigation_.on_failure([this](const ComponentFailure& f) { fail(f.component + ": " + f.text); });
+  navigation_.adopt(generation());
   if (const auto started = navigation_.start(); !started) return started;
+  offer(edges_.scans, [this](LidarScan lidar, const Reply<void>& reply) {
+    scan(std::move(lidar.points), lidar.stamp, lidar.received);
+    reply({});
+  });
   edges_.core = this;
   edges_.driver->write({});
   if (edges_.instances == 1)
@@ -321,7 +313,7 @@ Behaviour::Outputs Agent::Core::behaviour_outputs() {
 
 Navigation::Outputs Agent::Core::navigation_outputs() {
   return {[this](const Twist2& velocity) {
-            if (lease_->valid()) edges_.driver->write(velocity);
+            if (generation()->valid()) edges_.driver->write(velocity);
           },
           [this](const Progress& progress) { behaviour_.set_progress(progress); },
           [this](Warning warning) {

@@ -18,6 +18,7 @@
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
 #include "robot_agent/motion/rival.hpp"
+#include "robot_agent/motion/scans.hpp"
 #include "robot_agent/notices/notices.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
@@ -45,8 +46,9 @@ struct Agent::Edges {
   Restored restored{};  ///< what was there at the start, or when the component was made anew
   std::unique_ptr<StateKeeper> keeper{};  ///< what the component gave last, here and on the disk
   std::unique_ptr<FindingSync> findings{};
-  PlanService* planner{};     ///< from any thread
-  RouteService* router{};     ///< from any thread; null: this robot has none
+  PlanService planner{"planner", 2};        ///< These are for any thread.
+  std::unique_ptr<RouteServices> router{};  ///< Null: this robot has none.
+  ScanService scans{"scan", 4};
   Watch* watch{};             ///< from any thread
   Core* core{};               ///< null while the command component is away
   std::uint32_t instances{};  ///< of the command component so far
@@ -58,9 +60,7 @@ struct Agent::Edges {
 /// made anew when it is restarted; what must survive that is put back in restore().
 class Agent::Core : public Component {
  public:
-  /// `lease`: what it sends to the driver counts while that is valid.
-  Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider, Edges& edges,
-       std::shared_ptr<const Lease> lease);
+  Core(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider, Edges& edges);
 
   void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received);
   void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received);
@@ -108,7 +108,6 @@ class Agent::Core : public Component {
 
   AgentParams params_;
   Edges& edges_;
-  std::shared_ptr<const Lease> lease_;
   Frames frames_;
   Navigation navigation_;
   Mux mux_;

@@ -18,45 +18,7 @@ std::unique_ptr<Decider> decider_of(const AgentParams& params) {
   return decider ? std::move(*decider) : Decider::refused(decider.error(), table);
 }
 
-/// Has `use` ask the component of that unit, on its strand, and calls `done` back on the caller's while the
-/// component counts.
-template <class Part, class Use>
-void ask(Unit& unit, Executor& caller, Use use, Task done) {
-  const auto seat = unit.seat();
-  // The seat outlives its strand's tasks.
-  seat->strand->post([seat = seat.get(), use = std::move(use), done = std::move(done), caller = &caller] {
-    auto* part = static_cast<Part*>(seat->component.get());
-    if (!part) return;
-    use(*part, [lease = seat->lease, done, caller] {
-      caller->post([lease, done] {
-        if (lease->valid()) done();
-      });
-    });
-  });
-}
-
 }  // namespace
-
-void PlannerUnit::plan(std::shared_ptr<PlanJob> job, Task done) {
-  ask<Planner>(
-      unit_, caller_,
-      [job = std::move(job)](Planner& planner, Task back) { planner.plan(job, std::move(back)); },
-      std::move(done));
-}
-
-void RouterUnit::step(std::shared_ptr<RouteJob> job, Task done) {
-  ask<Router>(
-      unit_, caller_,
-      [job = std::move(job)](Router& router, Task back) { router.step(job, std::move(back)); },
-      std::move(done));
-}
-
-void RouterUnit::find(std::shared_ptr<RouteQuery> query, Task done) {
-  ask<Router>(
-      unit_, caller_,
-      [query = std::move(query)](Router& router, Task back) { router.find(query, std::move(back)); },
-      std::move(done));
-}
 
 Agent::Parts::Parts(const AgentParams& agent_params, Runtime& agent_runtime)
     : params(agent_params),
@@ -87,10 +49,8 @@ void Agent::Parts::end_disk() {
 UnitParams Agent::Parts::command_unit() {
   UnitParams unit{};
   unit.name = "command";
-  unit.make = [this](Executor& strand,
-                     std::shared_ptr<const Lease> lease) -> Result<std::unique_ptr<Component>> {
-    return std::unique_ptr<Component>(
-        std::make_unique<Core>(params, strand, decider_of(params), *edges, std::move(lease)));
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(std::make_unique<Core>(params, strand, decider_of(params), *edges));
   };
   return unit;
 }
@@ -99,10 +59,10 @@ UnitParams Agent::Parts::planner_unit() {
   UnitParams unit{};
   unit.name = "planner";
   unit.heavy = true;
-  unit.make = [this](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
     return std::unique_ptr<Component>(
         std::make_unique<Planner>(PlannerParams{params.platform, params.planning, params.local_planner},
-                                  strand, Log(params.log, params.name), library()));
+                                  strand, Log(params.log, params.name), edges->planner, library()));
   };
   return unit;
 }
@@ -111,11 +71,11 @@ UnitParams Agent::Parts::router_unit() {
   UnitParams unit{};
   unit.name = "router";
   unit.heavy = true;
-  unit.make = [this](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
     RouterParams router_params{};
     router_params.platform = params.platform;
-    return std::unique_ptr<Component>(
-        std::make_unique<Router>(std::move(router_params), strand, Log(params.log, params.name)));
+    return std::unique_ptr<Component>(std::make_unique<Router>(std::move(router_params), strand,
+                                                               Log(params.log, params.name), *edges->router));
   };
   return unit;
 }
@@ -123,23 +83,16 @@ UnitParams Agent::Parts::router_unit() {
 UnitParams Agent::Parts::sensors_unit() {
   UnitParams unit{};
   unit.name = "sensors";
-  unit.make = [this](Executor& strand,
-                     std::shared_ptr<const Lease> lease) -> Result<std::unique_ptr<Component>> {
-    Executor& to = command_strand();
-    auto output = [&to, lease, edges = edges.get()](std::shared_ptr<PointCloud> points, std::uint64_t stamp,
-                                                    Time received) {
-      to.post([lease, edges, points = std::move(points), stamp, received] {
-        if (lease->valid() && edges->core) edges->core->scan(points, stamp, received);
-      });
-    };
-    return std::unique_ptr<Component>(std::make_unique<Scans>(
-        strand, Log(params.log, params.name), params.platform.lidar_height, std::move(output)));
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(std::make_unique<Scans>(strand, Log(params.log, params.name),
+                                                              params.platform.lidar_height, edges->scans));
   };
   unit.fit = [this](const std::shared_ptr<Seat>& seat) -> Result<std::shared_ptr<void>> {
-    auto readers = Scans::read(*robot_wire, *seat->strand, [seat = std::weak_ptr<Seat>(seat)] {
-      const auto taken = seat.lock();
-      return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
-    });
+    auto readers =
+        Scans::read(*robot_wire, *seat->strand, seat->generation, [seat = std::weak_ptr<Seat>(seat)] {
+          const auto taken = seat.lock();
+          return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
+        });
     if (!readers) return readers.error();
     return std::shared_ptr<void>(std::make_shared<Scans::Readers>(std::move(*readers)));
   };
@@ -197,10 +150,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   for (Unit* unit : {&planner, &router, &sensors})
     if (unit != &router || routes_it)
       if (const auto opened = unit->open(); !opened) return opened.error();
-  plans = std::make_unique<PlannerUnit>(planner, strand);
-  e.planner = plans.get();
-  if (routes_it) routes = std::make_unique<RouterUnit>(router, strand);
-  e.router = routes.get();
+  if (routes_it) e.router = std::make_unique<RouteServices>();
   auto opened = Watch::open({params.name, params.supervision, Log(params.log, params.name), params.end,
                              params.alive, params.velocity},
                             *watch_strand, radio, robot, *e.notifier);
@@ -271,7 +221,7 @@ FindingSync::Outputs Agent::Parts::findings_outputs() {
 
 Unit* Agent::Parts::find(const std::string& component) {
   for (Unit* unit : {&command, &planner, &router, &sensors})
-    if (unit->name() == component && (unit != &router || routes)) return unit;
+    if (unit->name() == component && (unit != &router || edges->router)) return unit;
   return nullptr;
 }
 

@@ -10,31 +10,6 @@ namespace adit::agent {
 inline constexpr std::uint64_t kIdentitySalt = 1;
 inline constexpr std::uint64_t kFindingsSalt = 2;
 
-/// Sends planning jobs to the planner there is, and plans back while it counts.
-class PlannerUnit final : public PlanService {
- public:
-  PlannerUnit(Unit& unit, Executor& caller) : unit_(unit), caller_(caller) {}
-  std::uint64_t instance() const override { return unit_.instance(); }
-  void plan(std::shared_ptr<PlanJob> job, Task done) override;
-
- private:
-  Unit& unit_;
-  Executor& caller_;
-};
-
-/// The same for the router.
-class RouterUnit final : public RouteService {
- public:
-  RouterUnit(Unit& unit, Executor& caller) : unit_(unit), caller_(caller) {}
-  std::uint64_t instance() const override { return unit_.instance(); }
-  void step(std::shared_ptr<RouteJob> job, Task done) override;
-  void find(std::shared_ptr<RouteQuery> query, Task done) override;
-
- private:
-  Unit& unit_;
-  Executor& caller_;
-};
-
 /// The parts of an agent, composed: four units on strands of their own, what they share, and who watches
 /// them. Private to agent.cpp.
 struct Agent::Parts {
@@ -55,8 +30,6 @@ struct Agent::Parts {
   Unit command, planner, router, sensors;
   std::shared_ptr<Strand> watch_strand;
   std::shared_ptr<Strand> disk_strand{};  ///< null: there is no disk, or one that takes no time
-  std::unique_ptr<PlannerUnit> plans{};
-  std::unique_ptr<RouterUnit> routes{};  ///< null: the platform has no router
   std::unique_ptr<Watch> watch{};
 
  private:

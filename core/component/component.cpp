@@ -39,6 +39,7 @@ Result<void> Component::start() {
   if (!result) {
     life_->owner = nullptr;
     life_.reset();
+    offers_.clear();
     heartbeat_.cancel();
     vital_->stopped();
   }
@@ -49,6 +50,7 @@ void Component::stop() {
   if (!life_) return;
   life_->owner = nullptr;
   life_.reset();
+  offers_.clear();
   heartbeat_.cancel();
   vital_->stopped();
   try {

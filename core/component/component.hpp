@@ -2,8 +2,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
+#include "core/component/call.hpp"
 #include "core/component/fault.hpp"
 #include "core/component/vital.hpp"
 #include "core/exec/executor.hpp"
@@ -47,6 +50,10 @@ class Component {
   ComponentHealth health() const { return vital_->health(executor_.now()); }
   /// For tests and rehearsals of failures: a callback of this component throws, or never returns.
   void inject(ComponentFault fault);
+  /// Which instance this is. What it hands to other strands counts while that is valid.
+  const std::shared_ptr<const Generation>& generation() const { return generation_; }
+  /// Before start(): the generation that its supervisor revokes.
+  void adopt(std::shared_ptr<const Generation> generation) { generation_ = std::move(generation); }
   /// Told of each failure, on the strand.
   void on_failure(std::function<void(const ComponentFailure&)> handler) {
     failure_handler_ = std::move(handler);
@@ -95,6 +102,21 @@ class Component {
   Timer every(Duration period, F task) {
     return executor_.every(period, guard(std::move(task)));
   }
+  /// Implements a service until stop(): `handler(Request, Reply<Response>)` runs on this strand for each
+  /// request, and calls the reply now or later, from a completion. When it throws, the call completes with
+  /// `cancelled`.
+  template <class Request, class Response, class Handler>
+  void offer(Service<Request, Response>& service, Handler handler) {
+    offers_.push_back(service.offer(executor_, generation_, guard(std::move(handler))));
+  }
+  /// Calls a service: `done(Result<Response>)` runs on this strand exactly once, unless this component is
+  /// stopped first. core/component/call.hpp has the errors.
+  template <class Request, class Response, class Done>
+  CallHandle call(const Service<Request, Response>& service, std::type_identity_t<Request> request,
+                  CallSpec spec, Done done) {
+    spec.caller = generation_;
+    return service.call(executor_, std::move(request), std::move(spec), guard(std::move(done)));
+  }
   /// Executor::compute with a guarded completion: it never comes once this component is stopped. An exception
   /// of `work` is a failure of this component; when it still runs after that, `done` gets the Error, too.
   template <class Work, class Done>
@@ -131,6 +153,8 @@ class Component {
   Log log_;
   std::shared_ptr<Vital> vital_;
   std::shared_ptr<Life> life_{};
+  std::shared_ptr<const Generation> generation_{std::make_shared<Generation>()};
+  std::vector<Offer> offers_{};
   std::function<void(const ComponentFailure&)> failure_handler_{};
   std::uint64_t failures_{0};
   Timer heartbeat_{};

@@ -33,7 +33,7 @@ void Unit::restart() {
   std::shared_ptr<Seat> seat;
   {
     const std::lock_guard lock(mutex_);
-    record_->lease->revoke();
+    record_->generation->revoke();
     record_ = record;
     seat = seat_;
   }
@@ -46,14 +46,14 @@ void Unit::restart() {
 void Unit::begin(Seat& seat, const std::shared_ptr<Record>& record) {
   if (seat.component) seat.component->stop();
   seat.component.reset();
-  seat.lease = record->lease;
-  if (!record->lease->valid()) return;  // ordered anew meanwhile
+  if (!record->generation->valid()) return;  // ordered anew meanwhile
   Result<void> started;
   try {
-    auto made = params_.make(*seat.strand, record->lease);
+    auto made = params_.make(*seat.strand);
     started = made ? Result<void>{} : Result<void>{made.error()};
     if (made) {
       seat.component = std::move(*made);
+      seat.component->adopt(record->generation);
       started = seat.component->start();
     }
   } catch (const HangReleased&) {
@@ -63,7 +63,7 @@ void Unit::begin(Seat& seat, const std::shared_ptr<Record>& record) {
   }
   if (!started) return report_failure(*record, started.error().text);
   seat.component->on_failure([this, &seat, record](const ComponentFailure& failure) {
-    record->lease->revoke();
+    record->generation->revoke();
     seat.component->stop();
     report_failure(*record, failure.text);
   });
@@ -75,7 +75,7 @@ void Unit::begin(Seat& seat, const std::shared_ptr<Record>& record) {
 }
 
 void Unit::report_failure(Record& record, const std::string& text) const {
-  record.lease->revoke();
+  record.generation->revoke();
   {
     const std::lock_guard lock(record.mutex);
     record.failed = true;
@@ -86,11 +86,12 @@ void Unit::report_failure(Record& record, const std::string& text) const {
 
 void Unit::replace() {
   std::shared_ptr<Seat> hung = seat();
+  hung->generation->revoke();
   hung->strand->abandon();
   left_behind_.seats.push_back(std::move(hung));
   if (const auto opened = open(); !opened) {
     const std::lock_guard lock(mutex_);
-    record_->lease->revoke();
+    record_->generation->revoke();
     record_ = std::make_shared<Record>();
     record_->failed = true;
     record_->text = opened.error().text;
@@ -101,12 +102,14 @@ void Unit::replace() {
 
 void Unit::revoke() {
   const std::lock_guard lock(mutex_);
-  record_->lease->revoke();
+  record_->generation->revoke();
 }
 
 void Unit::abandon() {
   revoke();
-  seat()->strand->abandon();
+  const auto hung = seat();
+  hung->generation->revoke();
+  hung->strand->abandon();
 }
 
 void Unit::end() {

@@ -12,16 +12,6 @@
 
 namespace adit {
 
-/// Whether what an instance of a component says still counts. Any thread.
-class Lease {
- public:
-  bool valid() const { return valid_.load(std::memory_order_acquire); }
-  void revoke() { valid_.store(false, std::memory_order_release); }
-
- private:
-  std::atomic<bool> valid_{true};
-};
-
 /// A strand and what lives on it.
 struct Seat {
   Seat() = default;
@@ -30,8 +20,9 @@ struct Seat {
   ~Seat();
   std::shared_ptr<Strand> strand{};
   std::unique_ptr<Component> component{};  ///< touched on the strand only, or after its end
-  std::shared_ptr<Lease> lease{};          ///< of `component`; likewise
-  std::shared_ptr<void> fittings{};        ///< what delivers to the strand; dropped before it
+  /// Of the strand: what writes from it or delivers to it counts while that is valid.
+  std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
+  std::shared_ptr<void> fittings{};  ///< what delivers to the strand; dropped before it
 };
 
 /// Seats whose task hangs: kept, for it may still use them, until their unit goes.
@@ -46,16 +37,16 @@ struct LeftBehind {
 struct UnitParams {
   std::string name{};
   bool heavy{false};  ///< lives on a Runtime::worker
-  /// Makes an instance; on the strand. `lease`: its outputs count while that is valid.
-  std::function<Result<std::unique_ptr<Component>>(Executor& strand, std::shared_ptr<const Lease> lease)>
-      make{};
-  /// Made with each strand, before its first instance; nothing when null. Hold the seat weakly.
+  /// Makes an instance; on the strand.
+  std::function<Result<std::unique_ptr<Component>>(Executor& strand)> make{};
+  /// Made with each strand, before its first instance; nothing when null. Hold the seat weakly, and bind
+  /// writers and readers to its generation, which is revoked when the strand is left behind.
   std::function<Result<std::shared_ptr<void>>(const std::shared_ptr<Seat>& seat)> fit{};
 };
 
 /// A component that can be made anew: on its strand when it failed, on another one when it hangs. What an
-/// instance hands to other strands counts only while its lease is valid. An exception that leaves a callback
-/// of the component ends that instance on the spot.
+/// instance hands to other strands counts only while its generation is valid. An exception that leaves a
+/// callback of the component ends that instance on the spot.
 ///
 /// restart(), replace(), revoke() and abandon() are the supervisor's, on its strand; the rest is for any
 /// thread.
@@ -94,7 +85,7 @@ class Unit {
     std::shared_ptr<const Vital> vital{};
     bool failed{};
     std::string text{};
-    std::shared_ptr<Lease> lease{std::make_shared<Lease>()};
+    std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
   };
   void report_failure(Record& record, const std::string& text) const;
   void begin(Seat& seat, const std::shared_ptr<Record>& record);

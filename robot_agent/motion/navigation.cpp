@@ -8,15 +8,15 @@
 namespace adit::agent {
 namespace {
 
-constexpr double kTurnLooksAhead = 0.6;  // s: how far a stick's turn rate shifts the direction asked for
-constexpr double kTurningSpeed = 0.05;   // m/s: of a stick that only turns
-constexpr Duration kCycleLost = 2s;
-constexpr double kGoalMoved = 0.05;  // m: by a correction of the map
+constexpr double kTurnLooksAhead = 0.6;   // s: how far a stick's turn rate shifts the direction asked for
+constexpr double kTurningSpeed = 0.05;    // m/s: of a stick that only turns
+constexpr Duration kAnswerDeadline = 2s;  // of planner and router: one that hangs is replaced sooner
+constexpr double kGoalMoved = 0.05;       // m: by a correction of the map
 
 }  // namespace
 
 Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const Frames& frames,
-                       PlanService& planner, RouteService* router, Outputs outputs)
+                       const PlanService& planner, const RouteServices* router, Outputs outputs)
     : Component("navigation", strand, std::move(log)),
       params_(std::move(params)),
       frames_(frames),
@@ -173,7 +173,7 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
 void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now) {
   scanned_ = received;
   monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
-  if (planning_.under_way(planner_.instance(), now))
+  if (planning_)
     waiting_ = scan;
   else
     plan(scan, now);
@@ -189,8 +189,7 @@ const nav::RouteStep* Navigation::step_on(Time now) const {
 }
 
 void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
-  if (!router_) return;
-  if (routing_.under_way(router_->instance(), now)) return;
+  if (!router_ || routing_) return;
   auto job = std::make_shared<RouteJob>();
   job->scan = scan;
   job->place = frames_.T_odom_base().position;
@@ -201,26 +200,23 @@ void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
   job->made = now;
-  routing_ = {now, router_->instance()};
-  router_->step(job, guard([this, job] { routed(*job); }));
+  routing_ = true;
+  call(router_->step, job, {.deadline = kAnswerDeadline},
+       [this, job](const Result<nav::RouteStep>& step) { routed(*job, step); });
 }
 
-void Navigation::routed(const RouteJob& job) {
-  routing_ = {};
-  if (job.odom_epoch != frames_.odom_epoch()) return;
+void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step) {
+  routing_ = false;
+  if (!step || job.odom_epoch != frames_.odom_epoch()) return;
   if (!job.goal || job.generation != goal_generation_ || !std::holds_alternative<GoTo>(motion_)) return;
-  const bool unreachable = job.step.state == nav::RouteStep::State::unreachable;
+  const bool unreachable = step->state == nav::RouteStep::State::unreachable;
   if (unreachable && !is_goal(job.goal->head<2>())) return;
-  step_ = job.step;
+  step_ = *step;
   step_goal_ = job.goal->head<2>();
   step_made_ = job.made;
   if (!unreachable) return;
   has_plan_ = false;  // it stands: every way would be a wrong one
   outputs_.progress({.blocked = true, .unreachable = true});
-}
-
-bool Navigation::Cycle::under_way(std::uint64_t current, Time now) const {
-  return since && instance == current && now - *since < kCycleLost;
 }
 
 void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
@@ -237,31 +233,32 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
   job->made = now;
-  planning_ = {now, planner_.instance()};
+  planning_ = true;
   waiting_.reset();
-  planner_.plan(job, guard([this, job] { planned(*job); }));
+  call(planner_, job, {.deadline = kAnswerDeadline},
+       [this, job](const Result<std::shared_ptr<const PlanAnswer>>& answer) { planned(*job, answer); });
 }
 
-void Navigation::planned(const PlanJob& job) {
-  planning_ = {};
-  if (job.odom_epoch == frames_.odom_epoch()) take(job);
+void Navigation::planned(const PlanJob& job, const Result<std::shared_ptr<const PlanAnswer>>& answer) {
+  planning_ = false;
+  if (answer && job.odom_epoch == frames_.odom_epoch()) take(job, **answer);
   if (waiting_) plan(std::exchange(waiting_, nullptr), now());
 }
 
-void Navigation::take(const PlanJob& job) {
-  obstacles_ = std::make_shared<const std::vector<Eigen::Vector2f>>(job.obstacles);
+void Navigation::take(const PlanJob& job, const PlanAnswer& answer) {
+  obstacles_ = std::make_shared<const std::vector<Eigen::Vector2f>>(answer.obstacles);
   const bool for_goal = job.target.kind == nav::Target::Kind::goal && std::holds_alternative<GoTo>(motion_);
   const bool for_stick =
       job.target.kind == nav::Target::Kind::direction && std::holds_alternative<Guidance>(motion_);
   if ((for_goal && job.generation == goal_generation_) || for_stick) {
-    controller_->set_plan(job.plan);
+    controller_->set_plan(answer.plan);
     has_plan_ = true;
     plan_made_ = job.made;
     const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
     if (for_goal) {
-      blocked_ = job.plan.blocked || held;
-      outputs_.progress(
-          {.arrived = job.plan.arrived && job.last && is_goal(job.goal) && at_height(), .blocked = blocked_});
+      blocked_ = answer.plan.blocked || held;
+      outputs_.progress({.arrived = answer.plan.arrived && job.last && is_goal(job.goal) && at_height(),
+                         .blocked = blocked_});
     }
   }
 }

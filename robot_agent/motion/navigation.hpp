@@ -42,8 +42,8 @@ class Navigation : public Component, public NavigationInput {
     std::function<void(Warning)> warn{};              ///< once, as long as it lasts; may be empty
   };
 
-  Navigation(NavigationParams params, Executor& strand, Log log, const Frames& frames, PlanService& planner,
-             RouteService* router, Outputs outputs);
+  Navigation(NavigationParams params, Executor& strand, Log log, const Frames& frames,
+             const PlanService& planner, const RouteServices* router, Outputs outputs);
 
   /// Velocities and zero go to the driver within the call.
   void accept(MuxKey, const Motion& motion, Time now) override;
@@ -62,17 +62,11 @@ class Navigation : public Component, public NavigationInput {
   /// Whether `goal` (odometry frame, m) is still where the goal asked for last lies: a correction of the map
   /// moves it.
   bool is_goal(const Eigen::Vector2d& goal) const;
-  /// What is asked of another component; one that failed or hung never reports back.
-  struct Cycle {
-    std::optional<Time> since{};
-    std::uint64_t instance{};  ///< of the component that was asked
-    bool under_way(std::uint64_t current, Time now) const;
-  };
   nav::Target target() const;
   /// Where the route leads next; nothing while there is none.
   const nav::RouteStep* step_on(Time now) const;
   void ask_route(const std::shared_ptr<Scan>& scan, Time now);
-  void routed(const RouteJob& job);
+  void routed(const RouteJob& job, const Result<nav::RouteStep>& step);
   Twist2 along_plan(Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
   /// Of what flies to a goal with a height: the velocity upwards, m/s, and whether it is there.
@@ -83,13 +77,13 @@ class Navigation : public Component, public NavigationInput {
   void pass_on(const Velocity& wanted);
   nav::CollisionMonitor::Verdict guarded(const Twist2& wanted, nav::CollisionMonitor::Policy policy) const;
   void plan(std::shared_ptr<Scan> scan, Time now);
-  void planned(const PlanJob& job);
-  void take(const PlanJob& job);
+  void planned(const PlanJob& job, const Result<std::shared_ptr<const PlanAnswer>>& answer);
+  void take(const PlanJob& job, const PlanAnswer& answer);
 
   NavigationParams params_;
   const Frames& frames_;
-  PlanService& planner_;
-  RouteService* router_;  // null: there is none
+  const PlanService& planner_;
+  const RouteServices* router_;  // null: there is none
   Outputs outputs_;
   std::unique_ptr<nav::Controller> controller_;
   nav::CollisionMonitor monitor_;
@@ -102,9 +96,9 @@ class Navigation : public Component, public NavigationInput {
   nav::HeldWatch held_{};
   double sent_speed_{0};  // that it may have by the velocities it was told, m/s
   Time sent_at_{};
-  Cycle planning_{};
-  std::shared_ptr<Scan> waiting_{};  // the newest scan that came while planning
-  Cycle routing_{};
+  bool planning_{};                       // a call to the planner is under way
+  std::shared_ptr<Scan> waiting_{};       // the newest scan that came while planning
+  bool routing_{};                        // and one to the router
   std::optional<nav::RouteStep> step_{};  // of the goal asked for last
   Eigen::Vector2d step_goal_{0, 0};       // where that goal was then, odometry frame
   Time step_made_{};

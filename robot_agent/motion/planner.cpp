@@ -18,28 +18,35 @@ struct Planner::Maps {
   std::uint32_t odom_epoch{};  ///< Of the frame that they are in.
 };
 
-Planner::Planner(PlannerParams params, Executor& strand, Log log,
+Planner::Planner(PlannerParams params, Executor& strand, Log log, PlanService& service,
                  std::shared_ptr<const nav::PlannerLibrary> library)
     : Component("planner", strand, std::move(log), {.beat = 100ms}),
       params_(std::move(params)),
+      service_(service),
       maps_(new Maps{make_navigator(params_, std::move(library))}) {}
 
-void Planner::plan(std::shared_ptr<PlanJob> job, Task done) {
-  if (!running()) return;
+Result<void> Planner::on_start() {
+  offer(service_, [this](const auto& job, const auto& reply) { plan(job, reply); });
+  return {};
+}
+
+void Planner::plan(const std::shared_ptr<const PlanJob>& job,
+                   const Reply<std::shared_ptr<const PlanAnswer>>& reply) {
+  using Answer = std::shared_ptr<const PlanAnswer>;
   compute(
       {.name = "plan", .modelled = params_.planning, .lane = "map"},
-      [job, maps = maps_] {
+      [job, maps = maps_]() -> Answer {
         nav::Navigator& navigator = maps->navigator;
         if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) navigator.clear();
         const double stamp = seconds(job->made.time_since_epoch());
         navigator.add_scan(job->scan->points, job->scan->body, stamp);
+        auto answer = std::make_shared<PlanAnswer>();
         if (job->target.kind != nav::Target::Kind::none)
-          job->plan = navigator.plan(job->target, job->pose, stamp);
-        navigator.blocked(job->obstacles);
+          answer->plan = navigator.plan(job->target, job->pose, stamp);
+        navigator.blocked(answer->obstacles);
+        return answer;
       },
-      [done = std::move(done)](const Result<void>& planned) {
-        if (planned) done();
-      });
+      [reply](Result<Answer> planned) { reply(std::move(planned)); });
 }
 
 }  // namespace adit::agent

@@ -2,6 +2,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/component/call.hpp"
 #include "core/component/component.hpp"
 #include "nav/navigator.hpp"
 
@@ -13,7 +14,7 @@ struct Scan {
   Pose3 body{};  ///< odometry frame
 };
 
-/// One planning cycle: what to plan, and the plan.
+/// One planning cycle: what to plan.
 struct PlanJob {
   std::shared_ptr<Scan> scan{};
   nav::Target target{};        ///< kind none: the scan enters the map, nothing is planned
@@ -23,9 +24,12 @@ struct PlanJob {
   std::uint32_t odom_epoch{};  ///< Of that frame; what was mapped in another one is forgotten.
   std::uint64_t generation{};  ///< of the goal, for whoever asked
   Time made{};
-  nav::Plan plan{};
-  std::vector<Eigen::Vector2f> obstacles{};  ///< what cannot be passed, odometry frame
 };
+struct PlanAnswer {
+  nav::Plan plan{};
+  std::vector<Eigen::Vector2f> obstacles{};  ///< Not passable, odometry frame, m.
+};
+using PlanService = Service<std::shared_ptr<const PlanJob>, std::shared_ptr<const PlanAnswer>>;
 
 struct PlannerParams {
   Platform platform{};
@@ -34,30 +38,24 @@ struct PlannerParams {
   nav::PlannerFactory local_planner{};
 };
 
-/// The planning work: terrain map and local planner, on a strand of its own. When it is made anew its map
-/// is empty; the next scans fill it.
+/// The planning work: terrain map and local planner, on a strand of its own, offered as a service. When it is
+/// made anew its map is empty; the next scans fill it.
 class Planner : public Component {
  public:
   /// `library`: from the planner before this one, so that it need not be made again; null: it is made here.
-  Planner(PlannerParams params, Executor& strand, Log log,
+  Planner(PlannerParams params, Executor& strand, Log log, PlanService& service,
           std::shared_ptr<const nav::PlannerLibrary> library = nullptr);
-  /// On its strand. `done` runs there when the job's plan is made.
-  void plan(std::shared_ptr<PlanJob> job, Task done);
+
+ protected:
+  Result<void> on_start() override;
 
  private:
+  void plan(const std::shared_ptr<const PlanJob>& job, const Reply<std::shared_ptr<const PlanAnswer>>& reply);
+
   PlannerParams params_;
+  PlanService& service_;
   struct Maps;
   std::shared_ptr<Maps> maps_;
-};
-
-/// The way to whatever planner there is.
-class PlanService {
- public:
-  virtual ~PlanService() = default;
-  /// Rises when the planner is made anew: jobs from before are lost.
-  virtual std::uint64_t instance() const = 0;
-  /// `done` runs on the caller's strand; never when the planner fails or hangs.
-  virtual void plan(std::shared_ptr<PlanJob> job, Task done) = 0;
 };
 
 }  // namespace adit::agent

@@ -24,13 +24,19 @@ struct Router::Maps {
   }
 };
 
-Router::Router(RouterParams params, Executor& strand, Log log)
+Router::Router(RouterParams params, Executor& strand, Log log, RouteServices& services)
     : Component("router", strand, std::move(log), {.beat = 100ms}),
       params_(std::move(params)),
+      services_(services),
       maps_(std::make_shared<Maps>(params_)) {}
 
-void Router::step(std::shared_ptr<RouteJob> job, Task done) {
-  if (!running()) return;
+Result<void> Router::on_start() {
+  offer(services_.step, [this](const auto& job, const auto& reply) { step(job, reply); });
+  offer(services_.find, [this](const auto& query, const auto& reply) { find(query, reply); });
+  return {};
+}
+
+void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply) {
   // What a robot sees that stands and goes nowhere is the same again.
   const bool stands = !job->goal && (job->place - taken_at_).norm() < kMoved;
   const bool takes = !taken_ || job->made - *taken_ >= (stands ? params_.least_standing : params_.least);
@@ -40,31 +46,25 @@ void Router::step(std::shared_ptr<RouteJob> job, Task done) {
   }
   compute(
       {.name = "route step", .modelled = params_.modelled, .lane = "maps"},
-      [job, takes, maps = maps_] {
+      [job, takes, maps = maps_]() -> nav::RouteStep {
         maps->enter(job->odom_epoch);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
-        if (job->goal)
-          job->step = maps->keeper.step(maps->planner, job->place, *job->goal, job->blocked, stamp);
-        else
-          maps->keeper.clear();
+        if (job->goal) return maps->keeper.step(maps->planner, job->place, *job->goal, job->blocked, stamp);
+        maps->keeper.clear();
+        return {};
       },
-      [done = std::move(done)](const Result<void>& stepped) {
-        if (stepped) done();
-      });
+      [reply](Result<nav::RouteStep> stepped) { reply(std::move(stepped)); });
 }
 
-void Router::find(std::shared_ptr<RouteQuery> query, Task done) {
-  if (!running()) return;
+void Router::find(const RouteQuery& query, const Reply<nav::Route>& reply) {
   compute(
       {.name = "route query", .modelled = params_.modelled, .lane = "maps"},
       [query, maps = maps_] {
-        maps->enter(query->odom_epoch);
-        query->route = maps->planner.plan(query->from, query->to);
+        maps->enter(query.odom_epoch);
+        return maps->planner.plan(query.from, query.to);
       },
-      [done = std::move(done)](const Result<void>& found) {
-        if (found) done();
-      });
+      [reply](Result<nav::Route> found) { reply(std::move(found)); });
 }
 
 Result<PlannedRoute> planned_route(const nav::Route& route, const Frames& frames) {

@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/component/call.hpp"
 #include "core/component/component.hpp"
 #include "nav/route/route_keeper.hpp"
 #include "robot_agent/common/planned_route.hpp"
@@ -20,14 +21,19 @@ struct RouteJob {
   std::uint32_t odom_epoch{};             ///< Of that frame; what was mapped in another one is forgotten.
   std::uint64_t generation{};             ///< of the goal, for whoever asked
   Time made{};
-  nav::RouteStep step{};
 };
 
 /// A question to the global planner. Odometry frame, m.
 struct RouteQuery {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
   std::uint32_t odom_epoch{};  ///< As in RouteJob.
-  nav::Route route{};
+};
+
+/// What the router offers: the next step of the route that is followed, and a route of which nothing is
+/// stored.
+struct RouteServices {
+  Service<std::shared_ptr<const RouteJob>, nav::RouteStep> step{"route step", 2};
+  Service<RouteQuery, nav::Route> find{"route query", 4};
 };
 
 struct RouterParams {
@@ -42,29 +48,21 @@ struct RouterParams {
 /// kept to. When it is made anew its map is empty; the next scans fill it.
 class Router : public Component {
  public:
-  Router(RouterParams params, Executor& strand, Log log);
-  /// On its strand. `done` runs there when the job's step is known.
-  void step(std::shared_ptr<RouteJob> job, Task done);
-  /// The same for a route of which nothing is kept.
-  void find(std::shared_ptr<RouteQuery> query, Task done);
+  Router(RouterParams params, Executor& strand, Log log, RouteServices& services);
+
+ protected:
+  Result<void> on_start() override;
 
  private:
   struct Maps;
+  void step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply);
+  void find(const RouteQuery& query, const Reply<nav::Route>& reply);
+
   RouterParams params_;
+  RouteServices& services_;
   std::shared_ptr<Maps> maps_;
   std::optional<Time> taken_{};  ///< when the last scan entered the map
   Eigen::Vector3d taken_at_{0, 0, 0};
-};
-
-/// The way to whatever router there is.
-class RouteService {
- public:
-  virtual ~RouteService() = default;
-  /// Rises when the router is made anew: jobs from before are lost.
-  virtual std::uint64_t instance() const = 0;
-  /// `done` runs on the caller's strand; never when the router fails or hangs.
-  virtual void step(std::shared_ptr<RouteJob> job, Task done) = 0;
-  virtual void find(std::shared_ptr<RouteQuery> query, Task done) = 0;
 };
 
 /// The route in the map frame, its first corners; goal_unreachable, with why, when there is none.

@@ -13,14 +13,15 @@
 namespace adit::agent {
 namespace {
 
-constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/msg/PointField.FLOAT32
+constexpr Duration kScanDeadline = 500ms;  // an older scan tells nothing of the terrain
+constexpr std::uint8_t kFloat32 = 7;       // sensor_msgs/msg/PointField.FLOAT32
 
 }  // namespace
 
-Scans::Scans(Executor& strand, Log log, double lidar_height, Output output)
+Scans::Scans(Executor& strand, Log log, double lidar_height, const ScanService& output)
     : Component("sensors", strand, std::move(log), {.beat = 100ms}),
       lidar_height_(lidar_height),
-      output_(std::move(output)) {}
+      output_(output) {}
 
 void Scans::give(const std::function<Result<PointCloud>()>& unpack, const std_msgs::msg::Header& header,
                  Time received) {
@@ -28,8 +29,9 @@ void Scans::give(const std::function<Result<PointCloud>()>& unpack, const std_ms
     auto points = unpack();
     if (!points) return;  // terrain_stale follows, which the operator sees
     const auto& stamp = header.stamp();
-    output_(std::make_shared<PointCloud>(std::move(*points)),
-            static_cast<std::uint64_t>(stamp.sec()) * 1'000'000'000u + stamp.nanosec(), received);
+    const auto nanoseconds = static_cast<std::uint64_t>(stamp.sec()) * 1'000'000'000u + stamp.nanosec();
+    call(output_, {std::make_shared<PointCloud>(std::move(*points)), nanoseconds, received},
+         {.deadline = kScanDeadline}, [](const Result<void>&) {});
   });
 }
 
@@ -41,13 +43,17 @@ void Scans::take(const sensor_msgs::msg::LaserScan& scan, Time received) {
   give([&] { return to_points(scan, lidar_height_); }, scan.header(), received);
 }
 
-Result<Scans::Readers> Scans::read(wire::Wire& robot, Executor& strand, std::function<Scans*()> taker) {
+Result<Scans::Readers> Scans::read(wire::Wire& robot, Executor& strand,
+                                   const std::shared_ptr<const Generation>& generation,
+                                   std::function<Scans*()> taker) {
   const auto give = [taker = std::move(taker)](const auto& sample, const wire::SampleInfo& info) {
     if (Scans* scans = taker()) scans->take(sample, info.received);
   };
-  auto points = wire::make_reader<sensor_msgs::msg::PointCloud2>(robot, wire::topics::points, strand, give);
+  auto points = wire::make_reader<sensor_msgs::msg::PointCloud2>(robot, wire::topics::points, strand, give,
+                                                                 {}, generation);
   if (!points) return points.error();
-  auto scan = wire::make_reader<sensor_msgs::msg::LaserScan>(robot, wire::topics::scan, strand, give);
+  auto scan =
+      wire::make_reader<sensor_msgs::msg::LaserScan>(robot, wire::topics::scan, strand, give, {}, generation);
   if (!scan) return scan.error();
   return Readers{std::move(*points), std::move(*scan)};
 }

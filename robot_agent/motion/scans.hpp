@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 
+#include "core/component/call.hpp"
 #include "core/component/component.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/wire/wire.hpp"
@@ -16,16 +17,21 @@ class Header;
 
 namespace adit::agent {
 
+/// A lidar's scan.
+struct LidarScan {
+  std::shared_ptr<PointCloud> points{};  ///< In the frame of base_link, m.
+  std::uint64_t stamp{};                 ///< Of the driver's clock, ns.
+  Time received{};                       ///< When the sample arrived, by our clock.
+};
+/// Takes scans; offered by whoever uses them.
+using ScanService = Service<LidarScan, void>;
+
 /// Unpacks the lidar's clouds, or a planar one's scans, on a strand of its own, so that they never hold the
 /// command strand up.
 class Scans : public Component {
  public:
-  /// Points in the frame of base_link, m; `stamp` is of the driver's clock, ns; `received` is when the sample
-  /// arrived, by ours. On this strand.
-  using Output = std::function<void(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received)>;
-
   /// `lidar_height`: of a planar lidar above the ground, m.
-  Scans(Executor& strand, Log log, double lidar_height, Output output);
+  Scans(Executor& strand, Log log, double lidar_height, const ScanService& output);
   /// On its strand; nothing when it does not run.
   void take(const sensor_msgs::msg::PointCloud2& cloud, Time received);
   void take(const sensor_msgs::msg::LaserScan& scan, Time received);
@@ -33,16 +39,18 @@ class Scans : public Component {
   struct Readers {
     std::unique_ptr<wire::RawReader> points{}, scan{};
   };
-  /// Readers of /points and of /scan; `taker` gives who takes them now, on `strand`, or null. Errors of the
-  /// wire.
-  static Result<Readers> read(wire::Wire& robot, Executor& strand, std::function<Scans*()> taker);
+  /// Readers of /points and of /scan while `generation` is valid; `taker` gives who takes them now, on
+  /// `strand`, or null. Errors of the wire.
+  static Result<Readers> read(wire::Wire& robot, Executor& strand,
+                              const std::shared_ptr<const Generation>& generation,
+                              std::function<Scans*()> taker);
 
  private:
   void give(const std::function<Result<PointCloud>()>& points, const std_msgs::msg::Header& header,
             Time received);
 
   double lidar_height_;
-  Output output_;
+  const ScanService& output_;
 };
 
 /// The points of a cloud that has float32 x, y and z; not finite ones are left out. Reason::malformed when

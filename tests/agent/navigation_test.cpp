@@ -8,35 +8,25 @@
 namespace adit::agent {
 namespace {
 
-/// A planner on the caller's strand.
-class NearPlanner final : public PlanService {
- public:
-  explicit NearPlanner(Executor& strand) : planner_({}, strand, {}) { EXPECT_TRUE(planner_.start()); }
-  std::uint64_t instance() const override { return 1; }
-  void plan(std::shared_ptr<PlanJob> job, Task done) override {
-    planner_.plan(std::move(job), std::move(done));
-  }
-
- private:
-  Planner planner_;
-};
-
 /// A router whose answers the test gives.
-class ToldRouter final : public RouteService {
+class ToldRouter final : public Component {
  public:
-  std::uint64_t instance() const override { return 1; }
-  void step(std::shared_ptr<RouteJob> job, Task done) override {
-    if (!answers) return;
-    last = job;
-    job->step =
-        job->goal && tells ? *tells : nav::RouteStep{.target = job->goal.value_or(Eigen::Vector3d{0, 0, 0})};
-    done();
+  explicit ToldRouter(Executor& strand) : Component("router", strand) { EXPECT_TRUE(start()); }
+  ~ToldRouter() override { stop(); }
+  Result<void> on_start() override {
+    offer(services.step, [this](const auto& job, const Reply<nav::RouteStep>& reply) {
+      if (!answers) return;
+      last = job;
+      reply(job->goal && tells ? *tells
+                               : nav::RouteStep{.target = job->goal.value_or(Eigen::Vector3d{0, 0, 0})});
+    });
+    return {};
   }
-  void find(std::shared_ptr<RouteQuery>, Task) override {}
 
+  RouteServices services{};
   bool answers{true};
   std::optional<nav::RouteStep> tells{};  ///< none: straight to the goal
-  std::shared_ptr<RouteJob> last{};
+  std::shared_ptr<const RouteJob> last{};
 };
 
 /// Navigation on a virtual strand: a scan every 100 ms, a step every 50 ms, with odometry and points given by
@@ -44,6 +34,7 @@ class ToldRouter final : public RouteService {
 class NavigationTest : public testing::Test {
  protected:
   explicit NavigationTest(double start_height = 0.0) : frames(Pose2{}, anything_goes(), start_height) {
+    EXPECT_TRUE(planner.start());
     EXPECT_TRUE(navigation.start());
     mux.enable("goal", strand->now());
     run(100ms);  // through zero
@@ -97,15 +88,16 @@ class NavigationTest : public testing::Test {
   std::uint64_t stamp{};
   Twist2 velocity{};
   Progress progress{};
-  NearPlanner planner{*strand};
-  ToldRouter router{};
+  PlanService plans{"planner"};
+  Planner planner{{}, *strand, {}, plans};
+  ToldRouter router{*strand};
   Navigation navigation{
       NavigationParams{},
       *strand,
       {},
       frames,
-      planner,
-      &router,
+      plans,
+      &router.services,
       {[this](const Twist2& v) { velocity = v; }, [this](const Progress& p) { progress = p; }}};
   Mux mux{navigation};
   Mux::Output goal_writer{mux.connect("goal", 10s)};

@@ -183,7 +183,7 @@ TEST_F(ComponentTest, a_callback_that_throws_during_the_start_fails_the_start) {
 TEST_F(ComponentTest, a_unit_reports_a_component_that_fails_while_it_starts) {
   UnitParams params{};
   params.name = "slam";
-  params.make = [](Executor& on, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
+  params.make = [](Executor& on) -> Result<std::unique_ptr<Component>> {
     return std::unique_ptr<Component>(std::make_unique<FailsWhileItStarts>("slam", on));
   };
   Unit unit(*machine, params);

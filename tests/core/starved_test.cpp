@@ -49,7 +49,7 @@ class Starved : public testing::Test {
     UnitParams params{};
     params.name = name;
     params.heavy = heavy;
-    params.make = [name](Executor& strand, std::shared_ptr<const Lease>) {
+    params.make = [name](Executor& strand) {
       return Result<std::unique_ptr<Component>>(
           std::make_unique<Plain>(name, strand, Log{}, VitalParams{.beat = 50ms}));
     };

@@ -18,7 +18,7 @@ class Idle final : public Component {
 UnitParams idle_unit() {
   UnitParams params{};
   params.name = "idle";
-  params.make = [](Executor& strand, std::shared_ptr<const Lease>) -> Result<std::unique_ptr<Component>> {
+  params.make = [](Executor& strand) -> Result<std::unique_ptr<Component>> {
     return std::unique_ptr<Component>(std::make_unique<Idle>("idle", strand));
   };
   return params;
@@ -29,7 +29,8 @@ TEST(Unit, AnAbandonedHungPartStoresNothingThatIsPostedToIt) {
   LiveRuntime runtime;
   Unit unit(runtime, idle_unit());
   ASSERT_TRUE(unit.open());
-  const auto strand = unit.seat()->strand;
+  const auto seat = unit.seat();
+  const auto strand = seat->strand;
   std::promise<void> entered, go_on;
   strand->post([&entered, go = go_on.get_future().share()] {
     entered.set_value();
@@ -44,7 +45,9 @@ TEST(Unit, AnAbandonedHungPartStoresNothingThatIsPostedToIt) {
   EXPECT_FALSE(strand->post_control([scan] {}));
   EXPECT_EQ(scan.use_count(), 1);
   EXPECT_EQ(runtime.left_behind(), 1u);
+  EXPECT_FALSE(seat->generation->valid()) << "what writes from it must not";
   unit.replace();  // the operator's word
+  EXPECT_TRUE(unit.seat()->generation->valid());
   EXPECT_NE(unit.seat()->strand, strand);
   EXPECT_EQ(runtime.left_behind(), 1u);
   go_on.set_value();
