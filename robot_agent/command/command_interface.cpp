@@ -272,10 +272,11 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
   }
   if (s.station_id != holder->id) return {Reason::identity_mismatch};
   if (s.epoch != authority_.epoch()) return {Reason::stale_epoch};
-  stick_heard_ = now;
+  const Time received = now - s.waited;
+  stick_heard_ = received;
   if (const Reason reason = gate_.judge(s, now); reason != Reason::none) return {reason};
   identify({holder->name, holder->id, s.participant}, StationTable::Sign::command, now);  // a sign of life
-  const Result<void> taken = requests_.stick(s.twist, now);
+  const Result<void> taken = requests_.stick(s.twist, received);
   return taken ? Outcome{} : Outcome{taken.reason(), taken.error().text};
 }
 

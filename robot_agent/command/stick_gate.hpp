@@ -10,7 +10,8 @@ namespace adit::agent {
 /// a stamp that we sent; foreign clocks are never read.
 class StickGate {
  public:
-  static constexpr Duration kMaxAge = 600ms;  ///< of the echoed stamp
+  static constexpr Duration kMaxAge = 600ms;   ///< of the echoed stamp
+  static constexpr Duration kMaxWait = 300ms;  ///< from reception until the sample is handled
 
   /// We sent a robot state with this stamp.
   void sent(std::uint64_t stamp) {

@@ -53,6 +53,7 @@ struct StickSample {
   std::uint64_t seq{};
   std::uint64_t echo{};  ///< a stamp of ours, ns
   Twist2 twist{};        ///< body frame
+  Duration waited{};     ///< from its reception until it was handled
 };
 
 /// The point that a command names, map frame, m; z is NaN when it was not given.

@@ -154,7 +154,10 @@ Result<void> RadioEdge::listen(Parts parts) {
                topics::joystick,
                [&e, commands, answer](const radio::Joystick&j, const wire::SampleInfo&info) {
                  commands([&](CommandInterface& interface) {
-                   answer(interface.handle(from_radio(j, info.sender), e.strand.now()));
+                   const Time now = e.strand.now();
+                   StickSample sample = from_radio(j, info.sender);
+                   sample.waited = now - info.received;
+                   answer(interface.handle(sample, now));
                  });
                },
                e.robot),

@@ -30,9 +30,10 @@ struct FakeRequests : Requests {
   }
   void holder_changed(Time) override { calls.push_back("holder"); }
   void holder_restarted(Time) override { calls.push_back("restarted"); }
-  Result<void> stick(const Twist2& twist, Time) override {
+  Result<void> stick(const Twist2& twist, Time at) override {
     if (!takes_stick && !twist.zero()) return {Reason::wrong_mode, {}};
     sticks.push_back(twist);
+    stick_at = at;
     return {};
   }
 
@@ -43,6 +44,7 @@ struct FakeRequests : Requests {
   Pose2 pose{};  ///< the last one set
   std::vector<std::string> calls{};
   std::vector<Twist2> sticks{};
+  Time stick_at{};  ///< of the newest
 };
 
 }  // namespace adit::agent

@@ -50,6 +50,16 @@ TEST_F(StickGateTest, OldEpochAndOldNumbersAreRefused) {
   EXPECT_EQ(send(s), Reason::stale_sequence);
 }
 
+TEST_F(StickGateTest, ASampleIsAsOldAsItsReception) {
+  StickSample s = bench.stick("op1", {0.5, 0, 0});
+  s.waited = 200ms;
+  EXPECT_EQ(send(s), Reason::none);
+  EXPECT_EQ(bench.requests.stick_at, bench.now - 200ms);
+  s = bench.stick("op1", {0.5, 0, 0});
+  s.waited = 301ms;
+  EXPECT_EQ(send(s), Reason::sample_stale) << "a joystick that is silent for so long moves nothing";
+}
+
 TEST_F(StickGateTest, EchoIsJudgedByOurClock) {
   keep_echo = true;
   const StickSample late = bench.stick("op1");
