@@ -43,7 +43,8 @@ class BatteryReturn {
     refused_because_ = reason;
     return unknown;
   }
-  bool pending() const { return next_.has_value(); }
+  /// Whether it is to be attempted again after a restart. `requests`: as in Inputs.
+  bool pending(std::uint64_t requests) const { return next_ && requests == requests_; }
 
  private:
   std::uint64_t requests_{};

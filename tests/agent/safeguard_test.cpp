@@ -135,6 +135,13 @@ TEST(BatteryReturn, PausesLongerAfterEachRefusalUpToABound) {
   EXPECT_TRUE(back.refused(Reason::goal_unreachable, now)) << "another reason";
 }
 
+TEST(BatteryReturn, ThatTheHolderOverruledIsNotStoredForARestart) {
+  BatteryReturn back;
+  back.begin(7, Time{1h});
+  EXPECT_TRUE(back.pending(7));
+  EXPECT_FALSE(back.pending(8)) << "the holder requested something since, and no tick saw it yet";
+}
+
 TEST(BatteryReturn, EndsWithItsCauseOrByTheHolder) {
   const BatteryReturn::Inputs same{.autonomous = true, .nearly_empty = true, .requests = 7};
   for (const auto& end : {BatteryReturn::Inputs{.autonomous = false, .nearly_empty = true, .requests = 7},
