@@ -68,6 +68,7 @@ Result<void> Agent::Core::correct_map(const Pose3& T_map_odom, std::uint64_t sta
 void Agent::Core::odometry_jumped() {
   constexpr Duration kTellAgain = 5s;  // Two drivers that write in turn jump with every sample.
   navigation_.clear();
+  waiting_scan_.reset();  // it was taken in the frame that ended
   behaviour_.hold(Reason::odometry_jumped, now());
   if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
   jump_told_ = now();

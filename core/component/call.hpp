@@ -33,13 +33,13 @@ class PendingCall final : public JobControl, public std::enable_shared_from_this
   PendingCall(std::string name, std::shared_ptr<Inbox> home, Done done)
       : name_(std::move(name)), home_(std::move(home)), done_(std::move(done)) {}
 
-  /// Before others know of the call: its deadline on the caller's strand.
+  /// Sets the deadline on the caller's strand. Call it before other threads know of the call.
   void watch(Executor& caller, Duration deadline) {
     deadline_ = caller.after(deadline, [weak = this->weak_from_this()] {
       if (const auto call = weak.lock()) call->fail(Reason::no_answer, "no answer by its deadline");
     });
   }
-  /// Likewise: an answer counts while this is valid.
+  /// An answer counts while `callee` is valid. Call it before other threads know of the call.
   void depend_on(std::shared_ptr<const Generation> callee) { callee_ = std::move(callee); }
 
   bool settled() const { return settled_.load(std::memory_order_acquire); }
@@ -133,8 +133,8 @@ class [[nodiscard]] Offer {
 /// stays, and knows which instance offers it now. Thread safe.
 ///
 /// A call completes exactly once with Result<Response>, in a later task of the caller's strand, whatever
-/// happens: no_answer (nobody offers the service, or the deadline passed), queue_full (the component has
-/// `max_in_flight` requests that it has not answered), cancelled (by the caller; or the instance that had the
+/// happens: no_answer (nobody offers the service, or the deadline passed), queue_full (the component still
+/// holds the Reply of `max_in_flight` requests), cancelled (by the caller; or the instance that had the
 /// request failed, was replaced, or dropped it). Only when the caller's strand ends first is there no
 /// completion. An answer of an instance that was revoked never arrives. In rehearsal all of it happens on
 /// modelled time.
@@ -148,11 +148,12 @@ class Service {
   explicit Service(std::string name, std::size_t max_in_flight = 8)
       : state_(std::make_shared<State>(std::move(name), std::max<std::size_t>(1, max_in_flight))) {}
 
-  /// From now on `handler` is called on `strand` for each request; who offered it before no longer gets any.
-  /// The answers count while `generation` is valid.
+  /// From now on `handler` is called on `strand` for each request, and the instance that offered it before
+  /// gets none. The answers count while `generation` is valid; an instance that was revoked offers nothing.
   Offer offer(Executor& strand, std::shared_ptr<const Generation> generation, Handler handler) {
     auto next = std::make_shared<Offering>(strand.inbox(), std::move(generation), std::move(handler));
     const auto before = state_->exchange(next);
+    if (before == next) return {};
     if (before) before->close();
     return Offer([state = std::weak_ptr(state_), weak = std::weak_ptr(next)] {
       const auto mine = weak.lock();
@@ -226,8 +227,10 @@ class Service {
       const std::lock_guard lock(mutex);
       return offering;
     }
+    /// Returns what was offered before, or `next` when its instance was revoked and must not replace another.
     std::shared_ptr<Offering> exchange(std::shared_ptr<Offering> next) {
       const std::lock_guard lock(mutex);
+      if (!next->generation->valid()) return next;
       return std::exchange(offering, std::move(next));
     }
     void remove(const std::shared_ptr<Offering>& gone) {

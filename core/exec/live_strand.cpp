@@ -151,9 +151,10 @@ class Loop final : public Inbox {
         continue;
       }
       wake_.clear();
-      while (const Task task = next_of_batch()) {
+      while (Task task = next_of_batch()) {
         invoke(task);
-        run_alarms();  // a flood of posts must not hold timers up
+        task = nullptr;  // what it holds must not wait for the timers
+        run_alarms();    // a flood of posts must not hold timers up
       }
     }
     stop();

@@ -50,6 +50,7 @@ void Unit::begin(Seat& seat, const std::shared_ptr<Record>& record) {
   Result<void> started;
   try {
     auto made = params_.make(*seat.strand);
+    if (!record->generation->valid()) return;  // it took so long that another instance replaced it
     started = made ? Result<void>{} : Result<void>{made.error()};
     if (made) {
       seat.component = std::move(*made);

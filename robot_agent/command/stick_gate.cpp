@@ -15,7 +15,8 @@ Reason StickGate::judge(const StickSample& sample, Time now) {
   if (sample.seq <= newest_) return Reason::stale_sequence;
   const bool ours =
       sample.echo != 0 && std::find(stamps_.begin(), stamps_.end(), sample.echo) != stamps_.end();
-  if (!ours || now - from_stamp(sample.echo) > kMaxAge || sample.waited > kMaxWait) return Reason::sample_stale;
+  if (!ours || now - from_stamp(sample.echo) > kMaxAge || sample.waited > kMaxWait)
+    return Reason::sample_stale;
   newest_ = sample.seq;
   return Reason::none;
 }

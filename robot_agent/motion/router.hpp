@@ -65,8 +65,8 @@ class Router : public Component {
   Eigen::Vector3d taken_at_{0, 0, 0};
 };
 
-/// The route in the map frame, its first corners; goal_unreachable, with why, when there is none.
-/// The route is in the odometry frame of `frames`.
+/// Converts `route`, in the odometry frame of `frames`, to the map frame, and keeps its first corners.
+/// Error: goal_unreachable, with the reason, when there is no route.
 Result<PlannedRoute> planned_route(const nav::Route& route, const Frames& frames);
 
 }  // namespace adit::agent

@@ -34,7 +34,8 @@ void Safeguards::restore(std::uint8_t kept, Time now) {
 
 std::uint8_t Safeguards::kept() const {
   const auto level = static_cast<std::uint8_t>(battery_watch_.level());
-  return level == kLastLevel && battery_return_.pending(parts_.behaviour.holder_requests()) ? kLastLevel + 1 : level;
+  return level == kLastLevel && battery_return_.pending(parts_.behaviour.holder_requests()) ? kLastLevel + 1
+                                                                                            : level;
 }
 
 void Safeguards::tick(Time now) {

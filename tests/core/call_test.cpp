@@ -218,6 +218,19 @@ TEST_F(CallTest, AnAnswerOfARevokedInstanceNeverArrives) {
   EXPECT_THAT(asker->results, ElementsAre(kCancelled, kNoAnswer));
 }
 
+TEST_F(CallTest, ARevokedInstanceDoesNotReplaceTheOneThatOffers) {
+  const auto good = offering(Mood::answers);
+  const auto generation = std::make_shared<Generation>();
+  Mathematician late(*server, service, Mood::answers);  // its construction took longer than it may
+  late.adopt(generation);
+  generation->revoke();
+  ASSERT_TRUE(late.start());
+  asker->ask(service, 4);
+  run(1ms);
+  EXPECT_THAT(asker->results, ElementsAre(16));
+  EXPECT_EQ(good->asked, 1);
+}
+
 TEST_F(CallTest, ARequestOfARevokedCallerHasNoEffect) {
   const auto callee = offering(Mood::answers);
   const auto generation = std::make_shared<Generation>();
