@@ -14,7 +14,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// The outcome when the station took the stop in time.
+/// The outcome when the station took the stop in time. An outcome of a command that was not begun is none:
+/// the station refused the line, and no stop goes out.
 std::optional<nlohmann::json> ask_station(const Options& options, const std::string& line) {
   auto path = socket_path(options);
   if (!path) return std::nullopt;
@@ -32,7 +33,7 @@ std::optional<nlohmann::json> ask_station(const Options& options, const std::str
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(limit - (Clock::now() - started));
     if (left <= 0ms || !client.wait(static_cast<int>(left.count()))) break;
   }
-  return outcome;
+  return begun ? outcome : std::nullopt;
 }
 
 }  // namespace
@@ -47,7 +48,7 @@ int stop(const Options& options, const std::string& line, bool all) {
   if (!live) return fail(options, exit_no_answer, live.error());
   const Outcome outcome = (*live)->execute(line, 25s);
   if (outcome.exit_code == exit_no_answer)
-    std::fprintf(stderr, "no station runs: the stop no longer goes out\n");
+    std::fprintf(stderr, "this program ends: the stop no longer goes out\n");
   return print_outcome(options, {{"exit", outcome.exit_code},
                                  {"text", outcome.text},
                                  {"error", outcome.error},

@@ -128,8 +128,9 @@ void Server::accept_client() {
 }
 
 void Server::cancel_all(Client& client) {
+  // What a client began ends even when the strand's queue is full.
   for (const auto& [id, handle] : std::exchange(client.open, {}))
-    strand_->post([station = station_, h = handle] { station->cancel(*h); });
+    strand_->post_control([station = station_, h = handle] { station->cancel(*h); });
 }
 
 void Server::drop(std::uint64_t number) {
@@ -176,7 +177,7 @@ void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const 
     json event{{"event", "command"},
                {"id", ++last_command_},
                {"phase", "begun"},
-               {"line", robot.empty() ? line : "teleop " + robot},
+               {"line", (robot.empty() ? line : "teleop " + robot).substr(0, max_event_text)},
                {"query", robot.empty() && parsed && parsed->info->runs == command::Runs::query},
                {"by", by}};
     const auto done = [this, number, event, answer](const Outcome& outcome) {
@@ -221,7 +222,7 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
   if (request.contains("cancel")) {
     const auto found = client.open.find(integer("cancel"));
     if (found != client.open.end())
-      strand_->post([station = station_, h = found->second] { station->cancel(*h); });
+      strand_->post_control([station = station_, h = found->second] { station->cancel(*h); });
     return;
   }
   const std::int64_t id = integer("id");
