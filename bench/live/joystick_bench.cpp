@@ -92,6 +92,7 @@ int robot_process(Stamps& stamps, unsigned radio) {
     Stamps::note(stamps.bare_called, k);
     Stamps::note(stamps.second_written, k);
     if (bare_pointer) bare_pointer->write(bytes);
+    Stamps::note(stamps.relayed, k);
   });
   bare_pointer = &bare;
   LiveRuntime runtime;
@@ -287,7 +288,11 @@ int main(int argc, char** argv) {
     const auto two = hops(stamps->bare_written, stamps->second_called, on);
     const std::string cores = on ? "/cores_awake" : "/cores_asleep";
     report("bare_fastdds/one_hop" + cores, one, one);
-    report("joystick/to_cmd_vel_written" + cores, hops(stamps->stick_written, stamps->cmd_written, on), one);
+    // As to_cmd_vel_written: received, and written again.
+    const auto relayed = hops(stamps->bare_written, stamps->relayed, on);
+    report("bare_fastdds/hop_and_write" + cores, relayed, relayed);
+    report("joystick/to_cmd_vel_written" + cores, hops(stamps->stick_written, stamps->cmd_written, on),
+           relayed);
     report("bare_fastdds/two_hops" + cores, two, two);
     report("joystick/to_driver_callback" + cores, hops(stamps->stick_written, stamps->driver_called, on),
            two);

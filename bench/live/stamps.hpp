@@ -23,6 +23,7 @@ struct Stamps {
   Column bare_written;    ///< before a bare Fast DDS write of a payload of the same size
   Column bare_called;     ///< in the bare reader's callback, in the agent's process
   Column second_written;  ///< the same from there to the driver's process
+  Column relayed;         ///< after that second write returned
   Column second_called;
   std::atomic<bool> agent_ready, driver_ready, stop;
 
