@@ -4,18 +4,12 @@
 
 #include <numbers>
 
+#include "tests/agent/wheeled.hpp"
+
 namespace adit::agent {
 namespace {
 
 constexpr std::uint64_t kSecond = 1'000'000'000;
-
-Platform wheeled() {
-  Platform platform{};
-  platform.max_speed = 2.0;
-  platform.max_turn = 1.5;
-  platform.max_acceleration = 1.5;
-  return platform;
-}
 
 /// A body that drives along x at 1 m/s, sampled at 10 Hz: at stamp 100 s + t it is at x = t.
 class FramesTest : public testing::Test {

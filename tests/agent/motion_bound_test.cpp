@@ -5,17 +5,10 @@
 
 #include "core/time/random.hpp"
 #include "robot_agent/motion/frames.hpp"
+#include "tests/agent/wheeled.hpp"
 
 namespace adit::agent {
 namespace {
-
-Platform jumper() {
-  Platform p{};
-  p.max_speed = 2.0;
-  p.max_turn = 1.5;
-  p.max_acceleration = 1.5;
-  return p;
-}
 
 /// A driver that sends odometry to a robot, with stamps of its own clock.
 class OdometryJump : public testing::Test {
@@ -37,7 +30,7 @@ class OdometryJump : public testing::Test {
     return jumps;
   }
 
-  Frames where{Pose2{10, 20, 0}, jumper()};
+  Frames where{Pose2{10, 20, 0}, wheeled()};
   Pose2 pose{};
   bool stamps{true};
   std::uint64_t driver_start{5'000'000'000'000};
@@ -128,7 +121,7 @@ TEST_F(OdometryJump, ATurnOnTheSpotAndAHeightAreJumpsToo) {
 
 TEST_F(OdometryJump, AStepIsClimbedBetweenTwoSamples) {
   EXPECT_TRUE(sample({}, 20ms, 0ms, 0));
-  EXPECT_TRUE(sample({}, 20ms, 0ms, jumper().step));
+  EXPECT_TRUE(sample({}, 20ms, 0ms, wheeled().step));
 }
 
 TEST_F(OdometryJump, ThePoseThatIsSetIsInTheMapAlone) {
@@ -146,7 +139,7 @@ TEST_F(OdometryJump, ARestartComparesWithThePlaceThatWasKept) {
   ASSERT_EQ(drive(1.0, 0.0, 5s, 20ms), 0);
   const KeptPlace kept = where.kept();
   const auto back_at = [&](const Pose2& odom, Duration later) {
-    Frames again(Pose2{}, jumper());
+    Frames again(Pose2{}, wheeled());
     again.restore(kept);
     return again.update(Pose3::level(odom, 0), {}, 1, Time(100s + measured + later));
   };
