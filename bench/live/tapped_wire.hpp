@@ -3,37 +3,25 @@
 #include <memory>
 #include <string>
 
-#include "core/wire/wire.hpp"
+#include "core/wire/forwarding_wire.hpp"
 
 namespace adit::bench {
 
 /// Passes everything on to another wire and calls `before` and `after` around each write of one topic.
-class TappedWire final : public wire::Wire {
+class TappedWire final : public wire::ForwardingWire {
  public:
   using Tap = std::function<void(std::span<const std::uint8_t>)>;
   TappedWire(wire::Wire& inner, std::string topic, Tap before, Tap after)
-      : inner_(inner), topic_(std::move(topic)), before_(std::move(before)), after_(std::move(after)) {}
+      : ForwardingWire(inner),
+        topic_(std::move(topic)),
+        before_(std::move(before)),
+        after_(std::move(after)) {}
 
-  wire::ParticipantId id() const override { return inner_.id(); }
   Result<std::unique_ptr<wire::RawWriter>> make_writer(const wire::TopicInfo& topic,
                                                        const std::string& partition) override {
     auto made = inner_.make_writer(topic, partition);
     if (!made || topic_ != topic.name) return made;
     return std::unique_ptr<wire::RawWriter>(new TappedWriter(std::move(*made), *this));
-  }
-  Result<std::unique_ptr<wire::RawReader>> make_reader(const wire::TopicInfo& topic,
-                                                       const std::string& partition, Executor& strand,
-                                                       wire::RawHandler handler) override {
-    return inner_.make_reader(topic, partition, strand, std::move(handler));
-  }
-  void on_participant(Executor& strand, std::function<void(const wire::ParticipantEvent&)> handler) override {
-    inner_.on_participant(strand, std::move(handler));
-  }
-  wire::WireCounters counters() const override { return inner_.counters(); }
-  wire::SenderState sender() const override { return inner_.sender(); }
-  std::vector<wire::PeerState> peers() const override { return inner_.peers(); }
-  void set_place(const wire::ParticipantId& who, const wire::Position& at) override {
-    inner_.set_place(who, at);
   }
 
  private:
@@ -54,7 +42,6 @@ class TappedWire final : public wire::Wire {
     TappedWire& owner_;
   };
 
-  wire::Wire& inner_;
   std::string topic_;
   Tap before_, after_;
 };

@@ -1,5 +1,7 @@
 #include "bench/wire/watched_net.hpp"
 
+#include "core/wire/forwarding_wire.hpp"
+
 namespace adit::bench {
 namespace {
 
@@ -9,15 +11,14 @@ std::uint64_t content(std::span<const std::uint8_t> bytes) {
   return hash;
 }
 
-class WatchedWire final : public wire::Wire {
+class WatchedWire final : public wire::ForwardingWire {
  public:
   WatchedWire(std::unique_ptr<wire::Wire> inner, live::Net& net, Passages& passages)
-      : inner_(std::move(inner)), net_(net), passages_(passages) {}
+      : ForwardingWire(*inner), owned_(std::move(inner)), net_(net), passages_(passages) {}
 
-  wire::ParticipantId id() const override { return inner_->id(); }
   Result<std::unique_ptr<wire::RawWriter>> make_writer(const wire::TopicInfo& topic,
                                                        const std::string& partition) override {
-    auto made = inner_->make_writer(topic, partition);
+    auto made = inner_.make_writer(topic, partition);
     if (!made) return made;
     return std::unique_ptr<wire::RawWriter>(
         std::make_unique<Writer>(std::move(*made), topic.name, net_, passages_));
@@ -25,21 +26,12 @@ class WatchedWire final : public wire::Wire {
   Result<std::unique_ptr<wire::RawReader>> make_reader(const wire::TopicInfo& topic,
                                                        const std::string& partition, Executor& strand,
                                                        wire::RawHandler handler) override {
-    return inner_->make_reader(topic, partition, strand,
-                               [this, name = std::string(topic.name), handler = std::move(handler)](
-                                   auto cdr, const wire::SampleInfo& info) {
-                                 passages_.arrived(name, cdr, net_.clock());
-                                 return handler(cdr, info);
-                               });
-  }
-  void on_participant(Executor& strand, std::function<void(const wire::ParticipantEvent&)> handler) override {
-    inner_->on_participant(strand, std::move(handler));
-  }
-  wire::WireCounters counters() const override { return inner_->counters(); }
-  wire::SenderState sender() const override { return inner_->sender(); }
-  std::vector<wire::PeerState> peers() const override { return inner_->peers(); }
-  void set_place(const wire::ParticipantId& who, const wire::Position& at) override {
-    inner_->set_place(who, at);
+    return inner_.make_reader(topic, partition, strand,
+                              [this, name = std::string(topic.name), handler = std::move(handler)](
+                                  auto cdr, const wire::SampleInfo& info) {
+                                passages_.arrived(name, cdr, net_.clock());
+                                return handler(cdr, info);
+                              });
   }
 
  private:
@@ -60,7 +52,7 @@ class WatchedWire final : public wire::Wire {
     Passages& passages_;
   };
 
-  std::unique_ptr<wire::Wire> inner_;
+  std::unique_ptr<wire::Wire> owned_;
   live::Net& net_;
   Passages& passages_;
 };

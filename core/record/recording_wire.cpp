@@ -90,7 +90,7 @@ class Heard {
 }  // namespace
 
 RecordingWire::RecordingWire(wire::Wire& inner, Tape& tape, std::string net)
-    : inner_(inner), tape_(tape), net_(std::move(net)) {}
+    : ForwardingWire(inner), tape_(tape), net_(std::move(net)) {}
 
 Result<std::unique_ptr<wire::RawWriter>> RecordingWire::make_writer(const wire::TopicInfo& topic,
                                                                     const std::string& partition) {

@@ -90,7 +90,7 @@ class Reader final : public wire::RawReader {
 }  // namespace
 
 InterceptedWire::InterceptedWire(wire::Wire& inner, Interceptor& interceptor)
-    : inner_(inner), interceptor_(interceptor), readers_(std::make_shared<Readers>()) {}
+    : ForwardingWire(inner), interceptor_(interceptor), readers_(std::make_shared<Readers>()) {}
 
 InterceptedWire::~InterceptedWire() = default;
 

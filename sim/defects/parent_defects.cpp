@@ -1,6 +1,7 @@
 // Defects of a robot's parent process, which sends zero when the agent is dead.
 #include <string_view>
 
+#include "core/wire/forwarding_wire.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
@@ -28,36 +29,22 @@ class PlainWriter final : public wire::RawWriter {
 };
 
 /// A wire that writes every velocity as a Twist.
-class PlainVelocities final : public wire::Wire {
+class PlainVelocities final : public wire::ForwardingWire {
  public:
-  explicit PlainVelocities(std::unique_ptr<wire::Wire> inner) : inner_(std::move(inner)) {}
+  explicit PlainVelocities(std::unique_ptr<wire::Wire> inner)
+      : ForwardingWire(*inner), owned_(std::move(inner)) {}
 
-  wire::ParticipantId id() const override { return inner_->id(); }
   Result<std::unique_ptr<wire::RawWriter>> make_writer(const wire::TopicInfo& topic,
                                                        const std::string& partition) override {
     if (topic.type != std::string_view(topics::cmd_vel_stamped.type))
-      return inner_->make_writer(topic, partition);
-    auto plain = wire::Writer<geometry_msgs::msg::Twist>::make(*inner_, topics::cmd_vel, partition);
+      return inner_.make_writer(topic, partition);
+    auto plain = wire::Writer<geometry_msgs::msg::Twist>::make(inner_, topics::cmd_vel, partition);
     if (!plain) return plain.error();
     return std::unique_ptr<wire::RawWriter>(std::make_unique<PlainWriter>(std::move(*plain)));
   }
-  Result<std::unique_ptr<wire::RawReader>> make_reader(const wire::TopicInfo& topic,
-                                                       const std::string& partition, Executor& strand,
-                                                       wire::RawHandler handler) override {
-    return inner_->make_reader(topic, partition, strand, std::move(handler));
-  }
-  void on_participant(Executor& strand, std::function<void(const wire::ParticipantEvent&)> handler) override {
-    inner_->on_participant(strand, std::move(handler));
-  }
-  wire::WireCounters counters() const override { return inner_->counters(); }
-  wire::SenderState sender() const override { return inner_->sender(); }
-  std::vector<wire::PeerState> peers() const override { return inner_->peers(); }
-  void set_place(const wire::ParticipantId& who, const wire::Position& at) override {
-    inner_->set_place(who, at);
-  }
 
  private:
-  std::unique_ptr<wire::Wire> inner_;
+  std::unique_ptr<wire::Wire> owned_;
 };
 
 }  // namespace
