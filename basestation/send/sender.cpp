@@ -37,6 +37,7 @@ struct Sender::Pending {
   Time waits_since{};  ///< of the limit; of a robot that was not heard yet it has not begun
   Time repeated{};
   Timer timer{};
+  bool reported{};   ///< a caller was told that it is not acknowledged yet
   bool overtaken{};  ///< a stop went out after it, with a higher number
   bool blind{};      ///< sent before this station knew the authority in force
   bool resting{};    ///< refused for a cause that passes: sent anew at the next repeat
@@ -180,6 +181,8 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
 void Sender::report_unheard(Pending& pending) const {
   const Time now = strand_.now();
   if (now - started_ < params_.discovery_grace || now - pending.first_sent < 1s) return;
+  if (pending.done.empty()) return;
+  pending.reported = true;
   const Answer answer{
       .robot = pending.order.robot,
       .command = std::string(pending.order.name()),
@@ -274,7 +277,7 @@ void Sender::finish(Lane& to, const std::shared_ptr<Pending>& pending, Answer an
       start(to, to.current);
     }
   }
-  if (pending->done.empty() && on_late) on_late(answer);
+  if (pending->reported && on_late) on_late(answer);
   for (const Done& done : pending->done) done(answer);
 }
 

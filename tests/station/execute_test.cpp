@@ -1,4 +1,5 @@
 // Command lines at a station: exit codes, texts, several robots.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/station/fake_robot.hpp"
@@ -220,6 +221,22 @@ TEST_F(ExecuteTest, ARobotThatIsHeardAndDoesNotAcknowledgeTheStopIsToldToTheOper
   add("r9").answering = [](const radio::Command&) { return std::nullopt; };
   run_for(15s);
   EXPECT_THAT(codes, testing::Contains("stop_not_acknowledged r9"));
+}
+
+TEST_F(ExecuteTest, AStopRepeatedLaterIsAnsweredToBothCallers) {
+  std::vector<std::string> codes;
+  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  EXPECT_EQ(execute("stop r9").exit_code, 3) << "the first caller reads that it is not acknowledged yet";
+  add("r9").answering = [](const radio::Command&) { return std::nullopt; };
+  run_for(2s);
+  begin("stop r9");
+  run_for(500ms);
+  ASSERT_TRUE(late_.empty()) << "the second caller waits for the robot, which is heard now";
+  robots_.back()->answering = [](const radio::Command&) { return Reason::none; };
+  run_for(1s);
+  ASSERT_EQ(late_.size(), 1U);
+  EXPECT_EQ(late_[0].text, "r9: stopped\n");
+  EXPECT_EQ(std::count(codes.begin(), codes.end(), "stop_acknowledged r9"), 1) << "for the first caller";
 }
 
 TEST_F(ExecuteTest, StopsOfUnheardRobotsAreBoundedAndTakeNoPlaceFromOthers) {
