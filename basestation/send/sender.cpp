@@ -64,23 +64,16 @@ Sender::Lane* Sender::lane(const std::string& robot) {
   if (lanes_.size() == Fleet::max_robots + max_unheard) return nullptr;
   auto writer = wire::Writer<radio::Command>::make(radio_, wire::topics::command, robot);
   if (!writer) return nullptr;
-  auto made = std::make_unique<Lane>();
+  auto made = std::make_shared<Lane>();
   made->writer = std::move(*writer);
+  made->next_seq = first_seq_;
   return lanes_.emplace(robot, std::move(made)).first->second.get();
 }
 
 void Sender::prepare(const std::string& robot) { lane(robot); }
 
 void Sender::send(Order order, Done done) {
-  if (unheard(order.robot) && !lanes_.contains(order.robot) &&
-      static_cast<std::size_t>(std::count_if(lanes_.begin(), lanes_.end(), [this](const auto& entry) {
-        return unheard(entry.first);
-      })) >= max_unheard) {
-    return done({.robot = order.robot,
-                 .command = std::string(order.name()),
-                 .reason = Reason::queue_full,
-                 .text = "16 robots that were not heard yet were sent a stop already"});
-  }
+  if (unheard(order.robot) && !lanes_.contains(order.robot)) make_room();
   Lane* to = lane(order.robot);
   if (!to) {
     return done({.robot = order.robot,
@@ -112,6 +105,33 @@ void Sender::send(Order order, Done done) {
   }
   to->current = pending;
   start(*to, pending);
+}
+
+void Sender::make_room() {
+  std::size_t count = 0;
+  const std::string* oldest = nullptr;
+  Time since{};
+  for (const auto& [robot, lane] : lanes_) {
+    if (!unheard(robot)) continue;
+    ++count;
+    if (lane->current) continue;
+    const Time sent = lane->stop ? lane->stop->first_sent : Time::min();  // one without a stop goes first
+    if (oldest && sent >= since) continue;
+    oldest = &robot;
+    since = sent;
+  }
+  if (count < max_unheard || !oldest) return;
+  close_lane(*oldest, "it no longer goes out: it gave way to newer stops for robots that were not heard");
+}
+
+void Sender::close_lane(std::string robot, const std::string& why) {
+  const auto found = lanes_.find(robot);
+  const std::shared_ptr<Lane> lane = found->second;
+  lanes_.erase(found);
+  // A number that was used would get the robot's first answer to it again.
+  first_seq_ = std::max(first_seq_, lane->next_seq);
+  if (const std::shared_ptr<Pending> stop = lane->stop)
+    finish(*lane, stop, {.reason = Reason::no_answer, .text = why});
 }
 
 void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
@@ -154,12 +174,14 @@ void Sender::transmit(Lane& to, Pending& pending) {
 
 void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pending) {
   constexpr Duration slow = 1s;
-  Lane& to = *lanes_.at(robot);
+  const std::shared_ptr<Lane> lane = lanes_.at(robot);
+  Lane& to = *lane;
   const Time now = strand_.now();
   const Duration limit = pending->is_stop() ? params_.give_up_stop : params_.give_up;
   if (pending->is_stop() && unheard(robot)) {
     pending->waits_since = now;
     report_unheard(*pending);
+    if (to.stop != pending) return;  // whoever was told gave a command that ended it
     if (now - pending->first_sent >= limit && now - pending->repeated < slow) return;
   }
   if (now - pending->waits_since >= limit) {
@@ -195,13 +217,14 @@ void Sender::report_unheard(Pending& pending) const {
 }
 
 std::vector<std::string> Sender::drop_unheard() {
-  std::vector<std::string> names;
+  std::vector<std::string> lanes, names;
   for (const auto& [robot, lane] : lanes_) {
-    if (!lane->stop || !unheard(robot)) continue;
-    names.push_back(robot);
-    const std::shared_ptr<Pending> pending = lane->stop;
-    finish(*lane, pending, {.reason = Reason::no_answer, .text = "not acknowledged, and no longer sent"});
+    if (!unheard(robot) || lane->current) continue;
+    lanes.push_back(robot);
+    if (lane->stop) names.push_back(robot);
   }
+  for (const std::string& robot : lanes)
+    if (lanes_.contains(robot)) close_lane(robot, "not acknowledged, and no longer sent");
   return names;
 }
 

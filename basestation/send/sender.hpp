@@ -27,7 +27,8 @@ struct SenderParams {
 /// the other, robots never wait for each other, and a stop overtakes all that waits.
 ///
 /// A stop goes out to a robot that was not heard yet, too. It is reported as sent and not acknowledged, and
-/// is repeated until that robot answers it, or is heard and does not answer within `give_up_stop`.
+/// is repeated until that robot answers it, or is heard and does not answer within `give_up_stop`. At most
+/// `max_unheard` such stops go out: the oldest one gives way to a new one, and ends as not acknowledged.
 class Sender {
  public:
   using Done = std::function<void(const Answer&)>;
@@ -63,6 +64,10 @@ class Sender {
   void renumber(Lane& lane, Pending& pending);
   void tick(const std::string& robot, const std::shared_ptr<Pending>& pending);
   bool unheard(const std::string& robot) const { return fleet_.robot(robot) == nullptr; }
+  /// Closes the lane of the oldest stop to a robot that was not heard, if `max_unheard` of them go out.
+  void make_room();
+  /// Ends the stop of a lane, if any, and closes the lane.
+  void close_lane(std::string robot, const std::string& why);
   /// Reports a stop of a robot that was not heard as sent and not acknowledged.
   void report_unheard(Pending& pending) const;
   /// What the operator was told is without answer must not be obeyed when the link comes back.
@@ -76,7 +81,8 @@ class Sender {
   wire::Wire& radio_;
   Fleet& fleet_;
   Time started_;
-  std::map<std::string, std::unique_ptr<Lane>> lanes_;
+  std::map<std::string, std::shared_ptr<Lane>> lanes_;
+  std::uint64_t first_seq_{1};  ///< Of a new lane: above all numbers of the lanes that were closed.
   Counts counts_{};
 };
 

@@ -239,14 +239,48 @@ TEST_F(ExecuteTest, AStopRepeatedLaterIsAnsweredToBothCallers) {
   EXPECT_EQ(std::count(codes.begin(), codes.end(), "stop_acknowledged r9"), 1) << "for the first caller";
 }
 
-TEST_F(ExecuteTest, StopsOfUnheardRobotsAreBoundedAndTakeNoPlaceFromOthers) {
+TEST_F(ExecuteTest, TheOldestOfSixteenStopsForUnheardRobotsGivesWayToANewOne) {
+  std::vector<std::string> codes;
+  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
   for (int i = 0; i < 16; ++i) begin("stop x" + std::to_string(i));
   run_for(2s);
-  const Outcome refused = execute("stop x16");
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.error, HasSubstr("[queue_full]"));
-  EXPECT_EQ(execute("stop x3").exit_code, 3) << "one that is on its way already";
+  EXPECT_EQ(execute("stop x3").exit_code, 3) << "one that goes out already takes no second place";
+  EXPECT_TRUE(codes.empty());
+  EXPECT_EQ(execute("stop r9").exit_code, 3);
+  EXPECT_THAT(codes, ElementsAre("stop_not_acknowledged x0"));
   EXPECT_EQ(execute("take r1").exit_code, 0);
+  EXPECT_EQ(execute("stop r1").exit_code, 0);
+  add("r9");
+  add("x0");
+  run_for(5s);
+  EXPECT_TRUE(robots_[2]->behaviour.stopped());
+  EXPECT_TRUE(robots_[3]->commands().empty()) << "its stop gave way";
+}
+
+TEST_F(ExecuteTest, AStopThatGaveWayAndIsGivenAgainHasANewNumber) {
+  // A robot that heard the first stop, unheard itself, would repeat its first answer to the same number.
+  for (int i = 0; i < 17; ++i) begin("stop x" + std::to_string(i));
+  run_for(2s);
+  begin("stop x0");
+  add("x0");
+  run_for(5s);
+  ASSERT_FALSE(robots_.back()->commands().empty());
+  EXPECT_GT(robots_.back()->commands().front().command.seq(), 1U);
+}
+
+TEST_F(ExecuteTest, AfterDownAndUpAllPlacesForUnheardRobotsAreFree) {
+  std::vector<std::string> codes;
+  for (int i = 0; i < 16; ++i) begin("stop x" + std::to_string(i));
+  run_for(2s);
+  execute("down");
+  execute("up");
+  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  for (int i = 0; i < 16; ++i) begin("stop y" + std::to_string(i));
+  run_for(2s);
+  add("y0");
+  run_for(5s);
+  EXPECT_TRUE(robots_.back()->behaviour.stopped());
+  EXPECT_THAT(codes, testing::Not(testing::Contains(HasSubstr("stop_not_acknowledged"))));
 }
 
 TEST_F(ExecuteTest, AStationThatIsDownSendsNoStopToARobotThatIsHeardLater) {
