@@ -17,7 +17,7 @@ using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 void Client::send(const json& object) {
-  if (connected_) connected_ = socket_.send(object);
+  if (connected_ && can_send_) can_send_ = socket_.send(object);
 }
 
 std::int64_t Client::execute(const std::string& line) {
@@ -62,8 +62,12 @@ bool Client::wait(int timeout_ms, int other_fd) {
   if (!connected_) return false;
   pollfd fds[2] = {{socket_.fd(), static_cast<short>(POLLIN | (socket_.has_backlog() ? POLLOUT : 0)), 0},
                    {other_fd, POLLIN, 0}};
-  if (::poll(fds, other_fd >= 0 ? 2 : 1, timeout_ms) <= 0 || fds[0].revents == 0) return true;
-  const bool open = socket_.pump() && socket_.flush();
+  const bool ready =
+      ::poll(fds, other_fd >= 0 ? 2 : 1, can_send_ ? timeout_ms : 0) > 0 && fds[0].revents != 0;
+  if (can_send_ && !ready) return true;
+  can_send_ = can_send_ && socket_.flush();
+  // Reads after the last send: when that failed, the station may have written why.
+  const bool open = socket_.pump() && can_send_;
   for (auto line = socket_.line(); line; line = socket_.line()) handle(*line);
   connected_ = connected_ && open;
   return connected_;

@@ -48,6 +48,7 @@ class Client {
   LineSocket socket_;
   std::int64_t next_{1};
   bool connected_{true};
+  bool can_send_{true};  ///< False after a failed send; wait() still reads what the station wrote before.
   std::string cut_off_{};
 };
 

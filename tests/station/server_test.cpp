@@ -247,6 +247,39 @@ TEST(Client, QuotesTheWordsThatNeedIt) {
   }
 }
 
+/// A client and the other end of its socket.
+struct Pair {
+  Pair() { EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0); }
+  std::array<int, 2> ends{};
+};
+
+TEST(Client, ReadsWhyItWasCutOffAlthoughItCannotSendAnyMore) {
+  Pair pair;
+  Client client(LineSocket(File(pair.ends[0])), "shell");
+  const std::string last = "{\"cut_off\":\"32 programs are connected\"}\n";
+  ASSERT_EQ(::write(pair.ends[1], last.data(), last.size()), static_cast<ssize_t>(last.size()));
+  ::close(pair.ends[1]);
+  client.execute("list");
+  EXPECT_FALSE(client.wait(1000));
+  EXPECT_THAT(client.gone(), HasSubstr("32 programs are connected"));
+  EXPECT_FALSE(client.connected());
+}
+
+TEST(Client, GetsAnOutcomeThatWasWrittenBeforeTheStationEnded) {
+  Pair pair;
+  Client client(LineSocket(File(pair.ends[0])), "shell");
+  std::optional<json> outcome;
+  client.on_outcome = [&](std::int64_t, const json& object) { outcome = object; };
+  client.execute("list");
+  const std::string last = "{\"id\":1,\"outcome\":{\"exit\":0}}\n";
+  ASSERT_EQ(::write(pair.ends[1], last.data(), last.size()), static_cast<ssize_t>(last.size()));
+  ::close(pair.ends[1]);
+  client.watch();  // fails
+  EXPECT_FALSE(client.wait(1000));
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ((*outcome)["exit"], 0);
+}
+
 TEST(Client, ShowsTheCommandsOfOtherFrontEndsWhenTheyEnd) {
   json event{{"event", "command"}, {"phase", "ended"},
              {"line", "take r1"},  {"query", false},
