@@ -173,8 +173,8 @@ class Service {
       return CallHandle(call);
     }
     call->depend_on(offering->generation);
-    if (!offering->admit(call, state_->max_in_flight)) {
-      call->fail(Reason::queue_full, "too many requests wait for an answer");
+    if (const auto admitted = offering->admit(call, state_->max_in_flight); !admitted) {
+      call->fail(admitted.reason(), admitted.error().text);
       return CallHandle(call);
     }
     // Refused, the task is dropped, and with it the reply, which completes the call.
@@ -192,13 +192,15 @@ class Service {
     Offering(std::shared_ptr<Inbox> i, std::shared_ptr<const Generation> g, Handler h)
         : inbox(std::move(i)), generation(std::move(g)), handler(std::move(h)) {}
 
-    bool admit(const std::shared_ptr<PendingCall<Response>>& call, std::size_t max) {
+    Result<void> admit(const std::shared_ptr<PendingCall<Response>>& call, std::size_t max) {
       const std::lock_guard lock(mutex);
-      if (closed || in_flight->load(std::memory_order_acquire) >= max) return false;
+      if (closed) return {Reason::cancelled, kClosed};
+      if (in_flight->load(std::memory_order_acquire) >= max)
+        return {Reason::queue_full, "too many requests wait for an answer"};
       in_flight->fetch_add(1, std::memory_order_acq_rel);
       std::erase_if(calls, [](const auto& c) { return c.expired(); });
       calls.push_back(call);
-      return true;
+      return {};
     }
     void close() {
       std::vector<std::weak_ptr<PendingCall<Response>>> open;
@@ -208,10 +210,10 @@ class Service {
         open.swap(calls);
       }
       for (const auto& weak : open)
-        if (const auto call = weak.lock())
-          call->fail(Reason::cancelled, "the component that offers it ended or was replaced");
+        if (const auto call = weak.lock()) call->fail(Reason::cancelled, kClosed);
     }
 
+    static constexpr const char* kClosed = "the component that offers it ended or was replaced";
     const std::shared_ptr<Inbox> inbox;
     const std::shared_ptr<const Generation> generation;
     const Handler handler;

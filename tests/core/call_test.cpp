@@ -2,12 +2,10 @@
 
 #include <gmock/gmock.h>
 
-#include <future>
 #include <stdexcept>
 
 #include "core/component/component.hpp"
 #include "core/exec/fault.hpp"
-#include "core/exec/live_runtime.hpp"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/supervisor/unit.hpp"
 #include "core/topic/topic.hpp"
@@ -294,45 +292,6 @@ TEST_F(CallTest, ToAHungUnitEndsAtItsDeadlineOrWhenTheUnitIsReplaced) {
   asker->ask(service, 5);
   run(1ms);
   EXPECT_THAT(asker->results, ElementsAre(kCancelled, kNoAnswer, 25));
-}
-
-// Instances come and go, replies race with deadlines: each call completes exactly once.
-TEST(LiveCall, CompletesExactlyOnceWhateverHappens) {
-  LiveRuntime runtime;
-  const auto server = runtime.strand("server"), caller = runtime.strand("caller");
-  Squares service{"squares", 4};
-  constexpr int kCalls = 2000;
-  std::vector<int> completions(kCalls, 0);  // on the caller's strand
-  int left = kCalls;
-  std::promise<void> all;
-  std::atomic<bool> over{false};
-  std::thread instances([&] {
-    while (!over) {
-      const auto generation = std::make_shared<Generation>();
-      const Offer offer =
-          service.offer(*server, generation, [](int x, const Reply<int>& reply) { reply(x * x); });
-      std::this_thread::yield();
-      generation->revoke();
-    }
-  });
-  for (int i = 0; i < kCalls; ++i)
-    caller->post([&, i] {
-      service.call(*caller, i, {.deadline = (i % 3 == 0) ? Duration(1us) : Duration(1s)},
-                   [&, i](Result<int> square) {
-                     if (square) {
-                       EXPECT_EQ(*square, i * i);
-                     }
-                     ++completions[static_cast<std::size_t>(i)];
-                     if (--left == 0) all.set_value();
-                   });
-    });
-  EXPECT_EQ(all.get_future().wait_for(30s), std::future_status::ready);
-  over = true;
-  instances.join();
-  std::promise<void> drained;
-  caller->post([&] { drained.set_value(); });
-  drained.get_future().wait();
-  EXPECT_THAT(completions, testing::Each(1));
 }
 
 }  // namespace
