@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -153,8 +154,8 @@ class Service {
   Offer offer(Executor& strand, std::shared_ptr<const Generation> generation, Handler handler) {
     auto next = std::make_shared<Offering>(strand.inbox(), std::move(generation), std::move(handler));
     const auto before = state_->exchange(next);
-    if (before == next) return {};
-    if (before) before->close();
+    if (!before) return {};
+    if (*before) (*before)->close();
     return Offer([state = std::weak_ptr(state_), weak = std::weak_ptr(next)] {
       const auto mine = weak.lock();
       if (!mine) return;
@@ -229,10 +230,11 @@ class Service {
       const std::lock_guard lock(mutex);
       return offering;
     }
-    /// Returns what was offered before, or `next` when its instance was revoked and must not replace another.
-    std::shared_ptr<Offering> exchange(std::shared_ptr<Offering> next) {
+    /// Returns what was offered before, which may be null. Nothing when the instance of `next` was revoked:
+    /// it must not replace another.
+    std::optional<std::shared_ptr<Offering>> exchange(std::shared_ptr<Offering> next) {
       const std::lock_guard lock(mutex);
-      if (!next->generation->valid()) return next;
+      if (!next->generation->valid()) return std::nullopt;
       return std::exchange(offering, std::move(next));
     }
     void remove(const std::shared_ptr<Offering>& gone) {
