@@ -202,11 +202,17 @@ void Station::Impl::command_robot(std::uint64_t handle, const std::string& robot
   if (const auto steer = steering(request))
     return add_flow(handle, std::make_shared<Steer>(parts(), robot, *steer, ended), ended);
   if (request.verb == verb("stop")) end_flows(robot, Reason::stopped);
-  if (!request.info->conditions.mode.empty()) end_flows(robot, Reason::cancelled);  // it asks for a mode
+  const bool asks_for_mode = !request.info->conditions.mode.empty();
+  if (asks_for_mode && request.word("MODE") == "hold") end_flows(robot, Reason::cancelled);
+  const Flow::Done answered =
+      asks_for_mode ? end_drives_when_accepted(robot) : Flow::Done([](const Answer&) {});
   Order order{.robot = robot, .request = request};
   if (request.verb == verb("goto") && request.has("--wait"))
-    return add_flow(handle, std::make_shared<Arrival>(parts(), std::move(order), ended), ended);
-  sender_.send(std::move(order), ended);
+    return add_flow(handle, std::make_shared<Arrival>(parts(), std::move(order), answered, ended), ended);
+  sender_.send(std::move(order), [answered, ended](const Answer& answer) {
+    answered(answer);
+    ended(answer);
+  });
 }
 
 void Station::Impl::stop_all(const Request& request, Done done) {
@@ -321,15 +327,19 @@ void Station::Impl::late_stop(const Answer& answer) {
 
 void Station::Impl::add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, const Flow::Done& ended) {
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
-  const auto others = std::count_if(flows_.begin(), flows_.end(), [&](const auto& entry) {
-    return entry.second->robot() != flow->robot() || !dynamic_cast<Steer*>(entry.second.get());
-  });
+  // A drive takes the place of the robot's former one; a wait takes nobody's.
+  const bool drives = dynamic_cast<Steer*>(flow.get()) != nullptr;
+  const auto replaced = [&](const Flow& other) {
+    return drives && other.robot() == flow->robot() && dynamic_cast<const Steer*>(&other);
+  };
+  const auto others = std::count_if(flows_.begin(), flows_.end(),
+                                    [&](const auto& entry) { return !replaced(*entry.second); });
   if (static_cast<std::size_t>(others) >= max_flows)
     return ended({.robot = flow->robot(),
                   .reason = Reason::queue_full,
                   .text = "64 drives and waits are going on at this station already"});
   for (const auto& [other, running] : std::multimap(flows_))
-    if (running->robot() == flow->robot() && dynamic_cast<Steer*>(running.get())) running->hand_over();
+    if (replaced(*running)) running->hand_over();
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
   flows_.emplace(handle, flow);
   flow->start();
@@ -339,6 +349,17 @@ void Station::Impl::end_flows(const std::string& robot, Reason reason) {
   for (const auto& [handle, flow] : std::multimap(flows_))
     if (flow->robot() == robot && dynamic_cast<Steer*>(flow.get()))
       flow->cancel(reason, reason == Reason::cancelled ? "another command took its place" : "");
+}
+
+Flow::Done Station::Impl::end_drives_when_accepted(const std::string& robot) const {
+  std::vector<std::weak_ptr<Flow>> drives;  // those of now: a drive that begins later is meant to last
+  for (const auto& [handle, flow] : flows_)
+    if (flow->robot() == robot && dynamic_cast<Steer*>(flow.get())) drives.push_back(flow);
+  return [drives](const Answer& answer) {
+    if (!answer.accepted) return;
+    for (const auto& weak : drives)
+      if (const auto drive = weak.lock()) drive->cancel(Reason::cancelled, "another command took its place");
+  };
 }
 
 void Station::Impl::cancel(std::uint64_t handle) {

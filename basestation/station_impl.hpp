@@ -90,6 +90,9 @@ class Station::Impl {
   /// Starts the flow; when too many are going on, `ended` gets `queue_full` instead.
   void add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, const Flow::Done& ended);
   void end_flows(const std::string& robot, Reason reason);
+  /// Takes the robot's answer to a command that asks for a mode: an accepted one ends what drives the robot
+  /// now.
+  Flow::Done end_drives_when_accepted(const std::string& robot) const;
   FlowParts parts() { return {strand_, fleet_, sender_, stick_}; }
   bool fresh(Duration span) const { return strand_.now() - started_ < span; }
 

@@ -7,13 +7,15 @@ namespace adit::station {
 
 using namespace std::chrono_literals;
 
-Arrival::Arrival(FlowParts parts, Order order, Done done)
+Arrival::Arrival(FlowParts parts, Order order, Done answered, Done done)
     : Flow(parts, order.robot, std::move(done)),
       order_(std::move(order)),
+      on_answer_(std::move(answered)),
       goal_{order_.request.number("X"), order_.request.number("Y")} {}
 
 void Arrival::start() {
-  parts_.sender.send(order_, [weak = weak_from_this()](const Answer& answer) {
+  parts_.sender.send(order_, [weak = weak_from_this(), on_answer = on_answer_](const Answer& answer) {
+    on_answer(answer);
     if (auto self = weak.lock()) static_cast<Arrival&>(*self).answered(answer);
   });
   goal_before_ = view() ? view()->goal_id : 0;

@@ -9,8 +9,8 @@ namespace adit::station {
 /// the mode, gets another goal, or is lost for 30 s.
 class Arrival final : public Flow {
  public:
-  /// `order`: a goto.
-  Arrival(FlowParts parts, Order order, Done done);
+  /// `order`: a goto. `answered` is called with the robot's answer to it, also when the wait ended before.
+  Arrival(FlowParts parts, Order order, Done answered, Done done);
   void start() override;
   void cancel(Reason reason, const std::string& text) override;
 
@@ -20,6 +20,7 @@ class Arrival final : public Flow {
   void end(Reason reason, const std::string& text);
 
   Order order_;
+  Done on_answer_;
   std::array<double, 2> goal_;  ///< map frame, m
   Answer outcome_{};
   Timer timer_{};

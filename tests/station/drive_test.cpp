@@ -7,6 +7,8 @@ namespace adit::station {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::Contains;
+using testing::Field;
 using testing::HasSubstr;
 
 class DriveTest : public StationTest {
@@ -178,6 +180,52 @@ TEST_F(DriveTest, ANewDriveTakesTheOldOnesPlace) {
   run_for(3s);
   EXPECT_TRUE(ends_in_zero());
   EXPECT_LT(r1().sticks().back().at, scheduler_.elapsed() - 2s);
+}
+
+TEST_F(DriveTest, ARefusedGotoLeavesTheDriveAsItWas) {
+  begin("drive r1 0.5 0 0 --for 30");
+  run_for(1s);
+  r1().answering = [](const radio::Command&) { return Reason::goal_unreachable; };
+  for (const char* line : {"goto r1 4 5 --wait", "goto r1 4 5", "home r1", "mode r1 waypoint"}) {
+    EXPECT_EQ(execute(line).exit_code, 1);
+    run_for(500ms);
+    EXPECT_FLOAT_EQ(r1().sticks().back().sample.vx(), 0.5F) << line;
+  }
+  EXPECT_TRUE(late_.empty());
+}
+
+TEST_F(DriveTest, AnAcceptedGotoEndsTheDrive) {
+  for (const char* line : {"goto r1 4 5 --wait", "goto r1 4 5", "mode r1 waypoint"}) {
+    late_.clear();
+    begin("drive r1 0.5 0 0 --for 30");
+    run_for(1s);
+    begin(line);
+    run_for(1s);
+    EXPECT_THAT(late_, Contains(Field(&Outcome::error, HasSubstr("another command took its place")))) << line;
+    EXPECT_TRUE(ends_in_zero()) << line;
+  }
+}
+
+TEST_F(DriveTest, HoldEndsTheDriveBeforeTheRobotAnswers) {
+  begin("drive r1 0.5 0 0 --for 30");
+  run_for(1s);
+  r1().answering = [](const radio::Command&) { return std::nullopt; };
+  begin("mode r1 hold");
+  run_for(100ms);
+  EXPECT_TRUE(ends_in_zero());
+}
+
+TEST_F(DriveTest, ADriveTypedAfterAGotoIsNotEndedByItsAnswer) {
+  std::size_t asked = 0;
+  r1().answering = [&](const radio::Command& command) -> std::optional<Reason> {
+    if (command.kind() == radio::CMD_GOTO && ++asked < 5) return std::nullopt;
+    return Reason::none;
+  };
+  begin("goto r1 4 5");
+  begin("drive r1 0.5 0 0 --for 2");
+  run_for(4s);
+  ASSERT_EQ(late_.size(), 2U);
+  EXPECT_THAT(late_[1].text, HasSubstr("drove for 2.0 s"));
 }
 
 TEST_F(DriveTest, ALiveStickThatIsNotRenewedIsZero) {
