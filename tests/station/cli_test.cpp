@@ -6,10 +6,17 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <future>
 #include <nlohmann/json.hpp>
+#include <thread>
 
+#include "basestation/cli/process/server.hpp"
 #include "core/command/vocabulary.hpp"
+#include "core/exec/live_runtime.hpp"
+#include "core/exec/virtual_runtime.hpp"
+#include "core/wire/memory/ether.hpp"
 #include "tests/folders/folders.hpp"
 #include "tests/live/process.hpp"
 
@@ -218,6 +225,39 @@ TEST_F(Cli, AStopWithoutAStationGoesOutByItself) {
   const Finished end = run({"stop", "r1"});
   EXPECT_THAT(end.err, HasSubstr("goes out by itself"));
   EXPECT_NE(end.exit_code, 0);
+}
+
+TEST_F(Cli, AStopThatTheStationHasNoRoomForGoesOutByItself) {
+  std::filesystem::create_directory(std::filesystem::path(path("op1.sock")).parent_path());
+  ASSERT_EQ(::chmod(path("").c_str(), 0700), 0);
+  VirtualScheduler scheduler{1};
+  wire::Ether ether{scheduler, {}};
+  const auto wire = ether.join(77, "op1");
+  LiveRuntime runtime;
+  const auto strand = runtime.strand("station");
+  auto server = cli::Server::open(path(""), "op1").value();
+  std::unique_ptr<Station> station;
+  std::promise<void> made, free;
+  strand->post([&, go = free.get_future().share()] {
+    station = std::make_unique<Station>(StationParams{.name = "op1", .id = {1}}, *strand, *wire);
+    made.set_value();
+    go.wait();  // busy from now on
+  });
+  made.get_future().wait();
+  while (strand->post([] {})) continue;  // and its queue is full
+  std::thread serving([&] { server->serve(*station, *strand, {{"station", "op1"}}, -1); });
+  const Finished end = run({"stop", "r1"});
+  EXPECT_THAT(end.err, HasSubstr("the stop goes out by itself"));
+  EXPECT_THAT(end.err, testing::Not(HasSubstr("too much to do")));
+  server->end();
+  serving.join();
+  std::promise<void> ended;
+  free.set_value();
+  strand->post_control([&] {
+    station.reset();
+    ended.set_value();
+  });
+  ended.get_future().wait();
 }
 
 TEST_F(Cli, TerminalCommandsSayThatTheyWantATerminal) {

@@ -66,13 +66,14 @@ class Talk {
 /// A station whose robots are silent, and its socket.
 class ServerTest : public testing::Test {
  protected:
-  ServerTest() {
+  /// `grace`: how long a command waits for a robot that the station has not heard.
+  explicit ServerTest(Duration grace = 0s) {
     std::string name = (std::filesystem::temp_directory_path() / "adit-server-XXXXXX").string();
     folder_ = ::mkdtemp(name.data());
     server_ = Server::open(folder_, "op1").value();
-    on_strand([this] {
+    on_strand([this, grace] {
       station_ = std::make_unique<Station>(
-          StationParams{.name = "op1", .id = {1}, .discovery_grace = 0s, .settle = 0s}, *strand_, *wire_);
+          StationParams{.name = "op1", .id = {1}, .discovery_grace = grace, .settle = 0s}, *strand_, *wire_);
       EXPECT_TRUE(station_->start().ok());
     });
     thread_ = std::thread([this] {
@@ -237,6 +238,31 @@ TEST_F(ServerTest, ACommandOfAClientThatLeftEndsForTheOthersToo) {
   EXPECT_EQ(dashboard.next("event")["line"], "teleop r9");
   leaver.reset();
   EXPECT_EQ(dashboard.next("event")["phase"], "ended");
+}
+
+class PatientServer : public ServerTest {
+ protected:
+  PatientServer() : ServerTest(60s) {}
+};
+
+TEST_F(PatientServer, WhatAClientBeganEndsWithItAlthoughTheQueueIsFull) {
+  auto leaver = std::make_unique<Talk>(path());
+  Talk dashboard(path());
+  dashboard.say({{"hello", true}});
+  ASSERT_FALSE(dashboard.next("hello").is_null());
+  leaver->say({{"id", 1}, {"do", "take r9"}});
+  EXPECT_EQ(dashboard.next("event")["phase"], "begun");
+  std::promise<void> free;
+  strand_->post([go = free.get_future().share()] { go.wait(); });
+  while (strand_->post([] {})) continue;
+  leaver.reset();
+  dashboard.say({{"hello", true}});
+  EXPECT_FALSE(dashboard.next("hello").is_null());  // the server has seen the other one go
+  free.set_value();
+  const json ended = dashboard.next("event");
+  ASSERT_FALSE(ended.is_null());
+  EXPECT_EQ(ended["phase"], "ended");
+  EXPECT_EQ(ended["error"], "cancelled\n");
 }
 
 TEST(Client, QuotesTheWordsThatNeedIt) {
