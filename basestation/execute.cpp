@@ -41,6 +41,15 @@ Outcome unknown_robot(const Request& request, const Fleet& fleet, const std::str
   return outcome;
 }
 
+/// ", did you mean waypoint?" of a mode that the robot does not know; empty when it has none like it.
+std::string nearest_mode(const RobotView* robot, const std::string& typed) {
+  std::vector<std::string> offered;
+  if (robot)
+    for (const ModeChoice& choice : robot->choices) offered.push_back(choice.mode);
+  const std::string meant = command::nearest(typed, offered);
+  return meant.empty() ? "" : ", did you mean " + meant + "?";
+}
+
 /// How a command with a joystick stream is driven; nothing for the others.
 std::optional<SteerParams> steering(const Request& request) {
   const std::string mode = request.word("MODE");
@@ -242,6 +251,8 @@ void Station::Impl::finish_stop_all() {
 void Station::Impl::gathered(const std::shared_ptr<Gather>& gather, std::size_t index, const Answer& answer) {
   gather->answers[index] = answer;
   gather->answers[index].command = gather->request.info->name;
+  if (answer.reason == Reason::mode_unknown)
+    gather->answers[index].text += nearest_mode(fleet_.robot(answer.robot), gather->request.word("MODE"));
   if (answer.route) gather->answers[index].text = route_text(*answer.route);
   note(gather->answers[index]);
   if (--gather->missing > 0) return;

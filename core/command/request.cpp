@@ -40,12 +40,6 @@ std::string shown(const Request& request, std::string_view field) {
   return shown(request.number(name), point + 1 < field.size() ? field[point + 1] - '0' : 2);
 }
 
-/// Checks a word from the radio. Only the robot knows all choices of an open argument.
-Result<void> check_received(const CommandInfo& command, const Argument& argument, const std::string& word) {
-  if (argument.open && valid_name(word)) return {};
-  return check_word(command, argument, word);
-}
-
 /// Takes the values of a row out of a payload, front to back.
 class Unpacker {
  public:
@@ -98,7 +92,7 @@ class Unpacker {
     for (std::size_t i = 0; i < count; ++i) {
       if (sends_words(argument)) {
         value.words.push_back(payload_.words[next_word_++]);
-        if (checked_) checked_ = check_received(row_, argument, value.words.back());
+        if (checked_) checked_ = check_word(row_, argument, value.words.back());
       } else {
         value.numbers.push_back(payload_.numbers[next_number_++]);
         if (checked_) checked_ = check_number(row_, argument, value.numbers.back());
@@ -188,8 +182,10 @@ Result<void> check_word(const CommandInfo& command, const Argument& argument, co
   const std::string quoted = "'" + clean(word, 40) + "'";
   if (argument.type == Type::name || argument.type == Type::robots) {
     if (valid_name(word)) return {};
-    return wrong(command, quoted + " cannot be " + std::string(argument.what) +
-                              "'s name (1 to 32 of A-Z a-z 0-9 _ -)");
+    Error error = wrong(command, quoted + " cannot be " + std::string(argument.what) +
+                                     "'s name (1 to 32 of A-Z a-z 0-9 _ -)");
+    error.reason = argument.refusal;
+    return error;
   }
   if (argument.type != Type::choice) return {};
   const std::vector<std::string> all = choices(argument);

@@ -8,7 +8,8 @@ inline constexpr double kMaxDistance = 1e4;  ///< m
 inline constexpr double kMaxDuration = 3600.0;  ///< s
 inline constexpr std::uint8_t kMaxRobots = 64;  ///< of one command
 
-inline constexpr std::string_view kModes = "hold|manual|smart_joystick|waypoint|explore|external";
+/// What completion proposes. The robot judges the name of a mode, by its own table of modes.
+inline constexpr std::string_view kUsualModes = "hold|manual|smart_joystick|waypoint|explore|external";
 
 inline constexpr Argument kRobot{.name = "R", .type = Type::robots, .what = "a robot"};
 inline constexpr Argument kRobots{.name = "R", .type = Type::robots, .what = "a robot", .most = kMaxRobots};
@@ -135,11 +136,10 @@ inline constexpr std::array kTable{
                 .done = "granted to {OPERATOR}"},
     CommandInfo{.name = "mode",
                 .arguments = {kRobots, Argument{.name = "MODE",
-                                                .type = Type::choice,
+                                                .type = Type::name,
                                                 .what = "a mode",
-                                                .choices = kModes,
-                                                .refusal = Reason::mode_unknown,
-                                                .open = true}},
+                                                .choices = kUsualModes,
+                                                .refusal = Reason::mode_unknown}},
                 .number = 7,
                 .danger = Danger::some,
                 .conditions = {.holder = true, .mode = "MODE"},

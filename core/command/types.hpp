@@ -13,7 +13,7 @@ namespace adit::command {
 enum class Type : std::uint8_t {
   none,
   robots,   ///< robot names; they address the command and do not travel in it
-  name,     ///< 1 to 32 of [A-Za-z0-9_-]: an operator, a component, an area
+  name,     ///< 1 to 32 of [A-Za-z0-9_-]: an operator, a component, a mode, an area
   file,     ///< a path
   choice,   ///< one of `choices`
   number,   ///< finite, within the range
@@ -27,8 +27,7 @@ struct Argument {
   Type type{Type::none};
   std::string_view what{};     ///< in messages: "an operator"; empty: the name
   std::string_view choices{};  ///< separated by |; of a name or a file only what completion proposes
-  Reason refusal{Reason::bad_argument};  ///< for a word that is no choice
-  bool open{false};  ///< A robot may know more choices: what it receives need only be a valid name.
+  Reason refusal{Reason::bad_argument};                      ///< for a word that is no choice or no name
   double minimum{-std::numeric_limits<double>::infinity()};  ///< of a number, in `unit`
   double maximum{std::numeric_limits<double>::infinity()};
   bool above{false};               ///< the minimum itself is out of range

@@ -132,11 +132,6 @@ std::vector<std::string> choices(const Argument& argument) {
   return out;
 }
 
-const std::vector<std::string>& mode_names() {
-  static const std::vector<std::string> names = choices({.choices = kModes});
-  return names;
-}
-
 std::string usage(const CommandInfo& command) {
   std::string text(command.first_word());
   for (const Argument& argument : command.arguments)

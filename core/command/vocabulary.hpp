@@ -38,8 +38,6 @@ std::vector<std::string> command_names(Table rows = table());
 
 /// The choices of an argument, one by one.
 std::vector<std::string> choices(const Argument& argument);
-/// The modes that an operator may ask for.
-const std::vector<std::string>& mode_names();
 
 /// How a command is typed: "goto R X Y [Z] [--wait]".
 std::string usage(const CommandInfo& command);

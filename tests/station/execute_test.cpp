@@ -79,6 +79,24 @@ TEST_F(ExecuteTest, WrongUsageIsExitTwo) {
   EXPECT_EQ(op_->last_answer()->reason, Reason::not_supported);
 }
 
+TEST_F(ExecuteTest, TheRobotJudgesTheNameOfAModeAndTheStationNamesTheNearest) {
+  for (const char* mode : {"waypoint", "orbit"}) {
+    radio::ModeOption option;
+    option.mode(mode);
+    robots_[0]->behaviour.modes().push_back(option);
+  }
+  robots_[0]->answering = [](const radio::Command& command) {
+    const bool known = command.kind() != radio::CMD_MODE || command.words().at(0) == "orbit";
+    return known ? Reason::none : Reason::mode_unknown;
+  };
+  execute("take r1");
+  EXPECT_EQ(execute("mode r1 orbit").exit_code, 0) << "a mode of the robot's own";
+  const Outcome wrong = execute("mode r1 orbti");
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.error, HasSubstr("did you mean orbit?"));
+  EXPECT_THAT(wrong.error, HasSubstr("[mode_unknown]"));
+}
+
 TEST_F(ExecuteTest, StopAllReachesEveryRobot) {
   EXPECT_EQ(execute("stop all").exit_code, 0);
   EXPECT_TRUE(robots_[0]->behaviour.stopped());
