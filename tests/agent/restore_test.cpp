@@ -5,13 +5,13 @@
 #include "core/store/sections.hpp"
 #include "robot_agent/state/restored.hpp"
 #include "tests/agent/agent_bench.hpp"
+#include "tests/agent/only_zero.hpp"
 
 namespace adit::agent {
 namespace {
 
 using namespace radio;  // the command kinds
 using testing::Contains;
-using testing::Each;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -100,7 +100,7 @@ TEST_F(Restore, AnAutonomousModeGoesOnAfterZero) {
   ASSERT_GT(bench->command.vx, 0.1);
   crash();
   bench->run(60ms);
-  EXPECT_THAT(bench->commands, Each(Twist2{})) << "zero until the conditions were looked at anew";
+  EXPECT_THAT(bench->commands, only_zero()) << "zero until the conditions were looked at anew";
   bench->run(2s);
   EXPECT_EQ(op1->behaviour.mode(), "waypoint");
   EXPECT_GT(bench->command.vx, 0.1);
@@ -115,7 +115,7 @@ TEST_F(Restore, AnAutonomousModeWaitsForItsConditions) {
   bench->run(2s);
   EXPECT_EQ(op1->behaviour.mode(), "waypoint");
   EXPECT_FALSE(op1->behaviour.moving_allowed());
-  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_THAT(bench->commands, only_zero());
   bench->lidar_alive = true;
   bench->run(2s);
   EXPECT_GT(bench->command.vx, 0.1);
@@ -128,7 +128,7 @@ TEST_F(Restore, HoldAfterRestartKeepsTheGoal) {
   bench->run(2s);
   EXPECT_EQ(op1->behaviour.mode(), "hold");
   EXPECT_EQ(op1->behaviour.goal_state(), radio::GOAL_KEPT);
-  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_THAT(bench->commands, only_zero());
   EXPECT_EQ(bench->ask(*op1, CMD_MODE, "waypoint"), Reason::none);
   bench->run(1s);
   EXPECT_GT(bench->command.vx, 0.1);
@@ -143,7 +143,7 @@ TEST_F(Restore, AfterARestartOfTheComputerItHolds) {
   EXPECT_EQ(op1->authority.holder(), "op1");
   EXPECT_EQ(op1->behaviour.mode(), "hold") << "odometry began anew";
   EXPECT_EQ(op1->behaviour.goal_state(), radio::GOAL_KEPT);
-  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_THAT(bench->commands, only_zero());
 }
 
 TEST_F(Restore, AManualModeFallsToHold) {
@@ -157,7 +157,7 @@ TEST_F(Restore, AManualModeFallsToHold) {
   crash();
   bench->stream(*op1, 0.5, 2s);  // the stick is still pushed
   EXPECT_EQ(op1->behaviour.mode(), "hold");
-  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_THAT(bench->commands, only_zero());
   EXPECT_EQ(op1->authority.holder(), "op1");
 }
 
@@ -170,7 +170,7 @@ TEST_F(Restore, AStopSurvivesAndNothingMovesUntilItsStopperIsHeard) {
   EXPECT_TRUE(op1->behaviour.stopped());
   ASSERT_EQ(op1->authority.stops().size(), 1u);
   EXPECT_EQ(op1->authority.stops()[0].station(), "op2");
-  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_THAT(bench->commands, only_zero());
   EXPECT_EQ(bench->ask(*op1, CMD_RESET), Reason::stop_of_another);
   EXPECT_EQ(bench->ask(*op1, CMD_RESET, "", 0, 0, true), Reason::none);
   bench->run(2s);
@@ -262,7 +262,7 @@ TEST_F(Restore, AFullDiskIsToldAndCommandsAreDoneAllTheSame) {
   bench->run(2s);
   EXPECT_EQ(op1->authority.holder(), "") << "the state of before the full disk would be a guess";
   EXPECT_EQ(op1->behaviour.mode(), "hold");
-  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_THAT(bench->commands, only_zero());
   EXPECT_THAT(op1->told(), Contains("state_lost"));
 }
 
@@ -276,7 +276,7 @@ TEST_F(Restore, ACorruptStateIsHoldWithoutHolder) {
     EXPECT_EQ(op1->authority.holder(), "");
     EXPECT_FALSE(op1->authority.locked());
     EXPECT_EQ(op1->behaviour.mode(), "hold");
-    EXPECT_THAT(bench->commands, Each(Twist2{}));
+    EXPECT_THAT(bench->commands, only_zero());
     EXPECT_THAT(notice(*op1, "state_lost"), HasSubstr("its state was lost"));
     EXPECT_THAT(op1->told(), Not(Contains("restarted")));
   }
@@ -344,11 +344,11 @@ TEST_F(Restore, DamagedStopsAreToldAndHoldTheRobot) {
   EXPECT_THAT(notice(*op2, "state_damaged"), HasSubstr("stops"));
   EXPECT_EQ(op1->behaviour.mode(), "hold");
   EXPECT_TRUE(op1->behaviour.stopped()) << "somebody may have stopped it";
-  EXPECT_THAT(bench->commands, Each(Twist2{}));
+  EXPECT_THAT(bench->commands, only_zero());
   EXPECT_TRUE(disk->read("state.damaged").value());
   EXPECT_EQ(bench->ask(*op1, CMD_RESET, "", 0, 0, true), Reason::none);
   bench->run(1s);
-  EXPECT_THAT(bench->commands, Each(Twist2{})) << "a reset moves nothing";
+  EXPECT_THAT(bench->commands, only_zero()) << "a reset moves nothing";
   EXPECT_EQ(bench->ask(*op1, CMD_MODE, "waypoint"), Reason::none);
   bench->run(1s);
   EXPECT_GT(bench->command.vx, 0.1) << "the goal was not damaged";
