@@ -76,13 +76,13 @@ void Agent::report(findings::Finding finding) {
   });
 }
 
-void Agent::correct_map(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch,
-                        std::function<void(const Result<void>&)> done) {
-  parts_->command_strand().post(
-      [edges = parts_->edges.get(), T_map_odom, stamp, odom_epoch, done = std::move(done)] {
-        done(edges->core ? edges->core->correct_map(T_map_odom, stamp, odom_epoch)
-                         : Result<void>{Reason::no_localisation, "the command component is away"});
-      });
+void Agent::map_frame(Executor& caller, std::function<void(const Result<MapFrame>&)> done) {
+  parts_->edges->frames.find.call(caller, {}, {}, std::move(done));
+}
+
+void Agent::correct_map(Executor& caller, const MapFrame& corrected,
+                        std::function<void(const Result<MapFrame>&)> done) {
+  parts_->edges->frames.correct.call(caller, corrected, {}, std::move(done));
 }
 
 Result<void> Agent::inject(const std::string& component, ComponentFault fault) {

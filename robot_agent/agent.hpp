@@ -14,6 +14,7 @@
 #include "core/supervisor/overseer.hpp"
 #include "core/wire/wire.hpp"
 #include "robot_agent/command/types.hpp"
+#include "robot_agent/motion/map_frame.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/safeguard_params.hpp"
 
@@ -86,11 +87,17 @@ class Agent {
   /// everybody. From any thread live, after start().
   void report(findings::Finding finding);
 
+  /// Asks for the place of the odometry frame in the map, from which a correction is computed. `done` runs on
+  /// `caller` exactly once, unless that strand ends first. Errors: no_answer (the command component is away,
+  /// or does not answer within 2 s), cancelled (it was restarted meanwhile, or the agent ended), queue_full.
+  /// Called on `caller`, after start().
+  void map_frame(Executor& caller, std::function<void(const Result<MapFrame>&)> done);
+
   /// Corrects the place of the odometry frame in the map, as SLAM does; no robot moves by that (rule 7).
-  /// Arguments and errors are those of Frames::correct; no_localisation while the command component is away.
-  /// `done` runs on the command strand. From any thread live, after start().
-  void correct_map(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch,
-                   std::function<void(const Result<void>&)> done);
+  /// `done` is called as for map_frame(), with the place then in force. Errors: those of Frames::correct and
+  /// of map_frame(). After no_answer and cancelled the correction may be in force: map_frame() tells.
+  void correct_map(Executor& caller, const MapFrame& corrected,
+                   std::function<void(const Result<MapFrame>&)> done);
 
   /// For tests and rehearsals: a callback on the strand of that component throws or never returns.
   /// Components: command, planner, sensors. Errors: bad_argument for another name. From any thread live,

@@ -60,9 +60,10 @@ void Agent::Core::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t
   });
 }
 
-Result<void> Agent::Core::correct_map(const Pose3& T_map_odom, std::uint64_t stamp,
-                                      std::uint32_t odom_epoch) {
-  return frames_.correct(T_map_odom, stamp, odom_epoch);
+Result<MapFrame> Agent::Core::correct_map(const MapFrame& corrected) {
+  if (const auto taken = frames_.correct(corrected); !taken) return taken.error();
+  keep();  // At once: the next instance must not give the same epoch to another place.
+  return frames_.map_frame();
 }
 
 void Agent::Core::odometry_jumped() {
@@ -70,6 +71,7 @@ void Agent::Core::odometry_jumped() {
   navigation_.clear();
   waiting_scan_.reset();  // it was taken in the frame that ended
   behaviour_.hold(Reason::odometry_jumped, now());
+  keep();  // As in correct_map().
   if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
   jump_told_ = now();
   notices_.odometry_jumped(frames_.T_map_base());
@@ -182,6 +184,10 @@ Result<void> Agent::Core::on_start() {
     scan(std::move(lidar.points), lidar.stamp, lidar.received);
     reply({});
   });
+  offer(edges_.frames.find,
+        [this](MapFrameQuery, const Reply<MapFrame>& reply) { reply(frames_.map_frame()); });
+  offer(edges_.frames.correct,
+        [this](const MapFrame& corrected, const Reply<MapFrame>& reply) { reply(correct_map(corrected)); });
   edges_.core = this;
   edges_.driver->write({});
   if (edges_.instances == 1)

@@ -49,6 +49,7 @@ struct Agent::Edges {
   PlanService planner{"planner", 2};        ///< These are for any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has none.
   ScanService scans{"scan", 4};
+  FrameServices frames{};
   Watch* watch{};             ///< from any thread
   Core* core{};               ///< null while the command component is away
   std::uint32_t instances{};  ///< of the command component so far
@@ -64,8 +65,6 @@ class Agent::Core : public Component {
 
   void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received);
   void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received);
-  /// See Frames::correct.
-  Result<void> correct_map(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch);
   void battery(float charge);
   void external(const Twist2& velocity, Time received);
   /// Somebody else writes velocities to this robot's driver.
@@ -92,6 +91,7 @@ class Agent::Core : public Component {
   /// The odometry began again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
   Result<void> set_pose(const Pose2& pose);
+  Result<MapFrame> correct_map(const MapFrame& corrected);
   /// Whether that stamp is a little newer than the odometry: the next sample brings the pose of then.
   bool is_ahead(std::uint64_t stamp) const;
   void add_waiting_scan();

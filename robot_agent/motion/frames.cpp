@@ -37,10 +37,7 @@ bool Frames::update(const Pose3& T_odom_base, const Twist2& twist, std::uint64_t
     return true;
   }
   if (!continuous) jump(sample);
-  if (stamp < history_.newest()) {  // The driver's clock was set back.
-    history_.clear();
-    placed_ = 0;
-  }
+  if (stamp < history_.newest()) history_.clear();  // The driver's clock was set back.
   history_.add(stamp, T_odom_base);
   newest_ = sample;
   twist_ = twist;
@@ -51,16 +48,17 @@ bool Frames::update(const Pose3& T_odom_base, const Twist2& twist, std::uint64_t
 void Frames::jump(const OdometrySample& sample) {
   T_map_odom_ = T_map_base() * sample.T_odom_base.planar().inverse();
   height_ = height() - sample.T_odom_base.position.z();
-  placed_ = sample.stamp;
   ++odom_epoch_;
   ++map_epoch_;
   history_.clear();
 }
 
-Result<void> Frames::correct(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch) {
-  if (odom_epoch != odom_epoch_)
+Result<void> Frames::correct(const MapFrame& corrected) {
+  if (corrected.odom_epoch != odom_epoch_)
     return {Reason::odometry_jumped, "the correction is of an odometry frame that ended"};
-  if (stamp < placed_) return {Reason::sample_stale, "a correction from before the one in force"};
+  if (corrected.map_epoch != map_epoch_)
+    return {Reason::sample_stale, "the correction was computed from a place of the map that has changed"};
+  const Pose3& T_map_odom = corrected.T_map_odom;
   const Eigen::Quaterniond& q = T_map_odom.orientation;
   const bool is_pose = T_map_odom.position.allFinite() && std::fabs(q.norm() - 1.0) < 1e-3;
   // Negated, so that what is not a number is no pose.
@@ -68,14 +66,12 @@ Result<void> Frames::correct(const Pose3& T_map_odom, std::uint64_t stamp, std::
     return {Reason::out_of_range, "map and odom are level, and a correction is finite"};
   T_map_odom_ = T_map_odom.planar();
   height_ = T_map_odom.position.z();
-  placed_ = stamp;
   ++map_epoch_;
   return {};
 }
 
 void Frames::set_pose(const Pose2& T_map_base) {
   T_map_odom_ = T_map_base * T_odom_base().planar().inverse();
-  placed_ = history_.newest();
   ++map_epoch_;
 }
 
@@ -84,7 +80,7 @@ void Frames::restore(const KeptPlace& kept) {
   height_ = kept.height.value_or(height_);
   odom_epoch_ = kept.odom_epoch;
   newest_ = kept.newest;
-  ++map_epoch_;
+  map_epoch_ = kept.map_epoch + 1;
 }
 
 const Pose3& Frames::T_odom_base() const {

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "robot_agent/motion/map_frame.hpp"
 #include "robot_agent/motion/motion_bound.hpp"
 #include "robot_agent/motion/pose_history.hpp"
 
@@ -15,7 +16,8 @@ namespace adit::agent {
 ///   a goal of the map converts it with to_odom() each time.
 ///
 /// Two epochs tell when stored coordinates lose their meaning: odom_epoch() when the odometry began again
-/// elsewhere (all of `odom` is void), map_epoch() when T_map_odom changed (what was converted is void).
+/// elsewhere (all of `odom` is void), map_epoch() when T_map_odom changed (what was converted is void). Both
+/// are stored over a restart, which raises map_epoch(), too. They are compared for equality.
 /// Stamps are of the driver's clock, ns; 0 means that the driver sends none. Runs on the command strand.
 class Frames {
  public:
@@ -33,16 +35,15 @@ class Frames {
   /// Corrects the place of the odometry frame in the map, as SLAM does. Moves no robot: the odometry, and
   /// what was mapped in its frame, stay as they are.
   ///
-  /// @param stamp  Of the measurements behind the correction. One from before the correction in force, or
-  ///               before the last `pose` of an operator, is refused.
-  /// @param odom_epoch  Of the odometry frame that was matched.
-  /// Errors: odometry_jumped (another odometry frame), sample_stale (`stamp`), out_of_range (not finite, or
-  /// tilted by more than 0.02 rad).
-  Result<void> correct(const Pose3& T_map_odom, std::uint64_t stamp, std::uint32_t odom_epoch);
+  /// @param corrected  The new T_map_odom, with the epochs of the map_frame() that it was computed from.
+  /// Errors: odometry_jumped (another odometry frame), sample_stale (T_map_odom changed since, by another
+  /// correction, a `pose` of an operator or a restart), out_of_range (not finite, or tilted by more than
+  /// 0.02 rad).
+  Result<void> correct(const MapFrame& corrected);
   /// Places the robot at `T_map_base`, as an operator says. The height stays.
   void set_pose(const Pose2& T_map_base);
 
-  KeptPlace kept() const { return {T_map_odom_, odom_epoch_, newest_, height_}; }
+  KeptPlace kept() const { return {T_map_odom_, odom_epoch_, newest_, height_, map_epoch_}; }
   /// After a restart, before the first sample, which is compared with the one that was stored.
   void restore(const KeptPlace& kept);
 
@@ -52,6 +53,8 @@ class Frames {
   Duration silence(Time now, Time start) const { return now - heard_.value_or(start); }
   std::uint32_t odom_epoch() const { return odom_epoch_; }
   std::uint32_t map_epoch() const { return map_epoch_; }
+  /// From which a correction is computed.
+  MapFrame map_frame() const { return {Pose3::level(T_map_odom_, height_), odom_epoch_, map_epoch_}; }
 
   // --- odom: for navigation ---
   const Pose3& T_odom_base() const;
@@ -84,8 +87,7 @@ class Frames {
   MotionBound bound_;
   Pose2 T_map_start_;
   Pose2 T_map_odom_;
-  double height_;           ///< Of the odometry frame's origin in the map, m.
-  std::uint64_t placed_{};  ///< Stamp of the correction or pose in force.
+  double height_;  ///< Of the odometry frame's origin in the map, m.
   std::uint32_t odom_epoch_{}, map_epoch_{};
   std::optional<OdometrySample> newest_{};
   Twist2 twist_{};

@@ -26,8 +26,11 @@ struct KeptPlace {
   std::optional<OdometrySample> newest{};  ///< The last pose in the odometry frame; empty: there was none.
   /// Of the odometry frame's origin in the map, m; empty: a version that did not know it wrote the place.
   std::optional<double> height{};
+  /// Rises with each change of T_map_odom; 0 also in a place that a version without it wrote.
+  std::uint32_t map_epoch{};
   bool same_frame(const KeptPlace& other) const {
-    return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch;
+    return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch &&
+           map_epoch == other.map_epoch;
   }
   bool operator==(const KeptPlace&) const = default;
 };

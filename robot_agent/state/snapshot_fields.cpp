@@ -137,6 +137,7 @@ void put(Packer& out, const KeptPlace& place) {
   }
   out.flag(place.height.has_value());
   if (place.height) out.put(*place.height);
+  out.put(place.map_epoch);
 }
 
 KeptPlace place(Unpacker& in) {
@@ -153,6 +154,8 @@ KeptPlace place(Unpacker& in) {
   }
   if (in.done()) return kept;  // Version 1 of the section ends here.
   if (in.flag()) kept.height = in.number();
+  if (in.done()) return kept;  // Version 2 of the section ends here.
+  kept.map_epoch = in.get<std::uint32_t>();
   return kept;
 }
 

@@ -172,6 +172,8 @@ class AgentBench {
   wire::Ether& ether() { return ether_; }
   const wire::Wire& radio() const { return *radio_; }
   Agent& agent() { return *agent_; }
+  /// Of the driver and the operators, outside of the agent.
+  Executor& strand() { return *strand_; }
   std::unique_ptr<Runtime> machine(const std::string& name) { return scheduler_.machine(name, 9s); }
 
  private:

@@ -9,6 +9,8 @@ namespace adit::agent {
 namespace {
 
 using namespace radio;  // the command kinds
+using testing::AnyOf;
+using testing::ElementsAre;
 
 class FramesRun : public testing::Test {
  protected:
@@ -24,14 +26,30 @@ class FramesRun : public testing::Test {
     bench->run(1500ms);
     ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
   }
-  /// The odometry frame lies there now, says SLAM.
-  Reason correct(const Pose2& T_map_odom, std::uint32_t odom_epoch = 0) {
-    Reason answer = Reason::no_answer;
-    bench->agent().correct_map(Pose3::level(T_map_odom, 0), ++stamp, odom_epoch,
-                               [&](const Result<void>& done) { answer = done.reason(); });
+  /// The place of the odometry frame in the map, from which SLAM computes a correction.
+  MapFrame map_frame() {
+    MapFrame frame{};
+    bench->agent().map_frame(bench->strand(), [&](const Result<MapFrame>& found) {
+      if (found) frame = *found;
+    });
     bench->run(20ms);
-    return answer;
+    return frame;
   }
+  /// Sends a correction to `T_map_odom` that was computed from that place; `completions` has what it ends
+  /// with.
+  void send(const Pose2& T_map_odom, MapFrame computed_from) {
+    computed_from.T_map_odom = Pose3::level(T_map_odom, 0);
+    bench->agent().correct_map(bench->strand(), computed_from, [this](const Result<MapFrame>& done) {
+      completions.push_back(done.reason());
+    });
+  }
+  Reason correct(const Pose2& T_map_odom, const MapFrame& computed_from) {
+    completions.clear();
+    send(T_map_odom, computed_from);
+    bench->run(20ms);
+    return completions.size() == 1 ? completions.front() : Reason::no_answer;
+  }
+  Reason correct(const Pose2& T_map_odom) { return correct(T_map_odom, map_frame()); }
   /// Largest differences between two velocities in a row, from the first motion to the last one. At its goal
   /// a robot is sent zero at once, whatever the map does.
   struct Steps {
@@ -68,7 +86,7 @@ class FramesRun : public testing::Test {
 
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
   Platform limits{};
-  std::uint64_t stamp{1'000'000'000'000'000'000};
+  std::vector<Reason> completions{};
   std::unique_ptr<AgentBench> bench{};
   AgentBench::Operator* op1{};
 };
@@ -159,13 +177,84 @@ TEST_F(FramesRun, ACorrectionOfAFrameThatEndedIsRefused) {
   bench->run(4s);
   ASSERT_EQ(correct({0, 1, 0}), Reason::none);
   bench->run(500ms);
+  const MapFrame ended = map_frame();
   const double before = bench->pose.x;
   bench->pose = {};
   bench->run(300ms);
-  EXPECT_EQ(correct({0, 9, 0}, 0), Reason::odometry_jumped);
+  EXPECT_EQ(correct({0, 9, 0}, ended), Reason::odometry_jumped);
   EXPECT_NEAR(op1->state.x(), before, 0.4) << "it is taken to be where it was";
   EXPECT_NEAR(op1->state.y(), 1, 0.1);
   EXPECT_EQ(op1->behaviour.mode(), "hold");
+}
+
+TEST_F(FramesRun, ACorrectionComputedBeforeARestartIsRefused) {
+  begin();
+  const MapFrame first = map_frame();
+  ASSERT_EQ(correct({0.5, -0.25, 0}, first), Reason::none);
+  bench->run(500ms);
+  const MapFrame last = map_frame();
+  bench->stop_agent();
+  bench->start_agent();
+  bench->run(2s);
+  for (const MapFrame& before : {first, last})
+    EXPECT_EQ(correct({9, 9, 0}, before), Reason::sample_stale) << before.map_epoch;
+  EXPECT_FLOAT_EQ(op1->state.x(), 0.5F);
+  EXPECT_EQ(correct({0.75, 0, 0}), Reason::none);
+}
+
+TEST_F(FramesRun, ACrashGivesNoEpochToTwoPlaces) {
+  begin();
+  const MapFrame first = map_frame();
+  send({0.5, -0.25, 0}, first);
+  bench->run(1ms);  // Before the next beat.
+  ASSERT_THAT(completions, ElementsAre(Reason::none));
+  MapFrame last = first;
+  ++last.map_epoch;
+  ASSERT_TRUE(bench->agent().inject("command", ComponentFault::crash));
+  bench->run(3s);
+  EXPECT_NEAR(map_frame().T_map_odom.position.x(), 0.5, 1e-9);
+  EXPECT_EQ(correct({9, 9, 0}, first), Reason::sample_stale);
+  EXPECT_EQ(correct({9, 9, 0}, last), Reason::sample_stale);
+}
+
+TEST_F(FramesRun, ACorrectionCompletesOnceWhenTheComponentCrashes) {
+  begin();
+  const MapFrame frame = map_frame();
+  send({1, 0, 0}, frame);
+  ASSERT_TRUE(bench->agent().inject("command", ComponentFault::crash));
+  send({2, 0, 0}, frame);
+  bench->run(1ms);  // The next instance does not exist yet.
+  send({3, 0, 0}, frame);
+  bench->run(10s);
+  ASSERT_EQ(completions.size(), 3u);
+  EXPECT_THAT(completions.back(), AnyOf(Reason::cancelled, Reason::no_answer, Reason::sample_stale));
+}
+
+TEST_F(FramesRun, ACorrectionCompletesOnceWhenTheComponentHangs) {
+  begin();
+  const MapFrame frame = map_frame();
+  ASSERT_TRUE(bench->agent().inject("command", ComponentFault::hang));
+  bench->run(1ms);
+  send({1, 0, 0}, frame);
+  bench->run(10s);
+  EXPECT_THAT(completions, ElementsAre(AnyOf(Reason::cancelled, Reason::no_answer)));
+}
+
+TEST_F(FramesRun, ACorrectionCompletesOnceWhenTheAgentEnds) {
+  begin();
+  send({1, 0, 0}, map_frame());
+  bench->stop_agent();
+  bench->run(10s);
+  EXPECT_THAT(completions, ElementsAre(Reason::cancelled));
+}
+
+TEST_F(FramesRun, OfManyCorrectionsAtOnceEachCompletesOnce) {
+  begin();
+  const MapFrame frame = map_frame();
+  for (int n = 0; n < 20; ++n) send({0.1 * n, 0, 0}, frame);
+  bench->run(10s);
+  EXPECT_EQ(completions.size(), 20u);
+  EXPECT_EQ(std::count(completions.begin(), completions.end(), Reason::none), 1);
 }
 
 TEST_F(FramesRun, HomeIsWhereTheRobotStartedInTheMap) {

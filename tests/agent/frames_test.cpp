@@ -29,9 +29,12 @@ class FramesTest : public testing::Test {
     const auto pose = frames.T_odom_base_at(stamp_of(t));
     return pose ? pose->position.x() : std::nan("");
   }
-  Result<void> correct(const Pose2& T_map_odom, double t) {
-    return frames.correct(Pose3::level(T_map_odom, 0), stamp_of(t), frames.odom_epoch());
+  /// Corrects to `T_map_odom`, computed from that place.
+  Reason correct(const Pose2& T_map_odom, MapFrame computed_from) {
+    computed_from.T_map_odom = Pose3::level(T_map_odom, 0);
+    return frames.correct(computed_from).reason();
   }
+  Reason correct(const Pose2& T_map_odom) { return correct(T_map_odom, frames.map_frame()); }
 
   Frames frames{Pose2{10, 20, 0}, wheeled(), 3.0};
   Time now{1h};
@@ -86,7 +89,7 @@ TEST_F(FramesTest, ADriversClockThatIsSetBackDoesNotHoldThePose) {
 TEST_F(FramesTest, ACorrectionMovesTheMapAlone) {
   drive(0, 2);
   const auto epoch = frames.map_epoch();
-  ASSERT_TRUE(correct({10, 20.5, 0.1}, 1.5));
+  ASSERT_EQ(correct({10, 20.5, 0.1}), Reason::none);
   EXPECT_NEAR(frames.T_odom_base().position.x(), 2.0, 1e-9);
   EXPECT_EQ(frames.odom_epoch(), 0u);
   EXPECT_EQ(frames.map_epoch(), epoch + 1);
@@ -102,46 +105,88 @@ TEST_F(FramesTest, ACorrectionMovesTheMapAlone) {
 
 TEST_F(FramesTest, CorrectionsThatMeanNothingAreRefused) {
   drive(0, 2);
-  ASSERT_TRUE(correct({11, 20, 0}, 1.5));
-  EXPECT_EQ(correct({12, 20, 0}, 1.4).reason(), Reason::sample_stale) << "out of order";
-  EXPECT_EQ(correct({std::nan(""), 20, 0}, 2).reason(), Reason::out_of_range);
-  Pose3 tilted{};
-  tilted.orientation = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX());
-  EXPECT_EQ(frames.correct(tilted, stamp_of(2), 0).reason(), Reason::out_of_range);
-  Pose3 none{};
-  none.orientation.coeffs().setZero();
-  EXPECT_EQ(frames.correct(none, stamp_of(2), 0).reason(), Reason::out_of_range);
+  ASSERT_EQ(correct({11, 20, 0}), Reason::none);
+  MapFrame corrected = frames.map_frame();
+  corrected.T_map_odom.position.x() = std::nan("");
+  EXPECT_EQ(frames.correct(corrected).reason(), Reason::out_of_range);
+  corrected.T_map_odom = {};
+  corrected.T_map_odom.orientation = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitX());
+  EXPECT_EQ(frames.correct(corrected).reason(), Reason::out_of_range);
+  corrected.T_map_odom = {};
+  corrected.T_map_odom.orientation.coeffs().setZero();
+  EXPECT_EQ(frames.correct(corrected).reason(), Reason::out_of_range);
+  EXPECT_EQ(frames.T_map_odom(), (Pose2{11, 20, 0}));
+}
+
+TEST_F(FramesTest, OfTwoCorrectionsFromOnePlaceTheSecondIsRefused) {
+  drive(0, 2);
+  const MapFrame before = frames.map_frame();
+  EXPECT_EQ(correct({11, 20, 0}, before), Reason::none);
+  EXPECT_EQ(correct({12, 20, 0}, before), Reason::sample_stale);
   EXPECT_EQ(frames.T_map_odom(), (Pose2{11, 20, 0}));
 }
 
 TEST_F(FramesTest, ACorrectionFromBeforeTheOperatorsPoseIsRefused) {
   drive(0, 2);
+  const MapFrame before = frames.map_frame();
   frames.set_pose({0, 0, 0});
-  EXPECT_EQ(correct({11, 20, 0}, 1.5).reason(), Reason::sample_stale);
+  EXPECT_EQ(correct({11, 20, 0}, before), Reason::sample_stale);
   EXPECT_NEAR(frames.T_map_base().x, 0, 1e-9);
   ASSERT_TRUE(sample(2.1));
-  EXPECT_TRUE(correct({-2, 0.1, 0}, 2.1));
+  EXPECT_EQ(correct({-2, 0.1, 0}), Reason::none);
+}
+
+TEST_F(FramesTest, WithoutStampsACorrectionOfAnOlderPlaceIsRefused) {
+  for (int n = 0; n <= 20; ++n) ASSERT_TRUE(sample(0.1 * n, 0));
+  const MapFrame before = frames.map_frame();
+  frames.set_pose({0, 0, 0});
+  EXPECT_EQ(correct({11, 20, 0}, before), Reason::sample_stale);
+  EXPECT_NEAR(frames.T_map_base().x, 0, 1e-9);
+  EXPECT_EQ(correct({-2, 0.1, 0}), Reason::none);
+}
+
+TEST_F(FramesTest, AClockThatIsSetBackLetsNoOlderCorrectionPass) {
+  drive(0, 2);
+  const MapFrame before = frames.map_frame();
+  frames.set_pose({0, 0, 0});
+  ASSERT_TRUE(sample(2.1, stamp_of(-50)));
+  EXPECT_EQ(correct({11, 20, 0}, before), Reason::sample_stale);
+  EXPECT_NEAR(frames.T_map_base().x, 0.1, 1e-9);
+  EXPECT_EQ(correct({-2, 0.1, 0}), Reason::none) << "of the place in force, whatever the clock says";
+}
+
+TEST_F(FramesTest, ARestartLetsNoOlderCorrectionPass) {
+  drive(0, 2);
+  const MapFrame first = frames.map_frame();
+  frames.set_pose({0, 0, 0});
+  const MapFrame last = frames.map_frame();
+  const KeptPlace kept = frames.kept();
+  frames = Frames(Pose2{10, 20, 0}, wheeled(), 3.0);
+  frames.restore(kept);
+  EXPECT_EQ(correct({11, 20, 0}, first), Reason::sample_stale);
+  EXPECT_EQ(correct({11, 20, 0}, last), Reason::sample_stale)
+      << "the instance that it was computed for ended";
+  EXPECT_NEAR(frames.T_map_base().x, 0, 1e-9);
+  EXPECT_EQ(correct({-2, 0.1, 0}), Reason::none);
 }
 
 TEST_F(FramesTest, AJumpAndACorrectionTogetherKeepThePlaceInTheMap) {
   drive(0, 2);
-  ASSERT_TRUE(correct({10, 20.5, 0}, 2));
-  const std::uint32_t before = frames.odom_epoch();
+  ASSERT_EQ(correct({10, 20.5, 0}), Reason::none);
+  const MapFrame before = frames.map_frame();
   ASSERT_FALSE(sample(50, stamp_of(2.1)));
-  EXPECT_EQ(frames.odom_epoch(), before + 1);
+  EXPECT_EQ(frames.odom_epoch(), before.odom_epoch + 1);
   EXPECT_NEAR(frames.T_map_base().x, 12, 1e-9) << "it is taken to be where it was, by the correction";
   EXPECT_NEAR(frames.T_map_base().y, 20.5, 1e-9);
   EXPECT_TRUE(std::isnan(x_at(1.0))) << "no pose of the frame before";
-  // SLAM was still matching scans of the frame before.
-  EXPECT_EQ(frames.correct(Pose3::level({10, 20.7, 0}, 0), stamp_of(2.1), before).reason(),
-            Reason::odometry_jumped);
-  EXPECT_TRUE(correct({-38, 20.6, 0}, 2.1));
+  EXPECT_EQ(correct({10, 20.7, 0}, before), Reason::odometry_jumped) << "SLAM was still matching its scans";
+  EXPECT_EQ(correct({-38, 20.6, 0}), Reason::none);
   EXPECT_NEAR(frames.T_map_base().y, 20.6, 1e-9);
 }
 
 TEST_F(FramesTest, ARestartRestoresTheCorrection) {
   drive(0, 2);
-  ASSERT_TRUE(correct({10, 20.5, 0.3}, 2));
+  ASSERT_EQ(correct({10, 20.5, 0.3}), Reason::none);
   Frames again(Pose2{10, 20, 0}, wheeled(), 3.0);
   again.restore(frames.kept());
   EXPECT_EQ(again.T_map_odom(), (frames.T_map_odom()));

@@ -36,7 +36,8 @@ Snapshot full() {
   s.place = KeptPlace{{4, -3, 1.5},
                       2,
                       OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
-                      3.5};
+                      3.5,
+                      41};
   KeptAnswers a;
   a.participant[3] = 4;
   a.station = "op1";
@@ -199,6 +200,29 @@ TEST(Snapshot, of_a_place_that_is_none_has_no_odometry) {
   s = full();
   s.place->T_map_odom.x = std::nan("");
   EXPECT_EQ(sanitized(s).place, KeptPlace{});
+}
+
+TEST(Snapshot, of_older_places_is_read) {
+  struct Older {
+    std::uint16_t version;
+    std::size_t missing;  ///< Bytes at the end: of the map's epoch, and of the height.
+    std::optional<double> height;
+  };
+  for (const Older& older : {Older{2, 4, 3.5}, Older{1, 4 + 9, std::nullopt}}) {
+    auto list = store::unpack_sections(encode(full()));
+    for (store::Section& section : list.good) {
+      if (store::tag_text(section.tag) != "PLAC") continue;
+      section.version = older.version;
+      section.payload.resize(section.payload.size() - older.missing);
+    }
+    const auto read = decode_snapshot(store::pack_sections(list.good));
+    ASSERT_TRUE(read) << older.version;
+    EXPECT_THAT(read->lost, IsEmpty()) << older.version;
+    Snapshot expected = full();
+    expected.place->height = older.height;
+    expected.place->map_epoch = 0;
+    EXPECT_EQ(read->snapshot, expected) << older.version;
+  }
 }
 
 TEST(Snapshot, without_its_stops_counts_as_stopped) {
