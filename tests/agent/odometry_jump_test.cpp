@@ -114,6 +114,20 @@ TEST_F(OdometryReset, WhileTheCommandComponentIsAwayEndsInHold) {
   EXPECT_EQ(static_cast<Reason>(op1->behaviour.reason()), Reason::odometry_jumped);
 }
 
+TEST_F(OdometryReset, AfterASlowDriveIsComparedWithAPlaceOfTheLastSecond) {
+  bench->stream(*op1, 0.0, 200ms);
+  (void)bench->send(*op1, CMD_MODE, "manual");
+  bench->stream(*op1, 0.0, 300ms);
+  bench->stream(*op1, 0.3, 5s);
+  ASSERT_NEAR(bench->command.vx, 0.3, 0.05);
+  crash();
+  bench->pose.x -=
+      4.5;  // The body can go 4.1 m in 1.6 s, and 7.6 m until it stands when the agent is silent.
+  bench->start_agent();
+  bench->run(3s);
+  EXPECT_THAT(notice(*op2), HasSubstr("jumped"));
+}
+
 TEST_F(OdometryReset, WithoutOneTheGoalGoesOnAfterARestart) {
   crash();
   bench->start_agent();
