@@ -37,7 +37,8 @@ void Directory::add(const Peer& said, Time now) {
 void Directory::hear(Entry& entry, const Peer& said, Time now) {
   const Peer& known = *peers_.find(entry.name);
   if (known.id != said.id) {
-    if (known.present || entry.binding.alive(now, PeerTable::kSilence)) return wait(entry, said, now);
+    const bool taken = known.present || peers_.holder() == &known;
+    if (taken || entry.binding.alive(now, PeerTable::kSilence)) return wait(entry, said, now);
     entry.binding = Binding(said.participant, now);
     return adopt(entry, said, now);
   }

@@ -11,7 +11,8 @@ namespace adit::agent {
 
 /// Decides who speaks for each name on the air, and enters it into the PeerTable. An agent that comes back as
 /// another participant, under whatever address, is the same peer; a name belongs to its id, and a name and id
-/// to the participant that Binding says, so that nobody takes the place of one that is there. Bounded.
+/// to the participant that Binding says, so that nobody takes the place of one that is there. The holder's
+/// place stays its own while it is silent, too. Bounded.
 class Directory {
  public:
   /// `peers` must outlive the directory.

@@ -89,8 +89,9 @@ void PeerTable::accept_station(const Sender& from, Time now) {
   peer.participant = from.participant;
   Peer* known = edit(from.name);
   if (known && known->station && known->id == from.id) return touch(*known, now);
-  // A name belongs to its id while that is heard; the holder alone has the better right to it.
-  if (known && known->present && !is_holder(peer)) return;
+  // A name belongs to its id while that is heard, or holds the robot; the holder alone has the better right
+  // to it.
+  if (known && (known->present || is_holder(*known)) && !is_holder(peer)) return;
   put(std::move(peer), now);
 }
 

@@ -147,6 +147,32 @@ TEST_F(DirectoryTest, ANameWithAnotherIdIsFreeAfterSilence) {
   EXPECT_TRUE(last[0].present);
 }
 
+TEST_F(DirectoryTest, ANamesakeDoesNotTakeThePlaceOfASilentHolder) {
+  directory.capabilities(record("op1", 1, true), now);
+  peers.set_holder("op1", of("op1"));
+  Peer namesake = record("op1", 2, true);
+  namesake.id = of("other");
+  const auto speak_until = [&](Duration end) {
+    for (Duration at = 1s; at < end; at += 500ms) {
+      directory.capabilities(namesake, now + at);
+      directory.presence("op1", namesake.id, id(2), now + at);
+      directory.tick(now + at);
+    }
+  };
+  speak_until(60s);
+  ASSERT_NE(peers.holder(), nullptr);
+  EXPECT_EQ(peers.holder()->participant, id(1));
+  EXPECT_EQ(peers.holder()->heard, now);
+  directory.presence("op1", of("op1"), id(1), now + 60s);
+  EXPECT_TRUE(peers.holder()->present);
+
+  peers.set_holder("", Id{});  // its lock lapsed
+  now += 60s;
+  speak_until(5s);
+  ASSERT_EQ(last.size(), 1u);
+  EXPECT_EQ(last[0].participant, id(2));
+}
+
 TEST_F(DirectoryTest, BoundedAndPicky) {
   directory.capabilities(record("no good", 1), now);
   EXPECT_EQ(published, 0);

@@ -187,5 +187,19 @@ TEST_F(PeerTableTest, IsShownToPeopleWithAgesAndPlaces) {
   EXPECT_THAT(text, testing::Not(testing::HasSubstr("\x1b")));
 }
 
+TEST_F(PeerTableTest, AStationWithTheNameOfASilentHolderIsNotEntered) {
+  peers.accept_station(sender("op1", 1), now);
+  peers.set_holder("op1", id_of("op1"));
+  directory.tick(now + 10s);
+  ASSERT_FALSE(find("op1")->present);
+  const Sender namesake{"op1", id_of("other"), participant(2)};
+  peers.accept_station(namesake, now + 10s);
+  ASSERT_NE(peers.holder(), nullptr);
+  EXPECT_EQ(peers.holder()->participant, participant(1));
+  peers.set_holder("op2", id_of("op2"));
+  peers.accept_station(namesake, now + 11s);
+  EXPECT_EQ(find("op1")->participant, participant(2));
+}
+
 }  // namespace
 }  // namespace adit::agent
