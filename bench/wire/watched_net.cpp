@@ -1,14 +1,13 @@
 #include "bench/wire/watched_net.hpp"
 
+#include "core/wire/cdr_key.hpp"
 #include "core/wire/forwarding_wire.hpp"
 
 namespace adit::bench {
 namespace {
 
 std::uint64_t content(std::span<const std::uint8_t> bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;  // FNV-1a
-  for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3ULL;
-  return hash;
+  return wire::key_number({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 class WatchedWire final : public wire::ForwardingWire {

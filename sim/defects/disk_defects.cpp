@@ -1,7 +1,6 @@
 // Defects of what survives a restart, made of the disk and of the seed of the epoch.
-#include <string_view>
-
 #include "core/findings/finding.hpp"
+#include "core/wire/cdr_key.hpp"
 #include "robot_agent/state/restored.hpp"
 #include "sim/defects/decorations.hpp"
 #include "sim/defects/disk_filter.hpp"
@@ -12,7 +11,7 @@ namespace {
 /// Reads the agent's state without its lock.
 class ForgetsLock final : public DiskFilter {
  public:
-  using DiskFilter::DiskFilter;
+  explicit ForgetsLock(const Subject& subject) : DiskFilter(subject.disk) {}
   Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t most) const override {
     auto bytes = DiskFilter::on_read(name, most);
     if (name != agent::kStateFile || !bytes || !*bytes) return bytes;
@@ -28,7 +27,7 @@ class ForgetsLock final : public DiskFilter {
 /// Reads an earlier state as one that makes no sense.
 class LosesStateWhole final : public DiskFilter {
  public:
-  using DiskFilter::DiskFilter;
+  explicit LosesStateWhole(const Subject& subject) : DiskFilter(subject.disk) {}
   Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t most) const override {
     auto bytes = DiskFilter::on_read(name, most);
     if (name == agent::kStateFile && bytes && *bytes) (*bytes)->resize((*bytes)->size() / 8);
@@ -39,8 +38,8 @@ class LosesStateWhole final : public DiskFilter {
 /// Says that the state is written, and writes it every 5 s alone.
 class AcknowledgesEarly final : public DiskFilter {
  public:
-  AcknowledgesEarly(std::shared_ptr<store::Disk> inner, std::shared_ptr<Strand> strand)
-      : DiskFilter(std::move(inner)), strand_(std::move(strand)) {
+  explicit AcknowledgesEarly(const Subject& subject)
+      : DiskFilter(subject.disk), strand_(subject.runtime.strand("defect")) {
     timer_ = strand_->every(5s, [this] { write(); });
   }
   ~AcknowledgesEarly() override { strand_->end(); }
@@ -60,10 +59,12 @@ class AcknowledgesEarly final : public DiskFilter {
   Timer timer_{};
 };
 
-std::uint64_t number(std::string_view text) {
-  std::uint64_t hash = 14695981039346656037U;  // FNV-1a
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
-  return hash;
+/// A decoration of the robot's disk by a filter; nothing when the robot has none.
+template <class Filter>
+Decoration on_disk(const Subject& subject) {
+  Decoration decoration;
+  if (subject.disk) decoration.disk = std::make_shared<Filter>(subject);
+  return decoration;
 }
 
 }  // namespace
@@ -72,28 +73,15 @@ namespace decorations {
 
 Decoration epoch_kept_at_restart(const Subject& subject) {
   Decoration decoration;
-  decoration.parameters = [seed = number(subject.robot)](agent::AgentParams& params) { params.seed = seed; };
+  decoration.parameters = [seed = wire::key_number(subject.robot)](agent::AgentParams& params) {
+    params.seed = seed;
+  };
   return decoration;
 }
 
-Decoration lock_forgotten(const Subject& subject) {
-  Decoration decoration;
-  if (subject.disk) decoration.disk = std::make_shared<ForgetsLock>(subject.disk);
-  return decoration;
-}
-
-Decoration acknowledged_lost(const Subject& subject) {
-  Decoration decoration;
-  if (subject.disk)
-    decoration.disk = std::make_shared<AcknowledgesEarly>(subject.disk, subject.runtime.strand("defect"));
-  return decoration;
-}
-
-Decoration state_lost_whole(const Subject& subject) {
-  Decoration decoration;
-  if (subject.disk) decoration.disk = std::make_shared<LosesStateWhole>(subject.disk);
-  return decoration;
-}
+Decoration lock_forgotten(const Subject& subject) { return on_disk<ForgetsLock>(subject); }
+Decoration acknowledged_lost(const Subject& subject) { return on_disk<AcknowledgesEarly>(subject); }
+Decoration state_lost_whole(const Subject& subject) { return on_disk<LosesStateWhole>(subject); }
 
 Decoration findings_deleted_at_start(const Subject& subject) {
   if (!subject.disk) return {};
