@@ -9,12 +9,15 @@
 namespace adit::agent {
 
 /// Repeats the return to the start that a nearly empty battery asks for, until it is accepted. A refused
-/// attempt is repeated after 1 s, and each pause is twice as long as the one before, up to 30 s. The return
-/// ends without success when the battery recovers, when the robot is no longer in an autonomous mode (a robot
-/// that holds is not made to move), or when the holder requested something since. A pure state machine.
+/// attempt is repeated after `first_pause`, and each pause is twice as long as the one before, up to 30 s.
+/// The return ends without success when the battery recovers, when the robot is no longer in an autonomous
+/// mode (a robot that holds is not made to move), or when the holder requested something since. A pure state
+/// machine.
 class BatteryReturn {
  public:
-  static constexpr Duration kFirstPause = 1s, kLongestPause = 30s;
+  static constexpr Duration kLongestPause = 30s;
+
+  explicit BatteryReturn(Duration first_pause = 1s) : first_pause_(first_pause) {}
 
   struct Inputs {
     bool autonomous{};         ///< The mode follows goals by itself.
@@ -26,7 +29,7 @@ class BatteryReturn {
   void begin(std::uint64_t requests, Time now) {
     requests_ = requests;
     next_ = now;
-    pause_ = kFirstPause;
+    pause_ = first_pause_;
     refused_because_ = Reason::none;
   }
   /// Whether it is to be attempted now; accepted() or refused() follows.
@@ -49,7 +52,7 @@ class BatteryReturn {
  private:
   std::uint64_t requests_{};
   std::optional<Time> next_{};  ///< Of the next attempt; empty: no return is due.
-  Duration pause_{kFirstPause};
+  Duration first_pause_, pause_{first_pause_};
   Reason refused_because_{Reason::none};
 };
 

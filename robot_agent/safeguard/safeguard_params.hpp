@@ -8,6 +8,9 @@ namespace adit::agent {
 struct SafeguardParams {
   LinkLossParams link_loss{};  ///< Its `start` is the robot's start pose.
   BatteryParams battery{};
+  /// From a return that was refused to the next attempt, then twice as long each time up to
+  /// BatteryReturn::kLongestPause. > 0
+  Duration return_retry{1s};
   bool return_at_last_battery{};  ///< At the last threshold: true drives back to the start, false holds.
 };
 

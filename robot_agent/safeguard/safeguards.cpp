@@ -25,7 +25,8 @@ Safeguards::Safeguards(SafeguardParams params, std::string robot, const Pose2& s
       start_(start),
       parts_(parts),
       link_loss_(starting_at(start, params.link_loss)),
-      battery_watch_(params_.battery) {}
+      battery_watch_(params_.battery),
+      battery_return_(params_.return_retry) {}
 
 void Safeguards::restore(std::uint8_t kept, Time now) {
   battery_watch_.restore(static_cast<BatteryLevel>(std::min(kept, kLastLevel)));

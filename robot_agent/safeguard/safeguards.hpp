@@ -53,7 +53,7 @@ class Safeguards {
   Parts parts_;
   LinkLoss link_loss_;
   BatteryWatch battery_watch_;
-  BatteryReturn battery_return_{};
+  BatteryReturn battery_return_;
   float charge_{-1.0f};
 };
 

@@ -1,5 +1,6 @@
 // Defects of what survives a restart, made of the disk and of the seed of the epoch.
 #include "core/findings/finding.hpp"
+#include "core/store/sections.hpp"
 #include "core/wire/cdr_key.hpp"
 #include "robot_agent/state/restored.hpp"
 #include "sim/defects/decorations.hpp"
@@ -24,14 +25,32 @@ class ForgetsLock final : public DiskFilter {
   }
 };
 
-/// Reads an earlier state as one that makes no sense.
+/// Reads an earlier state with a damaged byte in its last entry, as a program does that takes either every
+/// entry or none: it finds no entry.
 class LosesStateWhole final : public DiskFilter {
  public:
   explicit LosesStateWhole(const Subject& subject) : DiskFilter(subject.disk) {}
   Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t most) const override {
     auto bytes = DiskFilter::on_read(name, most);
-    if (name == agent::kStateFile && bytes && *bytes) (*bytes)->resize((*bytes)->size() / 8);
-    return bytes;
+    if (name != agent::kStateFile || !bytes || !*bytes) return bytes;
+    store::State state = store::unseal(agent::kSnapshotFormat, **bytes);
+    if (state.found != store::Found::good || state.payload.size() <= kChecksum) return bytes;
+    state.payload[state.payload.size() - kChecksum - 1] ^= 0xff;
+    if (!store::unpack_sections(state.payload).damaged.empty()) lose_directory(state.payload);
+    store::Bytes read = store::seal(agent::kSnapshotFormat, state.generation, state.payload);
+    read.back() ^= 0xff;  // The checksum of the file does not match what is damaged.
+    return std::optional(std::move(read));
+  }
+
+ private:
+  static constexpr std::size_t kChecksum = 4;  ///< Bytes, behind each entry.
+
+  /// Overwrites all that is in front of the entries, which says where they are.
+  static void lose_directory(store::Bytes& payload) {
+    const store::SectionList list = store::unpack_sections(payload);
+    std::size_t entries = list.damaged.size() * kChecksum;
+    for (const store::Section& section : list.good) entries += section.payload.size() + kChecksum;
+    for (std::size_t at = 0; at + entries < payload.size(); ++at) payload[at] = 0xff;
   }
 };
 

@@ -6,7 +6,6 @@
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "nav_msgs/msg/Odometry.h"
-#include "sensor_msgs/msg/BatteryState.h"
 #include "sim/defects/decorations.hpp"
 
 namespace adit::sim {
@@ -63,25 +62,6 @@ class SmoothsJumps final : public Interceptor {
   Pose2 last_given_{}, offset_{};
 };
 
-/// The battery is nearly empty for one sample alone, so that nothing is due any more after a refusal.
-class ForgetsLowBattery final : public Interceptor {
- public:
-  std::vector<Arrival> received(Arrival arrival) override {
-    sensor_msgs::msg::BatteryState battery;
-    if (is(arrival, topics::battery) && wire::decode(arrival.cdr, battery)) {
-      if (low_) battery.percentage(1.0f);
-      low_ = low_ || battery.percentage() <= kLow;
-      wire::encode(battery, arrival.cdr);
-    }
-    return Interceptor::received(std::move(arrival));
-  }
-
- private:
-  /// Above the last threshold of the scenario that finds it, and below its charge before.
-  static constexpr float kLow = 0.505f;
-  bool low_{};
-};
-
 template <class T>
 Decoration on_wires() {
   Decoration decoration;
@@ -95,7 +75,11 @@ namespace decorations {
 
 Decoration age_at_handling(const Subject&) { return on_wires<AgeAtHandling>(); }
 Decoration odometry_jump_accepted(const Subject&) { return on_wires<SmoothsJumps>(); }
-Decoration return_forgotten(const Subject&) { return on_wires<ForgetsLowBattery>(); }
+Decoration return_forgotten(const Subject&) {
+  Decoration decoration;
+  decoration.parameters = [](agent::AgentParams& params) { params.safeguards.return_retry = 24h; };
+  return decoration;
+}
 
 }  // namespace decorations
 }  // namespace adit::sim

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <set>
 
+#include "core/exec/virtual_runtime.hpp"
+#include "core/store/memory_disk.hpp"
+#include "robot_agent/state/restored.hpp"
 #include "sim/defects/defect.hpp"
 #include "tests/rehearsal/run_text.hpp"
 
@@ -125,6 +128,35 @@ TEST(Defects, EachIsFoundByAScenario) {
   std::set<std::string_view> found{"blind_planner", "blind_and_unwatched"};  // monitor_test.cpp
   for (const Broken& broken : table()) found.insert(broken.defect);
   for (const Defect& defect : defects()) EXPECT_TRUE(found.contains(defect.name)) << defect.name;
+}
+
+/// The decoration of a robot that has a disk.
+struct Decorated {
+  explicit Decorated(const char* defect) : decoration(find_defect(defect)->decorate(subject)) {}
+  VirtualScheduler scheduler{1};
+  std::unique_ptr<Runtime> machine{scheduler.machine("r1", 0s)};
+  Platform platform{};
+  std::shared_ptr<store::Disk> disk{std::make_shared<store::MemoryDisk>()};
+  Subject subject{"r1", platform, *machine, disk};
+  Decoration decoration;
+};
+
+TEST(Defects, AForgottenReturnLeavesTheChargeAsItIs) {
+  const Decorated robot("return_forgotten");
+  EXPECT_FALSE(robot.decoration.wires);
+}
+
+TEST(Defects, AStateThatIsLostWholeIsNoShorterThanItWas) {
+  const Decorated robot("state_lost_whole");
+  agent::Snapshot snapshot{};
+  snapshot.boot = 7;
+  const auto bytes = store::seal(agent::kSnapshotFormat, 1, agent::encode(snapshot));
+  ASSERT_TRUE(robot.disk->replace(agent::kStateFile, bytes));
+  const auto read = robot.decoration.disk->read(agent::kStateFile, 1 << 20);
+  ASSERT_TRUE(read && *read);
+  EXPECT_EQ((*read)->size(), bytes.size());
+  EXPECT_EQ(store::unseal(agent::kSnapshotFormat, **read).found, store::Found::corrupt);
+  EXPECT_TRUE(agent::restore_state(robot.decoration.disk).lost);
 }
 
 TEST(Defects, UnknownNameIsRefused) {
