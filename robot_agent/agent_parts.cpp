@@ -2,6 +2,7 @@
 
 #include "core/config/search.hpp"
 #include "core/time/random.hpp"
+#include "core/wire/component_io.hpp"
 
 namespace adit::agent {
 namespace {
@@ -17,6 +18,9 @@ std::unique_ptr<Decider> decider_of(const AgentParams& params) {
   auto decider = params.load_tree ? params.load_tree(*file) : Decider::load(*file, table);
   return decider ? std::move(*decider) : Decider::refused(decider.error(), table);
 }
+
+/// What lives on the seat opens its writers and readers by it: they end when its strand is left behind.
+wire::ComponentIo io_of(const Seat& seat, wire::Wire& wire) { return {wire, *seat.strand, seat.generation}; }
 
 }  // namespace
 
@@ -88,11 +92,10 @@ UnitParams Agent::Parts::sensors_unit() {
                                                               params.platform.lidar_height, edges->scans));
   };
   unit.fit = [this](const std::shared_ptr<Seat>& seat) -> Result<std::shared_ptr<void>> {
-    auto readers =
-        Scans::read(*robot_wire, *seat->strand, seat->generation, [seat = std::weak_ptr<Seat>(seat)] {
-          const auto taken = seat.lock();
-          return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
-        });
+    auto readers = Scans::read(io_of(*seat, *robot_wire), [seat = std::weak_ptr<Seat>(seat)] {
+      const auto taken = seat.lock();
+      return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
+    });
     if (!readers) return readers.error();
     return std::shared_ptr<void>(std::make_shared<Scans::Readers>(std::move(*readers)));
   };
@@ -108,7 +111,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   auto notifier = Notifier::open(radio, params.name, strand);
   if (!notifier) return notifier.error();
   e.notifier = std::move(*notifier);
-  auto radio_edge = RadioEdge::open(radio, strand, params.name);
+  auto radio_edge = RadioEdge::open(io_of(*command.seat(), radio), params.name);
   if (!radio_edge) return radio_edge.error();
   e.radio = std::move(*radio_edge);
   e.wire = &radio;
@@ -142,7 +145,7 @@ Result<void> Agent::Parts::open(wire::Wire& radio, wire::Wire& robot) {
   handlers.rival = [with_core](const wire::ParticipantId& writer, Time received) {
     with_core([&](Core& core) { core.rival(writer, received); });
   };
-  auto driver = Driver::open(robot, strand, params.velocity, std::move(handlers));
+  auto driver = Driver::open(io_of(*command.seat(), robot), params.velocity, std::move(handlers));
   if (!driver) return driver.error();
   e.driver = std::move(*driver);
 

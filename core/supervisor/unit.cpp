@@ -104,13 +104,12 @@ void Unit::replace() {
 void Unit::revoke() {
   const std::lock_guard lock(mutex_);
   record_->generation->revoke();
+  if (seat_) seat_->generation->revoke();
 }
 
 void Unit::abandon() {
   revoke();
-  const auto hung = seat();
-  hung->generation->revoke();
-  hung->strand->abandon();
+  seat()->strand->abandon();
 }
 
 void Unit::end() {

@@ -40,7 +40,8 @@ struct UnitParams {
   /// Makes an instance; on the strand.
   std::function<Result<std::unique_ptr<Component>>(Executor& strand)> make{};
   /// Made with each strand, before its first instance; nothing when null. Hold the seat weakly, and bind
-  /// writers and readers to its generation, which is revoked when the strand is left behind.
+  /// writers and readers to its generation (wire::ComponentIo), which is revoked when the strand is left
+  /// behind.
   std::function<Result<std::shared_ptr<void>>(const std::shared_ptr<Seat>& seat)> fit{};
 };
 
@@ -64,7 +65,7 @@ class Unit {
 
   void restart();
   void replace();
-  /// What the instance hands out no longer counts.
+  /// What the instance hands out no longer counts, nor does what its strand writes and reads.
   void revoke();
   /// Revokes an instance that hangs and leaves its strand behind: queued tasks are dropped, posts refused.
   void abandon();

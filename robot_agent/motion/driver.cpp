@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "core/wire/component_io.hpp"
 #include "core/wire/topics.hpp"
-#include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
 #include "geometry_msgs/msg/TwistStamped.h"
 #include "nav_msgs/msg/Odometry.h"
@@ -41,57 +41,47 @@ std::uint64_t Driver::malformed() const {
   return sum;
 }
 
-Result<std::unique_ptr<Driver>> Driver::open(wire::Wire& wire, Executor& command, VelocityType type,
+Result<std::unique_ptr<Driver>> Driver::open(const wire::ComponentIo& io, VelocityType type,
                                              Handlers handlers) {
+  namespace topics = wire::topics;
   std::unique_ptr<Driver> driver(new Driver);
   Endpoints& e = *driver->endpoints_;
-  e.wire = &wire;
-  auto cmd_vel = VelocityWriter::make(wire, type);
+  e.wire = &io.wire;
+  auto cmd_vel = VelocityWriter::make(io.wire, type, io.generation);
   if (!cmd_vel) return cmd_vel.error();
   e.cmd_vel = std::move(*cmd_vel);
 
-  auto odom =
-      wire::make_reader(wire, wire::topics::odom, command,
-                        [odometry = std::move(handlers.odometry)](const nav_msgs::msg::Odometry& o,
-                                                                  const wire::SampleInfo& info) {
-                          const auto& p = o.pose().pose().position();
-                          const auto& q = o.pose().pose().orientation();
-                          Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
-                          const auto& v = o.twist().twist();
-                          const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
-                          if (!usable(pose, twist))
-                            return;  // as good as silence: the robot stops when it goes on
-                          pose.orientation.normalize();
-                          odometry(pose, twist, stamp_of(o.header()), info.received);
-                        });
-  if (!odom) return odom.error();
-  e.odom = std::move(*odom);
-
-  auto charge = wire::make_reader(
-      wire, wire::topics::battery, command,
-      [battery = std::move(handlers.battery)](const sensor_msgs::msg::BatteryState& b,
-                                              const wire::SampleInfo&) { battery(b.percentage()); });
-  if (!charge) return charge.error();
-  e.battery = std::move(*charge);
-
-  auto external = wire::make_reader(
-      wire, wire::topics::external_cmd_vel, command,
-      [external = std::move(handlers.external)](const geometry_msgs::msg::Twist& t,
-                                                const wire::SampleInfo& info) {
-        external({t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()}, info.received);
-      });
-  if (!external) return external.error();
-  e.external = std::move(*external);
-
-  const auto heard = [rival = std::move(handlers.rival), self = wire.id()](const auto& /*velocity*/,
-                                                                           const wire::SampleInfo& info) {
+  const auto heard = [rival = std::move(handlers.rival), self = io.wire.id()](const auto& /*velocity*/,
+                                                                              const wire::SampleInfo& info) {
     if (info.sender != self) rival(info.sender, info.received);
   };
-  auto rival = type == VelocityType::twist_stamped
-                   ? wire::make_reader(wire, wire::topics::cmd_vel_stamped_heard, command, heard)
-                   : wire::make_reader(wire, wire::topics::cmd_vel_heard, command, heard);
-  if (!rival) return rival.error();
-  e.rival = std::move(*rival);
+  for (const auto& opened : {
+           io.open(e.odom, topics::odom,
+                   [odometry = std::move(handlers.odometry)](const nav_msgs::msg::Odometry&o,
+                                                             const wire::SampleInfo&info) {
+                     const auto& p = o.pose().pose().position();
+                     const auto& q = o.pose().pose().orientation();
+                     Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
+                     const auto& v = o.twist().twist();
+                     const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
+                     if (!usable(pose, twist)) return;  // as good as silence: the robot stops when it goes on
+                     pose.orientation.normalize();
+                     odometry(pose, twist, stamp_of(o.header()), info.received);
+                   }),
+           io.open(
+               e.battery, topics::battery,
+               [battery = std::move(handlers.battery)](const sensor_msgs::msg::BatteryState&b,
+                                                       const wire::SampleInfo&) { battery(b.percentage()); }),
+           io.open(
+               e.external, topics::external_cmd_vel,
+               [external = std::move(handlers.external)](const geometry_msgs::msg::Twist&t,
+                                                         const wire::SampleInfo&info) {
+                 external({t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()}, info.received);
+               }),
+           type == VelocityType::twist_stamped ? io.open(e.rival, topics::cmd_vel_stamped_heard, heard)
+                                               : io.open(e.rival, topics::cmd_vel_heard, heard),
+       })
+    if (!opened) return opened.error();
   return driver;
 }
 

@@ -7,6 +7,10 @@
 #include "core/wire/wire.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 
+namespace adit::wire {
+struct ComponentIo;
+}
+
 namespace adit::agent {
 
 /// The robot domain: ROS 2 messages from and to the robot's driver, the lidar's clouds apart (scans.hpp).
@@ -24,8 +28,9 @@ class Driver {
     std::function<void(const wire::ParticipantId& writer, Time received)> rival{};
   };
 
-  /// Strand and wire must outlive the driver's last callback. Errors of the wire.
-  static Result<std::unique_ptr<Driver>> open(wire::Wire& wire, Executor& command, VelocityType type,
+  /// `io`: the command component's, on the robot domain; strand and wire must outlive the driver's last
+  /// callback. Errors of the wire.
+  static Result<std::unique_ptr<Driver>> open(const wire::ComponentIo& io, VelocityType type,
                                               Handlers handlers);
   ~Driver();
   Driver(const Driver&) = delete;

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <numbers>
 
+#include "core/wire/component_io.hpp"
 #include "core/wire/topics.hpp"
-#include "core/wire/typed.hpp"
 #include "sensor_msgs/msg/LaserScan.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 
@@ -43,19 +43,15 @@ void Scans::take(const sensor_msgs::msg::LaserScan& scan, Time received) {
   give([&] { return to_points(scan, lidar_height_); }, scan.header(), received);
 }
 
-Result<Scans::Readers> Scans::read(wire::Wire& robot, Executor& strand,
-                                   const std::shared_ptr<const Generation>& generation,
-                                   std::function<Scans*()> taker) {
+Result<Scans::Readers> Scans::read(const wire::ComponentIo& io, std::function<Scans*()> taker) {
   const auto give = [taker = std::move(taker)](const auto& sample, const wire::SampleInfo& info) {
     if (Scans* scans = taker()) scans->take(sample, info.received);
   };
-  auto points = wire::make_reader<sensor_msgs::msg::PointCloud2>(robot, wire::topics::points, strand, give,
-                                                                 {}, generation);
-  if (!points) return points.error();
-  auto scan =
-      wire::make_reader<sensor_msgs::msg::LaserScan>(robot, wire::topics::scan, strand, give, {}, generation);
-  if (!scan) return scan.error();
-  return Readers{std::move(*points), std::move(*scan)};
+  Readers readers{};
+  for (const auto& opened :
+       {io.open(readers.points, wire::topics::points, give), io.open(readers.scan, wire::topics::scan, give)})
+    if (!opened) return opened.error();
+  return readers;
 }
 
 Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud) {

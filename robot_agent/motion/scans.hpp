@@ -15,6 +15,10 @@ namespace std_msgs::msg {
 class Header;
 }
 
+namespace adit::wire {
+struct ComponentIo;
+}
+
 namespace adit::agent {
 
 /// A lidar's scan.
@@ -39,11 +43,9 @@ class Scans : public Component {
   struct Readers {
     std::unique_ptr<wire::RawReader> points{}, scan{};
   };
-  /// Readers of /points and of /scan while `generation` is valid; `taker` gives who takes them now, on
-  /// `strand`, or null. Errors of the wire.
-  static Result<Readers> read(wire::Wire& robot, Executor& strand,
-                              const std::shared_ptr<const Generation>& generation,
-                              std::function<Scans*()> taker);
+  /// Readers of /points and of /scan; `taker` gives who takes them now, on the strand of `io`, or null.
+  /// Errors of the wire.
+  static Result<Readers> read(const wire::ComponentIo& io, std::function<Scans*()> taker);
 
  private:
   void give(const std::function<Result<PointCloud>()>& points, const std_msgs::msg::Header& header,

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 
+#include "core/exec/generation.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/wire/wire.hpp"
 
@@ -17,8 +18,9 @@ class VelocityWriter {
   VelocityWriter(VelocityWriter&&) noexcept;
   VelocityWriter& operator=(VelocityWriter&&) noexcept;
 
-  /// Errors of the wire.
-  static Result<VelocityWriter> make(wire::Wire& wire, VelocityType type);
+  /// With a `generation` it writes while that is valid. Errors of the wire.
+  static Result<VelocityWriter> make(wire::Wire& wire, VelocityType type,
+                                     const std::shared_ptr<const Generation>& generation = nullptr);
   /// Body frame. A TwistStamped has stamp zero, "now" to a driver: its clock is not ours. A failed write is
   /// counted by the wire. Nothing before make().
   void write(const Twist2& velocity);

@@ -10,7 +10,7 @@
 namespace adit::agent {
 
 /// Sends notifications, from any strand, numbers them and says when they arose. A failed write is counted by
-/// the wire.
+/// the wire. Bound to no component: the supervisor still speaks by it when one was revoked.
 class Notifier {
  public:
   /// `clock`: asked for the time alone, from any thread; it outlives this. Errors of the wire.

@@ -1,8 +1,8 @@
 #include "robot_agent/radio/radio_edge.hpp"
 
+#include "core/wire/component_io.hpp"
 #include "core/wire/link/peer_meter.hpp"
 #include "core/wire/topics.hpp"
-#include "core/wire/typed.hpp"
 #include "robot_agent/radio/convert.hpp"
 #include "robot_agent/radio/link_meter.hpp"
 
@@ -13,9 +13,10 @@ namespace topics = wire::topics;
 constexpr Duration kPresencePeriod = 1s;
 
 struct RadioEdge::Endpoints {
-  wire::Wire& wire;
-  Executor& strand;
+  wire::ComponentIo io;
   std::string robot;
+  wire::Wire& wire{io.wire};
+  Executor& strand{io.strand};
   LinkMeter meter{};
   std::uint64_t seq{};
 
@@ -34,19 +35,9 @@ struct RadioEdge::Endpoints {
   radio::RobotState state_sample{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
 
-  template <class T>
-  Result<void> open(wire::Writer<T>& writer, const wire::Topic<T>& topic) {
-    auto made = wire::Writer<T>::make(wire, topic);
-    if (!made) return made.error();
-    writer = std::move(*made);
-    return {};
-  }
   template <class T, class Handler>
   Result<void> read(const wire::Topic<T>& topic, Handler handler, const std::string& partition = {}) {
-    auto reader = wire::make_reader(wire, topic, strand, std::move(handler), partition);
-    if (!reader) return reader.error();
-    readers.push_back(std::move(*reader));
-    return {};
+    return io.open(readers.emplace_back(), topic, std::move(handler), partition);
   }
   void say_present() {
     if (presence_sample.name().empty()) return;  // not started yet
@@ -64,14 +55,13 @@ struct RadioEdge::Endpoints {
 RadioEdge::RadioEdge(std::unique_ptr<Endpoints> endpoints) : endpoints_(std::move(endpoints)) {}
 RadioEdge::~RadioEdge() = default;
 
-Result<std::unique_ptr<RadioEdge>> RadioEdge::open(wire::Wire& wire, Executor& strand,
-                                                   const std::string& robot) {
-  std::unique_ptr<Endpoints> e(new Endpoints{wire, strand, robot});
+Result<std::unique_ptr<RadioEdge>> RadioEdge::open(const wire::ComponentIo& io, const std::string& robot) {
+  std::unique_ptr<Endpoints> e(new Endpoints{io, robot});
   for (const auto& made :
-       {e->open(e->acknowledgement, topics::acknowledgement), e->open(e->authority, topics::authority),
-        e->open(e->behaviour, topics::behaviour), e->open(e->state, topics::robot_state),
-        e->open(e->capabilities, topics::capabilities), e->open(e->link, topics::link_report),
-        e->open(e->presence, topics::presence), e->open(e->finding, topics::finding)})
+       {io.open(e->acknowledgement, topics::acknowledgement), io.open(e->authority, topics::authority),
+        io.open(e->behaviour, topics::behaviour), io.open(e->state, topics::robot_state),
+        io.open(e->capabilities, topics::capabilities), io.open(e->link, topics::link_report),
+        io.open(e->presence, topics::presence), io.open(e->finding, topics::finding)})
     if (!made) return made.error();
   return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
 }
@@ -88,6 +78,7 @@ Result<void> RadioEdge::listen(Parts parts) {
   Namesakes& namesakes = parts.namesakes;
   e.wire.on_participant(e.strand,
                         [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
+                          if (!e.io.valid()) return;
                           if (!event.incompatible.empty()) return;  // stations tell their operators
                           directory.participant(event);
                           if (!event.present) namesakes.left(event.id);

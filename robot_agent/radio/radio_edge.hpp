@@ -11,6 +11,10 @@
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
 
+namespace adit::wire {
+struct ComponentIo;
+}
+
 namespace adit::agent {
 
 /// The state of the robot that goes out ten times a second.
@@ -39,9 +43,8 @@ class RadioEdge {
     std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};
   };
 
-  /// Errors of the wire.
-  static Result<std::unique_ptr<RadioEdge>> open(wire::Wire& wire, Executor& strand,
-                                                 const std::string& robot);
+  /// `io`: the command component's, on the radio domain. Errors of the wire.
+  static Result<std::unique_ptr<RadioEdge>> open(const wire::ComponentIo& io, const std::string& robot);
   ~RadioEdge();
   RadioEdge(const RadioEdge&) = delete;
   RadioEdge& operator=(const RadioEdge&) = delete;

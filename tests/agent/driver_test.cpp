@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "core/exec/virtual_runtime.hpp"
+#include "core/wire/component_io.hpp"
 #include "core/wire/memory/ether.hpp"
 #include "core/wire/topics.hpp"
-#include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
 #include "geometry_msgs/msg/TwistStamped.h"
 #include "nav_msgs/msg/Odometry.h"
@@ -151,7 +151,7 @@ class OdometryTest : public testing::Test {
       rivals.push_back(who);
       times.push_back(received);
     };
-    driver = Driver::open(*agent, *strand, VelocityType::twist, std::move(handlers)).value();
+    driver = Driver::open({*agent, *strand, generation}, VelocityType::twist, std::move(handlers)).value();
     writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::odom).value();
     run(3s);
   }
@@ -174,6 +174,7 @@ class OdometryTest : public testing::Test {
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
   std::unique_ptr<wire::Wire> agent{ether.join(101, "r1")}, body{ether.join(101, "r1/driver")};
+  std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
   std::unique_ptr<Driver> driver{};
   wire::Writer<nav_msgs::msg::Odometry> writer{};
   std::vector<Pose3> seen{};
@@ -189,6 +190,21 @@ TEST_F(OdometryTest, WhatNoBodyCanHaveIsAsGoodAsSilence) {
   for (const double x : {nan, inf, -inf, 1e300, -1e9}) EXPECT_EQ(publish(x, 1.0, 0.5), 0u) << x;
   for (const double w : {nan, inf, 0.0, 1e300}) EXPECT_EQ(publish(1.0, w, 0.5), 0u) << w;
   for (const double v : {nan, inf}) EXPECT_EQ(publish(1.0, 1.0, v), 0u) << v;
+}
+
+TEST_F(OdometryTest, ARevokedComponentDrivesAndHearsNothing) {
+  int velocities{};
+  const auto reader =
+      wire::make_reader(*body, wire::topics::cmd_vel, *strand,
+                        [&](const geometry_msgs::msg::Twist&, const wire::SampleInfo&) { ++velocities; });
+  run(3s);
+  driver->write({0.1, 0, 0});
+  EXPECT_EQ(publish(1.0, 1.0, 0.5), 1u);
+  EXPECT_EQ(velocities, 1);
+  generation->revoke();
+  driver->write({0.1, 0, 0});
+  EXPECT_EQ(publish(2.0, 1.0, 0.5), 0u);
+  EXPECT_EQ(velocities, 1);
 }
 
 TEST_F(OdometryTest, AProgramsVelocityIsHeardAndASecondWriterTold) {
@@ -238,7 +254,8 @@ TEST(Rival, IsHeardInTheDriversOwnType) {
   handlers.battery = [](float) {};
   handlers.external = [](const Twist2&, Time) {};
   handlers.rival = [&](const wire::ParticipantId& who, Time) { rivals.push_back(who); };
-  const auto driver = Driver::open(*agent, *strand, VelocityType::twist_stamped, std::move(handlers)).value();
+  const auto driver =
+      Driver::open({*agent, *strand}, VelocityType::twist_stamped, std::move(handlers)).value();
   auto rival =
       wire::Writer<geometry_msgs::msg::TwistStamped>::make(*body, wire::topics::cmd_vel_stamped).value();
   scheduler.run_until(3s);

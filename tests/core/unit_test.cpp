@@ -54,5 +54,16 @@ TEST(Unit, AnAbandonedHungPartStoresNothingThatIsPostedToIt) {
   unit.end();
 }
 
+// The agent is about to end: a task that hung and goes on must not write any more.
+TEST(Unit, ARevokedPartWritesNothingFromItsStrand) {
+  LiveRuntime runtime;
+  Unit unit(runtime, idle_unit());
+  ASSERT_TRUE(unit.open());
+  const auto writers = unit.seat()->generation;
+  unit.revoke();
+  EXPECT_FALSE(writers->valid());
+  unit.end();
+}
+
 }  // namespace
 }  // namespace adit

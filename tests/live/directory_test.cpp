@@ -1,6 +1,7 @@
 // Who is there, as an agent itself knows it: every change is in its published list within 3 s.
 #include <gmock/gmock.h>
 
+#include "core/wire/component_io.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "tests/agent/fake_requests.hpp"
 #include "tests/live/crew.hpp"
@@ -16,7 +17,7 @@ class Member {
   Member(Net& net, const std::string& name)
       : net_(net), strand_(net.machine(name).strand("command")), wire_(net.join_radio(name)) {
     net_.on(*strand_, [&] {
-      edge_ = agent::RadioEdge::open(*wire_, *strand_, name).value();
+      edge_ = agent::RadioEdge::open({*wire_, *strand_}, name).value();
       seen_ = peers_.follow(
           *strand_, [this](const auto& list) { list_.use([&](agent::PeerList& copy) { copy = *list; }); });
       agent::RadioEdge::Parts parts{directory_, namesakes_, [this](const auto& work) { work(commands_); },

@@ -7,6 +7,7 @@
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/robot.h"
+#include "core/wire/component_io.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "tests/wire/nets.hpp"
@@ -97,6 +98,34 @@ TYPED_TEST(Conformance, ARevokedReaderHandlesNothing) {
   ASSERT_TRUE(this->net.until([&] { return other.size() == 2; }));
   EXPECT_EQ(revoked.all(), Seqs{1});
   EXPECT_EQ(total(*this->robot, &TopicCount::malformed), 0U);
+}
+
+TYPED_TEST(Conformance, WhatAComponentOpenedEndsWithItsGeneration) {
+  const auto generation = std::make_shared<Generation>();
+  const ComponentIo io{*this->robot, *this->strand, generation};
+  Seen<std::uint64_t> own, others;
+  Writer<radio::Command> writer, beside = this->commands(*this->station, "r1");
+  std::unique_ptr<RawReader> reader;
+  ASSERT_TRUE(io.open(writer, topics::command, "op1").ok());
+  ASSERT_TRUE(io.open(
+                    reader, topics::command,
+                    [&](const radio::Command& c, const SampleInfo&) { own.add(c.seq()); }, "r1")
+                  .ok());
+  const auto other = this->hear(*this->station, "op1", others);
+  ASSERT_TRUE(this->net.until([&] { return writer.matched() == 1 && beside.matched() == 1; }));
+  ASSERT_TRUE(writer.write(numbered_command(1)).ok());
+  ASSERT_TRUE(beside.write(numbered_command(1)).ok());
+  ASSERT_TRUE(this->net.until([&] { return own.size() == 1 && others.size() == 1; }));
+  generation->revoke();
+  EXPECT_EQ(writer.write(numbered_command(2)).reason(), Reason::cancelled);
+  ASSERT_TRUE(beside.write(numbered_command(2)).ok());
+  ASSERT_TRUE(this->net.until([&] { return total(*this->robot, &TopicCount::samples_in) == 2; }));
+  auto next = this->commands(*this->robot, "op1");
+  ASSERT_TRUE(this->net.until([&] { return next.matched() == 1; }));
+  ASSERT_TRUE(next.write(numbered_command(3)).ok());
+  ASSERT_TRUE(this->net.until([&] { return others.size() == 2; }));
+  EXPECT_EQ(own.all(), Seqs{1});
+  EXPECT_EQ(others.all(), (Seqs{1, 3}));
 }
 
 TYPED_TEST(Conformance, TheSenderIsKnownWhateverTheSampleSays) {
