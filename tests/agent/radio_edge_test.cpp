@@ -1,0 +1,100 @@
+#include "robot_agent/radio/radio_edge.hpp"
+
+#include <gmock/gmock.h>
+
+#include "adit/command.h"
+#include "adit/robot.h"
+#include "core/exec/virtual_runtime.hpp"
+#include "core/wire/component_io.hpp"
+#include "core/wire/memory/ether.hpp"
+#include "core/wire/topics.hpp"
+#include "tests/agent/command_bench.hpp"
+#include "tests/wire/held_strand.hpp"
+
+namespace adit::agent {
+namespace {
+
+/// The radio edge of r1 on a command strand that is busy until it is released. op1 holds r1.
+class RadioEdgeTest : public testing::Test {
+ protected:
+  RadioEdgeTest() {
+    Sender& op1 = bench.station("op1").sender;
+    bench.interface().departed(op1.participant);
+    op1.participant = station->id();
+    bench.interface().hear(op1, 1, bench.now);
+    EXPECT_TRUE(bench.say("op1", "take").accepted());
+    EXPECT_TRUE(edge->listen({directory, namesakes, [this](const auto& use) { use(bench.interface()); },
+                              [](const Task& task) { task(); }, [](const auto&, const auto&) {},
+                              [](const Id&, auto) {}}));
+    run(3s);  // the endpoints match
+    EXPECT_EQ(joystick.matched(), 1U);
+  }
+  void run(Duration time) { scheduler.run_until(scheduler.elapsed() + time); }
+  /// op1 sends a stick that is pushed.
+  void send_stick() {
+    bench.now = strand->now();
+    const StickSample stick = bench.stick("op1");
+    radio::Joystick sample;
+    sample.robot(stick.robot);
+    sample.station_id(stick.station_id);
+    sample.epoch().start(stick.epoch.start);
+    sample.epoch().counter(stick.epoch.counter);
+    sample.seq(stick.seq);
+    sample.echo(stick.echo);
+    sample.vx(0.5f);
+    EXPECT_TRUE(joystick.write(sample));
+  }
+
+  VirtualScheduler scheduler{1};
+  wire::Ether ether{scheduler, {1}};
+  std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
+  std::shared_ptr<Strand> strand{machine->strand("command")};
+  wire::HeldStrand held{strand};
+  std::unique_ptr<wire::Wire> radio{ether.join(77, "r1")}, station{ether.join(77, "op1")};
+  wire::Writer<radio::Joystick> joystick{
+      wire::Writer<radio::Joystick>::make(*station, wire::topics::joystick, "r1").value()};
+  CommandBench bench{};
+  PeerTable peers{held};
+  Directory directory{peers};
+  Namesakes namesakes{radio->id()};
+  std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
+  std::unique_ptr<RadioEdge> edge{RadioEdge::open({*radio, held, generation}, "r1").value()};
+};
+
+TEST_F(RadioEdgeTest, TheAgeOfAStickCountsFromItsReception) {
+  send_stick();
+  const Time sent = strand->now();
+  run(250ms);
+  held.release();
+  run(1ms);
+  ASSERT_EQ(bench.requests.sticks.size(), 1U);
+  EXPECT_LT(bench.requests.stick_at - sent, 50ms);
+}
+
+TEST_F(RadioEdgeTest, AStickThatWaitedForTheCommandStrandIsStale) {
+  send_stick();
+  run(400ms);
+  held.release();
+  run(1ms);
+  EXPECT_TRUE(bench.requests.sticks.empty()) << "its echo alone, of 400 ms ago, would let it pass";
+}
+
+TEST_F(RadioEdgeTest, OfARevokedCommandComponentNeitherWritesNorReads) {
+  held.release();
+  int states{};
+  const auto reader = wire::make_reader(*station, wire::topics::robot_state, *strand,
+                                        [&](const radio::RobotState&, const wire::SampleInfo&) { ++states; });
+  run(3s);
+  edge->send_state({}, 1);
+  send_stick();
+  run(100ms);
+  generation->revoke();
+  edge->send_state({}, 2);
+  send_stick();
+  run(100ms);
+  EXPECT_EQ(states, 1);
+  EXPECT_EQ(bench.requests.sticks.size(), 1U);
+}
+
+}  // namespace
+}  // namespace adit::agent
