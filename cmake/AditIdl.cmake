@@ -1,33 +1,10 @@
 # A folder of IDL becomes a library of plain types with their CDR serialisation (Fast CDR alone, no
-# Fast DDS at run time). Nothing generated is kept in the source tree; an IDL file is translated again
-# only when it, or an IDL file it includes, has changed.
+# Fast DDS at run time). Nothing generated is kept in the source tree. All files of a library are translated
+# together, as most of the time of a fastddsgen run is the start of its Java machine; generated files that come
+# out the same are not written again, so that only what changed is compiled.
 
 find_package(fastcdr REQUIRED)
 find_program(ADIT_FASTDDSGEN fastddsgen REQUIRED)
-
-# Every IDL file that `file` includes, itself included, transitively. Includes are looked up beside the
-# including file, then from `root`.
-function(_adit_idl_closure file root out)
-  set(seen ${${out}})
-  if(NOT file IN_LIST seen)
-    list(APPEND seen ${file})
-    # A changed #include changes what the commands depend on.
-    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
-    get_filename_component(folder ${file} DIRECTORY)
-    file(STRINGS ${file} lines REGEX "^#include \"")
-    foreach(line ${lines})
-      string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" included "${line}")
-      if(EXISTS ${folder}/${included})
-        _adit_idl_closure(${folder}/${included} ${root} seen)
-      elseif(EXISTS ${root}/${included})
-        _adit_idl_closure(${root}/${included} ${root} seen)
-      else()
-        message(FATAL_ERROR "${file}: no IDL file ${included}")
-      endif()
-    endforeach()
-  endif()
-  set(${out} ${seen} PARENT_SCOPE)
-endfunction()
 
 # adit_idl(NAME ROOT folder FOLDERS sub ... [ROS2])
 # Library adit_NAME (alias adit::NAME) of all *.idl in the named folders below ROOT. Headers are included
@@ -37,27 +14,33 @@ function(adit_idl name)
   cmake_parse_arguments(arg "ROS2" "ROOT" "FOLDERS" ${ARGN})
   get_filename_component(root ${arg_ROOT} ABSOLUTE)
   set(generated ${PROJECT_BINARY_DIR}/idl/${name})
+  set(files)
   set(sources)
+  set(names)
   foreach(folder ${arg_FOLDERS})
-    file(GLOB files CONFIGURE_DEPENDS RELATIVE ${root} ${root}/${folder}/*.idl)
-    foreach(file ${files})
-      string(REGEX REPLACE "\\.idl$" "" stem ${file})
-      set(closure)
-      _adit_idl_closure(${root}/${file} ${root} closure)
-      set(outputs ${generated}/include/${stem}.h ${generated}/include/${stem}.cxx)
-      add_custom_command(
-        OUTPUT ${outputs}
-        COMMAND ${CMAKE_COMMAND} -DFASTDDSGEN=${ADIT_FASTDDSGEN} -DROOT=${root} -DFILE=${file}
-                -DROS2=${arg_ROS2} -DSCRATCH=${generated}/scratch/${stem} -DOUT=${generated}/include
-                -P ${PROJECT_SOURCE_DIR}/cmake/AditIdlGenerate.cmake
-        DEPENDS ${closure} ${PROJECT_SOURCE_DIR}/cmake/AditIdlGenerate.cmake
-        COMMENT "IDL ${file}" VERBATIM)
-      list(APPEND sources ${outputs})
-      get_filename_component(path ${stem} DIRECTORY)
-      install(FILES ${generated}/include/${stem}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/adit/idl/${path})
-      install(FILES ${root}/${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/adit/idl/${path})
-    endforeach()
+    file(GLOB in_folder CONFIGURE_DEPENDS RELATIVE ${root} ${root}/${folder}/*.idl)
+    list(APPEND files ${in_folder})
   endforeach()
+  foreach(file ${files})
+    string(REGEX REPLACE "\\.idl$" "" stem ${file})
+    list(APPEND sources ${generated}/include/${stem}.h ${generated}/include/${stem}.cxx)
+    get_filename_component(base ${stem} NAME)
+    if(base IN_LIST names)
+      message(FATAL_ERROR "${file}: fastddsgen writes all files into one folder, and has a ${base}.idl already")
+    endif()
+    list(APPEND names ${base})
+    get_filename_component(path ${stem} DIRECTORY)
+    install(FILES ${generated}/include/${stem}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/adit/idl/${path})
+    install(FILES ${root}/${file} DESTINATION ${CMAKE_INSTALL_DATADIR}/adit/idl/${path})
+  endforeach()
+  list(TRANSFORM files PREPEND ${root}/ OUTPUT_VARIABLE paths)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/AditIdlGenerate.cmake)
+  add_custom_command(
+    OUTPUT ${sources}
+    COMMAND ${CMAKE_COMMAND} -DFASTDDSGEN=${ADIT_FASTDDSGEN} -DROOT=${root} "-DFILES=${files}" -DROS2=${arg_ROS2}
+            -DSCRATCH=${generated}/scratch -DOUT=${generated}/include -P ${script}
+    DEPENDS ${paths} ${script}
+    COMMENT "IDL of ${name}" VERBATIM)
 
   add_library(adit_${name} STATIC ${sources})
   add_library(adit::${name} ALIAS adit_${name})
