@@ -176,7 +176,7 @@ int run_agent(const RobotConfig& config, const Options& options) {
     log.error(why + "; ending to be started anew");
     std::_Exit(kEscalatedExit);
   };
-  const Service service = Service::from_environment();
+  const agent::Service service = agent::Service::from_environment();
   params.alive = [service, reports = options.reports, limit = config.memory_limit, ready = false,
                   beats = 0]() mutable {
     if (reports) (void)!::write(kReportFd, "1", 1);
