@@ -153,6 +153,11 @@ const RobotModel::Heard* RobotModel::heard(const std::string& station) const {
   return it == stations_.end() ? nullptr : &it->second;
 }
 
+StationId RobotModel::id_of(const std::string& station) const {
+  if (const Heard* known = heard(station)) return known->id;
+  return station == restored_.holder ? restored_.holder_id : StationId{};
+}
+
 bool RobotModel::is_holder(const CommandHeard& command) const {
   if (authority_.holder.empty() || command.station != authority_.holder || command.id != authority_.holder_id)
     return false;
@@ -207,9 +212,8 @@ void RobotModel::apply(const CommandHeard& command, const AckSent& ack) {
       authority_.locked = false;
       break;
     case Verb::grant: {
-      const Heard* next = heard(command.text);
       authority_.holder = command.text;
-      authority_.holder_id = next ? next->id : StationId{};
+      authority_.holder_id = id_of(command.text);
       authority_.locked = false;
       break;
     }
@@ -241,7 +245,10 @@ void RobotModel::apply(const CommandHeard& command, const AckSent& ack) {
 void RobotModel::take_in_event(const AuthoritySent& e) {
   if (ahead_of_answer(e)) return;
   // Before the first answer, and when a lease ran out, the published state is all there is to know.
-  if (authority_.start == 0) latches_ = e.stops;
+  if (authority_.start == 0) {
+    latches_ = e.stops;
+    restored_ = e.authority;
+  }
   authority_ = e.authority;
 }
 

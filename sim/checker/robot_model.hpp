@@ -148,6 +148,9 @@ class RobotModel {
   void take_in_event(const ClockJumped& e) { jumps_.emplace_back(now_, e.by); }
   void hear(const std::string& station, const StationId& id, const wire::ParticipantId& from);
   Before remember() const;
+  /// The id by which the robot knows a station: it heard it, or restored it with its holder. Nil when
+  /// neither.
+  StationId id_of(const std::string& station) const;
   void apply(const CommandHeard& command, const AckSent& ack);
 
   RobotFacts facts_;
@@ -160,6 +163,7 @@ class RobotModel {
   std::optional<Before> before_{};
   BehaviourSent behaviour_{};
   Authority authority_{};
+  Authority restored_{};  ///< what the process published first: it read this from its disk
   std::vector<Latch> latches_{};
   std::map<std::string, Heard> stations_{};
   std::map<wire::ParticipantId, std::set<std::pair<std::string, StationId>>> participants_{};

@@ -145,6 +145,31 @@ TEST(CheckerRestart, WhatWasNotAnsweredMayBeDoneOrNot) {
   }
 }
 
+/// The robot reads its holder's id from its disk: it may grant the robot back to him before it hears him.
+TEST(CheckerRestart, AGrantToTheRestoredHolderWhoIsNotHeardYet) {
+  const auto granted_to = [](const StationId& id) {
+    Record r;
+    r.take(1);
+    r.stations = false;
+    restart(r);
+    r.publish();
+    r.behave("hold");
+    r.pass(20ms);
+    r.see(PresenceHeard{participant(2), "op2", station_id(2)});
+    r.take(2);
+    const CommandHeard c = r.ask(2, Verb::grant, "op1");
+    r.authority.holder = "op1";
+    r.authority.holder_id = id;
+    ++r.epoch;
+    r.answer(c);
+    r.publish();
+    r.pass(20ms);
+    return r.broken();
+  };
+  EXPECT_THAT(granted_to(station_id(1)), ElementsAre());
+  EXPECT_THAT(granted_to(station_id(3)), ElementsAre(1)) << "another station of the same name";
+}
+
 TEST(CheckerRestart, ADiskThatTookNothingMayLoseTheStateButNotGuess) {
   const auto after = [](const std::string& holder) {
     Record r;
