@@ -1,6 +1,7 @@
 // Calls between threads: instances come and go while others call them.
 #include <gmock/gmock.h>
 
+#include <cstdint>
 #include <functional>
 #include <future>
 #include <map>
@@ -12,7 +13,8 @@
 namespace adit {
 namespace {
 
-using Squares = Service<int, int>;
+/// Squares in 64 bits: the square of a call's number may exceed an int.
+using Squares = Service<std::int64_t, std::int64_t>;
 
 /// Offers squares from a thread of its own, by one instance after the other.
 class Successors {
@@ -22,8 +24,8 @@ class Successors {
       : thread_([this, &service, &server, stay = std::move(stay)] {
           for (int instance = 0; !over_; ++instance) {
             const auto generation = std::make_shared<Generation>();
-            const Offer offer =
-                service.offer(server, generation, [](int x, const Reply<int>& reply) { reply(x * x); });
+            const Offer offer = service.offer(
+                server, generation, [](std::int64_t x, const Reply<std::int64_t>& reply) { reply(x * x); });
             stay(instance);
             if (instance % 3 == 0) generation->revoke();
           }
@@ -56,11 +58,11 @@ class Chains {
 
  private:
   void next() {
-    const int i = begun_;
-    if (i == static_cast<int>(completions.size())) return;
+    const std::int64_t i = begun_;
+    if (i == static_cast<std::int64_t>(completions.size())) return;
     ++begun_;
     service_.call(caller_, i, {.deadline = (i % 3 == 0) ? Duration(1us) : Duration(10s)},
-                  [this, i](const Result<int>& square) {
+                  [this, i](const Result<std::int64_t>& square) {
                     if (square) {
                       EXPECT_EQ(*square, i * i);
                       ++answered;
