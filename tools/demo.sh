@@ -1,6 +1,6 @@
 #!/bin/bash
 # The demo: a real building, three robots, two operators, each in a process of its own, over Fast DDS on loopback.
-# Called by ./run demo; see --help there. Exit status 0 only if every goal was reached, nobody collided and each robot
+# Called by ./run demo; see --help there. Exit status 0 only if every goal was reached, no robot collided and each
 # drove at least 15 m.
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"

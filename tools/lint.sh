@@ -1,8 +1,10 @@
 #!/bin/bash
 # The rules of the source tree, checked. usage: tools/lint.sh [--root DIR] [CHECK...]
+#                                               tools/lint.sh [--root DIR] --count language
 # Each finding is one line "file[:line]: what"; exit status 1 when there is one.
 set -uo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+language_rules="$root/tools/lint_language.awk"
 if [ "${1:-}" = --root ]; then root="$2"; shift 2; fi
 cd "$root" || exit 2
 
@@ -93,6 +95,61 @@ check_words() {
     xargs -r grep -nwiE 'TODO|FIXME|XXX|HACK|for now|stubs?|placeholders?' /dev/null | sed 's/$/   <- unfinished/'
 }
 
+# --- language: plain words in comments and docs, one style of constants ---------------------------------
+# tools/lint_language.awk has the rules: words (house words), comments (`///` begins with a capital letter), constants
+# (kLikeThis at the scope of namespaces and classes), columns (at most 120 in docs, table rows apart).
+
+# Where it does not hold yet: a folder ("." is the root) and its rules. `tools/lint.sh --count language` shows how many
+# findings there are. When a rule's count is 0, delete the rule here. nav/ joins when it is rebuilt.
+language_open() {
+  cat <<'TEXT'
+.            words columns
+basestation  words comments constants columns
+bench        words comments constants columns
+config       words
+core         words comments constants columns
+docs         words columns
+robot_agent  words comments constants columns
+sim          words comments constants columns
+tests        words comments constants columns
+nav          words comments constants columns
+TEXT
+}
+
+# Every finding, in any folder: "RULE FILE:LINE: what"
+language_findings() {
+  files -name '*.hpp' -o -name '*.cpp' -o -name '*.idl' -o -name '*.md' -o -name '*.cmake' -o -name 'CMakeLists.txt' \
+      -o -name '*.sh' -o -name '*.awk' -o -name '*.yaml' -o -name '*.yml' -o -name run |
+    grep -v '^tests/lint/' | LC_ALL=C xargs -r awk -f "$language_rules"
+}
+
+# Findings of the folders and rules that are held.
+check_language() {
+  { language_open; echo ---; language_findings; } | awk '
+    $0 == "---" { listed = 1; next }
+    !listed { for (i = 2; i <= NF; ++i) open[$1, $i] = 1; next }
+    {
+      folder = $2; if (!sub(/\/.*/, "", folder)) folder = "."
+      if ((folder, $1) in open) next
+      rule = $1; sub(/^[^ ]* /, ""); print $0 "   <- " rule
+    }'
+}
+
+# How many findings each folder has, held or not.
+count_language() {
+  language_findings | awk '
+    { folder = $2; if (!sub(/\/.*/, "", folder)) folder = "."; ++count[folder, $1]; folders[folder] = 1 }
+    END {
+      n = split("words comments constants columns", rules, " ")
+      printf "%-12s", "folder"; for (i = 1; i <= n; ++i) printf " %9s", rules[i]; print ""
+      for (folder in folders) {
+        printf "%-12s", folder | "sort"
+        for (i = 1; i <= n; ++i) printf " %9d", count[folder, rules[i]] | "sort"
+        print "" | "sort"
+      }
+    }'
+}
+
 # --- tests wait for something, never for time; components never sleep --------------------------------
 check_sleeps() {
   cpp | grep -E '^(tests|core|nav|perception|robot_agent|basestation|sim)/' |
@@ -112,8 +169,13 @@ check_shell() {
   { files -name '*.sh'; ls run .ci/run 2> /dev/null; } | xargs -r shellcheck -x -S warning -f gcc
 }
 
+if [ "${1:-}" = --count ]; then
+  declare -F "count_${2:-}" > /dev/null || { echo "lint: nothing to count for '${2:-}'" >&2; exit 2; }
+  "count_$2"
+  exit
+fi
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words sleeps format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language sleeps format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

@@ -1,27 +1,7 @@
 #!/bin/bash
 # Every check of tools/lint.sh finds what it is there for, and leaves a clean tree alone.
 set -uo pipefail
-lint="$(cd "$(dirname "$0")/../.." && pwd)/tools/lint.sh"
-tree="$(mktemp -d)"
-trap 'rm -rf "$tree"' EXIT
-failed=0
-
-put() { mkdir -p "$tree/$(dirname "$1")"; printf '%b' "$2" > "$tree/$1"; }
-# expect CHECK TEXT: the check fails and says so; expect CHECK "": it passes.
-expect() {
-  local out status
-  out="$("$lint" --root "$tree" "$1" 2>&1)"
-  status=$?
-  if [ -n "$2" ]; then
-    if [ $status -ne 1 ] || ! grep -qF -- "$2" <<< "$out"; then
-      echo "$1: expected a finding '$2', got ($status): $out"
-      failed=1
-    fi
-  elif [ $status -ne 0 ]; then
-    echo "$1: expected nothing, got: $out"
-    failed=1
-  fi
-}
+source "$(dirname "$0")/tree.sh"
 
 put core/a.hpp '#include "core/b.hpp"\n#include <vector>\n'
 put nav/a.hpp '#include "core/geometry/pose.hpp"\n#include "nav/b.hpp"\n'
