@@ -1,6 +1,7 @@
 #!/bin/bash
 # The check `language` finds what each of its rules is there for, and leaves plain text alone.
 set -uo pipefail
+# shellcheck source=tests/lint/tree.sh
 source "$(dirname "$0")/tree.sh"
 
 # finds TEXT LINE...: a file of these lines has this finding; clean LINE...: it has none.

@@ -1,6 +1,7 @@
 #!/bin/bash
 # Every check of tools/lint.sh finds what it is there for, and leaves a clean tree alone.
 set -uo pipefail
+# shellcheck source=tests/lint/tree.sh
 source "$(dirname "$0")/tree.sh"
 
 put core/a.hpp '#include "core/b.hpp"\n#include <vector>\n'
