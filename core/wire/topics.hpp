@@ -27,6 +27,7 @@ class Odometry;
 namespace sensor_msgs::msg {
 class PointCloud2;
 class LaserScan;
+class Imu;
 class BatteryState;
 }  // namespace sensor_msgs::msg
 
@@ -85,6 +86,10 @@ inline constexpr Topic<sensor_msgs::msg::PointCloud2> points{
 /// A lidar that sees one plane.
 inline constexpr Topic<sensor_msgs::msg::LaserScan> scan{
     {"rt/scan", "sensor_msgs::msg::dds_::LaserScan_", QosClass::sensor, 1, unkeyed, 1 << 20}};
+/// Angular velocity and specific force. Its history holds what the fastest sensor, 400 Hz, gives in 100 ms: a
+/// reader integrates every sample.
+inline constexpr Topic<sensor_msgs::msg::Imu> imu{
+    {"rt/imu/data", "sensor_msgs::msg::dds_::Imu_", QosClass::sensor, 40, unkeyed, 2048}};
 inline constexpr Topic<sensor_msgs::msg::BatteryState> battery{
     {"rt/battery_state", "sensor_msgs::msg::dds_::BatteryState_", QosClass::state, 1, unkeyed, 2048}};
 

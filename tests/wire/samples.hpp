@@ -13,6 +13,7 @@
 #include "geometry_msgs/msg/Twist.h"
 #include "nav_msgs/msg/Odometry.h"
 #include "sensor_msgs/msg/BatteryState.h"
+#include "sensor_msgs/msg/Imu.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 
 namespace adit::wire {
@@ -98,6 +99,9 @@ inline std::vector<Example> examples() {
   points.fields()[0].name("x");
   points.data().resize(64);
   all.push_back(example(topics::points, points));
+  sensor_msgs::msg::Imu imu;
+  imu.orientation_covariance()[0] = -1.0;
+  all.push_back(example(topics::imu, imu));
   sensor_msgs::msg::BatteryState battery;
   battery.cell_voltage().resize(4);
   all.push_back(example(topics::battery, battery));
