@@ -14,13 +14,13 @@ namespace adit {
 namespace {
 
 /// Squares in 64 bits: the square of a call's number may exceed an int.
-using Squares = Service<std::int64_t, std::int64_t>;
+using WideSquares = Service<std::int64_t, std::int64_t>;
 
 /// Offers squares from a thread of its own, by one instance after the other.
 class Successors {
  public:
   /// `stay` gets the number of an instance, and returns when the next one may replace it.
-  Successors(Squares& service, Executor& server, std::function<void(int instance)> stay)
+  Successors(WideSquares& service, Executor& server, std::function<void(int instance)> stay)
       : thread_([this, &service, &server, stay = std::move(stay)] {
           for (int instance = 0; !over_; ++instance) {
             const auto generation = std::make_shared<Generation>();
@@ -43,7 +43,7 @@ class Successors {
 /// Calls in chains: the completion of a call makes the next one.
 class Chains {
  public:
-  Chains(Squares& service, Executor& caller, int calls) : service_(service), caller_(caller) {
+  Chains(WideSquares& service, Executor& caller, int calls) : service_(service), caller_(caller) {
     completions.resize(static_cast<std::size_t>(calls), 0);
   }
   std::vector<int> completions{};    ///< By call; these are the caller's strand's.
@@ -73,7 +73,7 @@ class Chains {
                     next();
                   });
   }
-  Squares& service_;
+  WideSquares& service_;
   Executor& caller_;
   int begun_{}, ended_{};
   std::promise<void> all_{};
@@ -85,7 +85,7 @@ TEST(LiveCall, CompletesExactlyOnceWhateverHappens) {
   LiveRuntime runtime;
   const auto server = runtime.strand("server"), caller = runtime.strand("caller");
   constexpr int kCalls = 2000;
-  Squares service{"squares", 4};
+  WideSquares service{"squares", 4};
   Chains calls(service, *caller, kCalls);
   {
     std::atomic<bool> over{false};
@@ -111,7 +111,7 @@ TEST(LiveCall, ThatRacesWithTheReplacementOfTheInstanceIsCancelled) {
   LiveRuntime runtime;
   const auto server = runtime.strand("server"), caller = runtime.strand("caller");
   constexpr int kCalls = 60000;
-  Squares service{"squares", kCalls};
+  WideSquares service{"squares", kCalls};
   Chains calls(service, *caller, kCalls);
   {
     const auto leave_at_once = [](int) {};
