@@ -103,12 +103,9 @@ check_words() {
 # findings there are. When a rule's count is 0, delete the rule here. nav/ joins when it is rebuilt.
 language_open() {
   cat <<'TEXT'
-.            words columns
 basestation  words comments constants columns
 bench        words comments constants columns
-config       words
 core         words comments constants columns
-docs         words columns
 robot_agent  words comments constants columns
 sim          words comments constants columns
 tests        words comments constants columns
