@@ -26,10 +26,10 @@ check_includes() {
       may["basestation"] = "core basestation"
       may["sim"] = "core nav perception robot_agent basestation sim"
       for (i in order) part[order[i]] = 1
-      part["tests"] = part["bench"] = 1
+      part["tests"] = part["bench"] = part["examples"] = 1
     }
     function allowed(from, to, whole,   list, n, i) {
-      if (from == "tests" || from == "bench") return 1
+      if (from == "tests" || from == "bench" || from == "examples") return 1
       if ((from == "nav" || from == "perception") && to == "core")
         return whole ~ /^core\/(time|geometry|result|config)\//
       n = split(may[from], list, " ")
@@ -48,7 +48,7 @@ check_includes() {
       if ((to == "fastdds" || to == "fastrtps" || to == "fastcdr") && !in_wire && from != "tests")
         printf "%s:%d: Fast DDS headers belong into core/wire/\n", FILENAME, FNR
       if ((to == "adit" || file ~ /^(builtin_interfaces|std_msgs|geometry_msgs|nav_msgs|sensor_msgs)\//) && !in_wire &&
-          from !~ /^(robot_agent|basestation|sim|tests|bench)$/)
+          from !~ /^(robot_agent|basestation|sim|tests|bench|examples)$/)
         printf "%s:%d: generated types belong into core/wire, robot_agent, basestation and sim\n", FILENAME, FNR
     }'
 }
@@ -154,6 +154,26 @@ check_sleeps() {
     sed 's/$/   <- sleeps/'
 }
 
+# --- citation: the version in CITATION.cff is the project's ------------------------------------------------
+check_citation() {
+  local cited project
+  cited="$(sed -n 's/^version: *//p' CITATION.cff 2> /dev/null)"
+  project="$(sed -n 's/^project(adit VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt 2> /dev/null)"
+  [ "$cited" = "$project" ] || echo "CITATION.cff: version '$cited', but CMakeLists.txt has '$project'"
+}
+
+# --- spdx: sources name their licence on the first line, below #! where there is one ------------------------
+check_spdx() {
+  files -name '*.hpp' -o -name '*.cpp' -o -name '*.idl' -o -name '*.cmake' -o -name 'CMakeLists.txt' -o -name '*.sh' \
+      -o -name '*.awk' |
+    LC_ALL=C xargs -r awk '
+      function judge() { if (file != "" && !licensed) print file ": no line SPDX-License-Identifier: Apache-2.0" }
+      FNR == 1 { judge(); file = FILENAME; licensed = 0; first = 1 }
+      FNR == 1 && /^#!/ { first = 2 }
+      FNR == first && /^(\/\/|#) SPDX-License-Identifier: Apache-2\.0$/ { licensed = 1 }
+      END { judge() }'
+}
+
 # --- formatting ----------------------------------------------------------------------------------------
 check_format() {
   command -v clang-format > /dev/null || { echo "(format): clang-format is not installed"; return; }
@@ -163,7 +183,7 @@ check_format() {
 
 check_shell() {
   command -v shellcheck > /dev/null || return 0
-  { files -name '*.sh'; ls run .ci/run 2> /dev/null; } | xargs -r shellcheck -x -S warning -f gcc
+  { files -name '*.sh'; ls run .ci/run tools/pre-commit 2> /dev/null; } | xargs -r shellcheck -x -S warning -f gcc
 }
 
 if [ "${1:-}" = --count ]; then
@@ -172,7 +192,7 @@ if [ "${1:-}" = --count ]; then
   exit
 fi
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language sleeps format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation sleeps format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

@@ -39,6 +39,22 @@ put core/word.cpp '// TO''DO later\n'
 expect words 'core/word.cpp:1'
 put tests/s.cpp 'std::this_thread::sleep''_for(1s);\n'
 expect sleeps 'tests/s.cpp:1'
+put CMakeLists.txt 'project(adit VERSION 0.2.0 LANGUAGES CXX)\n'
+put CITATION.cff 'cff-version: 1.2.0\nversion: 0.2.0\n'
+expect citation ""
+put CITATION.cff 'cff-version: 1.2.0\nversion: 0.1.0\n'
+expect citation "CITATION.cff: version '0.1.0'"
+
+rm -r "$tree"; mkdir "$tree"
+put core/a.cpp '// SPDX-License-Identifier: Apache-2.0\n#pragma once\n'
+put CMakeLists.txt '# SPDX-License-Identifier: Apache-2.0\n'
+put tools/a.sh '#!/bin/bash\n# SPDX-License-Identifier: Apache-2.0\n'
+expect spdx ""
+put core/b.hpp '#pragma once\n// SPDX-License-Identifier: Apache-2.0\n'
+expect spdx 'core/b.hpp: no line SPDX'
+put core/empty.cpp 'int a;\n// The last file.\n'
+expect spdx 'core/empty.cpp: no line SPDX'
+
 put core/format.cpp 'int   x ;\n'
 put .clang-format 'BasedOnStyle: Google\n'
 expect format 'core/format.cpp: '
