@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "core/config/sensors.hpp"
 
 namespace adit {
 
@@ -38,10 +41,15 @@ struct Platform {
   double max_climb{0.5};      ///< aerial: m/s up and down, (0, 5]
   double step{0.08};          ///< highest step it climbs, m, [0, 1]
   double max_slope{0.35};     ///< steepest ground it drives on, rise per run, [0.05, 1.5]
-  double lidar_height{0.5};   ///< above the ground, m, (0, 5]
-  int lidar_rings{16};        ///< beams one above the other, [2, 128]
-  double lidar_lowest{-15};   ///< elevation of the lowest, degrees, [-89, 0]
-  double lidar_highest{15};   ///< and of the highest, degrees, [0, 89]
+  double lidar_height{0.5};   ///< Of the first lidar above the ground, m, (0, 5]. See lidar().
+  int lidar_rings{16};        ///< Of the first lidar: beams one above the other, [2, 128].
+  double lidar_lowest{-15};   ///< Of the first lidar: elevation of the lowest beam, degrees, [-89, 0].
+  double lidar_highest{15};   ///< Of the first lidar: elevation of the highest beam, degrees, [0, 89].
+  std::vector<LidarConfig>
+      lidars{};                    ///< `sensors:`; empty: one level lidar at lidar_height. See all_lidars().
+  std::optional<ImuConfig> imu{};  ///< `sensors:`; none: roll and pitch are the odometry's.
+  double max_tilt{
+      0.0};  ///< Roll or pitch at which it may tip over, rad, (0, 1.5]; 0: from max_slope, Traversability.
   bool stairs{false};
   std::string router{"none"};           ///< that leads it round what the planner does not see: none or graph
   std::string planner{"trajectories"};  ///< that finds the way to a goal: nav/make_planner.hpp
@@ -50,6 +58,21 @@ struct Platform {
   std::string controller{"ilqr"};  ///< that tracks the planner's paths: nav/control/controller.hpp
   /// In manual mode the collision monitor stops the robot; false: it slows it and warns the operator.
   bool manual_collision_stop{false};
+
+  /// All lidars; at least one.
+  std::vector<LidarConfig> all_lidars() const {
+    return lidars.empty() ? std::vector<LidarConfig>{lidar()} : lidars;
+  }
+  /// The first lidar. Its sweeps set the rate and the time of the scans.
+  LidarConfig lidar() const {
+    if (!lidars.empty()) return lidars.front();
+    LidarConfig one;
+    one.mounting.z = lidar_height;
+    one.rings = lidar_rings;
+    one.lowest = lidar_lowest;
+    one.highest = lidar_highest;
+    return one;
+  }
 
   bool sideways() const { return drive == Drive::holonomic || drive == Drive::aerial; }
   /// Steepest ground it goes on, rise per run: stairs of its highest step are as steep.

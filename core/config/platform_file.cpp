@@ -4,6 +4,7 @@
 
 #include "core/config/node.hpp"
 #include "core/config/search.hpp"
+#include "core/config/sensors_file.hpp"
 
 namespace adit::config {
 namespace {
@@ -70,10 +71,28 @@ Result<Platform> load_platform_file(const std::string& path) {
   p.max_turn_acceleration = root.number("max_turn_acceleration", above(0, 50), p.max_turn_acceleration);
   p.step = root.number("step", within(0, 1));
   p.max_slope = root.number("max_slope", within(0.05, 1.5), p.max_slope);
-  p.lidar_height = root.number("lidar_height", above(0, 5));
+  const Node sensors = root.child_if("sensors");
+  const bool has_lidar = sensors.is_mapping() && sensors.has("lidar");
+  if (!has_lidar)
+    p.lidar_height = root.number("lidar_height", above(0, 5));
+  else if (root.has("lidar_height"))
+    root.child("lidar_height")
+        .fail(Reason::out_of_range, "expected no lidar_height beside a lidar of sensors, which has a z");
   p.lidar_rings = static_cast<int>(root.integer("lidar_rings", 2, 128, p.lidar_rings));
   p.lidar_lowest = root.number("lidar_lowest", within(-89, 0), p.lidar_lowest);
   p.lidar_highest = root.number("lidar_highest", within(0, 89), p.lidar_highest);
+  p.max_tilt = root.number("max_tilt", above(0, 1.5), p.max_tilt);
+  if (sensors.present()) {
+    Sensors read = read_sensors(sensors, p.lidar(), p.flies());
+    p.lidars = std::move(read.lidars);
+    p.imu = std::move(read.imu);
+  }
+  if (!p.lidars.empty()) {
+    p.lidar_height = p.lidars.front().mounting.z;
+    p.lidar_rings = p.lidars.front().rings;
+    p.lidar_lowest = p.lidars.front().lowest;
+    p.lidar_highest = p.lidars.front().highest;
+  }
   p.stairs = root.flag("stairs", false);
   p.router = root.text("router", p.router);
   p.planner = root.text("planner", p.planner);

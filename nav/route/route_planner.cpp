@@ -18,7 +18,7 @@ RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
       params_(params),
       gate_width_(platform.planner == "lattice" ? platform.width + kTightGate
                                                 : std::hypot(platform.length, platform.width) + kGateMargin),
-      map_(params, ScanProfile::most_wrong(platform, params)),
+      map_(params, ScanProfile::most_wrong(platform)),
       profile_(platform, params),
       graph_(map_, platform, params) {}
 

@@ -69,7 +69,7 @@ class RoutePlanner {
     SurfaceMap map;
     RouteGraph graph;
     Doubts(const Platform& platform, const RouteParams& params)
-        : map(params, ScanProfile::most_wrong(platform, params)), graph(map, platform, params, true) {}
+        : map(params, ScanProfile::most_wrong(platform)), graph(map, platform, params, true) {}
   };
 
   Platform platform_;

@@ -30,22 +30,33 @@ float bearing(float y, float x) {
   return y < 0 ? -angle : angle;
 }
 
+/// How much ground may rise per metre where nothing was seen between two returns. Steeper ground shows more
+/// returns; with more a box of half a metre between two rings would pass for a ramp.
+double rise_between_returns(const Traversability& limits) {
+  constexpr double kMost = 0.35;
+  return std::min(kMost, limits.slope);
+}
+
 }  // namespace
 
 ScanProfile::ScanProfile(const Platform& platform, const RouteParams& params)
+    : ScanProfile(platform, params, Traversability::of(platform)) {}
+
+ScanProfile::ScanProfile(const Platform& platform, const RouteParams& params, const Traversability& limits)
     : platform_(platform),
       params_(params),
-      clear_(static_cast<float>(std::max(platform.height, platform.lidar_height) + params.height_margin)),
-      step_(static_cast<float>(platform.step + params.step_margin)),
-      drop_(static_cast<float>(std::max(params.drop, 2 * platform.step))),
-      slope_(static_cast<float>(params.slope)) {
+      clear_(static_cast<float>(limits.headroom)),
+      step_(static_cast<float>(limits.obstacle)),
+      drop_(static_cast<float>(limits.drop)),
+      slope_(static_cast<float>(rise_between_returns(limits))) {
   list_sectors();
 }
 
-float ScanProfile::most_wrong(const Platform& platform, const RouteParams& params) {
-  constexpr double noise = 0.05;
-  const double rise = platform.step + params.step_margin + noise;
-  return static_cast<float>(std::max({rise, params.drop, 2 * platform.step}) + params.slope * double{kRun});
+float ScanProfile::most_wrong(const Platform& platform) {
+  constexpr double kNoise = 0.05;  // m
+  const auto limits = Traversability::of(platform);
+  return static_cast<float>(std::max(limits.obstacle + kNoise, limits.drop) +
+                            rise_between_returns(limits) * double{kRun});
 }
 
 void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& body) {

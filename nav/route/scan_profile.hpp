@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/config/platform.hpp"
+#include "core/config/traversability.hpp"
 #include "core/geometry/pose.hpp"
 #include "nav/route/surface_map.hpp"
 
@@ -18,13 +19,14 @@ class ScanProfile {
  public:
   ScanProfile(const Platform& platform, const RouteParams& params);
   /// So much higher or lower than the ground before it something may pass for ground, m.
-  static float most_wrong(const Platform& platform, const RouteParams& params);
+  static float most_wrong(const Platform& platform);
 
   /// `points`: in base_link, m, not finite or on the own body where nothing was hit. `body`: in the map's
   /// frame.
   void add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map);
 
  private:
+  ScanProfile(const Platform& platform, const RouteParams& params, const Traversability& limits);
   static constexpr int kDirections = 360;
   static constexpr int kQuarter = kDirections / 4;
   struct Return {

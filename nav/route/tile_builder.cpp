@@ -24,17 +24,20 @@ constexpr double kNoise = 0.05;       // m: of two heights; or a kerb with a ram
 // Less than the body needs: the nearest cell's middle lies aside of the middle of a gap. The local
 // planner knows better, and tells when it does not get through.
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, bool doubting)
+    : TileBuilder(platform, params, Traversability::of(platform), doubting) {}
+
+TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits,
+                         bool doubting)
     : hard_(std::max(platform.width / 2 - kAsideOfGap, kRouteCell)),
       comfort_(
           std::min(std::hypot(platform.length, platform.width) / 2 + params.comfort, kTileHalo * kRouteCell)),
       narrow_cost_(params.narrow_cost),
-      rise_(static_cast<float>(
-          std::max(platform.step, std::max(params.slope, platform.steepest()) * kRouteCell) +
-          params.step_margin + (platform.stairs ? kRiser : 0.0))),
+      rise_(static_cast<float>(std::max(limits.step, limits.slope * kRouteCell) + limits.obstacle -
+                               limits.step + (platform.stairs ? kRiser : 0.0))),
       doubtful_rise_(std::max(rise_, kTall * kTopUnit)),
       unknown_cost_(static_cast<float>(params.unknown_cost)),
-      step_(platform.step + params.step_margin),
-      slope_(std::max(params.slope, platform.steepest())),
+      step_(limits.obstacle),
+      slope_(limits.slope),
       climbs_stairs_(platform.stairs),
       doubting_(doubting) {
   for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)

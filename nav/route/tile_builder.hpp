@@ -3,6 +3,7 @@
 #include <span>
 
 #include "core/config/platform.hpp"
+#include "core/config/traversability.hpp"
 #include "nav/route/surface_map.hpp"
 
 namespace adit::nav {
@@ -45,6 +46,8 @@ class TileBuilder {
   float unknown_cost() const { return unknown_cost_; }
 
  private:
+  TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits,
+              bool doubting);
   static constexpr std::uint8_t kTall = 18;  ///< kTopUnit each: higher is a wall or an edge, also from afar
   bool certain(const GroundCell& cell) const { return !doubting_ || cell.sure; }
   /// What was only drawn, from afar, says nothing.

@@ -15,29 +15,27 @@ constexpr std::size_t kMostUnder = 16384;
 constexpr double kStood = 0.005;     ///< m: a robot that moved less stands
 constexpr double kLidarShare = 0.7;  ///< of the lidar's height: a first return as high as this may be ground
 
-double drop_of(const Platform& platform, const TerrainParams& params) {
-  return std::max(params.drop, 1.5 * platform.step);
-}
-
 GroundParams ground_params(const Platform& platform, const TerrainParams& params) {
-  const double rise = std::max(0.03, platform.step) + (platform.stairs ? params.step_margin + kRiser : 0.0);
+  const auto limits = Traversability::of(platform);
+  const double rise = platform.stairs ? limits.obstacle + kRiser : std::max(0.03, limits.step);
   GroundParams ground;
-  ground.slope = static_cast<float>(platform.steepest());
-  ground.rise = static_cast<float>(std::max(rise, platform.steepest() * double{GroundGrid::kCell} + 0.02));
-  ground.drop = static_cast<float>(drop_of(platform, params));
+  ground.slope = static_cast<float>(limits.slope);
+  ground.rise = static_cast<float>(std::max(rise, limits.slope * double{GroundGrid::kCell} + 0.02));
+  ground.drop = static_cast<float>(limits.drop);
   ground.most = static_cast<float>(kLidarShare * platform.lidar_height);
   ground.memory = static_cast<float>(params.ground_memory);
   return ground;
 }
 
-SurfaceParams surface_params(const Platform& platform, const TerrainParams& params) {
+SurfaceParams surface_params(const Platform& platform) {
+  const auto limits = Traversability::of(platform);
   SurfaceParams surface;
-  surface.slope = static_cast<float>(platform.steepest());
-  surface.step = static_cast<float>(std::max(platform.step, 0.02));
+  surface.slope = static_cast<float>(limits.slope);
+  surface.step = static_cast<float>(std::max(limits.step, 0.02));
   // On stairs the edges seen from below are uncertain; what is too high for legs stands in the way anyway.
   if (!platform.stairs)
     surface.blocking_step = static_cast<float>(
-        std::max(platform.step, platform.steepest() * double{GroundGrid::kCell}) + params.step_margin);
+        std::max(limits.step, limits.slope * double{GroundGrid::kCell}) + limits.obstacle - limits.step);
   return surface;
 }
 
@@ -46,11 +44,12 @@ SurfaceParams surface_params(const Platform& platform, const TerrainParams& para
 TerrainMap::TerrainMap(const Platform& platform, const TerrainParams& params)
     : platform_(platform),
       params_(params),
+      limits_(Traversability::of(platform)),
       body_(platform),
       ground_(ground_params(platform, params)),
       obstacles_(body_, params),
       drops_(params),
-      surface_(surface_params(platform, params)),
+      surface_(surface_params(platform)),
       solid_(GroundGrid::kSide * GroundGrid::kSide, 0),
       drop_(GroundGrid::kSide * GroundGrid::kSide, 0) {
   near_.reserve(kUsualReturns);
@@ -96,7 +95,7 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   classify(view);
   drops_.silent(view, rays_, ground_);
   drops_.finish(view, rays_, ground_);
-  obstacles_.keep(view, rays_, ground_, static_cast<float>(platform_.step + params_.step_margin));
+  obstacles_.keep(view, rays_, ground_, static_cast<float>(limits_.obstacle));
   std::fill(solid_.begin(), solid_.end(), std::uint8_t{0});
   for (const auto& e : obstacles_.entries())
     if (e.again) solid_[static_cast<std::size_t>(ground_.window(e.x(), e.y()))] = 1;
@@ -138,10 +137,9 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
 }
 
 void TerrainMap::classify(const View& view) {
-  const auto step = static_cast<float>(platform_.step + params_.step_margin);
-  const auto top =
-      static_cast<float>(std::max(platform_.height, platform_.lidar_height) + params_.height_margin);
-  const auto drop = static_cast<float>(-drop_of(platform_, params_));
+  const auto step = static_cast<float>(limits_.obstacle);
+  const auto top = static_cast<float>(limits_.headroom);
+  const auto drop = static_cast<float>(-limits_.drop);
   under_.clear();
   for (const Eigen::Vector3f& p : near_) {
     const float climb = p.z() - ground_.before(p.x(), p.y());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/config/platform.hpp"
+#include "core/config/traversability.hpp"
 #include "nav/terrain/drops.hpp"
 #include "nav/terrain/obstacle_cells.hpp"
 #include "nav/terrain/surface.hpp"
@@ -44,6 +45,7 @@ class TerrainMap {
 
   Platform platform_;
   TerrainParams params_;
+  Traversability limits_;
   Footprint body_;
   GroundGrid ground_;
   ObstacleCells obstacles_;

@@ -4,11 +4,6 @@ namespace adit::nav {
 
 struct TerrainParams {
   double range{4.5};           ///< the terrain is known this far around the robot, m, [1, 4.7]
-  double height_margin{0.15};  ///< what hangs this much above body and lidar is passed under, m, [0, 1]
-  double step_margin{0.025};   ///< more than the step's height by this is an obstacle, m: a kerb of exactly
-                               ///< the step, measured with noise, must not be one, [0, 0.1]
-  double drop{0.15};           ///< ground lower than before by this is a drop (at least 1.5 steps), m,
-                               ///< [0.05, 2]
   double memory{4.0};          ///< an obstacle that is hidden is forgotten after, s, (0, 60]
   double ground_memory{60.0};  ///< the same for the height of the ground, s, (0, 600]
   double drop_memory{20.0};    ///< and for a drop that could be seen and is not, s, (0, 600]

@@ -38,7 +38,7 @@ TEST(RouteSteps, AStepThatWasOnlySeenFromAfarProvesNothing) {
 /// A line from afar over an edge, of who doubts what was seen from there.
 bool passes_edge(double height, SurfaceMap::Seen seen, bool doubting) {
   const RouteParams params;
-  SurfaceMap map(params, ScanProfile::most_wrong(wheeled(), params));
+  SurfaceMap map(params, ScanProfile::most_wrong(wheeled()));
   RouteGraph graph(map, wheeled(), params, doubting);
   map.begin_scan(0, 0);
   for (int ix = 80; ix < 120; ++ix)
@@ -62,7 +62,7 @@ struct Rise {
 };
 Rise passes_rise(const Platform& platform, double rise, int run, bool doubting) {
   const RouteParams params;
-  SurfaceMap map(params, ScanProfile::most_wrong(platform, params));
+  SurfaceMap map(params, ScanProfile::most_wrong(platform));
   RouteGraph graph(map, platform, params, doubting);
   map.begin_scan(0, 0);
   double highest = 0;
@@ -188,7 +188,7 @@ TEST(RouteSteps, WhoStandsOnARampSeesNoWallUpOrDownIt) {
 TEST(RouteSteps, WhatStandsOnAnotherFloorStandsOnThisToo) {
   const RouteParams params;
   for (const bool wall : {false, true}) {
-    SurfaceMap map(params, ScanProfile::most_wrong(wheeled(), params));
+    SurfaceMap map(params, ScanProfile::most_wrong(wheeled()));
     RouteGraph graph(map, wheeled(), params, true);
     for (int scan = 0; scan < 8; ++scan) {  // from afar, a wall at the foot of what is higher
       map.begin_scan(20, 0);

@@ -1,0 +1,84 @@
+#include "core/config/sensors_file.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace adit::config {
+namespace {
+
+Mounting read_mounting(const Node& node, bool flies) {
+  constexpr double kTurn = 2 * M_PI;
+  Mounting m;
+  m.x = node.number("x", within(-5, 5));
+  m.y = node.number("y", within(-5, 5));
+  m.z = node.number("z", flies ? within(-5, 5) : above(0, 5));
+  m.roll = node.number("roll", within(-kTurn, kTurn), 0.0);
+  m.pitch = node.number("pitch", within(-kTurn, kTurn), 0.0);
+  m.yaw = node.number("yaw", within(-kTurn, kTurn), 0.0);
+  return m;
+}
+
+/// What its driver sends.
+void read_source(const Node& node, std::string& topic, std::string& frame) {
+  topic = node.text("topic", topic);
+  frame = node.text("frame", frame);
+  if (topic.empty() || frame.empty())
+    node.fail(Reason::out_of_range, "expected a topic and a frame that are not empty");
+}
+
+LidarConfig read_lidar(const Node& node, const LidarConfig& usual, bool flies) {
+  LidarConfig lidar = usual;
+  lidar.mounting = read_mounting(node, flies);
+  read_source(node, lidar.topic, lidar.frame);
+  lidar.rings = static_cast<int>(node.integer("rings", 1, 256, lidar.rings));
+  lidar.lowest = node.number("lowest", within(-89, 0), lidar.lowest);
+  lidar.highest = node.number("highest", within(0, 89), lidar.highest);
+  lidar.rate = node.number("rate", within(1, 50), lidar.rate);
+  lidar.min_range = node.number("min_range", within(0, 5), lidar.min_range);
+  lidar.max_range = node.number("max_range", within(1, 500), lidar.max_range);
+  lidar.noise = node.number("noise", within(0, 0.5), lidar.noise);
+  if (lidar.min_range >= lidar.max_range)
+    node.fail(Reason::out_of_range, "expected min_range below max_range");
+  return lidar;
+}
+
+ImuConfig read_imu(const Node& node, bool flies) {
+  ImuConfig imu;
+  imu.mounting = read_mounting(node, flies);
+  read_source(node, imu.topic, imu.frame);
+  imu.rate = node.number("rate", within(10, 2000), imu.rate);
+  return imu;
+}
+
+}  // namespace
+
+Sensors read_sensors(const Node& sensors, const LidarConfig& usual, bool flies) {
+  Sensors out;
+  const Node lidar = sensors.child_if("lidar");
+  if (lidar.present()) {
+    const std::vector<Node> each = lidar.is_list() ? lidar.as_list() : std::vector<Node>{lidar};
+    if (each.empty() || each.size() > Sensors::kMaxLidars)
+      lidar.fail(Reason::out_of_range, "expected 1 to 4 lidars");
+    for (const Node& node : each) {
+      const LidarConfig read = read_lidar(node, usual, flies);
+      for (const LidarConfig& other : out.lidars)
+        if (other.topic == read.topic || other.frame == read.frame)
+          node.fail(Reason::out_of_range, "expected a topic and a frame that no other lidar has");
+      if (out.lidars.size() < Sensors::kMaxLidars) out.lidars.push_back(read);
+    }
+  }
+  if (const Node imu = sensors.child_if("imu"); imu.present()) out.imu = read_imu(imu, flies);
+  return out;
+}
+
+Result<Sensors> load_sensors_file(const std::string& path) {
+  auto file = load(path);
+  if (!file) return file.error();
+  const bool outer = file->has("sensors");
+  Sensors sensors = read_sensors(outer ? file->child("sensors") : *file, {}, true);
+  if (auto done = file->finish(); !done) return done.error();
+  if (sensors.lidars.empty()) return Error{Reason::missing_key, path + ": expected a lidar"};
+  return sensors;
+}
+
+}  // namespace adit::config
