@@ -12,8 +12,8 @@
 namespace adit::station {
 namespace {
 
-constexpr std::size_t max_waiting = 64;
-constexpr std::size_t max_flows = 64;
+constexpr std::size_t kMaxWaiting = 64;
+constexpr std::size_t kMaxFlows = 64;
 
 using command::Request;
 using command::Runs;
@@ -93,7 +93,7 @@ std::uint64_t Station::Impl::execute(const Request& request, Done done) {
                                                   earlier.request.robots.end(), request.robots.begin(),
                                                   request.robots.end()) != earlier.request.robots.end();
                       });
-  if ((behind || must_wait(request)) && waiting_.size() < max_waiting)
+  if ((behind || must_wait(request)) && waiting_.size() < kMaxWaiting)
     waiting_.push_back({handle, request, std::move(done)});
   else
     run(handle, request, std::move(done));
@@ -209,16 +209,18 @@ void Station::Impl::command_robot(std::uint64_t handle, const std::string& robot
   if (!fleet_.robot(robot) && request.verb != verb("stop"))
     return ended({.robot = robot, .reason = Reason::unknown_robot, .text = unknown_text(fleet_)});
   if (const auto steer = steering(request))
-    return add_flow(handle, std::make_shared<Steer>(parts(), robot, *steer, ended), ended);
+    return add_flow(handle, std::make_shared<Steer>(flow_dependencies(), robot, *steer, ended), ended);
   if (request.verb == verb("stop")) end_flows(robot, Reason::stopped);
   const bool asks_for_mode = !request.info->conditions.mode.empty();
   if (asks_for_mode && request.word("MODE") == "hold") end_flows(robot, Reason::cancelled);
   const Flow::Done answered =
       asks_for_mode ? end_drives_when_accepted(robot) : Flow::Done([](const Answer&) {});
-  Order order{.robot = robot, .request = request};
+  RobotCommand robot_command{.robot = robot, .request = request};
   if (request.verb == verb("goto") && request.has("--wait"))
-    return add_flow(handle, std::make_shared<Arrival>(parts(), std::move(order), answered, ended), ended);
-  sender_.send(std::move(order), [answered, ended](const Answer& answer) {
+    return add_flow(handle,
+                    std::make_shared<Arrival>(flow_dependencies(), std::move(robot_command), answered, ended),
+                    ended);
+  sender_.send(std::move(robot_command), [answered, ended](const Answer& answer) {
     answered(answer);
     ended(answer);
   });
@@ -345,7 +347,7 @@ void Station::Impl::add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, c
   };
   const auto others = std::count_if(flows_.begin(), flows_.end(),
                                     [&](const auto& entry) { return !replaced(*entry.second); });
-  if (static_cast<std::size_t>(others) >= max_flows)
+  if (static_cast<std::size_t>(others) >= kMaxFlows)
     return ended({.robot = flow->robot(),
                   .reason = Reason::queue_full,
                   .text = "64 drives and waits are going on at this station already"});

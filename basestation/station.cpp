@@ -19,10 +19,10 @@ namespace adit::station {
 using namespace std::chrono_literals;
 
 namespace {
-constexpr std::uint16_t protocol = 1;
-constexpr Duration report_period = 2s;
-constexpr Duration tick_period = 100ms;
-constexpr std::size_t max_report_topics = 16;
+constexpr std::uint16_t kProtocol = 1;
+constexpr Duration kReportPeriod = 2s;
+constexpr Duration kTickPeriod = 100ms;
+constexpr std::size_t kMaxReportTopics = 16;
 }  // namespace
 
 struct Station::Impl::Radio {
@@ -33,7 +33,7 @@ struct Station::Impl::Radio {
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
 };
 
-Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire::Wire& radio)
+Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire::Participant& radio)
     : owner_(owner),
       params_(std::move(params)),
       strand_(strand),
@@ -71,27 +71,27 @@ Result<void> Station::Impl::start() {
     sender_.prepare(robot.name);
     announce_often();
   };
-  sender_.on_sent = [this](const Order& order, std::uint64_t seq) {
-    if (owner_.on_sent) owner_.on_sent(order, seq);
+  sender_.on_sent = [this](const RobotCommand& robot_command, std::uint64_t seq) {
+    if (owner_.on_sent) owner_.on_sent(robot_command, seq);
   };
   sender_.on_late = [this](const Answer& answer) { late_stop(answer); };
 
-  auto presence = wire::Writer<radio::Presence>::make(radio_, wire::topics::presence);
+  auto presence = wire::Writer<radio::Presence>::make(radio_, wire::topics::kPresence);
   if (!presence) return presence.error();
   topics_->presence = std::move(*presence);
-  auto capabilities = wire::Writer<radio::Capabilities>::make(radio_, wire::topics::capabilities);
+  auto capabilities = wire::Writer<radio::Capabilities>::make(radio_, wire::topics::kCapabilities);
   if (!capabilities) return capabilities.error();
   topics_->capabilities = std::move(*capabilities);
-  auto report = wire::Writer<radio::LinkReport>::make(radio_, wire::topics::link_report);
+  auto report = wire::Writer<radio::LinkReport>::make(radio_, wire::topics::kLinkReport);
   if (!report) return report.error();
   topics_->report = std::move(*report);
 
-  auto findings = wire::Writer<radio::FindingsAck>::make(radio_, wire::topics::findings_ack);
+  auto findings = wire::Writer<radio::FindingsAck>::make(radio_, wire::topics::kFindingsAck);
   if (!findings) return findings.error();
   topics_->findings = std::move(*findings);
   if (const std::string lost = desk_.load().text(); !lost.empty())
     desk_outputs().trouble("findings_damaged", lost);
-  auto found = wire::make_reader(radio_, wire::topics::finding, strand_,
+  auto found = wire::make_reader(radio_, wire::topics::kFinding, strand_,
                                  [this](const radio::Finding& sample, const wire::SampleInfo&) {
                                    desk_.hear(from_radio(sample), {sample.kept(), sample.overflowed()});
                                  });
@@ -99,23 +99,23 @@ Result<void> Station::Impl::start() {
   topics_->readers.push_back(std::move(*found));
 
   auto answers =
-      wire::make_reader(radio_, wire::topics::acknowledgement, strand_,
+      wire::make_reader(radio_, wire::topics::kAcknowledgement, strand_,
                         [this](const radio::Acknowledgement& sample, const wire::SampleInfo& info) {
                           heard_acknowledgement(sample, info);
                         });
   if (!answers) return answers.error();
   topics_->readers.push_back(std::move(*answers));
   for (const Result<void>& opened :
-       {read(wire::topics::capabilities), read(wire::topics::presence), read(wire::topics::robot_state),
-        read(wire::topics::authority), read(wire::topics::behaviour), read(wire::topics::notification),
-        read(wire::topics::health), read(wire::topics::link_report)})
+       {read(wire::topics::kCapabilities), read(wire::topics::kPresence), read(wire::topics::kRobotState),
+        read(wire::topics::kAuthority), read(wire::topics::kBehaviour), read(wire::topics::kNotification),
+        read(wire::topics::kHealth), read(wire::topics::kLinkReport)})
     if (!opened) return opened.error();
 
   radio::Capabilities self;
   self.name(params_.name);
   self.kind(radio::AGENT_STATION);
   self.id(params_.id);
-  self.protocol(protocol);
+  self.protocol(kProtocol);
   self.software(params_.software);
   if (params_.place) {
     self.placed(true);
@@ -140,10 +140,10 @@ Result<void> Station::Impl::start() {
   timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {
     timers_.push_back(strand_.every(params_.presence, [this] { announce(); }));
   }));
-  timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(report_period)), [this] {
-    timers_.push_back(strand_.every(report_period, [this] { report_traffic(); }));
+  timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(kReportPeriod)), [this] {
+    timers_.push_back(strand_.every(kReportPeriod, [this] { report_traffic(); }));
   }));
-  timers_.push_back(strand_.every(tick_period, [this] { tick(); }));
+  timers_.push_back(strand_.every(kTickPeriod, [this] { tick(); }));
   return {};
 }
 
@@ -172,7 +172,7 @@ void Station::Impl::announce() {
   presence.name(params_.name);
   presence.kind(radio::AGENT_STATION);
   presence.id(params_.id);
-  presence.protocol(protocol);
+  presence.protocol(kProtocol);
   presence.seq(++presence_seq_);
   fleet_.said_present(presence_seq_, strand_.now());
   (void)topics_->presence.write(presence);  // the next one is at most a second away
@@ -203,7 +203,7 @@ void Station::Impl::report_traffic() {
   report.dropped(view.sender.dropped);
   report.seq(++report_seq_);
   for (const TopicRate& rate : view.topics) {
-    if (report.topics().size() == max_report_topics) break;
+    if (report.topics().size() == kMaxReportTopics) break;
     radio::TopicTraffic row;
     row.topic(rate.topic);
     row.bytes_out(rate.bytes_out);
@@ -230,7 +230,7 @@ void Station::Impl::heard_acknowledgement(const radio::Acknowledgement& sample,
     if (flow->robot() == sample.robot()) flow->stream_refused(reason, text);
 }
 
-Station::Station(StationParams params, Executor& strand, wire::Wire& radio)
+Station::Station(StationParams params, Executor& strand, wire::Participant& radio)
     : impl_(std::make_unique<Impl>(*this, std::move(params), strand, radio)) {}
 Station::~Station() = default;
 

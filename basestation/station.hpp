@@ -12,7 +12,7 @@
 #include "core/command/request.hpp"
 #include "core/exec/executor.hpp"
 #include "core/store/disk.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::station {
 
@@ -39,7 +39,7 @@ class Station {
  public:
   using Done = std::function<void(const Outcome&)>;
 
-  Station(StationParams params, Executor& strand, wire::Wire& radio);
+  Station(StationParams params, Executor& strand, wire::Participant& radio);
   ~Station();
   Station(const Station&) = delete;
   Station& operator=(const Station&) = delete;
@@ -74,7 +74,7 @@ class Station {
   bool closed() const;
 
   /// Observers, called on the strand. Set them before start().
-  std::function<void(const Order&, std::uint64_t seq)> on_sent{};
+  std::function<void(const RobotCommand&, std::uint64_t seq)> on_sent{};
   std::function<void(const Answer&)> on_answer{};
   std::function<void(const Notice&)> on_notice{};
   std::function<void()> on_down{};

@@ -23,7 +23,7 @@ struct Gather {
 
 class Station::Impl {
  public:
-  Impl(Station& owner, StationParams params, Executor& strand, wire::Wire& radio);
+  Impl(Station& owner, StationParams params, Executor& strand, wire::Participant& radio);
   ~Impl();
 
   Result<void> start();
@@ -38,7 +38,7 @@ class Station::Impl {
   Station& owner_;
   StationParams params_;
   Executor& strand_;
-  wire::Wire& radio_;
+  wire::Participant& radio_;
   Fleet fleet_;
   Sender sender_;
   Stick stick_;
@@ -93,7 +93,7 @@ class Station::Impl {
   /// Takes the robot's answer to a command that asks for a mode: an accepted one ends what drives the robot
   /// now.
   Flow::Done end_drives_when_accepted(const std::string& robot) const;
-  FlowParts parts() { return {strand_, fleet_, sender_, stick_}; }
+  FlowDependencies flow_dependencies() { return {strand_, fleet_, sender_, stick_}; }
   bool fresh(Duration span) const { return strand_.now() - started_ < span; }
 
   Time started_;

@@ -6,7 +6,7 @@
 #include "core/time/random.hpp"
 #include "nav/control/controller.hpp"
 #include "nav/make_planner.hpp"
-#include "robot_agent/agent_parts.hpp"
+#include "robot_agent/agent_impl.hpp"
 
 namespace adit::agent {
 namespace {
@@ -22,7 +22,7 @@ Id drawn(Random random) {
 
 }  // namespace
 
-Agent::Agent(AgentParams params, Runtime& runtime, wire::Wire& radio, wire::Wire& robot)
+Agent::Agent(AgentParams params, Runtime& runtime, wire::Participant& radio, wire::Participant& robot)
     : params_(std::move(params)), runtime_(runtime), radio_(radio), robot_(robot) {
   if (params_.id == Id{}) params_.id = drawn(Random(params_.seed).fork(kIdentitySalt));
 }
@@ -30,7 +30,7 @@ Agent::Agent(AgentParams params, Runtime& runtime, wire::Wire& radio, wire::Wire
 Agent::~Agent() = default;
 
 Result<void> Agent::start() {
-  if (parts_) return {Reason::in_use, "the agent runs already"};
+  if (impl_) return {Reason::in_use, "the agent runs already"};
   if (!valid_name(params_.name))
     return {Reason::bad_argument, "a robot's name is 1 to 32 of [A-Za-z0-9_-], not '" + params_.name + "'"};
   if (const auto known = nav::make_controller(params_.platform.controller, params_.platform); !known)
@@ -44,10 +44,10 @@ Result<void> Agent::start() {
     return {Reason::bad_argument, "platform " + params_.platform.name + ": router '" +
                                       params_.platform.router + "' leads over ground: none for what flies"};
   params_.id = restore_identity(params_.disk, params_.id);
-  auto parts = std::make_unique<Parts>(params_, runtime_);
-  if (const auto opened = parts->open(radio_, robot_); !opened) return opened.error();
-  parts_ = std::move(parts);
-  parts_->watch->start();
+  auto impl = std::make_unique<Impl>(params_, runtime_);
+  if (const auto opened = impl->open(radio_, robot_); !opened) return opened.error();
+  impl_ = std::move(impl);
+  impl_->watch->start();
   return {};
 }
 
@@ -55,38 +55,39 @@ void Agent::at_console(const std::string& line, std::function<void(const std::st
   std::istringstream words(line);
   std::string verb, component, policy;
   words >> verb >> component >> policy;
-  if (verb == "health") return parts_->watch->describe(std::move(answer));
+  if (verb == "health") return impl_->watch->describe(std::move(answer));
   if (verb == "restart" || (verb == "policy" && (policy == "auto" || policy == "manual"))) {
-    const auto done = verb == "restart" ? parts_->watch->restart(component)
-                                        : parts_->watch->set_policy(component, policy == "auto");
+    const auto done = verb == "restart" ? impl_->watch->restart(component)
+                                        : impl_->watch->set_policy(component, policy == "auto");
     return answer(done ? "done\n" : done.error().text + "\n");
   }
-  parts_->command_strand().post([edges = parts_->edges.get(), line, answer = std::move(answer)] {
-    answer(edges->core ? edges->core->at_console(line) : "the command component is being restarted\n");
+  impl_->command_strand().post([context = impl_->context.get(), line, answer = std::move(answer)] {
+    answer(context->command_component ? context->command_component->at_console(line)
+                                      : "the command component is being restarted\n");
   });
 }
 
 void Agent::report(findings::Finding finding) {
-  Executor& strand = parts_->command_strand();
-  strand.post([edges = parts_->edges.get(), &strand, finding = std::move(finding)]() mutable {
+  Executor& strand = impl_->command_strand();
+  strand.post([context = impl_->context.get(), &strand, finding = std::move(finding)]() mutable {
     if (finding.stamp == 0) finding.stamp = to_stamp(strand.now());
-    if (const auto taken = edges->findings->report(std::move(finding)); !taken)
-      edges->notifier->send(
+    if (const auto taken = context->findings->report(std::move(finding)); !taken)
+      context->notifier->send(
           {{}, Severity::warning, "finding_refused", taken.reason(), "a finding: " + taken.error().text});
   });
 }
 
 void Agent::map_frame(Executor& caller, std::function<void(const Result<MapFrame>&)> done) {
-  parts_->edges->frames.find.call(caller, {}, {}, std::move(done));
+  impl_->context->frames.find.call(caller, {}, {}, std::move(done));
 }
 
 void Agent::correct_map(Executor& caller, const MapFrame& corrected,
                         std::function<void(const Result<MapFrame>&)> done) {
-  parts_->edges->frames.correct.call(caller, corrected, {}, std::move(done));
+  impl_->context->frames.correct.call(caller, corrected, {}, std::move(done));
 }
 
 Result<void> Agent::inject(const std::string& component, ComponentFault fault) {
-  Unit* unit = parts_ ? parts_->find(component) : nullptr;
+  Unit* unit = impl_ ? impl_->find(component) : nullptr;
   if (!unit) return {Reason::bad_argument, "no component is named " + component};
   unit->inject(fault);
   return {};

@@ -11,8 +11,8 @@
 #include "core/log/log.hpp"
 #include "core/result/result.hpp"
 #include "core/store/disk.hpp"
-#include "core/supervisor/overseer.hpp"
-#include "core/wire/wire.hpp"
+#include "core/supervisor/restart_policy_engine.hpp"
+#include "core/wire/participant.hpp"
 #include "robot_agent/command/types.hpp"
 #include "robot_agent/motion/map_frame.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
@@ -69,7 +69,7 @@ struct AgentParams {
 /// outlive it.
 class Agent {
  public:
-  Agent(AgentParams params, Runtime& runtime, wire::Wire& radio, wire::Wire& robot);
+  Agent(AgentParams params, Runtime& runtime, wire::Participant& radio, wire::Participant& robot);
   ~Agent();
   Agent(const Agent&) = delete;
   Agent& operator=(const Agent&) = delete;
@@ -105,14 +105,14 @@ class Agent {
   Result<void> inject(const std::string& component, ComponentFault fault);
 
  private:
-  class Core;
-  struct Edges;
-  struct Parts;
+  class CommandComponent;
+  struct Context;
+  struct Impl;
   AgentParams params_;
   Runtime& runtime_;
-  wire::Wire& radio_;
-  wire::Wire& robot_;
-  std::unique_ptr<Parts> parts_{};
+  wire::Participant& radio_;
+  wire::Participant& robot_;
+  std::unique_ptr<Impl> impl_{};
 };
 
 }  // namespace adit::agent

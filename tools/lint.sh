@@ -103,11 +103,11 @@ check_words() {
 # findings there are. When a rule's count is 0, delete the rule here. nav/ joins when it is rebuilt.
 language_open() {
   cat <<'TEXT'
-basestation  words comments constants columns
+basestation  words comments columns
 bench        words comments constants columns
-core         words comments constants columns
-robot_agent  words comments constants columns
-sim          words comments constants columns
+core         words comments columns
+robot_agent  words comments columns
+sim          words comments columns
 tests        words comments constants columns
 nav          words comments constants columns
 TEXT

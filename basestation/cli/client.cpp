@@ -81,7 +81,7 @@ int print_outcome(const Options& options, const json& outcome) {
     std::fflush(stdout);
     std::fputs(outcome.value("error", std::string()).c_str(), stderr);
   }
-  return outcome.value("exit", exit_refused);
+  return outcome.value("exit", kExitRefused);
 }
 
 int fail(const Options& options, int exit_code, const Error& error) {
@@ -106,11 +106,11 @@ int run_line(Client& client, const Options& options, const std::string& line) {
   std::optional<Clock::time_point> cancelled;
   while (!outcome) {
     if (!client.wait(200) && !outcome)
-      return fail(options, exit_no_answer, {Reason::no_answer, client.gone()});
+      return fail(options, kExitNoAnswer, {Reason::no_answer, client.gone()});
     const auto now = Clock::now();
     if (!begun && !outcome && now - started > std::chrono::seconds(5))
       return fail(
-          options, exit_no_answer,
+          options, kExitNoAnswer,
           {Reason::no_answer, "the station of " + options.name + " does not answer; end its process"});
     if (interrupted()) {
       if (cancelled) return 130;

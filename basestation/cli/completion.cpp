@@ -11,14 +11,14 @@
 namespace adit::station::cli {
 namespace {
 
-constexpr const char* bash_script = R"sh(_basestation() {
+constexpr const char* kBashScript = R"sh(_basestation() {
   local IFS=$'\n'
   COMPREPLY=($(compgen -W "$(basestation completion words "${COMP_WORDS[@]:1:COMP_CWORD}" 2>/dev/null)" -- "${COMP_WORDS[COMP_CWORD]}"))
 }
 complete -o default -F _basestation basestation
 )sh";
 
-constexpr const char* zsh_script = R"sh(#compdef basestation
+constexpr const char* kZshScript = R"sh(#compdef basestation
 _basestation() {
   local -a found
   found=("${(@f)$(basestation completion words "${(@)words[2,CURRENT]}" 2>/dev/null)}")
@@ -27,7 +27,7 @@ _basestation() {
 compdef _basestation basestation
 )sh";
 
-constexpr const char* fish_script =
+constexpr const char* kFishScript =
     R"sh(complete -c basestation -f -a '(basestation completion words (commandline -opc)[2..-1] (commandline -ct) 2>/dev/null)'
 )sh";
 
@@ -77,13 +77,13 @@ int print_completion(const Options& options, const std::vector<std::string>& wor
     for (std::size_t i = 0; i + 1 < typed.size(); ++i)
       if (typed[i] == "--name" && command::valid_name(typed[i + 1])) asked.name = typed[i + 1];
     for (const std::string& word : candidates(typed, known_robots(asked))) std::printf("%s\n", word.c_str());
-    return exit_done;
+    return kExitDone;
   }
   if (words.size() == 2 && (shell == "bash" || shell == "zsh" || shell == "fish")) {
-    std::fputs(shell == "bash" ? bash_script : shell == "zsh" ? zsh_script : fish_script, stdout);
-    return exit_done;
+    std::fputs(shell == "bash" ? kBashScript : shell == "zsh" ? kZshScript : kFishScript, stdout);
+    return kExitDone;
   }
-  return fail(options, exit_usage, {Reason::bad_argument, "completion: usage: completion bash|zsh|fish"});
+  return fail(options, kExitUsage, {Reason::bad_argument, "completion: usage: completion bash|zsh|fish"});
 }
 
 }  // namespace adit::station::cli

@@ -38,34 +38,34 @@ std::string footer() {
 int show_help(const std::vector<std::string>& words, const Options& options) {
   if (words.size() < 2) {
     std::printf("usage: basestation [--name op1] [--link wifi] [--json] COMMAND\n\n%s\n", footer().c_str());
-    return exit_done;
+    return kExitDone;
   }
   if (words[1] == "--markdown") {  // the table of docs/operators.md
     std::fputs(command::help_markdown().c_str(), stdout);
-    return exit_done;
+    return kExitDone;
   }
   const auto found = command::find_commands(words[1]);
   for (const command::CommandInfo* row : found) std::fputs(command::help(*row).c_str(), stdout);
-  if (!found.empty()) return exit_done;
-  return fail(options, exit_usage, command::parse(std::vector<std::string>{words[1]}).error());
+  if (!found.empty()) return kExitDone;
+  return fail(options, kExitUsage, command::parse(std::vector<std::string>{words[1]}).error());
 }
 
 int down_without_station(const Options& options) {
   std::printf("%s", options.json ? "{\"command\":\"down\",\"exit\":0,\"ok\":true,\"results\":[]}\n" : "");
   if (!options.json) std::printf("no station of %s is running\n", options.name.c_str());
-  return exit_done;
+  return kExitDone;
 }
 
 int run_command(const Options& options, const std::vector<std::string>& words) {
   if (words[0] == "help") return show_help(words, options);
   if (words[0] == "completion") return print_completion(options, words);
   auto request = command::parse(words);
-  if (!request) return fail(options, exit_usage, request.error());
+  if (!request) return fail(options, kExitUsage, request.error());
   const std::string line = quoted(words);
   if (request->verb == verb("stop")) return stop(options, line, request->all);
   if (request->verb == verb("down")) {
     auto path = socket_path(options);
-    if (!path) return fail(options, exit_refused, path.error());
+    if (!path) return fail(options, kExitRefused, path.error());
     auto socket = LineSocket::connect(*path);
     if (!socket) return down_without_station(options);
     Client client(std::move(*socket), "shell");
@@ -73,7 +73,7 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
   }
   if (request->verb == verb("run")) {
     auto script = read_script(request->word("FILE"));  // before anything starts
-    if (!script) return fail(options, exit_usage, script.error());
+    if (!script) return fail(options, kExitUsage, script.error());
     return play(options, *script, request->has("--all"));
   }
   auto socket = connect_or_launch(options);
@@ -125,23 +125,23 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     std::printf("%s\n", app.help().c_str());
-    return exit_done;
+    return kExitDone;
   } catch (const CLI::CallForVersion&) {
     std::printf("%s\n", ADIT_VERSION);
-    return exit_done;
+    return kExitDone;
   } catch (const CLI::ParseError& error) {
-    return fail(options, exit_usage, {Reason::bad_argument, std::string(error.what()) + "; try --help"});
+    return fail(options, kExitUsage, {Reason::bad_argument, std::string(error.what()) + "; try --help"});
   }
   options.domain_given = domain->count() > 0;
   if (!command::valid_name(options.name))
-    return fail(options, exit_usage,
+    return fail(options, kExitUsage,
                 {Reason::bad_argument,
                  "--name is 1 to 32 of A-Z a-z 0-9 _ -, not '" + command::clean(options.name, 40) + "'"});
   if (served->count() > 0) return serve(options, ready_fd);
 
   std::vector<std::string> words = app.remaining();
   if (!words.empty() && words[0].starts_with('-'))
-    return fail(options, exit_usage,
+    return fail(options, kExitUsage,
                 {Reason::bad_argument, "no option " + command::clean(words[0], 40) + "; try --help"});
   // These two are understood behind the command as well.
   if (std::erase(words, "--json") > 0) options.json = true;

@@ -20,9 +20,9 @@ struct Options {
 };
 
 /// Exit codes of the program.
-inline constexpr int exit_done = 0;
-inline constexpr int exit_refused = 1;
-inline constexpr int exit_usage = 2;
-inline constexpr int exit_no_answer = 3;
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitRefused = 1;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitNoAnswer = 3;
 
 }  // namespace adit::station::cli

@@ -59,8 +59,8 @@ class Prompt {
       return true;
     }
     auto request = words ? command::parse(*words) : Result<Request>(words.error());
-    const int code = request ? run(*request, line) : fail(options_, exit_usage, request.error());
-    if (code != exit_done) code_ = code;
+    const int code = request ? run(*request, line) : fail(options_, kExitUsage, request.error());
+    if (code != kExitDone) code_ = code;
     return !request || request->verb != verb("down");
   }
 
@@ -115,7 +115,7 @@ class Prompt {
     if (request.verb == verb("stop")) return stop(options_, line, request.all);
     if (request.verb == verb("run")) {
       auto script = read_script(request.word("FILE"));
-      if (!script) return fail(options_, exit_usage, script.error());
+      if (!script) return fail(options_, kExitUsage, script.error());
       return play(options_, *script, request.has("--all"));
     }
     if (!client_ || !client_->connected())
@@ -135,7 +135,7 @@ class Prompt {
   const char* clear_{::isatty(STDOUT_FILENO) != 0 ? "\r\x1b[K" : ""};  ///< takes the typed line away
   std::optional<Client> client_{};
   std::vector<std::string> robots_{};
-  int code_{exit_done};
+  int code_{kExitDone};
   bool printed_{false};
 };
 
@@ -204,7 +204,7 @@ int read_terminal(Prompt& prompt, const Options& options) {
   }
   if (!history.empty()) write_history(history.c_str());
   if (at_end) std::printf("\n");
-  return exit_done;
+  return kExitDone;
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ int play(const Options& options, const std::vector<ScriptLine>& script, bool all
   if (mine.empty()) {
     std::fprintf(stderr, "the script has no lines by %s; all operators' are played with --all\n",
                  options.name.c_str());
-    return exit_done;
+    return kExitDone;
   }
   Play play(options);
   for (const std::string& name : names)
@@ -137,14 +137,14 @@ int play(const Options& options, const std::vector<ScriptLine>& script, bool all
   std::size_t next = 0;
   while (next < mine.size() || !play.idle()) {
     while (next < mine.size() && mine[next].at <= play.now()) play.execute(mine[next++]);
-    if (!play.wait()) return fail(options, exit_no_answer, {Reason::no_answer, "a station went away"});
+    if (!play.wait()) return fail(options, kExitNoAnswer, {Reason::no_answer, "a station went away"});
     if (interrupted()) {
       play.cancel();
       for (int i = 0; i < 40 && !play.idle(); ++i) play.wait();
       return 130;
     }
   }
-  return exit_done;
+  return kExitDone;
 }
 
 }  // namespace adit::station::cli

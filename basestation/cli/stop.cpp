@@ -45,9 +45,9 @@ int stop(const Options& options, const std::string& line, bool all) {
   // Announced often: robots have to know this participant before they believe who it is.
   // A stop to a robot that was named is repeated for 10 s, heard or not; `all` are those heard within 5 s.
   auto live = LiveStation::open(options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s});
-  if (!live) return fail(options, exit_no_answer, live.error());
+  if (!live) return fail(options, kExitNoAnswer, live.error());
   const Outcome outcome = (*live)->execute(line, 25s);
-  if (outcome.exit_code == exit_no_answer)
+  if (outcome.exit_code == kExitNoAnswer)
     std::fprintf(stderr, "this program ends: the stop no longer goes out\n");
   return print_outcome(options, {{"exit", outcome.exit_code},
                                  {"text", outcome.text},

@@ -18,9 +18,9 @@ namespace {
 using nlohmann::json;
 using Clock = KeyStick::Clock;
 
-constexpr auto period = std::chrono::milliseconds(50);  // the joystick's
+constexpr auto kPeriod = std::chrono::milliseconds(50);  // the joystick's
 
-constexpr const char* instructions =
+constexpr const char* kInstructions =
     "arrows or w a s d: drive   q e: sideways   space: zero   + -: speed   x: software stop   Esc: let go\r\n"
     "game controller: left stick drives, right stick turns, A stops, B lets go; k: dead man's switch (left "
     "shoulder)\r\n";
@@ -53,12 +53,12 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
   };
   Terminal terminal(false);
   if (!terminal.usable())
-    return fail(options, exit_usage,
+    return fail(options, kExitUsage,
                 {Reason::bad_argument, "teleop wants a terminal; in a script use drive"});
   Gamepad pad;
   KeyStick keys;
   bool dead_man = false, stop_pressed = false, leaving = false;
-  terminal.write(instructions);
+  terminal.write(kInstructions);
   client.watch();
   id = client.teleop(robot);
   auto next = Clock::now();
@@ -89,12 +89,12 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
     if (now >= next) {
       if (!leaving) client.stick(id, velocity[0], velocity[1], velocity[2]);
       terminal.write(status_line(view, velocity, keys.scale(), dead_man, pad.name()));
-      next = now + period;
+      next = now + kPeriod;
     }
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next - Clock::now()).count();
     if (!client.wait(static_cast<int>(std::max<long>(left, 0)) + 1, STDIN_FILENO)) {
       terminal.write("\r\n");
-      return fail(options, exit_no_answer, {Reason::no_answer, client.gone()});
+      return fail(options, kExitNoAnswer, {Reason::no_answer, client.gone()});
     }
   }
   terminal.write("\r\x1b[K");
@@ -103,7 +103,7 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
   const bool let_go = leaving && !rows.empty() && rows[0].value("reason", std::string()) == "cancelled";
   if (!let_go) return print_outcome(options, *outcome);
   terminal.write(robot + ": let go\r\n");
-  return exit_done;
+  return kExitDone;
 }
 
 }  // namespace adit::station::cli

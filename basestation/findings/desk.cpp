@@ -10,29 +10,29 @@ constexpr std::size_t kRobots = 64;
 FindingDesk::FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, Executor& home,
                          Outputs outputs)
     : outputs_(std::move(outputs)),
-      shelf_({.most = params.most}, std::move(disk), home, nullptr,
-             {[this](const findings::Key& key) { answers_[key.robot].insert(key.id); },
-              [this](bool failing, const std::string& text) {
-                outputs_.trouble(failing ? "store_failing" : "store_works", text);
-              }}) {}
+      finding_store_({.max_findings = params.max_findings}, std::move(disk), home, nullptr,
+                     {[this](const findings::Key& key) { answers_[key.robot].insert(key.id); },
+                      [this](bool failing, const std::string& text) {
+                        outputs_.trouble(failing ? "store_failing" : "store_works", text);
+                      }}) {}
 
 void FindingDesk::hear(findings::Finding finding, const Robot& robot) {
   if (!findings::valid(finding)) return;
   const findings::Key key = finding.key;
   if (!robots_.contains(key.robot) && robots_.size() >= kRobots) return;
   robots_[key.robot] = robot;
-  if (shelf_.kept(key)) {
+  if (finding_store_.kept(key)) {
     answers_[key.robot].insert(key.id);  // our answer was lost
     return;
   }
-  if (shelf_.all().contains(key)) return;  // on its way to the disk
-  if (!shelf_.put(std::move(finding))) {
+  if (finding_store_.all().contains(key)) return;  // on its way to the disk
+  if (!finding_store_.put(std::move(finding))) {
     if (!told_full_)
       outputs_.trouble("findings_full", "no room for more findings here; " + key.robot + " keeps its own");
     told_full_ = true;
     return;
   }
-  outputs_.found(shelf_.all().at(key));
+  outputs_.found(finding_store_.all().at(key));
 }
 
 void FindingDesk::tick() {

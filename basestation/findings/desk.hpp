@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "core/findings/shelf.hpp"
+#include "core/findings/finding_store.hpp"
 
 namespace adit::station {
 
 struct DeskParams {
-  std::size_t most{4096};  ///< findings of all robots, [1, 65536]
+  std::size_t max_findings{4096};  ///< findings of all robots, [1, 65536]
 };
 
 /// What robots found, on this station's disk. A robot is told that we have a finding once it is on disk here:
@@ -33,12 +33,12 @@ class FindingDesk {
   FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, Executor& home, Outputs outputs);
 
   /// Reads what is on disk.
-  findings::LoadReport load() { return shelf_.load(); }
+  findings::LoadReport load() { return finding_store_.load(); }
   void hear(findings::Finding finding, const Robot& robot);
   /// Ten times a second: answers what was heard since, in as few messages as they fit in.
   void tick();
 
-  const std::map<findings::Key, findings::Finding>& all() const { return shelf_.all(); }
+  const std::map<findings::Key, findings::Finding>& all() const { return finding_store_.all(); }
   const std::map<std::string, Robot>& robots() const { return robots_; }
 
  private:
@@ -46,7 +46,7 @@ class FindingDesk {
   std::map<std::string, std::set<std::uint64_t>> answers_{};
   std::map<std::string, Robot> robots_{};
   bool told_full_{};
-  findings::Shelf shelf_;
+  findings::FindingStore finding_store_;
 };
 
 }  // namespace adit::station

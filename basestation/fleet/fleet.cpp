@@ -14,20 +14,20 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t text_limit = 240;
-constexpr std::size_t name_limit = 32;
-constexpr Duration forget_after = 60s;
-constexpr Duration oldest_notice = 240h;  // what a robot may claim
+constexpr std::size_t kTextLimit = 240;
+constexpr std::size_t kNameLimit = 32;
+constexpr Duration kForgetAfter = 60s;
+constexpr Duration kOldestNotice = 240h;  // what a robot may claim
 
 /// What a sample says of an amount; 0 for a value that cannot be one.
 float amount(float value) { return value >= 0.0F && value < 1e12F ? value : 0.0F; }
 double number(float value) { return static_cast<double>(amount(value)); }
 
-std::vector<std::string> cleaned(const std::vector<std::string>& words, std::size_t most) {
+std::vector<std::string> cleaned(const std::vector<std::string>& words, std::size_t max_words) {
   std::vector<std::string> out;
   for (const std::string& word : words) {
-    if (out.size() == most) break;
-    out.push_back(command::clean(word, name_limit));
+    if (out.size() == max_words) break;
+    out.push_back(command::clean(word, kNameLimit));
   }
   return out;
 }
@@ -69,7 +69,7 @@ RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
     known->second.spoke = info.received;
     return &known->second;
   }
-  if (!command::valid_name(name) || robots_.size() == max_robots) {
+  if (!command::valid_name(name) || robots_.size() == kMaxRobots) {
     ++ignored_;
     return nullptr;
   }
@@ -99,8 +99,8 @@ void Fleet::hear(const radio::Capabilities& sample, const wire::SampleInfo& info
   RobotView* robot = touch(sample.name(), info);
   if (!robot) return;
   robot->described = true;
-  robot->platform = command::clean(sample.platform(), name_limit);
-  robot->software = command::clean(sample.software(), name_limit);
+  robot->platform = command::clean(sample.platform(), kNameLimit);
+  robot->software = command::clean(sample.software(), kNameLimit);
   robot->protocol = sample.protocol();
   robot->max_speed = sample.max_speed();
   robot->max_turn = sample.max_turn();
@@ -128,7 +128,7 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
   }
   if (sample.name() == own_name_ && sample.id() != own_id_) {
     // Robots will refuse one of the two: its operator has to choose another name.
-    if (!clashed_ || info.received - last_clash_ > forget_after)
+    if (!clashed_ || info.received - last_clash_ > kForgetAfter)
       notice({.at = info.received,
               .level = Level::warning,
               .code = "name_in_use",
@@ -140,7 +140,7 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
   }
   if (sample.name() == own_name_) return;
   if (!command::valid_name(sample.name()) ||
-      (!stations_.contains(sample.name()) && stations_.size() == max_stations)) {
+      (!stations_.contains(sample.name()) && stations_.size() == kMaxStations)) {
     ++ignored_;
     return;
   }
@@ -183,14 +183,14 @@ void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& i
   if (robot->owned && robot->epoch.start == epoch.start && epoch.counter < robot->epoch.counter) return;
   robot->owned = true;
   robot->epoch = epoch;
-  robot->holder = command::clean(sample.holder(), name_limit);
+  robot->holder = command::clean(sample.holder(), kNameLimit);
   robot->holder_id = sample.holder_id();
   robot->locked = sample.locked();
   robot->lease_left = sample.lock_lease_left();
   robot->stops.clear();
   for (const auto& stop : sample.stops()) {
     if (robot->stops.size() == 17) break;
-    robot->stops.push_back({command::clean(stop.station(), name_limit), stop.station_id()});
+    robot->stops.push_back({command::clean(stop.station(), kNameLimit), stop.station_id()});
   }
 }
 
@@ -198,7 +198,7 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   RobotView* robot = touch(sample.robot(), info);
   if (!robot) return;
   ++robot->behaviour_count;
-  robot->mode = command::clean(sample.mode(), name_limit);
+  robot->mode = command::clean(sample.mode(), kNameLimit);
   robot->stopped = sample.stopped();
   robot->moving_allowed = sample.moving_allowed();
   robot->reason = static_cast<Reason>(sample.reason());
@@ -209,7 +209,7 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   robot->choices.clear();
   for (const auto& option : sample.modes()) {
     if (robot->choices.size() == 16) break;
-    robot->choices.push_back({command::clean(option.mode(), name_limit), option.available(),
+    robot->choices.push_back({command::clean(option.mode(), kNameLimit), option.available(),
                               static_cast<Reason>(option.reason())});
   }
 }
@@ -220,11 +220,11 @@ void Fleet::hear(const radio::Notification& sample, const wire::SampleInfo& info
   const auto severity = static_cast<std::uint32_t>(sample.severity());
   Notice told{.at = info.received,
               .robot = sample.robot(),
-              .operator_name = command::clean(sample.operator_name(), name_limit),
+              .operator_name = command::clean(sample.operator_name(), kNameLimit),
               .level = severity <= 2 ? static_cast<Level>(severity) : Level::error,
-              .code = command::clean(sample.code(), name_limit),
+              .code = command::clean(sample.code(), kNameLimit),
               .reason = static_cast<Reason>(sample.reason()),
-              .text = command::clean(sample.text(), text_limit),
+              .text = command::clean(sample.text(), kTextLimit),
               .said_by = info.sender};
   if (sample.stamp() != 0) told.undated = sample.stamp();
   date(told, *robot);
@@ -238,8 +238,8 @@ void Fleet::date(Notice& notice, const RobotView& robot) const {
   const Duration since_shown = notice.at - robot.last_heard;
   // Negative: it arose since. Whatever a robot claims, it stays within bounds.
   const auto shown = std::clamp(Duration(static_cast<std::int64_t>(robot.stamp - *notice.undated)),
-                                -oldest_notice, oldest_notice);
-  notice.at -= std::clamp(shown + since_shown, Duration{}, oldest_notice);
+                                -kOldestNotice, kOldestNotice);
+  notice.at -= std::clamp(shown + since_shown, Duration{}, kOldestNotice);
   notice.undated.reset();
 }
 
@@ -251,20 +251,20 @@ void Fleet::hear(const radio::Health& sample, const wire::SampleInfo& info) {
     if (robot->components.size() == 32) break;
     const auto phase = static_cast<std::uint32_t>(part.state());
     robot->components.push_back(
-        {.name = command::clean(part.name(), name_limit),
+        {.name = command::clean(part.name(), kNameLimit),
          .phase = phase <= 4 ? static_cast<ComponentPhase>(phase) : ComponentPhase::failed,
          .healthy = part.healthy(),
          .automatic = part.automatic(),
          .silent_for = part.silent_for(),
          .restarts = part.restarts(),
          .hung = part.hung(),
-         .text = command::clean(part.text(), text_limit)});
+         .text = command::clean(part.text(), kTextLimit)});
   }
 }
 
 void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) {
   if (!command::valid_name(sample.agent()) || sample.agent() == own_name_ ||
-      (!traffic_.contains(sample.agent()) && traffic_.size() == max_robots + max_stations)) {
+      (!traffic_.contains(sample.agent()) && traffic_.size() == kMaxRobots + kMaxStations)) {
     ++ignored_;
     return;
   }
@@ -303,7 +303,7 @@ void Fleet::learn_authority(const std::string& robot, const std::string& holder,
   view.owned = true;
   view.epoch = epoch;
   if (!changed) return;
-  view.holder = command::clean(holder, name_limit);
+  view.holder = command::clean(holder, kNameLimit);
   // The acknowledgement names the holder only; the next status tells whose station it is.
   view.holder_id = holder == own_name_ ? own_id_ : Id{};
   view.locked = false;  // every change of holder ends a lock
@@ -314,7 +314,7 @@ void Fleet::own_traffic(TrafficView traffic) { traffic_[own_name_] = std::move(t
 
 void Fleet::check(Time now) {
   for (auto& [name, robot] : robots_) {
-    if (robot.lost || now - std::max(robot.last_heard, robot.last_sign) <= lost_after) continue;
+    if (robot.lost || now - std::max(robot.last_heard, robot.last_sign) <= kLostAfter) continue;
     robot.lost = true;
     notice({.at = now,
             .robot = name,
@@ -322,11 +322,11 @@ void Fleet::check(Time now) {
             .code = "lost",
             .text = name + " has not been heard for 2.5 s"});
   }
-  const auto silent = [now](const auto& entry) { return now - entry.second.last_heard > forget_after; };
+  const auto silent = [now](const auto& entry) { return now - entry.second.last_heard > kForgetAfter; };
   std::erase_if(stations_, silent);
   std::erase_if(traffic_, silent);
   std::erase_if(namesakes_,
-                [now](const auto& entry) { return now - entry.second.view.spoke > forget_after; });
+                [now](const auto& entry) { return now - entry.second.view.spoke > kForgetAfter; });
 }
 
 const RobotView* Fleet::robot(const std::string& name) const {
@@ -343,7 +343,7 @@ std::vector<std::string> Fleet::robot_names() const {
 void Fleet::notice(Notice notice) {
   notice.id = ++last_notice_;
   notice.mine = notice.operator_name.empty() || notice.operator_name == own_name_;
-  if (notices_.size() == max_notices) notices_.pop_front();
+  if (notices_.size() == kMaxNotices) notices_.pop_front();
   notices_.push_back(notice);
   if (on_notice) on_notice(notices_.back());
 }

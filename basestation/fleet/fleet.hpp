@@ -16,10 +16,10 @@ namespace adit::station {
 /// it is. Names that are none and robots beyond the bound are ignored and counted.
 class Fleet {
  public:
-  static constexpr std::size_t max_robots = 64;
-  static constexpr std::size_t max_stations = 64;
-  static constexpr std::size_t max_notices = 200;
-  static constexpr Duration lost_after = std::chrono::milliseconds(2500);  // it shows within 3 s
+  static constexpr std::size_t kMaxRobots = 64;
+  static constexpr std::size_t kMaxStations = 64;
+  static constexpr std::size_t kMaxNotices = 200;
+  static constexpr Duration kLostAfter = std::chrono::milliseconds(2500);  // it shows within 3 s
 
   Fleet(std::string own_name, Id own_id) : own_name_(std::move(own_name)), own_id_(own_id) {}
 
@@ -79,7 +79,7 @@ class Fleet {
     std::optional<Time> displaced{};  ///< It was shown until then.
     bool rival{};                     ///< It was shown, and then the one before it spoke again.
   };
-  static constexpr std::size_t max_namesakes = 16;
+  static constexpr std::size_t kMaxNamesakes = 16;
 
   RobotView* touch(const std::string& name, const wire::SampleInfo& info);
   /// The view that a sample of another participant than the one that is shown goes into.

@@ -47,8 +47,8 @@ std::vector<LinkView> links(const Fleet& fleet, Time now) {
 }
 
 const char* priority_name(std::size_t priority) {
-  static constexpr std::array<const char*, wire::priorities> names{"urgent", "discovery", "stream", "state",
-                                                                   "status", "bulk",      "video"};
+  static constexpr std::array<const char*, wire::kPriorities> names{"urgent", "discovery", "stream", "state",
+                                                                    "status", "bulk",      "video"};
   return names.at(priority);
 }
 

@@ -37,11 +37,11 @@ class PeerRates {
 
 /// What an agent's own sender says of its link.
 struct SenderView {
-  std::string link{};                                     ///< profile; empty: nothing limits what it sends
-  double bandwidth{};                                     ///< bit/s; 0: not known
-  double queue{};                                         ///< airtime that waits, bulk and video apart, s
-  std::array<std::uint32_t, wire::priorities> dropped{};  ///< since its start, by priority
-  double state_rate{};                                    ///< RobotStates a second
+  std::string link{};                                      ///< profile; empty: nothing limits what it sends
+  double bandwidth{};                                      ///< bit/s; 0: not known
+  double queue{};                                          ///< airtime that waits, bulk and video apart, s
+  std::array<std::uint32_t, wire::kPriorities> dropped{};  ///< since its start, by priority
+  double state_rate{};                                     ///< RobotStates a second
 };
 
 /// All that is known of the link to one agent. What is measured here and what it reported.

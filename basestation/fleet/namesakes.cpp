@@ -9,11 +9,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration quiet =
-    250ms;                       // RobotStates come ten times a second: another participant may be a restart
-constexpr Duration grace = 1s;   // samples of an agent that ended may come so late
-constexpr Duration silent = 3s;  // then a participant that was found out may speak for the name
-constexpr Duration forgotten = 60s;  // then one that gives way may
+constexpr Duration kQuiet =
+    250ms;                        // RobotStates come ten times a second: another participant may be a restart
+constexpr Duration kGrace = 1s;   // samples of an agent that ended may come so late
+constexpr Duration kSilent = 3s;  // then a participant that was found out may speak for the name
+constexpr Duration kForgotten = 60s;  // then one that gives way may
 
 bool gives_way(const RobotView& robot) {
   return std::any_of(robot.services.begin(), robot.services.end(),
@@ -24,16 +24,17 @@ bool gives_way(const RobotView& robot) {
 
 bool Fleet::replaces(const Namesake& namesake, const RobotView& shown, Time now) {
   const Duration since = now - shown.spoke;
-  if (gives_way(namesake.view) != gives_way(shown)) return gives_way(shown) || since >= forgotten;
-  if (namesake.displaced) return now - *namesake.displaced >= grace;  // it lives, the newcomer was no restart
-  return since >= (namesake.rival ? silent : quiet);
+  if (gives_way(namesake.view) != gives_way(shown)) return gives_way(shown) || since >= kForgotten;
+  if (namesake.displaced)
+    return now - *namesake.displaced >= kGrace;  // it lives, the newcomer was no restart
+  return since >= (namesake.rival ? kSilent : kQuiet);
 }
 
 RobotView* Fleet::touch_namesake(RobotView& shown, const wire::SampleInfo& info) {
   const std::string name = shown.name;
   const auto known = namesakes_.find({name, info.sender});
   if (known == namesakes_.end()) {
-    if (namesakes_.size() == max_namesakes) {
+    if (namesakes_.size() == kMaxNamesakes) {
       ++ignored_;
       return nullptr;
     }

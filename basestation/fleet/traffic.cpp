@@ -52,7 +52,7 @@ TrafficView TrafficMeter::read(const std::string& agent, const wire::WireCounter
     view.sender.link = sender.link->name;
     view.sender.bandwidth = sender.link->bandwidth;
   }
-  view.sender.queue = seconds(sender.waiting(wire::status_priority));
+  view.sender.queue = seconds(sender.waiting(wire::kStatusPriority));
   for (std::size_t i = 0; i < sender.dropped.size(); ++i)
     view.sender.dropped[i] = static_cast<std::uint32_t>(sender.dropped[i]);
   last_ = counters;

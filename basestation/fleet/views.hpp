@@ -8,7 +8,7 @@
 #include "basestation/fleet/links.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::station {
 

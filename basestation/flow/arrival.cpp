@@ -7,33 +7,34 @@ namespace adit::station {
 
 using namespace std::chrono_literals;
 
-Arrival::Arrival(FlowParts parts, Order order, Done answered, Done done)
-    : Flow(parts, order.robot, std::move(done)),
-      order_(std::move(order)),
+Arrival::Arrival(FlowDependencies dependencies, RobotCommand robot_command, Done answered, Done done)
+    : Flow(dependencies, robot_command.robot, std::move(done)),
+      robot_command_(std::move(robot_command)),
       on_answer_(std::move(answered)),
-      goal_{order_.request.number("X"), order_.request.number("Y")} {}
+      goal_{robot_command_.request.number("X"), robot_command_.request.number("Y")} {}
 
 void Arrival::start() {
-  parts_.sender.send(order_, [weak = weak_from_this(), on_answer = on_answer_](const Answer& answer) {
-    on_answer(answer);
-    if (auto self = weak.lock()) static_cast<Arrival&>(*self).answered(answer);
-  });
+  dependencies_.sender.send(robot_command_,
+                            [weak = weak_from_this(), on_answer = on_answer_](const Answer& answer) {
+                              on_answer(answer);
+                              if (auto self = weak.lock()) static_cast<Arrival&>(*self).answered(answer);
+                            });
   goal_before_ = view() ? view()->goal_id : 0;
 }
 
 void Arrival::answered(const Answer& answer) {
   if (over()) return;
   outcome_ = answer;
-  if (!answer.accepted) return tell(answer);
-  accepted_at_ = parts_.strand.now();
+  if (!answer.accepted) return notify(answer);
+  accepted_at_ = dependencies_.strand.now();
   behaviour_before_ = view() ? view()->behaviour_count : 0;
-  timer_ = parts_.strand.every(100ms, [weak = weak_from_this()] {
+  timer_ = dependencies_.strand.every(100ms, [weak = weak_from_this()] {
     if (auto self = weak.lock()) static_cast<Arrival&>(*self).poll();
   });
 }
 
 void Arrival::poll() {
-  const Time now = parts_.strand.now();
+  const Time now = dependencies_.strand.now();
   const RobotView* robot_now = view();
   if (!robot_now) return;
   if (now - robot_now->last_heard > 30s)
@@ -75,7 +76,7 @@ void Arrival::end(Reason reason, const std::string& text) {
   outcome_.reason = reason;
   outcome_.text = text;
   if (const RobotView* robot_now = view()) outcome_.holder = robot_now->holder;
-  tell(outcome_);
+  notify(outcome_);
 }
 
 }  // namespace adit::station

@@ -10,7 +10,7 @@ namespace adit::station {
 class Arrival final : public Flow {
  public:
   /// `order`: a goto. `answered` is called with the robot's answer to it, also when the wait ended before.
-  Arrival(FlowParts parts, Order order, Done answered, Done done);
+  Arrival(FlowDependencies dependencies, RobotCommand robot_command, Done answered, Done done);
   void start() override;
   void cancel(Reason reason, const std::string& text) override;
 
@@ -19,7 +19,7 @@ class Arrival final : public Flow {
   void poll();
   void end(Reason reason, const std::string& text);
 
-  Order order_;
+  RobotCommand robot_command_;
   Done on_answer_;
   std::array<double, 2> goal_;  ///< map frame, m
   Answer outcome_{};

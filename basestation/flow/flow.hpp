@@ -12,7 +12,7 @@
 namespace adit::station {
 
 /// What flows work with.
-struct FlowParts {
+struct FlowDependencies {
   Executor& strand;
   Fleet& fleet;
   Sender& sender;
@@ -24,8 +24,8 @@ struct FlowParts {
 class Flow : public std::enable_shared_from_this<Flow> {
  public:
   using Done = std::function<void(const Answer&)>;
-  Flow(FlowParts parts, std::string robot, Done done)
-      : parts_(parts), robot_(std::move(robot)), done_(std::move(done)) {}
+  Flow(FlowDependencies dependencies, std::string robot, Done done)
+      : dependencies_(dependencies), robot_(std::move(robot)), done_(std::move(done)) {}
   virtual ~Flow() = default;
   Flow(const Flow&) = delete;
   Flow& operator=(const Flow&) = delete;
@@ -42,15 +42,15 @@ class Flow : public std::enable_shared_from_this<Flow> {
   virtual bool over() const { return told_; }
 
  protected:
-  const RobotView* view() const { return parts_.fleet.robot(robot_); }
-  void tell(Answer answer) {
+  const RobotView* view() const { return dependencies_.fleet.robot(robot_); }
+  void notify(Answer answer) {
     if (told_) return;
     told_ = true;
     answer.robot = robot_;
     done_(answer);
   }
 
-  FlowParts parts_;
+  FlowDependencies dependencies_;
 
  private:
   std::string robot_;

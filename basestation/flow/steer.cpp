@@ -11,20 +11,20 @@ namespace adit::station {
 using namespace std::chrono_literals;
 
 namespace {
-constexpr std::array<double, 3> centred{0.0, 0.0, 0.0};
-constexpr Duration lead = 150ms;         // zeros ahead of asking, so that one of them arrives
-constexpr Duration insist = 3s;          // a robot that has not heard the stick yet is asked again
-constexpr Duration settle = 300ms;       // zeros before letting go
-constexpr Duration stick_lapse = 250ms;  // a live stick that is not renewed counts as let go
-constexpr Duration appear = 2s;          // by then the mode shows in the behaviour state
+constexpr std::array<double, 3> kCentred{0.0, 0.0, 0.0};
+constexpr Duration kLead = 150ms;        // zeros ahead of asking, so that one of them arrives
+constexpr Duration kInsist = 3s;         // a robot that has not heard the stick yet is asked again
+constexpr Duration kSettle = 300ms;      // zeros before letting go
+constexpr Duration kStickLapse = 250ms;  // a live stick that is not renewed counts as let go
+constexpr Duration kAppear = 2s;         // by then the mode shows in the behaviour state
 }  // namespace
 
-Steer::Steer(FlowParts parts, std::string robot, SteerParams params, Done done)
-    : Flow(parts, std::move(robot), std::move(done)), params_(std::move(params)) {}
+Steer::Steer(FlowDependencies dependencies, std::string robot, SteerParams params, Done done)
+    : Flow(dependencies, std::move(robot), std::move(done)), params_(std::move(params)) {}
 
 void Steer::start() {
   enter_phase(Phase::waiting);
-  timer_ = parts_.strand.every(Stick::period, [weak = weak_from_this()] {
+  timer_ = dependencies_.strand.every(Stick::kPeriod, [weak = weak_from_this()] {
     if (auto self = weak.lock()) static_cast<Steer&>(*self).poll();
   });
   poll();
@@ -32,42 +32,42 @@ void Steer::start() {
 
 void Steer::enter_phase(Phase phase) {
   phase_ = phase;
-  phase_since_ = parts_.strand.now();
+  phase_since_ = dependencies_.strand.now();
 }
 
 void Steer::stream(const std::array<double, 3>& velocity, Stick::Source source) {
-  if (auto streamed = parts_.stick.stream(robot(), velocity, source); !streamed)
+  if (auto streamed = dependencies_.stick.stream(robot(), velocity, source); !streamed)
     end(streamed.error().reason, streamed.error().text);
 }
 
 void Steer::poll() {
-  const Duration since = parts_.strand.now() - phase_since_;
+  const Duration since = dependencies_.strand.now() - phase_since_;
   Reason reason{};
   std::string text;
   switch (phase_) {
     case Phase::waiting:
-      if (parts_.sender.idle(robot())) begin();
+      if (dependencies_.sender.idle(robot())) begin();
       break;
     case Phase::centring:
-      if (since >= lead) ask();
+      if (since >= kLead) ask();
       break;
     case Phase::asking:
       break;
     case Phase::moving:
       if (left_mode(reason, text)) return end(reason, text);
       if (params_.purpose == SteerParams::Purpose::teleop) {
-        if (parts_.strand.now() - stick_at_ > stick_lapse) stream(centred);
+        if (dependencies_.strand.now() - stick_at_ > kStickLapse) stream(kCentred);
       } else if (since >= params_.duration) {
         const bool lost = view() && view()->lost;
         end(lost ? Reason::no_answer : Reason::none, lost ? "the robot was lost while it drove" : "");
       }
       break;
     case Phase::settling:
-      if (since >= settle) settled();
+      if (since >= kSettle) settled();
       break;
     case Phase::keeping:
       if (left_mode(reason, text)) {
-        parts_.stick.end(robot());
+        dependencies_.stick.end(robot());
         timer_.cancel();
         enter_phase(Phase::over);
       }
@@ -79,7 +79,7 @@ void Steer::poll() {
 
 void Steer::begin() {
   const RobotView* robot_now = view();
-  const bool mine = robot_now && parts_.fleet.held_by_me(*robot_now);
+  const bool mine = robot_now && dependencies_.fleet.held_by_me(*robot_now);
   if (mine && params_.purpose != SteerParams::Purpose::enter && robot_now->mode == "smart_joystick") {
     params_.mode = "smart_joystick";
     keep_after_ = seen_in_mode_ = true;
@@ -88,17 +88,17 @@ void Steer::begin() {
   if (!mine)
     return ask();  // the robot will say why not; a stream that it does not take tells nobody anything
   enter_phase(Phase::centring);
-  stream(centred);
+  stream(kCentred);
 }
 
 void Steer::ask() {
   enter_phase(Phase::asking);
-  if (!asked_) first_asked_ = parts_.strand.now();
+  if (!asked_) first_asked_ = dependencies_.strand.now();
   asked_ = true;
   behaviour_before_ = view() ? view()->behaviour_count : 0;
-  Order order{.robot = robot(), .request = command::Request(command::verb("mode"))};
-  order.request.values.push_back({"MODE", {params_.mode}, {}});
-  parts_.sender.send(std::move(order), [weak = weak_from_this()](const Answer& answer) {
+  RobotCommand robot_command{.robot = robot(), .request = command::Request(command::verb("mode"))};
+  robot_command.request.values.push_back({"MODE", {params_.mode}, {}});
+  dependencies_.sender.send(std::move(robot_command), [weak = weak_from_this()](const Answer& answer) {
     if (auto self = weak.lock()) static_cast<Steer&>(*self).answered(answer);
   });
 }
@@ -106,18 +106,19 @@ void Steer::ask() {
 void Steer::answered(const Answer& answer) {
   if (phase_ != Phase::asking) return;
   const bool no_stick = answer.reason == Reason::joystick_stale || answer.reason == Reason::stick_not_centred;
-  if (no_stick && parts_.stick.streaming(robot()) && parts_.strand.now() - first_asked_ < insist)
+  if (no_stick && dependencies_.stick.streaming(robot()) &&
+      dependencies_.strand.now() - first_asked_ < kInsist)
     return enter_phase(Phase::centring);
   outcome_ = answer;
   if (!answer.accepted) {
-    parts_.stick.end(robot());
+    dependencies_.stick.end(robot());
     timer_.cancel();
     enter_phase(Phase::over);
-    return tell(answer);
+    return notify(answer);
   }
   if (params_.purpose != SteerParams::Purpose::enter) return move();
   enter_phase(Phase::keeping);
-  tell(answer);
+  notify(answer);
 }
 
 void Steer::move() {
@@ -128,14 +129,14 @@ void Steer::move() {
 
 void Steer::set_velocity(const std::array<double, 3>& velocity) {
   if (phase_ != Phase::moving) return;
-  stick_at_ = parts_.strand.now();
+  stick_at_ = dependencies_.strand.now();
   stream(velocity, Stick::Source::live);
 }
 
 bool Steer::left_mode(Reason& reason, std::string& text) {
   const RobotView* robot_now = view();
   if (!robot_now || robot_now->behaviour_count == behaviour_before_) return false;
-  if (!parts_.fleet.held_by_me(*robot_now)) {
+  if (!dependencies_.fleet.held_by_me(*robot_now)) {
     reason = robot_now->holder.empty() ? Reason::nobody_holds : Reason::not_holder;
     text = robot_now->holder.empty() ? "" : robot_now->holder + " holds the robot now";
     return true;
@@ -144,7 +145,7 @@ bool Steer::left_mode(Reason& reason, std::string& text) {
     seen_in_mode_ = true;
     return false;
   }
-  if (!seen_in_mode_ && parts_.strand.now() - phase_since_ < appear) return false;
+  if (!seen_in_mode_ && dependencies_.strand.now() - phase_since_ < kAppear) return false;
   reason = robot_now->stopped ? Reason::stopped : Reason::wrong_mode;
   text = robot_now->stopped ? "" : "the robot left " + params_.mode + " for " + robot_now->mode;
   return true;
@@ -156,16 +157,17 @@ void Steer::stream_refused(Reason reason, const std::string& text) {
                        reason == Reason::stopped || reason == Reason::stale_epoch ||
                        reason == Reason::wrong_mode || reason == Reason::identity_mismatch ||
                        reason == Reason::name_in_use;
-  if (phase_ == Phase::moving && lasting && parts_.strand.now() - phase_since_ > settle) end(reason, text);
+  if (phase_ == Phase::moving && lasting && dependencies_.strand.now() - phase_since_ > kSettle)
+    end(reason, text);
 }
 
 void Steer::cancel(Reason reason, const std::string& text) { end(reason, text); }
 
 void Steer::hand_over() {
-  if (parts_.stick.streaming(robot())) (void)parts_.stick.stream(robot(), centred);
+  if (dependencies_.stick.streaming(robot())) (void)dependencies_.stick.stream(robot(), kCentred);
   timer_.cancel();
   enter_phase(Phase::over);
-  tell({.command = {}, .reason = Reason::cancelled, .text = "another command took its place"});
+  notify({.command = {}, .reason = Reason::cancelled, .text = "another command took its place"});
 }
 
 void Steer::end(Reason reason, const std::string& text) {
@@ -175,9 +177,9 @@ void Steer::end(Reason reason, const std::string& text) {
   outcome_.text = reason == Reason::none ? clipped() : text;
   if (const RobotView* robot_now = view()) outcome_.holder = robot_now->holder;
   if (reason != Reason::none) keep_after_ = keep_after_ && reason == Reason::cancelled;
-  const bool streaming = parts_.stick.streaming(robot());
+  const bool streaming = dependencies_.stick.streaming(robot());
   enter_phase(Phase::settling);
-  if (!streaming || !parts_.stick.stream(robot(), centred)) settled();
+  if (!streaming || !dependencies_.stick.stream(robot(), kCentred)) settled();
 }
 
 std::string Steer::clipped() const {
@@ -197,11 +199,11 @@ void Steer::settled() {
   if (keep_after_) {
     enter_phase(Phase::keeping);
   } else {
-    parts_.stick.end(robot());
+    dependencies_.stick.end(robot());
     timer_.cancel();
     enter_phase(Phase::over);
   }
-  tell(outcome_);
+  notify(outcome_);
 }
 
 }  // namespace adit::station

@@ -21,7 +21,7 @@ struct SteerParams {
 /// then zero for 300 ms, then lets go. A robot that is in smart_joystick stays in it, with the stick centred.
 class Steer final : public Flow {
  public:
-  Steer(FlowParts parts, std::string robot, SteerParams params, Done done);
+  Steer(FlowDependencies dependencies, std::string robot, SteerParams params, Done done);
   void start() override;
   void cancel(Reason reason, const std::string& text) override;
   void hand_over() override;

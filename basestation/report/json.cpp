@@ -139,8 +139,8 @@ const char* to_string(command::Danger danger) {
 json argument_json(const command::Argument& argument) {
   json out{{"name", argument.name},
            {"type", to_string(argument.type)},
-           {"least", argument.least},
-           {"most", argument.most}};
+           {"least", argument.min_count},
+           {"most", argument.max_count}};
   if (!argument.choices.empty()) out["choices"] = command::choices(argument);
   if (argument.type == command::Type::number)
     out.update({{"minimum", argument.minimum},
@@ -166,8 +166,9 @@ json info_json(const Action& action) {
     options.push_back({{"name", option.name}, {"values", values}});
   }
   const command::Argument& robots = info.arguments[0];
-  return {{"arguments", arguments},       {"options", options},        {"danger", to_string(info.danger)},
-          {"robots_min", robots.least},   {"robots_max", robots.most}, {"all_robots", robots.all},
+  return {{"arguments", arguments},           {"options", options},
+          {"danger", to_string(info.danger)}, {"robots_min", robots.min_count},
+          {"robots_max", robots.max_count},   {"all_robots", robots.all},
           {"usage", command::usage(info)}};
 }
 
@@ -189,7 +190,7 @@ namespace {
 
 json sender_json(const SenderView& sender) {
   json dropped = json::object();
-  for (std::size_t p = 0; p < wire::priorities; ++p) dropped[priority_name(p)] = sender.dropped[p];
+  for (std::size_t p = 0; p < wire::kPriorities; ++p) dropped[priority_name(p)] = sender.dropped[p];
   return {{"link", sender.link},
           {"bandwidth", sender.bandwidth},
           {"queue", sender.queue},
@@ -262,7 +263,7 @@ json list_json(const Fleet& fleet, Time now) {
     stations.push_back({{"station", station_name},
                         {"self", false},
                         {"age", seconds(now - station.last_heard)},
-                        {"lost", now - station.last_heard > Fleet::lost_after}});
+                        {"lost", now - station.last_heard > Fleet::kLostAfter}});
     if (station.place) stations.back()["place"] = *station.place;
   }
   return {{"robots", robots}, {"stations", stations}};

@@ -87,7 +87,7 @@ std::string list_text(const Fleet& fleet, Time now) {
   out += "stations: " + fleet.own_name() + " (this one)";
   if (fleet.own_place()) out += place_text(*fleet.own_place());
   for (const auto& [station_name, station] : fleet.stations())
-    out += ", " + station_name + (now - station.last_heard > Fleet::lost_after ? " (silent)" : "") +
+    out += ", " + station_name + (now - station.last_heard > Fleet::kLostAfter ? " (silent)" : "") +
            (station.place ? place_text(*station.place) : "");
   return out + "\n";
 }
@@ -148,7 +148,7 @@ std::string links_text(const Fleet& fleet, Time now) {
   std::string out = table(rows);
   for (const auto& [agent, traffic] : fleet.traffic()) {
     std::string classes;
-    for (std::size_t p = 0; p < wire::priorities; ++p)
+    for (std::size_t p = 0; p < wire::kPriorities; ++p)
       if (traffic.sender.dropped[p] > 0)
         classes += (classes.empty() ? "" : ", ") + std::string(priority_name(p)) + " " +
                    std::to_string(traffic.sender.dropped[p]);
@@ -166,7 +166,7 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
   double out_sum = 0.0, discovery_sum = 0.0;
   for (const auto& [agent, traffic] : fleet.traffic()) {
     // On a full link reports come every 8 s.
-    const bool silent = now - traffic.last_heard > 4 * Fleet::lost_after;
+    const bool silent = now - traffic.last_heard > 4 * Fleet::kLostAfter;
     std::string first = agent + (silent ? " (silent)" : "");
     for (const TopicRate& row : traffic.topics) {
       rows.push_back({first, row.topic, fixed(row.bytes_out, 0), fixed(row.samples_out, 1),

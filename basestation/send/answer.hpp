@@ -13,7 +13,7 @@
 namespace adit::station {
 
 /// A command for one robot.
-struct Order {
+struct RobotCommand {
   std::string robot{};
   command::Request request{command::verb("query")};
 

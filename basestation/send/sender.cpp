@@ -30,7 +30,7 @@ std::optional<Route> from_radio(const radio::PlannedRoute& in) {
 }  // namespace
 
 struct Sender::Pending {
-  Order order{};
+  RobotCommand robot_command{};
   std::vector<Done> done{};
   radio::Command message{};
   Time first_sent{};
@@ -42,7 +42,7 @@ struct Sender::Pending {
   bool blind{};      ///< sent before this station knew the authority in force
   bool resting{};    ///< refused for a cause that passes: sent anew at the next repeat
   Answer refusal{};  ///< that refusal
-  bool is_stop() const { return order.request.verb == command::verb("stop"); }
+  bool is_stop() const { return robot_command.request.verb == command::verb("stop"); }
 };
 
 struct Sender::Lane {
@@ -53,7 +53,7 @@ struct Sender::Lane {
   std::shared_ptr<Pending> stop{};
 };
 
-Sender::Sender(SenderParams params, Executor& strand, wire::Wire& radio, Fleet& fleet)
+Sender::Sender(SenderParams params, Executor& strand, wire::Participant& radio, Fleet& fleet)
     : params_(std::move(params)), strand_(strand), radio_(radio), fleet_(fleet), started_(strand.now()) {}
 
 Sender::~Sender() = default;
@@ -61,8 +61,8 @@ Sender::~Sender() = default;
 Sender::Lane* Sender::lane(const std::string& robot) {
   const auto found = lanes_.find(robot);
   if (found != lanes_.end()) return found->second.get();
-  if (lanes_.size() == Fleet::max_robots + max_unheard) return nullptr;
-  auto writer = wire::Writer<radio::Command>::make(radio_, wire::topics::command, robot);
+  if (lanes_.size() == Fleet::kMaxRobots + kMaxUnheard) return nullptr;
+  auto writer = wire::Writer<radio::Command>::make(radio_, wire::topics::kCommand, robot);
   if (!writer) return nullptr;
   auto made = std::make_shared<Lane>();
   made->writer = std::move(*writer);
@@ -72,17 +72,17 @@ Sender::Lane* Sender::lane(const std::string& robot) {
 
 void Sender::prepare(const std::string& robot) { lane(robot); }
 
-void Sender::send(Order order, Done done) {
-  if (unheard(order.robot) && !lanes_.contains(order.robot)) make_room();
-  Lane* to = lane(order.robot);
+void Sender::send(RobotCommand robot_command, Done done) {
+  if (unheard(robot_command.robot) && !lanes_.contains(robot_command.robot)) make_room();
+  Lane* to = lane(robot_command.robot);
   if (!to) {
-    return done({.robot = order.robot,
-                 .command = std::string(order.name()),
+    return done({.robot = robot_command.robot,
+                 .command = std::string(robot_command.name()),
                  .reason = Reason::wire_failed,
                  .text = "the network layer has no writer left for this robot"});
   }
   auto pending = std::make_shared<Pending>();
-  pending->order = std::move(order);
+  pending->robot_command = std::move(robot_command);
   pending->done.push_back(std::move(done));
   if (pending->is_stop()) {
     if (to->stop) {  // one is on its way: the same answer serves both
@@ -93,9 +93,9 @@ void Sender::send(Order order, Done done) {
     to->stop = pending;
     return start(*to, pending);
   }
-  if (to->current && to->queue.size() == max_queue) {
-    return pending->done.front()({.robot = pending->order.robot,
-                                  .command = std::string(pending->order.name()),
+  if (to->current && to->queue.size() == kMaxQueue) {
+    return pending->done.front()({.robot = pending->robot_command.robot,
+                                  .command = std::string(pending->robot_command.name()),
                                   .reason = Reason::queue_full,
                                   .text = "16 commands wait for this robot already"});
   }
@@ -120,7 +120,7 @@ void Sender::make_room() {
     oldest = &robot;
     since = sent;
   }
-  if (count < max_unheard || !oldest) return;
+  if (count < kMaxUnheard || !oldest) return;
   close_lane(*oldest, "it no longer goes out: it gave way to newer stops for robots that were not heard");
 }
 
@@ -138,10 +138,10 @@ void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
   pending->first_sent = pending->waits_since = pending->repeated = strand_.now();
   renumber(to, *pending);
   ++counts_.sent;
-  if (on_sent) on_sent(pending->order, pending->message.seq());
+  if (on_sent) on_sent(pending->robot_command, pending->message.seq());
   const Duration repeat = pending->is_stop() ? params_.repeat_stop : params_.repeat;
-  pending->timer =
-      strand_.every(repeat, [this, robot = pending->order.robot, weak = std::weak_ptr<Pending>(pending)] {
+  pending->timer = strand_.every(
+      repeat, [this, robot = pending->robot_command.robot, weak = std::weak_ptr<Pending>(pending)] {
         if (auto alive = weak.lock()) tick(robot, alive);
       });
   transmit(to, *pending);
@@ -149,16 +149,16 @@ void Sender::start(Lane& to, std::shared_ptr<Pending> pending) {
 
 void Sender::renumber(Lane& to, Pending& pending) {
   radio::Command& message = pending.message;
-  message.robot(pending.order.robot);
+  message.robot(pending.robot_command.robot);
   message.station(params_.name);
   message.station_id(params_.id);
-  if (const RobotView* robot = fleet_.robot(pending.order.robot)) {
+  if (const RobotView* robot = fleet_.robot(pending.robot_command.robot)) {
     message.epoch().start(robot->epoch.start);
     message.epoch().counter(robot->epoch.counter);
     pending.blind = !robot->owned;
   }
   message.seq(to.next_seq++);
-  const command::Payload payload = command::pack(pending.order.request);
+  const command::Payload payload = command::pack(pending.robot_command.request);
   message.kind(static_cast<radio::CommandKind>(payload.number));
   message.words(payload.words);
   message.numbers(payload.numbers);
@@ -206,8 +206,8 @@ void Sender::report_unheard(Pending& pending) const {
   if (pending.done.empty()) return;
   pending.reported = true;
   const Answer answer{
-      .robot = pending.order.robot,
-      .command = std::string(pending.order.name()),
+      .robot = pending.robot_command.robot,
+      .command = std::string(pending.robot_command.name()),
       .seq = pending.message.seq(),
       .reason = Reason::no_answer,
       .text = "sent, not acknowledged yet: no robot of that name has been heard (known robots: " +
@@ -283,8 +283,8 @@ void Sender::hear(const radio::Acknowledgement& sample, const wire::SampleInfo&)
 }
 
 void Sender::finish(Lane& to, const std::shared_ptr<Pending>& pending, Answer answer) {
-  answer.robot = pending->order.robot;
-  answer.command = pending->order.name();
+  answer.robot = pending->robot_command.robot;
+  answer.command = pending->robot_command.name();
   if (answer.accepted)
     ++counts_.accepted;
   else

@@ -28,20 +28,20 @@ struct SenderParams {
 ///
 /// A stop goes out to a robot that was not heard yet, too. It is reported as sent and not acknowledged, and
 /// is repeated until that robot answers it, or is heard and does not answer within `give_up_stop`. At most
-/// `max_unheard` such stops go out: the oldest one gives way to a new one, and ends as not acknowledged.
+/// `kMaxUnheard` such stops go out: the oldest one gives way to a new one, and ends as not acknowledged.
 class Sender {
  public:
   using Done = std::function<void(const Answer&)>;
-  static constexpr std::size_t max_queue = 16;    ///< commands that wait for one robot
-  static constexpr std::size_t max_unheard = 16;  ///< robots that were sent a stop and were not heard yet
+  static constexpr std::size_t kMaxQueue = 16;    ///< commands that wait for one robot
+  static constexpr std::size_t kMaxUnheard = 16;  ///< robots that were sent a stop and were not heard yet
 
-  Sender(SenderParams params, Executor& strand, wire::Wire& radio, Fleet& fleet);
+  Sender(SenderParams params, Executor& strand, wire::Participant& radio, Fleet& fleet);
   ~Sender();
 
   /// Makes the robot's writer ahead of its first command, so that discovery has happened by then.
   void prepare(const std::string& robot);
   /// `done` is called once on the strand: with the robot's answer, no_answer, queue_full or wire_failed.
-  void send(Order order, Done done);
+  void send(RobotCommand robot_command, Done done);
   void hear(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
   /// True when nothing waits for that robot.
   bool idle(const std::string& robot) const;
@@ -51,7 +51,7 @@ class Sender {
 
   const Counts& counts() const { return counts_; }
   /// Each command as it first goes out.
-  std::function<void(const Order&, std::uint64_t seq)> on_sent{};
+  std::function<void(const RobotCommand&, std::uint64_t seq)> on_sent{};
   /// How a stop ended that had been reported as not acknowledged.
   std::function<void(const Answer&)> on_late{};
 
@@ -64,7 +64,7 @@ class Sender {
   void renumber(Lane& lane, Pending& pending);
   void tick(const std::string& robot, const std::shared_ptr<Pending>& pending);
   bool unheard(const std::string& robot) const { return fleet_.robot(robot) == nullptr; }
-  /// Closes the lane of the oldest stop to a robot that was not heard, if `max_unheard` of them go out.
+  /// Closes the lane of the oldest stop to a robot that was not heard, if `kMaxUnheard` of them go out.
   void make_room();
   /// Ends the stop of a lane, if any, and closes the lane.
   void close_lane(std::string robot, const std::string& why);
@@ -78,7 +78,7 @@ class Sender {
 
   SenderParams params_;
   Executor& strand_;
-  wire::Wire& radio_;
+  wire::Participant& radio_;
   Fleet& fleet_;
   Time started_;
   std::map<std::string, std::shared_ptr<Lane>> lanes_;

@@ -20,7 +20,7 @@ struct Stick::Stream {
   bool centred() const { return sample.vx() == 0.0F && sample.vy() == 0.0F && sample.wz() == 0.0F; }
 };
 
-Stick::Stick(Id id, Executor& strand, wire::Wire& radio, Fleet& fleet)
+Stick::Stick(Id id, Executor& strand, wire::Participant& radio, Fleet& fleet)
     : id_(id), strand_(strand), radio_(radio), fleet_(fleet) {}
 
 Stick::~Stick() = default;
@@ -28,7 +28,7 @@ Stick::~Stick() = default;
 Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>& velocity, Source source) {
   auto& stream = streams_[robot];
   if (!stream) {
-    auto writer = wire::Writer<radio::Joystick>::make(radio_, wire::topics::joystick, robot);
+    auto writer = wire::Writer<radio::Joystick>::make(radio_, wire::topics::kJoystick, robot);
     if (!writer) {
       streams_.erase(robot);
       return writer.error();
@@ -53,16 +53,16 @@ Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>
   if (repeat_suffices && !slower) return {};
   const Time now = strand_.now();
   const bool lets_go = stream->pushed && stream->centred();  // a zero waits for nothing; what follows it does
-  if (lets_go || now + tolerance >= stream->earliest)
+  if (lets_go || now + kTolerance >= stream->earliest)
     send(*stream, now);
   else
-    arm(*stream, stream->earliest - tolerance);
+    arm(*stream, stream->earliest - kTolerance);
   return {};
 }
 
 void Stick::send(Stream& stream, Time at) {
-  stream.earliest = std::max(stream.earliest, at) + period;
-  arm(stream, at + (stream.source == Source::live ? live_repeat : period));
+  stream.earliest = std::max(stream.earliest, at) + kPeriod;
+  arm(stream, at + (stream.source == Source::live ? kLiveRepeat : kPeriod));
   stream.pushed = !stream.centred();
   transmit(stream);
 }

@@ -16,17 +16,17 @@ namespace adit::station {
 class Stick {
  public:
   enum class Source : std::uint8_t {
-    held,  ///< one value for a while: repeated each `period`
-    live,  ///< a stick that is renewed each `period` or more often: repeated only when a renewal is missing
+    held,  ///< one value for a while: repeated each `kPeriod`
+    live,  ///< a stick that is renewed each `kPeriod` or more often: repeated only when a renewal is missing
   };
-  static constexpr Duration period = std::chrono::milliseconds(50);
+  static constexpr Duration kPeriod = std::chrono::milliseconds(50);
   /// A live value is repeated after this time without another one.
-  static constexpr Duration live_repeat = std::chrono::milliseconds(75);
+  static constexpr Duration kLiveRepeat = std::chrono::milliseconds(75);
   /// A sample may go out so much earlier than the rate says: one period, whatever the phase of the renewals
   /// is, and their jitter.
-  static constexpr Duration tolerance = std::chrono::milliseconds(70);
+  static constexpr Duration kTolerance = std::chrono::milliseconds(70);
 
-  Stick(Id id, Executor& strand, wire::Wire& radio, Fleet& fleet);
+  Stick(Id id, Executor& strand, wire::Participant& radio, Fleet& fleet);
   ~Stick();
 
   /// Streams this velocity (m/s, m/s, rad/s, body frame) from now on. Error: wire_failed.
@@ -45,7 +45,7 @@ class Stick {
 
   Id id_;
   Executor& strand_;
-  wire::Wire& radio_;
+  wire::Participant& radio_;
   Fleet& fleet_;
   std::map<std::string, std::unique_ptr<Stream>> streams_;
 };

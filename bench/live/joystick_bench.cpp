@@ -28,7 +28,7 @@
 #include "bench/live/tapped_wire.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/bench/bare_dds.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
@@ -46,7 +46,7 @@ const unsigned kRadio = 10 + static_cast<unsigned>(getpid()) % 20 * 4;  // child
 
 std::size_t number(double speed) { return static_cast<std::size_t>(std::lround(speed / kStep)); }
 
-std::unique_ptr<wire::Wire> join(unsigned domain, bool inner) {
+std::unique_ptr<wire::Participant> join(unsigned domain, bool inner) {
   wire::FastDdsParams params;
   params.domain = domain;
   params.large_samples = inner;
@@ -82,7 +82,7 @@ std::vector<std::uint8_t> payload(std::size_t k) {
 
 int robot_process(Stamps& stamps, unsigned radio) {
   auto air = join(radio, false), inner = join(radio + 1, true);
-  TappedWire tapped(*inner, wire::topics::cmd_vel.name, {}, [&](std::span<const std::uint8_t> cdr) {
+  TappedWire tapped(*inner, wire::topics::kCmdVel.name, {}, [&](std::span<const std::uint8_t> cdr) {
     geometry_msgs::msg::Twist twist;
     if (wire::decode(cdr, twist)) Stamps::note(stamps.cmd_written, number(twist.linear().x()));
   });
@@ -112,8 +112,8 @@ int driver_process(Stamps& stamps, unsigned radio) {
   auto inner = join(radio + 1, true);
   LiveRuntime runtime;
   auto strand = runtime.strand("driver");
-  auto odom = wire::Writer<nav_msgs::msg::Odometry>::make(*inner, wire::topics::odom);
-  auto reader = wire::make_reader(*inner, wire::topics::cmd_vel, *strand,
+  auto odom = wire::Writer<nav_msgs::msg::Odometry>::make(*inner, wire::topics::kOdom);
+  auto reader = wire::make_reader(*inner, wire::topics::kCmdVel, *strand,
                                   [&](const geometry_msgs::msg::Twist& twist, const wire::SampleInfo&) {
                                     Stamps::note(stamps.driver_called, number(twist.linear().x()));
                                   });
@@ -182,7 +182,7 @@ class Spinners {
 
 void station_process(Stamps& stamps, unsigned radio) {
   auto air = join(radio, false);
-  TappedWire tapped(*air, wire::topics::joystick.name,
+  TappedWire tapped(*air, wire::topics::kJoystick.name,
                     [&](std::span<const std::uint8_t> cdr) {
                       adit::radio::Joystick sample;
                       if (wire::decode(cdr, sample)) Stamps::note(stamps.stick_written, number(sample.vx()));

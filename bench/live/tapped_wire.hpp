@@ -3,16 +3,16 @@
 #include <memory>
 #include <string>
 
-#include "core/wire/forwarding_wire.hpp"
+#include "core/wire/forwarding_participant.hpp"
 
 namespace adit::bench {
 
 /// Passes everything on to another wire and calls `before` and `after` around each write of one topic.
-class TappedWire final : public wire::ForwardingWire {
+class TappedWire final : public wire::ForwardingParticipant {
  public:
   using Tap = std::function<void(std::span<const std::uint8_t>)>;
-  TappedWire(wire::Wire& inner, std::string topic, Tap before, Tap after)
-      : ForwardingWire(inner),
+  TappedWire(wire::Participant& inner, std::string topic, Tap before, Tap after)
+      : ForwardingParticipant(inner),
         topic_(std::move(topic)),
         before_(std::move(before)),
         after_(std::move(after)) {}

@@ -75,7 +75,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-double most(const std::vector<double>& values) {
+double maximum(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
 }
 
@@ -86,7 +86,7 @@ Trend trend(const std::vector<double>& samples) {
     const long begin = std::clamp(from, 0L, n - 1), end = std::min(begin + fifth, n);
     return median({samples.begin() + begin, samples.begin() + end});
   };
-  return {part(fifth), part(n - fifth), most(samples),
+  return {part(fifth), part(n - fifth), maximum(samples),
           growth(samples, static_cast<std::size_t>(std::min(fifth, n - 1)))};
 }
 

@@ -40,10 +40,10 @@ struct Series {
 /// times their number. A step (a port opened once, a cache filled), or a burst, is no growth; what goes on
 /// is.
 struct Trend {
-  double early{}, late{}, most{}, growth{};
+  double early{}, late{}, max{}, growth{};
 };
 Trend trend(const std::vector<double>& samples);
 double median(std::vector<double> values);
-double most(const std::vector<double>& values);
+double maximum(const std::vector<double>& values);
 
 }  // namespace adit::soak

@@ -145,8 +145,9 @@ class Soak {
         "answers a take again after %.2f s (median), %.2f s (worst), a goto after %.2f s, %.2f s\n"
         "%d times late (a goto not accepted within %.0f s of the kill), %d times not there or not back "
         "within %.0f s\n",
-        options_.length, options_.agents, restarts_, by_themselves_, median(obeys_after_), most(obeys_after_),
-        median(drives_after_), most(drives_after_), late_, kLate, missing_, kPatience.count());
+        options_.length, options_.agents, restarts_, by_themselves_, median(obeys_after_),
+        maximum(obeys_after_), median(drives_after_), maximum(drives_after_), late_, kLate, missing_,
+        kPatience.count());
     std::printf("%-28s %26s %18s %18s\n", "", "memory MB: early, late, max", "threads", "files");
     for (const auto& [name, series] : series_) {
       const Trend m = trend(series.rss_mb), t = trend(series.threads), f = trend(series.fds);
@@ -155,13 +156,13 @@ class Soak {
       const bool ok = m.growth <= m.early * 0.1 + 2.0 && t.growth < 0.5 && f.growth < 0.5 &&
                       t.late <= t.early + 2.0 && f.late <= f.early + 6.0;
       std::printf("%-28s %8.1f %8.1f %8.1f %6.0f %6.0f %4.0f %6.0f %6.0f %4.0f%s\n", name.c_str(), m.early,
-                  m.late, m.most, t.early, t.late, t.most, f.early, f.late, f.most, ok ? "" : "   GROWS");
+                  m.late, m.max, t.early, t.late, t.max, f.early, f.late, f.max, ok ? "" : "   GROWS");
       flat = flat && ok;
     }
     const Trend files = trend(shm_files_), mb = trend(shm_mb_);
     const bool ok = files.growth <= files.early * 0.1 + 4.0 && mb.growth <= mb.early * 0.1 + 2.0;
-    std::printf("%-28s %8.1f %8.1f %8.1f %18s %6.0f %6.0f %4.0f%s\n", "/dev/shm", mb.early, mb.late, mb.most,
-                "", files.early, files.late, files.most, ok ? "" : "   GROWS");
+    std::printf("%-28s %8.1f %8.1f %8.1f %18s %6.0f %6.0f %4.0f%s\n", "/dev/shm", mb.early, mb.late, mb.max,
+                "", files.early, files.late, files.max, ok ? "" : "   GROWS");
     for (const auto* process : {simulate_.get(), station_.get()}) missing_ += alive(process->pid()) ? 0 : 1;
     for (const auto& parent : parents_) missing_ += alive(parent->pid()) ? 0 : 1;
     const bool there = missing_ == 0 && by_themselves_ == 0;

@@ -29,24 +29,24 @@ std::unique_ptr<DefaultDds> bare(const std::string& name, bool is_station, int r
   const auto write = [&](const wire::TopicInfo& topic, const std::string& partition) {
     one->write(topic, partition, {});
   };
-  write(wire::topics::capabilities, "");
-  write(wire::topics::link_report, "");
-  write(wire::topics::presence, "");
-  one->read(wire::topics::capabilities, "");
-  const std::vector<wire::TopicInfo> said{wire::topics::robot_state,  wire::topics::authority,
-                                          wire::topics::behaviour,    wire::topics::health,
-                                          wire::topics::notification, wire::topics::acknowledgement};
+  write(wire::topics::kCapabilities, "");
+  write(wire::topics::kLinkReport, "");
+  write(wire::topics::kPresence, "");
+  one->read(wire::topics::kCapabilities, "");
+  const std::vector<wire::TopicInfo> said{wire::topics::kRobotState,   wire::topics::kAuthority,
+                                          wire::topics::kBehaviour,    wire::topics::kHealth,
+                                          wire::topics::kNotification, wire::topics::kAcknowledgement};
   for (const wire::TopicInfo& topic : said) is_station ? one->read(topic, "") : write(topic, "");
   if (is_station) {
-    one->read(wire::topics::link_report, "");
+    one->read(wire::topics::kLinkReport, "");
     for (int i = 0; i < robots; ++i) {
-      write(wire::topics::command, "r" + std::to_string(i));
-      write(wire::topics::joystick, "r" + std::to_string(i));
+      write(wire::topics::kCommand, "r" + std::to_string(i));
+      write(wire::topics::kJoystick, "r" + std::to_string(i));
     }
   } else {
-    one->read(wire::topics::command, name);
-    one->read(wire::topics::joystick, name);
-    one->read(wire::topics::presence, "");
+    one->read(wire::topics::kCommand, name);
+    one->read(wire::topics::kJoystick, name);
+    one->read(wire::topics::kPresence, "");
   }
   return one;
 }
@@ -115,7 +115,7 @@ Measured measure(int agents, Duration time) {
   std::vector<std::unique_ptr<Idle>> ours;
   for (int i = 0; i < robots; ++i) ours.push_back(robot(net, "r" + std::to_string(i)));
   if (agents > 1) ours.push_back(station(net, "op1", robots));
-  net.pass(wire::Discovery::initial_announcements * wire::Discovery::initial_period + 2s);
+  net.pass(wire::Discovery::kInitialAnnouncements * wire::Discovery::kInitialPeriod + 2s);
   const auto all = [&] {
     std::vector<wire::WireCounters> result;
     for (const auto& one : ours) result.push_back(one->wire->counters());
@@ -132,7 +132,7 @@ Measured measure(int agents, Duration time) {
     const auto& writer = ours.back()->writers.back();  // the last robot's joystick
     const std::vector<std::uint8_t> sample = [] {
       for (const wire::Example& e : wire::examples())
-        if (std::string(e.topic.name) == wire::topics::joystick.name) return e.bytes;
+        if (std::string(e.topic.name) == wire::topics::kJoystick.name) return e.bytes;
       return std::vector<std::uint8_t>{};
     }();
     sticks = ours.back()->strand->every(50ms, [writer, sample] { (void)writer->write(sample); });

@@ -3,7 +3,7 @@
 
 #include "core/exec/live_runtime.hpp"
 #include "core/wire/bench/bare_dds.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 
 namespace adit::bench {
 
@@ -20,7 +20,7 @@ class Echo {
  private:
   LiveRuntime runtime_{};
   std::shared_ptr<Executor> strand_{runtime_.strand("echo")};
-  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::Participant> wire_;
   std::unique_ptr<wire::RawWriter> urgent_, stream_;
   std::unique_ptr<wire::RawReader> urgent_in_, stream_in_;
   std::unique_ptr<BareDds> bare_;

@@ -15,7 +15,7 @@ using Heard = std::function<void(const radio::Capabilities&)>;
 
 /// Writes what an idle robot or station writes, and reads what it reads.
 struct Idle {
-  Idle(std::unique_ptr<wire::Wire> w, std::shared_ptr<Executor> s)
+  Idle(std::unique_ptr<wire::Participant> w, std::shared_ptr<Executor> s)
       : wire(std::move(w)), strand(std::move(s)) {}
 
   void write(const wire::TopicInfo& topic, const std::string& partition, Duration period) {
@@ -38,7 +38,7 @@ struct Idle {
   void read_capabilities(Heard heard) {
     readers.push_back(
         std::move(wire::make_reader(
-                      *wire, wire::topics::capabilities, *strand,
+                      *wire, wire::topics::kCapabilities, *strand,
                       [heard = std::move(heard)](const radio::Capabilities& sample, const wire::SampleInfo&) {
                         if (heard) heard(sample);
                       }))
@@ -51,11 +51,11 @@ struct Idle {
     sample.software(software);
     std::vector<std::uint8_t> bytes;
     wire::encode(sample, bytes);
-    writers.emplace_back(std::move(wire->make_writer(wire::topics::capabilities, "")).value());
+    writers.emplace_back(std::move(wire->make_writer(wire::topics::kCapabilities, "")).value());
     (void)writers.back()->write(bytes);
   }
 
-  std::unique_ptr<wire::Wire> wire;
+  std::unique_ptr<wire::Participant> wire;
   std::shared_ptr<Executor> strand;
   std::vector<std::shared_ptr<wire::RawWriter>> writers{}, commands{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
@@ -68,16 +68,16 @@ std::unique_ptr<Idle> robot(Net& net, const std::string& name, Heard heard = {},
   using namespace wire;
   auto idle = std::make_unique<Idle>(net.join(name), net.strand(name));
   idle->write_capabilities(name, software);
-  idle->write(topics::robot_state, "", 100ms);
-  idle->write(topics::authority, "", 1s);
-  idle->write(topics::behaviour, "", 1s);
-  idle->write(topics::health, "", 5s);
-  idle->write(topics::link_report, "", 2s);
-  idle->write(topics::notification, "", 1h);
-  idle->write(topics::acknowledgement, "", 0ms);
-  idle->read(topics::command, name);
-  idle->read(topics::joystick, name);
-  idle->read(topics::presence, "");
+  idle->write(topics::kRobotState, "", 100ms);
+  idle->write(topics::kAuthority, "", 1s);
+  idle->write(topics::kBehaviour, "", 1s);
+  idle->write(topics::kHealth, "", 5s);
+  idle->write(topics::kLinkReport, "", 2s);
+  idle->write(topics::kNotification, "", 1h);
+  idle->write(topics::kAcknowledgement, "", 0ms);
+  idle->read(topics::kCommand, name);
+  idle->read(topics::kJoystick, name);
+  idle->read(topics::kPresence, "");
   idle->read_capabilities(std::move(heard));
   return idle;
 }
@@ -88,16 +88,16 @@ std::unique_ptr<Idle> station(Net& net, const std::string& name, int robots, Hea
   using namespace wire;
   auto idle = std::make_unique<Idle>(net.join(name), net.strand(name));
   idle->write_capabilities(name, software);
-  idle->write(topics::presence, "", 1s);
-  idle->write(topics::link_report, "", 2s);
+  idle->write(topics::kPresence, "", 1s);
+  idle->write(topics::kLinkReport, "", 2s);
   for (int i = 0; i < robots; ++i) {
-    idle->write(topics::command, "r" + std::to_string(i), 0ms);
-    idle->write(topics::joystick, "r" + std::to_string(i), 0ms);
+    idle->write(topics::kCommand, "r" + std::to_string(i), 0ms);
+    idle->write(topics::kJoystick, "r" + std::to_string(i), 0ms);
   }
   for (const TopicInfo& topic :
-       {TopicInfo(topics::robot_state), TopicInfo(topics::authority), TopicInfo(topics::behaviour),
-        TopicInfo(topics::health), TopicInfo(topics::link_report), TopicInfo(topics::notification),
-        TopicInfo(topics::acknowledgement)}) {
+       {TopicInfo(topics::kRobotState), TopicInfo(topics::kAuthority), TopicInfo(topics::kBehaviour),
+        TopicInfo(topics::kHealth), TopicInfo(topics::kLinkReport), TopicInfo(topics::kNotification),
+        TopicInfo(topics::kAcknowledgement)}) {
     idle->read(topic, "");
   }
   idle->read_capabilities(std::move(heard));

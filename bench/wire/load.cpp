@@ -2,7 +2,7 @@
 
 namespace adit::bench {
 
-Load::Load(wire::Wire& wire, Executor& strand, const wire::LinkProfile& link, std::uint8_t who) {
+Load::Load(wire::Participant& wire, Executor& strand, const wire::LinkProfile& link, std::uint8_t who) {
   const bool thin = link.frame_bytes() <= 500;
   for (const wire::TopicInfo& topic : {load_bulk, load_video}) {
     readers_.push_back(
@@ -13,7 +13,7 @@ Load::Load(wire::Wire& wire, Executor& strand, const wire::LinkProfile& link, st
 }
 
 void Load::offer(const wire::TopicInfo& topic, std::size_t bytes, double share, Executor& strand,
-                 wire::Wire& wire, const wire::LinkProfile& link, std::uint8_t who) {
+                 wire::Participant& wire, const wire::LinkProfile& link, std::uint8_t who) {
   const auto writer = std::shared_ptr<wire::RawWriter>(std::move(wire.make_writer(topic, "")).value());
   const Duration period = from_seconds(static_cast<double>(bytes) * 8.0 / (share * link.bandwidth));
   timers_.push_back(strand.every(

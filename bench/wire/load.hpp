@@ -4,7 +4,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/wire/link.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::bench {
 
@@ -18,11 +18,11 @@ inline constexpr wire::TopicInfo load_video{
 class Load {
  public:
   /// `who` tells the pieces of several loads apart.
-  Load(wire::Wire& wire, Executor& strand, const wire::LinkProfile& link, std::uint8_t who);
+  Load(wire::Participant& wire, Executor& strand, const wire::LinkProfile& link, std::uint8_t who);
 
  private:
   void offer(const wire::TopicInfo& topic, std::size_t bytes, double share, Executor& strand,
-             wire::Wire& wire, const wire::LinkProfile& link, std::uint8_t who);
+             wire::Participant& wire, const wire::LinkProfile& link, std::uint8_t who);
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::vector<Timer> timers_{};
 };

@@ -26,7 +26,7 @@ struct Options {
 
 std::string name_of(const std::string& topic, std::span<const std::uint8_t> cdr) {
   radio::Command command;
-  if (topic != wire::topics::command.name || !wire::decode(cdr, command)) return topic;
+  if (topic != wire::topics::kCommand.name || !wire::decode(cdr, command)) return topic;
   switch (command.kind()) {
     case radio::CMD_STOP:
       return "stop";
@@ -100,7 +100,7 @@ void run(const Cell& cell, const Options& options) {
   const auto strand = net.machine("load").strand("load");
   std::unique_ptr<Load> up, down;
   Timer sticks;
-  auto stick = wire::Writer<radio::Joystick>::make(op.radio(), wire::topics::joystick, "r1").value();
+  auto stick = wire::Writer<radio::Joystick>::make(op.radio(), wire::topics::kJoystick, "r1").value();
   radio::Joystick sample;
   sample.robot("r1");
   net.on(*strand, [&] {

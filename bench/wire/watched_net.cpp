@@ -1,7 +1,7 @@
 #include "bench/wire/watched_net.hpp"
 
 #include "core/wire/cdr_key.hpp"
-#include "core/wire/forwarding_wire.hpp"
+#include "core/wire/forwarding_participant.hpp"
 
 namespace adit::bench {
 namespace {
@@ -10,10 +10,10 @@ std::uint64_t content(std::span<const std::uint8_t> bytes) {
   return wire::key_number({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-class WatchedWire final : public wire::ForwardingWire {
+class WatchedWire final : public wire::ForwardingParticipant {
  public:
-  WatchedWire(std::unique_ptr<wire::Wire> inner, live::Net& net, Passages& passages)
-      : ForwardingWire(*inner), owned_(std::move(inner)), net_(net), passages_(passages) {}
+  WatchedWire(std::unique_ptr<wire::Participant> inner, live::Net& net, Passages& passages)
+      : ForwardingParticipant(*inner), owned_(std::move(inner)), net_(net), passages_(passages) {}
 
   Result<std::unique_ptr<wire::RawWriter>> make_writer(const wire::TopicInfo& topic,
                                                        const std::string& partition) override {
@@ -51,7 +51,7 @@ class WatchedWire final : public wire::ForwardingWire {
     Passages& passages_;
   };
 
-  std::unique_ptr<wire::Wire> owned_;
+  std::unique_ptr<wire::Participant> owned_;
   live::Net& net_;
   Passages& passages_;
 };
@@ -85,7 +85,7 @@ void Passages::count(bool counting) {
   counting_ = counting;
 }
 
-std::unique_ptr<wire::Wire> WatchedNet::join_radio(const std::string& machine) {
+std::unique_ptr<wire::Participant> WatchedNet::join_radio(const std::string& machine) {
   return std::make_unique<WatchedWire>(inner_->join_radio(machine), *inner_, passages_);
 }
 

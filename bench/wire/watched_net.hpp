@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "tests/live/net.hpp"
 
 namespace adit::bench {
@@ -47,8 +47,8 @@ class WatchedNet final : public live::Net {
   WatchedNet(std::unique_ptr<live::Net> inner, Passages& passages)
       : inner_(std::move(inner)), passages_(passages) {}
   Runtime& machine(const std::string& name) override { return inner_->machine(name); }
-  std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override;
-  std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override {
+  std::unique_ptr<wire::Participant> join_radio(const std::string& machine) override;
+  std::unique_ptr<wire::Participant> join_robot(const std::string& machine) override {
     return inner_->join_robot(machine);
   }
   void silence(const std::string& machine) override { inner_->silence(machine); }

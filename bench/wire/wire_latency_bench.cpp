@@ -44,7 +44,7 @@ struct Client {
   std::counting_semaphore<64> back{0};
   LiveRuntime runtime{};
   std::shared_ptr<Executor> strand{runtime.strand("client")};
-  std::unique_ptr<wire::Wire> wire{};
+  std::unique_ptr<wire::Participant> wire{};
   std::unique_ptr<wire::RawWriter> urgent{}, stream{};
   std::unique_ptr<wire::RawReader> urgent_in{}, stream_in{};
   std::unique_ptr<BareDds> bare{};

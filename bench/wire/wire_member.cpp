@@ -14,7 +14,7 @@ struct Net {
   unsigned domain;
   std::string interface;
   adit::LiveRuntime runtime{};
-  std::unique_ptr<adit::wire::Wire> join(const std::string& name) {
+  std::unique_ptr<adit::wire::Participant> join(const std::string& name) {
     return std::move(adit::wire::open_fastdds({.domain = domain, .name = name, .interfaces = {interface}}))
         .value();
   }

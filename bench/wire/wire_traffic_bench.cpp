@@ -1,5 +1,5 @@
-// What the radio carries when nobody does anything, live on loopback beside the ether, and the bytes of a
-// start-up: bench_wire_traffic [SECONDS].
+// What the radio carries when nobody does anything, live on loopback beside the simulated network, and the
+// bytes of a start-up: bench_wire_traffic [SECONDS].
 #include <cstdio>
 #include <cstdlib>
 #include <map>

@@ -31,7 +31,7 @@ void Blackboard::unset(std::string_view key) {
   if (const auto it = entries_.find(key); it != entries_.end()) entries_.erase(it);
 }
 
-void Blackboard::set(std::string_view key, Value value) {
+void Blackboard::set(std::string_view key, BlackboardValue value) {
   Entry& entry = declare(key);
   if (is_text(value)) {
     switch (entry.type) {

@@ -15,7 +15,7 @@ namespace adit::bt {
 class Blackboard {
  public:
   struct Entry {
-    Value value{};
+    BlackboardValue value{};
     PortType type{PortType::any};  ///< text written to a typed entry is converted, or refused
   };
 
@@ -34,7 +34,7 @@ class Blackboard {
   /// Removes the entry if it lives in this very blackboard.
   void unset(std::string_view key);
   /// Writes; throws NodeError when the entry's type refuses the text.
-  void set(std::string_view key, Value value);
+  void set(std::string_view key, BlackboardValue value);
 
   /// Reads an entry as T; Reason::missing_key when there is none, Reason::wrong_type when it holds
   /// something else.

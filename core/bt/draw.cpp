@@ -6,13 +6,13 @@ namespace adit::bt {
 
 namespace {
 
-std::string label(const Node& node) {
+std::string label(const TreeNode& node) {
   std::string text = node.kind() == NodeKind::subtree ? "SubTree " + node.id() : node.id();
   if (node.named() && node.name() != node.id()) text += " \"" + node.name() + "\"";
   return text;
 }
 
-std::string attributes(const Node& node) {
+std::string attributes(const TreeNode& node) {
   std::string text;
   for (const auto& [port, value] : node.config().ports) text += "  " + port + "=" + value;
   for (std::size_t i = 0; i < kHookNames.size(); ++i) {
@@ -21,7 +21,7 @@ std::string attributes(const Node& node) {
   return text;
 }
 
-void draw_below(const Node& node, const std::string& prefix, std::string& out) {
+void draw_below(const TreeNode& node, const std::string& prefix, std::string& out) {
   const auto& children = node.children();
   for (std::size_t i = 0; i < children.size(); ++i) {
     const bool last = i + 1 == children.size();
@@ -67,13 +67,13 @@ std::string draw_text(const Tree& tree) {
 
 std::string draw_dot(const Tree& tree) {
   std::string nodes, edges;
-  std::map<const Node*, std::string> ids;
-  tree.for_each([&](const Node& node, std::size_t) {
+  std::map<const TreeNode*, std::string> ids;
+  tree.for_each([&](const TreeNode& node, std::size_t) {
     const std::string id = "n" + std::to_string(ids.size());
     ids[&node] = id;
     nodes += "  " + id + " [label=" + quoted(label(node)) + ", shape=" + shape(node.kind()) + "];\n";
   });
-  tree.for_each([&](const Node& node, std::size_t) {
+  tree.for_each([&](const TreeNode& node, std::size_t) {
     for (const auto& child : node.children()) edges += "  " + ids[&node] + " -> " + ids[child.get()] + ";\n";
   });
   return "digraph " + quoted(tree.id()) + " {\n  ordering=out;\n  node [fontname=\"sans-serif\"];\n" + nodes +

@@ -50,11 +50,11 @@ class StatefulNode : public Leaf {
 
 }  // namespace
 
-std::unique_ptr<Node> make_function_leaf(NodeConfig config, LeafFunction function) {
+std::unique_ptr<TreeNode> make_function_leaf(NodeConfig config, LeafFunction function) {
   return std::make_unique<FunctionNode>(std::move(config), std::move(function));
 }
 
-std::unique_ptr<Node> make_stateful_leaf(NodeConfig config, std::unique_ptr<StatefulLeaf> code) {
+std::unique_ptr<TreeNode> make_stateful_leaf(NodeConfig config, std::unique_ptr<StatefulLeaf> code) {
   return std::make_unique<StatefulNode>(std::move(config), std::move(code));
 }
 

@@ -9,12 +9,12 @@
 namespace adit::bt {
 
 /// What a leaf's code sees of its node while it runs.
-class Leaf : public Node {
+class Leaf : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
   /// Time of the tick, by the clock handed to Tree::tick.
-  Time now() const { return runtime().now; }
+  Time now() const { return context().now; }
   /// What the port holds, converted; Reason::bad_argument when it is missing or has another type.
   template <class T>
   Result<T> input(std::string_view port_name) const {
@@ -57,8 +57,8 @@ class StatefulLeaf {
 using StatefulFactory = std::function<std::unique_ptr<StatefulLeaf>(const NodeConfig&)>;
 
 /// The node of a leaf function.
-std::unique_ptr<Node> make_function_leaf(NodeConfig config, LeafFunction function);
+std::unique_ptr<TreeNode> make_function_leaf(NodeConfig config, LeafFunction function);
 /// The node of a stateful leaf, with the rules of BehaviorTree.CPP's StatefulActionNode.
-std::unique_ptr<Node> make_stateful_leaf(NodeConfig config, std::unique_ptr<StatefulLeaf> code);
+std::unique_ptr<TreeNode> make_stateful_leaf(NodeConfig config, std::unique_ptr<StatefulLeaf> code);
 
 }  // namespace adit::bt

@@ -26,7 +26,7 @@ std::optional<std::string> blackboard_key(std::string_view port, std::string_vie
   return std::string(text.substr(1, text.size() - 2));
 }
 
-NodeStatus Node::execute_tick() {
+NodeStatus TreeNode::execute_tick() {
   NodeStatus next = status_;
   try {
     const auto forced = check_preconditions();
@@ -47,7 +47,7 @@ NodeStatus Node::execute_tick() {
   return next;
 }
 
-NodeStatus Node::fail(std::string_view what) {
+NodeStatus TreeNode::fail(std::string_view what) {
   report(what);
   try {
     // A leaf that threw has stopped by itself; a node with children must not leave them running.
@@ -58,12 +58,12 @@ NodeStatus Node::fail(std::string_view what) {
   return NodeStatus::failure;
 }
 
-std::optional<NodeStatus> Node::check_preconditions() {
+std::optional<NodeStatus> TreeNode::check_preconditions() {
   for (const Hook which : {Hook::failure_if, Hook::success_if, Hook::skip_if, Hook::while_true}) {
     const Script* script = hook(which);
     if (!script) continue;
     if (status_ == NodeStatus::idle) {
-      const bool holds = to_condition(script->run(board(), runtime().enums));
+      const bool holds = to_condition(script->run(board(), context().enums));
       if (which == Hook::while_true) {
         if (!holds) return NodeStatus::skipped;
       } else if (holds) {
@@ -72,7 +72,7 @@ std::optional<NodeStatus> Node::check_preconditions() {
         return NodeStatus::skipped;
       }
     } else if (status_ == NodeStatus::running && which == Hook::while_true) {
-      if (!to_condition(script->run(board(), runtime().enums))) {
+      if (!to_condition(script->run(board(), context().enums))) {
         halt_node();
         return NodeStatus::skipped;
       }
@@ -81,11 +81,11 @@ std::optional<NodeStatus> Node::check_preconditions() {
   return std::nullopt;
 }
 
-void Node::run_hook(Hook which) {
-  if (const Script* script = hook(which)) script->run(board(), runtime().enums);
+void TreeNode::run_hook(Hook which) {
+  if (const Script* script = hook(which)) script->run(board(), context().enums);
 }
 
-void Node::halt_node() {
+void TreeNode::halt_node() {
   try {
     halt();
     run_hook(Hook::on_halted);
@@ -97,34 +97,34 @@ void Node::halt_node() {
   reset_status();
 }
 
-void Node::halt() {
+void TreeNode::halt() {
   reset_children();
   reset_status();
 }
 
-void Node::reset_child(std::size_t index) {
-  Node& node = child(index);
+void TreeNode::reset_child(std::size_t index) {
+  TreeNode& node = child(index);
   if (node.status_ == NodeStatus::running) node.halt_node();
   node.reset_status();
 }
 
-void Node::reset_children() {
+void TreeNode::reset_children() {
   for (std::size_t i = 0; i < children_.size(); ++i) reset_child(i);
 }
 
-void Node::reset_status() { set_status(NodeStatus::idle); }
+void TreeNode::reset_status() { set_status(NodeStatus::idle); }
 
-void Node::set_status(NodeStatus status) {
+void TreeNode::set_status(NodeStatus status) {
   const NodeStatus before = status_;
   status_ = status;
-  if (before != status && runtime().on_status) runtime().on_status(*this, before, status);
+  if (before != status && context().on_status) context().on_status(*this, before, status);
 }
 
-Value Node::port_value(std::string_view port) const {
+BlackboardValue TreeNode::port_value(std::string_view port) const {
   const auto it = config_.ports.find(port);
   if (it == config_.ports.end()) throw NodeError("port [" + std::string(port) + "] is not given");
   const auto key = blackboard_key(port, it->second);
-  if (!key) return Value(it->second);
+  if (!key) return BlackboardValue(it->second);
   const auto* entry = board().find(*key);
   if (!entry || is_empty(entry->value)) {
     throw NodeError("port [" + std::string(port) + "]: blackboard entry '" + *key + "' was never written");
@@ -132,7 +132,7 @@ Value Node::port_value(std::string_view port) const {
   return entry->value;
 }
 
-void Node::write_port(std::string_view port, Value value) const {
+void TreeNode::write_port(std::string_view port, BlackboardValue value) const {
   const auto it = config_.ports.find(port);
   if (it == config_.ports.end()) throw NodeError("port [" + std::string(port) + "] is not given");
   const auto key = blackboard_key(port, it->second);
@@ -140,8 +140,8 @@ void Node::write_port(std::string_view port, Value value) const {
   board().set(*key, std::move(value));
 }
 
-void Node::report(std::string_view what) const {
-  if (runtime().on_error) runtime().on_error(*this, what);
+void TreeNode::report(std::string_view what) const {
+  if (context().on_error) context().on_error(*this, what);
 }
 
 }  // namespace adit::bt

@@ -14,15 +14,15 @@
 
 namespace adit::bt {
 
-class Node;
+class TreeNode;
 
 /// What the nodes of one tree share.
-struct Runtime {
+struct TickContext {
   Time now{};  ///< of the current tick
   Timers timers{};
   Enums enums{};
-  std::function<void(const Node&, NodeStatus from, NodeStatus to)> on_status{};
-  std::function<void(const Node&, std::string_view what)> on_error{};
+  std::function<void(const TreeNode&, NodeStatus from, NodeStatus to)> on_status{};
+  std::function<void(const TreeNode&, std::string_view what)> on_error{};
 };
 
 enum class NodeKind : std::uint8_t { action, condition, control, decorator, subtree };
@@ -55,16 +55,16 @@ struct NodeConfig {
   std::map<std::string, std::string, std::less<>> ports{};  ///< text of each port, fallbacks included
   std::array<std::shared_ptr<const Script>, kHookNames.size()> hooks{};
   Blackboard* board{nullptr};
-  Runtime* runtime{nullptr};
+  TickContext* context{nullptr};
 };
 
 /// One node of a running tree. Only its tree ticks it; everybody else may look.
-class Node {
+class TreeNode {
  public:
-  explicit Node(NodeConfig config) : config_(std::move(config)) {}
-  virtual ~Node() = default;
-  Node(const Node&) = delete;
-  Node& operator=(const Node&) = delete;
+  explicit TreeNode(NodeConfig config) : config_(std::move(config)) {}
+  virtual ~TreeNode() = default;
+  TreeNode(const TreeNode&) = delete;
+  TreeNode& operator=(const TreeNode&) = delete;
 
   const std::string& id() const { return config_.id; }
   const std::string& name() const { return config_.name; }
@@ -72,11 +72,11 @@ class Node {
   NodeKind kind() const { return config_.kind; }
   const NodeConfig& config() const { return config_; }
   NodeStatus status() const { return status_; }
-  const std::vector<std::unique_ptr<Node>>& children() const { return children_; }
+  const std::vector<std::unique_ptr<TreeNode>>& children() const { return children_; }
 
  protected:
   friend class Tree;
-  friend class Builder;
+  friend class TreeBuilder;
 
   /// Preconditions, tick(), postconditions, new status. Whatever is thrown becomes FAILURE and is reported.
   NodeStatus execute_tick();
@@ -89,22 +89,22 @@ class Node {
   /// Stops what is running; leaves the node idle. Control nodes and decorators halt their children.
   virtual void halt();
 
-  Node& child(std::size_t index = 0) { return *children_[index]; }
+  TreeNode& child(std::size_t index = 0) { return *children_[index]; }
   std::size_t child_count() const { return children_.size(); }
-  static NodeStatus tick_child(Node& child) { return child.execute_tick(); }
+  static NodeStatus tick_child(TreeNode& child) { return child.execute_tick(); }
   /// Halts the child if it is running, and leaves it idle in any case.
   void reset_child(std::size_t index = 0);
   void reset_children();
 
   /// What the port holds. Throws NodeError when it is not given or its entry is missing or empty.
-  Value port_value(std::string_view port) const;
+  BlackboardValue port_value(std::string_view port) const;
   template <class T>
   T port(std::string_view port_name) const;
   /// Writes to the entry that the port names. Throws NodeError.
-  void write_port(std::string_view port, Value value) const;
+  void write_port(std::string_view port, BlackboardValue value) const;
 
   Blackboard& board() const { return *config_.board; }
-  Runtime& runtime() const { return *config_.runtime; }
+  TickContext& context() const { return *config_.context; }
   void report(std::string_view what) const;
 
  private:
@@ -116,12 +116,12 @@ class Node {
 
   NodeConfig config_;
   NodeStatus status_{NodeStatus::idle};
-  std::vector<std::unique_ptr<Node>> children_{};
+  std::vector<std::unique_ptr<TreeNode>> children_{};
 };
 
 template <class T>
-T Node::port(std::string_view port_name) const {
-  const Value value = port_value(port_name);
+T TreeNode::port(std::string_view port_name) const {
+  const BlackboardValue value = port_value(port_name);
   try {
     return value_as<T>(value);
   } catch (const NodeError& error) {

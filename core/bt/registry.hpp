@@ -8,7 +8,7 @@
 
 namespace adit::bt {
 
-using NodeFactory = std::function<std::unique_ptr<Node>(NodeConfig)>;
+using NodeFactory = std::function<std::unique_ptr<TreeNode>(NodeConfig)>;
 
 /// What the loader knows about a kind of node.
 struct Manifest {

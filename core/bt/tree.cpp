@@ -4,8 +4,8 @@ namespace adit::bt {
 
 NodeStatus Tree::tick(Time now) {
   if (!root_) return NodeStatus::failure;
-  runtime_->now = now;
-  runtime_->timers.expire(now);
+  context_->now = now;
+  context_->timers.expire(now);
   const NodeStatus answer = root_->execute_tick();
   if (completed(answer)) root_->reset_status();
   return answer;
@@ -15,7 +15,7 @@ void Tree::halt() {
   if (!root_) return;
   root_->halt_node();
   // The halt reaches what is running; this also makes idle what completed below a node that is idle already.
-  const std::function<void(Node&)> settle = [&](Node& node) {
+  const std::function<void(TreeNode&)> settle = [&](TreeNode& node) {
     for (const auto& child : node.children_) {
       if (child->status_ == NodeStatus::running) child->halt_node();
       child->reset_status();
@@ -25,16 +25,17 @@ void Tree::halt() {
   settle(*root_);
 }
 
-void Tree::on_status(std::function<void(const Node&, NodeStatus, NodeStatus)> listener) {
-  if (runtime_) runtime_->on_status = std::move(listener);
+void Tree::on_status(std::function<void(const TreeNode&, NodeStatus, NodeStatus)> listener) {
+  if (context_) context_->on_status = std::move(listener);
 }
 
-void Tree::on_error(std::function<void(const Node&, std::string_view)> listener) {
-  if (runtime_) runtime_->on_error = std::move(listener);
+void Tree::on_error(std::function<void(const TreeNode&, std::string_view)> listener) {
+  if (context_) context_->on_error = std::move(listener);
 }
 
-void Tree::for_each(const std::function<void(const Node&, std::size_t)>& visit) const {
-  const std::function<void(const Node&, std::size_t)> walk = [&](const Node& node, std::size_t depth) {
+void Tree::for_each(const std::function<void(const TreeNode&, std::size_t)>& visit) const {
+  const std::function<void(const TreeNode&, std::size_t)> walk = [&](const TreeNode& node,
+                                                                     std::size_t depth) {
     visit(node, depth);
     for (const auto& child : node.children()) walk(*child, depth + 1);
   };

@@ -27,25 +27,25 @@ class Tree {
   void halt();
 
   /// Hears of every change of a node's status, during tick() and halt().
-  void on_status(std::function<void(const Node&, NodeStatus from, NodeStatus to)> listener);
+  void on_status(std::function<void(const TreeNode&, NodeStatus from, NodeStatus to)> listener);
   /// Hears of every exception in a node, with its text.
-  void on_error(std::function<void(const Node&, std::string_view what)> listener);
+  void on_error(std::function<void(const TreeNode&, std::string_view what)> listener);
 
   bool empty() const { return !root_; }
   /// The ID of the tree that was loaded.
   const std::string& id() const { return id_; }
   /// Must not be empty().
-  const Node& root() const { return *root_; }
+  const TreeNode& root() const { return *root_; }
   /// The outermost blackboard. Must not be empty().
   Blackboard& blackboard() { return *boards_.front(); }
   /// Every node, parents before children, children in order, through SubTrees.
-  void for_each(const std::function<void(const Node&, std::size_t depth)>& visit) const;
+  void for_each(const std::function<void(const TreeNode&, std::size_t depth)>& visit) const;
 
  private:
-  friend class Builder;
-  std::unique_ptr<Runtime> runtime_{};
+  friend class TreeBuilder;
+  std::unique_ptr<TickContext> context_{};
   std::vector<std::unique_ptr<Blackboard>> boards_{};
-  std::unique_ptr<Node> root_{};
+  std::unique_ptr<TreeNode> root_{};
   std::string id_{};
 };
 

@@ -66,7 +66,7 @@ bool readable_as(std::string_view text, PortType type) {
   return true;
 }
 
-std::int64_t to_integer(const Value& v) {
+std::int64_t to_integer(const BlackboardValue& v) {
   if (const auto* integer = std::get_if<std::int64_t>(&v)) return *integer;
   if (const auto* real = std::get_if<double>(&v)) {
     // Like the reference, a fraction is not cut off in silence.
@@ -83,7 +83,7 @@ std::int64_t to_integer(const Value& v) {
   throw NodeError(is_empty(v) ? "the entry was never written" : "the value is not a number");
 }
 
-double to_real(const Value& v) {
+double to_real(const BlackboardValue& v) {
   if (const auto* integer = std::get_if<std::int64_t>(&v)) return static_cast<double>(*integer);
   if (const auto* real = std::get_if<double>(&v)) return *real;
   if (const auto* text = std::get_if<std::string>(&v)) {
@@ -94,7 +94,7 @@ double to_real(const Value& v) {
   throw NodeError(is_empty(v) ? "the entry was never written" : "the value is not a number");
 }
 
-bool to_boolean(const Value& v) {
+bool to_boolean(const BlackboardValue& v) {
   if (const auto* text = std::get_if<std::string>(&v)) {
     bool out = false;
     if (!read_boolean(*text, out)) throw NodeError(in_quotes(*text) + " is neither true nor false");
@@ -103,7 +103,7 @@ bool to_boolean(const Value& v) {
   return to_condition(v);
 }
 
-bool to_condition(const Value& v) {
+bool to_condition(const BlackboardValue& v) {
   if (const auto* integer = std::get_if<std::int64_t>(&v)) {
     if (*integer != 0 && *integer != 1) {
       throw NodeError("number " + std::to_string(*integer) + " is neither true (1) nor false (0)");
@@ -114,20 +114,20 @@ bool to_condition(const Value& v) {
   throw NodeError(is_empty(v) ? "the entry was never written" : "the value is neither true nor false");
 }
 
-std::string to_text(const Value& v) {
+std::string to_text(const BlackboardValue& v) {
   if (const auto* text = std::get_if<std::string>(&v)) return *text;
   if (const auto* integer = std::get_if<std::int64_t>(&v)) return std::to_string(*integer);
   if (const auto* real = std::get_if<double>(&v)) return std::to_string(*real);
   throw NodeError(is_empty(v) ? "the entry was never written" : "the value is not a text");
 }
 
-NodeStatus to_status(const Value& v) {
+NodeStatus to_status(const BlackboardValue& v) {
   const std::string text = to_text(v);
   if (const auto status = status_from_name(text)) return *status;
   throw NodeError(in_quotes(text) + " is not a status");
 }
 
-void copy_into(const Value& from, Value& to) {
+void copy_into(const BlackboardValue& from, BlackboardValue& to) {
   if (is_empty(to) || from.index() == to.index()) {
     to = from;
   } else if (is_number(from) && std::holds_alternative<std::int64_t>(to)) {

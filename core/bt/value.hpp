@@ -19,7 +19,7 @@ struct Opaque {
 };
 
 /// What a blackboard entry holds; monostate while it was declared but never written.
-using Value = std::variant<std::monostate, std::int64_t, double, std::string, Opaque>;
+using BlackboardValue = std::variant<std::monostate, std::int64_t, double, std::string, Opaque>;
 
 /// How a port's text is read. `natural` is an integer that is not negative.
 enum class PortType : std::uint8_t { any, integer, natural, real, boolean, text, status };
@@ -28,31 +28,31 @@ std::string_view describe(PortType type);
 /// Whether the text can be read as that type.
 bool readable_as(std::string_view text, PortType type);
 
-inline bool is_empty(const Value& v) { return std::holds_alternative<std::monostate>(v); }
-inline bool is_text(const Value& v) { return std::holds_alternative<std::string>(v); }
-inline bool is_number(const Value& v) {
+inline bool is_empty(const BlackboardValue& v) { return std::holds_alternative<std::monostate>(v); }
+inline bool is_text(const BlackboardValue& v) { return std::holds_alternative<std::string>(v); }
+inline bool is_number(const BlackboardValue& v) {
   return std::holds_alternative<std::int64_t>(v) || std::holds_alternative<double>(v);
 }
 
 // The conversions of BehaviorTree.CPP's Any; each throws NodeError when the value does not fit.
-std::int64_t to_integer(const Value& v);
-double to_real(const Value& v);
+std::int64_t to_integer(const BlackboardValue& v);
+double to_real(const BlackboardValue& v);
 /// A port's bool: also "true", "false", "1", "0" as text.
-bool to_boolean(const Value& v);
-std::string to_text(const Value& v);
-NodeStatus to_status(const Value& v);
+bool to_boolean(const BlackboardValue& v);
+std::string to_text(const BlackboardValue& v);
+NodeStatus to_status(const BlackboardValue& v);
 /// The truth of a script's result: numbers only, an integer must be 0 or 1.
-bool to_condition(const Value& v);
+bool to_condition(const BlackboardValue& v);
 /// Assigns to a value that exists already and keeps the destination's kind (an integer stays an integer).
-void copy_into(const Value& from, Value& to);
+void copy_into(const BlackboardValue& from, BlackboardValue& to);
 /// The parts of "1;2;3".
 std::vector<std::string> split(std::string_view text, char separator);
 
 /// Converts what a port or an entry holds to T (bool, integers, floating point, std::string, NodeStatus,
 /// std::vector<double>, or the very type that a leaf wrote). Throws NodeError.
 template <class T>
-T value_as(const Value& v) {
-  if constexpr (std::is_same_v<T, Value>) {
+T value_as(const BlackboardValue& v) {
+  if constexpr (std::is_same_v<T, BlackboardValue>) {
     return v;
   } else if constexpr (std::is_same_v<T, bool>) {
     return to_boolean(v);
@@ -72,28 +72,28 @@ T value_as(const Value& v) {
     }
     if constexpr (std::is_same_v<T, std::vector<double>>) {
       std::vector<double> out;
-      for (const auto& part : split(to_text(v), ';')) out.push_back(to_real(Value(part)));
+      for (const auto& part : split(to_text(v), ';')) out.push_back(to_real(BlackboardValue(part)));
       return out;
     }
     throw NodeError("the value has another type");
   }
 }
 
-/// The Value that holds `content`.
+/// The BlackboardValue that holds `content`.
 template <class T>
-Value make_value(T content) {
-  if constexpr (std::is_same_v<T, Value>) {
+BlackboardValue make_value(T content) {
+  if constexpr (std::is_same_v<T, BlackboardValue>) {
     return content;
   } else if constexpr (std::is_integral_v<T>) {
-    return Value(static_cast<std::int64_t>(content));
+    return BlackboardValue(static_cast<std::int64_t>(content));
   } else if constexpr (std::is_floating_point_v<T>) {
-    return Value(static_cast<double>(content));
+    return BlackboardValue(static_cast<double>(content));
   } else if constexpr (std::is_convertible_v<T, std::string>) {
-    return Value(std::string(std::move(content)));
+    return BlackboardValue(std::string(std::move(content)));
   } else if constexpr (std::is_same_v<T, NodeStatus>) {
-    return Value(std::string(name(content)));
+    return BlackboardValue(std::string(name(content)));
   } else {
-    return Value(Opaque{std::any(std::move(content))});
+    return BlackboardValue(Opaque{std::any(std::move(content))});
   }
 }
 

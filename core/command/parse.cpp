@@ -30,7 +30,7 @@ std::string takes(const CommandInfo& command) {
   for (const Argument& argument : command.arguments)
     if (argument) all.push_back(named(argument));
   if (all.empty()) return "takes no arguments";
-  if (all.size() == 1 && command.arguments[0].most == 1) {
+  if (all.size() == 1 && command.arguments[0].max_count == 1) {
     const std::size_t article = all[0].find(' ');
     return "takes one" + (article == std::string::npos ? " " + all[0] : all[0].substr(article));
   }
@@ -60,7 +60,7 @@ class Reader {
       word = at + 1;
     }
     if (auto done = assign(argument, row_.arguments.size(), word, words_.size()); !done) return done.error();
-    for (Value& option : options_) request_.values.push_back(std::move(option));
+    for (ArgumentValue& option : options_) request_.values.push_back(std::move(option));
     return std::move(request_);
   }
 
@@ -78,7 +78,7 @@ class Reader {
                                        [&](const Option& o) { return o && o.name == name; });
       if (option == row_.options.end() || (equals != std::string::npos && option->count() != 1))
         return wrong(row_, "no option " + clean(words_[i], 32));
-      Value value{option->name, {}, {}};
+      ArgumentValue value{option->name, {}, {}};
       for (std::size_t v = 0; v < option->count(); ++v) {
         if (equals == std::string::npos && ++i == words_.size())
           return wrong(row_, name + " wants " + std::string(option->values[v].name));
@@ -89,7 +89,7 @@ class Reader {
             !done)
           return done.error();
       }
-      std::erase_if(options_, [&](const Value& given) { return given.name == value.name; });
+      std::erase_if(options_, [&](const ArgumentValue& given) { return given.name == value.name; });
       options_.push_back(std::move(value));
     }
     words_ = std::move(rest);
@@ -104,34 +104,36 @@ class Reader {
 
   /// Gives the words [from, to) to the arguments [begin, end), of which the optional ones take what is left.
   Result<void> assign(std::size_t begin, std::size_t end, std::size_t from, std::size_t to) {
-    std::size_t least = 0, most = 0;
+    std::size_t min_words = 0, max_words = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Argument& argument = row_.arguments[i];
       if (!argument) continue;
-      if (to - from >= least && to - from < least + std::size_t{argument.least} * argument.group)
+      if (to - from >= min_words && to - from < min_words + std::size_t{argument.min_count} * argument.group)
         missing_ = named(argument);
-      least += std::size_t{argument.least} * argument.group;
-      most += std::size_t{argument.most} * argument.group;
+      min_words += std::size_t{argument.min_count} * argument.group;
+      max_words += std::size_t{argument.max_count} * argument.group;
     }
-    if (to - from < least) return wrong(row_, missing_ + " is missing");
-    if (to - from > most)
-      return wrong(row_, takes(row_) + (most == 0 ? "" : ", not " + std::to_string(to - from) + " words"));
-    std::size_t spare = to - from - least;
+    if (to - from < min_words) return wrong(row_, missing_ + " is missing");
+    if (to - from > max_words)
+      return wrong(row_,
+                   takes(row_) + (max_words == 0 ? "" : ", not " + std::to_string(to - from) + " words"));
+    std::size_t spare = to - from - min_words;
     for (std::size_t i = begin; i < end; ++i) {
       const Argument& argument = row_.arguments[i];
       if (!argument) continue;
       const std::size_t extra =
-          std::min(spare, (std::size_t{argument.most} - argument.least) * argument.group) / argument.group;
+          std::min(spare, (std::size_t{argument.max_count} - argument.min_count) * argument.group) /
+          argument.group;
       spare -= extra * argument.group;
-      Value value{argument.name, {}, {}};
-      for (std::size_t n = (argument.least + extra) * argument.group; n > 0; --n)
+      ArgumentValue value{argument.name, {}, {}};
+      for (std::size_t n = (argument.min_count + extra) * argument.group; n > 0; --n)
         if (auto done = put(value, argument, words_[from++]); !done) return done;
       if (!value.words.empty() || !value.numbers.empty()) request_.values.push_back(std::move(value));
     }
     return spare > 0 ? Result<void>(wrong(row_, "its numbers come in pairs")) : Result<void>();
   }
 
-  Result<void> put(Value& value, const Argument& argument, const std::string& word) {
+  Result<void> put(ArgumentValue& value, const Argument& argument, const std::string& word) {
     if (argument.type == Type::robots) {
       if (auto checked = check_word(row_, argument, word); !checked) return checked;
       auto& robots = request_.robots;
@@ -154,7 +156,7 @@ class Reader {
   const CommandInfo& row_;
   std::vector<std::string> words_;
   Request request_{};
-  std::vector<Value> options_{};
+  std::vector<ArgumentValue> options_{};
   std::string missing_{};
 };
 

@@ -35,27 +35,27 @@ std::string shown(double number) {
 std::string shown(const Request& request, std::string_view field) {
   const std::size_t point = std::min(field.find('.'), field.size());
   const std::string_view name = field.substr(0, point);
-  const Value* value = request.find(name);
+  const ArgumentValue* value = request.find(name);
   if (value && !value->words.empty()) return joined(value->words, "");
   return shown(request.number(name), point + 1 < field.size() ? field[point + 1] - '0' : 2);
 }
 
 /// Takes the values of a row out of a payload, front to back.
-class Unpacker {
+class PayloadReader {
  public:
-  Unpacker(const CommandInfo& row, const Payload& payload) : row_(row), payload_(payload) {
+  PayloadReader(const CommandInfo& row, const Payload& payload) : row_(row), payload_(payload) {
     std::size_t words = 0, numbers = 0;
     const auto need = [&](const Argument& a, std::size_t count) {
       if (sends_words(a)) words += count;
       if (sends_numbers(a)) numbers += count;
     };
-    for (const Argument& a : row.arguments) need(a, std::size_t{a.least} * a.group);
+    for (const Argument& a : row.arguments) need(a, std::size_t{a.min_count} * a.group);
     for (std::size_t i = 0; i < row.options.size(); ++i)
       for (const Argument& a : row.options[i].values)
         if (given(i)) need(a, 1);
-    enough_ = payload.words.size() >= words && payload.numbers.size() >= numbers;
-    spare_words_ = enough_ ? payload.words.size() - words : 0;
-    spare_numbers_ = enough_ ? payload.numbers.size() - numbers : 0;
+    is_complete_ = payload.words.size() >= words && payload.numbers.size() >= numbers;
+    spare_words_ = is_complete_ ? payload.words.size() - words : 0;
+    spare_numbers_ = is_complete_ ? payload.numbers.size() - numbers : 0;
   }
 
   Result<Request> run() {
@@ -68,7 +68,8 @@ class Unpacker {
       request_.values.push_back({option.name, {}, {}});
       for (const Argument& value : option.values) take(option.name, value);
     }
-    if ((payload_.options >> row_.options.size()) != 0 || !enough_ || spare_words_ > 0 || spare_numbers_ > 0)
+    if ((payload_.options >> row_.options.size()) != 0 || !is_complete_ || spare_words_ > 0 ||
+        spare_numbers_ > 0)
       return wrong(row_, "it came with arguments that do not fit");
     if (!checked_) return checked_.error();
     request_.info = &row_;
@@ -79,16 +80,17 @@ class Unpacker {
   bool given(std::size_t option) const { return (payload_.options >> option & 1U) != 0; }
 
   void take(std::string_view name, const Argument& argument) {
-    if (!enough_ || !argument) return;
-    std::size_t count = std::size_t{argument.least} * argument.group;
+    if (!is_complete_ || !argument) return;
+    std::size_t count = std::size_t{argument.min_count} * argument.group;
     std::size_t& spare = sends_words(argument) ? spare_words_ : spare_numbers_;
-    const std::size_t extra = std::min(spare / argument.group, std::size_t{argument.most} - argument.least);
+    const std::size_t extra =
+        std::min(spare / argument.group, std::size_t{argument.max_count} - argument.min_count);
     spare -= extra * argument.group;
     count += extra * argument.group;
     if (count == 0) return;
     if (request_.values.empty() || request_.values.back().name != name)
       request_.values.push_back({name, {}, {}});
-    Value& value = request_.values.back();
+    ArgumentValue& value = request_.values.back();
     for (std::size_t i = 0; i < count; ++i) {
       if (sends_words(argument)) {
         value.words.push_back(payload_.words[next_word_++]);
@@ -104,25 +106,25 @@ class Unpacker {
   const Payload& payload_;
   Request request_{};
   Result<void> checked_{};
-  bool enough_{false};
+  bool is_complete_{false};
   std::size_t spare_words_{}, spare_numbers_{}, next_word_{}, next_number_{};
 };
 
 }  // namespace
 
-const Value* Request::find(std::string_view name) const {
+const ArgumentValue* Request::find(std::string_view name) const {
   const auto found =
-      std::find_if(values.begin(), values.end(), [&](const Value& v) { return v.name == name; });
+      std::find_if(values.begin(), values.end(), [&](const ArgumentValue& v) { return v.name == name; });
   return found == values.end() ? nullptr : &*found;
 }
 
 std::string Request::word(std::string_view name) const {
-  const Value* value = find(name);
+  const ArgumentValue* value = find(name);
   return value && !value->words.empty() ? value->words.front() : std::string{};
 }
 
 double Request::number(std::string_view name) const {
-  const Value* value = find(name);
+  const ArgumentValue* value = find(name);
   if (value && !value->numbers.empty()) return value->numbers.front();
   for (const Option& option : info->options)
     if (option && option.name == name) return option.preset;
@@ -130,7 +132,7 @@ double Request::number(std::string_view name) const {
 }
 
 std::vector<double> Request::numbers(std::string_view name) const {
-  const Value* value = find(name);
+  const ArgumentValue* value = find(name);
   return value ? value->numbers : std::vector<double>{};
 }
 
@@ -138,7 +140,7 @@ Payload pack(const Request& request) {
   const CommandInfo& row = *request.info;
   Payload out{.number = row.number};
   const auto put = [&](std::string_view name) {
-    const Value* value = request.find(name);
+    const ArgumentValue* value = request.find(name);
     if (!value) return false;
     out.words.insert(out.words.end(), value->words.begin(), value->words.end());
     out.numbers.insert(out.numbers.end(), value->numbers.begin(), value->numbers.end());
@@ -157,7 +159,7 @@ Result<Request> unpack(const Payload& payload, Table rows) {
   if (!row)
     return {Reason::unknown_command,
             "this version has no command of number " + std::to_string(payload.number)};
-  auto request = Unpacker(*row, payload).run();
+  auto request = PayloadReader(*row, payload).run();
   if (request) request->verb = static_cast<Verb>(row - rows.data());
   return request;
 }

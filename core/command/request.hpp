@@ -12,7 +12,7 @@
 namespace adit::command {
 
 /// What was given for one argument or option.
-struct Value {
+struct ArgumentValue {
   std::string_view name{};  ///< the argument's or the option's, as in the table
   std::vector<std::string> words{};
   std::vector<double> numbers{};  ///< in the argument's unit; infinite where a limit is lifted
@@ -21,16 +21,16 @@ struct Value {
 /// One command with its arguments, checked against its row: what a line says, and what travels to a robot.
 struct Request {
   const CommandInfo* info{&command::info(command::verb("list"))};
-  Verb verb{command::verb("list")};   ///< meaningful for rows of the standard table
-  std::vector<std::string> robots{};  ///< in the order typed, each once
-  bool all{false};                    ///< every robot that is heard
-  std::vector<Value> values{};        ///< arguments in the table's order, then options
+  Verb verb{command::verb("list")};     ///< meaningful for rows of the standard table
+  std::vector<std::string> robots{};    ///< in the order typed, each once
+  bool all{false};                      ///< every robot that is heard
+  std::vector<ArgumentValue> values{};  ///< arguments in the table's order, then options
 
   explicit Request(Verb of = command::verb("list"), std::vector<std::string> to = {})
       : info(&command::info(of)), verb(of), robots(std::move(to)) {}
 
   /// Null when it was not given.
-  const Value* find(std::string_view name) const;
+  const ArgumentValue* find(std::string_view name) const;
   bool has(std::string_view name) const { return find(name) != nullptr; }
   /// The word given; empty when there is none.
   std::string word(std::string_view name) const;

@@ -12,10 +12,11 @@ inline constexpr std::uint8_t kMaxRobots = 64;  ///< of one command
 inline constexpr std::string_view kUsualModes = "hold|manual|smart_joystick|waypoint|explore|external";
 
 inline constexpr Argument kRobot{.name = "R", .type = Type::robots, .what = "a robot"};
-inline constexpr Argument kRobots{.name = "R", .type = Type::robots, .what = "a robot", .most = kMaxRobots};
-inline constexpr Argument kMaybeRobot{.name = "R", .type = Type::robots, .what = "a robot", .least = 0};
+inline constexpr Argument kRobots{
+    .name = "R", .type = Type::robots, .what = "a robot", .max_count = kMaxRobots};
+inline constexpr Argument kMaybeRobot{.name = "R", .type = Type::robots, .what = "a robot", .min_count = 0};
 inline constexpr Argument kMaybeRobots{
-    .name = "R", .type = Type::robots, .what = "a robot", .least = 0, .most = kMaxRobots};
+    .name = "R", .type = Type::robots, .what = "a robot", .min_count = 0, .max_count = kMaxRobots};
 inline constexpr Argument kOperator{.name = "OPERATOR", .type = Type::name, .what = "an operator"};
 
 constexpr Argument coordinate(std::string_view name, std::uint8_t least = 1) {
@@ -24,7 +25,7 @@ constexpr Argument coordinate(std::string_view name, std::uint8_t least = 1) {
           .minimum = -kMaxDistance,
           .maximum = kMaxDistance,
           .unit = "m",
-          .least = least};
+          .min_count = least};
 }
 constexpr Argument speed(std::string_view name, std::string_view unit) {
   return {.name = name, .type = Type::number, .minimum = -kMaxSpeed, .maximum = kMaxSpeed, .unit = unit};
@@ -200,15 +201,16 @@ inline constexpr std::array kTable{
                 .example = "teleop r1",
                 .done = "let go",
                 .label = "Drive by hand"},
-    CommandInfo{.name = "stop",
-                .arguments = {Argument{
-                    .name = "R", .type = Type::robots, .what = "a robot", .most = kMaxRobots, .all = true}},
-                .number = 5,
-                .line = Line::steering,
-                .summary = "software stop: needs no authority, latches until reset",
-                .details = "a named robot is sent the stop even if it was not heard yet",
-                .example = "stop all",
-                .done = "stopped"},
+    CommandInfo{
+        .name = "stop",
+        .arguments = {Argument{
+            .name = "R", .type = Type::robots, .what = "a robot", .max_count = kMaxRobots, .all = true}},
+        .number = 5,
+        .line = Line::steering,
+        .summary = "software stop: needs no authority, latches until reset",
+        .details = "a named robot is sent the stop even if it was not heard yet",
+        .example = "stop all",
+        .done = "stopped"},
     CommandInfo{.name = "reset",
                 .arguments = {kRobots},
                 .options = {Option{.name = "--override"}},
@@ -249,13 +251,13 @@ inline constexpr std::array kTable{
                 .summary = "who restarts a component that failed: the robot, or you",
                 .example = "policy r1 planner manual",
                 .done = "{COMPONENT} has the restart policy {POLICY}"},
-    CommandInfo{
-        .name = "help",
-        .arguments = {Argument{.name = "COMMAND", .type = Type::command, .what = "a command", .least = 0}},
-        .runs = Runs::terminal,
-        .summary = "this help, or that of one command",
-        .details = "also `basestation COMMAND --help`",
-        .example = "help goto"},
+    CommandInfo{.name = "help",
+                .arguments =
+                    {Argument{.name = "COMMAND", .type = Type::command, .what = "a command", .min_count = 0}},
+                .runs = Runs::terminal,
+                .summary = "this help, or that of one command",
+                .details = "also `basestation COMMAND --help`",
+                .example = "help goto"},
     CommandInfo{.name = "completion",
                 .arguments = {Argument{
                     .name = "SHELL", .type = Type::choice, .what = "a shell", .choices = "bash|zsh|fish"}},

@@ -30,12 +30,12 @@ struct Argument {
   Reason refusal{Reason::bad_argument};                      ///< for a word that is no choice or no name
   double minimum{-std::numeric_limits<double>::infinity()};  ///< of a number, in `unit`
   double maximum{std::numeric_limits<double>::infinity()};
-  bool above{false};               ///< the minimum itself is out of range
-  std::string_view unit{};         ///< m, m/s, rad, rad/s, s
-  std::string_view unlimited{};    ///< a word that stands for an infinite number
-  std::uint8_t least{1}, most{1};  ///< how many are given; 0 and 1: optional
-  std::uint8_t group{1};           ///< numbers that belong together: 2 for points X Y
-  bool all{false};                 ///< robots: the word `all` stands for every robot that is heard
+  bool above{false};                        ///< the minimum itself is out of range
+  std::string_view unit{};                  ///< m, m/s, rad, rad/s, s
+  std::string_view unlimited{};             ///< a word that stands for an infinite number
+  std::uint8_t min_count{1}, max_count{1};  ///< how many are given; 0 and 1: optional
+  std::uint8_t group{1};                    ///< numbers that belong together: 2 for points X Y
+  bool all{false};                          ///< robots: the word `all` stands for every robot that is heard
 
   constexpr explicit operator bool() const { return type != Type::none; }
 };

@@ -21,13 +21,13 @@ std::string usage(const Argument& argument) {
       return out + std::to_string(index);
     };
     text.clear();
-    for (int i = 0; i < argument.least; ++i) text += (i > 0 ? " " : "") + point(i);
-    if (argument.most > argument.least) text += " [" + point(argument.least) + " ...]";
+    for (int i = 0; i < argument.min_count; ++i) text += (i > 0 ? " " : "") + point(i);
+    if (argument.max_count > argument.min_count) text += " [" + point(argument.min_count) + " ...]";
     return text;
   }
-  if (argument.most > 1) text += "...";
+  if (argument.max_count > 1) text += "...";
   if (argument.all) text += "|all";
-  return argument.least == 0 ? "[" + text + "]" : text;
+  return argument.min_count == 0 ? "[" + text + "]" : text;
 }
 
 /// The keyword of a row; null when it has none.
@@ -55,10 +55,10 @@ bool propose(const CommandInfo& row, std::size_t begin, std::size_t end, std::si
   std::size_t first = 0, last = 0;  // the places where the next argument may begin
   for (std::size_t i = begin; i < end; ++i) {
     const Argument& argument = row.arguments[i];
-    const std::size_t most = std::size_t{argument.most} * argument.group;
-    if (argument && at >= first && at < last + most) propose(argument, robots, rows, out);
-    first += argument ? std::size_t{argument.least} * argument.group : 0;
-    last += argument ? most : 0;
+    const std::size_t max_words = std::size_t{argument.max_count} * argument.group;
+    if (argument && at >= first && at < last + max_words) propose(argument, robots, rows, out);
+    first += argument ? std::size_t{argument.min_count} * argument.group : 0;
+    last += argument ? max_words : 0;
   }
   return at >= first;
 }
@@ -93,8 +93,8 @@ std::vector<std::string> complete(const CommandInfo& row, const std::vector<std:
     else
       begin = place + 1, at = static_cast<std::size_t>(given.end() - seen) - 1;
   }
-  const bool enough = propose(row, begin, end, at, robots, rows, out);
-  if (enough && end == row.arguments.size())
+  const bool is_reached = propose(row, begin, end, at, robots, rows, out);
+  if (is_reached && end == row.arguments.size())
     for (const Option* option : left) out.emplace_back(option->name);
   return out;
 }

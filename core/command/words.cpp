@@ -5,7 +5,7 @@
 namespace adit::command {
 namespace {
 
-constexpr std::size_t max_line = 4096;
+constexpr std::size_t kMaxLine = 4096;
 
 /// Optimal string alignment distance, bounded by what a command word can be.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -26,7 +26,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 Result<std::vector<std::string>> split_words(std::string_view line) {
-  if (line.size() > max_line) return {Reason::syntax, "the line is longer than 4096 bytes"};
+  if (line.size() > kMaxLine) return {Reason::syntax, "the line is longer than 4096 bytes"};
   std::vector<std::string> words;
   std::string word;
   bool open = false;  // a word has begun, which may be empty: ""

@@ -6,22 +6,22 @@
 
 namespace adit {
 
-Component::Component(std::string name, Executor& executor, Log log, VitalParams vital)
+Component::Component(std::string name, Executor& executor, Log log, HealthParams health)
     : executor_(executor),
       log_(log.named(name, &executor)),
-      vital_(std::make_shared<Vital>(std::move(name), vital)) {}
+      health_state_(std::make_shared<HealthState>(std::move(name), health)) {}
 
 Component::~Component() {
   // on_stop() of a derived class can no longer be called: its part is gone. Those who need it call stop().
   if (life_) life_->owner = nullptr;
-  vital_->stopped();
+  health_state_->stopped();
 }
 
 Result<void> Component::start() {
   if (life_) return Error{Reason::in_use, name() + " is already running"};
   life_ = std::make_shared<Life>(Life{this});
-  vital_->started(now());
-  heartbeat_ = executor_.every(vital_->params().beat, guard([this] { vital_->beat(now()); }));
+  health_state_->started(now());
+  heartbeat_ = executor_.every(health_state_->params().beat, guard([this] { health_state_->beat(now()); }));
   const std::uint64_t failures_before = failures_;
   Result<void> result;
   try {
@@ -34,14 +34,14 @@ Result<void> Component::start() {
   if (result && failures_ != failures_before) {
     // A guarded callback threw within on_start(), before anyone could handle the failure.
     stop();
-    return Error{Reason::internal, name() + " did not start: " + vital_->health(now()).last_failure};
+    return Error{Reason::internal, name() + " did not start: " + health_state_->health(now()).last_failure};
   }
   if (!result) {
     life_->owner = nullptr;
     life_.reset();
     offers_.clear();
     heartbeat_.cancel();
-    vital_->stopped();
+    health_state_->stopped();
   }
   return result;
 }
@@ -52,7 +52,7 @@ void Component::stop() {
   life_.reset();
   offers_.clear();
   heartbeat_.cancel();
-  vital_->stopped();
+  health_state_->stopped();
   try {
     on_stop();
   } catch (...) {
@@ -62,7 +62,7 @@ void Component::stop() {
 
 void Component::fail(const std::string& text) {
   const Time at = now();
-  vital_->failed(at, text);
+  health_state_->failed(at, text);
   log_.error("failed: " + text);
   ++failures_;
   if (failure_handler_) failure_handler_({name(), text, at, failures_});

@@ -8,7 +8,7 @@
 
 #include "core/component/call.hpp"
 #include "core/component/fault.hpp"
-#include "core/component/vital.hpp"
+#include "core/component/health_state.hpp"
 #include "core/exec/executor.hpp"
 #include "core/exec/failure.hpp"
 #include "core/log/log.hpp"
@@ -32,7 +32,7 @@ struct ComponentFailure {
 /// the process. The heartbeat is a timer of the loop it vouches for: when a callback hangs, it stops.
 class Component {
  public:
-  Component(std::string name, Executor& executor, Log log = {}, VitalParams vital = {});
+  Component(std::string name, Executor& executor, Log log = {}, HealthParams health = {});
   virtual ~Component();
   Component(const Component&) = delete;
   Component& operator=(const Component&) = delete;
@@ -44,10 +44,10 @@ class Component {
   void stop();
   bool running() const { return life_ != nullptr; }
 
-  const std::string& name() const { return vital_->name(); }
+  const std::string& name() const { return health_state_->name(); }
   /// For watchers on other strands; lives on after the component.
-  std::shared_ptr<const Vital> vital() const { return vital_; }
-  ComponentHealth health() const { return vital_->health(executor_.now()); }
+  std::shared_ptr<const HealthState> health_state() const { return health_state_; }
+  ComponentHealth health() const { return health_state_->health(executor_.now()); }
   /// For tests and rehearsals of failures: a callback of this component throws, or never returns.
   void inject(ComponentFault fault);
   /// Which instance this is. What it hands to other strands counts while that is valid.
@@ -151,7 +151,7 @@ class Component {
   };
   Executor& executor_;
   Log log_;
-  std::shared_ptr<Vital> vital_;
+  std::shared_ptr<HealthState> health_state_;
   std::shared_ptr<Life> life_{};
   std::shared_ptr<const Generation> generation_{std::make_shared<Generation>()};
   std::vector<Offer> offers_{};

@@ -27,11 +27,11 @@ std::size_t distance(const std::string& a, const std::string& b) {
 std::string nearest(const std::string& text, const std::vector<std::string>& words) {
   if (text.size() > 64) return {};
   std::string best;
-  std::size_t least = std::max<std::size_t>(1, text.size() / 3) + 1;
+  std::size_t nearest = std::max<std::size_t>(1, text.size() / 3) + 1;
   for (const std::string& word : words) {
     const std::size_t d = distance(text, word);
-    if (d < least) {
-      least = d;
+    if (d < nearest) {
+      nearest = d;
       best = word;
     }
   }
@@ -39,8 +39,8 @@ std::string nearest(const std::string& text, const std::vector<std::string>& wor
 }
 
 void Document::fail(int line, Reason reason, const std::string& text) {
-  constexpr std::size_t enough = 100;
-  if (problems_.size() < enough) problems_.push_back({line, reason, text});
+  constexpr std::size_t kMaxProblems = 100;
+  if (problems_.size() < kMaxProblems) problems_.push_back({line, reason, text});
 }
 
 void Document::find_unknown(const Value& value) {

@@ -15,13 +15,13 @@
 namespace adit::config {
 namespace {
 
-constexpr std::size_t max_bytes = 1 << 20;
-constexpr std::size_t max_depth = 64;
-constexpr std::size_t max_values = 200'000;
-constexpr std::size_t max_keys = 4096;  // of one mapping
+constexpr std::size_t kMaxBytes = 1 << 20;
+constexpr std::size_t kMaxDepth = 64;
+constexpr std::size_t kMaxValues = 200'000;
+constexpr std::size_t kMaxKeys = 4096;  // of one mapping
 
 /// Builds the tree from the parser's events. An alias shares the value it names, so nothing multiplies.
-class Builder final : public YAML::EventHandler {
+class DocumentBuilder final : public YAML::EventHandler {
  public:
   std::shared_ptr<Value> take_root() { return std::move(root_); }
 
@@ -59,7 +59,7 @@ class Builder final : public YAML::EventHandler {
   };
 
   std::shared_ptr<Value> make(const YAML::Mark& mark, Value::Kind kind) {
-    if (++values_ > max_values) throw YAML::ParserException(mark, "more than 200000 values");
+    if (++values_ > kMaxValues) throw YAML::ParserException(mark, "more than 200000 values");
     auto value = std::make_shared<Value>();
     value->kind = kind;
     value->line = mark.line + 1;
@@ -78,7 +78,7 @@ class Builder final : public YAML::EventHandler {
   }
 
   void open(const YAML::Mark& mark, Value::Kind kind, YAML::anchor_t anchor) {
-    if (stack_.size() >= max_depth) throw YAML::ParserException(mark, "nested deeper than 64 levels");
+    if (stack_.size() >= kMaxDepth) throw YAML::ParserException(mark, "nested deeper than 64 levels");
     stack_.push_back({make(mark, kind), anchor, true, mark});
   }
 
@@ -99,7 +99,7 @@ class Builder final : public YAML::EventHandler {
       top.value->items.push_back(std::move(value));
     } else if (top.key_next) {
       if (value->kind != Value::Kind::scalar) throw YAML::ParserException(mark, "a key must be a word");
-      if (top.value->entries.size() >= max_keys) throw YAML::ParserException(mark, "more than 4096 keys");
+      if (top.value->entries.size() >= kMaxKeys) throw YAML::ParserException(mark, "more than 4096 keys");
       for (const auto& entry : top.value->entries)
         if (entry.key == value->scalar)
           throw YAML::ParserException(
@@ -121,16 +121,16 @@ class Builder final : public YAML::EventHandler {
 }  // namespace
 
 Result<Node> parse(const std::string& text, const std::string& file) {
-  if (text.size() > max_bytes)
+  if (text.size() > kMaxBytes)
     return Error{Reason::syntax, file + ": larger than 1 MiB, which no configuration is"};
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
-    Builder builder;
+    DocumentBuilder builder;
     if (!parser.HandleNextDocument(builder)) return Error{Reason::syntax, file + ":1: the file is empty"};
     auto root = builder.take_root();
     if (!root) return Error{Reason::syntax, file + ":1: the file is empty"};
-    Builder second;
+    DocumentBuilder second;
     if (parser.HandleNextDocument(second))
       return Error{Reason::syntax, file + ": more than one document ('---')"};
     auto document = std::make_shared<Document>(file, std::move(root));
@@ -150,7 +150,7 @@ Result<Node> load(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file)
     return Error{Reason::cannot_read, path + ": cannot read: " + std::strerror(errno ? errno : ENOENT)};
-  std::string text(max_bytes + 1, '\0');
+  std::string text(kMaxBytes + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (file.bad()) return Error{Reason::cannot_read, path + ": cannot read: " + std::strerror(errno)};

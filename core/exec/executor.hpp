@@ -148,7 +148,7 @@ class Runtime {
   virtual std::shared_ptr<Strand> strand(const std::string& name) = 0;
   /// A strand for heavy work: live its `compute` runs on its own thread, of low priority, so that work that
   /// does not return holds up no other strand and its own timers show it. In rehearsal as any other.
-  virtual std::shared_ptr<Strand> worker(const std::string& name) { return strand(name); }
+  virtual std::shared_ptr<Strand> dedicated_strand(const std::string& name) { return strand(name); }
 };
 
 }  // namespace adit

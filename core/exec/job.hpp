@@ -27,8 +27,8 @@ struct JobSpec {
   /// no_answer at the deadline. A result that is due exactly then counts.
   Duration deadline{};
   /// Live: work that runs for longer, waits for a processor apart, counts as hung. It is reported, its
-  /// completion carries no_answer, and the pool gets another thread. Not on a Runtime::worker, where the
-  /// supervisor watches. [100 ms, 1 h]
+  /// completion carries no_answer, and the pool gets another thread. Not on a Runtime::dedicated_strand,
+  /// where the supervisor watches. [100 ms, 1 h]
   Duration watchdog{10s};
   JobPriority priority{JobPriority::normal};
   PoolKind pool{PoolKind::compute};

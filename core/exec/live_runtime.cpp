@@ -46,7 +46,7 @@ std::shared_ptr<Strand> LiveRuntime::strand(const std::string& name) {
   return make_live_strand(shared_, name, false);
 }
 
-std::shared_ptr<Strand> LiveRuntime::worker(const std::string& name) {
+std::shared_ptr<Strand> LiveRuntime::dedicated_strand(const std::string& name) {
   return make_live_strand(shared_, name, true);
 }
 

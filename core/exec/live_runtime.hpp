@@ -28,7 +28,7 @@ class LiveRuntime final : public Runtime {
   ~LiveRuntime() override;
   /// The thread carries the first 15 characters of the name.
   std::shared_ptr<Strand> strand(const std::string& name) override;
-  std::shared_ptr<Strand> worker(const std::string& name) override;
+  std::shared_ptr<Strand> dedicated_strand(const std::string& name) override;
   /// Exceptions that left a task or a job so far.
   std::uint64_t failures() const;
   /// Posts and jobs dropped so far because a queue was full.

@@ -41,6 +41,6 @@ struct LiveRuntime::Shared {
 };
 
 std::shared_ptr<Strand> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name,
-                                         bool heavy);
+                                         bool dedicated);
 
 }  // namespace adit

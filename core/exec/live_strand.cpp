@@ -234,7 +234,7 @@ class Loop final : public Inbox {
   }
 
   void refresh_next() {
-    next_alarm_.store(alarms_.empty() ? never : alarms_.front().when, std::memory_order_relaxed);
+    next_alarm_.store(alarms_.empty() ? kNever : alarms_.front().when, std::memory_order_relaxed);
   }
 
   void sweep(std::vector<Alarm>& dead) {
@@ -245,13 +245,13 @@ class Loop final : public Inbox {
     sweep_at_ = std::max<std::size_t>(1024, 2 * alarms_.size());
   }
 
-  static constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
   std::shared_ptr<LiveRuntime::Shared> shared_;
   std::string name_;
   std::atomic<std::thread::id> thread_id_{};
   std::atomic<int> system_id_{0};  // 0: does not run yet
   std::atomic<bool> stop_now_{false};
-  std::atomic<std::int64_t> next_alarm_{never};
+  std::atomic<std::int64_t> next_alarm_{kNever};
   WakeWord wake_{};
   std::mutex running_{};                  // held by the thread that runs a task of this strand
   std::atomic<std::thread::id> guest_{};  // which is not its own one
@@ -289,12 +289,12 @@ struct OwnJobs {
 
 class LiveStrand final : public Strand, public OnProcessor, public InPlace, public CanHang {
  public:
-  LiveStrand(const std::shared_ptr<Loop>& loop, bool heavy)
+  LiveStrand(const std::shared_ptr<Loop>& loop, bool dedicated)
       : Strand(loop),
         loop_(loop),
-        own_(heavy ? std::make_shared<OwnJobs>(loop->shared()->params.compute_queue) : nullptr),
-        thread_([loop, heavy] {
-          if (heavy) lower_priority(loop->shared()->params.compute_nice);
+        own_(dedicated ? std::make_shared<OwnJobs>(loop->shared()->params.compute_queue) : nullptr),
+        thread_([loop, dedicated] {
+          if (dedicated) lower_priority(loop->shared()->params.compute_nice);
           loop->run();
         }) {}
 
@@ -387,8 +387,8 @@ class LiveStrand final : public Strand, public OnProcessor, public InPlace, publ
 }  // namespace
 
 std::shared_ptr<Strand> make_live_strand(std::shared_ptr<LiveRuntime::Shared> shared, const std::string& name,
-                                         bool heavy) {
-  return std::make_shared<LiveStrand>(std::make_shared<Loop>(std::move(shared), name), heavy);
+                                         bool dedicated) {
+  return std::make_shared<LiveStrand>(std::make_shared<Loop>(std::move(shared), name), dedicated);
 }
 
 }  // namespace adit

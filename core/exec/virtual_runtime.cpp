@@ -43,13 +43,13 @@ struct Later {
   }
 };
 
-constexpr std::uint32_t no_slot = ~0U;
-constexpr int order_bits = 48;  // of the posting order: 2^48 events are more than a rehearsal runs
+constexpr std::uint32_t kNoSlot = ~0U;
+constexpr int kOrderBits = 48;  // of the posting order: 2^48 events are more than a rehearsal runs
 
 }  // namespace
 
-struct VirtualScheduler::Core {
-  explicit Core(VirtualParams p) : params(std::move(p)), pool(std::clamp(params.workers, 1, 64) - 1) {}
+struct VirtualScheduler::State {
+  explicit State(VirtualParams p) : params(std::move(p)), pool(std::clamp(params.workers, 1, 64) - 1) {}
 
   void check_thread() const {
     if (std::this_thread::get_id() != thread)
@@ -57,7 +57,7 @@ struct VirtualScheduler::Core {
   }
 
   std::uint32_t take_slot() {
-    if (free_slot == no_slot) {
+    if (free_slot == kNoSlot) {
       events.emplace_back();
       return static_cast<std::uint32_t>(events.size() - 1);
     }
@@ -80,8 +80,8 @@ struct VirtualScheduler::Core {
     const std::uint64_t place = Random(params.seed ^ (machine * 0xd1342543de82ef95ULL) ^
                                        (static_cast<std::uint64_t>(when) * 0x9e3779b97f4a7c15ULL))
                                     .next() >>
-                                order_bits;
-    heap.push_back({when, (place << order_bits) | sequence++, slot});
+                                kOrderBits;
+    heap.push_back({when, (place << kOrderBits) | sequence++, slot});
     std::push_heap(heap.begin(), heap.end(), Later{});
     if (heap.size() >= sweep_at) sweep();
   }
@@ -130,7 +130,7 @@ struct VirtualScheduler::Core {
   std::thread::id thread{std::this_thread::get_id()};
   std::vector<Event> events{};
   std::vector<Due> heap{};
-  std::uint32_t free_slot{no_slot};
+  std::uint32_t free_slot{kNoSlot};
   std::size_t sweep_at{4096};
   std::uint64_t sequence{0};
   std::uint64_t jobs{0};
@@ -146,19 +146,19 @@ struct VirtualScheduler::Core {
 
 namespace {
 
-using Core = VirtualScheduler::Core;
+using State = VirtualScheduler::State;
 
 /// Where posts to a strand go; it outlives the strand.
 class VirtualInbox final : public Inbox {
  public:
-  explicit VirtualInbox(std::shared_ptr<Core> core) : core_(std::move(core)) {}
+  explicit VirtualInbox(std::shared_ptr<State> core) : core_(std::move(core)) {}
   void open(VirtualStrand& strand) { strand_ = &strand; }
   void close() { strand_ = nullptr; }
   VirtualStrand* strand() const { return strand_; }
 
  private:
   bool add(Task task, bool control) override;
-  std::shared_ptr<Core> core_;
+  std::shared_ptr<State> core_;
   VirtualStrand* strand_{nullptr};  ///< null: it is gone
 };
 
@@ -186,7 +186,7 @@ constexpr std::size_t kLaneQueue = 256;  // as LiveParams::compute_queue
 
 class VirtualStrand final : public Strand, public CanHang {
  public:
-  VirtualStrand(const std::shared_ptr<Core>& core, std::uint64_t machine,
+  VirtualStrand(const std::shared_ptr<State>& core, std::uint64_t machine,
                 std::shared_ptr<const Duration> offset, std::string name)
       : VirtualStrand(core, std::make_shared<VirtualInbox>(core), machine, std::move(offset),
                       std::move(name)) {}
@@ -254,7 +254,7 @@ class VirtualStrand final : public Strand, public CanHang {
   bool over() const { return over_; }
 
  private:
-  VirtualStrand(const std::shared_ptr<Core>& core, const std::shared_ptr<VirtualInbox>& inbox,
+  VirtualStrand(const std::shared_ptr<State>& core, const std::shared_ptr<VirtualInbox>& inbox,
                 std::uint64_t machine, std::shared_ptr<const Duration> offset, std::string name)
       : Strand(inbox),
         core_(core),
@@ -351,7 +351,7 @@ class VirtualStrand final : public Strand, public CanHang {
                   nullptr)(Error{Reason::no_answer, job->spec.name + ": not done by its deadline"});
   }
 
-  std::shared_ptr<Core> core_;
+  std::shared_ptr<State> core_;
   std::shared_ptr<VirtualInbox> inbox_;
   std::uint64_t machine_;
   std::shared_ptr<const Duration> offset_;
@@ -371,7 +371,7 @@ void VirtualJob::cancel() {
 
 class VirtualMachine final : public Runtime {
  public:
-  VirtualMachine(std::shared_ptr<Core> core, std::uint64_t machine, Duration offset, std::string name)
+  VirtualMachine(std::shared_ptr<State> core, std::uint64_t machine, Duration offset, std::string name)
       : core_(std::move(core)),
         machine_(machine),
         offset_(std::make_shared<Duration>(offset)),
@@ -384,7 +384,7 @@ class VirtualMachine final : public Runtime {
   }
 
  private:
-  std::shared_ptr<Core> core_;
+  std::shared_ptr<State> core_;
   std::uint64_t machine_;
   std::shared_ptr<Duration> offset_;  ///< shared with its strands
   std::string name_;
@@ -392,8 +392,8 @@ class VirtualMachine final : public Runtime {
 
 }  // namespace
 
-bool VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task,
-                                 Alive alive, std::int64_t period, std::shared_ptr<Job> job) {
+bool VirtualScheduler::State::add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task,
+                                  Alive alive, std::int64_t period, std::shared_ptr<Job> job) {
   if (closed || strand->over()) return false;  // nothing will run any more
   const std::uint32_t slot = take_slot();
   Event& event = events[slot];
@@ -406,7 +406,7 @@ bool VirtualScheduler::Core::add(VirtualStrand* strand, std::uint64_t machine, s
   return true;
 }
 
-bool VirtualScheduler::Core::step(std::int64_t limit) {
+bool VirtualScheduler::State::step(std::int64_t limit) {
   while (!heap.empty() && heap.front().when <= limit) {
     const Due due = heap.front();
     std::pop_heap(heap.begin(), heap.end(), Later{});
@@ -426,7 +426,7 @@ bool VirtualScheduler::Core::step(std::int64_t limit) {
   return false;
 }
 
-void VirtualScheduler::Core::run(std::uint32_t slot) {
+void VirtualScheduler::State::run(std::uint32_t slot) {
   // The slot is moved out first: a task may add events (which moves the slots) or drop its strand.
   const Event& event = events[slot];
   const std::string& strand_name = event.strand->name();
@@ -459,7 +459,7 @@ void VirtualScheduler::Core::run(std::uint32_t slot) {
     add(strand, strand->machine(), now + period, std::move(task), std::move(alive), period, nullptr);
 }
 
-void VirtualScheduler::Core::drain(const VirtualStrand& strand) {
+void VirtualScheduler::State::drain(const VirtualStrand& strand) {
   for (;;) {
     const auto is_first = [](const Due& a, const Due& b) {
       return a.when != b.when ? a.when < b.when : a.order < b.order;
@@ -483,7 +483,7 @@ void VirtualScheduler::Core::drain(const VirtualStrand& strand) {
   }
 }
 
-void VirtualScheduler::Core::run_until(std::int64_t limit) {
+void VirtualScheduler::State::run_until(std::int64_t limit) {
   const std::function<void()> loop = [this, limit] {
     thread = std::this_thread::get_id();
     while (step(limit)) {
@@ -503,7 +503,7 @@ void VirtualScheduler::Core::run_until(std::int64_t limit) {
   thread = caller;
 }
 
-void VirtualScheduler::Core::hang(VirtualStrand& strand) {
+void VirtualScheduler::State::hang(VirtualStrand& strand) {
   check_thread();
   if (running != &strand) throw std::logic_error("only the task that runs can hang, on its own strand");
   strand.end();
@@ -516,7 +516,7 @@ void VirtualScheduler::Core::hang(VirtualStrand& strand) {
 }
 
 VirtualScheduler::VirtualScheduler(VirtualParams params)
-    : core_(std::make_shared<Core>(std::move(params))),
+    : core_(std::make_shared<State>(std::move(params))),
       world_(machine("world", 0ns)),
       world_strand_(world_->strand("events")) {}
 

@@ -54,10 +54,10 @@ class VirtualScheduler {
   /// Tasks that hang, each on a thread of its own (core/exec/fault.hpp). They end with the scheduler.
   std::size_t hung() const;
 
-  struct Core;  // shared with the strands, private to virtual_runtime.cpp
+  struct State;  // shared with the strands, private to virtual_runtime.cpp
 
  private:
-  std::shared_ptr<Core> core_;
+  std::shared_ptr<State> core_;
   std::unique_ptr<Runtime> world_;
   std::shared_ptr<Strand> world_strand_;
 };

@@ -28,12 +28,12 @@ store::Bytes to_file(const Finding& f) {
   out.text(f.key.robot).put(f.key.id).text(f.kind).put(f.importance);
   for (const double value : f.position) out.put(value);
   out.put(f.stamp).text(f.text).put(static_cast<std::uint16_t>(f.data.size())).raw(f.data);
-  return store::seal(kFormat, 0, out.bytes());
+  return store::encode_envelope(kFormat, 0, out.bytes());
 }
 
 FindingFile read_finding(std::span<const std::uint8_t> bytes) {
-  const store::State state = store::unseal(kFormat, bytes);
-  if (state.found != store::Found::good) return {state.found, std::nullopt};
+  const store::State state = store::decode_envelope(kFormat, bytes);
+  if (state.found != store::LoadStatus::good) return {state.found, std::nullopt};
   store::Unpacker in(state.payload);
   Finding f{};
   f.key.robot = in.text(32);
@@ -47,7 +47,7 @@ FindingFile read_finding(std::span<const std::uint8_t> bytes) {
   if (!in.good() || in.rest().size() != size) return {};
   f.data.assign(in.rest().begin(), in.rest().end());
   if (!valid(f)) return {};
-  return {store::Found::good, std::move(f)};
+  return {store::LoadStatus::good, std::move(f)};
 }
 
 std::string id_text(std::uint64_t id) {

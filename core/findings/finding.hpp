@@ -35,7 +35,7 @@ bool valid(const Finding& finding);
 
 /// What the bytes of a file gave.
 struct FindingFile {
-  store::Found found{store::Found::corrupt};  ///< good exactly when there is a finding
+  store::LoadStatus found{store::LoadStatus::corrupt};  ///< good exactly when there is a finding
   std::optional<Finding> finding{};
 };
 

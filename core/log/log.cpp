@@ -6,7 +6,7 @@
 
 namespace adit {
 namespace {
-constexpr std::array<std::string_view, 6> names{"trace", "debug", "info", "warn", "error", "off"};
+constexpr std::array<std::string_view, 6> kNames{"trace", "debug", "info", "warn", "error", "off"};
 
 /// Bytes of the UTF-8 character that begins `text`; 0 when there is none, or when it is overlong, a surrogate
 /// or a control character of C1, which terminals obey like those below 0x20.
@@ -26,11 +26,11 @@ std::size_t printable(std::string_view text) {
 
 }  // namespace
 
-std::string_view name(LogLevel level) { return names[static_cast<std::size_t>(level)]; }
+std::string_view name(LogLevel level) { return kNames[static_cast<std::size_t>(level)]; }
 
 bool level_from_name(std::string_view text, LogLevel& out) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == text) {
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (kNames[i] == text) {
       out = static_cast<LogLevel>(i);
       return true;
     }

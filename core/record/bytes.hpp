@@ -9,20 +9,20 @@
 
 namespace adit::record {
 
-using Bytes = std::span<const std::uint8_t>;
+using ByteSpan = std::span<const std::uint8_t>;
 using Text = std::map<std::string, std::string>;
 
 /// Appends MCAP's basic types: little-endian integers, and strings and maps with their length in front.
-class Packer {
+class McapPacker {
  public:
-  explicit Packer(std::vector<std::uint8_t>& out) : out_(out) {}
+  explicit McapPacker(std::vector<std::uint8_t>& out) : out_(out) {}
 
   template <class Integer>
   void put(Integer value) {
     for (std::size_t i = 0; i < sizeof value; ++i)
       out_.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
   }
-  void bytes(Bytes data) { out_.insert(out_.end(), data.begin(), data.end()); }
+  void bytes(ByteSpan data) { out_.insert(out_.end(), data.begin(), data.end()); }
   void text(std::string_view value) {
     put(static_cast<std::uint32_t>(value.size()));
     bytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
@@ -44,35 +44,35 @@ class Packer {
 };
 
 /// Reads them back. Whatever does not fit into the bytes reads as zero or empty, and ok() is false then.
-class Unpacker {
+class McapUnpacker {
  public:
-  explicit Unpacker(Bytes data) : rest_(data) {}
+  explicit McapUnpacker(ByteSpan data) : rest_(data) {}
   bool ok() const { return ok_; }
   std::size_t left() const { return rest_.size(); }
 
   template <class Integer>
   Integer get() {
     std::uint64_t value = 0;
-    const Bytes own = take(sizeof(Integer));
+    const ByteSpan own = take(sizeof(Integer));
     for (std::size_t i = 0; i < own.size(); ++i) value |= static_cast<std::uint64_t>(own[i]) << (8 * i);
     return static_cast<Integer>(value);
   }
-  Bytes take(std::uint64_t size) {
+  ByteSpan take(std::uint64_t size) {
     if (size > rest_.size()) {
       ok_ = false;
       rest_ = {};
       return {};
     }
-    const Bytes own = rest_.first(static_cast<std::size_t>(size));
+    const ByteSpan own = rest_.first(static_cast<std::size_t>(size));
     rest_ = rest_.subspan(static_cast<std::size_t>(size));
     return own;
   }
   std::string text() {
-    const Bytes own = take(get<std::uint32_t>());
+    const ByteSpan own = take(get<std::uint32_t>());
     return {own.begin(), own.end()};
   }
   Text map() {
-    Unpacker entries(take(get<std::uint32_t>()));
+    McapUnpacker entries(take(get<std::uint32_t>()));
     Text out;
     while (entries.ok() && entries.left() > 0) {
       std::string key = entries.text();
@@ -83,11 +83,11 @@ class Unpacker {
   }
 
  private:
-  Bytes rest_;
+  ByteSpan rest_;
   bool ok_{true};
 };
 
 /// CRC-32 as zlib and MCAP have it (IEEE 802.3, reflected). `before`: the CRC of what stands in front.
-std::uint32_t crc32(Bytes data, std::uint32_t before = 0);
+std::uint32_t crc32(ByteSpan data, std::uint32_t before = 0);
 
 }  // namespace adit::record

@@ -5,7 +5,7 @@
 namespace adit::record {
 namespace {
 
-constexpr const char* log_idl = R"idl(module foxglove {
+constexpr const char* kLogIdl = R"idl(module foxglove {
 struct Time { unsigned long sec; unsigned long nsec; };
 enum LogLevel { UNKNOWN, DEBUG, INFO, WARNING, ERROR, FATAL };
 @final struct Log {
@@ -23,13 +23,13 @@ enum LogLevel { UNKNOWN, DEBUG, INFO, WARNING, ERROR, FATAL };
 
 std::uint16_t Channels::get(ChannelId id, const ChannelInfo& info) {
   if (const auto known = channels_.find(id); known != channels_.end()) return known->second;
-  const bool malformed = info.metadata.contains(malformed_key);
+  const bool malformed = info.metadata.contains(kMalformedKey);
   std::uint16_t schema = 0;
   if (const auto known = schemas_.find(info.dds_type); known != schemas_.end()) {
     schema = known->second;
   } else if (!malformed) {
-    if (info.dds_type == log_type)
-      schema = writer_.add_schema(log_type, "omgidl", log_idl);
+    if (info.dds_type == kLogType)
+      schema = writer_.add_schema(kLogType, "omgidl", kLogIdl);
     else if (const auto idl = idl_schema(info.dds_type))
       schema = writer_.add_schema(idl->name, "omgidl", idl->text);
     schemas_[info.dds_type] = schema;

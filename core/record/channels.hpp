@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/record/mcap_writer.hpp"
-#include "core/record/tape.hpp"
+#include "core/record/record_sink.hpp"
 
 namespace adit::record {
 

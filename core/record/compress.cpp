@@ -10,7 +10,7 @@ namespace adit::record {
 
 bool can_compress() { return true; }
 
-bool compress(Bytes data, std::vector<std::uint8_t>& out) {
+bool compress(ByteSpan data, std::vector<std::uint8_t>& out) {
   out.resize(ZSTD_compressBound(data.size()));
   const std::size_t size = ZSTD_compress(out.data(), out.size(), data.data(), data.size(), 1);
   if (ZSTD_isError(size) != 0 || size >= data.size()) return false;
@@ -18,7 +18,7 @@ bool compress(Bytes data, std::vector<std::uint8_t>& out) {
   return true;
 }
 
-bool decompress(Bytes data, std::size_t size, std::vector<std::uint8_t>& out) {
+bool decompress(ByteSpan data, std::size_t size, std::vector<std::uint8_t>& out) {
   // What the frame itself promises, before anything is allocated for it.
   if (ZSTD_getFrameContentSize(data.data(), data.size()) != size) return false;
   out.resize(size);
@@ -28,8 +28,8 @@ bool decompress(Bytes data, std::size_t size, std::vector<std::uint8_t>& out) {
 #else
 
 bool can_compress() { return false; }
-bool compress(Bytes, std::vector<std::uint8_t>&) { return false; }
-bool decompress(Bytes, std::size_t, std::vector<std::uint8_t>&) { return false; }
+bool compress(ByteSpan, std::vector<std::uint8_t>&) { return false; }
+bool decompress(ByteSpan, std::size_t, std::vector<std::uint8_t>&) { return false; }
 
 #endif
 

@@ -20,21 +20,21 @@ constexpr Tables make_tables() {
   return t;
 }
 
-constexpr Tables tables = make_tables();
+constexpr Tables kTables = make_tables();
 
 }  // namespace
 
-std::uint32_t crc32(Bytes data, std::uint32_t before) {
+std::uint32_t crc32(ByteSpan data, std::uint32_t before) {
   std::uint32_t c = ~before;
   std::size_t i = 0;
   for (; i + 8 <= data.size(); i += 8) {
     c ^= static_cast<std::uint32_t>(data[i]) | static_cast<std::uint32_t>(data[i + 1]) << 8 |
          static_cast<std::uint32_t>(data[i + 2]) << 16 | static_cast<std::uint32_t>(data[i + 3]) << 24;
-    c = tables[7][c & 0xFFU] ^ tables[6][(c >> 8) & 0xFFU] ^ tables[5][(c >> 16) & 0xFFU] ^
-        tables[4][c >> 24] ^ tables[3][data[i + 4]] ^ tables[2][data[i + 5]] ^ tables[1][data[i + 6]] ^
-        tables[0][data[i + 7]];
+    c = kTables[7][c & 0xFFU] ^ kTables[6][(c >> 8) & 0xFFU] ^ kTables[5][(c >> 16) & 0xFFU] ^
+        kTables[4][c >> 24] ^ kTables[3][data[i + 4]] ^ kTables[2][data[i + 5]] ^ kTables[1][data[i + 6]] ^
+        kTables[0][data[i + 7]];
   }
-  for (; i < data.size(); ++i) c = (c >> 8) ^ tables[0][(c ^ data[i]) & 0xFFU];
+  for (; i < data.size(); ++i) c = (c >> 8) ^ kTables[0][(c ^ data[i]) & 0xFFU];
   return ~c;
 }
 

@@ -3,13 +3,13 @@
 namespace adit::record {
 namespace {
 
-const char* word(wire::Frame::Kind kind) {
+const char* word(wire::SampleEvent::Kind kind) {
   switch (kind) {
-    case wire::Frame::Kind::sent:
+    case wire::SampleEvent::Kind::sent:
       return "sent";
-    case wire::Frame::Kind::delivered:
+    case wire::SampleEvent::Kind::delivered:
       return "delivered";
-    case wire::Frame::Kind::lost:
+    case wire::SampleEvent::Kind::lost:
       break;
   }
   return "lost";
@@ -30,11 +30,11 @@ Result<std::unique_ptr<FrameRecorder>> FrameRecorder::open(FrameRecorderParams p
   return std::unique_ptr<FrameRecorder>(new FrameRecorder(std::move(*output), std::move(params)));
 }
 
-FrameRecorder::Known& FrameRecorder::channel(const wire::Frame& frame) {
+FrameRecorder::Known& FrameRecorder::channel(const wire::SampleEvent& frame) {
   key_.assign(frame.from_name);
   key_.append("/").append(frame.topic);
-  if (frame.kind != wire::Frame::Kind::sent) key_.append(">").append(frame.to_name);
-  if (frame.kind == wire::Frame::Kind::lost) key_.append("/lost");
+  if (frame.kind != wire::SampleEvent::Kind::sent) key_.append(">").append(frame.to_name);
+  if (frame.kind == wire::SampleEvent::Kind::lost) key_.append("/lost");
   const std::size_t topic = key_.size();
   key_.append("#").append(frame.partition).append("#").append(std::to_string(frame.domain));
   if (const auto it = known_.find(key_); it != known_.end()) return it->second;
@@ -50,9 +50,9 @@ FrameRecorder::Known& FrameRecorder::channel(const wire::Frame& frame) {
   return known_.emplace(key_, std::move(known)).first->second;
 }
 
-void FrameRecorder::see(const wire::Frame& frame) {
+void FrameRecorder::see(const wire::SampleEvent& frame) {
   if (!state_) return;
-  if (frame.domain != params_.radio_domain && frame.kind != wire::Frame::Kind::sent) return;
+  if (frame.domain != params_.radio_domain && frame.kind != wire::SampleEvent::Kind::sent) return;
   Known& known = channel(frame);
   if (frame.bytes.size() > params_.large && params_.large_period > 0ns) {
     if (known.last_large != Duration::min() && frame.at - known.last_large < params_.large_period) return;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/record/channels.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 
 namespace adit::record {
 
@@ -24,8 +24,8 @@ class FrameRecorder {
  public:
   /// Error cannot_write.
   static Result<std::unique_ptr<FrameRecorder>> open(FrameRecorderParams params);
-  /// To be called by the ether's tap.
-  void see(const wire::Frame& frame);
+  /// To be called by the simulated network's tap.
+  void see(const wire::SampleEvent& frame);
   /// Ends the file. Error cannot_write: from then on, or from earlier on, something is missing.
   Result<void> close();
 
@@ -36,7 +36,7 @@ class FrameRecorder {
     Duration last_large{Duration::min()};
   };
   FrameRecorder(std::unique_ptr<Output> output, FrameRecorderParams params);
-  Known& channel(const wire::Frame& frame);
+  Known& channel(const wire::SampleEvent& frame);
 
   FrameRecorderParams params_;
   std::unique_ptr<Output> output_;

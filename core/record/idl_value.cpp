@@ -10,12 +10,12 @@ namespace {
 
 using Kind = IdlType::Kind;
 
-constexpr std::uint32_t shown_elements = 24;
+constexpr std::uint32_t kShownElements = 24;
 
 /// XCDR version 1: everything aligned to its size, counted from behind the encapsulation header.
 class Decoder {
  public:
-  explicit Decoder(Bytes cdr) : body_(cdr.subspan(4)), little_((cdr[1] & 1) != 0) {}
+  explicit Decoder(ByteSpan cdr) : body_(cdr.subspan(4)), little_((cdr[1] & 1) != 0) {}
 
   bool value(const IdlType& type, std::string& out) {
     switch (type.kind) {
@@ -64,12 +64,12 @@ class Decoder {
     std::string hidden;
     out += "[";
     for (std::uint64_t i = 0; i < count; ++i) {
-      const bool shown = i < shown_elements;
+      const bool shown = i < kShownElements;
       hidden.clear();
       if (shown && i > 0) out += ",";
       if (!value(type, shown ? out : hidden)) return false;
     }
-    if (count > shown_elements) out += ",\"and " + std::to_string(count - shown_elements) + " more\"";
+    if (count > kShownElements) out += ",\"and " + std::to_string(count - kShownElements) + " more\"";
     out += "]";
     return true;
   }
@@ -129,14 +129,14 @@ class Decoder {
     return true;
   }
 
-  Bytes body_;
+  ByteSpan body_;
   bool little_;
   std::size_t at_{};
 };
 
 }  // namespace
 
-Result<std::string> cdr_to_json(const IdlType& type, Bytes cdr) {
+Result<std::string> cdr_to_json(const IdlType& type, ByteSpan cdr) {
   if (cdr.size() < 4 || cdr[0] != 0 || cdr[1] > 1)
     return Error{Reason::malformed, "not plain CDR: another encapsulation"};
   Decoder decoder(cdr);

@@ -35,6 +35,6 @@ Result<IdlTypes> parse_idl(std::string_view text);
 
 /// A CDR sample with its encapsulation header as JSON, in one line; of long sequences the first elements.
 /// Error malformed: it does not fit the type.
-Result<std::string> cdr_to_json(const IdlType& type, Bytes cdr);
+Result<std::string> cdr_to_json(const IdlType& type, ByteSpan cdr);
 
 }  // namespace adit::record

@@ -8,7 +8,7 @@
 /// The MCAP container format, version 0 (mcap.dev/spec), as far as recordings use it.
 namespace adit::record {
 
-inline constexpr std::array<std::uint8_t, 8> mcap_magic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
+inline constexpr std::array<std::uint8_t, 8> kMcapMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 
 enum class Opcode : std::uint8_t {
   header = 0x01,
@@ -29,7 +29,7 @@ enum class Opcode : std::uint8_t {
 };
 
 /// Opcode and length stand in front of every record.
-inline constexpr std::size_t record_head = 9;
+inline constexpr std::size_t kRecordHead = 9;
 
 struct Schema {
   std::uint16_t id{};      ///< never 0 in a file
@@ -50,7 +50,7 @@ struct Message {
   std::uint16_t channel{};
   std::uint32_t sequence{};  ///< within the channel
   std::uint64_t time{};      ///< ns, when it was recorded
-  Bytes data{};              ///< valid while the reader calls
+  ByteSpan data{};           ///< valid while the reader calls
 };
 
 }  // namespace adit::record

@@ -11,7 +11,7 @@
 namespace adit::record {
 namespace {
 
-constexpr std::uint64_t longest_chunk = 64 << 20;
+constexpr std::uint64_t kLongestChunk = 64 << 20;
 
 class Reading {
  public:
@@ -23,7 +23,7 @@ class Reading {
 
   Result<ReadReport> go() {
     std::vector<std::uint8_t> magic;
-    if (!fetch(mcap_magic.size(), magic) || !std::ranges::equal(magic, mcap_magic))
+    if (!fetch(kMcapMagic.size(), magic) || !std::ranges::equal(magic, kMcapMagic))
       return Error{Reason::syntax, "this is no MCAP recording: it does not begin as one"};
     crc_ = crc32(magic);
     while (!ended_ && step()) report_.bytes = at_;
@@ -37,8 +37,8 @@ class Reading {
   /// One record of the file; false when there is nothing more to be read.
   bool step() {
     const std::uint64_t start = at_;
-    if (!fetch(record_head, head_)) return wrong(start, "torn off");
-    Unpacker head(head_);
+    if (!fetch(kRecordHead, head_)) return wrong(start, "torn off");
+    McapUnpacker head(head_);
     const auto opcode = static_cast<Opcode>(head.get<std::uint8_t>());
     const auto length = head.get<std::uint64_t>();
     if (static_cast<std::uint8_t>(opcode) == 0) return wrong(start, "no record");
@@ -60,8 +60,8 @@ class Reading {
     return true;
   }
 
-  void plain(Opcode opcode, Bytes content, std::uint64_t start) {
-    Unpacker unpack(content);
+  void plain(Opcode opcode, ByteSpan content, std::uint64_t start) {
+    McapUnpacker unpack(content);
     if (opcode == Opcode::schema) {
       Schema s;
       s.id = unpack.get<std::uint16_t>();
@@ -91,7 +91,7 @@ class Reading {
     // Indexes, statistics and what later versions add serve other ways of reading.
   }
 
-  void message(Unpacker& unpack, std::uint64_t start) {
+  void message(McapUnpacker& unpack, std::uint64_t start) {
     Message m;
     m.channel = unpack.get<std::uint16_t>();
     m.sequence = unpack.get<std::uint32_t>();
@@ -119,18 +119,18 @@ class Reading {
       wrong(start, "damaged chunk, left out");
       return;
     }
-    each(*records, [&](Opcode opcode, Bytes content) { plain(opcode, content, start); });
+    each(*records, [&](Opcode opcode, ByteSpan content) { plain(opcode, content, start); });
   }
 
-  std::optional<Bytes> unpacked() {
-    Unpacker unpack(record_);
+  std::optional<ByteSpan> unpacked() {
+    McapUnpacker unpack(record_);
     unpack.take(16);  // times
     const auto size = unpack.get<std::uint64_t>();
     const auto crc = unpack.get<std::uint32_t>();
     const std::string compression = unpack.text();
-    const Bytes data = unpack.take(unpack.get<std::uint64_t>());
-    if (!unpack.ok() || size > longest_chunk) return std::nullopt;
-    Bytes out = data;
+    const ByteSpan data = unpack.take(unpack.get<std::uint64_t>());
+    if (!unpack.ok() || size > kLongestChunk) return std::nullopt;
+    ByteSpan out = data;
     if (compression == "zstd") {
       if (!decompress(data, static_cast<std::size_t>(size), chunk_)) return std::nullopt;
       out = chunk_;
@@ -142,37 +142,37 @@ class Reading {
   }
 
   /// True when the bytes are records from end to end.
-  static bool whole(Bytes records) {
-    return each(records, [](Opcode, Bytes) {});
+  static bool whole(ByteSpan records) {
+    return each(records, [](Opcode, ByteSpan) {});
   }
   template <class F>
-  static bool each(Bytes records, F&& tell) {
-    Unpacker unpack(records);
+  static bool each(ByteSpan records, F&& visit) {
+    McapUnpacker unpack(records);
     while (unpack.left() > 0) {
       const auto opcode = static_cast<Opcode>(unpack.get<std::uint8_t>());
-      const Bytes content = unpack.take(unpack.get<std::uint64_t>());
+      const ByteSpan content = unpack.take(unpack.get<std::uint64_t>());
       if (!unpack.ok()) return false;
-      tell(opcode, content);
+      visit(opcode, content);
     }
     return true;
   }
 
   bool data_end(std::uint64_t start) {
-    const auto crc = Unpacker(record_).get<std::uint32_t>();
+    const auto crc = McapUnpacker(record_).get<std::uint32_t>();
     if (crc != 0 && crc != crc_) wrong(start, "the data's CRC does not fit");
     in_summary_ = true;
     return true;
   }
 
   bool footer(std::uint64_t start) {
-    Unpacker unpack(record_);
+    McapUnpacker unpack(record_);
     unpack.take(16);
     const auto crc = unpack.get<std::uint32_t>();
     if (!unpack.ok()) return wrong(start, "broken footer");
-    const std::uint32_t own = crc32(Bytes(record_).first(16), crc32(head_, summary_crc_));
+    const std::uint32_t own = crc32(ByteSpan(record_).first(16), crc32(head_, summary_crc_));
     if (crc != 0 && crc != own) wrong(start, "the summary's CRC does not fit");
     std::vector<std::uint8_t> magic;
-    if (!fetch(mcap_magic.size(), magic) || !std::ranges::equal(magic, mcap_magic))
+    if (!fetch(kMcapMagic.size(), magic) || !std::ranges::equal(magic, kMcapMagic))
       return wrong(start, "torn off behind the footer");
     ended_ = true;
     return true;

@@ -7,14 +7,14 @@
 namespace adit::record {
 namespace {
 
-void put_schema(Packer& pack, const Schema& schema) {
+void put_schema(McapPacker& pack, const Schema& schema) {
   pack.put(schema.id);
   pack.text(schema.name);
   pack.text(schema.encoding);
   pack.text(schema.text);
 }
 
-void put_channel(Packer& pack, const Channel& channel) {
+void put_channel(McapPacker& pack, const Channel& channel) {
   pack.put(channel.id);
   pack.put(channel.schema);
   pack.text(channel.topic);
@@ -25,7 +25,7 @@ void put_channel(Packer& pack, const Channel& channel) {
 /// A record made in place: opcode, then the length once it is known.
 template <class Content>
 void add_record(std::vector<std::uint8_t>& out, Opcode opcode, Content content) {
-  Packer pack(out);
+  McapPacker pack(out);
   pack.put(static_cast<std::uint8_t>(opcode));
   const std::size_t length_at = out.size();
   pack.put(std::uint64_t{0});
@@ -36,16 +36,16 @@ void add_record(std::vector<std::uint8_t>& out, Opcode opcode, Content content) 
 }  // namespace
 
 McapWriter::McapWriter(Output& out, McapWriterParams params) : out_(out), params_(std::move(params)) {
-  (void)emit(mcap_magic);  // kept in state_
+  (void)emit(kMcapMagic);  // kept in state_
   scratch_.clear();
-  add_record(scratch_, Opcode::header, [&](Packer& pack) {
+  add_record(scratch_, Opcode::header, [&](McapPacker& pack) {
     pack.text("");  // no profile: the types say all
     pack.text(params_.library);
   });
   (void)emit(scratch_);  // kept in state_
 }
 
-Result<void> McapWriter::emit(Bytes data) {
+Result<void> McapWriter::emit(ByteSpan data) {
   if (!state_) return state_;
   state_ = out_.append(data);
   if (state_) {
@@ -59,7 +59,7 @@ std::uint16_t McapWriter::add_schema(const std::string& name, const std::string&
                                      const std::string& text) {
   schemas_.push_back({static_cast<std::uint16_t>(schemas_.size() + 1), name, encoding, text});
   scratch_.clear();
-  add_record(scratch_, Opcode::schema, [&](Packer& pack) { put_schema(pack, schemas_.back()); });
+  add_record(scratch_, Opcode::schema, [&](McapPacker& pack) { put_schema(pack, schemas_.back()); });
   (void)emit(scratch_);  // kept in state_
   return schemas_.back().id;
 }
@@ -69,13 +69,13 @@ std::uint16_t McapWriter::add_channel(std::uint16_t schema, const std::string& t
   OwnChannel channel{
       {static_cast<std::uint16_t>(channels_.size()), schema, topic, encoding, metadata}, 0, {}};
   scratch_.clear();
-  add_record(scratch_, Opcode::channel, [&](Packer& pack) { put_channel(pack, channel.info); });
+  add_record(scratch_, Opcode::channel, [&](McapPacker& pack) { put_channel(pack, channel.info); });
   (void)emit(scratch_);  // kept in state_
   channels_.push_back(std::move(channel));
   return channels_.back().info.id;
 }
 
-Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t time, Bytes data) {
+Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t time, ByteSpan data) {
   if (!state_) return state_;
   if (channel >= channels_.size())
     return {Reason::out_of_range, "no channel " + std::to_string(channel) + " in this recording"};
@@ -87,7 +87,7 @@ Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t time, Bytes 
   first_ = std::min(first_, time);
   last_ = std::max(last_, time);
   own.index.emplace_back(time, chunk_.size());
-  add_record(chunk_, Opcode::message, [&](Packer& pack) {
+  add_record(chunk_, Opcode::message, [&](McapPacker& pack) {
     pack.put(channel);
     pack.put(static_cast<std::uint32_t>(own.messages));
     pack.put(time);  // log time
@@ -101,7 +101,7 @@ Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t time, Bytes 
 
 Result<void> McapWriter::add_metadata(const std::string& name, const Text& entries) {
   scratch_.clear();
-  add_record(scratch_, Opcode::metadata, [&](Packer& pack) {
+  add_record(scratch_, Opcode::metadata, [&](McapPacker& pack) {
     pack.text(name);
     pack.map(entries);
   });
@@ -117,11 +117,11 @@ Result<void> McapWriter::flush() {
   index.start = written_;
   index.uncompressed = chunk_.size();
   const bool packed = params_.compress && compress(chunk_, packed_);
-  const Bytes records = packed ? Bytes(packed_) : Bytes(chunk_);
+  const ByteSpan records = packed ? ByteSpan(packed_) : ByteSpan(chunk_);
   index.compressed = records.size();
   index.compression = packed ? "zstd" : "";
   scratch_.clear();
-  add_record(scratch_, Opcode::chunk, [&](Packer& pack) {
+  add_record(scratch_, Opcode::chunk, [&](McapPacker& pack) {
     pack.put(index.first);
     pack.put(index.last);
     pack.put(index.uncompressed);
@@ -134,7 +134,7 @@ Result<void> McapWriter::flush() {
   for (OwnChannel& channel : channels_) {
     if (channel.index.empty()) continue;
     index.indexes[channel.info.id] = index.start + scratch_.size();
-    add_record(scratch_, Opcode::message_index, [&](Packer& pack) {
+    add_record(scratch_, Opcode::message_index, [&](McapPacker& pack) {
       pack.put(channel.info.id);
       pack.put(static_cast<std::uint32_t>(channel.index.size() * 16));
       for (const auto& [time, offset] : channel.index) pack.put(time), pack.put(offset);
@@ -161,14 +161,15 @@ std::vector<std::uint8_t> McapWriter::summary_records(std::uint64_t start,
     if (out.size() > before) groups.push_back({opcode, start + before, out.size() - before});
   };
   group(Opcode::schema, [&] {
-    for (const Schema& s : schemas_) add_record(out, Opcode::schema, [&](Packer& p) { put_schema(p, s); });
+    for (const Schema& s : schemas_)
+      add_record(out, Opcode::schema, [&](McapPacker& p) { put_schema(p, s); });
   });
   group(Opcode::channel, [&] {
     for (const OwnChannel& c : channels_)
-      add_record(out, Opcode::channel, [&](Packer& p) { put_channel(p, c.info); });
+      add_record(out, Opcode::channel, [&](McapPacker& p) { put_channel(p, c.info); });
   });
   group(Opcode::statistics, [&] {
-    add_record(out, Opcode::statistics, [&](Packer& pack) {
+    add_record(out, Opcode::statistics, [&](McapPacker& pack) {
       pack.put(messages_);
       pack.put(static_cast<std::uint16_t>(schemas_.size()));
       pack.put(static_cast<std::uint32_t>(channels_.size()));
@@ -183,7 +184,7 @@ std::vector<std::uint8_t> McapWriter::summary_records(std::uint64_t start,
   });
   group(Opcode::chunk_index, [&] {
     for (const ChunkIndex& c : chunks_)
-      add_record(out, Opcode::chunk_index, [&](Packer& pack) {
+      add_record(out, Opcode::chunk_index, [&](McapPacker& pack) {
         for (const std::uint64_t value : {c.first, c.last, c.start, c.length}) pack.put(value);
         pack.put(static_cast<std::uint32_t>(c.indexes.size() * 10));
         for (const auto& [channel, offset] : c.indexes) pack.put(channel), pack.put(offset);
@@ -195,7 +196,7 @@ std::vector<std::uint8_t> McapWriter::summary_records(std::uint64_t start,
   });
   group(Opcode::metadata_index, [&] {
     for (const MetadataIndex& m : metadata_)
-      add_record(out, Opcode::metadata_index, [&](Packer& pack) {
+      add_record(out, Opcode::metadata_index, [&](McapPacker& pack) {
         pack.put(m.start);
         pack.put(m.length);
         pack.text(m.name);
@@ -203,7 +204,7 @@ std::vector<std::uint8_t> McapWriter::summary_records(std::uint64_t start,
   });
   offsets_start = start + out.size();
   for (const Group& g : groups)
-    add_record(out, Opcode::summary_offset, [&](Packer& pack) {
+    add_record(out, Opcode::summary_offset, [&](McapPacker& pack) {
       pack.put(static_cast<std::uint8_t>(g.opcode));
       pack.put(g.start);
       pack.put(g.length);
@@ -216,18 +217,18 @@ Result<void> McapWriter::close() {
   closed_ = true;
   if (const auto flushed = flush(); !flushed) return flushed;
   std::vector<std::uint8_t> end;
-  add_record(end, Opcode::data_end, [&](Packer& pack) { pack.put(crc_); });
+  add_record(end, Opcode::data_end, [&](McapPacker& pack) { pack.put(crc_); });
   if (const auto ended = emit(end); !ended) return ended;
   const std::uint64_t start = written_;
   std::uint64_t offsets_start = 0;
   std::vector<std::uint8_t> tail = summary_records(start, offsets_start);
-  Packer pack(tail);
+  McapPacker pack(tail);
   pack.put(static_cast<std::uint8_t>(Opcode::footer));
   pack.put(std::uint64_t{8 + 8 + 4});
   pack.put(start);
   pack.put(offsets_start);
   pack.put(crc32(tail));  // of the summary and the footer up to here
-  pack.bytes(mcap_magic);
+  pack.bytes(kMcapMagic);
   return emit(tail);
 }
 

@@ -28,7 +28,7 @@ class McapWriter {
   std::uint16_t add_channel(std::uint16_t schema, const std::string& topic, const std::string& encoding,
                             const Text& metadata);
   /// Errors: cannot_write of the output, out_of_range for a channel that there is not.
-  Result<void> write(std::uint16_t channel, std::uint64_t time, Bytes data);
+  Result<void> write(std::uint16_t channel, std::uint64_t time, ByteSpan data);
   Result<void> add_metadata(const std::string& name, const Text& entries);
   /// Ends the chunk that is open, so that what was written so far survives the process.
   Result<void> flush();
@@ -55,7 +55,7 @@ class McapWriter {
     std::uint64_t start{}, length{};
   };
 
-  Result<void> emit(Bytes data);
+  Result<void> emit(ByteSpan data);
   std::vector<std::uint8_t> summary_records(std::uint64_t start, std::uint64_t& offsets_start) const;
 
   Output& out_;

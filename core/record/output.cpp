@@ -16,7 +16,7 @@ class FileOutput final : public Output {
   FileOutput& operator=(const FileOutput&) = delete;
   ~FileOutput() override { ::close(fd_); }
 
-  Result<void> append(Bytes data) override {
+  Result<void> append(ByteSpan data) override {
     while (!data.empty()) {
       const ssize_t size = ::write(fd_, data.data(), data.size());
       if (size < 0 && errno == EINTR) continue;

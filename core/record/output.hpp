@@ -13,13 +13,13 @@ class Output {
  public:
   virtual ~Output() = default;
   /// Error cannot_write: the disk is full, or gone. What was appended before stays.
-  virtual Result<void> append(Bytes data) = 0;
+  virtual Result<void> append(ByteSpan data) = 0;
 };
 
 /// Into memory, for tests and short recordings.
 class MemoryOutput final : public Output {
  public:
-  Result<void> append(Bytes data) override {
+  Result<void> append(ByteSpan data) override {
     bytes.insert(bytes.end(), data.begin(), data.end());
     return {};
   }

@@ -9,10 +9,10 @@
 namespace adit::record {
 namespace {
 
-constexpr std::size_t most_channels = 4096;
-constexpr std::uint64_t retry_after = 5'000'000'000;  // ns
+constexpr std::size_t kMaxChannels = 4096;
+constexpr std::uint64_t kRetryAfter = 5'000'000'000;  // ns
 // Of an entry in the queue: channel, time, size.
-constexpr std::size_t entry_head = 4 + 8 + 4;
+constexpr std::size_t kEntryHead = 4 + 8 + 4;
 
 std::uint64_t system_time() {
   return static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -29,7 +29,7 @@ std::uint64_t steady_time() {
 RecorderParams checked(RecorderParams params) {
   if (!params.clock) params.clock = system_time;
   if (!params.steady) params.steady = steady_time;
-  if (!params.complain) params.complain = [](const std::string&) {};
+  if (!params.on_error) params.on_error = [](const std::string&) {};
   return params;
 }
 
@@ -60,9 +60,9 @@ Recorder::~Recorder() {
 
 ChannelId Recorder::channel(const ChannelInfo& wanted) {
   const std::lock_guard lock(mutex_);
-  const bool others = known_.size() >= most_channels && !ids_.contains(wanted);
+  const bool others = known_.size() >= kMaxChannels && !ids_.contains(wanted);
   const ChannelInfo info =
-      others ? ChannelInfo{"others", "", {{malformed_key, "too many channels"}}} : wanted;
+      others ? ChannelInfo{"others", "", {{kMalformedKey, "too many channels"}}} : wanted;
   const auto [it, fresh] = ids_.try_emplace(info, next_id_);
   if (fresh) known_[next_id_++] = std::make_shared<Known>(Known{info, 0, false, 0});
   ++known_.at(it->second)->users;
@@ -78,7 +78,7 @@ void Recorder::release(ChannelId channel) {
   released_.insert(std::move(known));
 }
 
-void Recorder::record(ChannelId channel, Bytes cdr) {
+void Recorder::record(ChannelId channel, ByteSpan cdr) {
   const std::uint64_t now = params_.clock();
   const std::lock_guard lock(mutex_);
   const auto found = known_.find(channel);
@@ -93,11 +93,11 @@ void Recorder::record(ChannelId channel, Bytes cdr) {
     known.had_large = true;
     known.last_large = now;
   }
-  if (queue_.size() + entry_head + cdr.size() > params_.queue_bytes) {
+  if (queue_.size() + kEntryHead + cdr.size() > params_.queue_bytes) {
     ++counters_.dropped;
     return;
   }
-  Packer pack(queue_);
+  McapPacker pack(queue_);
   pack.put(channel);
   pack.put(now);
   pack.put(static_cast<std::uint32_t>(cdr.size()));
@@ -125,8 +125,8 @@ void Recorder::run() {
     written_ = 0;
     const bool kept = batch.empty() || write(batch);
     std::uint64_t all = 0;
-    for (Unpacker entries(batch); entries.left() > 0; ++all) {
-      entries.take(entry_head - 4);
+    for (McapUnpacker entries(batch); entries.left() > 0; ++all) {
+      entries.take(kEntryHead - 4);
       entries.take(entries.get<std::uint32_t>());
     }
     batch.clear();
@@ -147,12 +147,12 @@ const ChannelInfo& Recorder::info(ChannelId channel) {
 
 /// False when the disk did not take it all; `written_` messages went before.
 bool Recorder::write(const std::vector<std::uint8_t>& batch) {
-  Unpacker entries(batch);
+  McapUnpacker entries(batch);
   while (entries.left() > 0) {
     if (!file_ && !open()) return false;
     const auto id = entries.get<ChannelId>();
     const auto time = entries.get<std::uint64_t>();
-    const Bytes cdr = entries.take(entries.get<std::uint32_t>());
+    const ByteSpan cdr = entries.take(entries.get<std::uint32_t>());
     const auto done = file_->writer.write(file_->channels.get(id, info(id)), time, cdr);
     if (!done) return lost(done.error());
     ++written_;
@@ -178,9 +178,9 @@ bool Recorder::open() {
 }
 
 bool Recorder::lost(const Error& error) {
-  if (!troubled_) params_.complain("recording is interrupted: " + error.text);
+  if (!troubled_) params_.on_error("recording is interrupted: " + error.text);
   troubled_ = true;
-  retry_at_ = params_.steady() + retry_after;
+  retry_at_ = params_.steady() + kRetryAfter;
   file_.reset();
   const std::lock_guard lock(mutex_);
   ++counters_.failed_files;

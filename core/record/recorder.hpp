@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/record/record_sink.hpp"
 #include "core/record/ring.hpp"
-#include "core/record/tape.hpp"
 #include "core/time/time.hpp"
 
 namespace adit::record {
@@ -26,7 +26,7 @@ struct RecorderParams {
   Text about{};                      ///< metadata of every file
   std::function<std::uint64_t()> clock{};   ///< ns since 1970; the system's when empty
   std::function<std::uint64_t()> steady{};  ///< ns, never steps: for pauses; the system's when empty
-  std::function<void(const std::string& text)> complain{};  ///< once per trouble, on the writing thread
+  std::function<void(const std::string& text)> on_error{};  ///< once per trouble, on the writing thread
 };
 
 struct RecorderCounters {
@@ -38,14 +38,14 @@ struct RecorderCounters {
 /// Keeps the last minutes in a ring of MCAP files. Written by a thread of its own, so that a slow disk holds
 /// nobody up; a full one is told once, tried again every 5 s, and costs recordings only. Its destructor
 /// writes what waits.
-class Recorder final : public Tape {
+class Recorder final : public RecordSink {
  public:
   explicit Recorder(RecorderParams params);
   ~Recorder() override;
   /// At most 4096 channels at a time; those beyond share one.
   ChannelId channel(const ChannelInfo& info) override;
   void release(ChannelId channel) override;
-  void record(ChannelId channel, Bytes cdr) override;
+  void record(ChannelId channel, ByteSpan cdr) override;
   RecorderCounters counters() const;
 
  private:

@@ -5,7 +5,7 @@
 namespace adit::record {
 namespace {
 
-constexpr std::size_t longest_text = 4096;
+constexpr std::size_t kLongestText = 4096;
 
 std::int32_t foxglove_level(LogLevel level) {
   switch (level) {
@@ -27,13 +27,13 @@ std::int32_t foxglove_level(LogLevel level) {
 /// CDR: aligned to four behind the encapsulation header, which is what every member here needs.
 class Cdr {
  public:
-  Cdr() { Packer(out).bytes(std::array<std::uint8_t, 4>{0, 1, 0, 0}); }
+  Cdr() { McapPacker(out).bytes(std::array<std::uint8_t, 4>{0, 1, 0, 0}); }
   template <class Integer>
   void put(Integer value) {
-    Packer(out).put(value);
+    McapPacker(out).put(value);
   }
   void text(std::string_view value) {
-    Packer pack(out);
+    McapPacker pack(out);
     pack.put(static_cast<std::uint32_t>(value.size() + 1));
     pack.bytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
     do out.push_back(0);  // the end of the string, and up to the next member
@@ -44,11 +44,11 @@ class Cdr {
 
 }  // namespace
 
-RecordingLog::RecordingLog(std::shared_ptr<LogSink> inner, Tape& tape)
+RecordingLog::RecordingLog(std::shared_ptr<LogSink> inner, RecordSink& sink)
     : LogSink(inner->level()),
       inner_(std::move(inner)),
-      tape_(tape),
-      channel_(tape.channel({"log", log_type, {{"direction", "own"}}})) {}
+      sink_(sink),
+      channel_(sink.channel({"log", kLogType, {{"direction", "own"}}})) {}
 
 void RecordingLog::write(const LogLine& line) {
   inner_->write(line);
@@ -57,11 +57,11 @@ void RecordingLog::write(const LogLine& line) {
   cdr.put(static_cast<std::uint32_t>(ns / 1'000'000'000));
   cdr.put(static_cast<std::uint32_t>(ns % 1'000'000'000));
   cdr.put(foxglove_level(line.level));
-  cdr.text(line.text.substr(0, longest_text));
-  cdr.text(line.component.substr(0, longest_text));
+  cdr.text(line.text.substr(0, kLongestText));
+  cdr.text(line.component.substr(0, kLongestText));
   cdr.text("");
   cdr.put(std::uint32_t{0});
-  tape_.record(channel_, cdr.out);
+  sink_.record(channel_, cdr.out);
 }
 
 }  // namespace adit::record

@@ -2,19 +2,20 @@
 #include <memory>
 
 #include "core/log/log.hpp"
-#include "core/record/tape.hpp"
+#include "core/record/record_sink.hpp"
 
 namespace adit::record {
 
-/// A log sink whose lines go on a tape, too, as Foxglove's log messages. `tape` outlives it and whoever logs.
+/// A log sink whose lines go on a record sink, too, as Foxglove's log messages. `sink` outlives it and
+/// whoever logs.
 class RecordingLog final : public LogSink {
  public:
-  RecordingLog(std::shared_ptr<LogSink> inner, Tape& tape);
+  RecordingLog(std::shared_ptr<LogSink> inner, RecordSink& sink);
   void write(const LogLine& line) override;
 
  private:
   std::shared_ptr<LogSink> inner_;
-  Tape& tape_;
+  RecordSink& sink_;
   ChannelId channel_;
 };
 

@@ -53,12 +53,12 @@ Result<std::uint64_t> Ring::make_room() {
   fs::permissions(params_.folder, fs::perms::owner_all, failed);  // somebody else's shows when it is written
   const std::vector<Segment> found = segments_in(params_.folder, params_.name);
   const std::uint64_t limit = static_cast<std::uint64_t>(params_.segments) * params_.segment_bytes;
-  const std::size_t most = static_cast<std::size_t>(params_.segments) * 8;
+  const std::size_t max_entries = static_cast<std::size_t>(params_.segments) * 8;
   std::uint64_t bytes = params_.segment_bytes;
   for (const Segment& segment : found) bytes += segment.bytes;
   std::size_t left = found.size() + 1;
   for (const Segment& segment : found) {
-    if (bytes <= limit && left <= most) break;
+    if (bytes <= limit && left <= max_entries) break;
     if (!fs::remove(segment.path, failed) && failed)
       return Error{Reason::cannot_write, "cannot remove " + segment.path.string() + ": " + failed.message()};
     bytes -= segment.bytes;

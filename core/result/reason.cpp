@@ -11,7 +11,7 @@ struct Row {
   std::string_view text;
 };
 
-constexpr std::array rows{
+constexpr std::array kRows{
     Row{Reason::none, "none", "accepted"},
     Row{Reason::not_holder, "not_holder", "another station holds the robot; take it first"},
     Row{Reason::locked, "locked", "the robot is locked by its holder; ask for a grant or a release"},
@@ -69,7 +69,7 @@ constexpr std::array rows{
 };
 
 const Row* find(Reason reason) {
-  for (const Row& row : rows)
+  for (const Row& row : kRows)
     if (row.reason == reason) return &row;
   return nullptr;
 }
@@ -87,7 +87,7 @@ std::string_view describe(Reason reason) {
 }
 
 bool reason_from_name(std::string_view text, Reason& out) {
-  for (const Row& row : rows) {
+  for (const Row& row : kRows) {
     if (row.name != text) continue;
     out = row.reason;
     return true;

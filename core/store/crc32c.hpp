@@ -7,7 +7,7 @@ namespace adit::store {
 
 /// CRC-32C (Castagnoli; RFC 3720, appendix B.4): finds every error burst of up to 32 bits.
 inline std::uint32_t crc32c(std::span<const std::uint8_t> bytes) {
-  static constexpr auto table = [] {
+  static constexpr auto kTable = [] {
     std::array<std::uint32_t, 256> t{};
     for (std::uint32_t i = 0; i < 256; ++i) {
       std::uint32_t value = i;
@@ -17,7 +17,7 @@ inline std::uint32_t crc32c(std::span<const std::uint8_t> bytes) {
     return t;
   }();
   std::uint32_t crc = 0xffffffffu;
-  for (const std::uint8_t byte : bytes) crc = (crc >> 8) ^ table[(crc ^ byte) & 0xffu];
+  for (const std::uint8_t byte : bytes) crc = (crc >> 8) ^ kTable[(crc ^ byte) & 0xffu];
   return crc ^ 0xffffffffu;
 }
 

@@ -25,9 +25,9 @@ bool valid_file_name(std::string_view name) {
 
 bool is_temporary(std::string_view name) { return name.starts_with(".") && name.ends_with(".new"); }
 
-Result<std::optional<Bytes>> Disk::read(const std::string& name, std::size_t most) const {
+Result<std::optional<Bytes>> Disk::read(const std::string& name, std::size_t max_bytes) const {
   if (const auto good = check(name); !good) return good.error();
-  return read_file(name, most);
+  return read_file(name, max_bytes);
 }
 
 Result<void> Disk::replace(const std::string& name, std::span<const std::uint8_t> bytes) {

@@ -24,7 +24,7 @@ class Disk {
   Disk& operator=(const Disk&) = delete;
 
   /// Whole content; nothing when there is no such file. Longer than `most` bytes: cannot_read.
-  Result<std::optional<Bytes>> read(const std::string& name, std::size_t most = kMost) const;
+  Result<std::optional<Bytes>> read(const std::string& name, std::size_t max_bytes = kMaxBytes) const;
   /// Atomic and durable: temporary file, its data synced, renamed, the folder synced. After a power cut
   /// anywhere in it the file is the old one or the new one.
   Result<void> replace(const std::string& name, std::span<const std::uint8_t> bytes);
@@ -43,10 +43,10 @@ class Disk {
   /// Where it is, for people.
   virtual std::string where() const = 0;
 
-  static constexpr std::size_t kMost = std::size_t{64} << 20;
+  static constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
  protected:
-  virtual Result<std::optional<Bytes>> read_file(const std::string& name, std::size_t most) const = 0;
+  virtual Result<std::optional<Bytes>> read_file(const std::string& name, std::size_t max_bytes) const = 0;
   /// Writes to a file, which is emptied before or (`append`) goes on, and syncs its data. Its name is not
   /// durable yet.
   virtual Result<void> write_file(const std::string& name, std::span<const std::uint8_t> bytes,

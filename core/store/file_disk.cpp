@@ -105,7 +105,7 @@ std::uint64_t FileDisk::free() const {
   return ::fstatvfs(fd_, &status) == 0 ? std::uint64_t{status.f_bavail} * status.f_frsize : 0;
 }
 
-Result<std::optional<Bytes>> FileDisk::read_file(const std::string& name, std::size_t most) const {
+Result<std::optional<Bytes>> FileDisk::read_file(const std::string& name, std::size_t max_bytes) const {
   // Not blocking: a pipe of that name must not hold the caller.
   const Fd file(::openat(fd_, name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file && errno == ENOENT) return std::optional<Bytes>{};
@@ -121,9 +121,9 @@ Result<std::optional<Bytes>> FileDisk::read_file(const std::string& name, std::s
     if (got < 0) return failed(Reason::cannot_read, "read", name);
     if (got == 0) return std::optional<Bytes>{std::move(bytes)};
     bytes.insert(bytes.end(), block, block + got);
-    if (bytes.size() > most)
+    if (bytes.size() > max_bytes)
       return {Reason::cannot_read,
-              folder_ + "/" + name + " is longer than " + std::to_string(most) + " bytes"};
+              folder_ + "/" + name + " is longer than " + std::to_string(max_bytes) + " bytes"};
   }
 }
 

@@ -121,14 +121,14 @@ Result<std::vector<std::string>> MemoryDisk::list() const {
   return names;
 }
 
-Result<std::optional<Bytes>> MemoryDisk::read_file(const std::string& name, std::size_t most) const {
+Result<std::optional<Bytes>> MemoryDisk::read_file(const std::string& name, std::size_t max_bytes) const {
   const std::lock_guard lock(mutex_);
   if (!powered_) return dead(Reason::cannot_read);
   if (refuses(name)) return refused(Reason::cannot_read, name);
   const auto found = names_.find(name);
   if (found == names_.end()) return std::optional<Bytes>{};
-  if (found->second->cached.size() > most)
-    return {Reason::cannot_read, name + " is longer than " + std::to_string(most) + " bytes"};
+  if (found->second->cached.size() > max_bytes)
+    return {Reason::cannot_read, name + " is longer than " + std::to_string(max_bytes) + " bytes"};
   return std::optional<Bytes>{found->second->cached};
 }
 

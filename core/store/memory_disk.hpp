@@ -40,7 +40,7 @@ class MemoryDisk final : public Disk {
   std::string where() const override { return "memory"; }
 
  protected:
-  Result<std::optional<Bytes>> read_file(const std::string& name, std::size_t most) const override;
+  Result<std::optional<Bytes>> read_file(const std::string& name, std::size_t max_bytes) const override;
   Result<void> write_file(const std::string& name, std::span<const std::uint8_t> bytes, bool append) override;
   Result<void> rename_file(const std::string& from, const std::string& to) override;
   Result<void> remove_file(const std::string& name) override;

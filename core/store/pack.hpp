@@ -65,9 +65,9 @@ class Unpacker {
   }
   double number() { return std::bit_cast<double>(get<std::uint64_t>()); }
   /// Longer than `most`: fails.
-  std::string text(std::size_t most) {
+  std::string text(std::size_t max) {
     const auto size = get<std::uint16_t>();
-    if (size > most) good_ = false;
+    if (size > max) good_ = false;
     const auto part = take(size);
     return {part.begin(), part.end()};
   }
@@ -79,9 +79,9 @@ class Unpacker {
     return value;
   }
   /// A number of things to come; more than `most`: fails, and 0.
-  std::size_t count(std::size_t most) {
+  std::size_t count(std::size_t max) {
     const auto value = get<std::uint16_t>();
-    if (value > most) good_ = false;
+    if (value > max) good_ = false;
     return good_ ? value : 0;
   }
   bool good() const { return good_; }

@@ -17,7 +17,7 @@ std::array<std::uint8_t, 4> octets(const std::array<char, 4>& kind) {
   return out;
 }
 
-State flawed(Found found, std::string text, std::span<const std::uint8_t> bytes = {}) {
+State flawed(LoadStatus found, std::string text, std::span<const std::uint8_t> bytes = {}) {
   State state{};
   state.found = found;
   state.text = std::move(text);
@@ -38,29 +38,30 @@ bool begun(std::span<const std::uint8_t> bytes, const std::array<std::uint8_t, 4
 
 }  // namespace
 
-std::string_view name(Found found) {
+std::string_view name(LoadStatus found) {
   switch (found) {
-    case Found::good:
+    case LoadStatus::good:
       return "good";
-    case Found::nothing:
+    case LoadStatus::nothing:
       return "nothing";
-    case Found::foreign:
+    case LoadStatus::foreign:
       return "foreign";
-    case Found::torn:
+    case LoadStatus::torn:
       return "torn";
-    case Found::corrupt:
+    case LoadStatus::corrupt:
       return "corrupt";
-    case Found::older:
+    case LoadStatus::older:
       return "older";
-    case Found::newer:
+    case LoadStatus::newer:
       return "newer";
-    case Found::unreadable:
+    case LoadStatus::unreadable:
       return "unreadable";
   }
   return "unknown";
 }
 
-Bytes seal(const StateFormat& format, std::uint64_t generation, std::span<const std::uint8_t> payload) {
+Bytes encode_envelope(const StateFormat& format, std::uint64_t generation,
+                      std::span<const std::uint8_t> payload) {
   Packer out;
   out.put(kMagic).put(octets(format.kind)).put(format.version).put(std::uint16_t{0});
   out.put(static_cast<std::uint32_t>(payload.size())).put(generation).raw(payload);
@@ -69,11 +70,11 @@ Bytes seal(const StateFormat& format, std::uint64_t generation, std::span<const 
   return out.bytes();
 }
 
-State unseal(const StateFormat& format, std::span<const std::uint8_t> bytes) {
+State decode_envelope(const StateFormat& format, std::span<const std::uint8_t> bytes) {
   const auto kind = octets(format.kind);
-  if (!begun(bytes, kind)) return flawed(Found::foreign, "it is no file of this kind", bytes);
+  if (!begun(bytes, kind)) return flawed(LoadStatus::foreign, "it is no file of this kind", bytes);
   if (bytes.size() < kHeader + kChecksum || bytes[7] != kind[3])
-    return flawed(Found::torn, "it ends after " + std::to_string(bytes.size()) + " bytes", bytes);
+    return flawed(LoadStatus::torn, "it ends after " + std::to_string(bytes.size()) + " bytes", bytes);
   Unpacker in(bytes);
   (void)in.array<8>();
   const auto version = in.get<std::uint16_t>();
@@ -82,20 +83,21 @@ State unseal(const StateFormat& format, std::span<const std::uint8_t> bytes) {
   const auto generation = in.get<std::uint64_t>();
   const std::size_t whole = kHeader + size + kChecksum;
   if (bytes.size() < whole)
-    return flawed(Found::torn,
+    return flawed(LoadStatus::torn,
                   "it ends after " + std::to_string(bytes.size()) + " of " + std::to_string(whole) + " bytes",
                   bytes);
   const auto payload = bytes.subspan(kHeader, size);
   const auto checksum = Unpacker(bytes.subspan(kHeader + size)).get<std::uint32_t>();
   if (bytes.size() > whole || zero != 0 || checksum != crc32c(bytes.first(kHeader + size)))
-    return flawed(Found::corrupt, "its checksum does not match", bytes);
+    return flawed(LoadStatus::corrupt, "its checksum does not match", bytes);
   if (version > format.version)
-    return flawed(Found::newer, "it is of version " + std::to_string(version) +
-                                    ", this program reads versions up to " + std::to_string(format.version));
-  if (size > format.most) return flawed(Found::corrupt, "it is longer than it can be");
+    return flawed(LoadStatus::newer, "it is of version " + std::to_string(version) +
+                                         ", this program reads versions up to " +
+                                         std::to_string(format.version));
+  if (size > format.max_bytes) return flawed(LoadStatus::corrupt, "it is longer than it can be");
   State state{};
-  state.found = version < format.version ? Found::older : Found::good;
-  if (state.found == Found::older) state.text = "it is of version " + std::to_string(version);
+  state.found = version < format.version ? LoadStatus::older : LoadStatus::good;
+  if (state.found == LoadStatus::older) state.text = "it is of version " + std::to_string(version);
   state.generation = generation;
   state.payload.assign(payload.begin(), payload.end());
   state.version = version;
@@ -103,17 +105,17 @@ State unseal(const StateFormat& format, std::span<const std::uint8_t> bytes) {
 }
 
 State StateFile::load() const {
-  const auto bytes = disk_->read(file_, kHeader + format_.most + kChecksum);
-  if (!bytes) return flawed(Found::unreadable, bytes.error().text);
+  const auto bytes = disk_->read(file_, kHeader + format_.max_bytes + kChecksum);
+  if (!bytes) return flawed(LoadStatus::unreadable, bytes.error().text);
   if (!*bytes) return {};
-  return unseal(format_, **bytes);
+  return decode_envelope(format_, **bytes);
 }
 
 Result<void> StateFile::save(std::uint64_t generation, std::span<const std::uint8_t> payload) const {
-  if (payload.size() > format_.most)
+  if (payload.size() > format_.max_bytes)
     return {Reason::out_of_range, file_ + " would be " + std::to_string(payload.size()) + " bytes long, " +
-                                      std::to_string(format_.most) + " are allowed"};
-  return disk_->replace(file_, seal(format_, generation, payload));
+                                      std::to_string(format_.max_bytes) + " are allowed"};
+  return disk_->replace(file_, encode_envelope(format_, generation, payload));
 }
 
 }  // namespace adit::store

@@ -10,13 +10,13 @@ namespace adit::store {
 
 /// What a file is meant to be.
 struct StateFormat {
-  std::array<char, 4> kind{};   ///< of state: another one's file is foreign
-  std::uint16_t version{1};     ///< of the payload
-  std::size_t most{16 * 1024};  ///< bytes of payload
+  std::array<char, 4> kind{};        ///< of state: another one's file is foreign
+  std::uint16_t version{1};          ///< of the payload
+  std::size_t max_bytes{16 * 1024};  ///< bytes of payload
 };
 
 /// What was found in the place of a state.
-enum class Found {
+enum class LoadStatus {
   good,
   nothing,     ///< no such file: the first start
   foreign,     ///< no file of ours, or of another kind
@@ -27,10 +27,10 @@ enum class Found {
   unreadable,  ///< the disk refused
 };
 /// "torn", as it is told to people.
-std::string_view name(Found found);
+std::string_view name(LoadStatus found);
 
 struct State {
-  Found found{Found::nothing};
+  LoadStatus found{LoadStatus::nothing};
   std::string text{};          ///< what is wrong, for people; empty when good or nothing
   std::uint64_t generation{};  ///< rises with every save
   Bytes payload{};             ///< good, or older: then in the layout of `version`
@@ -43,9 +43,10 @@ struct State {
 /// A header that never changes, the payload, a checksum over both:
 /// "ADIT", kind, u16 version, u16 zero, u32 payload bytes, u64 generation | payload | u32 CRC-32C. Little
 /// endian.
-Bytes seal(const StateFormat& format, std::uint64_t generation, std::span<const std::uint8_t> payload);
+Bytes encode_envelope(const StateFormat& format, std::uint64_t generation,
+                      std::span<const std::uint8_t> payload);
 /// Never fails otherwise than by what it found, whatever the bytes are.
-State unseal(const StateFormat& format, std::span<const std::uint8_t> bytes);
+State decode_envelope(const StateFormat& format, std::span<const std::uint8_t> bytes);
 
 /// One state in one file: written whole, durable when save() returns. Whoever finds anything but `good` or
 /// `nothing` must not guess.

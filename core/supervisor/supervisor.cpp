@@ -6,23 +6,23 @@ Supervisor::Supervisor(SupervisionParams params, Executor& strand, Log log, Outp
     : Component("supervisor", strand, std::move(log)),
       params_(params),
       outputs_(std::move(outputs)),
-      overseer_(params) {}
+      restart_policy_(params) {}
 
 void Supervisor::watch(Unit& unit, PartSpec spec) {
   units_.push_back(&unit);
-  overseer_.add(std::move(spec));
+  restart_policy_.add(std::move(spec));
 }
 
 Result<void> Supervisor::on_start() {
-  const std::function<void()> kick = [strand = &executor(), look = guard([this] { look(); })] {
-    strand->post(look);
+  const std::function<void()> kick = [strand = &executor(), poll = guard([this] { poll(); })] {
+    strand->post(poll);
   };
   for (Unit* unit : units_) {
     unit->on_change(kick);
     unit->restart();
   }
   timer_ = every(params_.period, [this] {
-    look();
+    poll();
     if (outputs_.looked) outputs_.looked(now());
   });
   return {};
@@ -30,55 +30,55 @@ Result<void> Supervisor::on_start() {
 
 void Supervisor::on_stop() { timer_.cancel(); }
 
-void Supervisor::look() {
-  std::vector<Pulse> pulses;
+void Supervisor::poll() {
+  std::vector<HealthSample> samples;
   for (std::size_t i = 0; i < units_.size(); ++i) {
-    pulses.push_back(units_[i]->pulse());
-    if (!overseer_.doubts(i)) continue;
-    const auto seat = units_[i]->seat();
-    if (const auto* thread = dynamic_cast<const OnProcessor*>(seat->strand.get()))
-      pulses.back().use = thread->processor_use();
+    samples.push_back(units_[i]->health_sample());
+    if (!restart_policy_.doubts(i)) continue;
+    const auto slot = units_[i]->slot();
+    if (const auto* thread = dynamic_cast<const OnProcessor*>(slot->strand.get()))
+      samples.back().use = thread->processor_use();
   }
-  carry_out(overseer_.look(pulses, now()));
+  execute(restart_policy_.poll(samples, now()));
 }
 
-void Supervisor::carry_out(const Overseer::Verdict& verdict) {
-  for (const PartEvent& event : verdict.events) {
+void Supervisor::execute(const RestartPolicyEngine::Decision& decision) {
+  for (const PartEvent& event : decision.events) {
     const std::string& part = units_[event.part]->name();
     log().warn(part + ": " + event.text);
-    if (outputs_.tell) outputs_.tell(event, part);
+    if (outputs_.notify) outputs_.notify(event, part);
   }
-  for (const Order& order : verdict.orders) {
-    Unit& unit = *units_[order.part];
-    switch (order.kind) {
-      case Order::Kind::restart:
+  for (const RestartAction& action : decision.actions) {
+    Unit& unit = *units_[action.part];
+    switch (action.kind) {
+      case RestartAction::Kind::restart:
         unit.restart();
         break;
-      case Order::Kind::replace:
+      case RestartAction::Kind::replace:
         unit.replace();
         break;
-      case Order::Kind::abandon:
+      case RestartAction::Kind::abandon:
         unit.abandon();
         break;
-      case Order::Kind::escalate:
+      case RestartAction::Kind::escalate:
         unit.revoke();
-        if (outputs_.escalate) outputs_.escalate(verdict.events.back().text);
+        if (outputs_.escalate) outputs_.escalate(decision.events.back().text);
         break;
     }
   }
 }
 
 Result<void> Supervisor::restart(const std::string& part) {
-  const auto verdict = overseer_.restart(part, now());
-  if (!verdict) return verdict.error();
-  carry_out(*verdict);
+  const auto decision = restart_policy_.restart(part, now());
+  if (!decision) return decision.error();
+  execute(*decision);
   return {};
 }
 
 Result<void> Supervisor::set_policy(const std::string& part, RestartPolicy policy) {
-  const auto verdict = overseer_.set_policy(part, policy, now());
-  if (!verdict) return verdict.error();
-  carry_out(*verdict);
+  const auto decision = restart_policy_.set_policy(part, policy, now());
+  if (!decision) return decision.error();
+  execute(*decision);
   return {};
 }
 

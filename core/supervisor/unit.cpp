@@ -4,8 +4,8 @@
 
 namespace adit {
 
-Seat::~Seat() {
-  fittings.reset();
+ComponentSlot::~ComponentSlot() {
+  io.reset();
   if (strand) strand->end();
   if (component) component->stop();
   component.reset();
@@ -16,46 +16,46 @@ LeftBehind::~LeftBehind() = default;
 Unit::Unit(Runtime& runtime, UnitParams params) : runtime_(runtime), params_(std::move(params)) {}
 
 Result<void> Unit::open() {
-  auto seat = std::make_shared<Seat>();
-  seat->strand = params_.heavy ? runtime_.worker(params_.name) : runtime_.strand(params_.name);
-  if (params_.fit) {
-    auto fittings = params_.fit(seat);
-    if (!fittings) return fittings.error();
-    seat->fittings = std::move(*fittings);
+  auto slot = std::make_shared<ComponentSlot>();
+  slot->strand = params_.dedicated ? runtime_.dedicated_strand(params_.name) : runtime_.strand(params_.name);
+  if (params_.open_io) {
+    auto io = params_.open_io(slot);
+    if (!io) return io.error();
+    slot->io = std::move(*io);
   }
   const std::lock_guard lock(mutex_);
-  seat_ = std::move(seat);
+  slot_ = std::move(slot);
   return {};
 }
 
 void Unit::restart() {
   const auto record = std::make_shared<Record>();
-  std::shared_ptr<Seat> seat;
+  std::shared_ptr<ComponentSlot> slot;
   {
     const std::lock_guard lock(mutex_);
     record_->generation->revoke();
     record_ = record;
-    seat = seat_;
+    slot = slot_;
   }
-  // The seat outlives its strand's tasks.
-  seat->strand->post_control([this, seat = seat.get(), record] { begin(*seat, record); });
+  // The slot outlives its strand's tasks.
+  slot->strand->post_control([this, slot = slot.get(), record] { begin(*slot, record); });
   // Now: what is posted by who sees the new number runs after begin().
   instance_.fetch_add(1, std::memory_order_acq_rel);
 }
 
-void Unit::begin(Seat& seat, const std::shared_ptr<Record>& record) {
-  if (seat.component) seat.component->stop();
-  seat.component.reset();
+void Unit::begin(ComponentSlot& slot, const std::shared_ptr<Record>& record) {
+  if (slot.component) slot.component->stop();
+  slot.component.reset();
   if (!record->generation->valid()) return;  // ordered anew meanwhile
   Result<void> started;
   try {
-    auto made = params_.make(*seat.strand);
+    auto made = params_.make(*slot.strand);
     if (!record->generation->valid()) return;  // it took so long that another instance replaced it
     started = made ? Result<void>{} : Result<void>{made.error()};
     if (made) {
-      seat.component = std::move(*made);
-      seat.component->adopt(record->generation);
-      started = seat.component->start();
+      slot.component = std::move(*made);
+      slot.component->adopt(record->generation);
+      started = slot.component->start();
     }
   } catch (const HangReleased&) {
     throw;
@@ -63,14 +63,14 @@ void Unit::begin(Seat& seat, const std::shared_ptr<Record>& record) {
     started = Error{Reason::internal, current_exception_text()};
   }
   if (!started) return report_failure(*record, started.error().text);
-  seat.component->on_failure([this, &seat, record](const ComponentFailure& failure) {
+  slot.component->on_failure([this, &slot, record](const ComponentFailure& failure) {
     record->generation->revoke();
-    seat.component->stop();
+    slot.component->stop();
     report_failure(*record, failure.text);
   });
   {
     const std::lock_guard lock(record->mutex);
-    record->vital = seat.component->vital();
+    record->health_state = slot.component->health_state();
   }
   if (changed_) changed_();
 }
@@ -86,10 +86,10 @@ void Unit::report_failure(Record& record, const std::string& text) const {
 }
 
 void Unit::replace() {
-  std::shared_ptr<Seat> hung = seat();
+  std::shared_ptr<ComponentSlot> hung = slot();
   hung->generation->revoke();
   hung->strand->abandon();
-  left_behind_.seats.push_back(std::move(hung));
+  left_behind_.slots.push_back(std::move(hung));
   if (const auto opened = open(); !opened) {
     const std::lock_guard lock(mutex_);
     record_->generation->revoke();
@@ -104,45 +104,45 @@ void Unit::replace() {
 void Unit::revoke() {
   const std::lock_guard lock(mutex_);
   record_->generation->revoke();
-  if (seat_) seat_->generation->revoke();
+  if (slot_) slot_->generation->revoke();
 }
 
 void Unit::abandon() {
   revoke();
-  seat()->strand->abandon();
+  slot()->strand->abandon();
 }
 
 void Unit::end() {
-  if (const auto now = seat()) now->strand->end();
+  if (const auto now = slot()) now->strand->end();
 }
 
-Pulse Unit::pulse() const {
+HealthSample Unit::health_sample() const {
   std::shared_ptr<Record> record;
   {
     const std::lock_guard lock(mutex_);
     record = record_;
   }
-  Pulse pulse;
+  HealthSample sample;
   const std::lock_guard lock(record->mutex);
-  pulse.failed = record->failed;
-  pulse.text = record->text;
-  if (record->vital) {
-    const ComponentHealth health = record->vital->health(Time{});
-    pulse.running = health.running;
-    pulse.beats = health.beats;
+  sample.failed = record->failed;
+  sample.text = record->text;
+  if (record->health_state) {
+    const ComponentHealth health = record->health_state->health(Time{});
+    sample.running = health.running;
+    sample.heartbeats = health.heartbeats;
   }
-  return pulse;
+  return sample;
 }
 
-std::shared_ptr<Seat> Unit::seat() const {
+std::shared_ptr<ComponentSlot> Unit::slot() const {
   const std::lock_guard lock(mutex_);
-  return seat_;
+  return slot_;
 }
 
 void Unit::inject(ComponentFault fault) {
-  const auto now = seat();
-  now->strand->post([seat = now.get(), fault] {
-    if (seat->component) seat->component->inject(fault);
+  const auto now = slot();
+  now->strand->post([slot = now.get(), fault] {
+    if (slot->component) slot->component->inject(fault);
   });
 }
 

@@ -8,41 +8,41 @@
 
 #include "core/component/component.hpp"
 #include "core/component/fault.hpp"
-#include "core/supervisor/overseer.hpp"
+#include "core/supervisor/restart_policy_engine.hpp"
 
 namespace adit {
 
 /// A strand and what lives on it.
-struct Seat {
-  Seat() = default;
-  Seat(const Seat&) = delete;
-  Seat& operator=(const Seat&) = delete;
-  ~Seat();
+struct ComponentSlot {
+  ComponentSlot() = default;
+  ComponentSlot(const ComponentSlot&) = delete;
+  ComponentSlot& operator=(const ComponentSlot&) = delete;
+  ~ComponentSlot();
   std::shared_ptr<Strand> strand{};
   std::unique_ptr<Component> component{};  ///< touched on the strand only, or after its end
   /// Of the strand: what writes from it or delivers to it counts while that is valid.
   std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
-  std::shared_ptr<void> fittings{};  ///< what delivers to the strand; dropped before it
+  std::shared_ptr<void> io{};  ///< what delivers to the strand; dropped before it
 };
 
-/// Seats whose task hangs: kept, for it may still use them, until their unit goes.
+/// Slots whose task hangs: kept, for it may still use them, until their unit goes.
 struct LeftBehind {
   LeftBehind() = default;
   LeftBehind(const LeftBehind&) = delete;
   LeftBehind& operator=(const LeftBehind&) = delete;
   ~LeftBehind();
-  std::vector<std::shared_ptr<Seat>> seats{};
+  std::vector<std::shared_ptr<ComponentSlot>> slots{};
 };
 
 struct UnitParams {
   std::string name{};
-  bool heavy{false};  ///< lives on a Runtime::worker
+  bool dedicated{false};  ///< lives on a Runtime::dedicated_strand
   /// Makes an instance; on the strand.
   std::function<Result<std::unique_ptr<Component>>(Executor& strand)> make{};
-  /// Made with each strand, before its first instance; nothing when null. Hold the seat weakly, and bind
+  /// Made with each strand, before its first instance; nothing when null. Hold the slot weakly, and bind
   /// writers and readers to its generation (wire::ComponentIo), which is revoked when the strand is left
   /// behind.
-  std::function<Result<std::shared_ptr<void>>(const std::shared_ptr<Seat>& seat)> fit{};
+  std::function<Result<std::shared_ptr<void>>(const std::shared_ptr<ComponentSlot>& slot)> open_io{};
 };
 
 /// A component that can be made anew: on its strand when it failed, on another one when it hangs. What an
@@ -58,7 +58,7 @@ class Unit {
   Unit& operator=(const Unit&) = delete;
 
   const std::string& name() const { return params_.name; }
-  /// Makes the first strand. Errors of `fit`.
+  /// Makes the first strand. Errors of `open_io`.
   Result<void> open();
   /// Called from the strand when an instance came up or failed; set before the first restart().
   void on_change(std::function<void()> changed) { changed_ = std::move(changed); }
@@ -72,9 +72,9 @@ class Unit {
   /// Ends the strand: nothing of this component runs any more.
   void end();
 
-  Pulse pulse() const;
+  HealthSample health_sample() const;
   /// The strand and what lives on it now; rises with each restart: instance().
-  std::shared_ptr<Seat> seat() const;
+  std::shared_ptr<ComponentSlot> slot() const;
   std::uint64_t instance() const { return instance_.load(std::memory_order_acquire); }
   /// Has the component throw, or hang, in a callback of its own.
   void inject(ComponentFault fault);
@@ -83,20 +83,20 @@ class Unit {
   /// What an instance reports to the supervisor.
   struct Record {
     std::mutex mutex{};
-    std::shared_ptr<const Vital> vital{};
+    std::shared_ptr<const HealthState> health_state{};
     bool failed{};
     std::string text{};
     std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
   };
   void report_failure(Record& record, const std::string& text) const;
-  void begin(Seat& seat, const std::shared_ptr<Record>& record);
+  void begin(ComponentSlot& slot, const std::shared_ptr<Record>& record);
 
   Runtime& runtime_;
   UnitParams params_;
   std::function<void()> changed_{};
   std::atomic<std::uint64_t> instance_{0};
   mutable std::mutex mutex_{};  // guards the two pointers
-  std::shared_ptr<Seat> seat_{};
+  std::shared_ptr<ComponentSlot> slot_{};
   std::shared_ptr<Record> record_{std::make_shared<Record>()};
   LeftBehind left_behind_{};  // bounded by SupervisionParams::hangs
 };

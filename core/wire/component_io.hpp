@@ -9,7 +9,7 @@ namespace adit::wire {
 /// The one place where a component that can be replaced opens its writers and readers. All of them work while
 /// `generation` is valid: afterwards nothing is written, and no handler is called.
 struct ComponentIo {
-  Wire& wire;                                      ///< Must outlive the writers and readers.
+  Participant& wire;                               ///< Must outlive the writers and readers.
   Executor& strand;                                ///< Handlers run on it.
   std::shared_ptr<const Generation> generation{};  ///< Null: the component is never replaced.
 

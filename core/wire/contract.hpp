@@ -6,14 +6,14 @@ namespace adit::wire {
 
 /// The radio contract's version, which every type name of the radio domain contains: parties of releases that
 /// cannot read each other do not match. It changes with every change of a type in idl/adit/.
-inline constexpr int contract_version = 1;
-inline constexpr std::string_view contract_types = "adit::radio::v1::";
+inline constexpr int kContractVersion = 1;
+inline constexpr std::string_view kContractTypes = "adit::radio::v1::";
 
 /// Empty for our own release and for types that are none of the contract; else the version that a type of the
 /// contract has: "2", or "0" for one from before there were versions.
 inline std::string other_release(std::string_view type) {
   constexpr std::string_view family = "adit::radio::";
-  if (!type.starts_with(family) || type.starts_with(contract_types)) return {};
+  if (!type.starts_with(family) || type.starts_with(kContractTypes)) return {};
   type.remove_prefix(family.size());
   if (!type.starts_with('v')) return "0";
   const std::string_view version = type.substr(1, type.find("::") - 1);
@@ -24,7 +24,7 @@ inline std::string other_release(std::string_view type) {
 /// What an operator reads of a party of another release.
 inline std::string describe_release(std::string_view name, const std::string& version) {
   return std::string(name.substr(0, 64)) + " speaks version " + version +
-         " of the radio contract, we speak " + std::to_string(contract_version) +
+         " of the radio contract, we speak " + std::to_string(kContractVersion) +
          ": neither hears the other; install the same release on both";
 }
 

@@ -2,7 +2,7 @@
 #include <map>
 #include <string>
 
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::wire {
 

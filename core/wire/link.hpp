@@ -7,7 +7,7 @@ namespace adit::wire {
 
 /// Priorities on a link, 0 first: `urgent` 0, discovery and acknowledgements 1, `stream` 2, `state` and
 /// `sensor` 3, `status` 4, `bulk` 5, `video` 6.
-inline constexpr std::size_t priorities = 7;
+inline constexpr std::size_t kPriorities = 7;
 
 /// Where a machine is, world or map coordinates, m.
 struct Position {

@@ -9,7 +9,7 @@
 namespace adit::wire {
 
 /// The last class of messages that say what is; behind it come `bulk` and `video`, which take what is left.
-inline constexpr std::size_t status_priority = 4;
+inline constexpr std::size_t kStatusPriority = 4;
 
 /// DDS GUID prefix of a participant: who really sent a sample, whatever the sample says.
 using ParticipantId = std::array<std::uint8_t, 12>;
@@ -21,10 +21,10 @@ struct SenderState {
   const LinkProfile* link{};
   /// By priority: airtime that the waiting messages need. Without a profile how fast the link is stays
   /// unknown: then how long the oldest message has waited for a socket with room.
-  std::array<Duration, priorities> queue{};
+  std::array<Duration, kPriorities> queue{};
   /// By priority: messages since the start that never went on the air. They waited too long, or a newer one
   /// took their place.
-  std::array<std::uint64_t, priorities> dropped{};
+  std::array<std::uint64_t, kPriorities> dropped{};
 
   /// Airtime of all that goes before or with `priority`, in [0, priorities).
   Duration waiting(std::size_t priority) const {

@@ -25,7 +25,7 @@ class Mailbox {
 
   /// `depth`: samples per sender and key; `max_bytes`: of one sample.
   Mailbox(std::size_t depth, std::size_t max_bytes)
-      : depth_(depth), max_samples_(max_keys * depth), max_bytes_(std::max(kMinBytes, depth * max_bytes)) {}
+      : depth_(depth), max_samples_(kMaxKeys * depth), max_bytes_(std::max(kMinBytes, depth * max_bytes)) {}
 
   bool empty() const { return waiting_.empty(); }
   /// Adds the newest sample. Calls `overwritten(Entry)` for each one that had to go for it.

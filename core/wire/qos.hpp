@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 /// What the QoS classes and discovery get: one table for both adapters, so that a rehearsal does not flatter.
 namespace adit::wire {
@@ -54,7 +54,7 @@ inline Qos reader_qos(const TopicInfo& topic) {
 
 /// Keys of one topic that a writer writes, and that a reader stores at a time: those of writers that left
 /// give way to new ones. The library's default of 10 loses every peer beyond the tenth in silence.
-inline constexpr std::size_t max_keys = 256;
+inline constexpr std::size_t kMaxKeys = 256;
 
 /// Samples of one sender and key that wait for a reader's strand; then the newest replaces the oldest. A
 /// request or an answer is not made void by the one after it, although its writer repeats the newest alone.
@@ -70,21 +70,21 @@ inline bool handled_in_place(const TopicInfo& topic) {
   return topic.qos == QosClass::stream || (topic.qos == QosClass::urgent && is_ros2(topic));
 }
 /// Samples that a reader handles in one go; then other tasks of its strand have their turn.
-inline constexpr int samples_in_one_go = 16;
+inline constexpr int kBurstSamples = 16;
 
 /// Discovery, equal everywhere: with leases of different lengths endpoints are not matched again after a
 /// gap between the two. Any message renews a lease, so announcements can be rare on a thin link.
 struct Discovery {
-  static constexpr Duration lease = 60s;             ///< a silent participant is dropped after it
-  static constexpr Duration announcement = 25s;      ///< period of participant announcements
-  static constexpr Duration initial_period = 400ms;  ///< period of the first ones
-  static constexpr int initial_announcements = 15;   ///< their number: 6 s of them
+  static constexpr Duration kLease = 60s;            ///< a silent participant is dropped after it
+  static constexpr Duration kAnnouncement = 25s;     ///< period of participant announcements
+  static constexpr Duration kInitialPeriod = 400ms;  ///< period of the first ones
+  static constexpr int kInitialAnnouncements = 15;   ///< their number: 6 s of them
   /// Whoever was heard and does not show that it heard us is told of us again, each time that it announces
   /// itself so often. Fast DDS alone answers once: that lost, the other hears of us with our next
   /// announcement.
-  static constexpr Duration tell_period = 200ms;
-  static constexpr int tells = 12;
-  static constexpr Duration heartbeat = 150ms;  ///< of endpoints that a peer has not acknowledged
+  static constexpr Duration kAnnounceRetryPeriod = 200ms;
+  static constexpr int kAnnounceRetries = 12;
+  static constexpr Duration kHeartbeat = 150ms;  ///< of endpoints that a peer has not acknowledged
 };
 
 }  // namespace adit::wire

@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "core/exec/generation.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 /// Typed writers and readers over the byte-level wire, for IDL-generated types. Include it in .cpp files,
 /// beside the generated type.
@@ -53,7 +53,7 @@ class Writer {
  public:
   Writer() = default;
   /// `wire` must outlive the writer; `partition` empty: the default one. Errors are the wire's.
-  static Result<Writer> make(Wire& wire, const Topic<T>& topic, const std::string& partition = {}) {
+  static Result<Writer> make(Participant& wire, const Topic<T>& topic, const std::string& partition = {}) {
     auto raw = wire.make_writer(topic, partition);
     if (!raw) return raw.error();
     Writer writer;
@@ -83,7 +83,7 @@ class Writer {
 /// A reader of T: `handler(const T&, const SampleInfo&)` runs on `strand`, while `generation`, when there is
 /// one, is valid; afterwards samples are dropped.
 template <class T, class Handler>
-Result<std::unique_ptr<RawReader>> make_reader(Wire& wire, const Topic<T>& topic, Executor& strand,
+Result<std::unique_ptr<RawReader>> make_reader(Participant& wire, const Topic<T>& topic, Executor& strand,
                                                Handler handler, const std::string& partition = {},
                                                std::shared_ptr<const Generation> generation = nullptr) {
   return wire.make_reader(

@@ -54,11 +54,11 @@ Result<std::unique_ptr<Decider>> Decider::make(
   auto tree = load(*leaves);
   if (!tree) return tree.error();
   decider->tree_ = std::move(*tree);
-  decider->tree_.for_each([&](const bt::Node& node, std::size_t) {
+  decider->tree_.for_each([&](const bt::TreeNode& node, std::size_t) {
     const auto mode = node.config().ports.find("mode");
     if (node.id() == "Run" && mode != node.config().ports.end()) decider->modes_.insert(mode->second);
   });
-  decider->tree_.on_error([d = decider.get()](const bt::Node& node, std::string_view what) {
+  decider->tree_.on_error([d = decider.get()](const bt::TreeNode& node, std::string_view what) {
     d->error_ = node.name() + ": " + std::string(what);
   });
   return decider;

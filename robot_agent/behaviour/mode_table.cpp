@@ -11,25 +11,25 @@
 namespace adit::agent {
 
 namespace conditions {
-constinit const Condition not_stopped{"NotStopped", Reason::stopped,
+constinit const Condition kNotStopped{"NotStopped", Reason::stopped,
                                       [](const Facts& f) { return !f.stopped; }, Scope::ending};
-constinit const Condition driver_alive{"DriverAlive", Reason::driver_silent,
+constinit const Condition kDriverAlive{"DriverAlive", Reason::driver_silent,
                                        [](const Facts& f) { return f.driver_alive; }, Scope::lasting};
-constinit const Condition localised{"Localised", Reason::no_localisation,
-                                    [](const Facts& f) { return f.localised; }, Scope::lasting};
-constinit const Condition terrain_fresh{"TerrainFresh", Reason::terrain_stale,
+constinit const Condition kLocalised{"Localised", Reason::no_localisation,
+                                     [](const Facts& f) { return f.localised; }, Scope::lasting};
+constinit const Condition kTerrainFresh{"TerrainFresh", Reason::terrain_stale,
                                         [](const Facts& f) { return f.terrain_fresh; }, Scope::lasting};
-constinit const Condition stick_fresh{"StickFresh", Reason::joystick_stale,
+constinit const Condition kStickFresh{"StickFresh", Reason::joystick_stale,
                                       [](const Facts& f) { return f.stick_fresh; }, Scope::entry};
-constinit const Condition stick_centred{"StickCentred", Reason::stick_not_centred,
+constinit const Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
                                         [](const Facts& f) { return f.stick_centred; }, Scope::entry};
-constinit const Condition stick_kept{"StickKept", Reason::joystick_stale,
+constinit const Condition kStickKept{"StickKept", Reason::joystick_stale,
                                      [](const Facts& f) { return f.stick_kept; }, Scope::ending};
-constinit const Condition goal_known{"GoalKnown", Reason::goal_missing,
+constinit const Condition kGoalKnown{"GoalKnown", Reason::goal_missing,
                                      [](const Facts& f) { return f.goal_known; }, Scope::ending};
-constinit const Condition goal_free{"GoalFree", Reason::goal_unreachable,
+constinit const Condition kGoalFree{"GoalFree", Reason::goal_unreachable,
                                     [](const Facts& f) { return f.goal_free; }, Scope::entry};
-constinit const Condition program_fresh{"ProgramFresh", Reason::program_silent,
+constinit const Condition kProgramFresh{"ProgramFresh", Reason::program_silent,
                                         [](const Facts& f) { return f.program_fresh; }, Scope::lasting};
 }  // namespace conditions
 
@@ -48,15 +48,15 @@ std::vector<ModeRow> shipped_rows() {
        .accepts = Accepts::stick,
        .on_handover = OnHandover::falls_to_hold,
        // StickKept comes last: StickFresh has spoken already.
-       .conditions = {not_stopped, driver_alive, stick_fresh, stick_centred, stick_kept},
+       .conditions = {kNotStopped, kDriverAlive, kStickFresh, kStickCentred, kStickKept},
        .make = ManualMode::make,
        .source_age = Stick::kFresh},
       {.name = "smart_joystick",
        .commanded_by = kHolder,
        .accepts = Accepts::stick,
        .on_handover = OnHandover::falls_to_hold,
-       .conditions = {not_stopped, driver_alive, localised, terrain_fresh, stick_fresh, stick_centred,
-                      stick_kept},
+       .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kStickFresh, kStickCentred,
+                      kStickKept},
        .make = SmartJoystickMode::make,
        .source_age = Stick::kFresh},
       {.name = "waypoint",
@@ -64,14 +64,14 @@ std::vector<ModeRow> shipped_rows() {
        .accepts = Accepts::goal,
        .goal = GoalOnLeaving::cleared,
        .on_failure = OnFailure::pauses,
-       .conditions = {not_stopped, driver_alive, localised, terrain_fresh, goal_known, goal_free},
+       .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kGoalKnown, kGoalFree},
        .make = WaypointMode::make,
        .source_age = kPlannerAge},
       // Falls to hold when its program is silent: one that comes back must not move the robot by that alone.
       {.name = "external",
        .commanded_by = kHolder,
        .accepts = Accepts::program,
-       .conditions = {not_stopped, driver_alive, program_fresh},
+       .conditions = {kNotStopped, kDriverAlive, kProgramFresh},
        .make = ExternalMode::make,
        .source_age = kPlannerAge,
        .optional = true},

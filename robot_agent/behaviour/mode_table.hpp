@@ -33,8 +33,8 @@ struct Condition {
 
 /// The conditions of the shipped modes, for rows of further ones.
 namespace conditions {
-extern const Condition not_stopped, driver_alive, localised, terrain_fresh, stick_fresh, stick_centred,
-    stick_kept, goal_known, goal_free, program_fresh;
+extern const Condition kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kStickFresh, kStickCentred,
+    kStickKept, kGoalKnown, kGoalFree, kProgramFresh;
 }
 
 /// Who asks for a mode.

@@ -11,20 +11,20 @@ namespace adit::agent {
 namespace {
 
 using bt::Hook;
-using bt::Node;
 using bt::NodeKind;
+using bt::TreeNode;
 using Names = std::set<std::string, std::less<>>;
 
-bool is_leaf(const Node& node, std::string_view id) {
+bool is_leaf(const TreeNode& node, std::string_view id) {
   return node.kind() != NodeKind::subtree && node.children().empty() && node.id() == id;
 }
 
-bool is_condition(const Node& node, const ModeTable& table) {
+bool is_condition(const TreeNode& node, const ModeTable& table) {
   const auto& all = table.conditions();
   return std::any_of(all.begin(), all.end(), [&](const Condition& c) { return is_leaf(node, c.leaf); });
 }
 
-std::string mode_of(const Node& node) {
+std::string mode_of(const TreeNode& node) {
   const auto mode = node.config().ports.find("mode");
   return mode == node.config().ports.end() ? std::string{} : mode->second;
 }
@@ -32,26 +32,26 @@ std::string mode_of(const Node& node) {
 /// The name under which a leaf counts as asked: a condition's, or `Requested mode="NAME"`.
 std::string requested(std::string_view mode) { return "Requested mode=\"" + std::string(mode) + "\""; }
 
-std::optional<std::string> asked_by(const Node& leaf, const ModeTable& table) {
+std::optional<std::string> asked_by(const TreeNode& leaf, const ModeTable& table) {
   if (is_leaf(leaf, "Requested")) return requested(mode_of(leaf));
   if (is_condition(leaf, table)) return leaf.id();
   return std::nullopt;
 }
 
 /// The scripts that let a node answer without being ticked.
-bool may_be_passed_over(const Node& node) {
+bool may_be_passed_over(const TreeNode& node) {
   const auto has = [&](Hook hook) { return node.config().hooks[static_cast<std::size_t>(hook)] != nullptr; };
   return has(Hook::success_if) || has(Hook::skip_if) || has(Hook::while_true);
 }
 
-bool is_reactive(const Node& node) {
+bool is_reactive(const TreeNode& node) {
   return node.kind() == NodeKind::subtree || node.id() == "ReactiveSequence" ||
          node.id() == "ReactiveFallback";
 }
 
 /// The conditions that were asked in this tick, and held, when the node succeeds. A node with such a
 /// condition is never skipped.
-Names guaranteed(const Node& node, const ModeTable& table) {
+Names guaranteed(const TreeNode& node, const ModeTable& table) {
   if (may_be_passed_over(node)) return {};
   if (const auto name = asked_by(node, table)) return {*name};
   if (node.kind() == NodeKind::subtree) return guaranteed(*node.children().front(), table);
@@ -68,7 +68,9 @@ Names guaranteed(const Node& node, const ModeTable& table) {
   return all;
 }
 
-std::string place(const Node& node) { return node.config().file + ":" + std::to_string(node.config().line); }
+std::string place(const TreeNode& node) {
+  return node.config().file + ":" + std::to_string(node.config().line);
+}
 
 class Checker {
  public:
@@ -85,7 +87,7 @@ class Checker {
   }
 
  private:
-  void visit(const Node& node, Names asked) {
+  void visit(const TreeNode& node, Names asked) {
     if (!error_.empty()) return;
     path_.push_back(&node);
     if (is_leaf(node, "Run") || is_leaf(node, "Pause"))
@@ -99,7 +101,7 @@ class Checker {
     path_.pop_back();
   }
 
-  void see_decision(const Node& leaf, const Names& asked) {
+  void see_decision(const TreeNode& leaf, const Names& asked) {
     const ModeRow* row = row_of(leaf);
     if (!row) return;
     const bool runs = leaf.id() == "Run";
@@ -112,14 +114,14 @@ class Checker {
       if (runs ? !c.entry_only() : c.scope == Scope::ending) require(leaf, std::string(c.leaf), asked);
   }
 
-  const ModeRow* row_of(const Node& leaf) {
+  const ModeRow* row_of(const TreeNode& leaf) {
     const std::string mode = mode_of(leaf);
     const ModeRow* row = table_.find(mode);
     if (!row) refuse(leaf, leaf.id() + ": the mode table has no mode '" + mode + "'");
     return row;
   }
 
-  void require(const Node& leaf, const std::string& condition, const Names& asked) {
+  void require(const TreeNode& leaf, const std::string& condition, const Names& asked) {
     if (asked.contains(condition)) return;
     const std::string what = leaf.id() + " mode=\"" + mode_of(leaf) + "\"";
     refuse(leaf, what + " lacks the condition " + condition + hint(condition));
@@ -130,13 +132,13 @@ class Checker {
     for (std::size_t i = path_.size() - 1; i-- > 0;)
       for (const auto& child : path_[i]->children()) {
         if (child.get() == path_[i + 1]) break;
-        std::vector<const Node*> way{path_[i]};
+        std::vector<const TreeNode*> way{path_[i]};
         if (find(*child, condition, way)) return ": " + blame(way);
       }
     return " before it";
   }
 
-  bool find(const Node& node, const std::string& condition, std::vector<const Node*>& way) const {
+  bool find(const TreeNode& node, const std::string& condition, std::vector<const TreeNode*>& way) const {
     way.push_back(&node);
     if (asked_by(node, table_) == condition) return true;
     for (const auto& child : node.children())
@@ -145,10 +147,10 @@ class Checker {
     return false;
   }
 
-  static std::string blame(const std::vector<const Node*>& way) {
+  static std::string blame(const std::vector<const TreeNode*>& way) {
     const std::string it =
         "the one in line " + std::to_string(way.back()->config().line) + " does not count, ";
-    for (const Node* node : way)
+    for (const TreeNode* node : way)
       if (may_be_passed_over(*node))
         return it + "_skipIf, _successIf or _while may pass over " + node->name();
     for (std::size_t i = way.size() - 1; i-- > 0;)
@@ -156,12 +158,12 @@ class Checker {
     return it + "ReactiveFallback does without it";
   }
 
-  void refuse(const Node& node, const std::string& what) {
+  void refuse(const TreeNode& node, const std::string& what) {
     if (error_.empty()) error_ = place(node) + ": " + what;
   }
 
   const ModeTable& table_;
-  std::vector<const Node*> path_{};  ///< From the root to the node that is visited.
+  std::vector<const TreeNode*> path_{};  ///< From the root to the node that is visited.
   std::set<std::string_view> runs_{};
   std::string error_{};
 };
@@ -177,7 +179,7 @@ Result<void> check_tree(const std::string& file, const ModeTable& table) {
 
 bool is_robot_tree(const bt::Tree& tree, const ModeTable& table) {
   bool found = false;
-  tree.for_each([&](const Node& node, std::size_t) {
+  tree.for_each([&](const TreeNode& node, std::size_t) {
     found = found || is_leaf(node, "Run") || is_leaf(node, "Pause") || is_leaf(node, "Requested") ||
             is_condition(node, table);
   });

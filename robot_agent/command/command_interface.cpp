@@ -171,13 +171,13 @@ CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
   tick(now);  // a lock that lapsed since the last second
   const std::string former = authority_.holder_name();
   if (authority_.locked()) {
-    tell(former, Severity::info, "asked", Reason::locked, c.from.name + " asked for " + params_.robot);
+    notify(former, Severity::info, "asked", Reason::locked, c.from.name + " asked for " + params_.robot);
     return {Reason::locked, "locked by " + former + ", who is notified of your request"};
   }
   authority_.give({c.from.name, c.from.id}, now);
   requests_.holder_changed(now);
   if (!former.empty())
-    tell(former, Severity::warning, "taken", Reason::none, c.from.name + " took " + params_.robot);
+    notify(former, Severity::warning, "taken", Reason::none, c.from.name + " took " + params_.robot);
   outputs_.changed();
   return {};
 }
@@ -185,7 +185,7 @@ CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
 CommandInterface::Outcome CommandInterface::release(const Command& c, Time now) {
   authority_.clear(now);
   requests_.holder_changed(now);
-  tell({}, Severity::info, "released", Reason::none, c.from.name + " released " + params_.robot);
+  notify({}, Severity::info, "released", Reason::none, c.from.name + " released " + params_.robot);
   outputs_.changed();
   return {};
 }
@@ -198,8 +198,8 @@ CommandInterface::Outcome CommandInterface::grant(const Command& c, Time now) {
   const std::string text = c.from.name + " granted " + params_.robot + " to " + to;
   authority_.give({heir->name, heir->id}, now);
   requests_.holder_changed(now);
-  tell(to, Severity::info, "granted", Reason::none, text);
-  tell(c.from.name, Severity::info, "granted", Reason::none, text);
+  notify(to, Severity::info, "granted", Reason::none, text);
+  notify(c.from.name, Severity::info, "granted", Reason::none, text);
   outputs_.changed();
   return {};
 }
@@ -210,8 +210,8 @@ CommandInterface::Outcome CommandInterface::stop(const Command& c, Time now) {
   stops_.set(stopper);
   requests_.stop_changed(true, now);
   if (fresh && authority_.holder() && *authority_.holder() != stopper)
-    tell(authority_.holder_name(), Severity::warning, "stopped", Reason::stopped,
-         c.from.name + " stopped " + params_.robot);
+    notify(authority_.holder_name(), Severity::warning, "stopped", Reason::stopped,
+           c.from.name + " stopped " + params_.robot);
   if (fresh) outputs_.changed();
   return {};
 }
@@ -227,8 +227,8 @@ CommandInterface::Outcome CommandInterface::reset(const Command& c, Time now) {
     for (const Party& stopper : stops_.all()) {
       if (stopper == own) continue;
       const std::string told = c.from.name + " reset the stop of " + stopper.name + " on " + params_.robot;
-      tell(stopper.name, Severity::warning, "reset", Reason::none, told);
-      tell(c.from.name, Severity::info, "reset", Reason::none, told);
+      notify(stopper.name, Severity::warning, "reset", Reason::none, told);
+      notify(c.from.name, Severity::info, "reset", Reason::none, told);
     }
     stops_.clear_all();
   } else {
@@ -242,7 +242,7 @@ CommandInterface::Outcome CommandInterface::reset(const Command& c, Time now) {
 
 CommandInterface::Outcome CommandInterface::asked(const Command& c, const Result<void>& result) const {
   if (result) return {};
-  tell(c.from.name, Severity::warning, "mode_refused", result.reason(), result.error().text);
+  notify(c.from.name, Severity::warning, "mode_refused", result.reason(), result.error().text);
   return {result.reason(), result.error().text};
 }
 
@@ -282,18 +282,18 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
 
 void CommandInterface::tick(Time now) {
   if (!authority_.lapse(now)) return;
-  tell({}, Severity::warning, "lock_lapsed", Reason::none,
-       "the lock of " + authority_.holder_name() + " on " + params_.robot +
-           " lapsed: not heard for its lease");
+  notify({}, Severity::warning, "lock_lapsed", Reason::none,
+         "the lock of " + authority_.holder_name() + " on " + params_.robot +
+             " lapsed: not heard for its lease");
   outputs_.changed();
 }
 
 bool CommandInterface::unlock_at_console() {
   if (!authority_.locked()) return false;
   authority_.unlock();
-  tell({}, Severity::warning, "lock_lapsed", Reason::none,
-       "the lock of " + authority_.holder_name() + " on " + params_.robot +
-           " was ended at the robot's console");
+  notify({}, Severity::warning, "lock_lapsed", Reason::none,
+         "the lock of " + authority_.holder_name() + " on " + params_.robot +
+             " was ended at the robot's console");
   outputs_.changed();
   return true;
 }
@@ -313,12 +313,12 @@ bool CommandInterface::may_be_back(const Sender& from) const {
 void CommandInterface::report_intruder(const std::string& name, const wire::ParticipantId& participant,
                                        Time now) {
   if (!authority_.holder() || !intruders_.pass(participant, now)) return;
-  tell(authority_.holder_name(), Severity::error, "intruder", Reason::identity_mismatch,
-       "participant " + wire::to_string(participant) + " claims to be " + name + " on " + params_.robot);
+  notify(authority_.holder_name(), Severity::error, "intruder", Reason::identity_mismatch,
+         "participant " + wire::to_string(participant) + " claims to be " + name + " on " + params_.robot);
 }
 
-void CommandInterface::tell(const std::string& to, Severity severity, const char* code, Reason reason,
-                            std::string text) const {
+void CommandInterface::notify(const std::string& to, Severity severity, const char* code, Reason reason,
+                              std::string text) const {
   outputs_.notify({to, severity, code, reason, std::move(text)});
 }
 

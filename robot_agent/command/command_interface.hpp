@@ -99,8 +99,8 @@ class CommandInterface {
   const Station* holders_station() const;
   bool may_be_back(const Sender& from) const;
   void report_intruder(const std::string& name, const wire::ParticipantId& participant, Time now);
-  void tell(const std::string& to, Severity severity, const char* code, Reason reason,
-            std::string text) const;
+  void notify(const std::string& to, Severity severity, const char* code, Reason reason,
+              std::string text) const;
 
   CommandParams params_;
   Requests& requests_;

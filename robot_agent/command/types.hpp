@@ -7,7 +7,7 @@
 #include "core/command/request.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "robot_agent/common/identity.hpp"
 #include "robot_agent/common/notice.hpp"
 #include "robot_agent/common/planned_route.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/command/words.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::agent {
 

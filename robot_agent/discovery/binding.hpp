@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "core/time/time.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::agent {
 

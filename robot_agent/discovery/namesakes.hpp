@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/time/time.hpp"
+#include "core/wire/participant.hpp"
 #include "core/wire/qos.hpp"
-#include "core/wire/wire.hpp"
 
 namespace adit::agent {
 
@@ -30,7 +30,7 @@ class Namesakes {
   static constexpr Duration kSettled = 3s;
   /// Signs of life over such a span are no late samples of an agent that was restarted.
   static constexpr Duration kConfirm = 1500ms;
-  static constexpr Duration kForget = wire::Discovery::lease;
+  static constexpr Duration kForget = wire::Discovery::kLease;
 
   enum class Verdict : std::uint8_t {
     alone,      ///< No other robot has the name.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/topic/topic.hpp"
+#include "core/topic/local_topic.hpp"
 #include "robot_agent/common/identity.hpp"
 
 namespace adit::agent {
@@ -56,7 +56,7 @@ class PeerTable {
   const Peer* holder() const;
   const PeerList& all() const { return peers_; }
   /// Published on every change but those of the ages, with this table's entries.
-  Subscription follow(Executor& strand, Topic<PeerList>::Handler handler) const {
+  Subscription follow(Executor& strand, LocalTopic<PeerList>::Handler handler) const {
     return list_.subscribe(strand, std::move(handler));
   }
 
@@ -89,7 +89,7 @@ class PeerTable {
   PeerList peers_{};
   std::string holder_{};
   Id holder_id_{};
-  mutable Topic<PeerList> list_;  // following it changes no peer
+  mutable LocalTopic<PeerList> list_;  // following it changes no peer
 };
 
 /// The peers as a table for people: name, kind, age, participant, place.

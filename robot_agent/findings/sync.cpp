@@ -26,16 +26,16 @@ FindingSync::FindingSync(SyncParams params, std::shared_ptr<store::Disk> disk, E
       writer_(writer),
       outputs_(std::move(outputs)),
       random_(params_.seed),
-      shelf_({.most = params_.most}, std::move(disk), home, std::move(writer),
-             {[](const findings::Key&) {}, outputs_.failing}) {}
+      finding_store_({.max_findings = params_.max_findings}, std::move(disk), home, std::move(writer),
+                     {[](const findings::Key&) {}, outputs_.failing}) {}
 
 findings::LoadReport FindingSync::load() {
-  findings::LoadReport report = shelf_.load();
+  findings::LoadReport report = finding_store_.load();
   if (!disk_) return report;
   const store::State state = store::StateFile(disk_, kTracksFile, kTracksFormat).load();
   // Without it every finding is sent once more, and no station is harmed by that.
-  if (state.found != store::Found::good) {
-    if (state.found != store::Found::nothing)
+  if (state.found != store::LoadStatus::good) {
+    if (state.found != store::LoadStatus::nothing)
       (void)store::set_aside(*disk_, kTracksFile, store::name(state.found));
     return report;
   }
@@ -45,7 +45,7 @@ findings::LoadReport FindingSync::load() {
     std::vector<StationId> has;
     for (std::size_t stations = in.count(kStations); stations > 0 && in.good(); --stations)
       has.push_back(in.array<16>());
-    if (in.good() && shelf_.all().contains({params_.robot, id})) track(id).has = std::move(has);
+    if (in.good() && finding_store_.all().contains({params_.robot, id})) track(id).has = std::move(has);
   }
   return report;
 }
@@ -56,17 +56,17 @@ Result<std::uint64_t> FindingSync::report(Finding finding) {
   if (!findings::valid(finding))
     return {Reason::bad_argument, "a finding needs a kind, a place, and fits its bounds"};
   const std::uint64_t id = finding.key.id;
-  if (shelf_.all().contains(finding.key)) return id;
-  if (shelf_.full() && !make_room(finding.importance))
+  if (finding_store_.all().contains(finding.key)) return id;
+  if (finding_store_.full() && !make_room(finding.importance))
     return {Reason::queue_full, "no room for one more finding"};
-  (void)shelf_.put(std::move(finding));  // valid, and there is room
+  (void)finding_store_.put(std::move(finding));  // valid, and there is room
   return id;
 }
 
 bool FindingSync::make_room(std::uint8_t importance) {
   const Finding* least = nullptr;  // the one that matters least, those that somebody has before others
   bool least_known = false;
-  for (const auto& [key, finding] : shelf_.all()) {
+  for (const auto& [key, finding] : finding_store_.all()) {
     const auto found = tracks_.find(key.id);
     const bool known = found != tracks_.end() && !found->second.has.empty();
     if (least && (least_known != known ? least_known : least->importance <= finding.importance)) continue;
@@ -77,19 +77,19 @@ bool FindingSync::make_room(std::uint8_t importance) {
   if (!least_known) {
     ++overflowed_;
     if (!told_full_)
-      outputs_.full(std::to_string(params_.most) + " findings are kept, there is no room for more");
+      outputs_.full(std::to_string(params_.max_findings) + " findings are kept, there is no room for more");
     told_full_ = true;
   }
   if (!give_up) return false;
   const findings::Key key = least->key;
   tracks_.erase(key.id);
-  shelf_.drop(key);
+  finding_store_.drop(key);
   return true;
 }
 
 void FindingSync::acknowledged(const StationId& station, std::span<const std::uint64_t> ids, Time now) {
   for (const std::uint64_t id : ids) {
-    if (!shelf_.all().contains({params_.robot, id})) continue;
+    if (!finding_store_.all().contains({params_.robot, id})) continue;
     Track& t = track(id);
     if (std::find(t.has.begin(), t.has.end(), station) != t.has.end()) continue;
     if (t.has.size() >= kStations) t.has.erase(t.has.begin());
@@ -111,7 +111,7 @@ std::vector<const Finding*> FindingSync::due(const std::vector<StationId>& heard
   if (heard.empty()) return out;
   const bool anew =
       std::any_of(heard.begin(), heard.end(), [&](const StationId& s) { return !contains(before_this, s); });
-  for (const auto& [key, finding] : shelf_.all()) {
+  for (const auto& [key, finding] : finding_store_.all()) {
     Track& t = track(key.id);
     const bool wanted =
         std::any_of(heard.begin(), heard.end(), [&](const StationId& s) { return !contains(t.has, s); });

@@ -6,22 +6,22 @@
 #include <span>
 #include <vector>
 
-#include "core/findings/shelf.hpp"
+#include "core/findings/finding_store.hpp"
 #include "core/time/random.hpp"
 
 namespace adit::agent {
 
 struct SyncParams {
   std::string robot{};
-  std::size_t most{512};      ///< findings kept, [1, 65536]
-  std::size_t in_a_round{4};  ///< sent in a round, [1, 64]
-  Duration repeat{2s};        ///< of one that is not acknowledged; doubles up to `slowest`
+  std::size_t max_findings{512};  ///< findings kept, [1, 65536]
+  std::size_t in_a_round{4};      ///< sent in a round, [1, 64]
+  Duration repeat{2s};            ///< of one that is not acknowledged; doubles up to `slowest`
   Duration slowest{16s};
   std::uint64_t seed{1};  ///< of ids for findings that came without
 };
 
 /// What this robot found, until every station that is heard has it (rule 9). Most important first, a few in a
-/// round, whatever the length of the gap: nothing queues up. A pure machine but for its shelf.
+/// round, whatever the length of the gap: nothing queues up. A pure machine but for its finding store.
 class FindingSync {
  public:
   using StationId = std::array<std::uint8_t, 16>;
@@ -45,12 +45,12 @@ class FindingSync {
   std::vector<const findings::Finding*> due(const std::vector<StationId>& heard, Time now);
 
   /// At a clean end, after the home strand has ended: hands what is not on disk yet to the writer's strand.
-  void flush() { shelf_.flush(); }
+  void flush() { finding_store_.flush(); }
 
-  std::size_t size() const { return shelf_.all().size(); }
+  std::size_t size() const { return finding_store_.all().size(); }
   /// Given up or not taken since the start.
   std::uint32_t overflowed() const { return overflowed_; }
-  const findings::Shelf& shelf() const { return shelf_; }
+  const findings::FindingStore& finding_store() const { return finding_store_; }
 
  private:
   static constexpr std::size_t kStations = 16;  ///< remembered per finding
@@ -69,7 +69,7 @@ class FindingSync {
   std::shared_ptr<Executor> writer_;
   Outputs outputs_;
   Random random_;
-  findings::Shelf shelf_;
+  findings::FindingStore finding_store_;
   std::map<std::uint64_t, Track> tracks_{};
   std::vector<StationId> heard_{};  ///< in the round before
   std::uint32_t overflowed_{};

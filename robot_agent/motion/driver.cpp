@@ -27,7 +27,7 @@ bool usable(const Pose3& pose, const Twist2& twist) {
 }  // namespace
 
 struct Driver::Endpoints {
-  const wire::Wire* wire{};
+  const wire::Participant* wire{};
   VelocityWriter cmd_vel{};
   std::unique_ptr<wire::RawReader> odom{}, battery{}, external{}, rival{};
 };
@@ -56,7 +56,7 @@ Result<std::unique_ptr<Driver>> Driver::open(const wire::ComponentIo& io, Veloci
     if (info.sender != self) rival(info.sender, info.received);
   };
   for (const auto& opened : {
-           io.open(e.odom, topics::odom,
+           io.open(e.odom, topics::kOdom,
                    [odometry = std::move(handlers.odometry)](const nav_msgs::msg::Odometry&o,
                                                              const wire::SampleInfo&info) {
                      const auto& p = o.pose().pose().position();
@@ -69,17 +69,17 @@ Result<std::unique_ptr<Driver>> Driver::open(const wire::ComponentIo& io, Veloci
                      odometry(pose, twist, stamp_of(o.header()), info.received);
                    }),
            io.open(
-               e.battery, topics::battery,
+               e.battery, topics::kBattery,
                [battery = std::move(handlers.battery)](const sensor_msgs::msg::BatteryState&b,
                                                        const wire::SampleInfo&) { battery(b.percentage()); }),
            io.open(
-               e.external, topics::external_cmd_vel,
+               e.external, topics::kExternalCmdVel,
                [external = std::move(handlers.external)](const geometry_msgs::msg::Twist&t,
                                                          const wire::SampleInfo&info) {
                  external({t.linear().x(), t.linear().y(), t.angular().z(), t.linear().z()}, info.received);
                }),
-           type == VelocityType::twist_stamped ? io.open(e.rival, topics::cmd_vel_stamped_heard, heard)
-                                               : io.open(e.rival, topics::cmd_vel_heard, heard),
+           type == VelocityType::twist_stamped ? io.open(e.rival, topics::kCmdVelStampedHeard, heard)
+                                               : io.open(e.rival, topics::kCmdVelHeard, heard),
        })
     if (!opened) return opened.error();
   return driver;

@@ -4,7 +4,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/geometry/pose.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 
 namespace adit::wire {

@@ -17,9 +17,9 @@ constexpr double kHeightNoise = 0.15;   // m
 Duration time_between(const OdometrySample& from, const OdometrySample& to) {
   const Duration received = std::max(to.received - from.received, Duration{0});
   if (from.stamp == 0 || to.stamp <= from.stamp) return received;
-  const std::uint64_t most = static_cast<std::uint64_t>((received + kLongestTransport).count());
+  const std::uint64_t max_stamp = static_cast<std::uint64_t>((received + kLongestTransport).count());
   const std::uint64_t stamped = to.stamp - from.stamp;
-  return stamped > most ? received : std::max(received, Duration(static_cast<std::int64_t>(stamped)));
+  return stamped > max_stamp ? received : std::max(received, Duration(static_cast<std::int64_t>(stamped)));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "core/time/time.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "robot_agent/common/rate_limit.hpp"
 
 namespace adit::agent {

@@ -39,7 +39,8 @@ Result<void> Router::on_start() {
 void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply) {
   // What a robot sees that stands and goes nowhere is the same again.
   const bool stands = !job->goal && (job->place - taken_at_).norm() < kMoved;
-  const bool takes = !taken_ || job->made - *taken_ >= (stands ? params_.least_standing : params_.least);
+  const bool takes =
+      !taken_ || job->made - *taken_ >= (stands ? params_.min_period_standing : params_.min_period);
   if (takes) {
     taken_ = job->made;
     taken_at_ = job->place;

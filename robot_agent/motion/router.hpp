@@ -39,9 +39,9 @@ struct RouteServices {
 struct RouterParams {
   Platform platform{};
   nav::RouteParams route{};
-  Duration least{200ms};        ///< between two scans that enter the map
-  Duration least_standing{1s};  ///< the same while the robot stands and has no goal
-  Duration modelled{20ms};      ///< what a job takes in rehearsal
+  Duration min_period{200ms};        ///< between two scans that enter the map
+  Duration min_period_standing{1s};  ///< the same while the robot stands and has no goal
+  Duration modelled{20ms};           ///< what a job takes in rehearsal
 };
 
 /// The global planner, on a strand of its own: a graph of the free space that was seen, and the route that is

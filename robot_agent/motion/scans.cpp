@@ -48,8 +48,8 @@ Result<Scans::Readers> Scans::read(const wire::ComponentIo& io, std::function<Sc
     if (Scans* scans = taker()) scans->take(sample, info.received);
   };
   Readers readers{};
-  for (const auto& opened :
-       {io.open(readers.points, wire::topics::points, give), io.open(readers.scan, wire::topics::scan, give)})
+  for (const auto& opened : {io.open(readers.points, wire::topics::kPoints, give),
+                             io.open(readers.scan, wire::topics::kScan, give)})
     if (!opened) return opened.error();
   return readers;
 }

@@ -5,7 +5,7 @@
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
 #include "core/geometry/pose.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace sensor_msgs::msg {
 class PointCloud2;

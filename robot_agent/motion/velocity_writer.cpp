@@ -27,17 +27,17 @@ VelocityWriter::~VelocityWriter() = default;
 VelocityWriter::VelocityWriter(VelocityWriter&&) noexcept = default;
 VelocityWriter& VelocityWriter::operator=(VelocityWriter&&) noexcept = default;
 
-Result<VelocityWriter> VelocityWriter::make(wire::Wire& wire, VelocityType type,
+Result<VelocityWriter> VelocityWriter::make(wire::Participant& wire, VelocityType type,
                                             const std::shared_ptr<const Generation>& generation) {
   VelocityWriter out;
   out.endpoint_ = std::make_unique<Endpoint>();
   if (type == VelocityType::twist_stamped) {
-    auto writer = wire::Writer<geometry_msgs::msg::TwistStamped>::make(wire, wire::topics::cmd_vel_stamped);
+    auto writer = wire::Writer<geometry_msgs::msg::TwistStamped>::make(wire, wire::topics::kCmdVelStamped);
     if (!writer) return writer.error();
     out.endpoint_->stamped = std::move(*writer);
     out.endpoint_->stamped.bind(generation);
   } else {
-    auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(wire, wire::topics::cmd_vel);
+    auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(wire, wire::topics::kCmdVel);
     if (!writer) return writer.error();
     out.endpoint_->twist = std::move(*writer);
     out.endpoint_->twist.bind(generation);

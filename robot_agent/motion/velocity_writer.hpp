@@ -3,7 +3,7 @@
 
 #include "core/exec/generation.hpp"
 #include "core/geometry/pose.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::agent {
 
@@ -19,7 +19,7 @@ class VelocityWriter {
   VelocityWriter& operator=(VelocityWriter&&) noexcept;
 
   /// With a `generation` it writes while that is valid. Errors of the wire.
-  static Result<VelocityWriter> make(wire::Wire& wire, VelocityType type,
+  static Result<VelocityWriter> make(wire::Participant& wire, VelocityType type,
                                      const std::shared_ptr<const Generation>& generation = nullptr);
   /// Body frame. A TwistStamped has stamp zero, "now" to a driver: its clock is not ours. A failed write is
   /// counted by the wire. Nothing before make().

@@ -16,7 +16,7 @@
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
 #include "core/exec/live_runtime.hpp"
-#include "core/record/keep.hpp"
+#include "core/record/flight_recorder.hpp"
 #include "core/store/file_disk.hpp"
 #include "core/wire/link_file.hpp"
 #include "robot_agent/agent.hpp"
@@ -156,15 +156,15 @@ int run_agent(const RobotConfig& config, const Options& options) {
   if (!radio) return fail(radio.error(), 1);
   auto robot = wire::open_fastdds(*inner);
   if (!robot) return fail(robot.error(), 1);
-  record::Keeper keeper(
+  record::FlightRecorder flight_recorder(
       {.folder = config.record,
        .name = config.name,
        .about = {{"kind", "robot"}, {"software", ADIT_VERSION}},
-       .complain = [log = *log, name = config.name](const std::string& text) { Log(log, name).warn(text); }});
+       .on_error = [log = *log, name = config.name](const std::string& text) { Log(log, name).warn(text); }});
 
   AgentParams params = agent_params(config);
   params.seed = drawn_seed();
-  params.log = keeper.tap(*log);
+  params.log = flight_recorder.tap(*log);
   params.boot = this_boot();
   if (const std::string folder = state_folder(config); !folder.empty()) {
     auto disk = store::FileDisk::open(folder);
@@ -180,11 +180,12 @@ int run_agent(const RobotConfig& config, const Options& options) {
   params.alive = [service, reports = options.reports, limit = config.memory_limit, ready = false,
                   beats = 0]() mutable {
     if (reports) (void)!::write(kReportFd, "1", 1);
-    if (!std::exchange(ready, true)) service.tell("READY=1");
-    if (beats++ % 10 == 0) service.tell("WATCHDOG=1");
+    if (!std::exchange(ready, true)) service.notify("READY=1");
+    if (beats++ % 10 == 0) service.notify("WATCHDOG=1");
     if (beats == kBeatsOfStart) bound_memory(limit);
   };
-  agent::Agent agent(params, runtime, keeper.tap(**radio, "radio"), keeper.tap(**robot, "robot"));
+  agent::Agent agent(params, runtime, flight_recorder.tap(**radio, "radio"),
+                     flight_recorder.tap(**robot, "robot"));
   // The console's socket is also what keeps two agents of one name apart.
   std::atomic<bool> up{false};
   const bool faults = options.allow_faults;
@@ -205,7 +206,7 @@ int run_agent(const RobotConfig& config, const Options& options) {
   const sigset_t set = end_signals();
   int number = 0;
   sigwait(&set, &number);
-  service.tell("STOPPING=1");
+  service.notify("STOPPING=1");
   end_soon();
   console->reset();
   if (runtime.left_behind() > 0) std::_Exit(0);  // threads that hang would meet objects that are gone

@@ -7,7 +7,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/log/log.hpp"
 #include "core/result/result.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "robot_agent/safeguard/safeguard_params.hpp"
 

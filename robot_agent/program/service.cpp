@@ -15,7 +15,7 @@ Service Service::from_environment() {
   return Service(socket ? socket : "");
 }
 
-bool Service::tell(std::string_view state) const {
+bool Service::notify(std::string_view state) const {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (socket_.size() < 2 || socket_.size() >= sizeof address.sun_path) return false;

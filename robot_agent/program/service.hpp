@@ -14,7 +14,7 @@ class Service {
 
   /// "READY=1", "WATCHDOG=1", "STOPPING=1", "STATUS=..."; from any thread, never waits. False when it was not
   /// sent.
-  bool tell(std::string_view state) const;
+  bool notify(std::string_view state) const;
 
  private:
   std::string socket_;

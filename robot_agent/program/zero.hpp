@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 
 namespace adit::agent {
@@ -15,7 +15,7 @@ class ZeroSender {
   void send() { cmd_vel_.write({}); }
 
  private:
-  std::unique_ptr<wire::Wire> wire_{};
+  std::unique_ptr<wire::Participant> wire_{};
   VelocityWriter cmd_vel_{};
 };
 

@@ -45,8 +45,8 @@ radio::LinkReport LinkMeter::report(const wire::WireCounters& counters, const wi
     out.link(sender.link->name);
     out.bandwidth(static_cast<float>(sender.link->bandwidth));
   }
-  out.queue(static_cast<float>(seconds(sender.waiting(wire::status_priority))));
-  static_assert(std::tuple_size_v<std::remove_reference_t<decltype(out.dropped())>> == wire::priorities,
+  out.queue(static_cast<float>(seconds(sender.waiting(wire::kStatusPriority))));
+  static_assert(std::tuple_size_v<std::remove_reference_t<decltype(out.dropped())>> == wire::kPriorities,
                 "another number of priorities is another version of the contract");
   for (std::size_t i = 0; i < sender.dropped.size(); ++i)
     out.dropped()[i] = static_cast<std::uint32_t>(sender.dropped[i]);

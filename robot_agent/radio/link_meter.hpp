@@ -4,7 +4,7 @@
 #include <string>
 
 #include "adit/link.h"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::agent {
 

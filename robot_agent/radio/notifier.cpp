@@ -25,9 +25,9 @@ struct Notifier::Endpoint {
 Notifier::Notifier() : endpoint_(std::make_unique<Endpoint>()) {}
 Notifier::~Notifier() = default;
 
-Result<std::unique_ptr<Notifier>> Notifier::open(wire::Wire& radio, const std::string& robot,
+Result<std::unique_ptr<Notifier>> Notifier::open(wire::Participant& radio, const std::string& robot,
                                                  const Executor& clock) {
-  auto writer = wire::Writer<radio::Notification>::make(radio, wire::topics::notification);
+  auto writer = wire::Writer<radio::Notification>::make(radio, wire::topics::kNotification);
   if (!writer) return writer.error();
   std::unique_ptr<Notifier> notifier(new Notifier);
   notifier->endpoint_->robot = robot;

@@ -4,7 +4,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/result/result.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "robot_agent/common/notice.hpp"
 
 namespace adit::agent {
@@ -14,7 +14,7 @@ namespace adit::agent {
 class Notifier {
  public:
   /// `clock`: asked for the time alone, from any thread; it outlives this. Errors of the wire.
-  static Result<std::unique_ptr<Notifier>> open(wire::Wire& radio, const std::string& robot,
+  static Result<std::unique_ptr<Notifier>> open(wire::Participant& radio, const std::string& robot,
                                                 const Executor& clock);
   ~Notifier();
   Notifier(const Notifier&) = delete;

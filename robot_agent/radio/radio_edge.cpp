@@ -15,7 +15,7 @@ constexpr Duration kPresencePeriod = 1s;
 struct RadioEdge::Endpoints {
   wire::ComponentIo io;
   std::string robot;
-  wire::Wire& wire{io.wire};
+  wire::Participant& wire{io.wire};
   Executor& strand{io.strand};
   LinkMeter meter{};
   std::uint64_t seq{};
@@ -58,24 +58,24 @@ RadioEdge::~RadioEdge() = default;
 Result<std::unique_ptr<RadioEdge>> RadioEdge::open(const wire::ComponentIo& io, const std::string& robot) {
   std::unique_ptr<Endpoints> e(new Endpoints{io, robot});
   for (const auto& made :
-       {io.open(e->acknowledgement, topics::acknowledgement), io.open(e->authority, topics::authority),
-        io.open(e->behaviour, topics::behaviour), io.open(e->state, topics::robot_state),
-        io.open(e->capabilities, topics::capabilities), io.open(e->link, topics::link_report),
-        io.open(e->presence, topics::presence), io.open(e->finding, topics::finding)})
+       {io.open(e->acknowledgement, topics::kAcknowledgement), io.open(e->authority, topics::kAuthority),
+        io.open(e->behaviour, topics::kBehaviour), io.open(e->state, topics::kRobotState),
+        io.open(e->capabilities, topics::kCapabilities), io.open(e->link, topics::kLinkReport),
+        io.open(e->presence, topics::kPresence), io.open(e->finding, topics::kFinding)})
     if (!made) return made.error();
   return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
 }
 
-Result<void> RadioEdge::listen(Parts parts) {
+Result<void> RadioEdge::listen(Dependencies dependencies) {
   Endpoints& e = *endpoints_;
-  Directory& directory = parts.directory;
-  const auto& commands = parts.commands;
-  const auto answer = [&e, settle = parts.settle](const std::optional<Answer>& a) {
+  Directory& directory = dependencies.directory;
+  const auto& commands = dependencies.commands;
+  const auto answer = [&e, settle = dependencies.settle](const std::optional<Answer>& a) {
     if (!a) return;
     if (a->seq == 0) return (void)e.acknowledgement.write(to_radio(*a, e.robot));  // a stream changes nothing
     settle([&e, a = *a] { (void)e.acknowledgement.write(to_radio(a, e.robot)); });
   };
-  Namesakes& namesakes = parts.namesakes;
+  Namesakes& namesakes = dependencies.namesakes;
   e.wire.on_participant(e.strand,
                         [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
                           if (!e.io.valid()) return;
@@ -89,7 +89,7 @@ Result<void> RadioEdge::listen(Parts parts) {
                         });
   for (const auto& made : {
            e.read(
-               topics::presence,
+               topics::kPresence,
                [&e, commands, &directory, &namesakes](const radio::Presence&p, const wire::SampleInfo&info) {
                  const Time now = e.strand.now();
                  if (p.kind() == radio::AGENT_STATION && valid_name(p.name()))
@@ -105,7 +105,7 @@ Result<void> RadioEdge::listen(Parts parts) {
                    });
                  if (p.name() != e.robot) directory.presence(p.name(), p.id(), info.sender, now);
                }),
-           e.read(topics::capabilities,
+           e.read(topics::kCapabilities,
                   [&e, commands, &directory, &namesakes](const radio::Capabilities&c,
                                                          const wire::SampleInfo&info) {
                     const Time now = e.strand.now();
@@ -120,9 +120,9 @@ Result<void> RadioEdge::listen(Parts parts) {
                     if (c.name() != e.robot) directory.capabilities(from_radio(c, info.sender), now);
                   }),
            e.read(
-               topics::command,
-               [&e, commands, answer, find_route = parts.find_route](const radio::Command&c,
-                                                                     const wire::SampleInfo&info) {
+               topics::kCommand,
+               [&e, commands, answer, find_route = dependencies.find_route](const radio::Command&c,
+                                                                            const wire::SampleInfo&info) {
                  commands([&](CommandInterface& interface) {
                    const Command command = from_radio(c, info.sender);
                    const auto given = interface.handle(command, e.strand.now());
@@ -142,7 +142,7 @@ Result<void> RadioEdge::listen(Parts parts) {
                },
                e.robot),
            e.read(
-               topics::joystick,
+               topics::kJoystick,
                [&e, commands, answer](const radio::Joystick&j, const wire::SampleInfo&info) {
                  commands([&](CommandInterface& interface) {
                    const Time now = e.strand.now();
@@ -152,10 +152,11 @@ Result<void> RadioEdge::listen(Parts parts) {
                  });
                },
                e.robot),
-           e.read(topics::findings_ack,
-                  [&e, kept = parts.findings_kept](const radio::FindingsAck&a, const wire::SampleInfo&) {
-                    if (a.robot() == e.robot) kept(a.station_id(), a.ids());
-                  }),
+           e.read(
+               topics::kFindingsAck,
+               [&e, kept = dependencies.findings_kept](const radio::FindingsAck&a, const wire::SampleInfo&) {
+                 if (a.robot() == e.robot) kept(a.station_id(), a.ids());
+               }),
        })
     if (!made) return made.error();
   return {};

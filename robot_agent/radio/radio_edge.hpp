@@ -29,7 +29,7 @@ struct RobotReport {
 /// on the command strand. Every message is numbered here.
 class RadioEdge {
  public:
-  struct Parts {
+  struct Dependencies {
     Directory& directory;
     Namesakes& namesakes;
     /// Runs it with the command interface; not at all while there is none.
@@ -50,7 +50,7 @@ class RadioEdge {
   RadioEdge& operator=(const RadioEdge&) = delete;
 
   /// From now on the parts hear what arrives; they must outlive this. Errors of the wire.
-  Result<void> listen(Parts parts);
+  Result<void> listen(Dependencies dependencies);
 
   /// Nothing is heard any more. From any thread.
   void close();

@@ -19,24 +19,26 @@ LinkLossParams starting_at(const Pose2& start, LinkLossParams params) {
 
 }  // namespace
 
-Safeguards::Safeguards(SafeguardParams params, std::string robot, const Pose2& start, const Parts& parts)
+Safeguards::Safeguards(SafeguardParams params, std::string robot, const Pose2& start,
+                       const Dependencies& dependencies)
     : params_(params),
       robot_(std::move(robot)),
       start_(start),
-      parts_(parts),
+      dependencies_(dependencies),
       link_loss_(starting_at(start, params.link_loss)),
       battery_watch_(params_.battery),
       battery_return_(params_.return_retry) {}
 
 void Safeguards::restore(std::uint8_t kept, Time now) {
   battery_watch_.restore(static_cast<BatteryLevel>(std::min(kept, kLastLevel)));
-  if (kept > kLastLevel) battery_return_.begin(parts_.behaviour.holder_requests(), now);
+  if (kept > kLastLevel) battery_return_.begin(dependencies_.behaviour.holder_requests(), now);
 }
 
 std::uint8_t Safeguards::kept() const {
   const auto level = static_cast<std::uint8_t>(battery_watch_.level());
-  return level == kLastLevel && battery_return_.pending(parts_.behaviour.holder_requests()) ? kLastLevel + 1
-                                                                                            : level;
+  return level == kLastLevel && battery_return_.pending(dependencies_.behaviour.holder_requests())
+             ? kLastLevel + 1
+             : level;
 }
 
 void Safeguards::tick(Time now) {
@@ -45,31 +47,31 @@ void Safeguards::tick(Time now) {
 }
 
 void Safeguards::watch_link(Time now) {
-  const Authority& authority = parts_.authority;
-  const Frames& at = parts_.frames;
+  const Authority& authority = dependencies_.authority;
+  const Frames& at = dependencies_.frames;
   LinkLoss::Inputs in{};
   in.held = authority.holder().has_value();
   // A restart of the command component begins the lease anew, but the holder is not heard by it.
-  const Peer* peer = parts_.peers.holder();
+  const Peer* peer = dependencies_.peers.holder();
   in.heard = peer ? peer->heard : authority.heard();
-  in.autonomous = parts_.behaviour.mode().autonomous();
-  in.arrived = parts_.behaviour.view().goal_state == GoalState::reached;
+  in.autonomous = dependencies_.behaviour.mode().autonomous();
+  in.arrived = dependencies_.behaviour.view().goal_state == GoalState::reached;
   if (at.initialised()) in.place = Eigen::Vector2d(at.T_map_base().x, at.T_map_base().y);
   const LinkLoss::Step step = link_loss_.tick(in, now);
   const std::string holder = authority.holder_name();
   if (step.lost)
-    parts_.notices.send({{},
-                         Severity::warning,
-                         "link_lost",
-                         Reason::no_answer,
-                         robot_ + " has not heard " + holder + " for " +
-                             std::to_string(std::lround(seconds(step.silence))) + " s"});
+    dependencies_.notices.send({{},
+                                Severity::warning,
+                                "link_lost",
+                                Reason::no_answer,
+                                robot_ + " has not heard " + holder + " for " +
+                                    std::to_string(std::lround(seconds(step.silence))) + " s"});
   if (step.found)
-    parts_.notices.send(
+    dependencies_.notices.send(
         {{}, Severity::info, "link_back", Reason::none, robot_ + " hears " + holder + " again"});
   if (step.hold) {
-    parts_.behaviour.hold(Reason::no_answer, now);
-    parts_.notices.send(
+    dependencies_.behaviour.hold(Reason::no_answer, now);
+    dependencies_.notices.send(
         {{},
          Severity::warning,
          "mode_changed",
@@ -80,18 +82,19 @@ void Safeguards::watch_link(Time now) {
 }
 
 Result<void> Safeguards::go_back(const Eigen::Vector2d& place, const std::string& why, Time now) {
-  auto asked = parts_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, Commander::agent, now);
+  auto asked =
+      dependencies_.behaviour.request_goal({place.x(), place.y(), std::nan("")}, Commander::agent, now);
   if (asked)
-    parts_.notices.send({{},
-                         Severity::warning,
-                         "returning",
-                         Reason::none,
-                         robot_ + " goes back to " + place_text(place) + ": " + why});
+    dependencies_.notices.send({{},
+                                Severity::warning,
+                                "returning",
+                                Reason::none,
+                                robot_ + " goes back to " + place_text(place) + ": " + why});
   return asked;
 }
 
 void Safeguards::watch_return(Time now) {
-  const Behaviour& behaviour = parts_.behaviour;
+  const Behaviour& behaviour = dependencies_.behaviour;
   if (behaviour.listens()) return;  // A stop given during a restart comes first.
   const BatteryReturn::Inputs in{.autonomous = behaviour.mode().autonomous(),
                                  .nearly_empty = battery_watch_.level() == BatteryLevel::last,
@@ -101,12 +104,12 @@ void Safeguards::watch_return(Time now) {
   const auto asked = go_back(start, "its battery is nearly empty", now);
   if (asked) return battery_return_.accepted();
   if (!battery_return_.refused(asked.reason(), now)) return;
-  parts_.notices.send({{},
-                       Severity::error,
-                       "return_refused",
-                       asked.reason(),
-                       robot_ + " cannot go back to " + place_text(start) + " yet (" + asked.error().text +
-                           "); it tries again until you request something else"});
+  dependencies_.notices.send({{},
+                              Severity::error,
+                              "return_refused",
+                              asked.reason(),
+                              robot_ + " cannot go back to " + place_text(start) + " yet (" +
+                                  asked.error().text + "); it tries again until you request something else"});
 }
 
 void Safeguards::battery(float charge, Time now) {
@@ -118,24 +121,24 @@ void Safeguards::battery_fell(BatteryLevel level, Time now) {
   const char* code = level == BatteryLevel::last  ? "battery_last"
                      : level == BatteryLevel::low ? "battery_low"
                                                   : "battery_warning";
-  parts_.notices.send(
+  dependencies_.notices.send(
       {{},
        level == BatteryLevel::last ? Severity::error : Severity::warning,
        code,
        Reason::none,
        robot_ + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left"});
   // An operator who drives by hand sees it, and decides.
-  if (level != BatteryLevel::last || !parts_.behaviour.mode().autonomous()) return;
+  if (level != BatteryLevel::last || !dependencies_.behaviour.mode().autonomous()) return;
   if (params_.return_at_last_battery) {
-    battery_return_.begin(parts_.behaviour.holder_requests(), now);
+    battery_return_.begin(dependencies_.behaviour.holder_requests(), now);
     return watch_return(now);
   }
-  parts_.behaviour.hold(Reason::none, now);
-  parts_.notices.send({{},
-                       Severity::warning,
-                       "mode_changed",
-                       Reason::none,
-                       robot_ + " holds: its battery is nearly empty; its goal is kept"});
+  dependencies_.behaviour.hold(Reason::none, now);
+  dependencies_.notices.send({{},
+                              Severity::warning,
+                              "mode_changed",
+                              Reason::none,
+                              robot_ + " holds: its battery is nearly empty; its goal is kept"});
 }
 
 }  // namespace adit::agent

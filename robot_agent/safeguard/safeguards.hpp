@@ -17,7 +17,7 @@ namespace adit::agent {
 class Safeguards {
  public:
   /// What it watches and acts on; all of it must outlive the safeguards.
-  struct Parts {
+  struct Dependencies {
     const Authority& authority;
     const PeerTable& peers;
     Behaviour& behaviour;
@@ -26,7 +26,7 @@ class Safeguards {
   };
 
   /// `robot`: its name. `start`: its start pose, map frame.
-  Safeguards(SafeguardParams params, std::string robot, const Pose2& start, const Parts& parts);
+  Safeguards(SafeguardParams params, std::string robot, const Pose2& start, const Dependencies& dependencies);
 
   /// After a restart, what kept() gave.
   void restore(std::uint8_t kept, Time now);
@@ -50,7 +50,7 @@ class Safeguards {
   SafeguardParams params_;
   std::string robot_;
   Pose2 start_;
-  Parts parts_;
+  Dependencies dependencies_;
   LinkLoss link_loss_;
   BatteryWatch battery_watch_;
   BatteryReturn battery_return_;

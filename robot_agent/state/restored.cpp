@@ -17,17 +17,17 @@ std::string joined(const std::vector<std::string>& words) {
 
 std::optional<ReadSnapshot> read_any(const store::State& state) {
   switch (state.found) {
-    case store::Found::good:
+    case store::LoadStatus::good:
       return decode_snapshot(state.payload);
-    case store::Found::older:
+    case store::LoadStatus::older:
       return state.version == 2 ? decode_snapshot_v2(state.payload) : std::nullopt;
-    case store::Found::torn:
-    case store::Found::corrupt:
-    case store::Found::foreign:
+    case store::LoadStatus::torn:
+    case store::LoadStatus::corrupt:
+    case store::LoadStatus::foreign:
       return decode_snapshot(state.remains);
-    case store::Found::nothing:
-    case store::Found::newer:
-    case store::Found::unreadable:
+    case store::LoadStatus::nothing:
+    case store::LoadStatus::newer:
+    case store::LoadStatus::unreadable:
       break;
   }
   return std::nullopt;
@@ -49,7 +49,7 @@ Restored usable(ReadSnapshot read) {
 Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   if (!disk) return {};
   const store::State state = store::StateFile(disk, kStateFile, kSnapshotFormat).load();
-  if (state.found == store::Found::nothing) {
+  if (state.found == store::LoadStatus::nothing) {
     Restored r{};
     const auto marker = disk->read(kMarkerFile);
     r.lost = !marker || *marker;
@@ -60,7 +60,7 @@ Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   if (!read) {
     Restored r{};
     r.lost = true;
-    const bool broken = state.found == store::Found::good;  // whole, and no list of sections
+    const bool broken = state.found == store::LoadStatus::good;  // whole, and no list of sections
     r.text =
         broken ? "corrupt: it makes no sense" : std::string(store::name(state.found)) + ": " + state.text;
     r.preserved = store::set_aside(*disk, kStateFile, broken ? "corrupt" : store::name(state.found));
@@ -70,7 +70,7 @@ Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   const bool newer = !read->unknown.empty();
   Restored r = usable(std::move(*read));
   r.generation = state.generation;
-  if (state.found != store::Found::good && state.found != store::Found::older) {
+  if (state.found != store::LoadStatus::good && state.found != store::LoadStatus::older) {
     r.damaged = true;
     r.text = std::string(store::name(state.found)) +
              (r.text.empty() ? ", every entry could be read" : "; " + r.text);
@@ -89,12 +89,12 @@ Id restore_identity(const std::shared_ptr<store::Disk>& disk, const Id& drawn) {
   if (!disk) return drawn;
   const store::StateFile file(disk, kIdentityFile, kIdentityFormat);
   const store::State state = file.load();
-  if (state.found == store::Found::good && state.payload.size() == drawn.size()) {
+  if (state.found == store::LoadStatus::good && state.payload.size() == drawn.size()) {
     Id id{};
     std::copy(state.payload.begin(), state.payload.end(), id.begin());
     return id;
   }
-  if (state.found != store::Found::nothing)
+  if (state.found != store::LoadStatus::nothing)
     (void)store::set_aside(*disk, kIdentityFile, store::name(state.found));
   (void)file.save(1, drawn);  // a disk that fails is reported with the first state
   return drawn;

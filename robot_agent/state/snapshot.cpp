@@ -182,7 +182,7 @@ store::Bytes encode(const Snapshot& snapshot) {
     row.write(clean, [&](const Packer& payload) {
       sections.push_back({row.tag, row.version, payload.bytes()});
       auto larger = sections.size() <= store::kMaxSections ? store::pack_sections(sections) : store::Bytes{};
-      if (!larger.empty() && larger.size() <= kSnapshotFormat.most)
+      if (!larger.empty() && larger.size() <= kSnapshotFormat.max_bytes)
         packed = std::move(larger);
       else
         sections.pop_back();

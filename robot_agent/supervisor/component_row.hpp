@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "core/supervisor/overseer.hpp"
+#include "core/supervisor/restart_policy_engine.hpp"
 
 namespace adit::agent {
 

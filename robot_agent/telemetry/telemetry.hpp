@@ -2,13 +2,13 @@
 #include <cstdint>
 
 #include "core/wire/link/rate_control.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
-#include "robot_agent/supervisor/watch.hpp"
+#include "robot_agent/supervisor/agent_supervisor.hpp"
 
 namespace adit::agent {
 
@@ -17,18 +17,18 @@ namespace adit::agent {
 class Telemetry {
  public:
   /// Where the reports come from and go to; all of it must outlive the telemetry.
-  struct Parts {
+  struct Dependencies {
     RadioEdge& radio;
-    wire::Wire& wire;         ///< The radio domain.
+    wire::Participant& wire;  ///< The radio domain.
     wire::RateControl& rate;  ///< Rate of RobotState; the other reports follow it.
     Driver& driver;
-    Watch& watch;
+    AgentSupervisor& watch;
     const Frames& frames;
     CommandInterface& commands;
     const Behaviour& behaviour;
   };
 
-  explicit Telemetry(const Parts& parts) : parts_(parts) {}
+  explicit Telemetry(const Dependencies& dependencies) : dependencies_(dependencies) {}
 
   /// Sends authority, behaviour and the driver's health. `started`: start of the command component.
   void start(Time now, Time started);
@@ -46,7 +46,7 @@ class Telemetry {
   void follow_link(Time now);
   void report_driver(Time now);
 
-  Parts parts_;
+  Dependencies dependencies_;
   Time started_{};
   bool driver_was_alive_{};
   std::uint32_t seconds_{};  ///< Calls of send_periodic() so far.

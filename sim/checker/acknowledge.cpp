@@ -5,8 +5,8 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration answer_time{150ms};
-constexpr Duration stream_answer_period{1s};
+constexpr Duration kAnswerTime{150ms};
+constexpr Duration kStreamAnswerPeriod{1s};
 
 /// Rule 3: every command is answered, refusals with a numbered reason and a text; refused streams at most
 /// once a second.
@@ -30,12 +30,12 @@ class Acknowledge : public Rule {
   void settle(const RobotModel& robot, const Report& broken) override {
     if (!robot.alive() || robot.disturbed()) return;
     for (const RobotModel::Pending& p : robot.pending()) {
-      if (robot.now() - p.at <= answer_time || p.at <= told_[p.command.from]) continue;
+      if (robot.now() - p.at <= kAnswerTime || p.at <= told_[p.command.from]) continue;
       told_[p.command.from] = p.at;
       broken("did not answer command " + std::to_string(p.command.seq) + " of " + p.command.station);
     }
     for (auto& [id, stream] : streams_) {
-      if (!stream.refused_since || robot.now() - *stream.refused_since <= answer_time) continue;
+      if (!stream.refused_since || robot.now() - *stream.refused_since <= kAnswerTime) continue;
       broken("refused a joystick in silence");
       stream.refused_since.reset();
     }
@@ -54,7 +54,7 @@ class Acknowledge : public Rule {
     // Only what is certain to be refused: the sender does not hold the robot.
     if (!robot.alive() || robot.refusal(sample) != "it was not sent by the holder") return;
     if (sample.id == robot.authority().holder_id) return;
-    const bool answered = stream.answered && robot.age(*stream.answered) <= stream_answer_period;
+    const bool answered = stream.answered && robot.age(*stream.answered) <= kStreamAnswerPeriod;
     if (!stream.refused_since && !answered) stream.refused_since = robot.now();
   }
 
@@ -63,7 +63,7 @@ class Acknowledge : public Rule {
     // An answer names no participant: of several that stream under one id each is told once a second.
     std::erase_if(stream.senders, [&](const auto& s) { return robot.now() - s.second > 2s; });
     const bool one = stream.senders.size() <= 1;
-    if (one && stream.answered && robot.age(*stream.answered) < stream_answer_period - 10ms)
+    if (one && stream.answered && robot.age(*stream.answered) < kStreamAnswerPeriod - 10ms)
       broken("answered a stream of " + ack.station + " more than once a second");
     stream.answered = robot.now();
     stream.refused_since.reset();

@@ -5,7 +5,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::uint64_t kept_per_rule = 100;
+constexpr std::uint64_t kMaxPerRule = 100;
 
 // Within one instant the order on the wire says nothing about the order of thought.
 int rank(const Event& event) {
@@ -19,8 +19,8 @@ int rank(const Event& event) {
 
 }  // namespace
 
-struct Checker::Watch {
-  explicit Watch(RobotFacts facts) : model(std::move(facts)) {
+struct Checker::WatchedRobot {
+  explicit WatchedRobot(RobotFacts facts) : model(std::move(facts)) {
     rules[0] = make_one_holder_rule();
     rules[1] = make_lock_rule();
     rules[2] = make_acknowledge_rule();
@@ -31,7 +31,7 @@ struct Checker::Watch {
     rules[7] = make_nothing_lost_rule();
   }
   RobotModel model;
-  std::array<std::unique_ptr<Rule>, Checker::numbers.size()> rules{};  ///< as in numbers
+  std::array<std::unique_ptr<Rule>, Checker::kNumbers.size()> rules{};  ///< as in numbers
   Duration instant{};
   std::vector<Event> waiting{};
 };
@@ -52,16 +52,16 @@ const char* Checker::title(int number) {
 Checker::Checker(std::vector<RobotFacts> robots) {
   for (RobotFacts& facts : robots) {
     const std::string robot = facts.name;
-    watches_.emplace(robot, std::make_unique<Watch>(std::move(facts)));
+    robots_.emplace(robot, std::make_unique<WatchedRobot>(std::move(facts)));
   }
 }
 
 Checker::~Checker() = default;
 
 void Checker::observe(const std::string& robot, Duration at, Event event) {
-  const auto it = watches_.find(robot);
-  if (it == watches_.end()) return;
-  Watch& watch = *it->second;
+  const auto it = robots_.find(robot);
+  if (it == robots_.end()) return;
+  WatchedRobot& watch = *it->second;
   if (at > watch.instant) {
     dispatch(watch);
     watch.instant = at;
@@ -70,7 +70,7 @@ void Checker::observe(const std::string& robot, Duration at, Event event) {
 }
 
 void Checker::advance(Duration now) {
-  for (auto& [name, watch] : watches_) {
+  for (auto& [name, watch] : robots_) {
     if (watch->instant >= now) continue;
     dispatch(*watch);
     watch->instant = now;
@@ -78,7 +78,7 @@ void Checker::advance(Duration now) {
   }
 }
 
-void Checker::dispatch(Watch& watch) {
+void Checker::dispatch(WatchedRobot& watch) {
   // Of several states published in one instant the last is the one that holds after it.
   const auto is_status = [](const Event& e) { return std::holds_alternative<AuthoritySent>(e); };
   const auto last = std::find_if(watch.waiting.rbegin(), watch.waiting.rend(), is_status);
@@ -97,19 +97,19 @@ void Checker::dispatch(Watch& watch) {
     judge(watch, event);
   }
   watch.waiting.clear();
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    watch.rules[i]->settle(watch.model, report_of(watch, numbers[i]));
+  for (std::size_t i = 0; i < kNumbers.size(); ++i)
+    watch.rules[i]->settle(watch.model, report_of(watch, kNumbers[i]));
 }
 
-void Checker::judge(Watch& watch, const Event& event) {
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    watch.rules[i]->see(watch.model, event, report_of(watch, numbers[i]));
+void Checker::judge(WatchedRobot& watch, const Event& event) {
+  for (std::size_t i = 0; i < kNumbers.size(); ++i)
+    watch.rules[i]->see(watch.model, event, report_of(watch, kNumbers[i]));
   watch.model.take_in(event);
 }
 
-Report Checker::report_of(Watch& watch, int rule) {
+Report Checker::report_of(WatchedRobot& watch, int rule) {
   return [this, rule, &watch](std::string text) {
-    if (++counts_[static_cast<std::size_t>(rule)] > kept_per_rule) return;
+    if (++counts_[static_cast<std::size_t>(rule)] > kMaxPerRule) return;
     violations_.push_back({rule, watch.instant, watch.model.facts().name, std::move(text)});
   };
 }

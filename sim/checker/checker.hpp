@@ -19,7 +19,7 @@ struct Violation {
 class Checker {
  public:
   /// Those that are watched; the eighth, of other robots' words, has nothing to watch yet.
-  static constexpr std::array numbers{1, 2, 3, 4, 5, 6, 7, 9};
+  static constexpr std::array kNumbers{1, 2, 3, 4, 5, 6, 7, 9};
   /// What rule `number` is called.
   static const char* title(int number);
 
@@ -37,12 +37,12 @@ class Checker {
   std::uint64_t count(int rule) const { return counts_.at(static_cast<std::size_t>(rule)); }
 
  private:
-  struct Watch;
-  void dispatch(Watch& watch);
-  void judge(Watch& watch, const Event& event);
-  Report report_of(Watch& watch, int rule);
+  struct WatchedRobot;
+  void dispatch(WatchedRobot& robot);
+  void judge(WatchedRobot& robot, const Event& event);
+  Report report_of(WatchedRobot& robot, int rule);
 
-  std::map<std::string, std::unique_ptr<Watch>> watches_;
+  std::map<std::string, std::unique_ptr<WatchedRobot>> robots_;
   std::vector<Violation> violations_{};
   std::array<std::uint64_t, 10> counts_{};  ///< by number
 };

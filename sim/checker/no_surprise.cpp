@@ -5,10 +5,10 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration program_silence{500ms};  // of what steers in mode external
-constexpr double fastest = 5.0;             // m/s: no body of ours is faster
-constexpr double fastest_turn = 6.0;        // rad/s
-constexpr double odometry_noise = 0.5;      // m, rad: between two samples
+constexpr Duration kProgramSilence{500ms};  // of what steers in mode external
+constexpr double kFastest = 5.0;            // m/s: no body of ours is faster
+constexpr double kFastestTurn = 6.0;        // rad/s
+constexpr double kOdometryNoise = 0.5;      // m, rad: between two samples
 
 /// Rule 7: nothing moves by surprise. Motion needs a request that was accepted since the last start, stop,
 /// fall to hold, jump of the odometry, or change of holder in a manual mode; a manual mode is entered with a
@@ -33,7 +33,7 @@ class NoSurprise : public Rule {
   void settle(const RobotModel& robot, const Report& broken) override {
     // The holder changed, or his station came back: a manual mode that was on falls to hold.
     const bool overdue =
-        manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > reaction;
+        manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > kReaction;
     if (overdue) broken("stayed in " + robot.mode() + " when its holder changed or was started again");
     if (overdue || !robot.in_manual_mode()) manual_must_end_.reset();
   }
@@ -61,7 +61,7 @@ class NoSurprise : public Rule {
     const double time = seconds(robot.now() - before->second);
     const double way = (pose.position() - before->first.position()).norm();
     const double turn = std::fabs(wrap_angle(pose.yaw - before->first.yaw));
-    if (way < fastest * time + odometry_noise && turn < fastest_turn * time + odometry_noise) return;
+    if (way < kFastest * time + kOdometryNoise && turn < kFastestTurn * time + kOdometryNoise) return;
     revoke("a jump of its odometry");
     jumped_ = robot.now();
   }
@@ -113,11 +113,11 @@ class NoSurprise : public Rule {
   static void see_entry(const RobotModel& robot, const CommandHeard& command, const Report& broken) {
     if (robot.mode() == command.text) return;
     const auto& program = robot.programmed();
-    if (command.text == "external" && (!program || robot.now() - *program > program_silence + 20ms))
+    if (command.text == "external" && (!program || robot.now() - *program > kProgramSilence + 20ms))
       broken("entered external without a program that steers");
     if (command.text != "manual" && command.text != "smart_joystick") return;
     const auto& stick = robot.stick();
-    if (!stick || robot.now() - stick->at > joystick_silence + 20ms)
+    if (!stick || robot.now() - stick->at > kJoystickSilence + 20ms)
       broken("entered " + command.text + " without a fresh joystick");
     else if (!stick->stick.zero())
       broken("entered " + command.text + " with a stick that was not centred");
@@ -132,7 +132,7 @@ class NoSurprise : public Rule {
     }
     // A velocity sent in the very instant in which motion was forbidden may have come before.
     if (allowed_ || told_ || robot.mode_changed() == robot.now()) return;
-    if (jumped_ && robot.now() - *jumped_ < reaction) return;
+    if (jumped_ && robot.now() - *jumped_ < kReaction) return;
     if (RobotModel::asked(robot.pending(), {Verb::go_to, Verb::mode}))
       return;  // its answer waits for the disk
     told_ = true;

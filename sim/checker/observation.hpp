@@ -9,7 +9,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 /// What an outsider can know of one robot: the samples that reached it, the samples it sent, and what the
 /// simulated world did. Plain copies of the radio types, so that the rules need no generated code.

@@ -78,7 +78,7 @@ class OneHolder : public Rule {
                describe_epoch(robot.authority().counter));
     }
     const RobotModel::Heard* known = robot.heard(command.station);
-    if (command.verb == Verb::take && known && known->id != command.id && robot.age(known->last) < hearing)
+    if (command.verb == Verb::take && known && known->id != command.id && robot.age(known->last) < kHearing)
       broken("was taken under the name " + command.station + " by another station than the one heard");
     see_transition(robot, command, ack, broken);
   }
@@ -127,7 +127,7 @@ class OneHolder : public Rule {
   // Motion in a manual mode that no sample of the holder explains, but one of somebody else does.
   void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
     const auto& forbidden = robot.forbidden_stick();
-    if (velocity.zero() || !forbidden || robot.now() - forbidden->second > joystick_silence) return;
+    if (velocity.zero() || !forbidden || robot.now() - forbidden->second > kJoystickSilence) return;
     const auto& pushed = robot.pushed_stick();
     if (pushed && robot.now() - pushed->at < 2s) return;
     if (!robot.in_mode("manual") && !robot.in_mode("smart_joystick")) return;

@@ -117,7 +117,7 @@ VelocitySent as_velocity(const geometry_msgs::msg::Twist& t) {
 
 Decoded velocity(std::string_view type, std::span<const std::uint8_t> cdr) {
   std::optional<geometry_msgs::msg::Twist> t;
-  if (type == topics::cmd_vel_stamped.type) {
+  if (type == topics::kCmdVelStamped.type) {
     if (const auto stamped = read<geometry_msgs::msg::TwistStamped>(cdr)) t = stamped->twist();
   } else {
     t = read<geometry_msgs::msg::Twist>(cdr);
@@ -139,12 +139,12 @@ Decoded authority(std::span<const std::uint8_t> cdr) {
 
 Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cdr,
                         const wire::ParticipantId& from) {
-  if (is(topic, topics::command)) return command(cdr, from);
-  if (is(topic, topics::joystick)) return joystick(cdr, from);
-  if (is(topic, topics::presence)) return station(cdr, from, true);
-  if (is(topic, topics::capabilities)) return station(cdr, from, false);
-  if (is(topic, topics::points)) return DecodedSample{{}, ScanHeard{}};
-  if (is(topic, topics::odom)) {
+  if (is(topic, topics::kCommand)) return command(cdr, from);
+  if (is(topic, topics::kJoystick)) return joystick(cdr, from);
+  if (is(topic, topics::kPresence)) return station(cdr, from, true);
+  if (is(topic, topics::kCapabilities)) return station(cdr, from, false);
+  if (is(topic, topics::kPoints)) return DecodedSample{{}, ScanHeard{}};
+  if (is(topic, topics::kOdom)) {
     const auto o = read<nav_msgs::msg::Odometry>(cdr);
     if (!o) return std::nullopt;
     const auto& p = o->pose().pose().position();
@@ -153,7 +153,7 @@ Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cd
         std::atan2(2 * (q.w() * q.z() + q.x() * q.y()), 1 - 2 * (q.y() * q.y() + q.z() * q.z()));
     return DecodedSample{{}, OdometryHeard{{p.x(), p.y(), yaw}}};
   }
-  if (is(topic, topics::external_cmd_vel)) {
+  if (is(topic, topics::kExternalCmdVel)) {
     const auto t = read<geometry_msgs::msg::Twist>(cdr);
     if (!t) return std::nullopt;
     return DecodedSample{{}, ProgramHeard{as_velocity(*t).velocity}};
@@ -162,21 +162,21 @@ Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cd
 }
 
 Decoded decode_sent(std::string_view topic, std::string_view type, std::span<const std::uint8_t> cdr) {
-  if (is(topic, topics::cmd_vel)) return velocity(type, cdr);
-  if (is(topic, topics::robot_state)) {
+  if (is(topic, topics::kCmdVel)) return velocity(type, cdr);
+  if (is(topic, topics::kRobotState)) {
     const auto s = read<radio::RobotState>(cdr);
     if (!s) return std::nullopt;
     return DecodedSample{s->robot(), StateSent{s->stamp()}};
   }
-  if (is(topic, topics::acknowledgement)) return acknowledgement(cdr);
-  if (is(topic, topics::authority)) return authority(cdr);
-  if (is(topic, topics::behaviour)) {
+  if (is(topic, topics::kAcknowledgement)) return acknowledgement(cdr);
+  if (is(topic, topics::kAuthority)) return authority(cdr);
+  if (is(topic, topics::kBehaviour)) {
     const auto b = read<radio::BehaviourState>(cdr);
     if (!b) return std::nullopt;
     return DecodedSample{b->robot(), BehaviourSent{b->mode(), b->stopped(),
                                                    b->goal_state() != radio::GOAL_NONE, b->goal_id()}};
   }
-  if (is(topic, topics::notification)) {
+  if (is(topic, topics::kNotification)) {
     const auto n = read<radio::Notification>(cdr);
     if (!n) return std::nullopt;
     return DecodedSample{n->robot(), NotificationSent{n->code(), n->operator_name(), n->seq()}};

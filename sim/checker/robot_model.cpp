@@ -120,7 +120,7 @@ void RobotModel::hear(const std::string& station, const StationId& id, const wir
   auto [it, fresh] = stations_.try_emplace(station, Heard{id, from, now_, {}});
   Heard& heard = it->second;
   // Another id may use the name only when the first was silent.
-  if (!fresh && heard.id != id && age(heard.last) < hearing) return;
+  if (!fresh && heard.id != id && age(heard.last) < kHearing) return;
   auto former = heard.former;
   if (!fresh && heard.id == id && heard.participant != from) former = {heard.participant, now_};
   heard = {id, from, now_, former};
@@ -144,7 +144,7 @@ void RobotModel::take_in_event(const CommandHeard& e) {
   // not show a new one to be his.
   const Heard* known = heard(e.station);
   const bool contested =
-      known && known->participant != e.from && e.station == authority_.holder && age(known->last) < hearing;
+      known && known->participant != e.from && e.station == authority_.holder && age(known->last) < kHearing;
   if (!known || (known->id == e.id && !contested)) hear(e.station, e.id, e.from);
 }
 
@@ -166,7 +166,7 @@ bool RobotModel::is_holder(const CommandHeard& command) const {
     if (bound->participant == command.from) return true;
     // Whoever got the place in a silence keeps it a little when the first is heard again: what comes then may
     // have been under way.
-    if (bound->former && bound->former->first == command.from && age(bound->former->second) < giving_back)
+    if (bound->former && bound->former->first == command.from && age(bound->former->second) < kGivingBack)
       return true;
   }
   const auto it = participants_.find(command.from);
@@ -282,7 +282,7 @@ std::string RobotModel::refusal(const JoystickHeard& sample) const {
   const auto echoed =
       std::find_if(stamps_.begin(), stamps_.end(), [&](const auto& s) { return s.first == sample.echo; });
   if (echoed == stamps_.end()) return "it echoes no recent stamp of the robot";
-  if (age(echoed->second) > oldest_echo) return "its echo was older than 600 ms";
+  if (age(echoed->second) > kOldestEcho) return "its echo was older than 600 ms";
   return {};
 }
 

@@ -9,14 +9,14 @@
 namespace adit::sim {
 
 /// The time a robot is given to act on what it received: one period of its 20 Hz driver output and a bit.
-inline constexpr Duration reaction{80ms};
-inline constexpr Duration joystick_silence{300ms};
-inline constexpr Duration oldest_echo{600ms};
-inline constexpr Duration hearing{3s};
+inline constexpr Duration kReaction{80ms};
+inline constexpr Duration kJoystickSilence{300ms};
+inline constexpr Duration kOldestEcho{600ms};
+inline constexpr Duration kHearing{3s};
 /// Who got a name in a silence of the first keeps it so long when that one is heard again.
-inline constexpr Duration giving_back{1s};
+inline constexpr Duration kGivingBack{1s};
 /// A component that failed is back, or the whole agent was started again, within this.
-inline constexpr Duration recovery{2500ms};
+inline constexpr Duration kRecovery{2500ms};
 
 /// What the outsider concludes from all it has seen of one robot: the authority that follows from the
 /// answers the robot gave, who is heard, the mode it last published, the last samples.
@@ -66,7 +66,7 @@ class RobotModel {
   Duration age(Duration then) const;
   const wire::ParticipantId& participant() const { return participant_; }
   /// The command component failed a moment ago and has not spoken since.
-  bool disturbed() const { return faulted_ && now_ - *faulted_ < recovery; }
+  bool disturbed() const { return faulted_ && now_ - *faulted_ < kRecovery; }
   /// Of the last start that was not the first.
   const std::optional<Before>& before() const { return before_; }
   const BehaviourSent& behaviour() const { return behaviour_; }

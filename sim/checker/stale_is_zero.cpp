@@ -5,14 +5,14 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration longest_gap{120ms};  // between two cmd_vel of a living agent; 50 ms is its period
-constexpr Duration longest_gap_of_a_failure{350ms};  // until the supervisor sends zero in its stead
-constexpr Duration plan_silence{500ms};              // without a scan no plan is fresh
-constexpr Duration program_silence{500ms};           // of what steers in mode external
-constexpr Duration start_up{500ms};                  // until the first cmd_vel of a new agent
-constexpr Duration parent_reaction{60ms};            // from an agent's death to its parent's zero
-constexpr Duration stick_release{1s};                // silence after which a manual mode falls to hold
-constexpr Duration centred_rest{2500ms};             // a robot brakes in less from its highest speed
+constexpr Duration kLongestGap{120ms};  // between two cmd_vel of a living agent; 50 ms is its period
+constexpr Duration kLongestGapOfAFailure{350ms};  // until the supervisor sends zero in its stead
+constexpr Duration kPlanSilence{500ms};           // without a scan no plan is fresh
+constexpr Duration kProgramSilence{500ms};        // of what steers in mode external
+constexpr Duration kStartUp{500ms};               // until the first cmd_vel of a new agent
+constexpr Duration kParentReaction{60ms};         // from an agent's death to its parent's zero
+constexpr Duration kStickRelease{1s};             // silence after which a manual mode falls to hold
+constexpr Duration kCentredRest{2500ms};          // a robot brakes in less from its highest speed
 
 /// Rule 6: when the joystick, or the program of mode external, falls silent the driver is sent zero,
 /// actively, and the mode then falls to hold; the driver is never left without a word; a dead agent's parent
@@ -27,13 +27,13 @@ class StaleIsZero : public Rule {
 
   void settle(const RobotModel& robot, const Report& broken) override {
     if (robot.alive()) {
-      const Duration last = std::max(robot.velocity_at(), robot.started() + start_up);
-      const bool gap = robot.now() - last > (robot.disturbed() ? longest_gap_of_a_failure : longest_gap);
+      const Duration last = std::max(robot.velocity_at(), robot.started() + kStartUp);
+      const bool gap = robot.now() - last > (robot.disturbed() ? kLongestGapOfAFailure : kLongestGap);
       if (gap && !told_gap_) broken("left its driver without a command for 120 ms");
       told_gap_ = gap;
       if (!robot.disturbed()) watch_mode(robot, broken);
     } else if (robot.died() != Duration{} && !zero_after_death_ && !told_death_ &&
-               robot.now() - robot.died() > parent_reaction) {
+               robot.now() - robot.died() > kParentReaction) {
       told_death_ = true;
       broken("no zero was sent when the agent died");
     }
@@ -52,17 +52,17 @@ class StaleIsZero : public Rule {
     if (velocity.zero() || robot.mode_changed() == robot.now()) return;
     const bool external = robot.mode() == "external";
     const bool planned = external || robot.mode() == "waypoint" || robot.mode() == "smart_joystick";
-    if (planned && (!robot.scanned() || robot.now() - *robot.scanned() > plan_silence + reaction))
+    if (planned && (!robot.scanned() || robot.now() - *robot.scanned() > kPlanSilence + kReaction))
       broken("sent a velocity in " + robot.mode() + " without a scan for more than 500 ms");
     const auto& program = robot.programmed();
-    if (external && (!program || robot.now() - *program > program_silence + reaction))
+    if (external && (!program || robot.now() - *program > kProgramSilence + kReaction))
       broken("sent a velocity in external with a program silent for more than 500 ms");
     if (!robot.in_manual_mode()) return;
     const auto& stick = robot.stick();
-    if (!stick || robot.now() - stick->at > joystick_silence + reaction) {
+    if (!stick || robot.now() - stick->at > kJoystickSilence + kReaction) {
       broken("sent a velocity in " + robot.mode() + " with a joystick silent for more than 300 ms");
     } else if (const auto& pushed = robot.pushed_stick();
-               !pushed || robot.now() - pushed->at > centred_rest) {
+               !pushed || robot.now() - pushed->at > kCentredRest) {
       broken("sent a velocity in " + robot.mode() + " with a centred stick");
     }
   }
@@ -73,8 +73,8 @@ class StaleIsZero : public Rule {
                             : robot.stick() ? robot.stick()->at
                                             : Duration{};
     const Duration silence = robot.now() - std::max(source, robot.mode_changed());
-    const bool overdue = (manual && silence > stick_release + 2 * reaction) ||
-                         (external && silence > program_silence + 2 * reaction);
+    const bool overdue = (manual && silence > kStickRelease + 2 * kReaction) ||
+                         (external && silence > kProgramSilence + 2 * kReaction);
     if (overdue && !told_mode_)
       broken("stays in " + robot.mode() + " without " + (external ? "its program" : "a joystick"));
     told_mode_ = overdue;

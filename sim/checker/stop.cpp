@@ -7,9 +7,9 @@
 namespace adit::sim {
 namespace {
 
-constexpr double resting_speed = 0.02;    // m/s
-constexpr double resting_turn = 0.02;     // rad/s
-constexpr std::size_t most_latches = 16;  // of AuthorityStatus
+constexpr double kRestingSpeed = 0.02;   // m/s
+constexpr double kRestingTurn = 0.02;    // rad/s
+constexpr std::size_t kMaxLatches = 16;  // of AuthorityStatus
 
 /// Rule 4: a stop needs no authority and is a latch: while one is set the driver gets zero, and the robot
 /// comes to rest in the time its brakes need.
@@ -53,7 +53,7 @@ class Stop : public Rule {
     const double brake = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
     const double unwind = std::abs(v.wz) / robot.facts().max_turn_acceleration;
     at_rest_by_ = robot.now() + from_seconds(std::max(brake, unwind) * 1.1 + 0.25);
-    if (robot.disturbed()) at_rest_by_ += recovery;
+    if (robot.disturbed()) at_rest_by_ += kRecovery;
     told_moving_ = false;
   }
 
@@ -98,7 +98,7 @@ class Stop : public Rule {
     if (set.empty() != status.stops.empty())
       return broken(set.empty() ? "published a stop that nobody set" : "published no stop while one was set");
     // Beyond the room for latches the last one stands for several stoppers.
-    if (set.size() >= most_latches) return;
+    if (set.size() >= kMaxLatches) return;
     if (!std::is_permutation(set.begin(), set.end(), status.stops.begin(), status.stops.end()))
       broken("published other stoppers than those who stopped it");
   }
@@ -106,7 +106,7 @@ class Stop : public Rule {
   void see_truth(const RobotModel& robot, const Motion& truth, const Report& broken) {
     if (!stopped_since_ || told_moving_ || robot.now() < at_rest_by_) return;
     const Twist2& v = truth.velocity;
-    if (std::hypot(v.vx, v.vy) < resting_speed && std::abs(v.wz) < resting_turn) return;
+    if (std::hypot(v.vx, v.vy) < kRestingSpeed && std::abs(v.wz) < kRestingTurn) return;
     told_moving_ = true;
     broken("still moves after its stop");
   }

@@ -148,8 +148,8 @@ class IgnoresNamesakes final : public Interceptor {
   explicit IgnoresNamesakes(std::string name) : name_(std::move(name)) {}
   std::vector<Arrival> received(Arrival arrival) override {
     const std::string_view topic = arrival.topic->name;
-    if (topic == wire::topics::presence.name && is_namesake<radio::Presence>(arrival)) return {};
-    if (topic == wire::topics::capabilities.name && is_namesake<radio::Capabilities>(arrival)) return {};
+    if (topic == wire::topics::kPresence.name && is_namesake<radio::Presence>(arrival)) return {};
+    if (topic == wire::topics::kCapabilities.name && is_namesake<radio::Capabilities>(arrival)) return {};
     return Interceptor::received(std::move(arrival));
   }
 

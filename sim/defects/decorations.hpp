@@ -43,6 +43,6 @@ Decoration drives_through_stop(const Subject& subject);
 
 // Of its parent process.
 Decoration none(const Subject& subject);
-std::unique_ptr<wire::Wire> zero_of_other_type(std::unique_ptr<wire::Wire> parents);
+std::unique_ptr<wire::Participant> zero_of_other_type(std::unique_ptr<wire::Participant> parents);
 
 }  // namespace adit::sim::decorations

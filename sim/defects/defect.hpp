@@ -33,7 +33,7 @@ struct Defect {
   /// Decorates one start of one robot's agent.
   Decoration (*decorate)(const Subject&){};
   /// Decorates the wire of the robot's parent process; null: nothing does.
-  std::unique_ptr<wire::Wire> (*parent)(std::unique_ptr<wire::Wire>){};
+  std::unique_ptr<wire::Participant> (*parent)(std::unique_ptr<wire::Participant>){};
 };
 
 /// Every defect, in the order of the rules.

@@ -13,15 +13,15 @@ namespace {
 class ForgetsLock final : public DiskFilter {
  public:
   explicit ForgetsLock(const Subject& subject) : DiskFilter(subject.disk) {}
-  Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t most) const override {
-    auto bytes = DiskFilter::on_read(name, most);
+  Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t max_bytes) const override {
+    auto bytes = DiskFilter::on_read(name, max_bytes);
     if (name != agent::kStateFile || !bytes || !*bytes) return bytes;
-    const store::State state = store::unseal(agent::kSnapshotFormat, **bytes);
+    const store::State state = store::decode_envelope(agent::kSnapshotFormat, **bytes);
     auto read = agent::decode_snapshot(state.payload);
-    if (state.found != store::Found::good || !read) return bytes;
+    if (state.found != store::LoadStatus::good || !read) return bytes;
     read->snapshot.authority.locked = false;
     return std::optional(
-        store::seal(agent::kSnapshotFormat, state.generation, agent::encode(read->snapshot)));
+        store::encode_envelope(agent::kSnapshotFormat, state.generation, agent::encode(read->snapshot)));
   }
 };
 
@@ -30,14 +30,14 @@ class ForgetsLock final : public DiskFilter {
 class LosesStateWhole final : public DiskFilter {
  public:
   explicit LosesStateWhole(const Subject& subject) : DiskFilter(subject.disk) {}
-  Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t most) const override {
-    auto bytes = DiskFilter::on_read(name, most);
+  Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t max_bytes) const override {
+    auto bytes = DiskFilter::on_read(name, max_bytes);
     if (name != agent::kStateFile || !bytes || !*bytes) return bytes;
-    store::State state = store::unseal(agent::kSnapshotFormat, **bytes);
-    if (state.found != store::Found::good || state.payload.size() <= kChecksum) return bytes;
+    store::State state = store::decode_envelope(agent::kSnapshotFormat, **bytes);
+    if (state.found != store::LoadStatus::good || state.payload.size() <= kChecksum) return bytes;
     state.payload[state.payload.size() - kChecksum - 1] ^= 0xff;
     if (!store::unpack_sections(state.payload).damaged.empty()) lose_directory(state.payload);
-    store::Bytes read = store::seal(agent::kSnapshotFormat, state.generation, state.payload);
+    store::Bytes read = store::encode_envelope(agent::kSnapshotFormat, state.generation, state.payload);
     read.back() ^= 0xff;  // The checksum of the file does not match what is damaged.
     return std::optional(std::move(read));
   }

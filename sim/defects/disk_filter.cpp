@@ -2,8 +2,9 @@
 
 namespace adit::sim {
 
-Result<std::optional<store::Bytes>> DiskFilter::read_file(const std::string& name, std::size_t most) const {
-  return on_read(name, most);
+Result<std::optional<store::Bytes>> DiskFilter::read_file(const std::string& name,
+                                                          std::size_t max_bytes) const {
+  return on_read(name, max_bytes);
 }
 
 Result<void> DiskFilter::write_file(const std::string& name, std::span<const std::uint8_t> bytes,

@@ -18,8 +18,8 @@ class DiskFilter : public store::Disk {
 
  protected:
   /// A file's bytes as the agent reads them; nothing when it finds no such file.
-  virtual Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t most) const {
-    return inner_->read(name, most);
+  virtual Result<std::optional<store::Bytes>> on_read(const std::string& name, std::size_t max_bytes) const {
+    return inner_->read(name, max_bytes);
   }
   /// The agent replaces a file by those bytes.
   virtual Result<void> on_replace(const std::string& name, const store::Bytes& bytes) {
@@ -28,7 +28,7 @@ class DiskFilter : public store::Disk {
   store::Disk& inner() const { return *inner_; }
 
  private:
-  Result<std::optional<store::Bytes>> read_file(const std::string& name, std::size_t most) const final;
+  Result<std::optional<store::Bytes>> read_file(const std::string& name, std::size_t max_bytes) const final;
   Result<void> write_file(const std::string& name, std::span<const std::uint8_t> bytes, bool append) final;
   Result<void> rename_file(const std::string& from, const std::string& to) final;
   Result<void> remove_file(const std::string& name) final;

@@ -22,7 +22,7 @@ class AgeAtHandling final : public Interceptor {
  public:
   std::vector<Arrival> received(Arrival arrival) override {
     constexpr Duration kWaits = 300ms;
-    if (is(arrival, topics::points)) {
+    if (is(arrival, topics::kPoints)) {
       arrival.delay = kWaits;
       arrival.info.received += kWaits;
     }
@@ -35,7 +35,7 @@ class SmoothsJumps final : public Interceptor {
  public:
   std::vector<Arrival> received(Arrival arrival) override {
     nav_msgs::msg::Odometry odometry;
-    if (is(arrival, topics::odom) && wire::decode(arrival.cdr, odometry)) {
+    if (is(arrival, topics::kOdom) && wire::decode(arrival.cdr, odometry)) {
       smooth(odometry.pose().pose());
       wire::encode(odometry, arrival.cdr);
     }

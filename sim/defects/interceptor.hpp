@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::sim {
 

@@ -1,7 +1,7 @@
 // Defects of a robot's parent process, which sends zero when the agent is dead.
 #include <string_view>
 
-#include "core/wire/forwarding_wire.hpp"
+#include "core/wire/forwarding_participant.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
@@ -29,22 +29,22 @@ class PlainWriter final : public wire::RawWriter {
 };
 
 /// A wire that writes every velocity as a Twist.
-class PlainVelocities final : public wire::ForwardingWire {
+class PlainVelocities final : public wire::ForwardingParticipant {
  public:
-  explicit PlainVelocities(std::unique_ptr<wire::Wire> inner)
-      : ForwardingWire(*inner), owned_(std::move(inner)) {}
+  explicit PlainVelocities(std::unique_ptr<wire::Participant> inner)
+      : ForwardingParticipant(*inner), owned_(std::move(inner)) {}
 
   Result<std::unique_ptr<wire::RawWriter>> make_writer(const wire::TopicInfo& topic,
                                                        const std::string& partition) override {
-    if (topic.type != std::string_view(topics::cmd_vel_stamped.type))
+    if (topic.type != std::string_view(topics::kCmdVelStamped.type))
       return inner_.make_writer(topic, partition);
-    auto plain = wire::Writer<geometry_msgs::msg::Twist>::make(inner_, topics::cmd_vel, partition);
+    auto plain = wire::Writer<geometry_msgs::msg::Twist>::make(inner_, topics::kCmdVel, partition);
     if (!plain) return plain.error();
     return std::unique_ptr<wire::RawWriter>(std::make_unique<PlainWriter>(std::move(*plain)));
   }
 
  private:
-  std::unique_ptr<wire::Wire> owned_;
+  std::unique_ptr<wire::Participant> owned_;
 };
 
 }  // namespace
@@ -53,7 +53,7 @@ namespace decorations {
 
 Decoration none(const Subject&) { return {}; }
 
-std::unique_ptr<wire::Wire> zero_of_other_type(std::unique_ptr<wire::Wire> parents) {
+std::unique_ptr<wire::Participant> zero_of_other_type(std::unique_ptr<wire::Participant> parents) {
   return std::make_unique<PlainVelocities>(std::move(parents));
 }
 

@@ -45,7 +45,7 @@ std::shared_ptr<const agent::ModeTable> modes_without_stop() {
   std::vector<agent::ModeRow> rows = agent::ModeTable::shipped().rows();
   for (agent::ModeRow& row : rows)
     std::erase_if(row.conditions, [](const agent::Condition& condition) {
-      return condition.leaf == agent::conditions::not_stopped.leaf;
+      return condition.leaf == agent::conditions::kNotStopped.leaf;
     });
   return std::make_shared<const agent::ModeTable>(std::move(rows));
 }
@@ -55,7 +55,7 @@ class SeesGroundAlone final : public Interceptor {
  public:
   std::vector<Arrival> received(Arrival arrival) override {
     sensor_msgs::msg::PointCloud2 cloud;
-    if (arrival.topic->name == std::string_view(wire::topics::points.name) &&
+    if (arrival.topic->name == std::string_view(wire::topics::kPoints.name) &&
         wire::decode(arrival.cdr, cloud)) {
       flatten(cloud);
       wire::encode(cloud, arrival.cdr);
@@ -103,7 +103,7 @@ Decoration drives_through_stop(const Subject&) {
         [modes = params.modes](const std::string& file) -> Result<std::unique_ptr<agent::Decider>> {
       std::ifstream in(file);
       std::string tree(std::istreambuf_iterator<char>(in), {});
-      const std::string leaf = "<" + std::string(agent::conditions::not_stopped.leaf) + "/>";
+      const std::string leaf = "<" + std::string(agent::conditions::kNotStopped.leaf) + "/>";
       for (auto at = tree.find(leaf); at != std::string::npos; at = tree.find(leaf))
         tree.erase(at, leaf.size());
       return agent::Decider::load_text(tree, *modes);

@@ -58,8 +58,8 @@ void RadioInterceptor::on_other(Arrival arrival, std::vector<Arrival>& out) {
   out.push_back(std::move(arrival));
 }
 
-Arrival RadioInterceptor::arrival(const CommandFrom& command) { return encoded(topics::command, command); }
-Arrival RadioInterceptor::arrival(const StickFrom& stick) { return encoded(topics::joystick, stick); }
+Arrival RadioInterceptor::arrival(const CommandFrom& command) { return encoded(topics::kCommand, command); }
+Arrival RadioInterceptor::arrival(const StickFrom& stick) { return encoded(topics::kJoystick, stick); }
 
 std::optional<wire::ParticipantId> RadioInterceptor::holders_participant() const {
   const auto found = participants_.find(authority_.holder_id());
@@ -75,13 +75,13 @@ std::optional<Duration> RadioInterceptor::stick_age() const {
 std::vector<Arrival> RadioInterceptor::received(Arrival arrival) {
   std::vector<Arrival> out;
   if (CommandFrom c{{}, arrival.info};
-      is(*arrival.topic, topics::command) && wire::decode(arrival.cdr, c.sample)) {
+      is(*arrival.topic, topics::kCommand) && wire::decode(arrival.cdr, c.sample)) {
     participants_[c.sample.station_id()] = c.info.sender;
     on_command(c, out);
     return out;
   }
   if (StickFrom s{{}, arrival.info};
-      is(*arrival.topic, topics::joystick) && wire::decode(arrival.cdr, s.sample)) {
+      is(*arrival.topic, topics::kJoystick) && wire::decode(arrival.cdr, s.sample)) {
     if (held_by(s.sample.station_id())) {
       stick_ = {s.sample.vx(), s.sample.vy(), s.sample.wz()};
       stick_at_ = now();
@@ -102,25 +102,25 @@ bool RadioInterceptor::change(const wire::TopicInfo& topic, Cdr& cdr) {
     write(v, twist);
     return true;
   };
-  if (is(topic, topics::cmd_vel)) return edit<geometry_msgs::msg::Twist>(cdr, velocity);
-  if (is(topic, topics::cmd_vel_stamped))
+  if (is(topic, topics::kCmdVel)) return edit<geometry_msgs::msg::Twist>(cdr, velocity);
+  if (is(topic, topics::kCmdVelStamped))
     return edit<geometry_msgs::msg::TwistStamped>(cdr,
                                                   [&](auto& stamped) { return velocity(stamped.twist()); });
-  if (is(topic, topics::acknowledgement))
+  if (is(topic, topics::kAcknowledgement))
     return edit<radio::Acknowledgement>(cdr, [this](auto& answer) { return on_answer(answer); });
-  if (is(topic, topics::authority))
+  if (is(topic, topics::kAuthority))
     return edit<radio::AuthorityStatus>(cdr, [this](auto& status) {
       on_authority(status);
       authority_ = status;
       return true;
     });
-  if (is(topic, topics::behaviour))
+  if (is(topic, topics::kBehaviour))
     return edit<radio::BehaviourState>(cdr, [this](auto& behaviour) {
       on_behaviour(behaviour);
       mode_ = behaviour.mode();
       return true;
     });
-  if (is(topic, topics::robot_state))
+  if (is(topic, topics::kRobotState))
     return edit<radio::RobotState>(cdr, [this](auto& state) {
       on_state(state);
       stamp_ = state.stamp();

@@ -15,9 +15,9 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::uint8_t float32 = 7;  // sensor_msgs/msg/PointField.FLOAT32
-constexpr std::uint32_t point_bytes = 12;
-static_assert(sizeof(Eigen::Vector3f) == point_bytes);
+constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/msg/PointField.FLOAT32
+constexpr std::uint32_t kPointBytes = 12;
+static_assert(sizeof(Eigen::Vector3f) == kPointBytes);
 
 std_msgs::msg::Header header(Time now, const char* frame) {
   const std::int64_t ns = now.time_since_epoch().count();
@@ -39,13 +39,13 @@ std::vector<std::uint8_t> cloud_bytes(const PointCloud& points, const std_msgs::
     sensor_msgs::msg::PointField field;
     field.name(names[i]);
     field.offset(4 * i);
-    field.datatype(float32);
+    field.datatype(kFloat32);
     field.count(1);
     cloud.fields().push_back(field);
   }
-  cloud.point_step(point_bytes);
-  cloud.row_step(point_bytes * cloud.width());
-  cloud.data().resize(points.size() * point_bytes);
+  cloud.point_step(kPointBytes);
+  cloud.row_step(kPointBytes * cloud.width());
+  cloud.data().resize(points.size() * kPointBytes);
   if (!points.empty()) std::memcpy(cloud.data().data(), points.data(), cloud.data().size());
   cloud.is_dense(true);
   std::vector<std::uint8_t> out;
@@ -62,7 +62,7 @@ struct RobotDriver::Endpoints {
   std::unique_ptr<wire::RawReader> cmd_vel{};
 };
 
-RobotDriver::RobotDriver(Simulation& simulation, std::size_t robot, Executor& strand, wire::Wire& wire,
+RobotDriver::RobotDriver(Simulation& simulation, std::size_t robot, Executor& strand, wire::Participant& wire,
                          const DriverParams& params)
     : simulation_(simulation), robot_(robot), strand_(strand), wire_(wire), params_(params) {}
 
@@ -70,11 +70,11 @@ RobotDriver::~RobotDriver() = default;
 
 Result<void> RobotDriver::start() {
   endpoints_ = std::make_shared<Endpoints>();
-  auto odom = wire::Writer<nav_msgs::msg::Odometry>::make(wire_, wire::topics::odom);
+  auto odom = wire::Writer<nav_msgs::msg::Odometry>::make(wire_, wire::topics::kOdom);
   if (!odom) return odom.error();
-  auto battery = wire::Writer<sensor_msgs::msg::BatteryState>::make(wire_, wire::topics::battery);
+  auto battery = wire::Writer<sensor_msgs::msg::BatteryState>::make(wire_, wire::topics::kBattery);
   if (!battery) return battery.error();
-  auto points = wire_.make_writer(wire::topics::points, {});
+  auto points = wire_.make_writer(wire::topics::kPoints, {});
   if (!points) return points.error();
   endpoints_->odom = std::move(*odom);
   endpoints_->battery = std::move(*battery);
@@ -98,10 +98,10 @@ Result<void> RobotDriver::listen() {
   using Stamped = geometry_msgs::msg::TwistStamped;
   auto reader =
       params_.velocity == agent::VelocityType::twist_stamped
-          ? wire::make_reader<Stamped>(wire_, wire::topics::cmd_vel_stamped, strand_,
+          ? wire::make_reader<Stamped>(wire_, wire::topics::kCmdVelStamped, strand_,
                                        [obey](const Stamped& t, const wire::SampleInfo&) { obey(t.twist()); })
           : wire::make_reader<geometry_msgs::msg::Twist>(
-                wire_, wire::topics::cmd_vel, strand_,
+                wire_, wire::topics::kCmdVel, strand_,
                 [obey](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) { obey(t); });
   if (!reader) return reader.error();
   endpoints_->cmd_vel = std::move(*reader);

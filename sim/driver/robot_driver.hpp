@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/exec/executor.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "sim/driver/sensor.hpp"
 #include "sim/world/simulation.hpp"
@@ -27,7 +27,7 @@ struct DriverParams {
 class RobotDriver {
  public:
   /// `strand`, `wire` (the robot domain) and `simulation` outlive the driver.
-  RobotDriver(Simulation& simulation, std::size_t robot, Executor& strand, wire::Wire& wire,
+  RobotDriver(Simulation& simulation, std::size_t robot, Executor& strand, wire::Participant& wire,
               const DriverParams& params);
   ~RobotDriver();
   /// Makes the endpoints and begins to send. Errors of the wire.
@@ -45,7 +45,7 @@ class RobotDriver {
   Simulation& simulation_;
   std::size_t robot_;
   Executor& strand_;
-  wire::Wire& wire_;
+  wire::Participant& wire_;
   DriverParams params_;
   std::shared_ptr<Endpoints> endpoints_;  // shared with scans under way
   Time started_{};

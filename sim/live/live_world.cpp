@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "core/command/parse.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 
 namespace adit::sim {
 namespace {
 
-constexpr Duration longest_lag{200ms};  // beyond it the world goes slow instead of jumping
+constexpr Duration kLongestLag{200ms};  // beyond it the world goes slow instead of jumping
 
 // What truth answers: places to be reached before the end, contacts, distances.
 Scenario judged_by_truth(const Scenario& scenario) {
@@ -104,7 +104,7 @@ Result<void> LiveWorld::start() {
       result = drivers_.back()->start();
     }
     step_ = strand_->every(simulation_.params().step, [this] { step(); });
-    observe_ = strand_->every(Trail::period, [this] { observe(); });
+    observe_ = strand_->every(Trail::kPeriod, [this] { observe(); });
   });
   return result;
 }
@@ -116,7 +116,7 @@ void LiveWorld::begin_script() {
 // A late timer is made up for, so that the world keeps pace with the clock of the agents.
 void LiveWorld::step() {
   const Duration due = strand_->now() - started_;
-  if (due - simulation_.now() > longest_lag) started_ += due - simulation_.now() - longest_lag;
+  if (due - simulation_.now() > kLongestLag) started_ += due - simulation_.now() - kLongestLag;
   while (simulation_.now() + simulation_.params().step <= strand_->now() - started_) simulation_.step();
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/exec/live_runtime.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "sim/driver/robot_driver.hpp"
 #include "sim/rehearsal/expectations.hpp"
 #include "sim/rehearsal/rehearsal.hpp"
@@ -46,7 +46,7 @@ class LiveWorld {
   LiveWorldParams params_;
   Simulation simulation_;
   Expectations expectations_;
-  std::vector<std::unique_ptr<wire::Wire>> wires_{};
+  std::vector<std::unique_ptr<wire::Participant>> wires_{};
   LiveRuntime runtime_;
   std::shared_ptr<Executor> strand_;
   std::vector<std::unique_ptr<RobotDriver>> drivers_{};

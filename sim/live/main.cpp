@@ -8,7 +8,7 @@
 
 #include "core/config/usage.hpp"
 #include "sim/live/live_world.hpp"
-#include "sim/rehearsal/program/complain.hpp"
+#include "sim/rehearsal/program/report_error.hpp"
 #include "sim/rehearsal/run_picture.hpp"
 #include "sim/rehearsal/scenario_file.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 using namespace adit;
 using namespace adit::sim;
 
-constexpr const char* examples =
+constexpr const char* kExamples =
     "Examples:\n"
     "  simulate config/scenarios/demo.yaml\n"
     "  simulate config/scenarios/demo.yaml --for 130 --report demo.json --picture demo.png\n"
@@ -55,11 +55,11 @@ int judge(const Scenario& scenario, const World& world, const RunOutcome& outcom
   for (const std::string& line : outcome.report.complaints()) std::fprintf(stderr, "%s\n", line.c_str());
   if (!report_file.empty())
     if (auto written = write_json(outcome.report, report_file); !written)
-      return complain("simulate", written.error());
+      return report_error("simulate", written.error());
   if (!picture_file.empty())
     if (auto drawn = draw_run(scenario, world, outcome, picture_file); !drawn)
-      return complain("simulate", drawn.error());
-  return outcome.report.ok() ? 0 : exit_failed;
+      return report_error("simulate", drawn.error());
+  return outcome.report.ok() ? 0 : kExitFailed;
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "A scenario's world in real time: bodies, lidars and odometry on the robots' DDS domains (loopback).",
       "simulate"};
-  app.footer(examples);
+  app.footer(kExamples);
   std::string file, report_file, picture_file;
   LiveWorldParams params;
   double length = 0.0;
@@ -96,12 +96,12 @@ int main(int argc, char** argv) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   auto scenario = load_scenario(file);
-  if (!scenario) return complain("simulate", scenario.error());
+  if (!scenario) return report_error("simulate", scenario.error());
   auto world = make_world(scenario->world);
-  if (!world) return complain("simulate", world.error());
+  if (!world) return report_error("simulate", world.error());
   auto live = LiveWorld::open(*scenario, *world, params);
-  if (!live) return complain("simulate", live.error());
-  if (auto started = (*live)->start(); !started) return complain("simulate", started.error());
+  if (!live) return report_error("simulate", live.error());
+  if (auto started = (*live)->start(); !started) return report_error("simulate", started.error());
   for (std::size_t i = 0; i < scenario->robots.size(); ++i)
     std::printf("%s on domain %u\n", scenario->robots[i].id.c_str(),
                 params.domain_base + 1 + static_cast<unsigned>(i));

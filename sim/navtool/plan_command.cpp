@@ -9,7 +9,7 @@
 #include "sim/navtool/commands.hpp"
 #include "sim/navtool/cpu_time.hpp"
 #include "sim/navtool/pcd.hpp"
-#include "sim/rehearsal/program/complain.hpp"
+#include "sim/rehearsal/program/report_error.hpp"
 
 namespace adit::sim::navtool {
 namespace {
@@ -111,15 +111,15 @@ Result<void> draw(const PlanOptions& options, const Platform& platform, const na
 
 int plan(const PlanOptions& options) {
   const auto platform = config::load_platform(options.platform);
-  if (!platform) return complain("navtool", platform.error());
+  if (!platform) return report_error("navtool", platform.error());
   const auto files = pcd_files(options.clouds);
-  if (!files) return complain("navtool", files.error());
+  if (!files) return report_error("navtool", files.error());
   nav::Navigator navigator(*platform);
   const Pose3 sensor_in_body{{0, 0, platform->lidar_height}, Eigen::Quaterniond::Identity()};
   bool registered = false;
   for (std::size_t cycle = 0; cycle < files->size(); ++cycle) {
     const auto cloud = read_pcd((*files)[cycle]);
-    if (!cloud) return complain("navtool", cloud.error());
+    if (!cloud) return report_error("navtool", cloud.error());
     if (cycle == 0) registered = in_map_frame(options, *cloud, platform->lidar_height);
     const Pose3 body = cloud->viewpoint * sensor_in_body.inverse();
     const Pose3 to_body = registered ? body.inverse() : sensor_in_body;
@@ -137,7 +137,7 @@ int plan(const PlanOptions& options) {
       if (const auto drawn = draw(options, *platform, plan, navigator.terrain().cells(), *cloud,
                                   registered ? Pose3{} : cloud->viewpoint, body);
           !drawn)
-        return complain("navtool", drawn.error());
+        return report_error("navtool", drawn.error());
   }
   return 0;
 }

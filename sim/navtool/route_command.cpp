@@ -7,7 +7,7 @@
 #include "sim/navtool/cpu_time.hpp"
 #include "sim/navtool/world_route.hpp"
 #include "sim/picture/picture.hpp"
-#include "sim/rehearsal/program/complain.hpp"
+#include "sim/rehearsal/program/report_error.hpp"
 
 namespace adit::sim::navtool {
 namespace {
@@ -59,13 +59,13 @@ Result<void> draw(const World& world, const RouteOptions& options, const Platfor
 
 int route(const RouteOptions& options) {
   const auto platform = config::load_platform(options.platform);
-  if (!platform) return complain("navtool", platform.error());
+  if (!platform) return report_error("navtool", platform.error());
   std::error_code ignored;
   const bool here = std::filesystem::is_regular_file(options.map, ignored);
   const auto file = here ? Result<std::string>(options.map) : config::find_file(options.map);
-  if (!file) return complain("navtool", file.error());
+  if (!file) return report_error("navtool", file.error());
   const auto world = load_octomap(*file);
-  if (!world) return complain("navtool", world.error());
+  if (!world) return report_error("navtool", world.error());
 
   nav::RoutePlanner planner(*platform);
   const double begin = cpu_ms();
@@ -86,7 +86,7 @@ int route(const RouteOptions& options) {
                                       : "the goal cannot be reached");
   if (!options.picture.empty())
     if (const auto drawn = draw(*world, options, *platform, route); !drawn)
-      return complain("navtool", drawn.error());
+      return report_error("navtool", drawn.error());
   return route.found() ? 0 : 1;
 }
 

@@ -10,7 +10,7 @@
 #include "sim/navtool/canvas.hpp"
 #include "sim/navtool/commands.hpp"
 #include "sim/navtool/cpu_time.hpp"
-#include "sim/rehearsal/program/complain.hpp"
+#include "sim/rehearsal/program/report_error.hpp"
 
 namespace adit::sim::navtool {
 namespace {
@@ -134,15 +134,15 @@ Run drive(nav::Controller& controller, const Platform& platform, const Points& p
 
 int track(const TrackOptions& options) {
   const auto platform = config::load_platform(options.platform);
-  if (!platform) return complain("navtool", platform.error());
+  if (!platform) return report_error("navtool", platform.error());
   const auto path = options.path.empty() ? Result<Points>(wave()) : read_path(options.path);
-  if (!path) return complain("navtool", path.error());
+  if (!path) return report_error("navtool", path.error());
   constexpr std::array tones{Colour{0.0, 0.45, 0.7}, Colour{0.84, 0.37, 0.0}, Colour{0.0, 0.62, 0.45}};
   std::vector<Run> runs;
   bool all = true;
   for (const std::string& name : nav::controller_names()) {
     const auto controller = nav::make_controller(name, *platform);
-    if (!controller) return complain("navtool", controller.error());
+    if (!controller) return report_error("navtool", controller.error());
     runs.push_back(drive(**controller, *platform, *path));
     const Run& run = runs.back();
     all &= run.arrived;
@@ -172,7 +172,8 @@ int track(const TrackOptions& options) {
       canvas.line(runs[i].driven, 2, tones[i % tones.size()]);
       canvas.legend(nav::controller_names()[i], tones[i % tones.size()]);
     }
-    if (const auto drawn = canvas.save(options.picture); !drawn) return complain("navtool", drawn.error());
+    if (const auto drawn = canvas.save(options.picture); !drawn)
+      return report_error("navtool", drawn.error());
   }
   return all ? 0 : 1;
 }

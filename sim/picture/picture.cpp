@@ -12,22 +12,22 @@
 namespace adit::sim {
 namespace {
 
-constexpr Colour paper{0.955, 0.95, 0.935}, floor_tone{1.0, 1.0, 0.995}, glimpsed_tone{0.865, 0.875, 0.88},
-    furniture_tone{0.57, 0.61, 0.66}, wall_tone{0.17, 0.20, 0.25}, ink{0.13, 0.15, 0.19},
-    faint{0.42, 0.45, 0.50}, grid_tone{0.35, 0.45, 0.55, 0.16};
+constexpr Colour kPaper{0.955, 0.95, 0.935}, kFloorTone{1.0, 1.0, 0.995}, kGlimpsedTone{0.865, 0.875, 0.88},
+    kFurnitureTone{0.57, 0.61, 0.66}, kWallTone{0.17, 0.20, 0.25}, kInk{0.13, 0.15, 0.19},
+    kFaint{0.42, 0.45, 0.50}, kGridTone{0.35, 0.45, 0.55, 0.16};
 // Okabe and Ito: told apart by the colour-blind too.
-constexpr std::array<Colour, 6> palette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
-                                        {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
-constexpr Colour event_tone{0.13, 0.15, 0.19};
-constexpr double margin = 28.0, header = 84.0, row = 24.0;
-constexpr std::size_t most_events = 40;
+constexpr std::array<Colour, 6> kPalette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
+                                         {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
+constexpr Colour kEventTone{0.13, 0.15, 0.19};
+constexpr double kMargin = 28.0, kHeader = 84.0, kRow = 24.0;
+constexpr std::size_t kMaxEvents = 40;
 
 /// World to pixels.
 struct View {
   Eigen::Vector2d low, high;
   double scale;  ///< pixels a metre
-  double x(double wx) const { return margin + (wx - low.x()) * scale; }
-  double y(double wy) const { return header + (high.y() - wy) * scale; }
+  double x(double wx) const { return kMargin + (wx - low.x()) * scale; }
+  double y(double wy) const { return kHeader + (high.y() - wy) * scale; }
   double width() const { return (high.x() - low.x()) * scale; }
   double height() const { return (high.y() - low.y()) * scale; }
 };
@@ -35,23 +35,23 @@ struct View {
 Colour tone(GroundPlan::Kind kind) {
   switch (kind) {
     case GroundPlan::floor:
-      return floor_tone;
+      return kFloorTone;
     case GroundPlan::glimpsed:
-      return glimpsed_tone;
+      return kGlimpsedTone;
     case GroundPlan::furniture:
-      return furniture_tone;
+      return kFurnitureTone;
     case GroundPlan::wall:
-      return wall_tone;
+      return kWallTone;
     case GroundPlan::unknown:
       break;
   }
-  return paper;
+  return kPaper;
 }
 
 void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, const View& view) {
   const double r = grid.resolution();
   cairo_save(sketch.cairo());
-  cairo_rectangle(sketch.cairo(), margin, header, view.width(), view.height());
+  cairo_rectangle(sketch.cairo(), kMargin, kHeader, view.width(), view.height());
   cairo_clip(sketch.cairo());
   for (int j = 0; j < plan.ny; ++j)
     for (int i = 0; i < plan.nx;) {
@@ -70,22 +70,22 @@ void draw_plan(Sketch& sketch, const GroundPlan& plan, const VoxelGrid& grid, co
 }
 
 void draw_grid(Sketch& sketch, const View& view) {
-  const double bottom = header + view.height(), right = margin + view.width();
+  const double bottom = kHeader + view.height(), right = kMargin + view.width();
   const double step = view.high.x() - view.low.x() > 12.0 ? 5.0 : 1.0;
   for (double x = std::ceil(view.low.x() / step) * step; x <= view.high.x(); x += step) {
-    sketch.line(view.x(x), header, view.x(x), bottom, 1.0, grid_tone);
-    sketch.text(view.x(x), bottom + 13, 12, fmt::format("{:.0f}", x + 0.0), faint, Align::centre);
+    sketch.line(view.x(x), kHeader, view.x(x), bottom, 1.0, kGridTone);
+    sketch.text(view.x(x), bottom + 13, 12, fmt::format("{:.0f}", x + 0.0), kFaint, Align::centre);
   }
   for (double y = std::ceil(view.low.y() / step) * step; y <= view.high.y(); y += step) {
-    sketch.line(margin, view.y(y), right, view.y(y), 1.0, grid_tone);
-    sketch.text(margin - 6, view.y(y), 12, fmt::format("{:.0f}", y + 0.0), faint, Align::right);
+    sketch.line(kMargin, view.y(y), right, view.y(y), 1.0, kGridTone);
+    sketch.text(kMargin - 6, view.y(y), 12, fmt::format("{:.0f}", y + 0.0), kFaint, Align::right);
   }
-  const double bar = view.high.x() - view.low.x() > 12.0 ? 5.0 : 1.0, y = header - 16, x1 = right,
+  const double bar = view.high.x() - view.low.x() > 12.0 ? 5.0 : 1.0, y = kHeader - 16, x1 = right,
                x0 = x1 - bar * view.scale;
-  sketch.line(x0, y, x1, y, 2.5, ink);
-  sketch.line(x0, y - 5, x0, y + 5, 2.5, ink);
-  sketch.line(x1, y - 5, x1, y + 5, 2.5, ink);
-  sketch.text(0.5 * (x0 + x1), y - 13, 13, fmt::format("{:.0f} m", bar), ink, Align::centre);
+  sketch.line(x0, y, x1, y, 2.5, kInk);
+  sketch.line(x0, y - 5, x0, y + 5, 2.5, kInk);
+  sketch.line(x1, y - 5, x1, y + 5, 2.5, kInk);
+  sketch.text(0.5 * (x0 + x1), y - 13, 13, fmt::format("{:.0f} m", bar), kInk, Align::centre);
 }
 
 void trace(Sketch& sketch, const View& view, const std::vector<Pose2>& poses, double thickness,
@@ -122,8 +122,8 @@ void draw_label(Sketch& sketch, double x, double y, const std::string& text, Col
 
 Colour colour_of(const PictureSpec& spec, const std::string& id) {
   for (std::size_t n = 0; n < spec.trails.size(); ++n)
-    if (spec.trails[n].id == id) return palette[n % palette.size()];
-  return ink;
+    if (spec.trails[n].id == id) return kPalette[n % kPalette.size()];
+  return kInk;
 }
 
 /// Returns where labels stand, in pixels.
@@ -164,14 +164,14 @@ std::vector<Eigen::Vector2d> draw_run(Sketch& sketch, const View& view, const Pi
 
 void draw_marker(Sketch& sketch, double x, double y, std::size_t number) {
   sketch.disc(x, y, 11.5, {1, 1, 1});
-  sketch.disc(x, y, 10, event_tone);
+  sketch.disc(x, y, 10, kEventTone);
   sketch.text(x, y, number < 10 ? 13 : 11, std::to_string(number), {1, 1, 1}, Align::centre, true);
 }
 
 /// Markers that would fall onto one another or onto a label are moved upwards.
 void draw_events(Sketch& sketch, const View& view, const PictureSpec& spec,
                  std::vector<Eigen::Vector2d> taken) {
-  for (std::size_t n = 0; n < std::min(spec.events.size(), most_events); ++n) {
+  for (std::size_t n = 0; n < std::min(spec.events.size(), kMaxEvents); ++n) {
     const Eigen::Vector2d place(view.x(spec.events[n].position.x()), view.y(spec.events[n].position.y()));
     Eigen::Vector2d spot = place + Eigen::Vector2d(0, -0.6 * view.scale - 14);
     const auto free = [&] {
@@ -180,8 +180,8 @@ void draw_events(Sketch& sketch, const View& view, const PictureSpec& spec,
     };
     for (int tries = 0; tries < 40 && !free(); ++tries) spot.y() -= 24.0;
     taken.push_back(spot);
-    sketch.line(place.x(), place.y(), spot.x(), spot.y(), 1.2, {ink.r, ink.g, ink.b, 0.6});
-    sketch.disc(place.x(), place.y(), 2.5, ink);
+    sketch.line(place.x(), place.y(), spot.x(), spot.y(), 1.2, {kInk.r, kInk.g, kInk.b, 0.6});
+    sketch.disc(place.x(), place.y(), 2.5, kInk);
     draw_marker(sketch, spot.x(), spot.y(), n + 1);
   }
 }
@@ -191,7 +191,7 @@ struct Legend {
   std::size_t columns, event_rows, rows;
 };
 Legend plan_legend(const PictureSpec& spec) {
-  const std::size_t events = std::min(spec.events.size(), most_events);
+  const std::size_t events = std::min(spec.events.size(), kMaxEvents);
   const std::size_t columns = spec.width >= 1400 ? 3 : spec.width >= 900 ? 2 : 1;
   const std::size_t event_columns = std::max<std::size_t>(1, columns - 1);
   const std::size_t event_rows = (events + event_columns - 1) / event_columns;
@@ -200,25 +200,25 @@ Legend plan_legend(const PictureSpec& spec) {
 }
 
 void draw_legend(Sketch& sketch, const PictureSpec& spec, const Legend& legend, double top) {
-  const double column = (spec.width - 2 * margin) / static_cast<double>(legend.columns);
+  const double column = (spec.width - 2 * kMargin) / static_cast<double>(legend.columns);
   for (std::size_t n = 0; n < spec.trails.size(); ++n) {
-    const double y = top + row * (static_cast<double>(n) + 0.5);
-    const Colour colour = palette[n % palette.size()];
-    sketch.line(margin + 4, y, margin + 34, y, 5, colour);
-    sketch.text(margin + 46, y, 15, spec.trails[n].id, ink, Align::left, true);
-    sketch.text(margin + 54 + sketch.text_width(15, spec.trails[n].id, true), y, 15, spec.trails[n].label,
-                ink);
+    const double y = top + kRow * (static_cast<double>(n) + 0.5);
+    const Colour colour = kPalette[n % kPalette.size()];
+    sketch.line(kMargin + 4, y, kMargin + 34, y, 5, colour);
+    sketch.text(kMargin + 46, y, 15, spec.trails[n].id, kInk, Align::left, true);
+    sketch.text(kMargin + 54 + sketch.text_width(15, spec.trails[n].id, true), y, 15, spec.trails[n].label,
+                kInk);
   }
-  const double first = legend.columns == 1 ? top + row * static_cast<double>(spec.trails.size()) : top;
-  for (std::size_t n = 0; n < std::min(spec.events.size(), most_events); ++n) {
+  const double first = legend.columns == 1 ? top + kRow * static_cast<double>(spec.trails.size()) : top;
+  for (std::size_t n = 0; n < std::min(spec.events.size(), kMaxEvents); ++n) {
     const std::size_t c = legend.columns == 1 ? 0 : 1 + n / legend.event_rows;
-    const double x = margin + column * static_cast<double>(c) + 12,
-                 y = first + row * (static_cast<double>(n % legend.event_rows) + 0.5);
+    const double x = kMargin + column * static_cast<double>(c) + 12,
+                 y = first + kRow * (static_cast<double>(n % legend.event_rows) + 0.5);
     draw_marker(sketch, x, y, n + 1);
     std::string text = spec.events[n].text;
     while (text.size() > 4 && sketch.text_width(14, text) > column - 40)
       text = text.substr(0, text.size() - 4) + "...";
-    sketch.text(x + 20, y, 14, text, ink);
+    sketch.text(x + 20, y, 14, text, kInk);
   }
 }
 
@@ -238,19 +238,19 @@ Result<void> write_picture(const World& world, const PictureSpec& spec, const st
     }
   if (!view.low.allFinite() || !view.high.allFinite() || (view.high - view.low).maxCoeff() > 1e5)
     return {Reason::bad_argument, "picture: a trail leaves the world"};
-  view.scale = (spec.width - 2 * margin) / (view.high.x() - view.low.x());
+  view.scale = (spec.width - 2 * kMargin) / (view.high.x() - view.low.x());
   view.scale = std::min(view.scale, 6000.0 / (view.high.y() - view.low.y()));
   const Legend legend = plan_legend(spec);
-  const double below = header + view.height() + 30.0;
+  const double below = kHeader + view.height() + 30.0;
   const int height =
-      static_cast<int>(below + row * static_cast<double>(legend.rows) + (legend.rows ? 20.0 : 4.0));
+      static_cast<int>(below + kRow * static_cast<double>(legend.rows) + (legend.rows ? 20.0 : 4.0));
   Sketch sketch(spec.width, height);
-  sketch.fill(0, 0, spec.width, height, paper);
+  sketch.fill(0, 0, spec.width, height, kPaper);
   draw_plan(sketch, plan, world.grid(), view);
   draw_grid(sketch, view);
   draw_events(sketch, view, spec, draw_run(sketch, view, spec));
-  sketch.text(margin, 32, 26, spec.title, ink, Align::left, true);
-  sketch.text(margin, 62, 15, spec.subtitle, faint);
+  sketch.text(kMargin, 32, 26, spec.title, kInk, Align::left, true);
+  sketch.text(kMargin, 62, 15, spec.subtitle, kFaint);
   draw_legend(sketch, spec, legend, below);
   if (!sketch.save(file.string()))
     return {Reason::cannot_write, file.string() + ": the picture cannot be written; does its folder exist?"};

@@ -7,7 +7,7 @@
 #include "nav/local_planner.hpp"
 #include "robot_agent/agent.hpp"
 #include "sim/defects/defect.hpp"
-#include "sim/defects/intercepted_wire.hpp"
+#include "sim/defects/intercepted_participant.hpp"
 
 namespace adit::sim {
 namespace {
@@ -30,11 +30,11 @@ class ProductAgent final : public RehearsedAgent {
   }
 
  private:
-  std::unique_ptr<InterceptedWire> intercepted(wire::Wire& inner) {
-    return decoration_.wires ? std::make_unique<InterceptedWire>(inner, *decoration_.wires) : nullptr;
+  std::unique_ptr<InterceptedParticipant> intercepted(wire::Participant& inner) {
+    return decoration_.wires ? std::make_unique<InterceptedParticipant>(inner, *decoration_.wires) : nullptr;
   }
   Decoration decoration_;
-  std::unique_ptr<InterceptedWire> radio_, robot_;
+  std::unique_ptr<InterceptedParticipant> radio_, robot_;
   agent::Agent agent_;
 };
 

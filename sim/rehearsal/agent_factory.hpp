@@ -7,7 +7,7 @@
 #include "core/exec/executor.hpp"
 #include "core/findings/finding.hpp"
 #include "core/store/disk.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "sim/rehearsal/scenario.hpp"
 
 namespace adit::agent {
@@ -37,8 +37,8 @@ struct AgentContext {
   const Platform& platform;
   std::uint64_t seed{};
   Runtime& runtime;
-  wire::Wire& radio;
-  wire::Wire& robot;
+  wire::Participant& radio;
+  wire::Participant& robot;
   std::shared_ptr<store::Disk> disk{};  ///< the robot's; it outlives the agent. Null: none
   std::function<void(const std::string& why)>
       end{};              ///< the agent's process ends itself, to be started again
@@ -50,7 +50,7 @@ struct AgentContext {
 using AgentFactory = std::function<Result<std::unique_ptr<RehearsedAgent>>(const AgentContext&)>;
 
 /// Decorates a wire.
-using WireDecorator = std::function<std::unique_ptr<wire::Wire>(std::unique_ptr<wire::Wire>)>;
+using WireDecorator = std::function<std::unique_ptr<wire::Participant>(std::unique_ptr<wire::Participant>)>;
 
 /// The product's agent. `defect`: one of sim/defects/defect.hpp, which decorates what the agent is made of
 /// and speaks through; empty: none. Errors: bad_argument for a name that no defect has. `adjust`, for tests:

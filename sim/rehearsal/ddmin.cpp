@@ -51,9 +51,9 @@ Indices ddmin(std::size_t count, const Fails& fails) {
   return kept;
 }
 
-std::vector<Indices> fewer(std::size_t count, std::size_t kept, std::size_t most, std::size_t tries,
+std::vector<Indices> fewer(std::size_t count, std::size_t kept, std::size_t max_size, std::size_t tries,
                            const Fails& fails) {
-  for (std::size_t size = 0; size <= std::min(most, count) && size < kept; ++size) {
+  for (std::size_t size = 0; size <= std::min(max_size, count) && size < kept; ++size) {
     std::vector<bool> chosen(count, false);
     std::fill(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(size), true);
     do {

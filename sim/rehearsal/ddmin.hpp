@@ -15,7 +15,7 @@ Indices ddmin(std::size_t count, const Fails& fails);
 
 /// Tries every choice of fewer than `kept` of `count` things, the smallest first, up to `most` of them and up
 /// to `tries` questions; the first that fails, or nothing.
-std::vector<Indices> fewer(std::size_t count, std::size_t kept, std::size_t most, std::size_t tries,
+std::vector<Indices> fewer(std::size_t count, std::size_t kept, std::size_t max_size, std::size_t tries,
                            const Fails& fails);
 
 }  // namespace adit::sim

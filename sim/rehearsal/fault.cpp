@@ -23,73 +23,73 @@ std::string component_of(const std::string& robot, const std::string& component)
 
 // Key and value, and what else there is.
 std::pair<const char*, std::string> parts(const Fault& fault) {
-  using Parts = std::pair<const char*, std::string>;
+  using Fields = std::pair<const char*, std::string>;
   return std::visit(
       Overloaded{
           [](const Crash& f) {
-            return Parts{"crash", component_of(f.victim, f.component)};
+            return Fields{"crash", component_of(f.victim, f.component)};
           },
           [](const Hang& f) {
-            return Parts{"hang", component_of(f.robot, f.component)};
+            return Fields{"hang", component_of(f.robot, f.component)};
           },
           [](const CutLink& f) {
-            return Parts{"cut", pair(f.a, f.b) + (f.one_way ? ", one_way: true" : "") + window(f.duration)};
+            return Fields{"cut", pair(f.a, f.b) + (f.one_way ? ", one_way: true" : "") + window(f.duration)};
           },
           [](const DegradeLink& f) {
             const std::string delay = f.delay > 0.0 ? fmt::format(", delay: {:.3f}", f.delay) : "";
-            return Parts{"degrade",
-                         pair(f.a, f.b) + fmt::format(", loss: {:.3f}", f.loss) + delay + window(f.duration)};
+            return Fields{"degrade", pair(f.a, f.b) + fmt::format(", loss: {:.3f}", f.loss) + delay +
+                                         window(f.duration)};
           },
           [](const Partition& f) {
             std::vector<std::string> groups;
             for (const auto& group : f.groups) groups.push_back(list(group));
-            return Parts{"partition", list(groups) + window(f.duration)};
+            return Fields{"partition", list(groups) + window(f.duration)};
           },
           [](const Reorder& f) {
-            return Parts{"reorder", pair(f.a, f.b) +
-                                        fmt::format(", chance: {:.3f}, by: {:.3f}", f.chance, f.by) +
-                                        window(f.duration)};
+            return Fields{"reorder", pair(f.a, f.b) +
+                                         fmt::format(", chance: {:.3f}, by: {:.3f}", f.chance, f.by) +
+                                         window(f.duration)};
           },
           [](const Duplicate& f) {
-            return Parts{"duplicate",
-                         pair(f.a, f.b) + fmt::format(", chance: {:.3f}", f.chance) + window(f.duration)};
+            return Fields{"duplicate",
+                          pair(f.a, f.b) + fmt::format(", chance: {:.3f}", f.chance) + window(f.duration)};
           },
           [](const ClockJump& f) {
             std::vector<std::string> jumps;
             for (const auto& [who, by] : f.by) jumps.push_back(fmt::format("{}: {:.3f}", who, seconds(by)));
-            return Parts{"clock_jump", fmt::format("{{{}}}", fmt::join(jumps, ", "))};
+            return Fields{"clock_jump", fmt::format("{{{}}}", fmt::join(jumps, ", "))};
           },
           [](const SensorSilent& f) {
             const char* sensor = f.sensor == Sensor::lidar ? "lidar" : "odometry";
-            return Parts{"sensor_silent", f.robot + ", sensor: " + sensor + window(f.duration)};
+            return Fields{"sensor_silent", f.robot + ", sensor: " + sensor + window(f.duration)};
           },
           [](const StuckDrive& f) {
-            return Parts{"stuck", f.robot + window(f.duration)};
+            return Fields{"stuck", f.robot + window(f.duration)};
           },
           [](const DiskFull& f) {
-            return Parts{"disk_full", f.robot + window(f.duration)};
+            return Fields{"disk_full", f.robot + window(f.duration)};
           },
           [](const Forge& f) {
-            return Parts{"forge", pair(f.as, f.robot) + window(f.duration)};
+            return Fields{"forge", pair(f.as, f.robot) + window(f.duration)};
           },
           [](const StuckStick& f) {
-            return Parts{"stuck", pair(f.by, f.robot) + window(f.duration)};
+            return Fields{"stuck", pair(f.by, f.robot) + window(f.duration)};
           },
           [](const Find& f) {
-            return Parts{"finds",
-                         fmt::format("\"{}\", robot: {}, importance: {}", f.kind, f.robot, f.importance)};
+            return Fields{"finds",
+                          fmt::format("\"{}\", robot: {}, importance: {}", f.kind, f.robot, f.importance)};
           },
           [](const Steer& f) {
-            return Parts{"steers", f.robot +
-                                       fmt::format(", velocity: [{:.3f}, {:.3f}, {:.3f}]", f.velocity.vx,
-                                                   f.velocity.vy, f.velocity.wz) +
-                                       window(f.duration)};
+            return Fields{"steers", f.robot +
+                                        fmt::format(", velocity: [{:.3f}, {:.3f}, {:.3f}]", f.velocity.vx,
+                                                    f.velocity.vy, f.velocity.wz) +
+                                        window(f.duration)};
           },
           [](const OdometryReset& f) {
-            return Parts{"odometry_reset", f.robot};
+            return Fields{"odometry_reset", f.robot};
           },
           [](const Twin& f) {
-            return Parts{"twin", f.robot + window(f.duration)};
+            return Fields{"twin", f.robot + window(f.duration)};
           },
       },
       fault.what);

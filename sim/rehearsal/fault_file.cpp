@@ -10,7 +10,7 @@ namespace {
 
 using config::Node;
 
-constexpr double longest = 86400.0;  // s
+constexpr double kLongest = 86400.0;  // s
 
 // One of the scenario's agents: a robot or a basestation.
 std::string check_agent(const Node& node, const std::string& id, const Scenario& scenario) {
@@ -30,7 +30,7 @@ std::pair<std::string, std::string> read_pair(const Node& fault, const char* key
 }
 
 Duration read_length(const Node& fault) {
-  return from_seconds(fault.number("for", config::above(0.0, longest)));
+  return from_seconds(fault.number("for", config::above(0.0, kLongest)));
 }
 
 // ROBOT/COMPONENT, or the name alone.
@@ -85,7 +85,7 @@ ClockJump read_jump(const Node& fault, const Scenario& scenario) {
   for (const auto& [who, by] : node.entries()) {
     check_agent(by, who, scenario);
     // Computers judge time by a clock that never goes back, but that a suspend lets jump.
-    out.by[who] = from_seconds(by.as_number(config::above(0.0, longest)));
+    out.by[who] = from_seconds(by.as_number(config::above(0.0, kLongest)));
   }
   if (out.by.empty()) node.fail(Reason::wrong_type, "expected {NAME: SECONDS} for clock_jump");
   return out;

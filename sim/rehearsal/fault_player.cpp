@@ -22,8 +22,8 @@ void FaultPlayer::note(Result<void> result) {
 }
 
 void FaultPlayer::disturb(wire::Disturbance disturbance, Duration duration) {
-  const wire::DisturbanceId id = stage_.ether.disturb(std::move(disturbance));
-  later(duration, [this, id] { stage_.ether.end_disturbance(id); });
+  const wire::DisturbanceId id = stage_.network.disturb(std::move(disturbance));
+  later(duration, [this, id] { stage_.network.end_disturbance(id); });
 }
 
 void FaultPlayer::play(const Crash& fault) {

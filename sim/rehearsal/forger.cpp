@@ -10,14 +10,14 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration period{500ms};
+constexpr Duration kPeriod{500ms};
 
 }  // namespace
 
 struct Forger::Endpoints {
   std::unique_ptr<Runtime> runtime{};
   std::shared_ptr<Executor> strand{};
-  std::unique_ptr<wire::Wire> wire{};
+  std::unique_ptr<wire::Participant> wire{};
   wire::Writer<radio::Command> command{};
   std::unique_ptr<StickStream> stick{};
   std::size_t step{};
@@ -35,13 +35,13 @@ Result<void> Forger::start() {
   Endpoints& e = *endpoints_;
   e.runtime = stage_.scheduler.machine(machine, 5s);
   e.strand = e.runtime->strand(machine);
-  e.wire = stage_.ether.join(Witness::radio_domain, machine);
-  auto command = wire::Writer<radio::Command>::make(*e.wire, wire::topics::command, forge_.robot);
+  e.wire = stage_.network.join(Witness::kRadioDomain, machine);
+  auto command = wire::Writer<radio::Command>::make(*e.wire, wire::topics::kCommand, forge_.robot);
   if (!command) return command.error();
   e.command = std::move(*command);
   e.stick = std::make_unique<StickStream>(*e.wire, e.strand, forge_.robot, id_);
   if (auto started = e.stick->start(); !started) return started;
-  e.timer = e.strand->every(period, [this] { write(); });
+  e.timer = e.strand->every(kPeriod, [this] { write(); });
   stage_.scheduler.at(stage_.scheduler.elapsed() + forge_.duration, [this] { endpoints_.reset(); });
   return {};
 }

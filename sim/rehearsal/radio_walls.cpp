@@ -10,7 +10,7 @@ namespace {
 
 std::array<int, 3> cell_of(const wire::Position& p) {
   const auto number = [](double metres) {
-    return static_cast<int>(std::floor(std::clamp(metres, -1e6, 1e6) / RadioWalls::cell));
+    return static_cast<int>(std::floor(std::clamp(metres, -1e6, 1e6) / RadioWalls::kCell));
   };
   return {number(p.x), number(p.y), number(p.z)};
 }
@@ -25,10 +25,10 @@ double RadioWalls::operator()(const wire::Position& a, const wire::Position& b) 
   const std::array<int, 6> key{first[0], first[1], first[2], second[0], second[1], second[2]};
   const auto found = known_.find(key);
   if (found != known_.end()) return found->second;
-  if (known_.size() >= kept) known_.clear();
-  const Eigen::Vector3d from(a.x, a.y, a.z + antenna), to(b.x, b.y, b.z + antenna);
-  const double solid = solid_between(world_.grid(), from, to, most / per_metre_);
-  return known_[key] = std::min(most, per_metre_ * solid);
+  if (known_.size() >= kMaxPairs) known_.clear();
+  const Eigen::Vector3d from(a.x, a.y, a.z + kAntenna), to(b.x, b.y, b.z + kAntenna);
+  const double solid = solid_between(world_.grid(), from, to, kMaxAttenuation / per_metre_);
+  return known_[key] = std::min(kMaxAttenuation, per_metre_ * solid);
 }
 
 }  // namespace adit::sim

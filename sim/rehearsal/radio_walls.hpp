@@ -11,10 +11,10 @@ namespace adit::sim {
 /// straight way. Remembers what it found by cells of a quarter of a metre; bounded. Not for several threads.
 class RadioWalls {
  public:
-  static constexpr double antenna = 0.5;     ///< above where a machine stands, m
-  static constexpr double most = 300.0;      ///< dB; more makes no difference
-  static constexpr double cell = 0.25;       ///< m
-  static constexpr std::size_t kept = 4096;  ///< pairs of cells
+  static constexpr double kAntenna = 0.5;           ///< above where a machine stands, m
+  static constexpr double kMaxAttenuation = 300.0;  ///< dB; more makes no difference
+  static constexpr double kCell = 0.25;             ///< m
+  static constexpr std::size_t kMaxPairs = 4096;    ///< pairs of cells
 
   /// `per_metre`: dB, > 0. The world must outlive it.
   RadioWalls(const World& world, double per_metre) : world_(world), per_metre_(per_metre) {}

@@ -8,8 +8,8 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::array verbs{"take", "release", "lock", "unlock", "grant",
-                           "goto", "drive",   "stop", "reset",  "mode"};
+constexpr std::array kVerbs{"take", "release", "lock", "unlock", "grant",
+                            "goto", "drive",   "stop", "reset",  "mode"};
 
 std::string number(double value) {
   char text[32];
@@ -51,10 +51,10 @@ std::string draw_command(const RandomScript& spec, const Scenario& scenario, con
 }  // namespace
 
 bool is_random_verb(const std::string& verb) {
-  return std::find(verbs.begin(), verbs.end(), verb) != verbs.end();
+  return std::find(kVerbs.begin(), kVerbs.end(), verb) != kVerbs.end();
 }
 
-std::vector<std::string> all_random_verbs() { return {verbs.begin(), verbs.end()}; }
+std::vector<std::string> all_random_verbs() { return {kVerbs.begin(), kVerbs.end()}; }
 
 std::vector<ScriptLine> draw_script(const RandomScript& spec, const Scenario& scenario, Random random) {
   std::vector<ScriptLine> lines;

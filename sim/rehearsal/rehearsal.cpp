@@ -13,7 +13,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration truth_period{20ms};
+constexpr Duration kTruthPeriod{20ms};
 
 std::vector<RobotFacts> facts_of(const Scenario& scenario, const Simulation& simulation) {
   std::vector<RobotFacts> out;
@@ -32,10 +32,10 @@ std::vector<std::string> ids_of(const std::vector<Spec>& specs) {
   return out;
 }
 
-wire::EtherParams ether_params(const Scenario& scenario, std::uint64_t seed) {
-  wire::EtherParams params;
+wire::SimulatedNetworkParams network_params(const Scenario& scenario, std::uint64_t seed) {
+  wire::SimulatedNetworkParams params;
   params.seed = seed;
-  params.radio_domain = Witness::radio_domain;
+  params.radio_domain = Witness::kRadioDomain;
   params.link = scenario.link;
   return params;
 }
@@ -62,10 +62,11 @@ class Run {
         random_(params.seed),
         simulation_(std::move(simulation)),
         scheduler_(scheduler_params(params)),
-        ether_(scheduler_, ether_params(scenario, random_.next())),
+        network_(scheduler_, network_params(scenario, random_.next())),
         checker_(facts_of(scenario, simulation_)),
         witness_(checker_, ids_of(scenario.robots), ids_of(scenario.stations)),
-        stage_{scenario_, scheduler_, ether_, simulation_, witness_, params_.make_agent, params_.parent_wire},
+        stage_{scenario_, scheduler_,         network_,           simulation_,
+               witness_,  params_.make_agent, params_.parent_wire},
         expectations_(scenario) {}
 
   Result<RunOutcome> go() {
@@ -91,17 +92,17 @@ class Run {
     if (!params_.record.empty()) {
       auto recorder = record::FrameRecorder::open(
           {.file = params_.record,
-           .radio_domain = Witness::radio_domain,
+           .radio_domain = Witness::kRadioDomain,
            .about = {{"scenario", scenario_.name}, {"seed", std::to_string(params_.seed)}}});
       if (!recorder) return recorder.error();
       recorder_ = std::move(*recorder);
     }
-    ether_.set_tap([this](const wire::Frame& frame) {
+    network_.set_tap([this](const wire::SampleEvent& frame) {
       witness_.see(frame);
       if (recorder_) recorder_->see(frame);
     });
     if (scenario_.link.wall > 0.0)
-      ether_.set_attenuation(
+      network_.set_attenuation(
           [walls = std::make_shared<RadioWalls>(simulation_.world(), scenario_.link.wall)](
               const wire::Position& a, const wire::Position& b) { return (*walls)(a, b); });
     world_runtime_ = scheduler_.machine("world", 0ns);
@@ -111,7 +112,7 @@ class Run {
       const RobotSpec& spec = scenario_.robots[i];
       robots_[spec.id] = std::make_unique<RobotMachine>(stage_, i, spec, random_.fork(100 + i));
       witness_.obeys(spec.id, spec.settings.velocity);
-      ether_.set_position(spec.id, spec.pose.x, spec.pose.y, simulation_.truth(i).pose.position.z());
+      network_.set_position(spec.id, spec.pose.x, spec.pose.y, simulation_.truth(i).pose.position.z());
       if (auto started = robots_[spec.id]->start(); !started) return started;
     }
     for (std::size_t i = 0; i < scenario_.stations.size(); ++i) {
@@ -135,7 +136,7 @@ class Run {
   // 50 Hz, and whenever an expectation wants to be judged.
   std::vector<Duration> instants() const {
     std::vector<Duration> out = expectations_.instants();
-    for (Duration t = truth_period; t < scenario_.duration; t += truth_period) out.push_back(t);
+    for (Duration t = kTruthPeriod; t < scenario_.duration; t += kTruthPeriod) out.push_back(t);
     out.push_back(scenario_.duration);
     std::sort(out.begin(), out.end());
     out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -148,9 +149,9 @@ class Run {
       const Truth& truth = simulation_.truth(i);
       const Pose2 pose = truth.pose.planar();
       witness_.truth(id, now, {pose, truth.twist});
-      if (now % Trail::period == 0ns) {
+      if (now % Trail::kPeriod == 0ns) {
         trails_[id].poses.push_back(pose);
-        ether_.set_position(id, pose.x, pose.y, truth.pose.position.z());
+        network_.set_position(id, pose.x, pose.y, truth.pose.position.z());
       }
       const std::string& mode = witness_.word(id).mode;
       mode_seconds_[id][mode.empty() ? "none" : mode] += seconds(now - observed_);
@@ -201,7 +202,7 @@ class Run {
                      [](const TimedEvent& a, const TimedEvent& b) { return a.at < b.at; });
     out.faults = faults_.counts();
     out.failures = scheduler_.failures();
-    for (const int rule : Checker::numbers) {
+    for (const int rule : Checker::kNumbers) {
       RuleResult result{rule, Checker::title(rule), checker_.count(rule), {}};
       for (const Violation& violation : checker_.violations())
         if (violation.rule == rule) result.first.push_back(violation);
@@ -222,7 +223,7 @@ class Run {
   Random random_;
   Simulation simulation_;
   VirtualScheduler scheduler_;
-  wire::Ether ether_;
+  wire::SimulatedNetwork network_;
   Checker checker_;
   Witness witness_;
   Stage stage_;

@@ -24,7 +24,7 @@ struct RunParams {
 
 /// A robot's way, for the picture.
 struct Trail {
-  static constexpr Duration period{100ms};
+  static constexpr Duration kPeriod{100ms};
   std::vector<Pose2> poses{};  ///< one a period, true, world frame
 };
 

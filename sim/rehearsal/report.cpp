@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double far_away = 1000.0;  // m
+constexpr double kFarAway = 1000.0;  // m
 
 std::string at_text(Duration at) {
   char text[32];
@@ -38,7 +38,7 @@ ordered_json robots_json(const RunReport& report) {
   for (const auto& [id, robot] : report.robots) {
     // Far from everything: how far is not known, and of no interest.
     const ordered_json clearance =
-        robot.min_clearance < far_away ? ordered_json(robot.min_clearance) : ordered_json();
+        robot.min_clearance < kFarAway ? ordered_json(robot.min_clearance) : ordered_json();
     out[id] = {{"distance", robot.distance}, {"collisions", robot.collisions}, {"caused", robot.caused},
                {"min_clearance", clearance}, {"moving", robot.moving},         {"modes", robot.mode_seconds}};
   }
@@ -48,7 +48,7 @@ ordered_json robots_json(const RunReport& report) {
 }  // namespace
 
 std::string RobotResult::clearance() const {
-  if (min_clearance >= far_away) return "nothing near";
+  if (min_clearance >= kFarAway) return "nothing near";
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "clearance %.2f m", min_clearance);
   return text.data();

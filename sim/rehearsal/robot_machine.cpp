@@ -18,11 +18,11 @@ Result<void> RehearsedAgent::find(findings::Finding) {
 
 namespace {
 
-constexpr Duration parent_notices{20ms};
-constexpr Duration zero_period{50ms};
-constexpr Duration restart_after{500ms};
-constexpr std::uint32_t first_robot_domain = 101;
-constexpr std::uint32_t first_twin_domain = 10001;
+constexpr Duration kParentNotices{20ms};
+constexpr Duration kZeroPeriod{50ms};
+constexpr Duration kRestartAfter{500ms};
+constexpr std::uint32_t kFirstRobotDomain = 101;
+constexpr std::uint32_t kFirstTwinDomain = 10001;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ constexpr std::uint32_t first_twin_domain = 10001;
 struct RobotMachine::Parent {
   std::unique_ptr<Runtime> runtime{};
   std::shared_ptr<Executor> strand{};
-  std::unique_ptr<wire::Wire> wire{};
+  std::unique_ptr<wire::Participant> wire{};
   agent::VelocityWriter cmd_vel{};
   Timer zero{};
 
@@ -39,7 +39,7 @@ struct RobotMachine::Parent {
 
 struct RobotMachine::Agent {
   std::unique_ptr<Runtime> runtime{};
-  std::unique_ptr<wire::Wire> radio{}, robot{};
+  std::unique_ptr<wire::Participant> radio{}, robot{};
   std::unique_ptr<RehearsedAgent> program{};
 };
 
@@ -47,7 +47,7 @@ struct RobotMachine::Agent {
 struct RobotMachine::Program {
   std::unique_ptr<Runtime> runtime{};
   std::shared_ptr<Executor> strand{};
-  std::unique_ptr<wire::Wire> wire{};
+  std::unique_ptr<wire::Participant> wire{};
   wire::Writer<geometry_msgs::msg::Twist> velocity{};
   Timer timer{};
 };
@@ -58,7 +58,7 @@ RobotMachine::RobotMachine(Stage& stage, std::size_t index, const RobotSpec& spe
       spec_(spec),
       random_(random),
       clock_offset_(from_seconds(random_.uniform(10.0, 100000.0))),
-      domain_(first_robot_domain + static_cast<std::uint32_t>(index)),
+      domain_(kFirstRobotDomain + static_cast<std::uint32_t>(index)),
       disk_(std::make_shared<store::MemoryDisk>(random_.next())) {}
 
 RobotMachine::~RobotMachine() = default;
@@ -67,7 +67,7 @@ Result<void> RobotMachine::start() {
   const std::string driver = Witness::driver_machine(spec_.id);
   driver_runtime_ = stage_.scheduler.machine(driver, clock_offset_);
   driver_strand_ = driver_runtime_->strand("driver");
-  driver_wire_ = stage_.ether.join(domain_, driver);
+  driver_wire_ = stage_.network.join(domain_, driver);
   DriverParams params = make_driver_params(spec_);
   // Scans of different robots do not all fall into the same instant.
   params.first_scan = 100ms + 5ms * static_cast<int>(index_);
@@ -78,7 +78,7 @@ Result<void> RobotMachine::start() {
   const std::string name = Witness::parent_machine(spec_.id);
   parent_->runtime = stage_.scheduler.machine(name, clock_offset_);
   parent_->strand = parent_->runtime->strand("parent");
-  parent_->wire = stage_.ether.join(domain_, name);
+  parent_->wire = stage_.network.join(domain_, name);
   if (stage_.parent_wire) parent_->wire = stage_.parent_wire(std::move(parent_->wire));
   auto writer = agent::VelocityWriter::make(*parent_->wire, spec_.settings.velocity);
   if (!writer) return writer.error();
@@ -89,8 +89,8 @@ Result<void> RobotMachine::start() {
 Result<void> RobotMachine::start_agent() {
   auto agent = std::make_unique<Agent>();
   agent->runtime = stage_.scheduler.machine(spec_.id, clock_offset_);
-  agent->radio = stage_.ether.join(Witness::radio_domain, spec_.id);
-  agent->robot = stage_.ether.join(domain_, spec_.id);
+  agent->radio = stage_.network.join(Witness::kRadioDomain, spec_.id);
+  agent->robot = stage_.network.join(domain_, spec_.id);
   stage_.witness.agent_started(spec_.id, stage_.scheduler.elapsed(), agent->radio->id());
   auto program = stage_.make_agent({spec_, stage_.simulation.platform(index_), random_.next(),
                                     *agent->runtime, *agent->radio, *agent->robot, disk_,
@@ -108,18 +108,18 @@ Result<void> RobotMachine::start_agent() {
 void RobotMachine::crash() {
   if (!agent_) return;
   // Silent first: whatever the object's end would still say is not heard, as with a killed process.
-  stage_.ether.crash(spec_.id);
+  stage_.network.crash(spec_.id);
   agent_->program.reset();
   agent_.reset();
   const Duration now = stage_.scheduler.elapsed();
   stage_.witness.agent_died(spec_.id, now);
-  stage_.scheduler.at(now + parent_notices, [this] {
+  stage_.scheduler.at(now + kParentNotices, [this] {
     parent_->strand->post([this] {
       parent_->send_zero();
-      parent_->zero = parent_->strand->every(zero_period, [this] { parent_->send_zero(); });
+      parent_->zero = parent_->strand->every(kZeroPeriod, [this] { parent_->send_zero(); });
     });
   });
-  stage_.scheduler.at(now + restart_after, [this] {
+  stage_.scheduler.at(now + kRestartAfter, [this] {
     parent_->zero.cancel();
     health_ = start_agent();
   });
@@ -141,8 +141,8 @@ Result<void> RobotMachine::steer(const Twist2& velocity, Duration duration) {
   const std::string machine = spec_.id + "/program";
   program->runtime = stage_.scheduler.machine(machine, clock_offset_);
   program->strand = program->runtime->strand("program");
-  program->wire = stage_.ether.join(domain_, machine);
-  auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(*program->wire, wire::topics::external_cmd_vel);
+  program->wire = stage_.network.join(domain_, machine);
+  auto writer = wire::Writer<geometry_msgs::msg::Twist>::make(*program->wire, wire::topics::kExternalCmdVel);
   if (!writer) return writer.error();
   program->velocity = std::move(*writer);
   geometry_msgs::msg::Twist twist;
@@ -161,11 +161,11 @@ Result<void> RobotMachine::steer(const Twist2& velocity, Duration duration) {
 
 Result<void> RobotMachine::add_twin(Duration duration) {
   const std::string machine = Witness::twin_machine(spec_.id);
-  const std::uint32_t domain = first_twin_domain + static_cast<std::uint32_t>(index_);
+  const std::uint32_t domain = kFirstTwinDomain + static_cast<std::uint32_t>(index_);
   auto twin = std::make_unique<Agent>();
   twin->runtime = stage_.scheduler.machine(machine, clock_offset_ + 1h);
-  twin->radio = stage_.ether.join(Witness::radio_domain, machine);
-  twin->robot = stage_.ether.join(domain, machine);
+  twin->radio = stage_.network.join(Witness::kRadioDomain, machine);
+  twin->robot = stage_.network.join(domain, machine);
   auto program = stage_.make_agent({spec_,
                                     stage_.simulation.platform(index_),
                                     random_.next(),

@@ -4,7 +4,7 @@
 #include "core/exec/virtual_runtime.hpp"
 #include "core/store/memory_disk.hpp"
 #include "core/time/random.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "sim/driver/robot_driver.hpp"
 #include "sim/rehearsal/agent_factory.hpp"
 #include "sim/rehearsal/witness.hpp"
@@ -15,7 +15,7 @@ namespace adit::sim {
 struct Stage {
   const Scenario& scenario;
   VirtualScheduler& scheduler;
-  wire::Ether& ether;
+  wire::SimulatedNetwork& network;
   Simulation& simulation;
   Witness& witness;
   const AgentFactory& make_agent;
@@ -66,7 +66,7 @@ class RobotMachine {
   // In the order they are needed: a wire before what speaks on it.
   std::unique_ptr<Runtime> driver_runtime_{};
   std::shared_ptr<Executor> driver_strand_{};
-  std::unique_ptr<wire::Wire> driver_wire_{};
+  std::unique_ptr<wire::Participant> driver_wire_{};
   std::unique_ptr<RobotDriver> driver_{};
   std::unique_ptr<Parent> parent_{};
   std::unique_ptr<Agent> agent_{};

@@ -8,11 +8,11 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::size_t most_events = 40;
+constexpr std::size_t kMaxEvents = 40;
 
 Eigen::Vector2d position_at(const Trail& trail, Duration at) {
   if (trail.poses.empty()) return Eigen::Vector2d::Zero();
-  const auto index = static_cast<std::size_t>(std::max<std::int64_t>(at / Trail::period - 1, 0));
+  const auto index = static_cast<std::size_t>(std::max<std::int64_t>(at / Trail::kPeriod - 1, 0));
   return trail.poses[std::min(index, trail.poses.size() - 1)].position();
 }
 
@@ -48,13 +48,13 @@ Result<void> draw_run(const Scenario& scenario, const World& world, const RunOut
   }
   for (const Goal& goal : outcome.goals) spec.goals.push_back({goal.robot, goal.position});
   for (const Collision& collision : outcome.collisions) {
-    if (spec.events.size() >= most_events / 2) break;
+    if (spec.events.size() >= kMaxEvents / 2) break;
     spec.events.push_back({collision.pose.position(),
                            event_text(collision.at, collision.robot, "touched " + collision.partner)});
   }
   for (const TimedEvent& event : outcome.report.events) {
     const auto trail = outcome.trails.find(event.robot);
-    if (spec.events.size() >= most_events || trail == outcome.trails.end() || !worth_drawing(event)) continue;
+    if (spec.events.size() >= kMaxEvents || trail == outcome.trails.end() || !worth_drawing(event)) continue;
     spec.events.push_back(
         {position_at(trail->second, event.at), event_text(event.at, event.robot, event.text)});
   }

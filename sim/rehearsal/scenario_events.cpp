@@ -8,7 +8,7 @@ namespace {
 
 using config::Node;
 
-const std::vector<std::string> mode_names{"hold",     "manual",  "smart_joystick", "waypoint",
+const std::vector<std::string> kModeNames{"hold",     "manual",  "smart_joystick", "waypoint",
                                           "external", "explore", "convoy_follow",  "get_out"};
 
 void read_robot_expectation(const Node& node, const Scenario& scenario, Expectation& out) {
@@ -20,7 +20,7 @@ void read_robot_expectation(const Node& node, const Scenario& scenario, Expectat
     if (near.size() == 3 && near[2] <= 0.0)
       node.child("near").fail(Reason::out_of_range, "expected a tolerance above 0");
   }
-  if (node.has("mode")) state.mode = mode_names[node.choice("mode", mode_names)];
+  if (node.has("mode")) state.mode = kModeNames[node.choice("mode", kModeNames)];
   if (node.has("holder")) {
     state.holder = node.text("holder");
     if (*state.holder == "nobody" || *state.holder == "none")

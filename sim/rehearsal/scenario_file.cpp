@@ -13,8 +13,8 @@ namespace {
 
 using config::Node;
 
-constexpr double longest = 86400.0;  // s
-constexpr std::int64_t most_seed = std::int64_t{1} << 53;
+constexpr double kLongest = 86400.0;  // s
+constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53;
 
 std::filesystem::path find_map(const Node& world, const std::string& key, const std::string& file) {
   const std::string name = world.text(key);
@@ -47,9 +47,8 @@ WorldSpec read_world(const Node& world, const std::string& file) {
   if (world.has("generate")) {
     const std::vector<std::string> words(world_kinds().begin(), world_kinds().end());
     const std::string& kind = words[world.choice("generate", words)];
-    out.boxes = generate_world(kind, static_cast<std::uint64_t>(world.integer("seed", 0, most_seed, 1)))
-                    .value()
-                    .boxes;
+    out.boxes =
+        generate_world(kind, static_cast<std::uint64_t>(world.integer("seed", 0, kMaxSeed, 1))).value().boxes;
     out.ceiling = 3.0;
   }
   if (world.has("boxes")) {
@@ -136,9 +135,9 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.name = std::filesystem::path(file).stem().string();
   // Missing: that is told, and not what it makes of every time in the file.
   out.duration =
-      from_seconds(root.has("duration") ? root.number("duration", config::above(0.0, longest)) : longest);
-  if (!root.has("duration")) root.number("duration", config::above(0.0, longest));
-  out.seed = static_cast<std::uint64_t>(root.integer("seed", 0, most_seed, 1));
+      from_seconds(root.has("duration") ? root.number("duration", config::above(0.0, kLongest)) : kLongest);
+  if (!root.has("duration")) root.number("duration", config::above(0.0, kLongest));
+  out.seed = static_cast<std::uint64_t>(root.integer("seed", 0, kMaxSeed, 1));
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);
   out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;

@@ -12,8 +12,8 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration after_failure{500ms};
-constexpr Duration shortest_window{100ms};
+constexpr Duration kAfterFailure{500ms};
+constexpr Duration kShortestWindow{100ms};
 
 template <class T>
 std::vector<T> only(const std::vector<T>& all, const Indices& kept) {
@@ -42,7 +42,7 @@ class Shrinking {
  private:
   // Takes the candidate when it fails as the first did.
   bool take(Scenario candidate, const char* what) {
-    if (result_.runs >= params_.most_runs || (params_.stop && params_.stop())) return false;
+    if (result_.runs >= params_.max_runs || (params_.stop && params_.stop())) return false;
     ++result_.runs;
     const auto report = run_(candidate);
     if (params_.progress) params_.progress(what, result_.runs);
@@ -58,7 +58,7 @@ class Shrinking {
     // An expectation is judged at its own time, and needs the whole run.
     if (result_.failure.rule == 0) return;
     Scenario shorter = result_.scenario;
-    const Duration end = std::chrono::ceil<std::chrono::seconds>(result_.failure.at + after_failure);
+    const Duration end = std::chrono::ceil<std::chrono::seconds>(result_.failure.at + kAfterFailure);
     shorter.duration = std::min(shorter.duration, end);
     std::erase_if(shorter.script, [&](const ScriptLine& l) { return l.at > result_.failure.at; });
     std::erase_if(shorter.faults, [&](const Fault& f) { return f.at > result_.failure.at; });
@@ -98,7 +98,7 @@ class Shrinking {
       for (bool shorter = true; shorter;) {
         Scenario candidate = result_.scenario;
         Duration* window = duration_of(candidate.faults[i]);
-        if (window == nullptr || *window / 2 < shortest_window) break;
+        if (window == nullptr || *window / 2 < kShortestWindow) break;
         *window = std::chrono::floor<std::chrono::milliseconds>(*window / 2);
         shorter = take(std::move(candidate), "windows");
       }

@@ -28,7 +28,7 @@ Scenario written_out(const Scenario& scenario, std::uint64_t seed);
 using RunScenario = std::function<Result<RunReport>(const Scenario&)>;
 
 struct ShrinkParams {
-  std::size_t most_runs{600};
+  std::size_t max_runs{600};
   std::function<void(const std::string& what, std::size_t runs)> progress{};
   std::function<bool()> stop{};  ///< asked before each run; true: what was found by then is the result
 };

@@ -5,15 +5,15 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration restart_after{500ms};
-constexpr double headroom = 0.3;  // m
+constexpr Duration kRestartAfter{500ms};
+constexpr double kHeadroom = 0.3;  // m
 
 }  // namespace
 
 struct StationMachine::Process {
   std::unique_ptr<Runtime> runtime{};
   std::shared_ptr<Executor> strand{};
-  std::unique_ptr<wire::Wire> radio{};
+  std::unique_ptr<wire::Participant> radio{};
   std::unique_ptr<station::Station> station{};
   std::unique_ptr<StickStream> stuck{};
 };
@@ -32,9 +32,9 @@ StationMachine::~StationMachine() = default;
 
 Result<void> StationMachine::start() {
   const Eigen::Vector2d& at = spec_.position;
-  const auto floor = stage_.simulation.world().ground_height(at.x(), at.y(), headroom);
+  const auto floor = stage_.simulation.world().ground_height(at.x(), at.y(), kHeadroom);
   place_ = {at.x(), at.y(), floor ? *floor : 0.0};  // none: beside the map
-  stage_.ether.set_position(spec_.id, place_.x(), place_.y(), place_.z());
+  stage_.network.set_position(spec_.id, place_.x(), place_.y(), place_.z());
   return start_process();
 }
 
@@ -42,7 +42,7 @@ Result<void> StationMachine::start_process() {
   auto process = std::make_unique<Process>();
   process->runtime = stage_.scheduler.machine(spec_.id, clock_offset_);
   process->strand = process->runtime->strand("station");
-  process->radio = stage_.ether.join(Witness::radio_domain, spec_.id);
+  process->radio = stage_.network.join(Witness::kRadioDomain, spec_.id);
   station::StationParams params;
   params.name = spec_.id;
   params.id = id_;
@@ -81,11 +81,11 @@ Result<void> StationMachine::stick_hangs(const std::string& robot, Duration dura
 void StationMachine::crash() {
   if (!process_) return;
   answer_before_crash_ = last_answer();
-  stage_.ether.crash(spec_.id);
+  stage_.network.crash(spec_.id);
   process_->stuck.reset();
   process_->station.reset();
   process_.reset();
-  stage_.scheduler.at(stage_.scheduler.elapsed() + restart_after, [this] { health_ = start_process(); });
+  stage_.scheduler.at(stage_.scheduler.elapsed() + kRestartAfter, [this] { health_ = start_process(); });
 }
 
 void StationMachine::jump_clock(Duration by) {

@@ -9,9 +9,9 @@
 namespace adit::sim {
 namespace {
 
-constexpr Duration period{50ms};
-constexpr std::uint64_t first_sequence = 1'000'000;  // beyond any that the operator's station used
-constexpr float push = 0.5F;                         // m/s
+constexpr Duration kPeriod{50ms};
+constexpr std::uint64_t kFirstSequence = 1'000'000;  // beyond any that the operator's station used
+constexpr float kPush = 0.5F;                        // m/s
 
 }  // namespace
 
@@ -20,11 +20,11 @@ struct StickStream::Endpoints {
   std::unique_ptr<wire::RawReader> authority{}, state{};
   radio::Epoch epoch{};
   std::uint64_t echo{};
-  std::uint64_t sequence{first_sequence};
+  std::uint64_t sequence{kFirstSequence};
   Timer timer{};
 };
 
-StickStream::StickStream(wire::Wire& wire, std::shared_ptr<Executor> strand, std::string robot,
+StickStream::StickStream(wire::Participant& wire, std::shared_ptr<Executor> strand, std::string robot,
                          const StationId& id)
     : wire_(wire), strand_(std::move(strand)), robot_(std::move(robot)), id_(id) {}
 
@@ -37,24 +37,24 @@ std::uint64_t StickStream::sequence() const { return endpoints_->sequence; }
 
 Result<void> StickStream::start() {
   endpoints_ = std::make_unique<Endpoints>();
-  auto joystick = wire::Writer<radio::Joystick>::make(wire_, wire::topics::joystick, robot_);
+  auto joystick = wire::Writer<radio::Joystick>::make(wire_, wire::topics::kJoystick, robot_);
   if (!joystick) return joystick.error();
   endpoints_->joystick = std::move(*joystick);
   auto authority = wire::make_reader<radio::AuthorityStatus>(
-      wire_, wire::topics::authority, *strand_,
+      wire_, wire::topics::kAuthority, *strand_,
       [this](const radio::AuthorityStatus& s, const wire::SampleInfo&) {
         if (s.robot() == robot_) endpoints_->epoch = s.epoch();
       });
   if (!authority) return authority.error();
   endpoints_->authority = std::move(*authority);
   auto state =
-      wire::make_reader<radio::RobotState>(wire_, wire::topics::robot_state, *strand_,
+      wire::make_reader<radio::RobotState>(wire_, wire::topics::kRobotState, *strand_,
                                            [this](const radio::RobotState& s, const wire::SampleInfo&) {
                                              if (s.robot() == robot_) endpoints_->echo = s.stamp();
                                            });
   if (!state) return state.error();
   endpoints_->state = std::move(*state);
-  endpoints_->timer = strand_->every(period, [this] { write(); });
+  endpoints_->timer = strand_->every(kPeriod, [this] { write(); });
   return {};
 }
 
@@ -67,7 +67,7 @@ void StickStream::write() {
   sample.epoch(e.epoch);
   sample.seq(++e.sequence);
   sample.echo(e.echo);
-  sample.vx(push);
+  sample.vx(kPush);
   (void)e.joystick.write(sample);  // whether it arrives is what the scenario looks at
 }
 

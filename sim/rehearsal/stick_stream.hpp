@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/exec/executor.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 #include "sim/checker/observation.hpp"
 
 namespace adit::sim {
@@ -13,7 +13,8 @@ namespace adit::sim {
 class StickStream {
  public:
   /// `wire` outlives it; `id` is the station id it claims.
-  StickStream(wire::Wire& wire, std::shared_ptr<Executor> strand, std::string robot, const StationId& id);
+  StickStream(wire::Participant& wire, std::shared_ptr<Executor> strand, std::string robot,
+              const StationId& id);
   ~StickStream();
   Result<void> start();
 
@@ -26,7 +27,7 @@ class StickStream {
   struct Endpoints;
   void write();
 
-  wire::Wire& wire_;
+  wire::Participant& wire_;
   std::shared_ptr<Executor> strand_;
   std::string robot_;
   StationId id_;

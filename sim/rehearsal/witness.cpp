@@ -6,7 +6,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::size_t most_events = 2000;
+constexpr std::size_t kMaxEvents = 2000;
 
 std::uint64_t number(const wire::ParticipantId& id) {
   std::uint64_t out = 0;
@@ -31,21 +31,21 @@ std::string Witness::robot_of(std::string_view machine) const {
 void Witness::obeys(const std::string& robot, agent::VelocityType type) { obeyed_[robot] = type; }
 
 void Witness::note(const std::string& robot, Duration at, std::string text) {
-  if (events_.size() < most_events) events_.push_back({at, robot, std::move(text)});
+  if (events_.size() < kMaxEvents) events_.push_back({at, robot, std::move(text)});
 }
 
-void Witness::see(const wire::Frame& frame) {
+void Witness::see(const wire::SampleEvent& frame) {
   digest_.add(static_cast<std::uint64_t>(frame.at.count()) * 4 + static_cast<std::uint64_t>(frame.kind));
   digest_.add(number(frame.from));
   digest_.add(number(frame.to));
   digest_.add(frame.topic);
   // A sample's bytes count where they are sent; at its receivers, that it came.
-  if (frame.kind == wire::Frame::Kind::sent) digest_.add(frame.bytes);
-  if (frame.kind == wire::Frame::Kind::sent) sent(frame);
-  if (frame.kind == wire::Frame::Kind::delivered) delivered(frame);
+  if (frame.kind == wire::SampleEvent::Kind::sent) digest_.add(frame.bytes);
+  if (frame.kind == wire::SampleEvent::Kind::sent) sent(frame);
+  if (frame.kind == wire::SampleEvent::Kind::delivered) delivered(frame);
 }
 
-void Witness::sent(const wire::Frame& frame) {
+void Witness::sent(const wire::SampleEvent& frame) {
   auto it = topics_.find(frame.topic);
   if (it == topics_.end()) it = topics_.emplace(std::string(frame.topic), TopicResult{}).first;
   ++it->second.samples;
@@ -67,7 +67,7 @@ void Witness::sent(const wire::Frame& frame) {
   if (!decoded) return;
   if (std::holds_alternative<VelocitySent>(decoded->event)) {
     const bool stamped = obeyed_[robot] == agent::VelocityType::twist_stamped;
-    if (stamped != (frame.type == wire::topics::cmd_vel_stamped.type)) return;
+    if (stamped != (frame.type == wire::topics::kCmdVelStamped.type)) return;
   }
   RobotWord& said = words_.at(robot);
   if (const auto* behaviour = std::get_if<BehaviourSent>(&decoded->event)) {
@@ -90,7 +90,7 @@ void Witness::sent(const wire::Frame& frame) {
   checker_.observe(robot, frame.at, decoded->event);
 }
 
-bool Witness::of_twin(const wire::Frame& frame) {
+bool Witness::of_twin(const wire::SampleEvent& frame) {
   const std::string robot(frame.from_name.substr(0, frame.from_name.find('/')));
   if (frame.from_name != twin_machine(robot)) return false;
   const auto decoded = decode_sent(frame.topic, frame.type, frame.bytes);
@@ -106,7 +106,7 @@ void Witness::count(const std::string& robot, const AckSent& ack) {
   it->second.answered = true;
   if (ack.accepted) {
     ++commands_.accepted;
-    if (it->second.goal && goals_.size() < most_events)
+    if (it->second.goal && goals_.size() < kMaxEvents)
       goals_.push_back({robot, {(*it->second.goal)[0], (*it->second.goal)[1]}});
     return;
   }
@@ -114,12 +114,12 @@ void Witness::count(const std::string& robot, const AckSent& ack) {
   ++commands_.reasons[std::string(name(ack.reason))];
 }
 
-void Witness::delivered(const wire::Frame& frame) {
+void Witness::delivered(const wire::SampleEvent& frame) {
   const auto it = topics_.find(frame.topic);
   if (it != topics_.end()) ++it->second.delivered;
   const std::string robot = robot_of(frame.to_name);
   if (robot.empty()) return;
-  if (frame.domain != radio_domain && frame.to_name != robot) return;  // what its parent reads
+  if (frame.domain != kRadioDomain && frame.to_name != robot) return;  // what its parent reads
   auto decoded = decode_received(frame.topic, frame.bytes, frame.from);
   if (decoded) checker_.observe(robot, frame.at, std::move(decoded->event));
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <tuple>
 
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "robot_agent/motion/velocity_writer.hpp"
 #include "sim/checker/checker.hpp"
 #include "sim/rehearsal/digest.hpp"
@@ -31,7 +31,7 @@ struct RobotWord {
 /// last word. Robots and their helpers on the inner network are told apart by machine name.
 class Witness {
  public:
-  static constexpr std::uint32_t radio_domain = 77;
+  static constexpr std::uint32_t kRadioDomain = 77;
 
   Witness(Checker& checker, std::vector<std::string> robots, std::vector<std::string> stations);
 
@@ -44,7 +44,7 @@ class Witness {
   /// The robot's driver obeys a /cmd_vel of that type alone; others are no word to it.
   void obeys(const std::string& robot, agent::VelocityType type);
 
-  void see(const wire::Frame& frame);
+  void see(const wire::SampleEvent& frame);
   void agent_started(const std::string& robot, Duration at, const wire::ParticipantId& participant);
   /// A fault begins; `text` says what.
   void fault(Duration at, std::string text) { note({}, at, std::move(text)); }
@@ -64,10 +64,10 @@ class Witness {
   std::string digest() const { return digest_.text(); }
 
  private:
-  void sent(const wire::Frame& frame);
-  void delivered(const wire::Frame& frame);
+  void sent(const wire::SampleEvent& frame);
+  void delivered(const wire::SampleEvent& frame);
   /// Whether the frame is of a twin; what that answered is observed.
-  bool of_twin(const wire::Frame& frame);
+  bool of_twin(const wire::SampleEvent& frame);
   void count(const std::string& robot, const AckSent& ack);
   void note(const std::string& robot, Duration at, std::string text);
   /// The robot whose agent or parent runs on that machine; empty: none.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kResolution = 0.05;
 /// Open ground around the boxes that belongs to the grid, m: clearances are measured there.
-constexpr double margin = 2.0;
+constexpr double kMargin = 2.0;
 
 bool sane(const Box& b) {
   return std::all_of(b.begin(), b.end(), [](double v) { return std::isfinite(v) && std::abs(v) < 1e4; }) &&
@@ -57,13 +57,13 @@ Result<World> make_box_world(std::span<const Box> boxes, double floor, double ce
     y1 = n == 0 ? box[3] : std::max(y1, box[3]);
   }
   // The origin is a whole number of columns, so that boxes on multiples of 0.05 m are exact.
-  const double ox = std::floor((x0 - margin) / kResolution) * kResolution;
-  const double oy = std::floor((y0 - margin) / kResolution) * kResolution;
-  const std::int64_t nx = std::llround(std::ceil((x1 + margin - ox) / kResolution));
-  const std::int64_t ny = std::llround(std::ceil((y1 + margin - oy) / kResolution));
+  const double ox = std::floor((x0 - kMargin) / kResolution) * kResolution;
+  const double oy = std::floor((y0 - kMargin) / kResolution) * kResolution;
+  const std::int64_t nx = std::llround(std::ceil((x1 + kMargin - ox) / kResolution));
+  const std::int64_t ny = std::llround(std::ceil((y1 + kMargin - oy) / kResolution));
   std::vector<double> levels = cut_levels(boxes, floor, ceiling);
   const int layers = static_cast<int>(levels.size()) - 1;
-  if (nx * ny * layers > VoxelGrid::max_cells)
+  if (nx * ny * layers > VoxelGrid::kMaxCells)
     return {Reason::bad_argument,
             fmt::format("boxes: a world of {:.0f} x {:.0f} m with {} different heights is too large", x1 - x0,
                         y1 - y0, layers)};

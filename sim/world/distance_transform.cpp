@@ -6,7 +6,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr double unreached = 1e18;
+constexpr double kUnreached = 1e18;
 
 /// Replaces `f` by the lower envelope of the parabolas that stand on its values.
 class Line {
@@ -17,13 +17,13 @@ class Line {
     const auto at = [&](int n) -> double& { return f[static_cast<std::size_t>(n) * stride]; };
     int last = -1;
     for (int q = 0; q < length; ++q) {
-      if (at(q) >= unreached) continue;
-      double from = -unreached;
+      if (at(q) >= kUnreached) continue;
+      double from = -kUnreached;
       while (last >= 0) {
         const double v = vertex_[last];
         from = ((at(q) + static_cast<double>(q) * q) - (at(vertex_[last]) + v * v)) / (2.0 * (q - v));
         if (from > border_[last]) break;
-        from = -unreached;
+        from = -kUnreached;
         --last;
       }
       vertex_[++last] = q;
@@ -48,7 +48,7 @@ class Line {
 
 std::vector<float> distance_transform(const std::vector<std::uint8_t>& targets, int width, int height) {
   std::vector<double> squares(targets.size());
-  for (std::size_t n = 0; n < targets.size(); ++n) squares[n] = targets[n] ? 0.0 : unreached;
+  for (std::size_t n = 0; n < targets.size(); ++n) squares[n] = targets[n] ? 0.0 : kUnreached;
   Line line(std::max(width, height));
   for (int i = 0; i < width; ++i) line.transform(squares.data() + i, height, width);
   for (int j = 0; j < height; ++j)

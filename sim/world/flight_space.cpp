@@ -39,9 +39,10 @@ bool FlightSpace::touches(const Rectangle& footprint, double low, double high) c
   return found;
 }
 
-double FlightSpace::clearance(const Rectangle& footprint, double low, double high, double most) const {
-  double nearest = most;
-  each_column(footprint, most, [&](int i, int j, const Rectangle& cell) {
+double FlightSpace::clearance(const Rectangle& footprint, double low, double high,
+                              double max_distance) const {
+  double nearest = max_distance;
+  each_column(footprint, max_distance, [&](int i, int j, const Rectangle& cell) {
     const double away = (cell.pose.position() - footprint.pose.position()).norm();
     if (away - footprint.radius() - cell.radius() < nearest && solid(i, j, low, high))
       nearest = std::min(nearest, distance(footprint, cell));

@@ -14,7 +14,7 @@ class FlightSpace {
   /// Whether the body with that footprint, from `low` to `high` (m, world), touches anything solid.
   bool touches(const Rectangle& footprint, double low, double high) const;
   /// Distance in the plane from its footprint to the nearest thing at its height, m; `most` or more: `most`.
-  double clearance(const Rectangle& footprint, double low, double high, double most) const;
+  double clearance(const Rectangle& footprint, double low, double high, double max_distance) const;
   /// Height of the lowest underside above `from` anywhere over the footprint, m; infinite: none.
   double ceiling(const Rectangle& footprint, double from) const;
 

@@ -233,23 +233,23 @@ struct Kind {
   std::string_view name;
   GeneratedWorld (*make)(Random);
 };
-constexpr std::array kinds{Kind{"corridor", corridor}, Kind{"blocks", blocks}, Kind{"car_park", car_park},
-                           Kind{"cave", cave},         Kind{"stairs", stairs}, Kind{"dead_ends", dead_ends},
-                           Kind{"gaps", gaps},         Kind{"rubble", rubble}, Kind{"rooms", rooms},
-                           Kind{"maze", maze}};
+constexpr std::array kKinds{Kind{"corridor", corridor}, Kind{"blocks", blocks}, Kind{"car_park", car_park},
+                            Kind{"cave", cave},         Kind{"stairs", stairs}, Kind{"dead_ends", dead_ends},
+                            Kind{"gaps", gaps},         Kind{"rubble", rubble}, Kind{"rooms", rooms},
+                            Kind{"maze", maze}};
 
-constexpr auto names = [] {
-  std::array<std::string_view, kinds.size()> out{};
-  for (std::size_t n = 0; n < kinds.size(); ++n) out[n] = kinds[n].name;
+constexpr auto kNames = [] {
+  std::array<std::string_view, kKinds.size()> out{};
+  for (std::size_t n = 0; n < kKinds.size(); ++n) out[n] = kKinds[n].name;
   return out;
 }();
 
 }  // namespace
 
-std::span<const std::string_view> world_kinds() { return names; }
+std::span<const std::string_view> world_kinds() { return kNames; }
 
 Result<GeneratedWorld> generate_world(std::string_view kind, std::uint64_t seed) {
-  for (const Kind& each : kinds)
+  for (const Kind& each : kKinds)
     if (each.name == kind) return each.make(Random(seed));
   return {Reason::bad_argument, "no world is called " + std::string(kind)};
 }

@@ -35,10 +35,10 @@ Target make_target(const BodyBox& body, const Eigen::Vector3d& sensor) {
 double cast_box(const Target& target, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d d(target.axis.x() * direction.x() + target.axis.y() * direction.y(),
                           target.axis.x() * direction.y() - target.axis.y() * direction.x(), direction.z());
-  double enter = 0.0, leave = VoxelGrid::no_hit;
+  double enter = 0.0, leave = VoxelGrid::kNoHit;
   for (int n = 0; n < 3; ++n) {
     if (d[n] == 0.0) {
-      if (std::abs(target.start[n]) > target.half[n]) return VoxelGrid::no_hit;
+      if (std::abs(target.start[n]) > target.half[n]) return VoxelGrid::kNoHit;
       continue;
     }
     const double a = (-target.half[n] - target.start[n]) / d[n],
@@ -46,7 +46,7 @@ double cast_box(const Target& target, const Eigen::Vector3d& direction) {
     enter = std::max(enter, std::min(a, b));
     leave = std::min(leave, std::max(a, b));
   }
-  return enter > 0.0 && enter <= leave ? enter : VoxelGrid::no_hit;
+  return enter > 0.0 && enter <= leave ? enter : VoxelGrid::kNoHit;
 }
 
 Eigen::Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
@@ -91,7 +91,7 @@ class LidarPattern::Column {
   void take(std::span<const Beam> beams, const Cast& cast) {
     for (std::size_t n = 0; n < beams.size(); ++n) {
       const bool last = n + 1 == beams.size();
-      take(beams[n], last ? VoxelGrid::no_hit : beams[n + 1].range * beams[n + 1].elevation.x(), cast);
+      take(beams[n], last ? VoxelGrid::kNoHit : beams[n + 1].range * beams[n + 1].elevation.x(), cast);
     }
   }
 
@@ -169,7 +169,7 @@ class LidarPattern::Column {
     bool met;
   };
   static double fall(const Hit& from, const Hit& to) {
-    if (!to.met) return from.met ? VoxelGrid::no_hit : 0.0;
+    if (!to.met) return from.met ? VoxelGrid::kNoHit : 0.0;
     return (from.z - to.z) / std::max(to.flat - from.flat, 1e-3);
   }
 
@@ -201,7 +201,7 @@ class LidarPattern::Column {
   double height_;
   double reach_{0.0}, ground_{0.0}, rise_{0.0};         ///< the last ground: distance, height, slope
   Eigen::Vector2d lowest_{unit(-80.0 * M_PI / 180.0)};  ///< the beam that met it
-  double nearest_{VoxelGrid::no_hit}, measured_{VoxelGrid::no_hit};
+  double nearest_{VoxelGrid::kNoHit}, measured_{VoxelGrid::kNoHit};
 };
 
 PointCloud LidarPattern::scan(const World& world, std::span<const BodyBox> others, const Pose3& base,

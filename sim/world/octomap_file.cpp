@@ -10,9 +10,9 @@
 namespace adit::sim {
 namespace {
 
-constexpr int depth_levels = 16;
-constexpr int half_tree = 1 << (depth_levels - 1);
-constexpr std::size_t max_leaves = 50'000'000;
+constexpr int kDepthLevels = 16;
+constexpr int kHalfTree = 1 << (kDepthLevels - 1);
+constexpr std::size_t kMaxLeaves = 50'000'000;
 
 /// Two bits for each of a node's eight children, the first child in the lowest bits.
 enum Child : unsigned { unknown_child = 0, free_leaf = 1, occupied_leaf = 2, inner = 3 };
@@ -38,7 +38,7 @@ class Reader {
           if (!node(cx, cy, cz, half)) return false;
           continue;
         }
-        if (leaves_.size() >= max_leaves) return false;
+        if (leaves_.size() >= kMaxLeaves) return false;
         leaves_.push_back({cx, cy, cz, half, kind == occupied_leaf});
       }
     }
@@ -87,7 +87,7 @@ Result<OctomapFile> read_octomap_file(const std::filesystem::path& file) {
   const Result<double> resolution = read_header(file.string(), rest);
   if (!resolution) return resolution.error();
   OctomapFile map{*resolution, {}};
-  if (!Reader(rest, map.leaves).node(-half_tree, -half_tree, -half_tree, 2 * half_tree))
+  if (!Reader(rest, map.leaves).node(-kHalfTree, -kHalfTree, -kHalfTree, 2 * kHalfTree))
     return {Reason::syntax,
             file.string() + ": the tree is cut off or damaged; run ./run setup to fetch it anew"};
   if (map.leaves.empty()) return {Reason::syntax, file.string() + ": the map is empty"};

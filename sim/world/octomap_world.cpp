@@ -111,9 +111,9 @@ Result<World> load_octomap(const std::filesystem::path& file) {
     }
   }
   const std::int64_t nx = high[0] - low[0], ny = high[1] - low[1], nz = high[2] - low[2];
-  if (nx * ny * nz > VoxelGrid::max_cells)
+  if (nx * ny * nz > VoxelGrid::kMaxCells)
     return {Reason::not_supported, fmt::format("{}: {} x {} x {} cells are too many (at most {})",
-                                               file.string(), nx, ny, nz, VoxelGrid::max_cells)};
+                                               file.string(), nx, ny, nz, VoxelGrid::kMaxCells)};
   Cells cells{static_cast<int>(nx), static_cast<int>(ny), static_cast<int>(nz),
               std::vector<std::uint8_t>(static_cast<std::size_t>(nx * ny * nz), unknown)};
   for (const OctreeLeaf& leaf : map->leaves)

@@ -20,7 +20,7 @@ Rectangle Person::at(double way) const {
     }
     left -= part;
   }
-  return {{place.x(), place.y(), 0.0}, size, size};
+  return {{place.x(), place.y(), 0.0}, kSize, kSize};
 }
 
 Rectangle Person::next(double dt) const {
@@ -30,7 +30,7 @@ Rectangle Person::next(double dt) const {
 void Person::lean(double dt) {
   wait();
   leant_ += dt;
-  if (leant_ < patience) return;
+  if (leant_ < kPatience) return;
   leant_ = 0.0;
   before_ = way_ = 2.0 * length_ - way_;
 }

@@ -17,10 +17,10 @@ struct PersonSpec {
 /// they go; the others walk into whatever stands in their way, lean on it, and turn about after a while.
 class Person {
  public:
-  static constexpr double size{0.45};     ///< m
-  static constexpr double height{1.75};   ///< m
-  static constexpr double respect{0.4};   ///< those who yield come no nearer to a robot, m
-  static constexpr double patience{2.0};  ///< the others lean so long, s
+  static constexpr double kSize{0.45};     ///< m
+  static constexpr double kHeight{1.75};   ///< m
+  static constexpr double kRespect{0.4};   ///< those who yield come no nearer to a robot, m
+  static constexpr double kPatience{2.0};  ///< the others lean so long, s
 
   explicit Person(PersonSpec spec);
   /// Where the body would be after `dt` seconds; the person stays until take().

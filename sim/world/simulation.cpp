@@ -104,7 +104,7 @@ bool Simulation::level(std::size_t robot, const Person& person) const {
   if (!r.body.platform().flies()) return true;
   const Pose2 at = person.body().pose;
   const double floor = r.ground->ground(at.x, at.y);
-  return std::isnan(floor) || r.truth.pose.position.z() < floor + Person::height;
+  return std::isnan(floor) || r.truth.pose.position.z() < floor + Person::kHeight;
 }
 
 bool Simulation::touches_world(const Robot& robot, const Rectangle& body) const {
@@ -204,7 +204,7 @@ void Simulation::walk(std::size_t index) {
     if (!level(n, person)) continue;
     const Rectangle body = footprint(robots_[n].body.platform(), robots_[n].body.pose());
     const double then = distance(next, body);
-    if (person.yields() && then < Person::respect && then <= distance(person.body(), body))
+    if (person.yields() && then < Person::kRespect && then <= distance(person.body(), body))
       return person.wait();
     if (!person.yields() && overlap(next, body)) {
       const std::size_t self = robots_.size() + 1 + index;
@@ -317,7 +317,7 @@ Simulation::ScanJob Simulation::scan(std::size_t index) const {
     const Rectangle body = person.body();
     const double ground = robots_[index].ground->ground(body.pose.x, body.pose.y);
     BodyBox box{body.pose, std::isnan(ground) ? job.base.position.z() : ground, body.length, body.width,
-                Person::height};
+                Person::kHeight};
     job.others.push_back(box);
   }
   job.seed = derive_seed(params_.seed ^ (steps_ << 8), 2 * index + 2);

@@ -5,14 +5,14 @@
 namespace adit::sim {
 namespace {
 
-constexpr double never = VoxelGrid::no_hit;
+constexpr double kNever = VoxelGrid::kNoHit;
 
 /// One axis of columns: where the way is on it, and when it crosses the next border.
 struct Axis {
   int cell{};
   int step{};
-  double next{never};  // m along the way
-  double stride{never};
+  double next{kNever};  // m along the way
+  double stride{kNever};
 
   Axis(double start, double speed, double origin, double resolution, int first) : cell(first) {
     if (speed == 0.0) return;
@@ -26,7 +26,7 @@ struct Axis {
 }  // namespace
 
 double solid_between(const VoxelGrid& grid, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                     double enough) {
+                     double max_length) {
   const double length = (b - a).norm();
   if (!(length > 0.0) || !std::isfinite(length)) return 0.0;
   const Eigen::Vector3d way = (b - a) / length;
@@ -38,12 +38,12 @@ double solid_between(const VoxelGrid& grid, const Eigen::Vector3d& a, const Eige
   int k = static_cast<int>(std::upper_bound(levels.begin(), levels.end(), a.z()) - levels.begin()) - 1;
   const auto next_z = [&] {
     const int border = way.z() > 0.0 ? k + 1 : k;
-    if (way.z() == 0.0 || border < 0 || border > grid.layers()) return never;
+    if (way.z() == 0.0 || border < 0 || border > grid.layers()) return kNever;
     return (levels[static_cast<std::size_t>(border)] - a.z()) / way.z();
   };
   double z = next_z();
   double at = 0.0, sum = 0.0;
-  while (at < length && sum <= enough) {
+  while (at < length && sum <= max_length) {
     const double next = std::max(at, std::min({x.next, y.next, z, length}));
     const bool within = k >= 0 && k < grid.layers();
     const bool solid =

@@ -9,6 +9,6 @@ namespace adit::sim {
 /// grid all is solid, beside it what the grid says. Ends early beyond `enough` m. Voxel traversal after
 /// Amanatides and Woo (1987).
 double solid_between(const VoxelGrid& grid, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                     double enough);
+                     double max_length);
 
 }  // namespace adit::sim

@@ -9,9 +9,9 @@
 namespace adit::sim {
 namespace {
 
-constexpr float nowhere = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
 /// Floors within this distance carry the body, m.
-constexpr double support = 0.25;
+constexpr double kSupport = 0.25;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ void StandingMap::block(const World& world, double height, double step) {
 
 void StandingMap::smooth() {
   // A box average over columns that carry; along x, then along y.
-  const int reach = std::max(1, static_cast<int>(support / resolution_));
+  const int reach = std::max(1, static_cast<int>(kSupport / resolution_));
   const auto pass = [&](const std::vector<float>& sum, const std::vector<float>& count,
                         std::vector<float>& sum_out, std::vector<float>& count_out, int di, int dj) {
     for (int j = 0; j < ny_; ++j)
@@ -71,7 +71,7 @@ void StandingMap::smooth() {
   pass(sum, count, row_sum, row_count, 1, 0);
   pass(row_sum, row_count, sum, count, 0, 1);
   ground_.resize(floor_.size());
-  for (std::size_t n = 0; n < floor_.size(); ++n) ground_[n] = count[n] > 0.0f ? sum[n] / count[n] : nowhere;
+  for (std::size_t n = 0; n < floor_.size(); ++n) ground_[n] = count[n] > 0.0f ? sum[n] / count[n] : kNowhere;
 }
 
 void StandingMap::measure() {

@@ -24,13 +24,13 @@ VoxelGrid::VoxelGrid(const Eigen::Vector2d& origin, double resolution, int nx, i
       open_sides_(open_sides),
       levels_(std::move(levels)),
       strides_{} {
-  strides_[towards_both].resize(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1), 0);
+  strides_[kTowardsBoth].resize(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1), 0);
 }
 
 void VoxelGrid::build() {
-  for (int quadrant = 0; quadrant < towards_both; ++quadrant) {
+  for (int quadrant = 0; quadrant < kTowardsBoth; ++quadrant) {
     std::vector<std::uint8_t>& mirrored = strides_[quadrant];
-    mirrored.resize(strides_[towards_both].size());
+    mirrored.resize(strides_[kTowardsBoth].size());
     for (int k = 0; k < layers(); ++k)
       for (int j = 0; j < ny_; ++j)
         for (int i = 0; i < nx_; ++i)
@@ -67,14 +67,14 @@ VoxelGrid::Start VoxelGrid::locate(const Eigen::Vector3d& position) const {
 }
 
 double VoxelGrid::cast_beside(const Start& start, const Eigen::Vector3d& direction, double max_range) const {
-  if (direction.z() == 0.0) return no_hit;
+  if (direction.z() == 0.0) return kNoHit;
   const double border = direction.z() > 0.0 ? levels_.back() : levels_.front();
   const double t = (border - start.position.z()) / direction.z();
-  return t < max_range ? t : no_hit;
+  return t < max_range ? t : kNoHit;
 }
 
 bool VoxelGrid::enter(Start& start, const Eigen::Vector3d& direction, double& t) const {
-  double first = 0.0, last = no_hit;
+  double first = 0.0, last = kNoHit;
   const double g[2] = {start.gx, start.gy};
   const double size[2] = {static_cast<double>(nx_), static_cast<double>(ny_)};
   for (int axis = 0; axis < 2; ++axis) {
@@ -122,7 +122,7 @@ bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, dou
       range = cast_beside(from, direction, max_range);
       return false;
     }
-    range = no_hit;
+    range = kNoHit;
     if (ray.t >= max_range) return false;
   }
   // An axis that the ray does not move along gets a border far away instead of a division by zero.
@@ -169,7 +169,7 @@ void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directi
       if (tz < tx && tz < ty) {
         t = std::max(t, tz);
         if (t >= max_range) {
-          range = no_hit;
+          range = kNoHit;
           break;
         }
         k += ray.dk;
@@ -184,7 +184,7 @@ void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directi
       }
       t = std::max(t, std::min(tx, ty));
       if (t >= max_range) {
-        range = no_hit;
+        range = kNoHit;
         break;
       }
       const int in_i = keep(static_cast<int>(ray.gx + t * ray.sx), i, next_i - 1);
@@ -200,7 +200,7 @@ void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directi
 }
 
 double VoxelGrid::cast(const Start& start, const Eigen::Vector3d& direction, double max_range) const {
-  double range = no_hit;
+  double range = kNoHit;
   cast(start, std::span(&direction, 1), max_range, std::span(&range, 1));
   return range;
 }

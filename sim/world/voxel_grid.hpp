@@ -17,9 +17,9 @@ namespace adit::sim {
 class VoxelGrid {
  public:
   /// Nothing is hit within the range asked for.
-  static constexpr double no_hit = std::numeric_limits<double>::infinity();
+  static constexpr double kNoHit = std::numeric_limits<double>::infinity();
   /// More cells than this are refused by the loaders.
-  static constexpr std::int64_t max_cells = 32'000'000;
+  static constexpr std::int64_t kMaxCells = 32'000'000;
 
   VoxelGrid() = default;
   /// All cells solid. `origin`: corner of the grid with the smallest x and y, m; `resolution`: edge of a
@@ -37,9 +37,9 @@ class VoxelGrid {
   bool open_sides() const { return open_sides_; }
 
   bool inside(int i, int j) const { return i >= 0 && i < nx_ && j >= 0 && j < ny_; }
-  bool solid(int i, int j, int k) const { return strides_[towards_both][index(i, j, k)] == 0; }
+  bool solid(int i, int j, int k) const { return strides_[kTowardsBoth][index(i, j, k)] == 0; }
   /// To be followed by build() after the last change.
-  void set(int i, int j, int k, bool solid) { strides_[towards_both][index(i, j, k)] = solid ? 0 : 1; }
+  void set(int i, int j, int k, bool solid) { strides_[kTowardsBoth][index(i, j, k)] = solid ? 0 : 1; }
   /// Computes the strides.
   void build();
 
@@ -67,7 +67,7 @@ class VoxelGrid {
 
  private:
   struct Ray;
-  static constexpr int towards_both = 3;
+  static constexpr int kTowardsBoth = 3;
   /// Puts a ray on its way, or gives its range at once (false).
   bool prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
                double& range) const;

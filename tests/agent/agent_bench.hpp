@@ -11,7 +11,7 @@
 #include "adit/link.h"
 #include "adit/robot.h"
 #include "core/exec/virtual_runtime.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
@@ -31,7 +31,7 @@ class AgentBench {
   struct Operator {
     std::string name{};
     Id id{};
-    std::unique_ptr<wire::Wire> wire{};
+    std::unique_ptr<wire::Participant> wire{};
     wire::Writer<radio::Presence> presence{};
     wire::Writer<radio::Command> command{};
     wire::Writer<radio::Joystick> joystick{};
@@ -60,15 +60,15 @@ class AgentBench {
 
   explicit AgentBench(AgentParams params = {}, std::uint64_t seed = 1,
                       const std::string& tree = source_folder() + "/config/trees/robot.xml")
-      : params_(std::move(params)), scheduler_(seed), ether_(scheduler_, {seed}) {
+      : params_(std::move(params)), scheduler_(seed), network_(scheduler_, {seed}) {
     params_.tree = tree;
     machine_ = scheduler_.machine("r1", 77777s);
     world_ = scheduler_.machine("world", 3s);
     strand_ = world_->strand("bench");
-    driver_wire_ = ether_.join(100, "driver");
-    odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*driver_wire_, wire::topics::odom).value();
-    points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*driver_wire_, wire::topics::points).value();
-    cmd_vel_ = wire::make_reader(*driver_wire_, wire::topics::cmd_vel, *strand_,
+    driver_wire_ = network_.join(100, "driver");
+    odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*driver_wire_, wire::topics::kOdom).value();
+    points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*driver_wire_, wire::topics::kPoints).value();
+    cmd_vel_ = wire::make_reader(*driver_wire_, wire::topics::kCmdVel, *strand_,
                                  [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
                                    command = {t.linear().x(), t.linear().y(), t.angular().z()};
                                    commands.push_back(command);
@@ -82,8 +82,8 @@ class AgentBench {
   ~AgentBench() { stop_agent(); }
 
   void start_agent() {
-    radio_ = ether_.join(77, "r1");
-    robot_ = ether_.join(100, "r1");
+    radio_ = network_.join(77, "r1");
+    robot_ = network_.join(100, "r1");
     ++params_.seed;
     agent_ = std::make_unique<Agent>(params_, *machine_, *radio_, *robot_);
     const auto started = agent_->start();
@@ -169,8 +169,8 @@ class AgentBench {
   bool driver_alive{true}, lidar_alive{true};
   PointCloud obstacles{};  ///< odometry frame, beside the plain
   radio::Command last_command{};
-  wire::Ether& ether() { return ether_; }
-  const wire::Wire& radio() const { return *radio_; }
+  wire::SimulatedNetwork& network() { return network_; }
+  const wire::Participant& radio() const { return *radio_; }
   Agent& agent() { return *agent_; }
   /// Of the driver and the operators, outside of the agent.
   Executor& strand() { return *strand_; }
@@ -178,20 +178,20 @@ class AgentBench {
 
  private:
   void connect(Operator& op) {
-    op.wire = ether_.join(77, op.name);
-    op.presence = wire::Writer<radio::Presence>::make(*op.wire, wire::topics::presence).value();
-    op.command = wire::Writer<radio::Command>::make(*op.wire, wire::topics::command, "r1").value();
-    op.joystick = wire::Writer<radio::Joystick>::make(*op.wire, wire::topics::joystick, "r1").value();
+    op.wire = network_.join(77, op.name);
+    op.presence = wire::Writer<radio::Presence>::make(*op.wire, wire::topics::kPresence).value();
+    op.command = wire::Writer<radio::Command>::make(*op.wire, wire::topics::kCommand, "r1").value();
+    op.joystick = wire::Writer<radio::Joystick>::make(*op.wire, wire::topics::kJoystick, "r1").value();
     Operator* o = &op;
-    keep(op, wire::topics::acknowledgement,
+    keep(op, wire::topics::kAcknowledgement,
          [o](const radio::Acknowledgement& a) { o->answers.push_back(a); });
-    keep(op, wire::topics::notification, [o](const radio::Notification& n) { o->notices.push_back(n); });
-    follow(op, wire::topics::authority, [o](const radio::AuthorityStatus& a) { o->authority = a; });
-    follow(op, wire::topics::behaviour, [o](const radio::BehaviourState& b) { o->behaviour = b; });
-    follow(op, wire::topics::robot_state, [o](const radio::RobotState& s) { o->state = s; });
-    keep(op, wire::topics::capabilities, [o](const radio::Capabilities& c) { o->capabilities = c; });
-    keep(op, wire::topics::health, [o](const radio::Health& h) { o->health = h; });
-    keep(op, wire::topics::link_report, [o](const radio::LinkReport& l) { o->link = l; });
+    keep(op, wire::topics::kNotification, [o](const radio::Notification& n) { o->notices.push_back(n); });
+    follow(op, wire::topics::kAuthority, [o](const radio::AuthorityStatus& a) { o->authority = a; });
+    follow(op, wire::topics::kBehaviour, [o](const radio::BehaviourState& b) { o->behaviour = b; });
+    follow(op, wire::topics::kRobotState, [o](const radio::RobotState& s) { o->state = s; });
+    keep(op, wire::topics::kCapabilities, [o](const radio::Capabilities& c) { o->capabilities = c; });
+    keep(op, wire::topics::kHealth, [o](const radio::Health& h) { o->health = h; });
+    keep(op, wire::topics::kLinkReport, [o](const radio::LinkReport& l) { o->link = l; });
     const auto announce = [o] {
       if (!o->up) return;
       radio::Presence p;
@@ -257,10 +257,10 @@ class AgentBench {
 
   AgentParams params_;
   VirtualScheduler scheduler_;
-  wire::Ether ether_;
+  wire::SimulatedNetwork network_;
   std::unique_ptr<Runtime> machine_, world_;
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> driver_wire_, radio_, robot_;
+  std::unique_ptr<wire::Participant> driver_wire_, radio_, robot_;
   wire::Writer<nav_msgs::msg::Odometry> odom_{};
   wire::Writer<sensor_msgs::msg::PointCloud2> points_{};
   std::unique_ptr<wire::RawReader> cmd_vel_{};

@@ -337,9 +337,9 @@ TEST(AgentRun, RefusedTreeHoldsAndSaysSo) {
 
 TEST(AgentRun, BadNameIsAnError) {
   VirtualScheduler scheduler(1);
-  wire::Ether ether(scheduler, {});
+  wire::SimulatedNetwork network(scheduler, {});
   const auto machine = scheduler.machine("r1", 0s);
-  const auto radio = ether.join(77, "r1"), robot = ether.join(100, "r1");
+  const auto radio = network.join(77, "r1"), robot = network.join(100, "r1");
   AgentParams params{};
   params.name = "no good";
   EXPECT_EQ(Agent(params, *machine, *radio, *robot).start().reason(), Reason::bad_argument);

@@ -27,17 +27,17 @@ TEST(Convert, LongTextsFitTheirTopics) {
   answer.text = std::string(10'000, 'x');
   answer.holder = name;
   const auto ack = to_radio(answer, name);
-  EXPECT_LE(encoded(ack), wire::topics::acknowledgement.max_bytes);
+  EXPECT_LE(encoded(ack), wire::topics::kAcknowledgement.max_bytes);
   EXPECT_THAT(ack.text(), testing::EndsWith("..."));
 
   const Notice notice{name, Severity::warning, "mode_refused", Reason::mode_unknown,
                       std::string(10'000, 'x')};
-  EXPECT_LE(encoded(to_radio(notice, name)), wire::topics::notification.max_bytes);
+  EXPECT_LE(encoded(to_radio(notice, name)), wire::topics::kNotification.max_bytes);
 
   ComponentRow part{};
   part.name = name;
   part.text = std::string(10'000, 'x');
-  EXPECT_LE(encoded(to_radio(std::vector<ComponentRow>(8, part), name)), wire::topics::health.max_bytes);
+  EXPECT_LE(encoded(to_radio(std::vector<ComponentRow>(8, part), name)), wire::topics::kHealth.max_bytes);
 }
 
 TEST(Convert, ARouteOfAnyLengthFitsItsTopic) {
@@ -47,7 +47,7 @@ TEST(Convert, ARouteOfAnyLengthFitsItsTopic) {
   answer.route = PlannedRoute{.length = 120.5, .unknown_length = 3.0, .corners = 100'000, .points = {}};
   answer.route->points.resize(40, {1.0, 2.0, 3.0});
   const auto ack = to_radio(answer, name);
-  EXPECT_LE(encoded(ack), wire::topics::acknowledgement.max_bytes);
+  EXPECT_LE(encoded(ack), wire::topics::kAcknowledgement.max_bytes);
   ASSERT_EQ(ack.route().size(), 1U);
   EXPECT_EQ(ack.route()[0].points().size(), 3 * PlannedRoute::kMaxCorners);
   EXPECT_EQ(ack.route()[0].corners(), 65535);

@@ -6,7 +6,7 @@
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/component_io.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "core/wire/topics.hpp"
 #include "geometry_msgs/msg/Twist.h"
 #include "geometry_msgs/msg/TwistStamped.h"
@@ -102,10 +102,11 @@ template <class T>
 std::vector<double> heard_by(const wire::Topic<T>& topic, VelocityType type,
                              const std::function<double(const T&)>& vx) {
   VirtualScheduler scheduler{1};
-  wire::Ether ether{scheduler, {}};
+  wire::SimulatedNetwork network{scheduler, {}};
   const std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
   const std::shared_ptr<Executor> strand{machine->strand("driver")};
-  const std::unique_ptr<wire::Wire> agent{ether.join(101, "r1")}, body{ether.join(101, "r1/driver")};
+  const std::unique_ptr<wire::Participant> agent{network.join(101, "r1")},
+      body{network.join(101, "r1/driver")};
   std::vector<double> heard;
   const auto reader = wire::make_reader<T>(*body, topic, *strand, [&](const T& t, const wire::SampleInfo&) {
                         heard.push_back(vx(t));
@@ -126,9 +127,9 @@ TEST(Velocity, IsTheTypeThatTheDriverKnows) {
     EXPECT_EQ(t.twist().angular().z(), -0.2);
     return t.twist().linear().x();
   };
-  EXPECT_EQ(heard_by(wire::topics::cmd_vel, VelocityType::twist, plain), std::vector{0.5});
-  EXPECT_EQ(heard_by(wire::topics::cmd_vel_stamped, VelocityType::twist_stamped, stamped), std::vector{0.5});
-  EXPECT_TRUE(heard_by(wire::topics::cmd_vel, VelocityType::twist_stamped, plain).empty());
+  EXPECT_EQ(heard_by(wire::topics::kCmdVel, VelocityType::twist, plain), std::vector{0.5});
+  EXPECT_EQ(heard_by(wire::topics::kCmdVelStamped, VelocityType::twist_stamped, stamped), std::vector{0.5});
+  EXPECT_TRUE(heard_by(wire::topics::kCmdVel, VelocityType::twist_stamped, plain).empty());
 }
 
 TEST(Velocity, NobodyIsToldBeforeItIsMade) { VelocityWriter().write({1, 0, 0}); }
@@ -152,7 +153,7 @@ class OdometryTest : public testing::Test {
       times.push_back(received);
     };
     driver = Driver::open({*agent, *strand, generation}, VelocityType::twist, std::move(handlers)).value();
-    writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::odom).value();
+    writer = wire::Writer<nav_msgs::msg::Odometry>::make(*body, wire::topics::kOdom).value();
     run(3s);
   }
   void run(Duration time) { scheduler.run_until(elapsed += time); }
@@ -170,10 +171,10 @@ class OdometryTest : public testing::Test {
 
   VirtualScheduler scheduler{1};
   Duration elapsed{};
-  wire::Ether ether{scheduler, {}};
+  wire::SimulatedNetwork network{scheduler, {}};
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
-  std::unique_ptr<wire::Wire> agent{ether.join(101, "r1")}, body{ether.join(101, "r1/driver")};
+  std::unique_ptr<wire::Participant> agent{network.join(101, "r1")}, body{network.join(101, "r1/driver")};
   std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
   std::unique_ptr<Driver> driver{};
   wire::Writer<nav_msgs::msg::Odometry> writer{};
@@ -195,7 +196,7 @@ TEST_F(OdometryTest, WhatNoBodyCanHaveIsAsGoodAsSilence) {
 TEST_F(OdometryTest, ARevokedComponentDrivesAndHearsNothing) {
   int velocities{};
   const auto reader =
-      wire::make_reader(*body, wire::topics::cmd_vel, *strand,
+      wire::make_reader(*body, wire::topics::kCmdVel, *strand,
                         [&](const geometry_msgs::msg::Twist&, const wire::SampleInfo&) { ++velocities; });
   run(3s);
   driver->write({0.1, 0, 0});
@@ -210,8 +211,8 @@ TEST_F(OdometryTest, ARevokedComponentDrivesAndHearsNothing) {
 TEST_F(OdometryTest, AProgramsVelocityIsHeardAndASecondWriterTold) {
   geometry_msgs::msg::Twist twist;
   twist.linear().x(0.3);
-  auto outside = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::external_cmd_vel).value();
-  auto rival = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::cmd_vel).value();
+  auto outside = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::kExternalCmdVel).value();
+  auto rival = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::kCmdVel).value();
   run(3s);
   driver->write({0.1, 0, 0});
   run(1s);
@@ -227,8 +228,8 @@ TEST_F(OdometryTest, AProgramsVelocityIsHeardAndASecondWriterTold) {
 
 TEST_F(OdometryTest, SamplesCarryTheTimeAtWhichTheyCame) {
   geometry_msgs::msg::Twist twist;
-  auto outside = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::external_cmd_vel).value();
-  auto rival = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::cmd_vel).value();
+  auto outside = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::kExternalCmdVel).value();
+  auto rival = wire::Writer<geometry_msgs::msg::Twist>::make(*body, wire::topics::kCmdVel).value();
   run(3s);
   const Time before = strand->now();
   EXPECT_EQ(publish(1.0, 1.0, 0.5), 1u);
@@ -244,10 +245,11 @@ TEST_F(OdometryTest, SamplesCarryTheTimeAtWhichTheyCame) {
 
 TEST(Rival, IsHeardInTheDriversOwnType) {
   VirtualScheduler scheduler{1};
-  wire::Ether ether{scheduler, {}};
+  wire::SimulatedNetwork network{scheduler, {}};
   const std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
   const std::shared_ptr<Executor> strand{machine->strand("command")};
-  const std::unique_ptr<wire::Wire> agent{ether.join(101, "r1")}, body{ether.join(101, "r1/driver")};
+  const std::unique_ptr<wire::Participant> agent{network.join(101, "r1")},
+      body{network.join(101, "r1/driver")};
   std::vector<wire::ParticipantId> rivals;
   Driver::Handlers handlers{};
   handlers.odometry = [](const Pose3&, const Twist2&, std::uint64_t, Time) {};
@@ -257,7 +259,7 @@ TEST(Rival, IsHeardInTheDriversOwnType) {
   const auto driver =
       Driver::open({*agent, *strand}, VelocityType::twist_stamped, std::move(handlers)).value();
   auto rival =
-      wire::Writer<geometry_msgs::msg::TwistStamped>::make(*body, wire::topics::cmd_vel_stamped).value();
+      wire::Writer<geometry_msgs::msg::TwistStamped>::make(*body, wire::topics::kCmdVelStamped).value();
   scheduler.run_until(3s);
   driver->write({0.1, 0, 0});
   ASSERT_TRUE(rival.write(geometry_msgs::msg::TwistStamped{}));

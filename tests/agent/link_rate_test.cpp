@@ -15,15 +15,16 @@ class LinkRate : public testing::Test {
  protected:
   explicit LinkRate(int stations = 5) {
     for (int i = 1; i <= stations; ++i) ops.push_back(&bench.join("op" + std::to_string(i)));
-    bench.ether().set_tap([this](const wire::Frame& frame) {
-      if (frame.kind != wire::Frame::Kind::sent || frame.from_name != "r1" || frame.domain != 77) return;
+    bench.network().set_tap([this](const wire::SampleEvent& frame) {
+      if (frame.kind != wire::SampleEvent::Kind::sent || frame.from_name != "r1" || frame.domain != 77)
+        return;
       if (frame.topic == "adit/robot_state") ++states;
       offered += static_cast<double>(wire::WireCost::sample(frame.bytes.size(), 500) * ops.size());
     });
     bench.run(3s);
   }
   void link(const wire::LinkProfile& profile) {
-    for (auto* op : ops) bench.ether().set_link("r1", op->name, profile);
+    for (auto* op : ops) bench.network().set_link("r1", op->name, profile);
   }
   /// States a second over so long.
   double rate(Duration time) {
@@ -96,8 +97,9 @@ TEST_F(LinkRate, WhatIsSaidForLateComersIsStretchedNotStopped) {
   link({.bandwidth = 12e3, .latency = 0.02});
   bench.run(20s);
   int reports = 0;
-  bench.ether().set_tap([&](const wire::Frame& frame) {
-    reports += frame.kind == wire::Frame::Kind::sent && frame.from_name == "r1" && frame.topic == "adit/link";
+  bench.network().set_tap([&](const wire::SampleEvent& frame) {
+    reports +=
+        frame.kind == wire::SampleEvent::Kind::sent && frame.from_name == "r1" && frame.topic == "adit/link";
   });
   bench.run(24s);
   EXPECT_GE(reports, 3);

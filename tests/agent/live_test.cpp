@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/exec/live_runtime.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
@@ -27,7 +27,7 @@ class CountingDriver {
     params.domain = domain;
     params.name = "driver";
     wire_ = wire::open_fastdds(params).value();
-    reader_ = wire::make_reader(*wire_, wire::topics::cmd_vel, *strand_,
+    reader_ = wire::make_reader(*wire_, wire::topics::kCmdVel, *strand_,
                                 [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
                                   if (t.linear().x() != 0.0 || t.angular().z() != 0.0) moved = true;
                                   ++count;
@@ -48,7 +48,7 @@ class CountingDriver {
  private:
   LiveRuntime runtime_{};
   std::shared_ptr<Executor> strand_{runtime_.strand("driver")};
-  std::unique_ptr<wire::Wire> wire_{};
+  std::unique_ptr<wire::Participant> wire_{};
   std::unique_ptr<wire::RawReader> reader_{};
 };
 

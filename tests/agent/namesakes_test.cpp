@@ -16,11 +16,11 @@ class Twin {
     machine_ = bench.machine("twin");
     world_ = bench.machine("twin's world");
     strand_ = world_->strand("driver");
-    driver_wire_ = bench.ether().join(101, "twin's driver");
-    radio_ = bench.ether().join(77, "twin");
-    robot_ = bench.ether().join(101, "twin");
-    odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*driver_wire_, wire::topics::odom).value();
-    cmd_vel_ = wire::make_reader(*driver_wire_, wire::topics::cmd_vel, *strand_,
+    driver_wire_ = bench.network().join(101, "twin's driver");
+    radio_ = bench.network().join(77, "twin");
+    robot_ = bench.network().join(101, "twin");
+    odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*driver_wire_, wire::topics::kOdom).value();
+    cmd_vel_ = wire::make_reader(*driver_wire_, wire::topics::kCmdVel, *strand_,
                                  [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
                                    moved = moved || t.linear().x() != 0 || t.angular().z() != 0;
                                  })
@@ -49,7 +49,7 @@ class Twin {
   AgentBench& bench_;
   std::unique_ptr<Runtime> machine_, world_;
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> driver_wire_, radio_, robot_;
+  std::unique_ptr<wire::Participant> driver_wire_, radio_, robot_;
   wire::Writer<nav_msgs::msg::Odometry> odom_{};
   std::unique_ptr<wire::RawReader> cmd_vel_{};
   Timer timer_{};
@@ -61,10 +61,10 @@ class Forger {
  public:
   explicit Forger(AgentBench& bench, const Id& id) : machine_(bench.machine("forger")) {
     strand_ = machine_->strand("forger");
-    wire_ = bench.ether().join(77, "forger");
-    presence_ = wire::Writer<radio::Presence>::make(*wire_, wire::topics::presence).value();
-    capabilities_ = wire::Writer<radio::Capabilities>::make(*wire_, wire::topics::capabilities).value();
-    authority_ = wire::Writer<radio::AuthorityStatus>::make(*wire_, wire::topics::authority).value();
+    wire_ = bench.network().join(77, "forger");
+    presence_ = wire::Writer<radio::Presence>::make(*wire_, wire::topics::kPresence).value();
+    capabilities_ = wire::Writer<radio::Capabilities>::make(*wire_, wire::topics::kCapabilities).value();
+    authority_ = wire::Writer<radio::AuthorityStatus>::make(*wire_, wire::topics::kAuthority).value();
     timer_ = strand_->every(250ms, [this, id] {
       radio::Presence p;
       p.name("r1"), p.kind(radio::AGENT_ROBOT), p.id(id), p.protocol(1), p.seq(1'000'000 + seq_);
@@ -81,7 +81,7 @@ class Forger {
  private:
   std::unique_ptr<Runtime> machine_;
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::Participant> wire_;
   wire::Writer<radio::Presence> presence_{};
   wire::Writer<radio::Capabilities> capabilities_{};
   wire::Writer<radio::AuthorityStatus> authority_{};

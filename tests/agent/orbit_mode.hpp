@@ -82,7 +82,7 @@ inline ModeRow OrbitMode::row() {
           .commanded_by = {.holder = true},
           .goal = GoalOnLeaving::cleared,
           .on_failure = OnFailure::pauses,
-          .conditions = {not_stopped, driver_alive, localised, terrain_fresh, centre_free},
+          .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, centre_free},
           .make = OrbitMode::make,
           .source_age = 500ms};
 }

@@ -233,7 +233,7 @@ TEST(Service, TellsWhoListens) {
   address.sun_family = AF_UNIX;
   path.copy(address.sun_path, sizeof address.sun_path - 1);
   ASSERT_EQ(::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  EXPECT_TRUE(Service(path).tell("WATCHDOG=1"));
+  EXPECT_TRUE(Service(path).notify("WATCHDOG=1"));
   char got[32]{};
   EXPECT_EQ(::recv(fd, got, sizeof got, MSG_DONTWAIT), 10);
   EXPECT_STREQ(got, "WATCHDOG=1");
@@ -241,10 +241,10 @@ TEST(Service, TellsWhoListens) {
 }
 
 TEST(Service, NobodyListensIsNoError) {
-  EXPECT_FALSE(Service("").tell("READY=1"));
-  EXPECT_FALSE(Service("/nowhere/at/all").tell("READY=1"));
-  EXPECT_FALSE(Service("relative").tell("READY=1"));
-  EXPECT_FALSE(Service(std::string(200, '/')).tell("READY=1"));
+  EXPECT_FALSE(Service("").notify("READY=1"));
+  EXPECT_FALSE(Service("/nowhere/at/all").notify("READY=1"));
+  EXPECT_FALSE(Service("relative").notify("READY=1"));
+  EXPECT_FALSE(Service(std::string(200, '/')).notify("READY=1"));
 }
 
 TEST_F(ParentTest, SendsZeroWhileNoChildCommandsAndRestarts) {

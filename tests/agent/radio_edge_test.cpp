@@ -6,7 +6,7 @@
 #include "adit/robot.h"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/wire/component_io.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "core/wire/topics.hpp"
 #include "tests/agent/command_bench.hpp"
 #include "tests/wire/held_strand.hpp"
@@ -46,13 +46,13 @@ class RadioEdgeTest : public testing::Test {
   }
 
   VirtualScheduler scheduler{1};
-  wire::Ether ether{scheduler, {1}};
+  wire::SimulatedNetwork network{scheduler, {1}};
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
   std::shared_ptr<Strand> strand{machine->strand("command")};
   wire::HeldStrand held{strand};
-  std::unique_ptr<wire::Wire> radio{ether.join(77, "r1")}, station{ether.join(77, "op1")};
+  std::unique_ptr<wire::Participant> radio{network.join(77, "r1")}, station{network.join(77, "op1")};
   wire::Writer<radio::Joystick> joystick{
-      wire::Writer<radio::Joystick>::make(*station, wire::topics::joystick, "r1").value()};
+      wire::Writer<radio::Joystick>::make(*station, wire::topics::kJoystick, "r1").value()};
   CommandBench bench{};
   PeerTable peers{held};
   Directory directory{peers};
@@ -82,7 +82,7 @@ TEST_F(RadioEdgeTest, AStickThatWaitedForTheCommandStrandIsStale) {
 TEST_F(RadioEdgeTest, OfARevokedCommandComponentNeitherWritesNorReads) {
   held.release();
   int states{};
-  const auto reader = wire::make_reader(*station, wire::topics::robot_state, *strand,
+  const auto reader = wire::make_reader(*station, wire::topics::kRobotState, *strand,
                                         [&](const radio::RobotState&, const wire::SampleInfo&) { ++states; });
   run(3s);
   edge->send_state({}, 1);

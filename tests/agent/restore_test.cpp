@@ -335,7 +335,7 @@ TEST_F(Restore, DamagedStopsAreToldAndHoldTheRobot) {
   auto list = store::unpack_sections(std::span(file).subspan(24));
   ASSERT_TRUE(list.readable);
   std::erase_if(list.good, [](const store::Section& s) { return store::tag_text(s.tag) == "STOP"; });
-  disk->plant("state", store::seal(kSnapshotFormat, 99, store::pack_sections(list.good)));
+  disk->plant("state", store::encode_envelope(kSnapshotFormat, 99, store::pack_sections(list.good)));
   crash();
   bench->run(3s);
   EXPECT_EQ(op1->authority.holder(), "op1") << "it was not damaged";

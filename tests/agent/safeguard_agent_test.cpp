@@ -121,8 +121,8 @@ class Batteries : public Safeguards {
  protected:
   void begin(AgentParams params = {}) {
     Safeguards::begin(std::move(params));
-    wire = bench->ether().join(100, "battery");
-    writer = wire::Writer<sensor_msgs::msg::BatteryState>::make(*wire, wire::topics::battery).value();
+    wire = bench->network().join(100, "battery");
+    writer = wire::Writer<sensor_msgs::msg::BatteryState>::make(*wire, wire::topics::kBattery).value();
     bench->run(500ms);
   }
   void charge(float percentage) {
@@ -135,7 +135,7 @@ class Batteries : public Safeguards {
     const auto told = op2->told();
     return static_cast<int>(std::count(told.begin(), told.end(), code));
   }
-  std::unique_ptr<wire::Wire> wire{};
+  std::unique_ptr<wire::Participant> wire{};
   wire::Writer<sensor_msgs::msg::BatteryState> writer{};
 };
 
@@ -255,12 +255,12 @@ class Found : public Safeguards {
  protected:
   Found() {
     begin();
-    wire = bench->ether().join(77, "listener");
+    wire = bench->network().join(77, "listener");
     machine = bench->machine("listener");
     strand = machine->strand("listener");
-    acks = wire::Writer<radio::FindingsAck>::make(*wire, wire::topics::findings_ack).value();
+    acks = wire::Writer<radio::FindingsAck>::make(*wire, wire::topics::kFindingsAck).value();
     reader =
-        wire::make_reader(*wire, wire::topics::finding, *strand,
+        wire::make_reader(*wire, wire::topics::kFinding, *strand,
                           [this](const radio::Finding& f, const wire::SampleInfo&) { heard.push_back(f); })
             .value();
     bench->run(1s);
@@ -279,7 +279,7 @@ class Found : public Safeguards {
     a.ids({id});
     (void)acks.write(a);
   }
-  std::unique_ptr<wire::Wire> wire{};
+  std::unique_ptr<wire::Participant> wire{};
   std::unique_ptr<Runtime> machine{};
   std::shared_ptr<Executor> strand{};
   wire::Writer<radio::FindingsAck> acks{};

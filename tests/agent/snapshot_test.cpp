@@ -98,12 +98,12 @@ TEST(Snapshot, gives_back_what_the_modes_stored) {
 }
 
 TEST(Snapshot, is_bounded) {
-  EXPECT_LE(encode(largest()).size(), kSnapshotFormat.most);
+  EXPECT_LE(encode(largest()).size(), kSnapshotFormat.max_bytes);
   Snapshot beyond = largest();
   beyond.authority.stops.resize(40, {"op9", Id{}});
   beyond.answers.resize(100, beyond.answers.front());
   for (KeptAnswers& a : beyond.answers) a.answers.resize(50, {2, Reason::none, std::string(5000, 'x')});
-  EXPECT_LE(encode(beyond).size(), kSnapshotFormat.most);
+  EXPECT_LE(encode(beyond).size(), kSnapshotFormat.max_bytes);
   const Snapshot back = read_back(beyond);
   ASSERT_EQ(back.authority.stops.size(), 16u);
   EXPECT_EQ(back.authority.stops.back().name, "others") << "the stops that have no place stay as one";
@@ -166,7 +166,7 @@ TEST(Snapshot, of_hostile_input_is_read_back_whole) {
   Random random(7);
   for (int i = 0; i < 200; ++i) {
     const Snapshot s = hostile(random);
-    EXPECT_LE(encode(s).size(), kSnapshotFormat.most);
+    EXPECT_LE(encode(s).size(), kSnapshotFormat.max_bytes);
     const Snapshot back = read_back(s);
     EXPECT_EQ(back, sanitized(s));
     EXPECT_EQ(back.authority.stops.empty(), s.authority.stops.empty()) << "no stop is lost";
@@ -296,7 +296,7 @@ TEST(Snapshot, takes_any_bytes) {
     const auto read = sections ? decode_snapshot(junk) : decode_snapshot_v2(junk);
     if (!read) continue;
     EXPECT_EQ(sanitized(read->snapshot), read->snapshot);
-    EXPECT_LE(encode(read->snapshot).size(), kSnapshotFormat.most);
+    EXPECT_LE(encode(read->snapshot).size(), kSnapshotFormat.max_bytes);
   }
 }
 
@@ -340,12 +340,12 @@ TEST_F(RestoreTest, WhatCannotBeUsedIsLostWithItsReason) {
     return r.text;
   };
   EXPECT_THAT(lost({}), HasSubstr("torn"));
-  EXPECT_THAT(lost(store::seal(kSnapshotFormat, 5, store::Bytes(30, 9))), HasSubstr("corrupt"));
+  EXPECT_THAT(lost(store::encode_envelope(kSnapshotFormat, 5, store::Bytes(30, 9))), HasSubstr("corrupt"));
   store::StateFormat format = kSnapshotFormat;
   format.version = 0;
-  EXPECT_THAT(lost(store::seal(format, 5, encode(full()))), HasSubstr("older"));
+  EXPECT_THAT(lost(store::encode_envelope(format, 5, encode(full()))), HasSubstr("older"));
   format.version = 9;
-  EXPECT_THAT(lost(store::seal(format, 5, encode(full()))), HasSubstr("newer"));
+  EXPECT_THAT(lost(store::encode_envelope(format, 5, encode(full()))), HasSubstr("newer"));
   EXPECT_THAT(lost(store::Bytes(50, 'x')), HasSubstr("foreign"));
   EXPECT_THAT(lost(store::Bytes(1'000'000, 'x')), HasSubstr("unreadable"));
 }
@@ -354,15 +354,15 @@ TEST_F(RestoreTest, AFileOfANewerVersionIsNeverDeleted) {
   store::StateFormat newer = kSnapshotFormat;
   newer.version = 9;
   for (std::uint8_t i = 1; i <= 3; ++i) {
-    disk->plant(kStateFile, store::seal(newer, i, store::Bytes{i}));
+    disk->plant(kStateFile, store::encode_envelope(newer, i, store::Bytes{i}));
     EXPECT_TRUE(restore_state(disk).lost);
     ASSERT_TRUE(save(full()).ok());
   }
-  EXPECT_EQ(disk->read("state.newer").value(), store::seal(newer, 1, store::Bytes{1}));
-  EXPECT_EQ(disk->read("state.newer-2").value(), store::seal(newer, 2, store::Bytes{2}));
-  EXPECT_EQ(disk->read("state.newer-3").value(), store::seal(newer, 3, store::Bytes{3}));
+  EXPECT_EQ(disk->read("state.newer").value(), store::encode_envelope(newer, 1, store::Bytes{1}));
+  EXPECT_EQ(disk->read("state.newer-2").value(), store::encode_envelope(newer, 2, store::Bytes{2}));
+  EXPECT_EQ(disk->read("state.newer-3").value(), store::encode_envelope(newer, 3, store::Bytes{3}));
   for (int i = 0; i < 20; ++i) {
-    disk->plant(kStateFile, store::seal(newer, 4, {}));
+    disk->plant(kStateFile, store::encode_envelope(newer, 4, {}));
     (void)restore_state(disk);
   }
   EXPECT_EQ(disk->list().value().size(), 8u) << "what is preserved is bounded";
@@ -371,7 +371,7 @@ TEST_F(RestoreTest, AFileOfANewerVersionIsNeverDeleted) {
 TEST_F(RestoreTest, AFileOfVersion2IsRead) {
   store::StateFormat format = kSnapshotFormat;
   format.version = 2;
-  disk->plant(kStateFile, store::seal(format, 8, version_2(full())));
+  disk->plant(kStateFile, store::encode_envelope(format, 8, version_2(full())));
   const Restored r = restore_state(disk);
   EXPECT_FALSE(r.lost || r.damaged);
   EXPECT_EQ(r.snapshot, without_place());
@@ -379,7 +379,7 @@ TEST_F(RestoreTest, AFileOfVersion2IsRead) {
 }
 
 TEST_F(RestoreTest, ADamagedByteAnywhereInTheFileLosesOneEntryAtMost) {
-  const store::Bytes whole = store::seal(kSnapshotFormat, 5, encode(full()));
+  const store::Bytes whole = store::encode_envelope(kSnapshotFormat, 5, encode(full()));
   for (std::size_t at = 0; at < whole.size(); ++at) {
     disk = std::make_shared<store::MemoryDisk>();
     store::Bytes bent = whole;
@@ -398,7 +398,7 @@ TEST_F(RestoreTest, ADamagedByteAnywhereInTheFileLosesOneEntryAtMost) {
 }
 
 TEST_F(RestoreTest, ATornFileGivesWhatIsThere) {
-  const store::Bytes whole = store::seal(kSnapshotFormat, 5, encode(full()));
+  const store::Bytes whole = store::encode_envelope(kSnapshotFormat, 5, encode(full()));
   std::size_t used = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     disk->plant(kStateFile, {whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});

@@ -86,12 +86,12 @@ void check(const std::optional<ReadSnapshot>& read, std::size_t size) {
 
 TEST(StateMutation, AnyBytesInAFile) {
   Random random(1);
-  const Bytes whole = store::seal(kSnapshotFormat, 5, encode(some_state()));
+  const Bytes whole = store::encode_envelope(kSnapshotFormat, 5, encode(some_state()));
   for (std::size_t i = mutations(); i > 0; --i) {
     const Bytes bytes = mutated(whole, random);
     wire::largest_allocation = 0;
-    const store::State state = store::unseal(kSnapshotFormat, bytes);
-    const auto read = decode_snapshot(state.found == store::Found::good ? state.payload : state.remains);
+    const store::State state = store::decode_envelope(kSnapshotFormat, bytes);
+    const auto read = decode_snapshot(state.found == store::LoadStatus::good ? state.payload : state.remains);
     check(read, bytes.size());
     if (testing::Test::HasFatalFailure()) FAIL() << "mutation " << i;
   }
@@ -139,15 +139,15 @@ TEST(StateMutation, AnyBytesOfAFinding) {
   constexpr store::StateFormat format{{'F', 'I', 'N', 'D'}, 1, 1024};
   Random random(4);
   const Bytes whole = findings::to_file(findings::some(7));
-  const Bytes payload = store::unseal(format, whole).payload;
+  const Bytes payload = store::decode_envelope(format, whole).payload;
   for (std::size_t i = mutations(); i > 0; --i) {
     // Every second one with a checksum that is right.
     const Bytes bytes =
-        i % 2 == 0 ? mutated(whole, random) : store::seal(format, 0, mutated(payload, random));
+        i % 2 == 0 ? mutated(whole, random) : store::encode_envelope(format, 0, mutated(payload, random));
     wire::largest_allocation = 0;
     const findings::FindingFile file = findings::read_finding(bytes);
     ASSERT_LE(wire::largest_allocation, 4096 + 4 * bytes.size());
-    ASSERT_EQ(file.finding.has_value(), file.found == store::Found::good);
+    ASSERT_EQ(file.finding.has_value(), file.found == store::LoadStatus::good);
     if (file.finding) {
       ASSERT_TRUE(findings::valid(*file.finding));
       ASSERT_EQ(findings::from_file(findings::to_file(*file.finding)), file.finding);

@@ -70,10 +70,10 @@ TEST(SupervisionOfAStampedDriver, GetsStampedZerosWhenTheCommandComponentHangs) 
   AgentBench bench(p);
   const auto machine = bench.machine("driver");
   const auto strand = machine->strand("driver");
-  const auto wire = bench.ether().join(100, "stamped");
+  const auto wire = bench.network().join(100, "stamped");
   std::size_t zeros = 0;
   const auto reader =
-      wire::make_reader(*wire, wire::topics::cmd_vel_stamped, *strand,
+      wire::make_reader(*wire, wire::topics::kCmdVelStamped, *strand,
                         [&](const geometry_msgs::msg::TwistStamped& t, const wire::SampleInfo&) {
                           if (t.twist().linear().x() == 0.0) ++zeros;
                         });

@@ -32,12 +32,13 @@ TEST(Blackboard, IntegersAreNotCutInSilence) {
 }
 
 TEST(Blackboard, BooleansListsAndStatuses) {
-  EXPECT_TRUE(value_as<bool>(Value(std::string("true"))));
-  EXPECT_FALSE(value_as<bool>(Value(std::string("0"))));
-  EXPECT_THROW(value_as<bool>(Value(std::string("maybe"))), NodeError);
-  EXPECT_EQ(value_as<std::vector<double>>(Value(std::string("1;2.5;-3"))), (std::vector<double>{1, 2.5, -3}));
-  EXPECT_EQ(value_as<NodeStatus>(Value(std::string("SKIPPED"))), NodeStatus::skipped);
-  EXPECT_THROW(value_as<NodeStatus>(Value(std::string("skipped"))), NodeError);
+  EXPECT_TRUE(value_as<bool>(BlackboardValue(std::string("true"))));
+  EXPECT_FALSE(value_as<bool>(BlackboardValue(std::string("0"))));
+  EXPECT_THROW(value_as<bool>(BlackboardValue(std::string("maybe"))), NodeError);
+  EXPECT_EQ(value_as<std::vector<double>>(BlackboardValue(std::string("1;2.5;-3"))),
+            (std::vector<double>{1, 2.5, -3}));
+  EXPECT_EQ(value_as<NodeStatus>(BlackboardValue(std::string("SKIPPED"))), NodeStatus::skipped);
+  EXPECT_THROW(value_as<NodeStatus>(BlackboardValue(std::string("skipped"))), NodeError);
 }
 
 TEST(SetBlackboard, WritesTextsAndCopiesEntries) {

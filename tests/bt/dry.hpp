@@ -53,7 +53,7 @@ class Dry {
       return;
     }
     tree = std::move(*loaded);
-    tree.on_error([this](const Node& node, std::string_view what) {
+    tree.on_error([this](const TreeNode& node, std::string_view what) {
       errors.push_back(node.name() + ": " + std::string(what));
     });
   }
@@ -80,7 +80,7 @@ class Dry {
   /// Status of every node with a name attribute that is not idle: "root=R A=R".
   std::string nodes() const {
     std::string out;
-    tree.for_each([&](const Node& node, std::size_t) {
+    tree.for_each([&](const TreeNode& node, std::size_t) {
       if (!node.named() || node.status() == NodeStatus::idle) return;
       out += (out.empty() ? "" : " ") + node.name() + "=" + letter(node.status());
     });

@@ -35,7 +35,7 @@ struct Fixture {
         registry, R"(<root BTCPP_format="4"><BehaviorTree ID="T">)" + body + "</BehaviorTree></root>");
     EXPECT_TRUE(loaded.ok()) << loaded.error().text;
     tree = std::move(*loaded);
-    tree.on_error([this](const Node& node, std::string_view what) {
+    tree.on_error([this](const TreeNode& node, std::string_view what) {
       heard.push_back(node.id() + ": " + std::string(what));
     });
   }
@@ -84,7 +84,7 @@ TEST(Exceptions, WhileHaltingDoNotKeepTheSiblingsFromBeingHalted) {
   f.tree.tick(Time{});
   f.tree.halt();
   f.tree.for_each(
-      [](const Node& node, std::size_t) { EXPECT_EQ(node.status(), NodeStatus::idle) << node.name(); });
+      [](const TreeNode& node, std::size_t) { EXPECT_EQ(node.status(), NodeStatus::idle) << node.name(); });
 }
 
 TEST(Exceptions, AControlNodeThatFailsByItselfHaltsItsChildren) {

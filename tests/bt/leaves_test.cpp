@@ -112,7 +112,7 @@ TEST(Leaves, EnumsHaveTheirNamesInScriptsAndSwitches) {
 TEST(Observers, HearEveryChangeOfStatusInOrder) {
   Dry dry(R"(<Sequence name="s"><A name="a"/><B name="b"/></Sequence>)", {{"a", "S"}, {"b", "RS"}});
   std::string heard;
-  dry.tree.on_status([&](const Node& node, NodeStatus from, NodeStatus to) {
+  dry.tree.on_status([&](const TreeNode& node, NodeStatus from, NodeStatus to) {
     heard += " " + node.name() + letter(from) + letter(to);
   });
   dry.tick();

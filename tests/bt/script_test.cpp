@@ -9,7 +9,7 @@ std::string run(const std::string& text, Blackboard& board) {
   const auto script = Script::parse(text);
   if (!script) return "syntax";
   try {
-    const Value v = (*script)->run(board, {{"RED", 3}});
+    const BlackboardValue v = (*script)->run(board, {{"RED", 3}});
     return std::holds_alternative<double>(v) &&
                    to_real(v) == static_cast<double>(static_cast<long>(to_real(v)))
                ? std::to_string(static_cast<long>(to_real(v)))

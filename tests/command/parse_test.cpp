@@ -163,7 +163,7 @@ TEST(Parse, MutatedLinesNeverHarm) {
     }
     ++accepted;
     for (const std::string& robot : request->robots) EXPECT_TRUE(valid_name(robot)) << line;
-    for (const Value& value : request->values)
+    for (const ArgumentValue& value : request->values)
       for (const double number : value.numbers) EXPECT_TRUE(std::isfinite(number)) << line;
     EXPECT_TRUE(!request->has("--for") || request->number("--for") > 0.0) << line;
   }

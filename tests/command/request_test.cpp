@@ -62,7 +62,7 @@ void expect_round_trip(const Request& request, Table rows) {
   EXPECT_EQ(back->info, request.info);
   EXPECT_EQ(back->verb, request.verb);
   std::size_t sent = 0;
-  for (const Value& value : request.values) {
+  for (const ArgumentValue& value : request.values) {
     if (const auto local = std::find_if(request.info->options.begin(), request.info->options.end(),
                                         [&](const Option& o) { return o.name == value.name && o.local; });
         local != request.info->options.end())

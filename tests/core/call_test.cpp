@@ -8,7 +8,7 @@
 #include "core/exec/fault.hpp"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/supervisor/unit.hpp"
-#include "core/topic/topic.hpp"
+#include "core/topic/local_topic.hpp"
 
 namespace adit {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/supervisor/unit.hpp"
-#include "core/topic/topic.hpp"
+#include "core/topic/local_topic.hpp"
 
 namespace adit {
 namespace {
@@ -53,13 +53,13 @@ TEST_F(ComponentTest, beats_while_its_loop_turns) {
   const ComponentHealth h = sample.health();
   EXPECT_EQ(h.name, "mux");
   EXPECT_TRUE(h.healthy);
-  EXPECT_EQ(h.beats, 10u);
+  EXPECT_EQ(h.heartbeats, 10u);
   EXPECT_LE(h.beat_age, 200ms);
 }
 
 // A replaced strand is gone while the writer of a topic still knows its subscriber.
 TEST_F(ComponentTest, a_topic_outlives_the_strands_of_its_subscribers) {
-  Topic<int> topic(*strand);
+  LocalTopic<int> topic(*strand);
   std::vector<int> seen;
   auto old = machine->strand("old");
   const Subscription gone = topic.subscribe(*old, [&](const auto& x) { seen.push_back(-*x); });
@@ -77,10 +77,10 @@ TEST_F(ComponentTest, a_silent_loop_is_unhealthy_for_a_watcher) {
   Sample sample("mux", *strand, log);
   ASSERT_TRUE(sample.start());
   scheduler.run_until(1s);
-  const auto vital = sample.vital();
-  EXPECT_TRUE(vital->health(strand->now() + 900ms).healthy);
-  EXPECT_FALSE(vital->health(strand->now() + 1100ms).healthy);
-  EXPECT_TRUE(vital->health(strand->now() + 1100ms).running);
+  const auto health_state = sample.health_state();
+  EXPECT_TRUE(health_state->health(strand->now() + 900ms).healthy);
+  EXPECT_FALSE(health_state->health(strand->now() + 1100ms).healthy);
+  EXPECT_TRUE(health_state->health(strand->now() + 1100ms).running);
 }
 
 TEST_F(ComponentTest, an_exception_becomes_a_failure_and_the_rest_goes_on) {
@@ -108,11 +108,11 @@ TEST_F(ComponentTest, an_exception_becomes_a_failure_and_the_rest_goes_on) {
 TEST_F(ComponentTest, callbacks_are_dropped_after_stop_and_after_destruction) {
   int called = 0;
   std::function<void(int)> callback;
-  std::shared_ptr<const Vital> vital;
+  std::shared_ptr<const HealthState> health_state;
   {
     Sample sample("mux", *strand, log);
     ASSERT_TRUE(sample.start());
-    vital = sample.vital();
+    health_state = sample.health_state();
     callback = sample.guard([&called](int n) { called += n; });
     callback(2);
     sample.post([&called] { called += 100; });
@@ -125,7 +125,7 @@ TEST_F(ComponentTest, callbacks_are_dropped_after_stop_and_after_destruction) {
   callback(10);
   scheduler.run_until(1s);
   EXPECT_EQ(called, 2);
-  EXPECT_FALSE(vital->health(strand->now()).running);
+  EXPECT_FALSE(health_state->health(strand->now()).running);
 }
 
 TEST_F(ComponentTest, a_start_that_fails_is_an_error_and_leaves_nothing_behind) {
@@ -141,7 +141,7 @@ TEST_F(ComponentTest, a_start_that_fails_is_an_error_and_leaves_nothing_behind) 
   scheduler.run_until(5s);
   EXPECT_EQ(refusing.ticks, 0);
   EXPECT_FALSE(refusing.running());
-  EXPECT_EQ(refusing.health().beats, 0u);
+  EXPECT_EQ(refusing.health().heartbeats, 0u);
 }
 
 TEST_F(ComponentTest, failed_work_is_a_failure_of_the_component) {
@@ -190,8 +190,8 @@ TEST_F(ComponentTest, a_unit_reports_a_component_that_fails_while_it_starts) {
   ASSERT_TRUE(unit.open());
   unit.restart();
   scheduler.run_until(1s);
-  EXPECT_TRUE(unit.pulse().failed);
-  EXPECT_THAT(unit.pulse().text, HasSubstr("first sample"));
+  EXPECT_TRUE(unit.health_sample().failed);
+  EXPECT_THAT(unit.health_sample().text, HasSubstr("first sample"));
 }
 
 }  // namespace

@@ -95,22 +95,22 @@ class Stuck : public Component {
 };
 
 TEST(VirtualHang, is_no_failure_of_a_component_and_ends_its_beat) {
-  Vital const* seen = nullptr;
-  std::shared_ptr<const Vital> vital;
+  HealthState const* seen = nullptr;
+  std::shared_ptr<const HealthState> health_state;
   {
     VirtualScheduler scheduler(1);
     const auto machine = scheduler.machine("r1", 5s);
     const auto strand = machine->strand("s"), watcher = machine->strand("w");
     Stuck component("stuck", *strand);
     ASSERT_TRUE(component.start());
-    vital = component.vital();
+    health_state = component.health_state();
     scheduler.run_until(1s);
-    EXPECT_TRUE(vital->health(watcher->now()).healthy);
+    EXPECT_TRUE(health_state->health(watcher->now()).healthy);
     component.get_stuck();
     scheduler.run_until(3s);
-    EXPECT_FALSE(vital->health(watcher->now()).healthy);
-    EXPECT_GE(vital->health(watcher->now()).beat_age, 2s);
-    seen = vital.get();
+    EXPECT_FALSE(health_state->health(watcher->now()).healthy);
+    EXPECT_GE(health_state->health(watcher->now()).beat_age, 2s);
+    seen = health_state.get();
     scheduler.run_until(4s);
   }  // released: the exception passes the component's guard
   EXPECT_EQ(seen->health(Time{}).failures, 0u);
@@ -236,7 +236,7 @@ TEST(LiveAbandon, DropsEveryTaskBehindTheOneThatHangs) {
 
 TEST(LiveWorker, computes_on_its_own_thread) {
   LiveRuntime runtime;
-  const auto worker = runtime.worker("planner");
+  const auto worker = runtime.dedicated_strand("planner");
   std::thread::id own, worked;
   std::promise<void> done;
   worker->post([&] {
@@ -255,7 +255,7 @@ TEST(LiveWorker, work_that_throws_is_a_failure_and_completes_with_an_error) {
     told.set_value(strand + ": " + what);
   };
   LiveRuntime runtime(params);
-  const auto worker = runtime.worker("planner");
+  const auto worker = runtime.dedicated_strand("planner");
   worker->compute(
       {.name = "plan"}, [] { throw std::runtime_error("no path"); },
       [&](const Result<void>& result) { done.set_value(result.error().text); });

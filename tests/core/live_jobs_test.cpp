@@ -94,7 +94,7 @@ TEST_F(LiveJobs, LatestOnlyReplacesTheOneThatWaits) {
 }
 
 TEST_F(LiveJobs, AWorkersToo) {
-  strand = runtime.worker("w");
+  strand = runtime.dedicated_strand("w");
   const auto gate = hold(*strand);
   for (int i = 1; i <= 20; ++i) submit(i, {.name = "scan", .latest_only = true});
   for (int i = 21; i <= 24; ++i) submit(i, {});

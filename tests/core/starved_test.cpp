@@ -45,13 +45,13 @@ class Plain : public Component {
 /// Two units, heavy and light, under a supervisor whose words are kept.
 class Starved : public testing::Test {
  protected:
-  static UnitParams unit(const char* name, bool heavy) {
+  static UnitParams unit(const char* name, bool dedicated) {
     UnitParams params{};
     params.name = name;
-    params.heavy = heavy;
+    params.dedicated = dedicated;
     params.make = [name](Executor& strand) {
       return Result<std::unique_ptr<Component>>(
-          std::make_unique<Plain>(name, strand, Log{}, VitalParams{.beat = 50ms}));
+          std::make_unique<Plain>(name, strand, Log{}, HealthParams{.beat = 50ms}));
     };
     return params;
   }
@@ -114,7 +114,7 @@ class Starved : public testing::Test {
 
 TEST_F(Starved, WhoWaitsForTheProcessorIsLeftAloneAndATrueHangBesideItIsFound) {
   let_rivals_in();
-  starved.seat()->strand->post([this] {
+  starved.slot()->strand->post([this] {
     stay_on_one_processor();
     const auto began = std::chrono::steady_clock::now();
     const Duration until = processor_time() + kWork;
@@ -137,7 +137,7 @@ TEST_F(Starved, WhoWaitsForTheProcessorIsLeftAloneAndATrueHangBesideItIsFound) {
 }
 
 TEST_F(Starved, WhoRunsForTooLongWithoutReturningIsFound) {
-  starved.seat()->strand->post([this] {
+  starved.slot()->strand->post([this] {
     const Duration until = processor_time() + 30s;
     while (processor_time() < until && !rivals_end) {
     }

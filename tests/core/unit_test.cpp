@@ -29,8 +29,8 @@ TEST(Unit, AnAbandonedHungPartStoresNothingThatIsPostedToIt) {
   LiveRuntime runtime;
   Unit unit(runtime, idle_unit());
   ASSERT_TRUE(unit.open());
-  const auto seat = unit.seat();
-  const auto strand = seat->strand;
+  const auto slot = unit.slot();
+  const auto strand = slot->strand;
   std::promise<void> entered, go_on;
   strand->post([&entered, go = go_on.get_future().share()] {
     entered.set_value();
@@ -45,10 +45,10 @@ TEST(Unit, AnAbandonedHungPartStoresNothingThatIsPostedToIt) {
   EXPECT_FALSE(strand->post_control([scan] {}));
   EXPECT_EQ(scan.use_count(), 1);
   EXPECT_EQ(runtime.left_behind(), 1u);
-  EXPECT_FALSE(seat->generation->valid()) << "what writes from it must not";
+  EXPECT_FALSE(slot->generation->valid()) << "what writes from it must not";
   unit.replace();  // the operator's word
-  EXPECT_TRUE(unit.seat()->generation->valid());
-  EXPECT_NE(unit.seat()->strand, strand);
+  EXPECT_TRUE(unit.slot()->generation->valid());
+  EXPECT_NE(unit.slot()->strand, strand);
   EXPECT_EQ(runtime.left_behind(), 1u);
   go_on.set_value();
   unit.end();
@@ -59,7 +59,7 @@ TEST(Unit, ARevokedPartWritesNothingFromItsStrand) {
   LiveRuntime runtime;
   Unit unit(runtime, idle_unit());
   ASSERT_TRUE(unit.open());
-  const auto writers = unit.seat()->generation;
+  const auto writers = unit.slot()->generation;
   unit.revoke();
   EXPECT_FALSE(writers->valid());
   unit.end();

@@ -75,7 +75,7 @@ class Sync : public testing::Test {
   std::unique_ptr<Runtime> machine{scheduler.machine("r1", 5s)};
   std::shared_ptr<Executor> strand{machine->strand("command")};
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
-  SyncParams params{.robot = "r1", .most = 8};
+  SyncParams params{.robot = "r1", .max_findings = 8};
   std::array<Operator, 2> ops{};
   std::unique_ptr<FindingSync> sync{};
   std::vector<std::uint64_t> sent{};
@@ -206,7 +206,7 @@ TEST_F(Sync, WhenFullWhatAStationHasIsGivenUpFirst) {
   ops[0].heard = false;
   for (std::uint64_t id = 2; id <= 8; ++id) report(id, 1);
   EXPECT_EQ(report(9, 1), 9u);
-  EXPECT_FALSE(sync->shelf().all().contains({"r1", 1}));
+  EXPECT_FALSE(sync->finding_store().all().contains({"r1", 1}));
   EXPECT_EQ(sync->overflowed(), 0u) << "nothing was lost: a station has it";
   EXPECT_EQ(full, 0);
 }
@@ -215,7 +215,7 @@ TEST_F(Sync, WhenFullWhatMattersLeastIsGivenUpAndReported) {
   ops[0].heard = ops[1].heard = false;
   for (std::uint64_t id = 1; id <= 8; ++id) report(id, static_cast<std::uint8_t>(id));
   EXPECT_EQ(report(20, 5), 20u);
-  EXPECT_FALSE(sync->shelf().all().contains({"r1", 1}));
+  EXPECT_FALSE(sync->finding_store().all().contains({"r1", 1}));
   EXPECT_EQ(report(21, 2), 0u) << "matters no more than what is there";
   EXPECT_EQ(report(22, 5), 22u);
   EXPECT_EQ(sync->size(), 8u);

@@ -86,25 +86,25 @@ Foreigner::Foreigner(Net& net, const std::string& machine, const std::string& ro
       robot_(robot),
       strand_(net.machine(machine).strand("foreigner")),
       radio_(net.join_radio(machine)) {
-  command_ = wire::Writer<radio::Command>::make(*radio_, wire::topics::command, robot).value();
-  joystick_ = wire::Writer<radio::Joystick>::make(*radio_, wire::topics::joystick, robot).value();
-  presence_ = wire::Writer<radio::Presence>::make(*radio_, wire::topics::presence).value();
+  command_ = wire::Writer<radio::Command>::make(*radio_, wire::topics::kCommand, robot).value();
+  joystick_ = wire::Writer<radio::Joystick>::make(*radio_, wire::topics::kJoystick, robot).value();
+  presence_ = wire::Writer<radio::Presence>::make(*radio_, wire::topics::kPresence).value();
   const auto keep = [&]<class T, class F>(const wire::Topic<T>& topic, F store) {
     readers_.push_back(
         wire::make_reader(*radio_, topic, *strand_, [this, store](const T& sample, const wire::SampleInfo&) {
           if (sample.robot() == robot_) store(heard_, sample);
         }).value());
   };
-  keep(wire::topics::authority, [](Heard& heard, const radio::AuthorityStatus& sample) {
+  keep(wire::topics::kAuthority, [](Heard& heard, const radio::AuthorityStatus& sample) {
     heard.authority.use([&](auto& value) { value = sample; });
   });
-  keep(wire::topics::robot_state, [](Heard& heard, const radio::RobotState& sample) {
+  keep(wire::topics::kRobotState, [](Heard& heard, const radio::RobotState& sample) {
     heard.state.use([&](auto& value) { value = sample; });
   });
-  keep(wire::topics::acknowledgement, [](Heard& heard, const radio::Acknowledgement& sample) {
+  keep(wire::topics::kAcknowledgement, [](Heard& heard, const radio::Acknowledgement& sample) {
     heard.answers.use([&](auto& value) { value.push_back(sample); });
   });
-  keep(wire::topics::notification, [](Heard& heard, const radio::Notification& sample) {
+  keep(wire::topics::kNotification, [](Heard& heard, const radio::Notification& sample) {
     heard.notices.use([&](auto& value) { value.push_back(sample); });
   });
 }

@@ -19,13 +19,13 @@ class Robot {
   Robot(Net& net, agent::AgentParams params);
   /// A new process of the same robot: other epoch, nothing remembered.
   void restart();
-  wire::Wire& radio() { return *radio_; }
-  wire::Wire& inner() { return *robot_; }
+  wire::Participant& radio() { return *radio_; }
+  wire::Participant& inner() { return *robot_; }
 
  private:
   Net& net_;
   agent::AgentParams params_;
-  std::unique_ptr<wire::Wire> radio_, robot_;
+  std::unique_ptr<wire::Participant> radio_, robot_;
   std::unique_ptr<agent::Agent> agent_{};
 };
 
@@ -47,7 +47,7 @@ class Operator {
   const station::Id& id() const { return params_.id; }
   station::Station& station() { return *station_; }
   Executor& strand() { return *strand_; }
-  wire::Wire& radio() { return *radio_; }
+  wire::Participant& radio() { return *radio_; }
 
  private:
   void end();
@@ -56,9 +56,9 @@ class Operator {
   station::StationParams params_{};
   /// Those of killed processes: a participant that says nothing more, but did not say goodbye either.
   std::vector<std::shared_ptr<Executor>> silent_strands_{};
-  std::vector<std::unique_ptr<wire::Wire>> silent_radios_{};
+  std::vector<std::unique_ptr<wire::Participant>> silent_radios_{};
   std::shared_ptr<Executor> strand_{};
-  std::unique_ptr<wire::Wire> radio_{};
+  std::unique_ptr<wire::Participant> radio_{};
   std::unique_ptr<station::Station> station_{};
 };
 
@@ -94,7 +94,7 @@ class Foreigner {
   std::string robot_;
   Heard heard_{};
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> radio_;
+  std::unique_ptr<wire::Participant> radio_;
   wire::Writer<radio::Command> command_{};
   wire::Writer<radio::Joystick> joystick_{};
   wire::Writer<radio::Presence> presence_{};

@@ -20,8 +20,9 @@ class Member {
       edge_ = agent::RadioEdge::open({*wire_, *strand_}, name).value();
       seen_ = peers_.follow(
           *strand_, [this](const auto& list) { list_.use([&](agent::PeerList& copy) { copy = *list; }); });
-      agent::RadioEdge::Parts parts{directory_, namesakes_, [this](const auto& work) { work(commands_); },
-                                    [](const Task& task) { task(); }};
+      agent::RadioEdge::Dependencies parts{directory_, namesakes_,
+                                           [this](const auto& work) { work(commands_); },
+                                           [](const Task& task) { task(); }};
       if (!edge_->listen(std::move(parts))) throw std::runtime_error("the radio cannot be heard");
       timer_ = strand_->every(100ms, [this] { directory_.tick(strand_->now()); });
     });
@@ -54,7 +55,7 @@ class Member {
  private:
   Net& net_;
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::Participant> wire_;
   agent::FakeRequests requests_{};
   agent::CommandInterface commands_{{.robot = "watcher"}, requests_, {[](const auto&) {}, [] {}}};
   agent::PeerTable peers_{*strand_};

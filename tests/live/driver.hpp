@@ -20,13 +20,13 @@ class PlainDriver {
         heard_(std::move(heard)),
         strand_(net.machine("driver").strand("driver")),
         wire_(net.join_robot("driver")) {
-    odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*wire_, wire::topics::odom).value();
-    points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*wire_, wire::topics::points).value();
+    odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*wire_, wire::topics::kOdom).value();
+    points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*wire_, wire::topics::kPoints).value();
     net_.on(*strand_, [this] {
       timers_.push_back(strand_->every(std::chrono::milliseconds(20), [this] { step(); }));
       timers_.push_back(strand_->every(std::chrono::milliseconds(100), [this] { scan(); }));
     });
-    cmd_vel_ = wire::make_reader(*wire_, wire::topics::cmd_vel, *strand_,
+    cmd_vel_ = wire::make_reader(*wire_, wire::topics::kCmdVel, *strand_,
                                  [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo& info) {
                                    velocity_ = t.linear().x();
                                    told_.use([this](Told& told) {
@@ -84,7 +84,7 @@ class PlainDriver {
   std::function<void(double, const wire::SampleInfo&)> heard_;
   Shared<Told> told_{};
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::Participant> wire_;
   wire::Writer<nav_msgs::msg::Odometry> odom_{};
   wire::Writer<sensor_msgs::msg::PointCloud2> points_{};
   std::unique_ptr<wire::RawReader> cmd_vel_{};

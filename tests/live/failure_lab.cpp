@@ -33,14 +33,14 @@ FailureLab::FailureLab()
               }),
       ear_strand_(net_->machine("ear").strand("ear")),
       ear_(net_->join_radio("ear")) {
-  readers_.push_back(wire::make_reader(*ear_, wire::topics::notification, *ear_strand_,
+  readers_.push_back(wire::make_reader(*ear_, wire::topics::kNotification, *ear_strand_,
                                        [this](const radio::Notification& n, const wire::SampleInfo& info) {
                                          heard_.use([&](Heard& h) {
                                            h.notices.emplace_back(info.received, n.code() + " " + n.text());
                                          });
                                        })
                          .value());
-  readers_.push_back(wire::make_reader(*ear_, wire::topics::authority, *ear_strand_,
+  readers_.push_back(wire::make_reader(*ear_, wire::topics::kAuthority, *ear_strand_,
                                        [this](const radio::AuthorityStatus& a, const wire::SampleInfo& info) {
                                          heard_.use(
                                              [&](Heard& h) { h.authorities.emplace_back(info.received, a); });
@@ -190,7 +190,7 @@ std::optional<FailureLab::Hung> FailureLab::stay_hung(const std::string& compone
   const auto strand = net_->machine("witness").strand("witness");
   const auto wire = net_->join_robot("witness");
   std::atomic<int> clouds{0};
-  const auto reader = wire->make_reader(wire::topics::points, "", *strand, [&](auto bytes, const auto&) {
+  const auto reader = wire->make_reader(wire::topics::kPoints, "", *strand, [&](auto bytes, const auto&) {
     if (bytes.size() >= cloud_bytes) ++clouds;
     return true;
   });

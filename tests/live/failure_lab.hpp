@@ -80,7 +80,7 @@ class FailureLab {
   Shared<Heard> heard_{};
   PlainDriver driver_;
   std::shared_ptr<Executor> ear_strand_;
-  std::unique_ptr<wire::Wire> ear_;
+  std::unique_ptr<wire::Participant> ear_;
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::unique_ptr<Operator> op_{};
   std::unique_ptr<Process> parent_{};

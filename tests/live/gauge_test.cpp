@@ -43,7 +43,7 @@ TEST(Trend, TheStartDoesNotCount) {
 TEST(Trend, FewSamplesAreNoReasonToFail) {
   EXPECT_EQ(trend({}).growth, 0.0);
   EXPECT_EQ(trend({3.0}).growth, 0.0);
-  EXPECT_EQ(trend({3.0, 4.0}).most, 4.0);
+  EXPECT_EQ(trend({3.0, 4.0}).max, 4.0);
 }
 
 TEST(Gauge, TellsOfAProcess) {

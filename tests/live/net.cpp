@@ -5,8 +5,8 @@
 
 #include "core/exec/live_runtime.hpp"
 #include "core/exec/virtual_runtime.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::live {
@@ -17,7 +17,7 @@ constexpr std::uint32_t radio_domain = 77, robot_domain = 100;
 class RehearsalNet : public Net {
  public:
   RehearsalNet(const wire::LinkProfile& link, Duration inner)
-      : ether_(scheduler_, {.link = link, .inner_latency = inner}) {}
+      : network_(scheduler_, {.link = link, .inner_latency = inner}) {}
 
   Runtime& machine(const std::string& name) override {
     auto& machine = machines_[name];
@@ -25,13 +25,13 @@ class RehearsalNet : public Net {
     if (!machine) machine = scheduler_.machine(name, std::chrono::seconds(1000 * machines_.size()));
     return *machine;
   }
-  std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override {
-    return ether_.join(radio_domain, machine);
+  std::unique_ptr<wire::Participant> join_radio(const std::string& machine) override {
+    return network_.join(radio_domain, machine);
   }
-  std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override {
-    return ether_.join(robot_domain, machine);
+  std::unique_ptr<wire::Participant> join_robot(const std::string& machine) override {
+    return network_.join(robot_domain, machine);
   }
-  void silence(const std::string& machine) override { ether_.crash(machine); }
+  void silence(const std::string& machine) override { network_.crash(machine); }
   void on(Executor&, const std::function<void()>& work) override { work(); }
   Duration clock() const override { return scheduler_.elapsed(); }
   bool wait(const std::function<bool()>& condition, Duration limit) override {
@@ -45,7 +45,7 @@ class RehearsalNet : public Net {
 
  private:
   VirtualScheduler scheduler_{1};
-  wire::Ether ether_;
+  wire::SimulatedNetwork network_;
   std::map<std::string, std::unique_ptr<Runtime>> machines_{};
 };
 
@@ -57,10 +57,10 @@ class LiveNet : public Net {
     if (!machine) machine = std::make_unique<LiveRuntime>();
     return *machine;
   }
-  std::unique_ptr<wire::Wire> join_radio(const std::string& machine) override {
+  std::unique_ptr<wire::Participant> join_radio(const std::string& machine) override {
     return join({.domain = domain(0), .name = machine, .link = link_, .link_seed = ++seed_});
   }
-  std::unique_ptr<wire::Wire> join_robot(const std::string& machine) override {
+  std::unique_ptr<wire::Participant> join_robot(const std::string& machine) override {
     return join({.domain = domain(1), .name = machine});
   }
   void silence(const std::string&) override {}
@@ -78,7 +78,7 @@ class LiveNet : public Net {
   }
 
  private:
-  static std::unique_ptr<wire::Wire> join(const wire::FastDdsParams& params) {
+  static std::unique_ptr<wire::Participant> join(const wire::FastDdsParams& params) {
     auto wire = wire::open_fastdds(params);
     if (!wire) throw std::runtime_error(wire.error().text);
     return std::move(*wire);

@@ -8,7 +8,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/wire/link.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::live {
 
@@ -26,9 +26,9 @@ class Net {
   virtual ~Net() = default;
   /// Lives as long as the net.
   virtual Runtime& machine(const std::string& name) = 0;
-  virtual std::unique_ptr<wire::Wire> join_radio(const std::string& machine) = 0;
+  virtual std::unique_ptr<wire::Participant> join_radio(const std::string& machine) = 0;
   /// The inner network of one robot.
-  virtual std::unique_ptr<wire::Wire> join_robot(const std::string& machine) = 0;
+  virtual std::unique_ptr<wire::Participant> join_robot(const std::string& machine) = 0;
   /// The machine's radio participants fall silent without a goodbye; live they do when nobody uses them.
   virtual void silence(const std::string& machine) = 0;
   /// Runs the work on that strand and waits for its end.

@@ -24,7 +24,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-std::uint64_t samples(const wire::Wire& wire, const std::string& topic, bool out) {
+std::uint64_t samples(const wire::Participant& wire, const std::string& topic, bool out) {
   std::uint64_t sum = 0;
   for (const auto& count : wire.counters().topics)
     if (count.topic == topic) sum += out ? count.samples_out : count.samples_in;
@@ -35,16 +35,17 @@ std::uint64_t samples(const wire::Wire& wire, const std::string& topic, bool out
 /// compared with, because it is the machine's as much as the wire's.
 class HopMeter {
  public:
-  HopMeter(Net& net, std::unique_ptr<wire::Wire> from, std::unique_ptr<wire::Wire> to)
+  HopMeter(Net& net, std::unique_ptr<wire::Participant> from, std::unique_ptr<wire::Participant> to)
       : net_(net),
         strand_(net.machine("hop").strand("hop")),
         from_(std::move(from)),
         to_(std::move(to)),
-        writer_(std::move(from_->make_writer(wire::topics::command, "hop")).value()),
-        reader_(std::move(to_->make_reader(wire::topics::command, "hop", *strand_, [this](auto, const auto&) {
-                  heard_.use([this](Heard& h) { h.hops.push_back(seconds(strand_->now() - h.sent)); });
-                  return true;
-                })).value()) {
+        writer_(std::move(from_->make_writer(wire::topics::kCommand, "hop")).value()),
+        reader_(
+            std::move(to_->make_reader(wire::topics::kCommand, "hop", *strand_, [this](auto, const auto&) {
+              heard_.use([this](Heard& h) { h.hops.push_back(seconds(strand_->now() - h.sent)); });
+              return true;
+            })).value()) {
     net_.until([&] { return writer_->matched() == 1; });
   }
   ~HopMeter() { reader_.reset(); }
@@ -66,7 +67,7 @@ class HopMeter {
   Net& net_;
   Shared<Heard> heard_{};
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> from_, to_;
+  std::unique_ptr<wire::Participant> from_, to_;
   std::unique_ptr<wire::RawWriter> writer_;
   std::unique_ptr<wire::RawReader> reader_;
 };
@@ -105,7 +106,7 @@ class RehearsedWorld {
 
  private:
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::Participant> wire_;
   sim::Scenario scenario_;
   sim::Simulation simulation_;
   sim::RobotDriver driver_;
@@ -121,7 +122,7 @@ class Observer {
   };
   explicit Observer(Net& net)
       : strand_(net.machine("observer").strand("observer")), wire_(net.join_robot("observer")) {
-    reader_ = wire::make_reader(*wire_, wire::topics::cmd_vel, *strand_,
+    reader_ = wire::make_reader(*wire_, wire::topics::kCmdVel, *strand_,
                                 [this, &net](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
                                   const Duration at = net.clock();
                                   heard_.use([&](Heard& h) {
@@ -137,7 +138,7 @@ class Observer {
  private:
   Shared<Heard> heard_{};
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::Participant> wire_;
   std::unique_ptr<wire::RawReader> reader_{};
 };
 
@@ -154,7 +155,7 @@ struct Played {
 double stick_latency(Net& net, Operator& op, const Observer& observer, const std::function<void()>& between) {
   constexpr int samples = 80, slowest = 200;  // mm/s
   std::map<long, Duration> sent;
-  auto writer = wire::Writer<radio::Joystick>::make(op.radio(), wire::topics::joystick, "r1").value();
+  auto writer = wire::Writer<radio::Joystick>::make(op.radio(), wire::topics::kJoystick, "r1").value();
   net.until([&] { return writer.matched() > 0; });
   for (int i = 0; i < samples; ++i) {
     const auto view = op.view("r1");

@@ -74,7 +74,7 @@ TEST(IdlValue, WhatIsCutOffIsRefusedAtEveryByte) {
   wire::encode(odometry, cdr);
   ASSERT_TRUE(cdr_to_json(*types.at(schema.name), cdr));
   for (std::size_t size = 0; size < cdr.size(); ++size)
-    ASSERT_FALSE(cdr_to_json(*types.at(schema.name), Bytes(cdr).first(size))) << size;
+    ASSERT_FALSE(cdr_to_json(*types.at(schema.name), ByteSpan(cdr).first(size))) << size;
   cdr.insert(cdr.end(), 4, 0);
   EXPECT_FALSE(cdr_to_json(*types.at(schema.name), cdr)) << "too long";
 }

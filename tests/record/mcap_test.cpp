@@ -39,8 +39,8 @@ TEST_P(Packed, TornAnywhereGivesAllWholeChunksBeforeTheTear) {
   const std::vector<std::string> all = hear(file)->messages;
   std::size_t before = 0;
   for (std::size_t size = 0; size < file.size(); ++size) {
-    const auto heard = hear(Bytes(file).first(size));
-    if (size < mcap_magic.size()) {
+    const auto heard = hear(ByteSpan(file).first(size));
+    if (size < kMcapMagic.size()) {
       ASSERT_FALSE(heard) << size;
       continue;
     }
@@ -58,7 +58,7 @@ TEST_P(Packed, TornAnywhereGivesAllWholeChunksBeforeTheTear) {
 TEST_P(Packed, AChangedByteIsNoticedAndAtMostItsRecordIsLost) {
   const std::vector<std::uint8_t> file = small_file(GetParam());
   const std::vector<std::string> all = hear(file)->messages;
-  for (std::size_t at = mcap_magic.size(); at < file.size(); ++at) {
+  for (std::size_t at = kMcapMagic.size(); at < file.size(); ++at) {
     std::vector<std::uint8_t> changed = file;
     changed[at] ^= 0x10;
     const auto heard = hear(changed);
@@ -91,7 +91,7 @@ TEST(Mcap, RandomBytesAreReadWithoutHarm) {
     std::vector<std::uint8_t> file =
         round % 2 == 0 ? small_file(round % 4 == 0) : std::vector<std::uint8_t>{};
     if (file.empty()) {
-      file.assign(mcap_magic.begin(), mcap_magic.end());
+      file.assign(kMcapMagic.begin(), kMcapMagic.end());
       for (std::uint64_t n = random.next() % 300; n > 0; --n) {
         file.push_back(static_cast<std::uint8_t>(random.next() % 16));
         if (random.next() % 3 == 0) file.insert(file.end(), 7, 0);

@@ -36,7 +36,7 @@ class RecorderTest : public testing::Test {
     out.ring.name = "r1";
     out.clock = [this] { return now_ += 1'000'000; };
     out.steady = [this] { return steady_ += 1'000'000; };
-    out.complain = [this](const std::string& text) { complaints_.push_back(text); };
+    out.on_error = [this](const std::string& text) { complaints_.push_back(text); };
     return out;
   }
   std::vector<fs::path> files() { return files_in(folder_.path() + "/recordings"); }
@@ -156,7 +156,7 @@ struct SmallDisk {
     SmallDisk& disk;
     std::unique_ptr<Output> file;
     Out(SmallDisk& d, std::unique_ptr<Output> f) : disk(d), file(std::move(f)) {}
-    Result<void> append(Bytes data) override {
+    Result<void> append(ByteSpan data) override {
       if (static_cast<std::int64_t>(data.size()) > disk.room)
         return {Reason::cannot_write, "No space left on device"};
       disk.room -= static_cast<std::int64_t>(data.size());

@@ -17,7 +17,7 @@ struct Heard {
   std::vector<Channel> channels{};
 };
 
-inline Result<Heard> hear(Bytes bytes) {
+inline Result<Heard> hear(ByteSpan bytes) {
   Heard heard;
   std::istringstream in(std::string(bytes.begin(), bytes.end()));
   Visitor visitor;
@@ -34,7 +34,7 @@ inline Result<Heard> hear(Bytes bytes) {
   return heard;
 }
 
-inline Bytes bytes_of(const std::string& text) {
+inline ByteSpan bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 

@@ -11,7 +11,7 @@ using testing::HasSubstr;
 
 class Tool : public testing::Test {
  protected:
-  std::string file(const std::string& name, Bytes bytes) {
+  std::string file(const std::string& name, ByteSpan bytes) {
     return folder_.write(name, std::string(bytes.begin(), bytes.end()));
   }
   live::Finished recording(std::vector<std::string> words) {
@@ -41,7 +41,7 @@ TEST_F(Tool, InfoAndCatTellWhatIsThere) {
 TEST_F(Tool, RecoversWhatATornFileHolds) {
   const auto whole = small_file(false);
   const std::string bytes(whole.begin(), whole.end());
-  const std::string torn = file("torn.mcap", Bytes(whole).first(bytes.find("third")));
+  const std::string torn = file("torn.mcap", ByteSpan(whole).first(bytes.find("third")));
   EXPECT_EQ(recording({"info", torn}).exit_code, 1);
   const std::string saved = folder_.path() + "/saved.mcap";
   const auto done = recording({"recover", torn, saved});

@@ -1,12 +1,12 @@
-// What passes a wire, on a tape; and a rehearsal's ether, in a file.
+// What passes a wire, on a record sink; and a rehearsal's simulated network, in a file.
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "core/exec/virtual_runtime.hpp"
 #include "core/record/frame_recorder.hpp"
 #include "core/record/idl_schema.hpp"
 #include "core/record/recording_log.hpp"
-#include "core/record/recording_wire.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/record/recording_participant.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "tests/live/process.hpp"
@@ -20,7 +20,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class MemoryTape final : public Tape {
+class MemorySink final : public RecordSink {
  public:
   ChannelId channel(const ChannelInfo& info) override {
     for (std::size_t i = 0; i < channels.size(); ++i)
@@ -28,7 +28,7 @@ class MemoryTape final : public Tape {
     channels.push_back(info);
     return static_cast<ChannelId>(channels.size() - 1);
   }
-  void record(ChannelId channel, Bytes cdr) override {
+  void record(ChannelId channel, ByteSpan cdr) override {
     topics.push_back(channels.at(channel).topic);
     samples.emplace_back(cdr.begin(), cdr.end());
   }
@@ -42,9 +42,9 @@ class MemoryTape final : public Tape {
 TEST(IdlSchema, EveryTopicHasOne) {
   namespace t = wire::topics;
   const wire::TopicInfo* all[] = {
-      &t::capabilities, &t::presence,    &t::command,   &t::joystick, &t::acknowledgement,
-      &t::authority,    &t::robot_state, &t::behaviour, &t::health,   &t::link_report,
-      &t::notification, &t::cmd_vel,     &t::odom,      &t::points,   &t::battery};
+      &t::kCapabilities, &t::kPresence,   &t::kCommand,   &t::kJoystick, &t::kAcknowledgement,
+      &t::kAuthority,    &t::kRobotState, &t::kBehaviour, &t::kHealth,   &t::kLinkReport,
+      &t::kNotification, &t::kCmdVel,     &t::kOdom,      &t::kPoints,   &t::kBattery};
   for (const wire::TopicInfo* topic : all) {
     const auto schema = idl_schema(topic->type);
     ASSERT_TRUE(schema.has_value()) << topic->type;
@@ -69,7 +69,7 @@ TEST(IdlSchema, UnknownTypesHaveNone) {
 
 class Air : public testing::Test {
  protected:
-  Air() : op_(ether_.join(77, "op1")), r1_(ether_.join(77, "r1")) {}
+  Air() : op_(network_.join(77, "op1")), r1_(network_.join(77, "r1")) {}
   void pass(Duration time) { scheduler_.run_until(scheduler_.elapsed() + time); }
   std::shared_ptr<Executor> strand(const std::string& name) {
     machines_.push_back(scheduler_.machine(name, 0ms));
@@ -77,20 +77,20 @@ class Air : public testing::Test {
   }
 
   VirtualScheduler scheduler_{1};
-  wire::Ether ether_{scheduler_, {.link = {.latency = 0.0001}}};
+  wire::SimulatedNetwork network_{scheduler_, {.link = {.latency = 0.0001}}};
   std::vector<std::unique_ptr<Runtime>> machines_{};
-  std::unique_ptr<wire::Wire> op_, r1_;
-  MemoryTape tape_{};
+  std::unique_ptr<wire::Participant> op_, r1_;
+  MemorySink sink_{};
 };
 
 TEST_F(Air, BothDirectionsAreRecorded) {
-  RecordingWire op(*op_, tape_, "radio"), r1(*r1_, tape_, "radio");
+  RecordingParticipant op(*op_, sink_, "radio"), r1(*r1_, sink_, "radio");
   const auto own = strand("r1");
   int heard = 0;
   const auto reader = wire::make_reader(
-      r1, wire::topics::command, *own, [&](const radio::Command&, const wire::SampleInfo&) { ++heard; },
+      r1, wire::topics::kCommand, *own, [&](const radio::Command&, const wire::SampleInfo&) { ++heard; },
       "r1");
-  auto writer = wire::Writer<radio::Command>::make(op, wire::topics::command, "r1");
+  auto writer = wire::Writer<radio::Command>::make(op, wire::topics::kCommand, "r1");
   pass(2s);
   EXPECT_EQ(writer->matched(), 1U);
   radio::Command command;
@@ -98,78 +98,78 @@ TEST_F(Air, BothDirectionsAreRecorded) {
   ASSERT_TRUE(writer->write(command));
   pass(1s);
   EXPECT_EQ(heard, 1);
-  EXPECT_THAT(tape_.topics, ElementsAre("out/adit/command", "in/adit/command"));
-  EXPECT_EQ(tape_.samples.at(0), tape_.samples.at(1));
-  EXPECT_EQ(tape_.channels.at(0).metadata.at("partition"), "r1");
-  EXPECT_EQ(tape_.channels.at(1).metadata.at("from"), wire::to_string(op_->id()));
-  EXPECT_EQ(tape_.channels.at(1).metadata.at("net"), "radio");
+  EXPECT_THAT(sink_.topics, ElementsAre("out/adit/command", "in/adit/command"));
+  EXPECT_EQ(sink_.samples.at(0), sink_.samples.at(1));
+  EXPECT_EQ(sink_.channels.at(0).metadata.at("partition"), "r1");
+  EXPECT_EQ(sink_.channels.at(1).metadata.at("from"), wire::to_string(op_->id()));
+  EXPECT_EQ(sink_.channels.at(1).metadata.at("net"), "radio");
 }
 
 TEST_F(Air, WhatCannotBeDecodedStandsApart) {
-  RecordingWire r1(*r1_, tape_, "radio");
+  RecordingParticipant r1(*r1_, sink_, "radio");
   const auto own = strand("r1");
-  const auto reader = wire::make_reader(r1, wire::topics::presence, *own,
+  const auto reader = wire::make_reader(r1, wire::topics::kPresence, *own,
                                         [](const radio::Presence&, const wire::SampleInfo&) {});
-  auto writer = op_->make_writer(wire::topics::presence, "");
+  auto writer = op_->make_writer(wire::topics::kPresence, "");
   pass(2s);
   // Its key can be read, its id is cut off.
   ASSERT_TRUE((*writer)->write(std::vector<std::uint8_t>{0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}));
   pass(1s);
-  EXPECT_THAT(tape_.topics, ElementsAre("in/adit/presence/malformed"));
-  EXPECT_TRUE(tape_.channels.back().metadata.contains(malformed_key));
+  EXPECT_THAT(sink_.topics, ElementsAre("in/adit/presence/malformed"));
+  EXPECT_TRUE(sink_.channels.back().metadata.contains(kMalformedKey));
 }
 
 TEST_F(Air, APeerThatSendsRubbishDoesNotWashTheRingAway) {
-  RecordingWire r1(*r1_, tape_, "radio");
+  RecordingParticipant r1(*r1_, sink_, "radio");
   const auto own = strand("r1");
-  auto reader = wire::make_reader(r1, wire::topics::presence, *own,
+  auto reader = wire::make_reader(r1, wire::topics::kPresence, *own,
                                   [](const radio::Presence&, const wire::SampleInfo&) {});
-  auto writer = op_->make_writer(wire::topics::presence, "");
+  auto writer = op_->make_writer(wire::topics::kPresence, "");
   pass(2s);
   for (int i = 0; i < 1000; ++i) {
     ASSERT_TRUE((*writer)->write(std::vector<std::uint8_t>{0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}));
     pass(1ms);
   }
-  EXPECT_GE(tape_.topics.size(), 32U);
-  EXPECT_LE(tape_.topics.size(), 40U);
-  EXPECT_EQ(tape_.channels.size(), 1U);
-  EXPECT_EQ(tape_.released, 0) << "one channel, not one a sample";
-  const auto before = tape_.topics.size();
+  EXPECT_GE(sink_.topics.size(), 32U);
+  EXPECT_LE(sink_.topics.size(), 40U);
+  EXPECT_EQ(sink_.channels.size(), 1U);
+  EXPECT_EQ(sink_.released, 0) << "one channel, not one a sample";
+  const auto before = sink_.topics.size();
   pass(10s);
   ASSERT_TRUE((*writer)->write(std::vector<std::uint8_t>{0, 1, 0, 0, 2, 0, 0, 0, 'a', 0}));
   pass(1s);
-  EXPECT_EQ(tape_.topics.size(), before + 1);
+  EXPECT_EQ(sink_.topics.size(), before + 1);
   reader = Error{Reason::none, {}};
-  EXPECT_EQ(tape_.released, 1);
+  EXPECT_EQ(sink_.released, 1);
 }
 
 TEST_F(Air, ASampleThatBreaksItsReceiverIsThere) {
-  RecordingWire r1(*r1_, tape_, "radio");
+  RecordingParticipant r1(*r1_, sink_, "radio");
   const auto own = strand("r1");
   const auto reader = wire::make_reader(
-      r1, wire::topics::presence, *own,
+      r1, wire::topics::kPresence, *own,
       [](const radio::Presence&, const wire::SampleInfo&) { throw std::runtime_error("x"); });
-  auto writer = wire::Writer<radio::Presence>::make(*op_, wire::topics::presence);
+  auto writer = wire::Writer<radio::Presence>::make(*op_, wire::topics::kPresence);
   pass(2s);
   ASSERT_TRUE(writer->write(radio::Presence{}));
   pass(1s);
-  EXPECT_THAT(tape_.topics, ElementsAre("in/adit/presence"));
+  EXPECT_THAT(sink_.topics, ElementsAre("in/adit/presence"));
 }
 
 TEST_F(Air, EachSenderHasItsChannel) {
-  RecordingWire r1(*r1_, tape_, "radio");
+  RecordingParticipant r1(*r1_, sink_, "radio");
   const auto own = strand("r1");
-  const auto reader = wire::make_reader(r1, wire::topics::presence, *own,
+  const auto reader = wire::make_reader(r1, wire::topics::kPresence, *own,
                                         [](const radio::Presence&, const wire::SampleInfo&) {});
   for (int i = 0; i < 34; ++i) {
-    const auto other = ether_.join(77, "other" + std::to_string(i));
-    auto writer = wire::Writer<radio::Presence>::make(*other, wire::topics::presence);
+    const auto other = network_.join(77, "other" + std::to_string(i));
+    auto writer = wire::Writer<radio::Presence>::make(*other, wire::topics::kPresence);
     pass(2s);
     ASSERT_TRUE(writer->write(radio::Presence{}));
     pass(1s);
   }
-  EXPECT_EQ(tape_.channels.size(), 34U);
-  EXPECT_EQ(tape_.released, 2) << "32 are kept; of more, those that were silent longest are given up";
+  EXPECT_EQ(sink_.channels.size(), 34U);
+  EXPECT_EQ(sink_.released, 2) << "32 are kept; of more, those that were silent longest are given up";
 }
 
 TEST_F(Air, ARehearsalIsOneFileWithWhoToWhom) {
@@ -177,15 +177,15 @@ TEST_F(Air, ARehearsalIsOneFileWithWhoToWhom) {
   const std::string file = folder.path() + "/run.mcap";
   auto recorder = FrameRecorder::open({.file = file, .about = {{"seed", "1"}}});
   ASSERT_TRUE(recorder);
-  ether_.set_tap([&](const wire::Frame& frame) { (*recorder)->see(frame); });
+  network_.set_tap([&](const wire::SampleEvent& frame) { (*recorder)->see(frame); });
   const auto own = strand("r1");
-  const auto reader = wire::make_reader(*r1_, wire::topics::presence, *own,
+  const auto reader = wire::make_reader(*r1_, wire::topics::kPresence, *own,
                                         [](const radio::Presence&, const wire::SampleInfo&) {});
-  auto writer = wire::Writer<radio::Presence>::make(*op_, wire::topics::presence);
+  auto writer = wire::Writer<radio::Presence>::make(*op_, wire::topics::kPresence);
   pass(2s);
   ASSERT_TRUE(writer->write(radio::Presence{}));
   pass(1s);
-  ether_.cut("op1", "r1", true);
+  network_.cut("op1", "r1", true);
   ASSERT_TRUE(writer->write(radio::Presence{}));
   pass(1s);
   ASSERT_TRUE((*recorder)->close());
@@ -203,13 +203,13 @@ TEST_F(Air, ARehearsalIsOneFileWithWhoToWhom) {
 }
 
 TEST(RecordingLog, LinesGoBothWays) {
-  MemoryTape tape;
+  MemorySink record_sink;
   const auto inner = std::make_shared<MemoryLog>();
-  const auto sink = std::make_shared<RecordingLog>(inner, tape);
+  const auto sink = std::make_shared<RecordingLog>(inner, record_sink);
   Log(sink, "r1/mux").warn("odd");
-  ASSERT_EQ(tape.samples.size(), 1U);
+  ASSERT_EQ(record_sink.samples.size(), 1U);
   EXPECT_THAT(inner->lines(), ElementsAre(HasSubstr("odd")));
-  const std::string bytes(tape.samples[0].begin(), tape.samples[0].end());
+  const std::string bytes(record_sink.samples[0].begin(), record_sink.samples[0].end());
   EXPECT_THAT(bytes, HasSubstr(std::string("odd\0", 4)));
   EXPECT_THAT(bytes, HasSubstr("r1/mux"));
 }

@@ -24,7 +24,7 @@ CommandHeard heard(radio::CommandKind kind) {
   command.station("op1");
   command.kind(kind);
   command.words({"planner", "auto"});
-  const auto decoded = decode_received(wire::topics::command.name, bytes_of(command), {});
+  const auto decoded = decode_received(wire::topics::kCommand.name, bytes_of(command), {});
   EXPECT_TRUE(decoded.has_value());
   EXPECT_EQ(decoded->robot, "r1");
   return std::get<CommandHeard>(decoded->event);
@@ -50,10 +50,10 @@ TEST(RadioDecoder, AProgramsVelocityIsNoWordOfTheAgent) {
   geometry_msgs::msg::Twist twist;
   twist.linear().x(0.4);
   const auto bytes = bytes_of(twist);
-  const auto decoded = decode_received(wire::topics::external_cmd_vel.name, bytes, {});
+  const auto decoded = decode_received(wire::topics::kExternalCmdVel.name, bytes, {});
   ASSERT_TRUE(decoded.has_value());
   EXPECT_DOUBLE_EQ(std::get<ProgramHeard>(decoded->event).velocity.vx, 0.4);
-  EXPECT_FALSE(decode_sent(wire::topics::external_cmd_vel.name, wire::topics::external_cmd_vel.type, bytes));
+  EXPECT_FALSE(decode_sent(wire::topics::kExternalCmdVel.name, wire::topics::kExternalCmdVel.type, bytes));
 }
 
 }  // namespace

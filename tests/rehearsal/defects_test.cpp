@@ -150,12 +150,12 @@ TEST(Defects, AStateThatIsLostWholeIsNoShorterThanItWas) {
   const Decorated robot("state_lost_whole");
   agent::Snapshot snapshot{};
   snapshot.boot = 7;
-  const auto bytes = store::seal(agent::kSnapshotFormat, 1, agent::encode(snapshot));
+  const auto bytes = store::encode_envelope(agent::kSnapshotFormat, 1, agent::encode(snapshot));
   ASSERT_TRUE(robot.disk->replace(agent::kStateFile, bytes));
   const auto read = robot.decoration.disk->read(agent::kStateFile, 1 << 20);
   ASSERT_TRUE(read && *read);
   EXPECT_EQ((*read)->size(), bytes.size());
-  EXPECT_EQ(store::unseal(agent::kSnapshotFormat, **read).found, store::Found::corrupt);
+  EXPECT_EQ(store::decode_envelope(agent::kSnapshotFormat, **read).found, store::LoadStatus::corrupt);
   EXPECT_TRUE(agent::restore_state(robot.decoration.disk).lost);
 }
 

@@ -17,7 +17,7 @@ TEST(RadioWalls, TakeSoMuchAMetreBothWaysAndNotMoreThanMatters) {
   EXPECT_EQ(walls({0, 0, 0}, {3, 0, 0}), 0.0);
   EXPECT_NEAR(walls({0, 0, 0}, {8, 0, 0}), 20.0, 1e-9);
   EXPECT_EQ(walls({8, 0, 0}, {0, 0, 0}), walls({0, 0, 0}, {8, 0, 0}));
-  EXPECT_EQ(walls({0, 0, 0}, {95, 0, 0}), RadioWalls::most);
+  EXPECT_EQ(walls({0, 0, 0}, {95, 0, 0}), RadioWalls::kMaxAttenuation);
 }
 
 TEST(RadioWalls, WhatIsRememberedIsForgottenBeforeItGrowsWithoutEnd) {

@@ -106,7 +106,7 @@ class Record {
   std::vector<int> broken() {
     checker_.advance(now + 1ns);
     std::vector<int> out;
-    for (const int rule : Checker::numbers)
+    for (const int rule : Checker::kNumbers)
       if (checker_.count(rule) > 0) out.push_back(rule);
     return out;
   }

@@ -23,7 +23,7 @@ TEST(BoxWorld, boxes_stand_where_they_were_put) {
   EXPECT_TRUE(std::isinf(cast(*world, {0, 0, 0.5}, {-1, 0, 0}))) << "below it";
   EXPECT_TRUE(std::isinf(cast(*world, {0, 1.01, 0.5}, {1, 0, 0}))) << "beside the wall";
   EXPECT_NEAR(cast(*world, {0, 0, 0.5}, {0, 0, 1}), 2.5, 1e-9) << "the ceiling";
-  EXPECT_EQ(cast(*world, {50, 0, 0.5}, {-1, 0, 0}), VoxelGrid::no_hit);
+  EXPECT_EQ(cast(*world, {50, 0, 0.5}, {-1, 0, 0}), VoxelGrid::kNoHit);
   EXPECT_NEAR(cast(*world, {12, 0, 0.5}, {-1, 0, 0}), 9.9, 1e-9) << "from beside the grid";
 }
 

@@ -40,7 +40,7 @@ TEST(Person, WaitsBeforeARobotThatStands) {
   for (int n = 0; n < 1000; ++n) s.step();
   EXPECT_GT(x(s), 0.0);
   EXPECT_EQ(s.truth(0).collisions, 0u);
-  EXPECT_NEAR(s.truth(0).min_clearance, Person::respect, 0.05) << "and it is near";
+  EXPECT_NEAR(s.truth(0).min_clearance, Person::kRespect, 0.05) << "and it is near";
 }
 
 TEST(Person, IsHitByARobotThatDoesNotLook) {
@@ -70,7 +70,7 @@ TEST(Person, WhoYieldsToNobodyCausesTheContactWithARobotThatStands) {
   EXPECT_EQ(s.truth(0).collisions, 1u);
   EXPECT_EQ(s.truth(0).caused, 0u);
   EXPECT_EQ(s.truth(0).min_clearance, 0.0);
-  EXPECT_NEAR(x(s), 0.3 + Person::size / 2, 0.02) << "he does not pass through it";
+  EXPECT_NEAR(x(s), 0.3 + Person::kSize / 2, 0.02) << "he does not pass through it";
 }
 
 TEST(Person, WhoCatchesARobotUpThatDrivesAwayCausesTheContact) {
@@ -113,7 +113,7 @@ TEST(Person, IsSeen) {
   float nearest = 100.0f;
   for (const Eigen::Vector3f& p : s.scan(0).compute())
     if (std::abs(p.y()) < 0.1f && p.x() > 0) nearest = std::min(nearest, p.x());
-  EXPECT_NEAR(nearest, 3.0 - Person::size / 2, 0.02);
+  EXPECT_NEAR(nearest, 3.0 - Person::kSize / 2, 0.02);
 }
 
 TEST(Person, WithoutAPathIsAnError) {

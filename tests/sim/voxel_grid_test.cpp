@@ -32,7 +32,7 @@ double march(const VoxelGrid& grid, const Eigen::Vector3d& start, const Eigen::V
     }
     if (grid.solid(i, j, grid.locate(p).k)) return t;
   }
-  return VoxelGrid::no_hit;
+  return VoxelGrid::kNoHit;
 }
 
 TEST(VoxelGrid, cast_agrees_with_marching) {
@@ -71,8 +71,8 @@ TEST(VoxelGrid, range_to_a_wall_is_exact) {
   EXPECT_NEAR(grid.cast(start, {1, 0, 0}, 30.0), 2.0, 1e-9);
   const double s = std::sqrt(0.5);
   EXPECT_NEAR(grid.cast(start, {s, s, 0}, 30.0), 2.0 / s, 1e-9);
-  EXPECT_EQ(grid.cast(start, {-1, 0, 0}, 30.0), VoxelGrid::no_hit);
-  EXPECT_EQ(grid.cast(start, {1, 0, 0}, 1.9), VoxelGrid::no_hit);
+  EXPECT_EQ(grid.cast(start, {-1, 0, 0}, 30.0), VoxelGrid::kNoHit);
+  EXPECT_EQ(grid.cast(start, {1, 0, 0}, 1.9), VoxelGrid::kNoHit);
   EXPECT_NEAR(grid.cast(start, {0, 0, -1}, 30.0), 1.0, 1e-9);
   EXPECT_NEAR(grid.cast(start, {-0.8, 0, -0.6}, 30.0), 1.0 / 0.6, 1e-9) << "the floor beside the grid";
 }

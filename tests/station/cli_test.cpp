@@ -16,7 +16,7 @@
 #include "core/command/vocabulary.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/exec/virtual_runtime.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "tests/folders/folders.hpp"
 #include "tests/live/process.hpp"
 
@@ -231,8 +231,8 @@ TEST_F(Cli, AStopThatTheStationHasNoRoomForGoesOutByItself) {
   std::filesystem::create_directory(std::filesystem::path(path("op1.sock")).parent_path());
   ASSERT_EQ(::chmod(path("").c_str(), 0700), 0);
   VirtualScheduler scheduler{1};
-  wire::Ether ether{scheduler, {}};
-  const auto wire = ether.join(77, "op1");
+  wire::SimulatedNetwork network{scheduler, {}};
+  const auto wire = network.join(77, "op1");
   LiveRuntime runtime;
   const auto strand = runtime.strand("station");
   auto server = cli::Server::open(path(""), "op1").value();

@@ -189,8 +189,8 @@ TEST_F(ExecuteTest, DownReleasesWhatItHoldsAndFallsSilent) {
 
 TEST_F(ExecuteTest, ObserversSeeWhatGoesOutAndComesBack) {
   std::vector<std::string> seen;
-  op_->on_sent = [&](const Order& order, std::uint64_t seq) {
-    seen.push_back(std::string(order.name()) + " " + std::to_string(seq));
+  op_->on_sent = [&](const RobotCommand& robot_command, std::uint64_t seq) {
+    seen.push_back(std::string(robot_command.name()) + " " + std::to_string(seq));
   };
   op_->on_answer = [&](const Answer& answer) { seen.push_back(answer.robot + " " + answer.command); };
   execute("take r1");
@@ -322,9 +322,9 @@ TEST_F(ExecuteTest, ALostRobotIsToldToTheOperator) {
 TEST_F(ExecuteTest, ARobotOfAnotherReleaseIsToldToTheOperator) {
   std::vector<std::string> seen;
   op_->on_notice = [&](const Notice& notice) { seen.push_back(notice.code + ": " + notice.text); };
-  const auto older = ether_.join(77, "r7");
+  const auto older = network_.join(77, "r7");
   constexpr wire::TopicInfo unversioned{
-      "adit/robot_state", "adit::radio::RobotState", wire::QosClass::state, 1, wire::topics::keyed, 256};
+      "adit/robot_state", "adit::radio::RobotState", wire::QosClass::state, 1, wire::topics::kKeyed, 256};
   const auto writer = older->make_writer(unversioned, "");
   run_for(3s);
   EXPECT_THAT(seen,
@@ -392,7 +392,7 @@ TEST_F(FreshStation, StopAllWithNobodyThereIsNoAnswer) {
 }
 
 TEST_F(FreshStation, AWrongNameDoesNotStart) {
-  wire_ = ether_.join(77, "op");
+  wire_ = network_.join(77, "op");
   Station station({.name = "op 1", .id = id}, *strand_, *wire_);
   EXPECT_EQ(station.start().reason(), Reason::bad_argument);
 }

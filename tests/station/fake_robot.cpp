@@ -7,18 +7,18 @@ namespace adit::station {
 
 using namespace std::chrono_literals;
 
-FakeRobot::FakeRobot(VirtualScheduler& scheduler, wire::Ether& ether, std::string name)
+FakeRobot::FakeRobot(VirtualScheduler& scheduler, wire::SimulatedNetwork& network, std::string name)
     : scheduler_(scheduler),
       name_(std::move(name)),
       machine_(scheduler.machine(name_, 1000s)),
       strand_(machine_->strand("robot")),
-      wire_(ether.join(77, name_)) {
-  state_ = wire::Writer<radio::RobotState>::make(*wire_, wire::topics::robot_state).value();
-  authority_ = wire::Writer<radio::AuthorityStatus>::make(*wire_, wire::topics::authority).value();
-  behaviour_ = wire::Writer<radio::BehaviourState>::make(*wire_, wire::topics::behaviour).value();
-  answers_ = wire::Writer<radio::Acknowledgement>::make(*wire_, wire::topics::acknowledgement).value();
+      wire_(network.join(77, name_)) {
+  state_ = wire::Writer<radio::RobotState>::make(*wire_, wire::topics::kRobotState).value();
+  authority_ = wire::Writer<radio::AuthorityStatus>::make(*wire_, wire::topics::kAuthority).value();
+  behaviour_ = wire::Writer<radio::BehaviourState>::make(*wire_, wire::topics::kBehaviour).value();
+  answers_ = wire::Writer<radio::Acknowledgement>::make(*wire_, wire::topics::kAcknowledgement).value();
   readers_.push_back(wire::make_reader(
-                         *wire_, wire::topics::command, *strand_,
+                         *wire_, wire::topics::kCommand, *strand_,
                          [this](const radio::Command& command, const wire::SampleInfo&) {
                            commands_.push_back({scheduler_.elapsed(), command});
                            answer(command);
@@ -26,7 +26,7 @@ FakeRobot::FakeRobot(VirtualScheduler& scheduler, wire::Ether& ether, std::strin
                          name_)
                          .value());
   readers_.push_back(wire::make_reader(
-                         *wire_, wire::topics::joystick, *strand_,
+                         *wire_, wire::topics::kJoystick, *strand_,
                          [this](const radio::Joystick& sample, const wire::SampleInfo&) {
                            sticks_.push_back({scheduler_.elapsed(), sample});
                          },
@@ -58,7 +58,7 @@ void FakeRobot::publish() {
 
 void FakeRobot::describe(float max_speed, float max_turn, bool holonomic) {
   if (!capabilities_)
-    capabilities_ = wire::Writer<radio::Capabilities>::make(*wire_, wire::topics::capabilities).value();
+    capabilities_ = wire::Writer<radio::Capabilities>::make(*wire_, wire::topics::kCapabilities).value();
   radio::Capabilities sample;
   sample.name(name_);
   sample.kind(radio::AGENT_ROBOT);
@@ -131,20 +131,20 @@ std::vector<std::uint64_t> FakeRobot::numbers() const {
 }
 
 StationTest::StationTest(wire::LinkProfile link, std::uint64_t seed)
-    : ether_(scheduler_, {.seed = seed, .link = std::move(link)}),
+    : network_(scheduler_, {.seed = seed, .link = std::move(link)}),
       machine_(scheduler_.machine("op", 5s)),
       strand_(machine_->strand("station")) {}
 
 StationTest::~StationTest() = default;
 
 FakeRobot& StationTest::add(const std::string& name) {
-  robots_.push_back(std::make_unique<FakeRobot>(scheduler_, ether_, name));
+  robots_.push_back(std::make_unique<FakeRobot>(scheduler_, network_, name));
   return *robots_.back();
 }
 
 Station& StationTest::start(const std::string& name) {
   op_.reset();
-  wire_ = ether_.join(77, "op");
+  wire_ = network_.join(77, "op");
   op_ = std::make_unique<Station>(StationParams{.name = name, .id = id}, *strand_, *wire_);
   EXPECT_TRUE(op_->start().ok());
   return *op_;

@@ -14,7 +14,7 @@
 #include "adit/robot.h"
 #include "basestation/station.hpp"
 #include "core/exec/virtual_runtime.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "core/wire/typed.hpp"
 
 namespace adit::station {
@@ -34,7 +34,7 @@ class FakeRobot {
   /// Nullopt: no answer.
   using Answering = std::function<std::optional<Reason>(const radio::Command&)>;
 
-  FakeRobot(VirtualScheduler& scheduler, wire::Ether& ether, std::string name);
+  FakeRobot(VirtualScheduler& scheduler, wire::SimulatedNetwork& network, std::string name);
 
   /// States go out at 10 Hz while true.
   bool alive{true};
@@ -65,7 +65,7 @@ class FakeRobot {
   std::string name_;
   std::unique_ptr<Runtime> machine_;
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> wire_;
+  std::unique_ptr<wire::Participant> wire_;
   wire::Writer<radio::RobotState> state_{};
   wire::Writer<radio::AuthorityStatus> authority_{};
   wire::Writer<radio::BehaviourState> behaviour_{};
@@ -95,10 +95,10 @@ class StationTest : public testing::Test {
 
   static constexpr Id id{1, 2, 3};
   VirtualScheduler scheduler_{7};
-  wire::Ether ether_;
+  wire::SimulatedNetwork network_;
   std::unique_ptr<Runtime> machine_;
   std::shared_ptr<Executor> strand_;
-  std::unique_ptr<wire::Wire> wire_{};
+  std::unique_ptr<wire::Participant> wire_{};
   std::unique_ptr<Station> op_{};
   std::vector<std::unique_ptr<FakeRobot>> robots_{};
   std::vector<Outcome> late_{};

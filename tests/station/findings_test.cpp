@@ -16,10 +16,10 @@ class FindingsTest : public StationTest {
   FindingsTest() {
     add("r1");
     begin_station();
-    finder_ = ether_.join(77, "finder");
+    finder_ = network_.join(77, "finder");
     strand2_ = machine_->strand("finder");
-    writer_ = wire::Writer<radio::Finding>::make(*finder_, wire::topics::finding).value();
-    acks_ = wire::make_reader(*finder_, wire::topics::findings_ack, *strand2_,
+    writer_ = wire::Writer<radio::Finding>::make(*finder_, wire::topics::kFinding).value();
+    acks_ = wire::make_reader(*finder_, wire::topics::kFindingsAck, *strand2_,
                               [this](const radio::FindingsAck& a, const wire::SampleInfo&) {
                                 for (const auto one : a.ids()) acknowledged_.push_back(one);
                               })
@@ -29,7 +29,7 @@ class FindingsTest : public StationTest {
   void begin_station() {
     op_.reset();
     wire_.reset();
-    wire_ = ether_.join(77, "op1");
+    wire_ = network_.join(77, "op1");
     StationParams params;
     params.name = "op1";
     params.id = id;
@@ -51,7 +51,7 @@ class FindingsTest : public StationTest {
   }
 
   std::shared_ptr<store::MemoryDisk> disk_{std::make_shared<store::MemoryDisk>()};
-  std::unique_ptr<wire::Wire> finder_{};
+  std::unique_ptr<wire::Participant> finder_{};
   std::shared_ptr<Executor> strand2_{};
   wire::Writer<radio::Finding> writer_{};
   std::unique_ptr<wire::RawReader> acks_{};

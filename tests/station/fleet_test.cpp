@@ -212,15 +212,15 @@ TEST(Fleet, NamesAndNumbersAreBounded) {
   fleet.hear(state("bad name"), at(0s));
   fleet.hear(state("\x1b[2J"), at(0s));
   for (int i = 0; i < 100; ++i) fleet.hear(state("r" + std::to_string(i)), at(0s));
-  EXPECT_EQ(fleet.robots().size(), Fleet::max_robots);
-  EXPECT_EQ(fleet.ignored(), 2 + 100 - Fleet::max_robots);
+  EXPECT_EQ(fleet.robots().size(), Fleet::kMaxRobots);
+  EXPECT_EQ(fleet.ignored(), 2 + 100 - Fleet::kMaxRobots);
   for (int i = 0; i < 100; ++i) {
     radio::Presence presence;
     presence.kind(radio::AGENT_STATION);
     presence.name("op" + std::to_string(i + 10));
     fleet.hear(presence, at(0s));
   }
-  EXPECT_EQ(fleet.stations().size(), Fleet::max_stations);
+  EXPECT_EQ(fleet.stations().size(), Fleet::kMaxStations);
 }
 
 TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
@@ -232,7 +232,7 @@ TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
     sample.text("t" + std::to_string(i));
     fleet.hear(sample, at(0s));
   }
-  ASSERT_EQ(fleet.notices().size(), Fleet::max_notices);
+  ASSERT_EQ(fleet.notices().size(), Fleet::kMaxNotices);
   EXPECT_EQ(fleet.notices().front().text, "t100");
   EXPECT_TRUE(fleet.notices().front().mine);
   EXPECT_FALSE(fleet.notices().back().mine);
@@ -246,9 +246,9 @@ TEST(Fleet, EveryNoticeHasAnIdThatStays) {
   sample.robot("r1");
   sample.code("stopped");
   sample.stamp(to_stamp(Time(1000s)));
-  for (std::size_t i = 0; i < Fleet::max_notices + 2; ++i) fleet.hear(sample, at(0s));  // all the same
+  for (std::size_t i = 0; i < Fleet::kMaxNotices + 2; ++i) fleet.hear(sample, at(0s));  // all the same
   fleet.hear(state("r1"), at(1s));                                                      // dates them
-  ASSERT_EQ(seen.size(), Fleet::max_notices + 2);
+  ASSERT_EQ(seen.size(), Fleet::kMaxNotices + 2);
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 1);
   EXPECT_EQ(fleet.notices().front().id, 3U) << "the first two made room";
   EXPECT_EQ(notice_json(fleet.notices().back(), Time(2s))["id"], seen.back());

@@ -14,7 +14,7 @@
 #include "basestation/cli/process/outbox.hpp"
 #include "core/command/words.hpp"
 #include "core/exec/live_runtime.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 
 namespace adit::station::cli {
 namespace {
@@ -107,8 +107,8 @@ class ServerTest : public testing::Test {
   }()};
   std::string folder_{};
   VirtualScheduler scheduler_{1};
-  wire::Ether ether_{scheduler_, {}};
-  std::unique_ptr<wire::Wire> wire_{ether_.join(77, "op1")};
+  wire::SimulatedNetwork network_{scheduler_, {}};
+  std::unique_ptr<wire::Participant> wire_{network_.join(77, "op1")};
   LiveRuntime runtime_{};
   std::shared_ptr<Executor> strand_{runtime_.strand("station")};
   std::unique_ptr<Server> server_{};
@@ -123,7 +123,7 @@ TEST_F(ServerTest, AnOutcomeIsNotLostInAFloodOfNotices) {
   strand_->post([this, go = asked.get_future().share()] {
     go.wait();
     const json notice{{"text", std::string(2000, 'x')}};
-    for (int i = 0; i < 20000; ++i) server_->tell(notice);  // faster than anybody reads
+    for (int i = 0; i < 20000; ++i) server_->notify(notice);  // faster than anybody reads
   });
   reader.say({{"id", 1}, {"do", "up"}});
   reader.say({{"hello", true}});
@@ -141,7 +141,7 @@ TEST_F(ServerTest, AClientReadsHowManyNoticesItMissed) {
   ASSERT_FALSE(reader.next("hello").is_null());
   static constexpr int sent = 20000;
   on_strand([this] {
-    for (int i = 0; i < sent; ++i) server_->tell({{"number", i}, {"text", std::string(200, 'x')}});
+    for (int i = 0; i < sent; ++i) server_->notify({{"number", i}, {"text", std::string(200, 'x')}});
   });
   reader.say({{"hello", true}});
   int seen = 0;
@@ -173,7 +173,7 @@ TEST_F(ServerTest, AClientThatReadsNothingIsCutOffAndReadsWhy) {
   EXPECT_THAT(last["cut_off"], HasSubstr("did not read"));
   EXPECT_TRUE(sleeper.next("anything").is_null());
   EXPECT_TRUE(sleeper.ended());
-  EXPECT_LT(sleeper.bytes(), Outbox::max_reply_bytes) << "what waited for it was dropped";
+  EXPECT_LT(sleeper.bytes(), Outbox::kMaxReplyBytes) << "what waited for it was dropped";
   Talk other(path());
   other.say({{"hello", true}});
   EXPECT_FALSE(other.next("hello").is_null()) << "nobody else is concerned";
@@ -181,7 +181,7 @@ TEST_F(ServerTest, AClientThatReadsNothingIsCutOffAndReadsWhy) {
 
 TEST_F(ServerTest, OneClientTooManyReadsWhyItIsNotServed) {
   std::vector<std::unique_ptr<Talk>> all;
-  for (std::size_t i = 0; i < Server::max_clients; ++i) {
+  for (std::size_t i = 0; i < Server::kMaxClients; ++i) {
     all.push_back(std::make_unique<Talk>(path()));
     all.back()->say({{"hello", true}});
     ASSERT_FALSE(all.back()->next("hello").is_null());
@@ -325,11 +325,11 @@ TEST(Client, ShowsTheCommandsOfOtherFrontEndsWhenTheyEnd) {
 TEST(Outbox, KeepsRepliesInOrderAndDropsTheOldestEvents) {
   Outbox box;
   EXPECT_TRUE(box.reply("r1"));
-  for (std::size_t i = 0; i < Outbox::max_events + 3; ++i) box.event("e" + std::to_string(i));
+  for (std::size_t i = 0; i < Outbox::kMaxEvents + 3; ++i) box.event("e" + std::to_string(i));
   EXPECT_TRUE(box.reply("r2"));
   EXPECT_EQ(box.next(true), "{\"missed\":3}");
   EXPECT_EQ(box.next(true), "r1");
-  for (std::size_t i = 3; i < Outbox::max_events + 3; ++i) EXPECT_EQ(box.next(true), "e" + std::to_string(i));
+  for (std::size_t i = 3; i < Outbox::kMaxEvents + 3; ++i) EXPECT_EQ(box.next(true), "e" + std::to_string(i));
   EXPECT_EQ(box.next(true), "r2");
   EXPECT_EQ(box.next(true), std::nullopt);
   EXPECT_TRUE(box.empty());

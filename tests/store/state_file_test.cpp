@@ -17,16 +17,16 @@ constexpr StateFormat kFormat{{'T', 'E', 'S', 'T'}, 3, 64};
 Bytes sealed(std::uint16_t version = 3) {
   StateFormat format = kFormat;
   format.version = version;
-  return seal(format, 7, bytes("holder op1"));
+  return encode_envelope(format, 7, bytes("holder op1"));
 }
 
 TEST(StateFile, gives_back_the_state_and_its_generation) {
   const auto disk = std::make_shared<MemoryDisk>();
   const StateFile file(disk, "state", kFormat);
-  EXPECT_EQ(file.load().found, Found::nothing);
+  EXPECT_EQ(file.load().found, LoadStatus::nothing);
   ASSERT_TRUE(file.save(7, bytes("holder op1")).ok());
   const State state = file.load();
-  EXPECT_EQ(state.found, Found::good) << state.text;
+  EXPECT_EQ(state.found, LoadStatus::good) << state.text;
   EXPECT_EQ(state.generation, 7u);
   EXPECT_EQ(state.payload, bytes("holder op1"));
 }
@@ -50,12 +50,13 @@ TEST(StateFile, takes_no_more_than_its_format_allows) {
 TEST(StateFile, knows_what_ends_too_early) {
   const Bytes whole = sealed();
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    const State state = unseal(kFormat, std::span(whole).first(size));
-    EXPECT_EQ(state.found, Found::torn) << size << " bytes";
+    const State state = decode_envelope(kFormat, std::span(whole).first(size));
+    EXPECT_EQ(state.found, LoadStatus::torn) << size << " bytes";
     EXPECT_TRUE(state.payload.empty());
     EXPECT_THAT(state.text, HasSubstr(std::to_string(size)));
   }
-  EXPECT_EQ(unseal(kFormat, Bytes(whole.size(), 0)).found, Found::torn) << "blocks that were never written";
+  EXPECT_EQ(decode_envelope(kFormat, Bytes(whole.size(), 0)).found, LoadStatus::torn)
+      << "blocks that were never written";
 }
 
 TEST(StateFile, knows_every_byte_that_is_not_what_was_written) {
@@ -63,44 +64,46 @@ TEST(StateFile, knows_every_byte_that_is_not_what_was_written) {
     for (int bit = 0; bit < 8; ++bit) {
       Bytes bent = sealed();
       bent[at] = static_cast<std::uint8_t>(bent[at] ^ (1u << bit));
-      const State state = unseal(kFormat, bent);
-      EXPECT_NE(state.found, Found::good) << "byte " << at;
-      EXPECT_NE(state.found, Found::older) << "byte " << at << ": a version that nobody wrote";
-      EXPECT_NE(state.found, Found::newer) << "byte " << at;
+      const State state = decode_envelope(kFormat, bent);
+      EXPECT_NE(state.found, LoadStatus::good) << "byte " << at;
+      EXPECT_NE(state.found, LoadStatus::older) << "byte " << at << ": a version that nobody wrote";
+      EXPECT_NE(state.found, LoadStatus::newer) << "byte " << at;
       EXPECT_TRUE(state.payload.empty());
     }
   Bytes longer = sealed();
   longer.push_back(0);
-  EXPECT_EQ(unseal(kFormat, longer).found, Found::corrupt);
+  EXPECT_EQ(decode_envelope(kFormat, longer).found, LoadStatus::corrupt);
 }
 
 TEST(StateFile, tells_older_and_newer_versions_apart) {
-  EXPECT_EQ(unseal(kFormat, sealed(2)).found, Found::older);
-  EXPECT_EQ(unseal(kFormat, sealed(2)).version, 2);
-  EXPECT_EQ(unseal(kFormat, sealed(2)).payload, bytes("holder op1")) << "for a program that still reads it";
-  EXPECT_TRUE(unseal(kFormat, sealed(4)).payload.empty());
-  EXPECT_EQ(unseal(kFormat, sealed(4)).found, Found::newer);
-  EXPECT_THAT(unseal(kFormat, sealed(4)).text, HasSubstr("version 4"));
+  EXPECT_EQ(decode_envelope(kFormat, sealed(2)).found, LoadStatus::older);
+  EXPECT_EQ(decode_envelope(kFormat, sealed(2)).version, 2);
+  EXPECT_EQ(decode_envelope(kFormat, sealed(2)).payload, bytes("holder op1"))
+      << "for a program that still reads it";
+  EXPECT_TRUE(decode_envelope(kFormat, sealed(4)).payload.empty());
+  EXPECT_EQ(decode_envelope(kFormat, sealed(4)).found, LoadStatus::newer);
+  EXPECT_THAT(decode_envelope(kFormat, sealed(4)).text, HasSubstr("version 4"));
 }
 
 TEST(StateFile, knows_what_is_not_its_own) {
   StateFormat other = kFormat;
   other.kind = {'E', 'L', 'S', 'E'};
-  EXPECT_EQ(unseal(kFormat, seal(other, 1, {})).found, Found::foreign);
-  EXPECT_EQ(unseal(kFormat, bytes("name: r1\nplatform: wheeled\nand so on, a file of somebody else")).found,
-            Found::foreign);
-  EXPECT_EQ(unseal(kFormat, bytes("x")).found, Found::foreign);
+  EXPECT_EQ(decode_envelope(kFormat, encode_envelope(other, 1, {})).found, LoadStatus::foreign);
+  EXPECT_EQ(decode_envelope(kFormat, bytes("name: r1\nplatform: wheeled\nand so on, a file of somebody else"))
+                .found,
+            LoadStatus::foreign);
+  EXPECT_EQ(decode_envelope(kFormat, bytes("x")).found, LoadStatus::foreign);
 }
 
 TEST(StateFile, says_when_the_disk_refuses) {
   const auto disk = std::make_shared<MemoryDisk>();
   const StateFile file(disk, "state", kFormat);
   disk->cut_power();
-  EXPECT_EQ(file.load().found, Found::unreadable);
+  EXPECT_EQ(file.load().found, LoadStatus::unreadable);
   EXPECT_EQ(file.save(1, {}).reason(), Reason::cannot_write);
   disk->power_up();
   disk->plant("state", Bytes(100'000, 'A'));
-  EXPECT_EQ(file.load().found, Found::unreadable) << "not even read into memory";
+  EXPECT_EQ(file.load().found, LoadStatus::unreadable) << "not even read into memory";
 }
 
 TEST(StateFile, takes_any_bytes) {
@@ -111,15 +114,15 @@ TEST(StateFile, takes_any_bytes) {
     for (std::uint64_t k = 0; k < edits && !junk.empty(); ++k)
       junk[random.below(junk.size())] = static_cast<std::uint8_t>(random.next());
     if (random.chance(0.3)) junk.resize(random.below(junk.size() + 20));
-    const State state = unseal(kFormat, junk);
-    EXPECT_TRUE(state.found != Found::good || junk == sealed()) << "only what was written is good";
+    const State state = decode_envelope(kFormat, junk);
+    EXPECT_TRUE(state.found != LoadStatus::good || junk == sealed()) << "only what was written is good";
   }
 }
 
 TEST(StateFile, is_the_old_or_the_new_state_after_a_power_cut_at_every_byte) {
   const Bytes old = bytes("held by op1, locked"), fresh = bytes("held by op2");
   MemoryDisk measure;
-  (void)measure.replace("state", seal(kFormat, 2, fresh));
+  (void)measure.replace("state", encode_envelope(kFormat, 2, fresh));
   const std::uint64_t steps = measure.steps();
   std::size_t olds = 0, news = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
@@ -132,7 +135,7 @@ TEST(StateFile, is_the_old_or_the_new_state_after_a_power_cut_at_every_byte) {
       disk->cut_power();
       disk->power_up();
       const State state = file.load();
-      ASSERT_EQ(state.found, Found::good) << "step " << at << ", seed " << seed << ": " << state.text;
+      ASSERT_EQ(state.found, LoadStatus::good) << "step " << at << ", seed " << seed << ": " << state.text;
       ASSERT_EQ(state.payload, state.generation == 1 ? old : fresh);
       ASSERT_TRUE(!told || state.generation == 2);
       ++(state.generation == 1 ? olds : news);

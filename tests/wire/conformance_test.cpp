@@ -18,7 +18,7 @@ namespace {
 
 using Seqs = std::vector<std::uint64_t>;
 
-std::uint64_t total(const Wire& wire, std::uint64_t TopicCount::*field) {
+std::uint64_t total(const Participant& wire, std::uint64_t TopicCount::*field) {
   std::uint64_t sum = 0;
   for (const TopicCount& count : wire.counters().topics) sum += count.*field;
   return sum;
@@ -27,20 +27,21 @@ std::uint64_t total(const Wire& wire, std::uint64_t TopicCount::*field) {
 template <class Net>
 class Conformance : public testing::Test {
  protected:
-  std::unique_ptr<RawReader> hear(Wire& wire, const std::string& partition, Seen<std::uint64_t>& seen) {
+  std::unique_ptr<RawReader> hear(Participant& wire, const std::string& partition,
+                                  Seen<std::uint64_t>& seen) {
     return std::move(make_reader(
-                         wire, topics::command, *strand,
+                         wire, topics::kCommand, *strand,
                          [&seen](const radio::Command& c, const SampleInfo&) { seen.add(c.seq()); },
                          partition))
         .value();
   }
-  Writer<radio::Command> commands(Wire& wire, const std::string& partition) {
-    return std::move(Writer<radio::Command>::make(wire, topics::command, partition)).value();
+  Writer<radio::Command> commands(Participant& wire, const std::string& partition) {
+    return std::move(Writer<radio::Command>::make(wire, topics::kCommand, partition)).value();
   }
 
   Net net{};
   std::shared_ptr<Executor> strand{net.strand("test")};
-  std::unique_ptr<Wire> station{net.join("op1")}, robot{net.join("r1")};
+  std::unique_ptr<Participant> station{net.join("op1")}, robot{net.join("r1")};
 };
 
 TYPED_TEST_SUITE(Conformance, Nets, NetNames);
@@ -83,7 +84,7 @@ TYPED_TEST(Conformance, ARevokedReaderHandlesNothing) {
   Seen<std::uint64_t> revoked, other;
   const auto generation = std::make_shared<Generation>();
   const auto reader = std::move(make_reader(
-                                    *this->robot, topics::command, *this->strand,
+                                    *this->robot, topics::kCommand, *this->strand,
                                     [&](const radio::Command& c, const SampleInfo&) { revoked.add(c.seq()); },
                                     "r1", generation))
                           .value();
@@ -106,9 +107,9 @@ TYPED_TEST(Conformance, WhatAComponentOpenedEndsWithItsGeneration) {
   Seen<std::uint64_t> own, others;
   Writer<radio::Command> writer, beside = this->commands(*this->station, "r1");
   std::unique_ptr<RawReader> reader;
-  ASSERT_TRUE(io.open(writer, topics::command, "op1").ok());
+  ASSERT_TRUE(io.open(writer, topics::kCommand, "op1").ok());
   ASSERT_TRUE(io.open(
-                    reader, topics::command,
+                    reader, topics::kCommand,
                     [&](const radio::Command& c, const SampleInfo&) { own.add(c.seq()); }, "r1")
                   .ok());
   const auto other = this->hear(*this->station, "op1", others);
@@ -131,7 +132,7 @@ TYPED_TEST(Conformance, WhatAComponentOpenedEndsWithItsGeneration) {
 TYPED_TEST(Conformance, TheSenderIsKnownWhateverTheSampleSays) {
   Seen<ParticipantId> senders;
   const auto reader =
-      make_reader(*this->robot, topics::command, *this->strand,
+      make_reader(*this->robot, topics::kCommand, *this->strand,
                   [&](const radio::Command&, const SampleInfo& info) { senders.add(info.sender); });
   const auto intruder = this->net.join("intruder");
   auto honest = this->commands(*this->station, ""), forged = this->commands(*intruder, "");
@@ -145,7 +146,7 @@ TYPED_TEST(Conformance, TheSenderIsKnownWhateverTheSampleSays) {
 }
 
 TYPED_TEST(Conformance, StatusOf20KeysReachesALateJoinerOnceEach) {
-  auto writer = std::move(Writer<radio::AuthorityStatus>::make(*this->robot, topics::authority)).value();
+  auto writer = std::move(Writer<radio::AuthorityStatus>::make(*this->robot, topics::kAuthority)).value();
   for (std::uint64_t round = 0; round < 3; ++round) {
     for (int key = 0; key < 20; ++key) {
       radio::AuthorityStatus status;
@@ -157,7 +158,7 @@ TYPED_TEST(Conformance, StatusOf20KeysReachesALateJoinerOnceEach) {
   this->net.pass(100ms);
   const auto late = this->net.join("late");
   Seen<std::pair<std::string, std::uint64_t>> seen;
-  const auto reader = make_reader(*late, topics::authority, *this->strand,
+  const auto reader = make_reader(*late, topics::kAuthority, *this->strand,
                                   [&](const radio::AuthorityStatus& s, const SampleInfo&) {
                                     seen.add({s.robot(), s.seq()});
                                   });
@@ -173,7 +174,7 @@ TYPED_TEST(Conformance, StatusOf20KeysReachesALateJoinerOnceEach) {
 }
 
 TYPED_TEST(Conformance, NotificationsKeepTheLastEightForALateJoiner) {
-  auto writer = std::move(Writer<radio::Notification>::make(*this->robot, topics::notification)).value();
+  auto writer = std::move(Writer<radio::Notification>::make(*this->robot, topics::kNotification)).value();
   for (std::uint64_t i = 1; i <= 12; ++i) {
     radio::Notification notification;
     notification.robot("r1");
@@ -182,7 +183,7 @@ TYPED_TEST(Conformance, NotificationsKeepTheLastEightForALateJoiner) {
   }
   Seen<std::uint64_t> seen;
   const auto reader =
-      make_reader(*this->station, topics::notification, *this->strand,
+      make_reader(*this->station, topics::kNotification, *this->strand,
                   [&](const radio::Notification& n, const SampleInfo&) { seen.add(n.seq()); });
   ASSERT_TRUE(this->net.until([&] { return seen.size() >= 8; }));
   this->net.pass(300ms);
@@ -227,7 +228,7 @@ TYPED_TEST(Conformance, ParticipantsComeAndGo) {
 TYPED_TEST(Conformance, MalformedSamplesAreCountedBySenderAndSurvived) {
   Seen<std::uint64_t> seen;
   const auto reader = this->hear(*this->robot, "r1", seen);
-  const auto raw = std::move(this->station->make_writer(topics::command, "r1")).value();
+  const auto raw = std::move(this->station->make_writer(topics::kCommand, "r1")).value();
   ASSERT_TRUE(this->net.until([&] { return raw->matched() == 1; }));
   std::vector<std::uint8_t> good;
   encode(numbered_command(8), good);
@@ -247,7 +248,7 @@ TYPED_TEST(Conformance, MalformedSamplesAreCountedBySenderAndSurvived) {
 }
 
 TYPED_TEST(Conformance, LargeSamplesPassInFragments) {
-  constexpr TopicInfo large{"adit/test_large", "Bytes", QosClass::urgent, 4, topics::unkeyed, 1 << 16};
+  constexpr TopicInfo large{"adit/test_large", "Bytes", QosClass::urgent, 4, topics::kUnkeyed, 1 << 16};
   Seen<std::vector<std::uint8_t>> seen;
   const auto reader =
       std::move(this->station->make_reader(large, "", *this->strand, [&](auto bytes, const SampleInfo&) {

@@ -1,7 +1,7 @@
 // Faults of the rehearsal's radio: each kind, and several at once.
 #include <gtest/gtest.h>
 
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 
 namespace adit::wire {
 namespace {
@@ -10,8 +10,8 @@ constexpr TopicInfo numbers{"adit/test_numbers", "Number", QosClass::state, 1, f
 
 /// One writer and one reader on two machines; counts what arrives.
 struct Pair {
-  explicit Pair(LinkProfile link = {.latency = 0.01}) : ether(scheduler, {.link = std::move(link)}) {
-    a = ether.join(77, "a"), b = ether.join(77, "b"), c = ether.join(77, "c");
+  explicit Pair(LinkProfile link = {.latency = 0.01}) : network(scheduler, {.link = std::move(link)}) {
+    a = network.join(77, "a"), b = network.join(77, "b"), c = network.join(77, "c");
     writer = std::move(a->make_writer(numbers, "")).value();
     back = std::move(b->make_writer(numbers, "")).value();
     reader = hear(*b, at_b);
@@ -19,7 +19,7 @@ struct Pair {
     c_reader = hear(*c, at_c);
     scheduler.run_until(2s);
   }
-  std::unique_ptr<RawReader> hear(Wire& wire, std::vector<std::uint8_t>& seen) {
+  std::unique_ptr<RawReader> hear(Participant& wire, std::vector<std::uint8_t>& seen) {
     return std::move(wire.make_reader(numbers, "", *strand,
                                       [&seen](auto bytes, const SampleInfo&) {
                                         seen.push_back(bytes[4]);
@@ -38,10 +38,10 @@ struct Pair {
   }
 
   VirtualScheduler scheduler{1};
-  Ether ether;
+  SimulatedNetwork network;
   std::unique_ptr<Runtime> machine{scheduler.machine("main", 0ms)};
   std::shared_ptr<Executor> strand{machine->strand("main")};
-  std::unique_ptr<Wire> a{}, b{}, c{};
+  std::unique_ptr<Participant> a{}, b{}, c{};
   std::vector<std::uint8_t> at_a{}, at_b{}, at_c{};
   std::unique_ptr<RawWriter> writer{}, back{};
   std::unique_ptr<RawReader> reader{}, back_reader{}, c_reader{};
@@ -50,58 +50,58 @@ struct Pair {
 
 TEST(Disturbance, AOneWayCutCutsOneWay) {
   Pair pair;
-  const auto cut = pair.ether.disturb({.from = {"a"}, .to = {"b"}, .both_ways = false, .cut = true});
+  const auto cut = pair.network.disturb({.from = {"a"}, .to = {"b"}, .both_ways = false, .cut = true});
   pair.send(10);
   EXPECT_EQ(pair.at_b.size(), 0U);
   EXPECT_EQ(pair.at_a.size(), 10U);
-  pair.ether.end_disturbance(cut);
+  pair.network.end_disturbance(cut);
   pair.send(10);
   EXPECT_EQ(pair.at_b.size(), 10U);
 }
 
 TEST(Disturbance, OverlappingCutsEndAlone) {
   Pair pair;
-  const auto one = pair.ether.disturb({.from = {"a"}, .to = {"b"}, .cut = true});
-  const auto two = pair.ether.disturb({.from = {"b"}, .cut = true});
-  pair.ether.end_disturbance(one);
+  const auto one = pair.network.disturb({.from = {"a"}, .to = {"b"}, .cut = true});
+  const auto two = pair.network.disturb({.from = {"b"}, .cut = true});
+  pair.network.end_disturbance(one);
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 0U);
-  pair.ether.end_disturbance(one);  // twice does no harm
+  pair.network.end_disturbance(one);  // twice does no harm
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 0U);
-  pair.ether.end_disturbance(two);
+  pair.network.end_disturbance(two);
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 5U);
 }
 
 TEST(Disturbance, TheSwitchesDoNotEndOthers) {
   Pair pair;
-  const auto one = pair.ether.disturb({.from = {"a"}, .to = {"b"}, .loss = 1.0});
-  pair.ether.degrade("b", "a", 0.5);
-  pair.ether.degrade("a", "b", std::nullopt);
-  pair.ether.cut("a", "b", true);
-  pair.ether.cut("b", "a", false);
+  const auto one = pair.network.disturb({.from = {"a"}, .to = {"b"}, .loss = 1.0});
+  pair.network.degrade("b", "a", 0.5);
+  pair.network.degrade("a", "b", std::nullopt);
+  pair.network.cut("a", "b", true);
+  pair.network.cut("b", "a", false);
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 0U);
-  pair.ether.end_disturbance(one);
+  pair.network.end_disturbance(one);
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 5U);
 }
 
 TEST(Disturbance, APartitionKeepsGroupsApartAndLeavesTheRest) {
   Pair pair;
-  const auto apart = pair.ether.disturb({.groups = {{"a"}, {"b"}}, .cut = true});
+  const auto apart = pair.network.disturb({.groups = {{"a"}, {"b"}}, .cut = true});
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 0U);
   EXPECT_EQ(pair.at_c.size(), 10U);  // hears both
-  pair.ether.end_disturbance(apart);
+  pair.network.end_disturbance(apart);
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 5U);
 }
 
 TEST(Disturbance, ReorderedAndDuplicatedMessagesAreNeitherDoubledNorTurned) {
   Pair pair;
-  (void)pair.ether.disturb({.reorder = 0.5, .reorder_by = 100ms, .duplicate = 0.5});
+  (void)pair.network.disturb({.reorder = 0.5, .reorder_by = 100ms, .duplicate = 0.5});
   pair.send(100);
   EXPECT_LT(pair.at_b.size(), 95U);  // best effort: what comes late is dropped
   EXPECT_GT(pair.at_b.size(), 30U);
@@ -121,26 +121,26 @@ TEST(Disturbance, DelayAndSlownessAreFelt) {
   };
   pair.scheduler.run_until(pair.scheduler.elapsed() + 8s);  // the first announcements are over
   EXPECT_LE(first(), 15ms);
-  const auto late = pair.ether.disturb({.from = {"a"}, .delay = 300ms});
+  const auto late = pair.network.disturb({.from = {"a"}, .delay = 300ms});
   EXPECT_GE(first(), 310ms);
-  pair.ether.end_disturbance(late);
+  pair.network.end_disturbance(late);
   pair.scheduler.run_until(5s);
-  (void)pair.ether.disturb({.from = {"a"}, .slower = 100});
+  (void)pair.network.disturb({.from = {"a"}, .slower = 100});
   EXPECT_GE(first(), 80ms);  // 100 B and more at 10 kbit/s
 }
 
 TEST(Disturbance, WallsAttenuateLinksThatFade) {
   Pair pair({.latency = 0.01, .range = 100, .fading = 2.5});
-  EXPECT_FALSE(pair.ether.signal("a", "b"));
-  pair.ether.set_position("a", 0, 0);
-  pair.ether.set_position("b", 10, 0);
-  EXPECT_NEAR(*pair.ether.signal("a", "b"), -38, 1e-9);
+  EXPECT_FALSE(pair.network.signal("a", "b"));
+  pair.network.set_position("a", 0, 0);
+  pair.network.set_position("b", 10, 0);
+  EXPECT_NEAR(*pair.network.signal("a", "b"), -38, 1e-9);
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 5U);
-  pair.ether.set_attenuation([](const Position& from, const Position& to) {
+  pair.network.set_attenuation([](const Position& from, const Position& to) {
     return from.x < 5 && to.x > 5 ? 60.0 : 0.0;  // a wall that is thick from one side
   });
-  EXPECT_NEAR(*pair.ether.signal("a", "b"), -98, 1e-9);
+  EXPECT_NEAR(*pair.network.signal("a", "b"), -98, 1e-9);
   pair.send(5);
   EXPECT_EQ(pair.at_b.size(), 5U);
   EXPECT_EQ(pair.at_a.size(), 10U);

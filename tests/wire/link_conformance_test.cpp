@@ -61,7 +61,7 @@ class LinkConformance : public testing::Test {
 
   std::unique_ptr<Net> net{};
   std::shared_ptr<Executor> strand{};
-  std::unique_ptr<Wire> a{}, b{};
+  std::unique_ptr<Participant> a{}, b{};
   std::map<std::string, Seen<Heard>> heard{};
   std::map<std::string, std::unique_ptr<RawWriter>> writers{};
   std::vector<std::unique_ptr<RawReader>> readers{};

@@ -7,7 +7,7 @@ namespace {
 
 double share_lost(const LinkProfile& link, const Path& path, std::uint32_t bytes, int frames = 20000) {
   Random random(7);
-  Channel channel;
+  LossModel channel;
   int lost = 0;
   for (int i = 0; i < frames; ++i) lost += channel.lost(link, path, bytes, std::nullopt, random);
   return static_cast<double>(lost) / frames;
@@ -38,7 +38,7 @@ TEST(LinkModel, LosesItsShareOneByOneOrInBursts) {
   link.burst = 8;
   EXPECT_NEAR(share_lost(link, {}, 100, 200000), 0.2, 0.02);
   Random random(3);
-  Channel channel;
+  LossModel channel;
   int bursts = 0, lost = 0;
   bool before = false;
   for (int i = 0; i < 200000; ++i) {
@@ -53,7 +53,7 @@ TEST(LinkModel, LosesItsShareOneByOneOrInBursts) {
 TEST(LinkModel, ADegradedLinkLosesWhatItIsTold) {
   LinkProfile link;
   Random random(1);
-  Channel channel;
+  LossModel channel;
   EXPECT_TRUE(channel.lost(link, {}, 100, 1.0, random));
   EXPECT_FALSE(channel.lost(link, {}, 100, 0.0, random));
 }

@@ -12,15 +12,15 @@
 #include <fstream>
 #include <future>
 
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 #include "tests/wire/nets.hpp"
 #include "tests/wire/samples.hpp"
 
 namespace adit::wire {
 namespace {
 
-constexpr TopicInfo ping{"adit/ping", "Bytes", QosClass::urgent, 16, topics::unkeyed, 1 << 16};
-constexpr TopicInfo pong{"adit/pong", "Bytes", QosClass::urgent, 16, topics::unkeyed, 1 << 16};
+constexpr TopicInfo ping{"adit/ping", "Bytes", QosClass::urgent, 16, topics::kUnkeyed, 1 << 16};
+constexpr TopicInfo pong{"adit/pong", "Bytes", QosClass::urgent, 16, topics::kUnkeyed, 1 << 16};
 
 /// Resident memory of this process, KiB.
 long resident_kb() {
@@ -176,11 +176,11 @@ TEST(LiveWire, LargeScansPassWhole) {
   const auto strand = net.strand("test");
   const auto sim = std::move(open_fastdds(params)).value(), agent = std::move(open_fastdds(params)).value();
   Seen<std::size_t> seen;
-  const auto reader = agent->make_reader(topics::points, "", *strand, [&](auto bytes, const SampleInfo&) {
+  const auto reader = agent->make_reader(topics::kPoints, "", *strand, [&](auto bytes, const SampleInfo&) {
     seen.add(bytes.size());
     return true;
   });
-  const auto writer = std::move(sim->make_writer(topics::points, "")).value();
+  const auto writer = std::move(sim->make_writer(topics::kPoints, "")).value();
   ASSERT_TRUE(net.until([&] { return writer->matched() == 1; }));
   net.pass(200ms);
   std::vector<std::uint8_t> scan(230'000);
@@ -205,8 +205,8 @@ TEST(LiveWire, AVelocityCostsOneDatagramToASingleDriver) {
       return true;
     };
   };
-  const auto reader = driver->make_reader(topics::cmd_vel, "", *strand, heard(wheels));
-  const auto writer = std::move(agent->make_writer(topics::cmd_vel, "")).value();
+  const auto reader = driver->make_reader(topics::kCmdVel, "", *strand, heard(wheels));
+  const auto writer = std::move(agent->make_writer(topics::kCmdVel, "")).value();
   ASSERT_TRUE(net.until([&] { return writer->matched() >= 1; }));
   std::vector<std::uint8_t> velocity(52);
   velocity[1] = 1;
@@ -222,7 +222,7 @@ TEST(LiveWire, AVelocityCostsOneDatagramToASingleDriver) {
     return static_cast<double>(agent->counters().total_out - before) / kSamples;
   };
   const double alone = bytes_per_velocity();
-  const auto rival = agent->make_reader(topics::cmd_vel_heard, "", *strand, heard(rivals));
+  const auto rival = agent->make_reader(topics::kCmdVelHeard, "", *strand, heard(rivals));
   EXPECT_LT(bytes_per_velocity(), 1.2 * alone);
   EXPECT_EQ(rivals.size(), 0U);
 }
@@ -234,11 +234,11 @@ TEST(LiveWire, AHungReaderOfScansCostsNoMemory) {
   const auto strand = net.strand("test");
   const auto sim = std::move(open_fastdds(params)).value(), agent = std::move(open_fastdds(params)).value();
   Seen<std::pair<int, std::size_t>> seen;
-  const auto reader = agent->make_reader(topics::points, "", *strand, [&](auto bytes, const SampleInfo&) {
+  const auto reader = agent->make_reader(topics::kPoints, "", *strand, [&](auto bytes, const SampleInfo&) {
     seen.add({bytes[4], bytes.size()});
     return true;
   });
-  const auto writer = std::move(sim->make_writer(topics::points, "")).value();
+  const auto writer = std::move(sim->make_writer(topics::kPoints, "")).value();
   ASSERT_TRUE(net.until([&] { return writer->matched() == 1; }));
   net.pass(200ms);
   std::vector<std::uint8_t> scan(1'000'000);

@@ -23,7 +23,7 @@ TEST(ManyKeys, AStationIsHeardAfter300OthersCameAndLeft) {
                                         }))
         .value();
   };
-  const auto a = hear(topics::capabilities, status), b = hear(topics::presence, state);
+  const auto a = hear(topics::kCapabilities, status), b = hear(topics::kPresence, state);
   const auto last_is = [](const Seen<std::string>& seen, const std::string& name) {
     const auto all = seen.all();
     return std::find(all.rbegin(), all.rend(), name) != all.rend();
@@ -31,8 +31,8 @@ TEST(ManyKeys, AStationIsHeardAfter300OthersCameAndLeft) {
   for (int i = 1; i <= 301; ++i) {
     const std::string name = "station" + std::to_string(i);
     const auto station = net.join(name);
-    const auto capabilities = std::move(station->make_writer(topics::capabilities, "")).value();
-    const auto presence = std::move(station->make_writer(topics::presence, "")).value();
+    const auto capabilities = std::move(station->make_writer(topics::kCapabilities, "")).value();
+    const auto presence = std::move(station->make_writer(topics::kPresence, "")).value();
     ASSERT_TRUE(capabilities->write(keyed(name)).ok());
     ASSERT_TRUE(net.until([&] { return presence->write(keyed(name)).ok() && last_is(state, name); })) << name;
     ASSERT_TRUE(net.until([&] { return last_is(status, name); })) << name;

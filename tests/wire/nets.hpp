@@ -10,8 +10,8 @@
 
 #include "core/exec/live_runtime.hpp"
 #include "core/exec/virtual_runtime.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
-#include "core/wire/memory/ether.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
+#include "core/wire/memory/simulated_network.hpp"
 #include "tests/live/process.hpp"
 
 namespace adit::wire {
@@ -19,9 +19,9 @@ namespace adit::wire {
 /// One small network, by either adapter, so that the same test body runs over both.
 class MemoryNet {
  public:
-  explicit MemoryNet(const LinkProfile& link = {.latency = 0.0001}) : ether_(scheduler_, {.link = link}) {}
+  explicit MemoryNet(const LinkProfile& link = {.latency = 0.0001}) : network_(scheduler_, {.link = link}) {}
   Duration elapsed() const { return scheduler_.elapsed(); }
-  std::unique_ptr<Wire> join(const std::string& name) { return ether_.join(77, name); }
+  std::unique_ptr<Participant> join(const std::string& name) { return network_.join(77, name); }
   std::shared_ptr<Executor> strand(const std::string& name) {
     machines_.push_back(scheduler_.machine(name, 0ms));
     return machines_.back()->strand(name);
@@ -39,7 +39,7 @@ class MemoryNet {
 
  private:
   VirtualScheduler scheduler_{1};
-  Ether ether_;
+  SimulatedNetwork network_;
   std::vector<std::unique_ptr<Runtime>> machines_{};
 };
 
@@ -47,7 +47,7 @@ class LiveNet {
  public:
   explicit LiveNet(std::optional<LinkProfile> link = std::nullopt) : link_(std::move(link)) {}
   Duration elapsed() const { return std::chrono::steady_clock::now() - start_; }
-  std::unique_ptr<Wire> join(const std::string& name) {
+  std::unique_ptr<Participant> join(const std::string& name) {
     return std::move(
                open_fastdds({.domain = live::domain(), .name = name, .link = link_, .link_seed = ++seed_}))
         .value();

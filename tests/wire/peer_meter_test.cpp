@@ -61,7 +61,7 @@ TEST(PeerMeter, TheRoundTripLeavesOutWhatThePeerHeld) {
 TEST(PeerMeter, StrangersBeyondTheBoundAreIgnored) {
   PeerMeter meter;
   for (int i = 0; i < 1000; ++i) meter.heard("x" + std::to_string(i), 1, at(1));
-  EXPECT_EQ(meter.peers(at(1)).size(), PeerMeter::max_peers);
+  EXPECT_EQ(meter.peers(at(1)).size(), PeerMeter::kMaxPeers);
 }
 
 }  // namespace

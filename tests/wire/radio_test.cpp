@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <thread>
 
-#include "core/wire/fastdds/fastdds_wire.hpp"
-#include "core/wire/fastdds/live_link.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
+#include "core/wire/fastdds/link_shaper.hpp"
 #include "core/wire/link/rate_control.hpp"
 #include "tests/live/process.hpp"
 
@@ -51,7 +51,7 @@ TEST(Radio, WhatTheSocketsRefuseShowsAtTheSender) {
     const bool slowed = live::eventually(
         [&] {
           const SenderState sender = (*wire)->sender();
-          rate.observe(now += 20ms, sender.waiting(status_priority), sender.lost(status_priority));
+          rate.observe(now += 20ms, sender.waiting(kStatusPriority), sender.lost(kStatusPriority));
           return rate.rate() < 10.0;
         },
         live::Seconds(8));

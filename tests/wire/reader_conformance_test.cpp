@@ -14,10 +14,11 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr TopicInfo newest{"adit/test_newest", "Newest", QosClass::state, 1, topics::unkeyed, 1 << 10};
-constexpr TopicInfo last_three{"adit/test_three", "Three", QosClass::status, 3, topics::unkeyed, 1 << 10};
-constexpr TopicInfo by_key{"adit/test_keys", "Keys", QosClass::status, 2, topics::keyed, 1 << 10};
-constexpr TopicInfo requests{"adit/test_requests", "Requests", QosClass::urgent, 1, topics::unkeyed, 1 << 10};
+constexpr TopicInfo newest{"adit/test_newest", "Newest", QosClass::state, 1, topics::kUnkeyed, 1 << 10};
+constexpr TopicInfo last_three{"adit/test_three", "Three", QosClass::status, 3, topics::kUnkeyed, 1 << 10};
+constexpr TopicInfo by_key{"adit/test_keys", "Keys", QosClass::status, 2, topics::kKeyed, 1 << 10};
+constexpr TopicInfo requests{"adit/test_requests", "Requests", QosClass::urgent, 1,
+                             topics::kUnkeyed,     1 << 10};
 
 /// A sample whose key is `key` and whose last four bytes are `number`.
 Bytes sample(const std::string& key, std::uint8_t number) {
@@ -70,7 +71,7 @@ class ReaderConformance : public testing::Test {
   Net net{};
   std::shared_ptr<Executor> strand{net.strand("test")};
   HeldStrand held{strand};
-  std::unique_ptr<Wire> station{net.join("op1")}, other{net.join("op2")}, robot{net.join("r1")};
+  std::unique_ptr<Participant> station{net.join("op1")}, other{net.join("op2")}, robot{net.join("r1")};
   Seen<Got> got{};
 };
 

@@ -19,7 +19,8 @@ template <class Net>
 class TopicConformance : public testing::Test {
  protected:
   Result<std::unique_ptr<RawReader>> read(const TopicInfo& topic) { return read(*robot, topic, ""); }
-  Result<std::unique_ptr<RawReader>> read(Wire& wire, const TopicInfo& topic, const std::string& partition) {
+  Result<std::unique_ptr<RawReader>> read(Participant& wire, const TopicInfo& topic,
+                                          const std::string& partition) {
     return wire.make_reader(topic, partition, *strand, [this](auto bytes, const SampleInfo& info) {
       seen.add({bytes.begin(), bytes.end()});
       senders.add(info.sender);
@@ -34,7 +35,7 @@ class TopicConformance : public testing::Test {
 
   Net net{};
   std::shared_ptr<Executor> strand{net.strand("test")};
-  std::unique_ptr<Wire> station{net.join("op1")}, robot{net.join("r1")};
+  std::unique_ptr<Participant> station{net.join("op1")}, robot{net.join("r1")};
   Seen<Payload> seen{};
   Seen<ParticipantId> senders{};
 };
@@ -42,27 +43,27 @@ class TopicConformance : public testing::Test {
 TYPED_TEST_SUITE(TopicConformance, Nets, NetNames);
 
 TYPED_TEST(TopicConformance, ATopicHasOneTypeKeyAndBound) {
-  const auto writer = this->robot->make_writer(topics::cmd_vel_stamped, "");
+  const auto writer = this->robot->make_writer(topics::kCmdVelStamped, "");
   ASSERT_TRUE(writer.ok());
-  EXPECT_EQ(this->read(topics::cmd_vel_heard).reason(), Reason::bad_argument);
-  EXPECT_EQ(this->robot->make_writer(topics::cmd_vel, "").reason(), Reason::bad_argument);
-  EXPECT_TRUE(this->read(topics::cmd_vel_stamped_heard).ok());
-  TopicInfo longer = topics::cmd_vel_stamped;
+  EXPECT_EQ(this->read(topics::kCmdVelHeard).reason(), Reason::bad_argument);
+  EXPECT_EQ(this->robot->make_writer(topics::kCmdVel, "").reason(), Reason::bad_argument);
+  EXPECT_TRUE(this->read(topics::kCmdVelStampedHeard).ok());
+  TopicInfo longer = topics::kCmdVelStamped;
   longer.max_bytes *= 2;
   EXPECT_EQ(this->read(longer).reason(), Reason::bad_argument);
-  TopicInfo keyed = topics::cmd_vel_stamped;
+  TopicInfo keyed = topics::kCmdVelStamped;
   keyed.keyed = true;
   EXPECT_EQ(this->read(keyed).reason(), Reason::bad_argument);
   // A type has a key everywhere or nowhere.
   TopicInfo elsewhere = keyed;
   elsewhere.name = "rt/elsewhere";
   EXPECT_EQ(this->read(elsewhere).reason(), Reason::bad_argument);
-  EXPECT_TRUE(this->robot->make_writer(topics::cmd_vel_stamped, "other").ok());
+  EXPECT_TRUE(this->robot->make_writer(topics::kCmdVelStamped, "other").ok());
 }
 
 TYPED_TEST(TopicConformance, TopicsOfOneTypeHaveTheirOwnBounds) {
-  constexpr TopicInfo small{"adit/test_small", "Sized", QosClass::urgent, 4, topics::unkeyed, 64};
-  constexpr TopicInfo large{"adit/test_large", "Sized", QosClass::urgent, 4, topics::unkeyed, 16384};
+  constexpr TopicInfo small{"adit/test_small", "Sized", QosClass::urgent, 4, topics::kUnkeyed, 64};
+  constexpr TopicInfo large{"adit/test_large", "Sized", QosClass::urgent, 4, topics::kUnkeyed, 16384};
   // The station believes that the small topic takes more than the robot does.
   TopicInfo small_there = small;
   small_there.max_bytes = 4096;
@@ -83,7 +84,7 @@ TYPED_TEST(TopicConformance, TopicsOfOneTypeHaveTheirOwnBounds) {
 }
 
 TYPED_TEST(TopicConformance, TwoWritersOfOneTopicAreBothHeard) {
-  constexpr TopicInfo topic{"adit/test_twice", "Twice", QosClass::urgent, 4, topics::unkeyed, 64};
+  constexpr TopicInfo topic{"adit/test_twice", "Twice", QosClass::urgent, 4, topics::kUnkeyed, 64};
   const auto reader = this->read(topic);
   const auto first = std::move(this->station->make_writer(topic, "")).value();
   const auto second = std::move(this->station->make_writer(topic, "")).value();
@@ -102,7 +103,7 @@ TYPED_TEST(TopicConformance, AParticipantDoesNotHearItsOwnWriters) {
                           "Own",
                           qos,
                           1,
-                          topics::unkeyed,
+                          topics::kUnkeyed,
                           256};
     Seen<ParticipantId> own;
     const auto reader = this->read(topic);
@@ -134,7 +135,7 @@ TYPED_TEST(TopicConformance, AParticipantDoesNotHearItsOwnWriters) {
 
 // Authority moves: the robot is addressed by another partition from now on.
 TYPED_TEST(TopicConformance, AReaderOfAnotherPartitionHearsThatOneAlone) {
-  constexpr TopicInfo topic{"adit/test_moves", "Moves", QosClass::urgent, 4, topics::unkeyed, 64};
+  constexpr TopicInfo topic{"adit/test_moves", "Moves", QosClass::urgent, 4, topics::kUnkeyed, 64};
   const auto to_r1 = std::move(this->station->make_writer(topic, "r1")).value();
   const auto to_r2 = std::move(this->station->make_writer(topic, "r2")).value();
   auto reader = std::move(this->read(*this->robot, topic, "r1")).value();
@@ -154,8 +155,8 @@ TYPED_TEST(TopicConformance, AReaderOfAnotherPartitionHearsThatOneAlone) {
 
 // Keys come from peers: a topic has 256 of them at a time.
 TYPED_TEST(TopicConformance, AWriterHasABoundedNumberOfKeys) {
-  const auto writer = std::move(this->station->make_writer(topics::presence, "")).value();
-  const auto reader = this->read(topics::presence);
+  const auto writer = std::move(this->station->make_writer(topics::kPresence, "")).value();
+  const auto reader = this->read(topics::kPresence);
   ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
   for (int i = 0; i < 256; ++i) ASSERT_TRUE(writer->write(keyed("k" + std::to_string(i))).ok()) << i;
   EXPECT_EQ(writer->write(keyed("one more")).reason(), Reason::queue_full);
@@ -163,7 +164,7 @@ TYPED_TEST(TopicConformance, AWriterHasABoundedNumberOfKeys) {
 }
 
 TYPED_TEST(TopicConformance, KeysOfWritersThatLeftGiveWay) {
-  const auto reader = this->read(topics::presence);
+  const auto reader = this->read(topics::kPresence);
   std::set<Payload> heard;
   const auto write = [&](RawWriter& writer, int first, int last) {
     for (int i = first; i < last; ++i) {
@@ -177,8 +178,8 @@ TYPED_TEST(TopicConformance, KeysOfWritersThatLeftGiveWay) {
   };
   auto first = this->net.join("op2");
   auto second = this->net.join("op3");
-  auto a = std::move(first->make_writer(topics::presence, "")).value();
-  const auto b = std::move(second->make_writer(topics::presence, "")).value();
+  auto a = std::move(first->make_writer(topics::kPresence, "")).value();
+  const auto b = std::move(second->make_writer(topics::kPresence, "")).value();
   ASSERT_TRUE(this->net.until([&] { return a->matched() == 1 && b->matched() == 1; }));
   this->net.pass(300ms);
   write(*a, 0, 200);
@@ -194,21 +195,21 @@ TYPED_TEST(TopicConformance, KeysOfWritersThatLeftGiveWay) {
 }
 
 TYPED_TEST(TopicConformance, APartyOfAnotherReleaseDoesNotMatchAndIsReported) {
-  for (const TopicInfo& topic : {TopicInfo(topics::command), TopicInfo(topics::joystick)})
+  for (const TopicInfo& topic : {TopicInfo(topics::kCommand), TopicInfo(topics::kJoystick)})
     EXPECT_TRUE(other_release(topic.type).empty()) << topic.type;
-  TopicInfo older = topics::command;
+  TopicInfo older = topics::kCommand;
   older.type = "adit::radio::Command";
-  TopicInfo newer = topics::joystick;
+  TopicInfo newer = topics::kJoystick;
   newer.type = "adit::radio::v2::Joystick";
   const auto shared = std::make_shared<Seen<ParticipantEvent>>();
   this->station->on_participant(*this->strand, [shared](const ParticipantEvent& e) { shared->add(e); });
-  const auto reported = [shared](const Wire& wire, const char* what) {
+  const auto reported = [shared](const Participant& wire, const char* what) {
     const auto all = shared->all();
     return std::count_if(all.begin(), all.end(), [&](const ParticipantEvent& e) {
       return e.id == wire.id() && e.present && e.incompatible.find(what) != std::string::npos;
     });
   };
-  const auto writer = std::move(this->station->make_writer(topics::command, "")).value();
+  const auto writer = std::move(this->station->make_writer(topics::kCommand, "")).value();
   const auto other = this->net.join("r2");
   const auto old_reader = this->read(*this->robot, older, "");
   const auto old_again = this->read(*this->robot, older, "r1");

@@ -16,9 +16,9 @@
 namespace adit::station::cli {
 namespace {
 
-constexpr int ready_fd = 3;
-constexpr int start_limit_ms = 10000;
-constexpr int hello_limit_ms = 1000;
+constexpr int kReadyFd = 3;
+constexpr int kStartLimitMs = 10000;
+constexpr int kHelloLimitMs = 1000;
 
 std::vector<std::string> arguments(const Options& options) {
   std::vector<std::string> words{options.program, "--name", options.name, "--domain",
@@ -29,7 +29,7 @@ std::vector<std::string> arguments(const Options& options) {
   if (!options.at.empty()) words.push_back("--at");
   for (const float metres : options.at) words.push_back(std::to_string(metres));
   if (!options.record.empty()) words.insert(words.end(), {"--record", options.record});
-  words.insert(words.end(), {"--serve", std::to_string(ready_fd)});
+  words.insert(words.end(), {"--serve", std::to_string(kReadyFd)});
   return words;
 }
 
@@ -41,24 +41,24 @@ std::vector<std::string> arguments(const Options& options) {
   ::dup2(null, 0);
   ::dup2(log >= 0 ? log : null, 1);
   ::dup2(log >= 0 ? log : null, 2);
-  if (ready == ready_fd)
+  if (ready == kReadyFd)
     ::fcntl(ready, F_SETFD, 0);
   else
-    ::dup2(ready, ready_fd);
-  ::close_range(ready_fd + 1, ~0U, 0);
+    ::dup2(ready, kReadyFd);
+  ::close_range(kReadyFd + 1, ~0U, 0);
   sigset_t none;
   sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::execv(argv[0], argv);
   static constexpr char failed[] = "this program cannot be started again\n";
-  (void)!::write(ready_fd, failed, sizeof failed - 1);
+  (void)!::write(kReadyFd, failed, sizeof failed - 1);
   ::_exit(127);
 }
 
 /// What the station says of itself; null when it does not answer at once: the command itself reports that.
 nlohmann::json ask_hello(LineSocket& socket) {
   if (!socket.send({{"hello", true}})) return {};
-  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(hello_limit_ms);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kHelloLimitMs);
   for (;;) {
     // Events of other programs' commands may come first.
     while (const auto line = socket.line()) {
@@ -125,7 +125,7 @@ Result<void> launch(const Options& options) {
   std::string text;
   for (;;) {
     pollfd readable{reading.get(), POLLIN, 0};
-    const int ready = ::poll(&readable, 1, start_limit_ms);
+    const int ready = ::poll(&readable, 1, kStartLimitMs);
     if (ready < 0 && errno == EINTR) return {Reason::cancelled, "interrupted while the station starts"};
     if (ready <= 0) return {Reason::no_answer, "the station did not start within 10 s; see " + log_path};
     char buffer[512];
@@ -139,8 +139,8 @@ Result<void> launch(const Options& options) {
 }
 
 int exit_without_station(const Error& error) {
-  if (error.reason == Reason::no_answer) return exit_no_answer;
-  return error.reason == Reason::bad_argument ? exit_usage : exit_refused;
+  if (error.reason == Reason::no_answer) return kExitNoAnswer;
+  return error.reason == Reason::bad_argument ? kExitUsage : kExitRefused;
 }
 
 Result<LineSocket> connect_or_launch(const Options& options) {

@@ -34,8 +34,8 @@ bool LineSocket::pump() {
     const ssize_t size = ::recv(file_.get(), buffer, sizeof buffer, 0);
     if (size > 0) {
       in_.append(buffer, static_cast<std::size_t>(size));
-      if (in_.size() > max_line && in_.find('\n') == std::string::npos) return false;
-      if (in_.size() > 4 * max_line) return true;  // the rest after these lines
+      if (in_.size() > kMaxLine && in_.find('\n') == std::string::npos) return false;
+      if (in_.size() > 4 * kMaxLine) return true;  // the rest after these lines
     } else {
       return size < 0 && (errno == EAGAIN || errno == EINTR);
     }
@@ -57,7 +57,7 @@ std::string LineSocket::text_of(const nlohmann::json& object) {
 bool LineSocket::send(const nlohmann::json& object) { return send_line(text_of(object)); }
 
 bool LineSocket::send_line(const std::string& text) {
-  if (out_.size() > max_backlog) return false;
+  if (out_.size() > kMaxBacklog) return false;
   out_ += text + "\n";
   return flush();
 }

@@ -14,8 +14,8 @@ namespace adit::station::cli {
 /// what waits to go out is bounded.
 class LineSocket {
  public:
-  static constexpr std::size_t max_line = 256 << 10;
-  static constexpr std::size_t max_backlog = 4 << 20;
+  static constexpr std::size_t kMaxLine = 256 << 10;
+  static constexpr std::size_t kMaxBacklog = 4 << 20;
 
   LineSocket() = default;
   explicit LineSocket(File socket);

@@ -6,7 +6,7 @@
 
 #include "basestation/cli/process/paths.hpp"
 #include "core/store/file_disk.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 #include "core/wire/link_file.hpp"
 
 namespace adit::station::cli {
@@ -26,12 +26,12 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
   auto opened = wire::open_fastdds(radio);
   if (!opened) return opened.error();
   live->wire_ = std::move(*opened);
-  live->keeper_ = std::make_unique<record::Keeper>(record::KeepParams{
+  live->flight_recorder_ = std::make_unique<record::FlightRecorder>(record::FlightRecorderParams{
       .folder = hooks.record ? options.record : "none",
       .name = options.name,
       .about = {{"kind", "station"}, {"software", ADIT_VERSION}},
-      .complain = [](const std::string& text) { std::fprintf(stderr, "basestation: %s\n", text.c_str()); }});
-  wire::Wire& wire = live->keeper_->tap(*live->wire_, "radio");
+      .on_error = [](const std::string& text) { std::fprintf(stderr, "basestation: %s\n", text.c_str()); }});
+  wire::Participant& wire = live->flight_recorder_->tap(*live->wire_, "radio");
   live->strand_ = live->runtime_.strand("station");
   StationParams params{.name = options.name,
                        .id = *id,
@@ -80,8 +80,8 @@ Outcome LiveStation::execute(const std::string& line, std::chrono::milliseconds 
     station_->execute(line, [ended](const Outcome& outcome) { ended->set_value(outcome); });
   });
   if (future.wait_for(limit) == std::future_status::ready) return future.get();
-  Outcome outcome{.exit_code = exit_no_answer, .error = "no answer\n"};
-  outcome.json = {{"exit", exit_no_answer}, {"ok", false}, {"reason", "no_answer"}};
+  Outcome outcome{.exit_code = kExitNoAnswer, .error = "no answer\n"};
+  outcome.json = {{"exit", kExitNoAnswer}, {"ok", false}, {"reason", "no_answer"}};
   return outcome;
 }
 

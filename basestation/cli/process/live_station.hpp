@@ -5,7 +5,7 @@
 #include "basestation/cli/options.hpp"
 #include "basestation/station.hpp"
 #include "core/exec/live_runtime.hpp"
-#include "core/record/keep.hpp"
+#include "core/record/flight_recorder.hpp"
 
 namespace adit::station::cli {
 
@@ -35,8 +35,8 @@ class LiveStation {
 
   LiveRuntime runtime_{};
   std::shared_ptr<Executor> strand_{};
-  std::unique_ptr<wire::Wire> wire_{};
-  std::unique_ptr<record::Keeper> keeper_{};
+  std::unique_ptr<wire::Participant> wire_{};
+  std::unique_ptr<record::FlightRecorder> flight_recorder_{};
   std::unique_ptr<Station> station_{};
 };
 

@@ -8,11 +8,11 @@ namespace adit::station::cli {
 bool Outbox::reply(std::string line) {
   reply_bytes_ += line.size();
   waiting_.push_back({Kind::reply, std::move(line)});
-  return reply_bytes_ <= max_reply_bytes;
+  return reply_bytes_ <= kMaxReplyBytes;
 }
 
 void Outbox::event(std::string line) {
-  if (events_ == max_events) {
+  if (events_ == kMaxEvents) {
     waiting_.erase(std::find_if(waiting_.begin(), waiting_.end(),
                                 [](const Line& waits) { return waits.kind == Kind::event; }));
     ++missed_;

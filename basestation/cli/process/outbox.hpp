@@ -13,10 +13,10 @@ namespace adit::station::cli {
 /// waits.
 class Outbox {
  public:
-  static constexpr std::size_t max_reply_bytes = 4 << 20;
-  static constexpr std::size_t max_events = 256;
+  static constexpr std::size_t kMaxReplyBytes = 4 << 20;
+  static constexpr std::size_t kMaxEvents = 256;
 
-  /// False when more than `max_reply_bytes` of replies wait.
+  /// False when more than `kMaxReplyBytes` of replies wait.
   [[nodiscard]] bool reply(std::string line);
   void event(std::string line);
   void snapshot(std::string line);

@@ -29,7 +29,7 @@ Result<void> run(const Options& options, int ready_fd, const File& signals) {
   auto live = LiveStation::open(options, {.ready =
                                               [&](Station& station) {
                                                 station.on_notice = [&](const Notice& notice) {
-                                                  (*server)->tell(notice_json(notice, notice.at));
+                                                  (*server)->notify(notice_json(notice, notice.at));
                                                 };
                                                 station.on_down = [&] { (*server)->end(); };
                                               },
@@ -52,10 +52,10 @@ int serve(const Options& options, int ready_fd) {
   ::pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread, so that all of them have it
   const File signals(::signalfd(-1, &set, SFD_CLOEXEC));
   const auto ended = run(options, ready_fd, signals);
-  if (ended) return exit_done;
+  if (ended) return kExitDone;
   answer(ready_fd, ended.error().text + "\n");
   std::fprintf(stderr, "basestation: %s\n", ended.error().text.c_str());
-  return exit_refused;
+  return kExitRefused;
 }
 
 }  // namespace adit::station::cli

@@ -22,9 +22,9 @@ namespace {
 using nlohmann::json;
 using namespace std::chrono_literals;
 
-constexpr int snapshot_period_ms = 200;
-constexpr const char* unread_text = "the program did not read what the station answered";
-constexpr std::size_t max_event_text = 400;  // of an outcome, in the event for the others
+constexpr int kSnapshotPeriodMs = 200;
+constexpr const char* kUnreadText = "the program did not read what the station answered";
+constexpr std::size_t kMaxEventText = 400;  // of an outcome, in the event for the others
 
 json outcome_json(std::int64_t id, const Outcome& outcome) {
   return {{"id", id},
@@ -91,7 +91,7 @@ void Server::hand_over(Reply reply) {
   {
     const std::lock_guard guard(mutex_);
     // Answers are bounded by the requests that are open.
-    if (reply.kind != Reply::Kind::answer && handed_over_ == max_handed_over) {
+    if (reply.kind != Reply::Kind::answer && handed_over_ == kMaxHandedOver) {
       ++lost_;
     } else {
       handed_over_ += reply.kind == Reply::Kind::answer ? 0 : 1;
@@ -106,18 +106,18 @@ void Server::end() {
   wake();
 }
 
-void Server::tell(const json& notice) { hand_over({Reply::Kind::notice, 0, {{"notice", notice}}}); }
+void Server::notify(const json& notice) { hand_over({Reply::Kind::notice, 0, {{"notice", notice}}}); }
 
 void Server::accept_client() {
   File file(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
   if (!file || !allowed(file.get())) return;
   LineSocket socket(std::move(file));
-  if (clients_.size() >= max_clients) {
+  if (clients_.size() >= kMaxClients) {
     const auto leaving =
         std::find_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.cut_off; });
     if (leaving == clients_.end()) {
       socket.send(
-          {{"cut_off", std::to_string(max_clients) + " programs are connected to the station already"}});
+          {{"cut_off", std::to_string(kMaxClients) + " programs are connected to the station already"}});
       return;
     }
     drop(leaving->first);
@@ -177,7 +177,7 @@ void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const 
     json event{{"event", "command"},
                {"id", ++last_command_},
                {"phase", "begun"},
-               {"line", (robot.empty() ? line : "teleop " + robot).substr(0, max_event_text)},
+               {"line", (robot.empty() ? line : "teleop " + robot).substr(0, kMaxEventText)},
                {"query", robot.empty() && parsed && parsed->info->runs == command::Runs::query},
                {"by", by}};
     const auto done = [this, number, event, answer](const Outcome& outcome) {
@@ -185,8 +185,8 @@ void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const 
       json ended = event;
       ended["phase"] = "ended";
       ended["exit"] = outcome.exit_code;
-      ended["text"] = outcome.text.substr(0, max_event_text);
-      ended["error"] = outcome.error.substr(0, max_event_text);
+      ended["text"] = outcome.text.substr(0, kMaxEventText);
+      ended["error"] = outcome.error.substr(0, kMaxEventText);
       hand_over({Reply::Kind::event, number, std::move(ended)});
     };
     hand_over({Reply::Kind::answer, number, {{"id", id}, {"begun", true}}});
@@ -202,7 +202,7 @@ void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const 
 void Server::handle(std::uint64_t number, Client& client, const std::string& line) {
   const json request = json::parse(line, nullptr, false);
   const auto answer = [&](const json& object) {
-    if (!client.outbox.reply(LineSocket::text_of(object))) cut_off(client, unread_text);
+    if (!client.outbox.reply(LineSocket::text_of(object))) cut_off(client, kUnreadText);
   };
   const auto wrong = [&](const char* text) { answer({{"wrong", text}}); };
   if (!request.is_object()) return wrong("a JSON object was expected");
@@ -247,7 +247,7 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
   if (text("teleop") && !command::valid_name(request["teleop"].get<std::string>()))
     return wrong("teleop wants a robot's name");
   if (client.open.contains(id)) return wrong("the id is in use");
-  if (client.open.size() >= max_open) return wrong("too many requests at once");
+  if (client.open.size() >= kMaxOpen) return wrong("too many requests at once");
   begin(number, client, id, request);
 }
 
@@ -258,7 +258,7 @@ void Server::deliver(const Reply& reply) {
     if (found == clients_.end() || found->second.cut_off) return;
     Client& client = found->second;
     if (reply.object.contains("outcome")) client.open.erase(reply.object.value("id", std::int64_t{0}));
-    if (!client.outbox.reply(text)) cut_off(client, unread_text);
+    if (!client.outbox.reply(text)) cut_off(client, kUnreadText);
     return;
   }
   for (auto& [number, client] : clients_) {
@@ -332,7 +332,7 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
       numbers.push_back(number);
       watched = watched || client.watches;
     }
-    if (::poll(fds.data(), fds.size(), watched ? snapshot_period_ms : -1) < 0 && errno != EINTR) return;
+    if (::poll(fds.data(), fds.size(), watched ? kSnapshotPeriodMs : -1) < 0 && errno != EINTR) return;
     if (fds[0].revents != 0) return;
     if (fds[1].revents != 0) {
       std::uint64_t count = 0;
@@ -354,7 +354,7 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
     for (const std::uint64_t number : gone) drop(number);
     if (const auto now = std::chrono::steady_clock::now(); now >= next_snapshot) {
       ask_snapshot();
-      next_snapshot = now + std::chrono::milliseconds(snapshot_period_ms - 10);
+      next_snapshot = now + std::chrono::milliseconds(kSnapshotPeriodMs - 10);
     }
   }
   // The last answers, for clients that still read.

@@ -37,8 +37,8 @@ namespace adit::station::cli {
 /// an outcome: when too many wait it is cut off, with {"cut_off": "why"} as the last line.
 class Server {
  public:
-  static constexpr std::size_t max_clients = 32;
-  static constexpr std::size_t max_open = 32;  ///< requests of one client that have not ended
+  static constexpr std::size_t kMaxClients = 32;
+  static constexpr std::size_t kMaxOpen = 32;  ///< requests of one client that have not ended
 
   /// Takes the name (in_use when another process has it) and listens; a socket that a killed station left is
   /// replaced.
@@ -51,7 +51,7 @@ class Server {
   /// From any thread: serve() returns once what is queued has been sent.
   void end();
   /// From any thread: tells those who asked for notices.
-  void tell(const nlohmann::json& notice);
+  void notify(const nlohmann::json& notice);
 
  private:
   struct Client {
@@ -76,7 +76,7 @@ class Server {
     std::uint64_t client{};
     nlohmann::json object{};
   };
-  static constexpr std::size_t max_handed_over = 1024;  ///< notices and events on their way from the strand
+  static constexpr std::size_t kMaxHandedOver = 1024;  ///< notices and events on their way from the strand
 
   Server() = default;
   void accept_client();

@@ -16,13 +16,13 @@ struct Cell {
   std::string text{};
   const char* colour{""};
 };
-constexpr const char* red = "31";
-constexpr const char* green = "32";
-constexpr const char* yellow = "33";
-constexpr const char* cyan = "36";
-constexpr const char* bold = "1";
-constexpr const char* dim = "2";
-constexpr const char* reverse = "7";
+constexpr const char* kRed = "31";
+constexpr const char* kGreen = "32";
+constexpr const char* kYellow = "33";
+constexpr const char* kCyan = "36";
+constexpr const char* kBold = "1";
+constexpr const char* kDim = "2";
+constexpr const char* kReverse = "7";
 
 class Page {
  public:
@@ -89,32 +89,32 @@ std::string rate(double bytes) {
 Cell mode_cell(const json& robot, std::size_t width) {
   const std::string mode = text(robot, "mode");
   const std::string reason = text(robot, "reason");
-  if (flag(robot, "stopped")) return {padded("STOP " + mode, width), red};
+  if (flag(robot, "stopped")) return {padded("STOP " + mode, width), kRed};
   const bool waits = mode != "hold" && !flag(robot, "moving_allowed") && reason != "none" && !reason.empty();
-  if (waits) return {padded(mode + "!", width), yellow};
-  return {padded(mode.empty() ? "?" : mode, width), mode == "hold" ? "" : green};
+  if (waits) return {padded(mode + "!", width), kYellow};
+  return {padded(mode.empty() ? "?" : mode, width), mode == "hold" ? "" : kGreen};
 }
 
 Cell holder_cell(const json& robot, std::size_t width) {
   const std::string holder = text(robot, "holder");
-  const char* colour = flag(robot, "mine") ? green : holder.empty() ? dim : "";
+  const char* colour = flag(robot, "mine") ? kGreen : holder.empty() ? kDim : "";
   const std::string lock = flag(robot, "locked") ? "#" : "";
   return {padded(holder.empty() ? "-" : holder.substr(0, width - lock.size()) + lock, width), colour};
 }
 
 Cell goal_cell(const json& robot, std::size_t width) {
   const std::string state = text(robot, "goal_state");
-  if (state == "none" || state.empty()) return {padded("-", width), dim};
+  if (state == "none" || state.empty()) return {padded("-", width), kDim};
   const std::string where = fixed(number(robot, "goal", 0), 1) + "," + fixed(number(robot, "goal", 1), 1);
-  const char* colour = state == "blocked" ? red : state == "reached" ? green : "";
+  const char* colour = state == "blocked" ? kRed : state == "reached" ? kGreen : "";
   const std::string shown = state == "active" ? "to" : state == "reached" ? "at" : state;
   return {padded(shown + " " + where, width), colour};
 }
 
 Cell age_cell(const json& robot) {
   const double age = number(robot, "age");
-  if (flag(robot, "lost")) return {padded("LOST", 5, true), red};
-  return {padded(fixed(age, 1) + "s", 5, true), age > 1.0 ? yellow : ""};
+  if (flag(robot, "lost")) return {padded("LOST", 5, true), kRed};
+  return {padded(fixed(age, 1) + "s", 5, true), age > 1.0 ? kYellow : ""};
 }
 
 void robots(Page& page, const json& snapshot, const WatchState& state) {
@@ -127,7 +127,7 @@ void robots(Page& page, const json& snapshot, const WatchState& state) {
               padded("HOLDER", holder_width) + padded("X", 6, true) + padded("Y", 6, true) +
               padded("YAW", 4, true) + padded("M/S", 4, true) + padded("GOAL", goal_width) +
               padded("AGE", 5, true) + (spare > 6 ? padded("B/S", 6, true) : "")}},
-            bold);
+            kBold);
   const json list = snapshot.value("robots", json::array());
   const json traffic = snapshot.value("traffic", json::object());
   // The selected robot stays in view.
@@ -143,8 +143,8 @@ void robots(Page& page, const json& snapshot, const WatchState& state) {
     const double speed = std::hypot(number(robot, "velocity", 0), number(robot, "velocity", 1));
     const double yaw = number(robot, "pose", 3) * 180.0 / std::numbers::pi;
     std::vector<Cell> cells{{selected ? "> " : "  "},
-                            {i < 9 ? std::to_string(i + 1) + " " : "  ", dim},
-                            {padded(robot_name, name_width), selected ? bold : ""},
+                            {i < 9 ? std::to_string(i + 1) + " " : "  ", kDim},
+                            {padded(robot_name, name_width), selected ? kBold : ""},
                             {padded(text(robot, "kind"), 7), ""},
                             mode_cell(robot, mode_width),
                             holder_cell(robot, holder_width),
@@ -157,30 +157,30 @@ void robots(Page& page, const json& snapshot, const WatchState& state) {
     if (spare > 6)
       cells.push_back(
           {padded(traffic.contains(robot_name) ? rate(number(traffic[robot_name], "out")) : "-", 6, true)});
-    page.line(cells, selected ? reverse : "");
+    page.line(cells, selected ? kReverse : "");
   }
-  if (list.empty()) page.line({{"   no robot has been heard", dim}});
+  if (list.empty()) page.line({{"   no robot has been heard", kDim}});
 }
 
 /// What is worth a line about the selected robot.
 void detail(Page& page, const json& snapshot, const WatchState& state) {
   for (const json& robot : snapshot.value("robots", json::array())) {
     if (text(robot, "robot") != state.selected) continue;
-    std::vector<Cell> cells{{" " + state.selected + ": ", bold}};
+    std::vector<Cell> cells{{" " + state.selected + ": ", kBold}};
     const json stops = robot.value("stops", json::array());
     if (!stops.empty()) {
       std::string by;
       for (const json& stop : stops)
         by += (by.empty() ? "" : ", ") + (stop.is_string() ? stop.get<std::string>() : "");
-      cells.push_back({"stopped by " + by + "  ", red});
+      cells.push_back({"stopped by " + by + "  ", kRed});
     }
     std::string troubles;
     for (const json& trouble : robot.value("troubles", json::array()))
       if (trouble.is_string()) troubles += trouble.get<std::string>() + "  ";
-    if (!troubles.empty()) cells.push_back({troubles, red});
+    if (!troubles.empty()) cells.push_back({troubles, kRed});
     const std::string reason = text(robot, "reason");
     if (reason != "none" && !reason.empty() && stops.empty())
-      cells.push_back({"does not move: " + reason + "  ", yellow});
+      cells.push_back({"does not move: " + reason + "  ", kYellow});
     if (flag(robot, "locked")) {
       const double lease = number(robot, "lock_lease_left");
       cells.push_back({lease >= 0.0 ? "locked, lapses in " + fixed(lease, 0) + " s  " : "locked  "});
@@ -189,8 +189,8 @@ void detail(Page& page, const json& snapshot, const WatchState& state) {
     for (const json& mode : robot.value("modes", json::array()))
       if (!flag(mode, "available") && text(mode, "reason") != "joystick_stale")
         closed += (closed.empty() ? "" : ", ") + text(mode, "mode") + " (" + text(mode, "reason") + ")";
-    if (!closed.empty()) cells.push_back({"no " + closed, dim});
-    if (cells.size() == 1) cells.push_back({"ready", green});
+    if (!closed.empty()) cells.push_back({"no " + closed, kDim});
+    if (cells.size() == 1) cells.push_back({"ready", kGreen});
     page.line(cells);
     return;
   }
@@ -198,18 +198,21 @@ void detail(Page& page, const json& snapshot, const WatchState& state) {
 }
 
 void notices(Page& page, const json& snapshot, std::size_t room) {
-  page.line({{" NOTIFICATIONS", bold}});
+  page.line({{" NOTIFICATIONS", kBold}});
   if (room < 2) return;
   const json list = snapshot.value("notices", json::array());
   std::size_t shown = 0;
   for (auto it = list.rbegin(); it != list.rend() && shown < room - 1; ++it, ++shown) {
     const std::string level = text(*it, "level");
-    const char* colour = !flag(*it, "mine") ? dim : level == "error" ? red : level == "warning" ? yellow : "";
+    const char* colour = !flag(*it, "mine")   ? kDim
+                         : level == "error"   ? kRed
+                         : level == "warning" ? kYellow
+                                              : "";
     std::string line = " " + padded(short_age(number(*it, "age")), 5, true) + padded(text(*it, "robot"), 6);
     page.line({{line}, {text(*it, "text").empty() ? text(*it, "code") : text(*it, "text"), colour}});
   }
   if (list.empty()) {
-    page.line({{"   none yet", dim}});
+    page.line({{"   none yet", kDim}});
     ++shown;
   }
   for (; shown + 1 < room; ++shown) page.line({});
@@ -223,7 +226,7 @@ void help(Page& page) {
       "m  drive it: arrows or wasd, q e sideways, space zero, + - speed, Esc lets go",
       "?  this help                          Q or q  leave the dashboard",
   };
-  page.line({{" KEYS", bold}});
+  page.line({{" KEYS", kBold}});
   for (const char* row : rows) page.line({{std::string("  ") + row}});
 }
 
@@ -248,9 +251,9 @@ std::vector<std::string> render(const json& snapshot, const WatchState& state, i
   std::string others;
   for (const json& station : snapshot.value("stations", json::array()))
     if (!flag(station, "self")) others += (others.empty() ? "  with " : ", ") + text(station, "station");
-  page.line({{title + others}}, reverse);
+  page.line({{title + others}}, kReverse);
   if (state.silent)
-    page.line({{" the station does not answer", red}});
+    page.line({{" the station does not answer", kRed}});
   else
     page.line({});
   robots(page, snapshot, state);
@@ -262,14 +265,14 @@ std::vector<std::string> render(const json& snapshot, const WatchState& state, i
   while (page.left() > 0) page.line({});
   page.allow(static_cast<std::size_t>(footer));
   if (state.typing)
-    page.line({{":" + state.line + "_", bold}});
+    page.line({{":" + state.line + "_", kBold}});
   else
-    page.line({{" " + state.message, state.refused ? red : cyan}});
+    page.line({{" " + state.message, state.refused ? kRed : kCyan}});
   if (state.driving)
     page.line({{" DRIVING " + state.selected + "  " + state.driving_text + "  space zero  Esc lets go"}},
               "30;43");
   else
-    page.line({{" t take r release l lock s stop S all e reset h hold w go g goto m drive ? q"}}, reverse);
+    page.line({{" t take r release l lock s stop S all e reset h hold w go g goto m drive ? q"}}, kReverse);
   return page.take();
 }
 

@@ -247,12 +247,12 @@ int watch(Client& client, const Options& options) {
   {
     Terminal terminal(true);
     if (!terminal.usable())
-      return fail(options, exit_usage,
+      return fail(options, kExitUsage,
                   {Reason::bad_argument, "watch wants a terminal; in a script use --json status"});
     good = Dashboard(client, terminal).run();
   }
-  if (good) return exit_done;
-  return fail(options, exit_no_answer, {Reason::no_answer, client.gone()});
+  if (good) return kExitDone;
+  return fail(options, kExitNoAnswer, {Reason::no_answer, client.gone()});
 }
 
 }  // namespace adit::station::cli

@@ -25,7 +25,7 @@ class SetBlackboard : public Leaf {
     const std::string key = port<std::string>("output_key");
     const std::string& text = config().ports.find("value")->second;
     const auto source = blackboard_key("value", text);
-    Value value(text);
+    BlackboardValue value(text);
     if (source) {
       const auto* entry = board().find(*source);
       if (!entry) throw NodeError("port [value]: no blackboard entry '" + *source + "'");
@@ -33,7 +33,7 @@ class SetBlackboard : public Leaf {
       value = entry->value;
     }
     if (auto* entry = board().find(key); entry && is_number(entry->value) && is_text(value)) {
-      value = Value(to_real(value));
+      value = BlackboardValue(to_real(value));
       copy_into(value, entry->value);
     } else {
       board().set(key, std::move(value));

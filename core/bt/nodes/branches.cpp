@@ -6,9 +6,9 @@ namespace adit::bt {
 namespace {
 
 /// Asks the condition until it completes, then runs one branch to its end.
-class IfThenElse : public Node {
+class IfThenElse : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -34,7 +34,7 @@ class IfThenElse : public Node {
 
   void halt() override {
     branch_ = 0;
-    Node::halt();
+    TreeNode::halt();
   }
 
  private:
@@ -42,9 +42,9 @@ class IfThenElse : public Node {
 };
 
 /// Asks the condition in every tick; when it turns over, the branch that runs is halted.
-class WhileDoElse : public Node {
+class WhileDoElse : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {

@@ -11,14 +11,16 @@ inline constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
 
 /// The manifest of a control node class that is made from a NodeConfig.
 template <class T>
-Manifest control(std::string id, Ports ports = {}, std::size_t least = 1, std::size_t most = kAnyNumber) {
-  return {std::move(id),
-          NodeKind::control,
-          std::move(ports),
-          least,
-          most,
-          [](NodeConfig config) -> std::unique_ptr<Node> { return std::make_unique<T>(std::move(config)); },
-          true};
+Manifest control(std::string id, Ports ports = {}, std::size_t min_children = 1,
+                 std::size_t max_children = kAnyNumber) {
+  return {
+      std::move(id),
+      NodeKind::control,
+      std::move(ports),
+      min_children,
+      max_children,
+      [](NodeConfig config) -> std::unique_ptr<TreeNode> { return std::make_unique<T>(std::move(config)); },
+      true};
 }
 template <class T>
 Manifest decorator(std::string id, Ports ports = {}) {
@@ -47,6 +49,6 @@ void add_actions(Registry& registry);
 void add_scripted(Registry& registry);
 
 /// The node that stands for another tree; its child is that tree's root.
-std::unique_ptr<Node> make_subtree(NodeConfig config);
+std::unique_ptr<TreeNode> make_subtree(NodeConfig config);
 
 }  // namespace adit::bt

@@ -5,9 +5,9 @@ namespace adit::bt {
 
 namespace {
 
-class Inverter : public Node {
+class Inverter : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -20,9 +20,9 @@ class Inverter : public Node {
 };
 
 template <NodeStatus forced>
-class Force : public Node {
+class Force : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -34,9 +34,9 @@ class Force : public Node {
   }
 };
 
-class KeepRunningUntilFailure : public Node {
+class KeepRunningUntilFailure : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -48,9 +48,9 @@ class KeepRunningUntilFailure : public Node {
 };
 
 /// Ticks the child until it has completed once, ever: not even a halt makes it start again.
-class RunOnce : public Node {
+class RunOnce : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -69,9 +69,9 @@ class RunOnce : public Node {
   std::optional<NodeStatus> answer_{};
 };
 
-class SubTree : public Node {
+class SubTree : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -92,6 +92,8 @@ void add_decorators(Registry& registry) {
   (void)registry.add(decorator<RunOnce>("RunOnce", {input("then_skip", PortType::boolean, "true")}));
 }
 
-std::unique_ptr<Node> make_subtree(NodeConfig config) { return std::make_unique<SubTree>(std::move(config)); }
+std::unique_ptr<TreeNode> make_subtree(NodeConfig config) {
+  return std::make_unique<SubTree>(std::move(config));
+}
 
 }  // namespace adit::bt

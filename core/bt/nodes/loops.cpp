@@ -6,10 +6,10 @@ namespace adit::bt {
 namespace {
 
 /// Runs the child again while it answers `again`, at most as often as the port says (-1: for ever).
-class Loop : public Node {
+class Loop : public TreeNode {
  public:
   Loop(NodeConfig config, NodeStatus again, std::string port_name)
-      : Node(std::move(config)), again_(again), port_(std::move(port_name)) {}
+      : TreeNode(std::move(config)), again_(again), port_(std::move(port_name)) {}
 
  protected:
   NodeStatus tick() override {
@@ -39,7 +39,7 @@ class Loop : public Node {
 
   void halt() override {
     count_ = 0;
-    Node::halt();
+    TreeNode::halt();
   }
 
  private:

@@ -14,9 +14,9 @@ std::size_t resolve(int threshold, std::size_t children) {
   return static_cast<std::size_t>(std::max(static_cast<int>(children) + threshold + 1, 0));
 }
 
-class Parallel : public Node {
+class Parallel : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -50,7 +50,7 @@ class Parallel : public Node {
 
   void halt() override {
     clear();
-    Node::halt();
+    TreeNode::halt();
   }
 
  private:
@@ -70,9 +70,9 @@ class Parallel : public Node {
 };
 
 /// Waits until every child has completed.
-class ParallelAll : public Node {
+class ParallelAll : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -100,7 +100,7 @@ class ParallelAll : public Node {
 
   void halt() override {
     clear();
-    Node::halt();
+    TreeNode::halt();
   }
 
  private:

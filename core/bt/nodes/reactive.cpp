@@ -6,9 +6,9 @@ namespace adit::bt {
 namespace {
 
 template <NodeStatus go_on>
-class Reactive : public Node {
+class Reactive : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {

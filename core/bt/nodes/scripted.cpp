@@ -29,7 +29,7 @@ class ScriptNode : public Leaf {
 
  protected:
   NodeStatus tick() override {
-    script_.of(port<std::string>("code")).run(board(), runtime().enums);
+    script_.of(port<std::string>("code")).run(board(), context().enums);
     return NodeStatus::success;
   }
 
@@ -43,7 +43,7 @@ class ScriptCondition : public Leaf {
 
  protected:
   NodeStatus tick() override {
-    const Value answer = script_.of(port<std::string>("code")).run(board(), runtime().enums);
+    const BlackboardValue answer = script_.of(port<std::string>("code")).run(board(), context().enums);
     return to_condition(answer) ? NodeStatus::success : NodeStatus::failure;
   }
 
@@ -52,15 +52,15 @@ class ScriptCondition : public Leaf {
 };
 
 /// Ticks the child if the script holds when it starts; once running, the child is run to its end.
-class Precondition : public Node {
+class Precondition : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
     const NodeStatus otherwise = port<NodeStatus>("else");
     const Script& script = script_.of(port<std::string>("if"));
-    if (!running_) running_ = to_condition(script.run(board(), runtime().enums));
+    if (!running_) running_ = to_condition(script.run(board(), context().enums));
     if (!running_) return otherwise;
     const NodeStatus answer = tick_child(child());
     if (completed(answer)) {

@@ -6,17 +6,17 @@ namespace adit::bt {
 namespace {
 
 /// Goes on to the next child while children answer `go_on`; the first other answer that completes ends it.
-class Series : public Node {
+class Series : public TreeNode {
  public:
   Series(NodeConfig config, NodeStatus go_on, bool yields)
-      : Node(std::move(config)), go_on_(go_on), yields_(yields) {}
+      : TreeNode(std::move(config)), go_on_(go_on), yields_(yields) {}
 
  protected:
   NodeStatus tick() override {
     if (!active(status())) skipped_ = 0;
     set_status(NodeStatus::running);
     while (index_ < child_count()) {
-      Node& current = child(index_);
+      TreeNode& current = child(index_);
       const bool was_idle = current.status() == NodeStatus::idle;
       const NodeStatus answer = tick_child(current);
       if (answer == NodeStatus::running) return NodeStatus::running;
@@ -41,7 +41,7 @@ class Series : public Node {
 
   void halt() override {
     forget();
-    Node::halt();
+    TreeNode::halt();
   }
 
   /// A child ended the series.

@@ -33,9 +33,9 @@ bool same(const std::string& a, const std::string& b, const Enums& enums) {
          std::abs(*real_a - *real_b) <= static_cast<double>(std::numeric_limits<float>::epsilon());
 }
 
-class Switch : public Node {
+class Switch : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -53,7 +53,7 @@ class Switch : public Node {
 
   void halt() override {
     running_.reset();
-    Node::halt();
+    TreeNode::halt();
   }
 
  private:
@@ -70,7 +70,7 @@ class Switch : public Node {
     const auto variable = text_of("variable");
     for (std::size_t i = 0; variable && i < otherwise; ++i) {
       const auto value = text_of("case_" + std::to_string(i + 1));
-      if (value && same(*variable, *value, runtime().enums)) return i;
+      if (value && same(*variable, *value, context().enums)) return i;
     }
     return otherwise;
   }

@@ -6,15 +6,15 @@ namespace adit::bt {
 namespace {
 
 /// A decorator with a time that runs from its first tick until it completes or is halted.
-class Timed : public Node {
+class Timed : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   void halt() override {
     started_ = false;
-    runtime().timers.cancel(timer_);
-    Node::halt();
+    context().timers.cancel(timer_);
+    TreeNode::halt();
   }
 
   bool started_{false};
@@ -33,7 +33,7 @@ class Delay : public Timed {
       started_ = true;
       over_ = false;
       set_status(NodeStatus::running);
-      timer_ = runtime().timers.add(runtime().now + wait, [this] { over_ = true; });
+      timer_ = context().timers.add(context().now + wait, [this] { over_ = true; });
     }
     if (!over_) return NodeStatus::running;
     const NodeStatus answer = tick_child(child());
@@ -60,7 +60,7 @@ class Timeout : public Timed {
       started_ = true;
       expired_ = false;
       set_status(NodeStatus::running);
-      if (limit.count() > 0) timer_ = runtime().timers.add(runtime().now + limit, [this] { expire(); });
+      if (limit.count() > 0) timer_ = context().timers.add(context().now + limit, [this] { expire(); });
     }
     if (expired_) {
       started_ = false;
@@ -69,7 +69,7 @@ class Timeout : public Timed {
     const NodeStatus answer = tick_child(child());
     if (completed(answer)) {
       started_ = false;
-      runtime().timers.cancel(timer_);
+      context().timers.cancel(timer_);
       reset_child();
     }
     return answer;
@@ -95,12 +95,12 @@ class Sleep : public Leaf {
     const auto wait = std::chrono::milliseconds(port<std::uint32_t>("msec"));
     if (wait.count() == 0) return NodeStatus::success;
     waiting_ = true;
-    timer_ = runtime().timers.add(runtime().now + wait, [this] { waiting_ = false; });
+    timer_ = context().timers.add(context().now + wait, [this] { waiting_ = false; });
     return NodeStatus::running;
   }
 
   void halt() override {
-    runtime().timers.cancel(timer_);
+    context().timers.cancel(timer_);
     reset_status();
   }
 

@@ -5,9 +5,9 @@ namespace adit::bt {
 
 namespace {
 
-class TryCatch : public Node {
+class TryCatch : public TreeNode {
  public:
-  using Node::Node;
+  using TreeNode::TreeNode;
 
  protected:
   NodeStatus tick() override {
@@ -46,7 +46,7 @@ class TryCatch : public Node {
       tick_child(child(last));
     }
     clear();
-    Node::halt();
+    TreeNode::halt();
   }
 
  private:

@@ -8,16 +8,16 @@ namespace adit::bt::script {
 
 namespace {
 
-Value truth(bool value) { return Value(value ? 1.0 : 0.0); }
+BlackboardValue truth(bool value) { return BlackboardValue(value ? 1.0 : 0.0); }
 
-void require_written(const Value& v, const char* side, const std::string& op) {
+void require_written(const BlackboardValue& v, const char* side, const std::string& op) {
   if (is_empty(v)) {
     throw NodeError(std::string("the ") + side + " operand of '" + op + "' was never written");
   }
 }
 
 /// Texts count as numbers when they read as one, as true or false, or as an enum.
-double number_of(const Value& v, const Enums& enums) {
+double number_of(const BlackboardValue& v, const Enums& enums) {
   if (!is_text(v)) return to_real(v);
   const std::string& text = std::get<std::string>(v);
   if (text == "true") return 1.0;
@@ -27,16 +27,16 @@ double number_of(const Value& v, const Enums& enums) {
 }
 
 struct Literal : Expression {
-  explicit Literal(Value v) : value(std::move(v)) {}
-  Value evaluate(Environment&) const override { return value; }
-  Value value;
+  explicit Literal(BlackboardValue v) : value(std::move(v)) {}
+  BlackboardValue evaluate(Environment&) const override { return value; }
+  BlackboardValue value;
 };
 
 struct Variable : Expression {
   explicit Variable(std::string n) : name(std::move(n)) {}
-  Value evaluate(Environment& env) const override {
+  BlackboardValue evaluate(Environment& env) const override {
     if (const auto it = env.enums.find(name); it != env.enums.end()) {
-      return Value(static_cast<double>(it->second));
+      return BlackboardValue(static_cast<double>(it->second));
     }
     if (const auto* entry = env.board.find(name)) return entry->value;
     throw NodeError("no variable '" + name + "' on the blackboard");
@@ -46,13 +46,13 @@ struct Variable : Expression {
 
 struct Unary : Expression {
   Unary(std::string o, ExpressionPtr e) : op(std::move(o)), operand(std::move(e)) {}
-  Value evaluate(Environment& env) const override {
-    const Value v = operand->evaluate(env);
+  BlackboardValue evaluate(Environment& env) const override {
+    const BlackboardValue v = operand->evaluate(env);
     if (!is_number(v)) throw NodeError("operator '" + op + "' needs a number");
     const double number = to_real(v);
-    if (op == "-") return Value(-number);
+    if (op == "-") return BlackboardValue(-number);
     if (op == "!") return truth(number == 0.0);
-    return Value(static_cast<double>(~to_integer(Value(std::trunc(number)))));
+    return BlackboardValue(static_cast<double>(~to_integer(BlackboardValue(std::trunc(number)))));
   }
   std::string op;
   ExpressionPtr operand;
@@ -61,26 +61,26 @@ struct Unary : Expression {
 struct Binary : Expression {
   Binary(std::string o, ExpressionPtr l, ExpressionPtr r)
       : op(std::move(o)), left(std::move(l)), right(std::move(r)) {}
-  Value evaluate(Environment& env) const override {
-    const Value a = left->evaluate(env);
-    const Value b = right->evaluate(env);
+  BlackboardValue evaluate(Environment& env) const override {
+    const BlackboardValue a = left->evaluate(env);
+    const BlackboardValue b = right->evaluate(env);
     require_written(a, "left", op);
     require_written(b, "right", op);
     if (is_number(a) && is_number(b) && op != "..") return numbers(a, b);
     const bool joins = is_text(a) && is_text(b) && op == "+";
     const bool concatenates = op == ".." && (is_text(a) || is_text(b)) && (is_text(a) || is_number(a)) &&
                               (is_text(b) || is_number(b));
-    if (joins || concatenates) return Value(to_text(a) + to_text(b));
+    if (joins || concatenates) return BlackboardValue(to_text(a) + to_text(b));
     throw NodeError("operator '" + op + "' does not take these operands");
   }
-  Value numbers(const Value& a, const Value& b) const {
-    if (op == "+") return Value(to_real(a) + to_real(b));
-    if (op == "-") return Value(to_real(a) - to_real(b));
-    if (op == "*") return Value(to_real(a) * to_real(b));
-    if (op == "/") return Value(to_real(a) / to_real(b));
-    if (op == "&") return Value(static_cast<double>(to_integer(a) & to_integer(b)));
-    if (op == "|") return Value(static_cast<double>(to_integer(a) | to_integer(b)));
-    if (op == "^") return Value(static_cast<double>(to_integer(a) ^ to_integer(b)));
+  BlackboardValue numbers(const BlackboardValue& a, const BlackboardValue& b) const {
+    if (op == "+") return BlackboardValue(to_real(a) + to_real(b));
+    if (op == "-") return BlackboardValue(to_real(a) - to_real(b));
+    if (op == "*") return BlackboardValue(to_real(a) * to_real(b));
+    if (op == "/") return BlackboardValue(to_real(a) / to_real(b));
+    if (op == "&") return BlackboardValue(static_cast<double>(to_integer(a) & to_integer(b)));
+    if (op == "|") return BlackboardValue(static_cast<double>(to_integer(a) | to_integer(b)));
+    if (op == "^") return BlackboardValue(static_cast<double>(to_integer(a) ^ to_integer(b)));
     const bool x = to_condition(a), y = to_condition(b);
     return truth(op == "&&" ? x && y : x || y);
   }
@@ -101,10 +101,10 @@ bool holds(const std::string& op, const T& a, const T& b, bool same) {
 struct Comparison : Expression {
   Comparison(std::vector<std::string> o, std::vector<ExpressionPtr> e)
       : ops(std::move(o)), operands(std::move(e)) {}
-  Value evaluate(Environment& env) const override {
-    Value a = operands[0]->evaluate(env);
+  BlackboardValue evaluate(Environment& env) const override {
+    BlackboardValue a = operands[0]->evaluate(env);
     for (std::size_t i = 0; i < ops.size(); ++i) {
-      Value b = operands[i + 1]->evaluate(env);
+      BlackboardValue b = operands[i + 1]->evaluate(env);
       require_written(a, "left", ops[i]);
       require_written(b, "right", ops[i]);
       if (!compare(ops[i], a, b, env.enums)) return truth(false);
@@ -112,7 +112,8 @@ struct Comparison : Expression {
     }
     return truth(true);
   }
-  static bool compare(const std::string& op, const Value& a, const Value& b, const Enums& enums) {
+  static bool compare(const std::string& op, const BlackboardValue& a, const BlackboardValue& b,
+                      const Enums& enums) {
     if (is_text(a) && is_text(b)) {
       const auto &x = std::get<std::string>(a), &y = std::get<std::string>(b);
       return holds(op, x, y, x == y);
@@ -127,8 +128,8 @@ struct Comparison : Expression {
 struct Conditional : Expression {
   Conditional(ExpressionPtr c, ExpressionPtr t, ExpressionPtr o)
       : condition(std::move(c)), then(std::move(t)), otherwise(std::move(o)) {}
-  Value evaluate(Environment& env) const override {
-    const Value v = condition->evaluate(env);
+  BlackboardValue evaluate(Environment& env) const override {
+    const BlackboardValue v = condition->evaluate(env);
     const bool yes = is_text(v) ? !std::get<std::string>(v).empty() : to_real(v) != 0.0;
     return yes ? then->evaluate(env) : otherwise->evaluate(env);
   }
@@ -138,13 +139,13 @@ struct Conditional : Expression {
 struct Assignment : Expression {
   Assignment(std::string o, std::string n, ExpressionPtr e)
       : op(std::move(o)), name(std::move(n)), source(std::move(e)) {}
-  Value evaluate(Environment& env) const override {
+  BlackboardValue evaluate(Environment& env) const override {
     if (op == ":=") {
       env.board.declare(name);
     } else if (!env.board.find(name)) {
       throw NodeError("no blackboard entry '" + name + "' yet: '" + name + " := ...' makes one");
     }
-    const Value value = source->evaluate(env);
+    const BlackboardValue value = source->evaluate(env);
     require_written(value, "right", op);
     Blackboard::Entry& entry = env.board.declare(name);
     if (op == ":=" || op == "=") {
@@ -160,24 +161,24 @@ struct Assignment : Expression {
     }
     return entry.value;
   }
-  void assign_text(Environment& env, Blackboard::Entry& entry, const Value& value) const {
+  void assign_text(Environment& env, Blackboard::Entry& entry, const BlackboardValue& value) const {
     if (entry.type == PortType::any) {
       entry.value = number_of(value, env.enums);
     } else {
       env.board.set(name, value);
     }
   }
-  Value combined(const Value& old, const Value& value) const {
+  BlackboardValue combined(const BlackboardValue& old, const BlackboardValue& value) const {
     if (is_text(value)) {
       if (op != "+=") throw NodeError("operator '" + op + "' needs numbers");
-      return Value(to_text(old) + to_text(value));
+      return BlackboardValue(to_text(old) + to_text(value));
     }
     if (!is_number(old)) throw NodeError("operator '" + op + "' needs a number in '" + name + "'");
     const double a = to_real(old), b = to_real(value);
-    if (op == "+=") return Value(a + b);
-    if (op == "-=") return Value(a - b);
-    if (op == "*=") return Value(a * b);
-    return Value(a / b);
+    if (op == "+=") return BlackboardValue(a + b);
+    if (op == "-=") return BlackboardValue(a - b);
+    if (op == "*=") return BlackboardValue(a * b);
+    return BlackboardValue(a / b);
   }
   std::string op, name;
   ExpressionPtr source;
@@ -185,7 +186,7 @@ struct Assignment : Expression {
 
 }  // namespace
 
-ExpressionPtr literal(Value value) { return std::make_unique<Literal>(std::move(value)); }
+ExpressionPtr literal(BlackboardValue value) { return std::make_unique<Literal>(std::move(value)); }
 ExpressionPtr variable(std::string name) { return std::make_unique<Variable>(std::move(name)); }
 ExpressionPtr unary(std::string op, ExpressionPtr operand) {
   return std::make_unique<Unary>(std::move(op), std::move(operand));

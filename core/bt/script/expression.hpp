@@ -10,7 +10,7 @@ namespace adit::bt::script {
 // || are always evaluated, comparisons give 1.0 or 0.0 and may be chained, numbers compare with texts
 // that read as numbers.
 
-ExpressionPtr literal(Value value);
+ExpressionPtr literal(BlackboardValue value);
 ExpressionPtr variable(std::string name);
 /// `op`: - ~ !
 ExpressionPtr unary(std::string op, ExpressionPtr operand);

@@ -128,10 +128,10 @@ class Parser {
         return number(take(), false);
       case TokenKind::text:
         take();
-        return literal(Value(std::string(token.text)));
+        return literal(BlackboardValue(std::string(token.text)));
       case TokenKind::boolean:
         take();
-        return literal(Value(static_cast<std::int64_t>(token.text == "true")));
+        return literal(BlackboardValue(static_cast<std::int64_t>(token.text == "true")));
       case TokenKind::name:
         take();
         return variable(std::string(token.text));
@@ -153,7 +153,7 @@ class Parser {
     if (token.kind == TokenKind::real) {
       double real = 0;
       std::from_chars(token.text.data(), token.text.data() + token.text.size(), real);
-      return literal(Value(negative ? -real : real));
+      return literal(BlackboardValue(negative ? -real : real));
     }
     std::string_view digits = token.text;
     const bool hex = digits.starts_with("0x") || digits.starts_with("0X");
@@ -161,7 +161,7 @@ class Parser {
     std::int64_t integer = 0;
     const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), integer, hex ? 16 : 10);
     if (read.ec != std::errc()) throw NodeError("number '" + std::string(token.text) + "' is too large");
-    return literal(Value(negative ? -integer : integer));
+    return literal(BlackboardValue(negative ? -integer : integer));
   }
 
   std::vector<Token> tokens_;
@@ -182,9 +182,9 @@ Result<std::shared_ptr<const Script>> Script::parse(std::string_view text) {
   }
 }
 
-Value Script::run(Blackboard& board, const Enums& enums) const {
+BlackboardValue Script::run(Blackboard& board, const Enums& enums) const {
   script::Environment env{board, enums};
-  Value last{};
+  BlackboardValue last{};
   for (const auto& statement : statements_) last = statement->evaluate(env);
   return last;
 }

@@ -23,7 +23,7 @@ class Expression {
  public:
   virtual ~Expression() = default;
   /// Throws NodeError.
-  virtual Value evaluate(Environment& env) const = 0;
+  virtual BlackboardValue evaluate(Environment& env) const = 0;
 };
 using ExpressionPtr = std::unique_ptr<const Expression>;
 }  // namespace script
@@ -35,7 +35,7 @@ class Script {
   /// Reason::syntax with the position when the text is not a script.
   static Result<std::shared_ptr<const Script>> parse(std::string_view text);
   /// Runs every statement and answers with the last one's value. Throws NodeError.
-  Value run(Blackboard& board, const Enums& enums) const;
+  BlackboardValue run(Blackboard& board, const Enums& enums) const;
 
  private:
   std::vector<script::ExpressionPtr> statements_{};

@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 void print(const RunOptions& options, const Tree& tree, const DryRun& dry, int tick, NodeStatus answer) {
   Json nodes = Json::object();
-  tree.for_each([&](const Node& node, std::size_t) {
+  tree.for_each([&](const TreeNode& node, std::size_t) {
     if (node.named() && node.status() != NodeStatus::idle) nodes[node.name()] = name(node.status());
   });
   // Bytes that are not UTF-8 in a name are replaced rather than thrown at the user.
@@ -62,7 +62,7 @@ int run(const RunOptions& options) {
     if (!script.used) std::cerr << "tree: note: no leaf '" << leaf << "' in the tree\n";
   }
   int tick = 0;
-  tree->on_error([&](const Node& node, std::string_view what) {
+  tree->on_error([&](const TreeNode& node, std::string_view what) {
     std::cerr << "tree: tick " << tick << ": " << node.config().file << ":" << node.config().line << ": '"
               << node.name() << "': " << what << "\n";
   });

@@ -15,10 +15,10 @@ constexpr std::size_t kMaxDepth = 500;
 using xml::Element;
 using xml::fail;
 
-Tree Builder::build(const std::string& tree_id) {
+Tree TreeBuilder::build(const std::string& tree_id) {
   tree_ = Tree();
-  tree_.runtime_ = std::make_unique<Runtime>();
-  tree_.runtime_->enums = registry_.enums();
+  tree_.context_ = std::make_unique<TickContext>();
+  tree_.context_->enums = registry_.enums();
   tree_.id_ = tree_id;
   tree_.boards_.push_back(std::make_unique<Blackboard>());
   open_ = {tree_id};
@@ -26,7 +26,8 @@ Tree Builder::build(const std::string& tree_id) {
   return std::move(tree_);
 }
 
-std::unique_ptr<Node> Builder::make(const Element& element, Blackboard& board, const std::string& prefix) {
+std::unique_ptr<TreeNode> TreeBuilder::make(const Element& element, Blackboard& board,
+                                            const std::string& prefix) {
   if (++count_ > kMaxNodes) fail(element, "the tree has more than 20000 nodes", Reason::out_of_range);
   if (++depth_ > kMaxDepth) fail(element, "the tree is more than 500 levels deep", Reason::out_of_range);
   const xml::Kind kind = xml::kind_of(element, registry_);
@@ -40,7 +41,7 @@ std::unique_ptr<Node> Builder::make(const Element& element, Blackboard& board, c
   config.file = *element.file;
   config.line = element.line;
   config.board = &board;
-  config.runtime = tree_.runtime_.get();
+  config.context = tree_.context_.get();
   for (std::size_t i = 0; i < kHookNames.size(); ++i) {
     if (const auto* text = element.attribute(kHookNames[i])) {
       auto script = Script::parse(*text);
@@ -50,7 +51,7 @@ std::unique_ptr<Node> Builder::make(const Element& element, Blackboard& board, c
   }
   fill_ports(config, element, kind.manifest);
 
-  std::unique_ptr<Node> node;
+  std::unique_ptr<TreeNode> node;
   const std::string path = config.path;
   if (kind.kind == NodeKind::subtree) {
     node = make_subtree(std::move(config));
@@ -68,7 +69,7 @@ std::unique_ptr<Node> Builder::make(const Element& element, Blackboard& board, c
   return node;
 }
 
-void Builder::fill_ports(NodeConfig& config, const Element& element, const Manifest* manifest) const {
+void TreeBuilder::fill_ports(NodeConfig& config, const Element& element, const Manifest* manifest) const {
   for (const auto& attribute : element.attributes) {
     if (xml::is_port_name(attribute.name)) config.ports.emplace(attribute.name, attribute.value);
   }
@@ -84,7 +85,8 @@ void Builder::fill_ports(NodeConfig& config, const Element& element, const Manif
   }
 }
 
-void Builder::fill_subtree(Node& node, const Element& element, Blackboard& outer, const std::string& prefix) {
+void TreeBuilder::fill_subtree(TreeNode& node, const Element& element, Blackboard& outer,
+                               const std::string& prefix) {
   const std::string& id = node.id();
   const auto tree = forest_.trees.find(id);
   if (tree == forest_.trees.end()) fail(element, "no tree with ID '" + id + "'");
@@ -101,9 +103,9 @@ void Builder::fill_subtree(Node& node, const Element& element, Blackboard& outer
   open_.pop_back();
 }
 
-void Builder::connect(Blackboard& inner, const Element& element, const std::string& id) const {
+void TreeBuilder::connect(Blackboard& inner, const Element& element, const std::string& id) const {
   const auto* remap = element.attribute("_autoremap");
-  const bool autoremap = remap && to_boolean(Value(*remap));
+  const bool autoremap = remap && to_boolean(BlackboardValue(*remap));
   std::vector<xml::Attribute> ports;
   for (const auto& attribute : element.attributes) {
     if (xml::is_port_name(attribute.name)) ports.push_back(attribute);
@@ -125,7 +127,7 @@ void Builder::connect(Blackboard& inner, const Element& element, const std::stri
     } else if (const auto key = blackboard_key(port.name, port.value); key && port.value != "=") {
       inner.remap(port.name, *key);
     } else {
-      inner.set(port.name, Value(port.value));  // before autoremapping: a constant stays inside
+      inner.set(port.name, BlackboardValue(port.value));  // before autoremapping: a constant stays inside
     }
   }
   inner.set_autoremap(autoremap);

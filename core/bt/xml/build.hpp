@@ -6,16 +6,17 @@
 namespace adit::bt {
 
 /// Makes the nodes and blackboards of one tree of a verified forest.
-class Builder {
+class TreeBuilder {
  public:
-  Builder(const xml::Forest& forest, const Registry& registry) : forest_(forest), registry_(registry) {}
+  TreeBuilder(const xml::Forest& forest, const Registry& registry) : forest_(forest), registry_(registry) {}
   /// Throws xml::LoadError: a SubTree that is not there or contains itself, a port of a SubTree's model that
   /// is not given, or a tree that grows beyond 20 000 nodes or 500 levels.
   Tree build(const std::string& tree_id);
 
  private:
-  std::unique_ptr<Node> make(const xml::Element& element, Blackboard& board, const std::string& prefix);
-  void fill_subtree(Node& node, const xml::Element& element, Blackboard& outer, const std::string& prefix);
+  std::unique_ptr<TreeNode> make(const xml::Element& element, Blackboard& board, const std::string& prefix);
+  void fill_subtree(TreeNode& node, const xml::Element& element, Blackboard& outer,
+                    const std::string& prefix);
   void connect(Blackboard& inner, const xml::Element& element, const std::string& id) const;
   void fill_ports(NodeConfig& config, const xml::Element& element, const Manifest* manifest) const;
 

@@ -29,7 +29,7 @@ Result<Tree> load_tree_text(const Registry& registry, std::string_view text, con
   return guarded(source, [&] {
     const auto forest = xml::collect(xml::parse(text, source), folder_of(source));
     xml::verify(forest, registry);
-    return Builder(forest, registry).build(xml::main_tree(forest, tree_id));
+    return TreeBuilder(forest, registry).build(xml::main_tree(forest, tree_id));
   });
 }
 
@@ -44,7 +44,7 @@ Result<std::vector<std::string>> check_tree_file(const Registry& registry, const
     const auto forest = xml::collect(xml::parse(xml::read_file(path), path), folder_of(path));
     xml::verify(forest, registry);
     if (forest.main) (void)xml::main_tree(forest, "");
-    for (const auto& id : forest.order) Builder(forest, registry).build(id);
+    for (const auto& id : forest.order) TreeBuilder(forest, registry).build(id);
     return forest.order;
   });
 }

@@ -68,20 +68,20 @@ class Verifier {
     const std::size_t count = element.children.size();
     const std::string who =
         kind.kind == NodeKind::subtree ? "<SubTree ID=\"" + kind.id + "\">" : "'" + kind.id + "'";
-    const std::size_t least = kind.manifest ? kind.manifest->min_children : 0;
-    const std::size_t most = kind.manifest ? kind.manifest->max_children : 0;
+    const std::size_t min_children = kind.manifest ? kind.manifest->min_children : 0;
+    const std::size_t max_children = kind.manifest ? kind.manifest->max_children : 0;
     const std::string has = ", it has " + std::to_string(count);
-    if (most == 0 && count > 0 && !kind.manifest && kind.kind != NodeKind::subtree) {
+    if (max_children == 0 && count > 0 && !kind.manifest && kind.kind != NodeKind::subtree) {
       fail(element, "unknown node " + who + " with children: only leaves may be unknown");
     }
-    if (most == 0 && count > 0) fail(element, who + " must not have children" + has);
-    if (count >= least && count <= most) {
+    if (max_children == 0 && count > 0) fail(element, who + " must not have children" + has);
+    if (count >= min_children && count <= max_children) {
       if (kind.id == "ReactiveSequence") check_reactive(element);
       return;
     }
-    if (least == most) fail(element, who + " must have exactly " + plural(least) + has);
-    if (count < least) fail(element, who + " must have at least " + plural(least) + has);
-    fail(element, who + " must have at most " + plural(most) + has);
+    if (min_children == max_children) fail(element, who + " must have exactly " + plural(min_children) + has);
+    if (count < min_children) fail(element, who + " must have at least " + plural(min_children) + has);
+    fail(element, who + " must have at most " + plural(max_children) + has);
   }
 
   void check_reactive(const Element& element) const {

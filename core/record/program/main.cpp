@@ -26,7 +26,7 @@ written, or wrong usage.)";
 constexpr int kDamaged = 1;
 constexpr int kUnreadable = 2;
 
-int complain(const std::string& text) {
+int report_error(const std::string& text) {
   std::fprintf(stderr, "recording: %s\n", text.c_str());
   return kUnreadable;
 }
@@ -68,7 +68,7 @@ int info(const std::string& file) {
       std::printf("%s %s: %s\n", name.c_str(), key.c_str(), value.c_str());
   };
   const auto report = read_file(file, visitor);
-  if (!report) return complain(report.error().text);
+  if (!report) return report_error(report.error().text);
   std::printf("%llu messages in %llu chunks, %.3f s, %llu bytes\n",
               static_cast<unsigned long long>(report->messages),
               static_cast<unsigned long long>(report->chunks), in_seconds(report->last - report->first),
@@ -90,7 +90,7 @@ class Contents {
     if (!types) return;  // shown by its size alone
     if (const auto it = types->find(schema.name); it != types->end()) types_[schema.id] = it->second;
   }
-  std::string text(const Channel& channel, Bytes data) const {
+  std::string text(const Channel& channel, ByteSpan data) const {
     const auto type = types_.find(channel.schema);
     if (channel.encoding != "cdr" || type == types_.end()) return std::to_string(data.size()) + " bytes";
     const auto json = cdr_to_json(*type->second, data);
@@ -113,7 +113,7 @@ int cat(const std::string& file, const std::string& topic, bool who) {
     std::printf(" %s\n", contents.text(channel, message.data).c_str());
   };
   const auto report = read_file(file, visitor);
-  return report ? judged(file, *report) : complain(report.error().text);
+  return report ? judged(file, *report) : report_error(report.error().text);
 }
 
 /// Copies what can be read of one file; channels and schemas are numbered anew.
@@ -162,15 +162,15 @@ class Copy {
 
 int recover(const std::vector<std::string>& files) {
   auto output = open_file(files.back(), true);
-  if (!output) return complain(output.error().text);
+  if (!output) return report_error(output.error().text);
   McapWriter writer(**output, {1 << 20, true, "adit recording recover"});
   Copy copy(writer);
   for (std::size_t i = 0; i + 1 < files.size(); ++i) {
     const auto report = copy.add(files[i]);
-    if (!report) return complain(report.error().text);
+    if (!report) return report_error(report.error().text);
     (void)judged(files[i], *report);
   }
-  if (const auto closed = writer.close(); !closed) return complain(closed.error().text);
+  if (const auto closed = writer.close(); !closed) return report_error(closed.error().text);
   std::printf("%llu messages in %s\n", static_cast<unsigned long long>(writer.messages()),
               files.back().c_str());
   return 0;
@@ -204,7 +204,8 @@ int main(int argc, char** argv) {
   if (*info_command) return info(file);
   if (*cat_command) return cat(file, topic, who);
   for (std::size_t i = 0; i + 1 < files.size(); ++i)
-    if (files[i] == files.back()) return complain("the new file must be another than those that are read");
+    if (files[i] == files.back())
+      return report_error("the new file must be another than those that are read");
   (void)recover_command;
   return recover(files);
 }

@@ -36,7 +36,7 @@ struct BareDds::Impl : dds::DataReaderListener, dds::DataWriterListener {
   }
 
   Handler handler{};
-  wire::Bytes received{};
+  wire::SerializedSample received{};
   std::atomic<int> readers{0}, writers{0};
   dds::DomainParticipant* participant{};
   dds::DataWriter* writer{};
@@ -76,7 +76,7 @@ BareDds::~BareDds() {
 }
 
 void BareDds::write(std::span<const std::uint8_t> bytes) {
-  wire::Bytes sample;
+  wire::SerializedSample sample;
   sample.out = bytes;
   impl_->writer->write(&sample);
 }

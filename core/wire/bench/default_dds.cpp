@@ -13,7 +13,7 @@
 #include <map>
 
 #include "core/wire/fastdds/bytes_type.hpp"
-#include "core/wire/fastdds/counting_transport.hpp"
+#include "core/wire/fastdds/filtering_transport.hpp"
 #include "core/wire/qos.hpp"
 
 namespace adit::bench {
@@ -22,7 +22,7 @@ using eprosima::fastrtps::types::ReturnCode_t;
 
 struct DefaultDds::Impl : dds::DataReaderListener {
   void on_data_available(dds::DataReader* from) override {
-    wire::Bytes bytes;
+    wire::SerializedSample bytes;
     dds::SampleInfo info;
     while (from->take_next_sample(&bytes, &info) == ReturnCode_t::RETCODE_OK) {
     }
@@ -35,7 +35,7 @@ struct DefaultDds::Impl : dds::DataReaderListener {
     return known = participant->create_topic(topic.name, topic.type, dds::TOPIC_QOS_DEFAULT);
   }
 
-  std::shared_ptr<wire::Traffic> traffic{std::make_shared<wire::Traffic>()};
+  std::shared_ptr<wire::TransportContext> context{std::make_shared<wire::TransportContext>()};
   dds::DomainParticipant* participant{};
   std::map<std::string, dds::Topic*> topics{};
   std::map<std::string, dds::Publisher*> publishers{};
@@ -50,8 +50,8 @@ DefaultDds::DefaultDds(unsigned domain, const std::string& name) : impl_(std::ma
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = {"127.0.0.1"};
   qos.transport().user_transports.push_back(
-      std::make_shared<wire::CountingTransportDescriptor>(udp, impl_->traffic));
-  impl_->traffic->ready.open();
+      std::make_shared<wire::FilteringTransportDescriptor>(udp, impl_->context));
+  impl_->context->discovery_gate.open();
   impl_->participant = dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
 }
 
@@ -72,7 +72,7 @@ void DefaultDds::write(const wire::TopicInfo& topic, const std::string& partitio
     }
     writer = publisher->create_datawriter(impl_->topic_of(topic), dds::DATAWRITER_QOS_DEFAULT);
   }
-  wire::Bytes bytes;
+  wire::SerializedSample bytes;
   bytes.out = sample;
   if (!sample.empty()) writer->write(&bytes);
 }
@@ -91,10 +91,10 @@ void DefaultDds::read(const wire::TopicInfo& topic, const std::string& partition
 
 wire::WireCounters DefaultDds::counters() const {
   wire::WireCounters result;
-  result.discovery_out = impl_->traffic->discovery_out;
-  result.discovery_in = impl_->traffic->discovery_in;
-  result.total_out = impl_->traffic->total_out;
-  result.total_in = impl_->traffic->total_in;
+  result.discovery_out = impl_->context->discovery_out;
+  result.discovery_in = impl_->context->discovery_in;
+  result.total_out = impl_->context->total_out;
+  result.total_in = impl_->context->total_in;
   return result;
 }
 

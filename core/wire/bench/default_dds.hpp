@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::bench {
 

@@ -21,7 +21,7 @@ BytesType::BytesType(const std::string& name, bool keyed, std::uint32_t max_byte
 }
 
 bool BytesType::serialize(void* data, rtps::SerializedPayload_t* payload) {
-  const auto& out = static_cast<const Bytes*>(data)->out;
+  const auto& out = static_cast<const SerializedSample*>(data)->out;
   if (out.size() < 4 || out.size() > payload->max_size) return false;
   std::memcpy(payload->data, out.data(), out.size());
   payload->length = static_cast<std::uint32_t>(out.size());
@@ -30,8 +30,8 @@ bool BytesType::serialize(void* data, rtps::SerializedPayload_t* payload) {
 }
 
 bool BytesType::deserialize(rtps::SerializedPayload_t* payload, void* data) {
-  auto& bytes = *static_cast<Bytes*>(data);
-  bytes.too_long = payload->length > bytes.most;
+  auto& bytes = *static_cast<SerializedSample*>(data);
+  bytes.too_long = payload->length > bytes.max_bytes;
   if (bytes.too_long) {
     bytes.in.clear();
   } else {
@@ -41,12 +41,14 @@ bool BytesType::deserialize(rtps::SerializedPayload_t* payload, void* data) {
 }
 
 std::function<std::uint32_t()> BytesType::getSerializedSizeProvider(void* data) {
-  return [bytes = static_cast<const Bytes*>(data)] { return static_cast<std::uint32_t>(bytes->out.size()); };
+  return [bytes = static_cast<const SerializedSample*>(data)] {
+    return static_cast<std::uint32_t>(bytes->out.size());
+  };
 }
 
 bool BytesType::getKey(void* data, rtps::InstanceHandle_t* handle, bool) {
   if (!m_isGetKeyDefined) return false;
-  const auto& bytes = *static_cast<const Bytes*>(data);
+  const auto& bytes = *static_cast<const SerializedSample*>(data);
   const auto key = first_string(bytes.out.empty() ? std::span<const std::uint8_t>(bytes.in) : bytes.out);
   if (!key) {
     for (int i = 0; i < 16; ++i) handle->value[i] = 0xff;

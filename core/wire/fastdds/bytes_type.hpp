@@ -9,10 +9,10 @@
 namespace adit::wire {
 
 /// What the type below carries. Writers fill `out`, readers find `in`.
-struct Bytes {
+struct SerializedSample {
   std::span<const std::uint8_t> out{};
   std::vector<std::uint8_t> in{};
-  std::uint32_t most{UINT32_MAX};  ///< readers: a longer sample is not copied, and too_long is set
+  std::uint32_t max_bytes{UINT32_MAX};  ///< readers: a longer sample is not copied, and too_long is set
   bool too_long{};
 };
 
@@ -26,8 +26,8 @@ class BytesType final : public eprosima::fastdds::dds::TopicDataType {
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override;
   bool deserialize(eprosima::fastrtps::rtps::SerializedPayload_t* payload, void* data) override;
   std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override;
-  void* createData() override { return new Bytes(); }
-  void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
+  void* createData() override { return new SerializedSample(); }
+  void deleteData(void* data) override { delete static_cast<SerializedSample*>(data); }
   /// Always succeeds: samples without a readable key share one instance, so that a reader gets and counts
   /// them instead of the library dropping them in silence.
   bool getKey(void* data, eprosima::fastrtps::rtps::InstanceHandle_t* handle, bool force_md5) override;

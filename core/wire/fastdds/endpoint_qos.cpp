@@ -8,7 +8,7 @@ namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
 namespace {
 
-constexpr int reader_depth = 64;  // unkeyed: samples of all writers together until taken, which is at once
+constexpr int kReaderDepth = 64;  // unkeyed: samples of all writers together until taken, which is at once
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
   return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
@@ -22,7 +22,7 @@ void common(const TopicInfo& topic, const Qos& qos, int depth, EndpointQos& out)
       qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
   out.history().depth = depth;
-  const int keys = topic.keyed ? static_cast<int>(max_keys) : 1;
+  const int keys = topic.keyed ? static_cast<int>(kMaxKeys) : 1;
   out.resource_limits().max_instances = keys;
   out.resource_limits().max_samples_per_instance = depth;
   out.resource_limits().max_samples = keys * depth;
@@ -45,7 +45,7 @@ dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link) {
   // Its readers would acknowledge each piece.
   if (topic.qos == QosClass::bulk) out.reliable_writer_qos().disable_heartbeat_piggyback = true;
   if (on_link && wait) {
-    out.publish_mode().flow_controller_name = topic.qos == QosClass::bulk ? bulk_flow : video_flow;
+    out.publish_mode().flow_controller_name = topic.qos == QosClass::bulk ? kBulkFlow : kVideoFlow;
   }
   return out;
 }
@@ -53,7 +53,7 @@ dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link) {
 dds::DataReaderQos dds_reader_qos(const TopicInfo& topic) {
   const Qos qos = reader_qos(topic);
   dds::DataReaderQos out;
-  common(topic, qos, topic.keyed ? std::max<int>(4, topic.depth) : reader_depth, out);
+  common(topic, qos, topic.keyed ? std::max<int>(4, topic.depth) : kReaderDepth, out);
   return out;
 }
 

@@ -8,9 +8,9 @@
 
 #include "core/wire/cdr_key.hpp"
 #include "core/wire/cost.hpp"
-#include "core/wire/fastdds/counting_transport.hpp"
 #include "core/wire/fastdds/endpoint_qos.hpp"
-#include "core/wire/fastdds/live_link.hpp"
+#include "core/wire/fastdds/filtering_transport.hpp"
+#include "core/wire/fastdds/link_shaper.hpp"
 #include "core/wire/qos.hpp"
 
 namespace adit::wire {
@@ -29,10 +29,10 @@ std::vector<TopicCount> SharedCounts::all() const {
 Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher, dds::Topic& dds_topic,
                                                        const TopicInfo& topic,
                                                        std::shared_ptr<SharedCounts> counts,
-                                                       std::shared_ptr<Traffic> traffic) {
+                                                       std::shared_ptr<TransportContext> context) {
   std::unique_ptr<FastDdsWriter> writer(new FastDdsWriter(publisher, topic, std::move(counts)));
   writer->writer_ = publisher.create_datawriter(
-      &dds_topic, dds_writer_qos(topic, traffic->link && traffic->link->profile() != nullptr), writer.get(),
+      &dds_topic, dds_writer_qos(topic, context->link && context->link->profile() != nullptr), writer.get(),
       dds::StatusMask::publication_matched());
   if (writer->writer_ == nullptr) {
     return Error{Reason::wire_failed,
@@ -42,10 +42,10 @@ Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher
   const auto& id = writer->writer_->guid().entityId.value;
   writer->entity_ = static_cast<std::uint32_t>(id[0]) << 24 | id[1] << 16 | id[2] << 8 | id[3];
   // A reader of ours that is reliable has to acknowledge, or the writer would go on to ask all others, too.
-  if (!qos.reliable || !reader_qos(topic).reliable) traffic->to_others.add(writer->entity_);
-  if (traffic->link)
-    traffic->link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable, topic.keyed);
-  writer->traffic_ = std::move(traffic);
+  if (!qos.reliable || !reader_qos(topic).reliable) context->to_others.add(writer->entity_);
+  if (context->link)
+    context->link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable, topic.keyed);
+  writer->context_ = std::move(context);
   return std::unique_ptr<RawWriter>(std::move(writer));
 }
 
@@ -59,9 +59,9 @@ FastDdsWriter::FastDdsWriter(dds::Publisher& publisher, const TopicInfo& topic,
 
 FastDdsWriter::~FastDdsWriter() {
   if (writer_ != nullptr) publisher_.delete_datawriter(writer_);
-  if (!traffic_) return;
-  traffic_->to_others.remove(entity_);
-  if (traffic_->link) traffic_->link->remove_writer(entity_);
+  if (!context_) return;
+  context_->to_others.remove(entity_);
+  if (context_->link) context_->link->remove_writer(entity_);
 }
 
 Result<void> FastDdsWriter::failed(Reason reason, const std::string& why) {
@@ -76,7 +76,7 @@ Result<void> FastDdsWriter::write(std::span<const std::uint8_t> cdr) {
   }
   if (cdr.size() < 4 || (keyed_ && !first_string(cdr)))
     return failed(Reason::malformed, "the sample has no key");
-  Bytes bytes;
+  SerializedSample bytes;
   bytes.out = cdr;
   ReturnCode_t code;
   try {
@@ -195,7 +195,7 @@ bool FastDdsReader::Target::handle_one() {
 
 void FastDdsReader::Target::handle() {
   try {
-    for (int i = 0; i < samples_in_one_go; ++i) {
+    for (int i = 0; i < kBurstSamples; ++i) {
       if (!handle_one()) return;
     }
   } catch (...) {
@@ -213,8 +213,8 @@ void FastDdsReader::Target::close() {
 }
 
 void FastDdsReader::on_data_available(dds::DataReader* reader) {
-  Bytes bytes;
-  bytes.most = target_->max_bytes;
+  SerializedSample bytes;
+  bytes.max_bytes = target_->max_bytes;
   bytes.in = target_->buffer();
   for (;;) {
     dds::SampleInfo info;

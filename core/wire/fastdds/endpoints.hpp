@@ -14,11 +14,11 @@
 #include "core/exec/in_place.hpp"
 #include "core/wire/fastdds/bytes_type.hpp"
 #include "core/wire/mailbox.hpp"
-#include "core/wire/wire.hpp"
+#include "core/wire/participant.hpp"
 
 namespace adit::wire {
 
-struct Traffic;
+struct TransportContext;
 
 /// Counts of a wire, touched by the application's strands and by Fast DDS's threads.
 class SharedCounts {
@@ -29,7 +29,7 @@ class SharedCounts {
     auto found = counts_.find({topic, peer});
     if (found == counts_.end()) {
       // Peers come and go for days: beyond the bound they share one line.
-      const ParticipantId counted = counts_.size() < max_counts ? peer : ParticipantId{};
+      const ParticipantId counted = counts_.size() < kMaxCounts ? peer : ParticipantId{};
       found = counts_.try_emplace({topic, counted}).first;
       found->second.topic = topic;
       found->second.peer = counted;
@@ -39,7 +39,7 @@ class SharedCounts {
   std::vector<TopicCount> all() const;
 
  private:
-  static constexpr std::size_t max_counts = 4096;
+  static constexpr std::size_t kMaxCounts = 4096;
   mutable std::mutex mutex_{};
   std::map<std::pair<std::string, ParticipantId>, TopicCount> counts_{};
 };
@@ -50,7 +50,7 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
   static Result<std::unique_ptr<RawWriter>> make(eprosima::fastdds::dds::Publisher& publisher,
                                                  eprosima::fastdds::dds::Topic& dds_topic,
                                                  const TopicInfo& topic, std::shared_ptr<SharedCounts> counts,
-                                                 std::shared_ptr<Traffic> traffic);
+                                                 std::shared_ptr<TransportContext> context);
   ~FastDdsWriter() override;
   Result<void> write(std::span<const std::uint8_t> cdr) override;
   std::size_t matched() const override { return static_cast<std::size_t>(matched_.load()); }
@@ -68,7 +68,7 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
   bool keyed_;
   std::uint32_t max_bytes_;
   std::shared_ptr<SharedCounts> counts_;
-  std::shared_ptr<Traffic> traffic_{};
+  std::shared_ptr<TransportContext> context_{};
   std::uint32_t entity_{};
   int own_{};  ///< matched readers of this participant, which get nothing; changed by the listener alone
   std::atomic<int> matched_{0};

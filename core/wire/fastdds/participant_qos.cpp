@@ -11,8 +11,8 @@
 #include <set>
 
 #include "core/wire/cost.hpp"
-#include "core/wire/fastdds/counting_transport.hpp"
 #include "core/wire/fastdds/endpoint_qos.hpp"
+#include "core/wire/fastdds/filtering_transport.hpp"
 #include "core/wire/link/budget.hpp"
 #include "core/wire/qos.hpp"
 
@@ -21,15 +21,15 @@ namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 namespace {
 
-constexpr std::uint32_t loopback_datagram = 65000;
+constexpr std::uint32_t kLoopbackDatagram = 65000;
 /// Whole scans must wait here until they are read; the kernel gives at most net.core.rmem_max.
-constexpr std::uint32_t scan_buffer = 4 << 20;
-constexpr std::uint32_t participants_per_host = 16;  // ports tried at an address that is named without one
-constexpr std::uint32_t send_buffer = 212992;        // B, as Linux has it
+constexpr std::uint32_t kScanBuffer = 4 << 20;
+constexpr std::uint32_t kParticipantsPerHost = 16;  // ports tried at an address that is named without one
+constexpr std::uint32_t kSendBuffer = 212992;       // B, as Linux has it
 /// The library keeps room in each message for statistics, 60 B that are cut off again, and for a heartbeat,
 /// 32 B, which hardly ever goes with a fragment. With 20 of these an endpoint fits one frame of 500 B.
-constexpr std::uint32_t never_sent = 60 + 20;
-constexpr const char* everybody = "239.255.0.1";  // RTPS multicast group
+constexpr std::uint32_t kNeverSent = 60 + 20;
+constexpr const char* kRtpsMulticast = "239.255.0.1";  // RTPS multicast group
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
   return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
@@ -88,7 +88,7 @@ void add_flow(const char* name, double share, const LinkProfile& link, dds::Doma
 }  // namespace
 
 Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params,
-                                                      std::shared_ptr<Traffic> traffic) {
+                                                      std::shared_ptr<TransportContext> context) {
   if (params.domain > 232) {
     return Error{Reason::bad_argument, "domain " + std::to_string(params.domain) + ": expected 0 to 232"};
   }
@@ -117,26 +117,26 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   udp->non_blocking_send = true;
   // Without a size the library takes the buffer for full after each sample, and a heartbeat goes with each
   // fragment and each repair to every reader, which every reader acknowledges.
-  udp->sendBufferSize = send_buffer;
-  udp->maxMessageSize = params.large_samples ? loopback_datagram : WireCost::frame + never_sent;
-  if (params.large_samples) udp->receiveBufferSize = scan_buffer;
+  udp->sendBufferSize = kSendBuffer;
+  udp->maxMessageSize = params.large_samples ? kLoopbackDatagram : WireCost::kFrame + kNeverSent;
+  if (params.large_samples) udp->receiveBufferSize = kScanBuffer;
   if (params.link) {
     udp->maxMessageSize =
-        std::min(udp->maxMessageSize, params.link->frame_bytes() - WireCost::udp_and_ip + never_sent);
+        std::min(udp->maxMessageSize, params.link->frame_bytes() - WireCost::kUdpAndIp + kNeverSent);
     const Budget budget;
-    add_flow(bulk_flow, budget.share[5], *params.link, qos);
-    add_flow(video_flow, budget.share[6], *params.link, qos);
+    add_flow(kBulkFlow, budget.share[5], *params.link, qos);
+    add_flow(kVideoFlow, budget.share[6], *params.link, qos);
   }
-  udp->maxInitialPeersRange = participants_per_host;
+  udp->maxInitialPeersRange = kParticipantsPerHost;
   qos.transport().user_transports.push_back(
-      std::make_shared<CountingTransportDescriptor>(udp, std::move(traffic)));
+      std::make_shared<FilteringTransportDescriptor>(udp, std::move(context)));
 
   auto& builtin = qos.wire_protocol().builtin;
   auto& discovery = builtin.discovery_config;
-  discovery.leaseDuration = duration(Discovery::lease);
-  discovery.leaseDuration_announcementperiod = duration(Discovery::announcement);
-  discovery.initial_announcements.count = Discovery::initial_announcements;
-  discovery.initial_announcements.period = duration(Discovery::initial_period);
+  discovery.leaseDuration = duration(Discovery::kLease);
+  discovery.leaseDuration_announcementperiod = duration(Discovery::kAnnouncement);
+  discovery.initial_announcements.count = Discovery::kInitialAnnouncements;
+  discovery.initial_announcements.period = duration(Discovery::kInitialPeriod);
   builtin.typelookup_config.use_client = false;
   builtin.typelookup_config.use_server = false;
   builtin.use_WriterLivelinessProtocol = false;  // silence is judged by the application's own samples
@@ -154,7 +154,7 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
     builtin.metatrafficUnicastLocatorList.push_back(any);
     if (builtin.initialPeersList.empty()) builtin.initialPeersList.push_back(*locator("127.0.0.1"));
   } else if (!params.peers.empty()) {
-    builtin.initialPeersList.push_back(*locator(everybody));
+    builtin.initialPeersList.push_back(*locator(kRtpsMulticast));
   }
   return qos;
 }

@@ -3,14 +3,14 @@
 #include <memory>
 
 #include "core/result/result.hpp"
-#include "core/wire/fastdds/fastdds_wire.hpp"
+#include "core/wire/fastdds/fastdds_participant.hpp"
 
 namespace adit::wire {
 
-struct Traffic;
+struct TransportContext;
 
 /// Transports, discovery and limits of a participant. Errors: bad_argument for a wrong domain or address.
-Result<eprosima::fastdds::dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& params,
-                                                                         std::shared_ptr<Traffic> traffic);
+Result<eprosima::fastdds::dds::DomainParticipantQos> dds_participant_qos(
+    const FastDdsParams& params, std::shared_ptr<TransportContext> context);
 
 }  // namespace adit::wire

@@ -20,7 +20,7 @@ struct RtpsPeek {
   /// to the same receiver the newer one stands for both. Samples by writer and sequence number, heartbeats
   /// and acknowledgements by writer and reader. 0: a submessage is of a kind that cannot be read, as under
   /// DDS security; then the message stands for itself alone.
-  std::uint64_t meaning{};
+  std::uint64_t dedup_key{};
 };
 
 /// Reads the submessage headers of an RTPS 2 message. Nothing in it when it is none or is cut short.
@@ -43,7 +43,7 @@ struct LoneHeartbeat {
 std::optional<LoneHeartbeat> lone_heartbeat(std::span<const std::uint8_t> message);
 
 /// Entity id of the writer of participant announcements: RTPS 2.2, 9.3.1.3.
-inline constexpr std::uint32_t announcing_writer = 0x000100c2;
+inline constexpr std::uint32_t kAnnouncingWriter = 0x000100c2;
 
 /// Where the participant that announces itself wants to hear of others; nothing where the message is no
 /// announcement or a goodbye.

@@ -7,7 +7,7 @@
 namespace adit::wire {
 namespace {
 
-constexpr double out_of_range = -1000.0;  // dBm
+constexpr double kOutOfRange = -1000.0;  // dBm
 
 /// Standard normal, by the polar form's trigonometric sibling (Box and Muller 1958).
 double normal(Random& random) {
@@ -21,7 +21,7 @@ double distance(const Position& a, const Position& b) { return std::hypot(a.x - 
 
 std::optional<double> received_power(const LinkProfile& link, const Path& path) {
   if (!path.distance || link.fading <= 0.0) return std::nullopt;
-  if (link.range > 0.0 && *path.distance > link.range) return out_of_range;
+  if (link.range > 0.0 && *path.distance > link.range) return kOutOfRange;
   const double metres = std::max(1.0, *path.distance);  // nearer than a metre nothing is gained
   return link.power - link.path_loss - 10.0 * link.fading * std::log10(metres) - path.walls;
 }
@@ -32,8 +32,8 @@ double fading_loss(double power, double noise, std::uint32_t bytes) {
   return -std::expm1(8.0 * bytes * std::log1p(-std::min(bit_error, 1.0 - 1e-12)));
 }
 
-bool Channel::lost(const LinkProfile& link, const Path& path, std::uint32_t bytes, std::optional<double> loss,
-                   Random& random) {
+bool LossModel::lost(const LinkProfile& link, const Path& path, std::uint32_t bytes,
+                     std::optional<double> loss, Random& random) {
   if (link.range > 0.0 && path.distance && *path.distance > link.range) return true;
   const double chance = loss.value_or(link.loss);
   bool is_lost;

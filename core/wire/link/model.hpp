@@ -30,7 +30,7 @@ std::optional<double> received_power(const LinkProfile& link, const Path& path);
 double fading_loss(double power, double noise, std::uint32_t bytes);
 
 /// One direction between two machines: remembers whether it is in a burst of losses.
-class Channel {
+class LossModel {
  public:
   /// Whether a frame of that many bytes is lost. `loss`: instead of the link's own chance.
   bool lost(const LinkProfile& link, const Path& path, std::uint32_t bytes, std::optional<double> loss,

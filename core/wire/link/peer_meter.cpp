@@ -5,14 +5,14 @@
 
 namespace adit::wire {
 
-void PeerMeter::sent(std::uint32_t number, Time now) { sent_[number % window] = {number, now}; }
+void PeerMeter::sent(std::uint32_t number, Time now) { sent_[number % kWindow] = {number, now}; }
 
 void PeerMeter::heard(const std::string& name, std::uint32_t number, Time now) {
-  if (!heard_.contains(name) && heard_.size() >= max_peers) return;
+  if (!heard_.contains(name) && heard_.size() >= kMaxPeers) return;
   const auto [at, is_new] = heard_.try_emplace(name);
   Heard& heard = at->second;
   const std::uint32_t ahead = number - heard.number;
-  if (is_new || (number < heard.number && heard.number - number >= window)) {
+  if (is_new || (number < heard.number && heard.number - number >= kWindow)) {
     heard = {number, now, 1, 1, heard.round_trip};
     return;
   }
@@ -22,14 +22,14 @@ void PeerMeter::heard(const std::string& name, std::uint32_t number, Time now) {
     heard.at = now;
     return;
   }
-  heard.bits = ahead >= window ? 1U : (heard.bits << ahead) | 1U;
-  heard.known = std::min(window, heard.known + std::min(ahead, window));
+  heard.bits = ahead >= kWindow ? 1U : (heard.bits << ahead) | 1U;
+  heard.known = std::min(kWindow, heard.known + std::min(ahead, kWindow));
   heard.number = number;
   heard.at = now;
 }
 
 void PeerMeter::echoed(const std::string& name, std::uint32_t number, Duration held, Time now) {
-  const auto& [own, at] = sent_[number % window];
+  const auto& [own, at] = sent_[number % kWindow];
   const auto peer = heard_.find(name);
   if (peer == heard_.end() || own != number || number == 0) return;
   const double trip = seconds(now - at - held);

@@ -14,8 +14,8 @@ namespace adit::wire {
 /// peer's numbers, the round trip by what a peer's report echoes. Own clock alone; bounded.
 class PeerMeter {
  public:
-  static constexpr std::size_t max_peers = 64;
-  static constexpr std::uint32_t window = 32;  ///< signs of life that the share lost is taken over
+  static constexpr std::size_t kMaxPeers = 64;
+  static constexpr std::uint32_t kWindow = 32;  ///< signs of life that the share lost is taken over
 
   struct Peer {
     std::string name{};
@@ -40,14 +40,14 @@ class PeerMeter {
   struct Heard {
     std::uint32_t number{};
     Time at{};
-    std::uint32_t bits{};   // which of the last `window` numbers were heard, the newest lowest
-    std::uint32_t known{};  // numbers that `bits` tells of, at most `window`
+    std::uint32_t bits{};   // which of the last `kWindow` numbers were heard, the newest lowest
+    std::uint32_t known{};  // numbers that `bits` tells of, at most `kWindow`
     std::optional<double> round_trip{};
   };
   static Peer view(const std::string& name, const Heard& heard, Time now);
 
   std::map<std::string, Heard> heard_{};
-  std::array<std::pair<std::uint32_t, Time>, window> sent_{};  // by number
+  std::array<std::pair<std::uint32_t, Time>, kWindow> sent_{};  // by number
 };
 
 }  // namespace adit::wire

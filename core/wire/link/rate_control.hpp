@@ -8,8 +8,8 @@ namespace adit::wire {
 
 /// How a periodic message's rate follows the link.
 struct RateParams {
-  double most{10.0};         ///< 1/s, where the link lets it, (0, 1000]
-  double least{1.0};         ///< 1/s, however bad the link is, (0, most]
+  double max_rate{10.0};     ///< 1/s, where the link lets it, (0, 1000]
+  double min_rate{1.0};      ///< 1/s, however bad the link is, (0, most]
   double step{1.0};          ///< 1/s, added every `rise` while the link is calm, (0, most]
   double fall{0.5};          ///< the rate is multiplied by this when the link is full, (0, 1)
   Duration rise{500ms};      ///< between two steps up, (0, 10 s]
@@ -28,7 +28,7 @@ struct RateParams {
 /// is no reason to send less. Pure, no allocation.
 class RateControl {
  public:
-  explicit RateControl(RateParams params = {}) : params_(params), rate_(params.most) {}
+  explicit RateControl(RateParams params = {}) : params_(params), rate_(params.max_rate) {}
 
   /// What waits to be sent, and what was dropped since the start, both of this message's class and those that
   /// go before it. At each tick.
@@ -51,24 +51,26 @@ class RateControl {
     const bool drops = dropped >= dropped_ + params_.drops;
     if (stands || drops) {
       trouble_ = now;
-      if (now - fell_ < params_.settle && rate_ < params_.most) return;
-      rate_ = std::max(params_.least, rate_ * params_.fall);
+      if (now - fell_ < params_.settle && rate_ < params_.max_rate) return;
+      rate_ = std::max(params_.min_rate, rate_ * params_.fall);
       fell_ = counted_ = now;
       dropped_ = dropped;
       return;
     }
     const bool low = now - was_low_ < params_.standing;
     if (!low || now - trouble_ < params_.calm || now - rose_ < params_.rise) return;
-    rate_ = std::min(params_.most, rate_ + params_.step);
+    rate_ = std::min(params_.max_rate, rate_ + params_.step);
     rose_ = now;
   }
 
   /// Never below this, 1/s, whatever the link; 0: `least`.
-  void set_floor(double floor) { floor_ = std::min(floor, params_.most); }
+  void set_floor(double floor) { floor_ = std::min(floor, params_.max_rate); }
   /// 1/s
   double rate() const { return std::max(rate_, floor_); }
   /// How many times as rarely as usual, in [1, 4]: for what is less urgent.
-  int stretch() const { return rate_ >= 0.7 * params_.most ? 1 : rate_ >= 0.35 * params_.most ? 2 : 4; }
+  int stretch() const {
+    return rate_ >= 0.7 * params_.max_rate ? 1 : rate_ >= 0.35 * params_.max_rate ? 2 : 4;
+  }
   /// Whether one should be sent at this tick; when it is, it counts as sent.
   bool due(Time now) {
     if (sent_any_ && now - sent_ < from_seconds(1.0 / rate()) - params_.tick / 2) return false;

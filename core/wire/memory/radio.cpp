@@ -4,10 +4,10 @@
 
 namespace adit::wire {
 
-int Radio::add(std::string machine, bool inner) {
-  Node node;
+int Radio::add(std::string machine, bool is_local) {
+  RadioNode node;
   node.machine = std::move(machine);
-  node.inner = inner;
+  node.is_local = is_local;
   nodes_.push_back(std::move(node));
   return static_cast<int>(nodes_.size()) - 1;
 }
@@ -52,10 +52,10 @@ void Radio::after(Duration delay, Task task) {
 }
 
 void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
-  Node& node = nodes_[static_cast<std::size_t>(from)];
+  RadioNode& node = nodes_[static_cast<std::size_t>(from)];
   if (closed_ || !node.on || to.empty()) return;
   auto shared = std::make_shared<Datagram>(std::move(datagram));
-  if (node.inner) {
+  if (node.is_local) {
     if (shared->sent) shared->sent();
     after(inner_latency_, [self = this, shared, from, to = std::move(to)] {
       if (!self->is_on(from)) return;
@@ -67,7 +67,7 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
   }
   Duration longest{};
   for (const int node_to : to)
-    longest = std::max(longest, patience(profile(from, node_to), shared->priority));
+    longest = std::max(longest, max_queue_age(profile(from, node_to), shared->priority));
   auto packet = std::make_shared<Packet>();
   packet->through.resize(to.size());
   packet->to = std::move(to);
@@ -81,7 +81,7 @@ void Radio::multicast(int from, std::vector<int> to, Datagram datagram) {
                                          .supersedes = number,
                                          .again = shared->again,
                                          .since = scheduler_.elapsed(),
-                                         .patience = longest,
+                                         .max_queue_age = longest,
                                          .airtime = cost});
   if (replaced && (*replaced)->datagram->lost) {
     for (const int node_to : (*replaced)->to) (*replaced)->datagram->lost(node_to);
@@ -100,13 +100,13 @@ Duration Radio::airtime(int from, const Packet& packet) const {
 }
 
 SenderState Radio::sender(int node) const {
-  const Node& sender = nodes_[static_cast<std::size_t>(node)];
-  if (sender.inner) return {};
+  const RadioNode& sender = nodes_[static_cast<std::size_t>(node)];
+  if (sender.is_local) return {};
   return {&standard_, sender.queue.waiting(), sender.queue.dropped()};
 }
 
 void Radio::pump(int index) {
-  Node& node = nodes_[static_cast<std::size_t>(index)];
+  RadioNode& node = nodes_[static_cast<std::size_t>(index)];
   node.busy = false;
   ++node.asked;
   if (!node.on) return node.queue.clear();
@@ -122,7 +122,7 @@ void Radio::pump(int index) {
     after(next->airtime, [self = this, index] { self->pump(index); });
   } else if (const auto at = node.queue.ready(scheduler_.elapsed())) {
     after(*at - scheduler_.elapsed(), [self = this, index, asked = node.asked] {
-      const Node& waiting = self->nodes_[static_cast<std::size_t>(index)];
+      const RadioNode& waiting = self->nodes_[static_cast<std::size_t>(index)];
       if (!waiting.busy && waiting.asked == asked) self->pump(index);
     });
   }
@@ -132,7 +132,7 @@ void Radio::put_on_air(int from, const std::shared_ptr<Packet>& packet, bool las
   Datagram& datagram = *packet->datagram;
   if (last && datagram.sent) datagram.sent();
   const std::uint32_t bytes = datagram.bytes / datagram.frames;
-  Node& node = nodes_[static_cast<std::size_t>(from)];
+  RadioNode& node = nodes_[static_cast<std::size_t>(from)];
   for (std::size_t i = 0; i < packet->to.size(); ++i) {
     const int to = packet->to[i];
     const LinkProfile& link = profile(from, to);
@@ -167,7 +167,7 @@ bool Radio::lost(int from, int to, std::uint32_t bytes, const Disturbances::Effe
   if (effect.cut) return true;
   const LinkProfile& link = profile(from, to);
   const Path between = link.range > 0.0 || link.fading > 0.0 ? path(machine(from), machine(to)) : Path{};
-  return channels_[{from, to}].lost(link, between, bytes, effect.loss, random_);
+  return loss_models_[{from, to}].lost(link, between, bytes, effect.loss, random_);
 }
 
 }  // namespace adit::wire

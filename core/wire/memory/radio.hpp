@@ -11,7 +11,7 @@
 #include "core/exec/virtual_runtime.hpp"
 #include "core/time/random.hpp"
 #include "core/wire/link/model.hpp"
-#include "core/wire/link/transmitter.hpp"
+#include "core/wire/link/transmit_queue.hpp"
 #include "core/wire/link_state.hpp"
 #include "core/wire/memory/disturbance.hpp"
 
@@ -29,22 +29,22 @@ struct Datagram {
   std::function<void(int to)> lost{};  ///< none of its frames, or dropped at the sender
 };
 
-/// The rehearsal's radio on the link model: one transmitter per node, latency and loss per pair of machines
-/// and direction, faults on top. Inner nodes have a perfect network.
+/// The rehearsal's radio on the link model: one transmit queue per node, latency and loss per pair of
+/// machines and direction, faults on top. Inner nodes have a perfect network.
 class Radio : public std::enable_shared_from_this<Radio> {
  public:
   Radio(VirtualScheduler& scheduler, std::uint64_t seed, LinkProfile standard, Duration inner_latency)
       : scheduler_(scheduler), random_(seed), standard_(std::move(standard)), inner_latency_(inner_latency) {}
 
   /// A new transmitter and receiver; nodes are numbered from 0 and never reused.
-  int add(std::string machine, bool inner);
+  int add(std::string machine, bool is_local);
   /// Nothing is sent or received there any more; what waits to be sent is forgotten.
   void remove(int node) { nodes_[static_cast<std::size_t>(node)].on = false; }
   /// Everything falls silent; what is in the air is forgotten.
   void close() { closed_ = true; }
   bool is_on(int node) const { return nodes_[static_cast<std::size_t>(node)].on; }
   const std::string& machine(int node) const { return nodes_[static_cast<std::size_t>(node)].machine; }
-  bool inner(int node) const { return nodes_[static_cast<std::size_t>(node)].inner; }
+  bool is_local_domain(int node) const { return nodes_[static_cast<std::size_t>(node)].is_local; }
   /// Largest frame that the node may send to anybody.
   std::uint32_t frame_bytes(int node) const;
   /// Messages of that priority that wait there.
@@ -76,13 +76,13 @@ class Radio : public std::enable_shared_from_this<Radio> {
     std::vector<int> to{};
     std::vector<std::uint16_t> through{};  // frames that arrived, by receiver
   };
-  struct Node {
+  struct RadioNode {
     std::string machine{};
-    bool inner{};
+    bool is_local{};
     bool on{true};
     bool busy{};
     std::uint64_t asked{};  // the latest wake-up counts, earlier ones are void
-    Transmitter<std::shared_ptr<Packet>> queue{};
+    TransmitQueue<std::shared_ptr<Packet>> queue{};
     Window window{};
   };
   using Pair = std::pair<std::string, std::string>;
@@ -103,9 +103,9 @@ class Radio : public std::enable_shared_from_this<Radio> {
   Random random_;
   LinkProfile standard_;
   Duration inner_latency_;
-  std::deque<Node> nodes_{};
+  std::deque<RadioNode> nodes_{};
   std::map<Pair, LinkProfile> links_{};
-  std::map<std::pair<int, int>, Channel> channels_{};  // by sender, receiver
+  std::map<std::pair<int, int>, LossModel> loss_models_{};  // by sender, receiver
   std::map<std::string, Position> positions_{};
   Attenuation walls_{};
   Disturbances disturbances_{};

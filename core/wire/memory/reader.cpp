@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/wire/cdr_key.hpp"
-#include "core/wire/memory/participant.hpp"
+#include "core/wire/memory/participant_state.hpp"
 
 namespace adit::wire {
 
@@ -62,17 +62,17 @@ void ReaderState::on_heartbeat(EndpointId writer, std::uint64_t start, std::uint
       missing.push_back({s, held->second.missing});
     }
   }
-  owner->core->after(WireCost::response,
+  owner->core->after(WireCost::kResponse,
                      [keep = owner->shared_from_this(), writer, entity_id = entity, base = proxy.next,
                       missing = std::move(missing), is_discovery = discovery] {
                        if (keep->stopped) return;
                        Datagram datagram;
-                       datagram.bytes = WireCost::acknack;
-                       datagram.priority = WireCost::discovery_priority;
+                       datagram.bytes = WireCost::kAcknack;
+                       datagram.priority = WireCost::kDiscoveryPriority;
                        keep->send(
                            writer.node, std::move(datagram),
                            [reader = EndpointId{keep->node, entity_id}, writer, base, missing, is_discovery](
-                               Participant& there, std::uint16_t) {
+                               ParticipantState& there, std::uint16_t) {
                              if (is_discovery)
                                return there.discovery_writer->on_acknack(reader, base, missing);
                              const auto target = there.writers.find(writer.entity);
@@ -112,14 +112,14 @@ void ReaderState::deliver(EndpointId writer, const Sample& sample) {
     owner->on_endpoint(writer.node, sample.endpoint);
     return;
   }
-  const Participant* sender = owner->peer_participant(writer.node);
+  const ParticipantState* sender = owner->peer_participant(writer.node);
   TopicCount& in = owner->count(topic.name, sender->id);
   ++in.samples_in;
   if (sample.bytes->size() > topic.max_bytes) {
     ++in.malformed;
     return;
   }
-  owner->core->show(Frame::Kind::delivered, *sender, owner, topic, sample.bytes);
+  owner->core->show(SampleEvent::Kind::delivered, *sender, owner, topic, sample.bytes);
   if (strand == nullptr) return;
   if (topic.keyed && !take_key(writer, sample.key)) {
     ++in.lost;
@@ -137,13 +137,13 @@ bool ReaderState::take_key(EndpointId writer, const std::string& key) {
     known->second.insert(writer);
     return true;
   }
-  if (keys.size() >= max_keys) {
+  if (keys.size() >= kMaxKeys) {
     std::erase_if(keys, [this](const auto& entry) {
       return std::none_of(entry.second.begin(), entry.second.end(),
                           [this](EndpointId id) { return writers.contains(id); });
     });
   }
-  if (keys.size() >= max_keys) return false;
+  if (keys.size() >= kMaxKeys) return false;
   keys[key].insert(writer);
   return true;
 }
@@ -156,7 +156,7 @@ void ReaderState::post() {
 }
 
 void ReaderState::handle() {
-  for (int i = 0; i < samples_in_one_go; ++i) {
+  for (int i = 0; i < kBurstSamples; ++i) {
     if (strand == nullptr || owner->stopped || mailbox.empty()) {
       posted = false;
       return;

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/wire/cdr_key.hpp"
-#include "core/wire/memory/participant.hpp"
+#include "core/wire/memory/participant_state.hpp"
 
 namespace adit::wire {
 namespace {
@@ -28,7 +28,7 @@ Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
     if (!key) return refused(Reason::malformed, "the sample has no key");
     sample.key = *key;
     if (!keys.contains(sample.key)) {
-      if (keys.size() >= max_keys) return refused(Reason::queue_full, "too many keys");
+      if (keys.size() >= kMaxKeys) return refused(Reason::queue_full, "too many keys");
       keys.insert(sample.key);
     }
   }
@@ -37,7 +37,7 @@ Result<void> WriterState::write(std::span<const std::uint8_t> cdr) {
   const std::uint32_t largest = owner->core->radio->frame_bytes(owner->node);
   sample.frames = WireCost::frames(cdr.size(), largest);
   sample.wire_bytes = WireCost::sample(cdr.size(), largest);
-  if (!owner->stopped) owner->core->show(Frame::Kind::sent, *owner, nullptr, topic, sample.bytes);
+  if (!owner->stopped) owner->core->show(SampleEvent::Kind::sent, *owner, nullptr, topic, sample.bytes);
   add(std::move(sample));
   return {};
 }
@@ -55,12 +55,12 @@ void WriterState::add(Sample sample) {
     const auto kept = static_cast<std::size_t>(std::count_if(history.begin(), history.end(), same_key));
     if (kept >= topic.depth) {
       history.erase(std::find_if(history.begin(), history.end(), same_key));
-    } else if (history.size() >= max_samples) {
+    } else if (history.size() >= kMaxSamples) {
       history.pop_front();
     }
     history.push_back(sample);
   }
-  if (topic.qos.paced && !owner->core->radio->inner(owner->node)) {
+  if (topic.qos.paced && !owner->core->radio->is_local_domain(owner->node)) {
     pending.push_back({sample.sequence});
     pump();
   } else {
@@ -135,14 +135,14 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
   const bool piggyback = topic.qos.reliable && !topic.qos.paced && !discovery && proxy != readers.end() &&
                          proxy->second.reliable && !history.empty() && !topic.keyed &&
                          proxy->second.acknowledged + topic.depth < next &&
-                         !owner->core->radio->inner(owner->node);
+                         !owner->core->radio->is_local_domain(owner->node);
   const std::uint64_t first = piggyback ? history.front().sequence : 0;
-  if (piggyback) datagram.bytes += WireCost::piggyback;
-  datagram.priority = discovery ? WireCost::discovery_priority : topic.qos.priority;
+  if (piggyback) datagram.bytes += WireCost::kPiggyback;
+  datagram.priority = discovery ? WireCost::kDiscoveryPriority : topic.qos.priority;
   if (topic.qos.newest_wins && !topic.qos.reliable) {
     datagram.supersedes = number_of(sample.key, entity, reader.entity);
   } else if (topic.qos.reliable) {
-    // Asked for again while it waits: sent once, as the live link has it. Other frames of it are another
+    // Asked for again while it waits: sent once, as the link shaper has it. Other frames of it are another
     // repair.
     datagram.supersedes =
         number_of(std::to_string(sample.sequence) + '/' + std::to_string(frames), entity, reader.entity);
@@ -154,16 +154,16 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
     };
     if (!topic.qos.reliable) {
       datagram.lost = [self = shared_from_this(), sample](int to) {
-        const Participant* receiver = self->owner->peer_participant(to);
+        const ParticipantState* receiver = self->owner->peer_participant(to);
         if (receiver != nullptr) {
-          self->owner->core->show(Frame::Kind::lost, *self->owner, receiver, self->topic, sample.bytes);
+          self->owner->core->show(SampleEvent::Kind::lost, *self->owner, receiver, self->topic, sample.bytes);
         }
       };
     }
   }
   const auto arrive = [self = shared_from_this(), from = EndpointId{owner->node, entity}, reader, start,
                        first, sample, bytes = datagram.bytes,
-                       frames](Participant& there, std::uint16_t through) {
+                       frames](ParticipantState& there, std::uint16_t through) {
     if (self->discovery) {
       there.discovery_reader->on_data(from, start, sample, through);
       return;
@@ -179,7 +179,7 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
 
 void WriterState::send_endpoints(EndpointId reader, const std::vector<Sample>& samples) {
   const auto fit =
-      std::max<std::size_t>(1, owner->core->radio->frame_bytes(owner->node) / WireCost::endpoint);
+      std::max<std::size_t>(1, owner->core->radio->frame_bytes(owner->node) / WireCost::kEndpoint);
   const auto proxy = readers.find(reader);
   if (proxy == readers.end()) return;
   for (std::size_t at = 0; at < samples.size(); at += fit) {
@@ -187,8 +187,8 @@ void WriterState::send_endpoints(EndpointId reader, const std::vector<Sample>& s
         samples.begin() + static_cast<std::ptrdiff_t>(at),
         samples.begin() + static_cast<std::ptrdiff_t>(std::min(at + fit, samples.size())));
     Datagram datagram;
-    datagram.bytes = static_cast<std::uint32_t>(some.size()) * WireCost::endpoint;
-    datagram.priority = WireCost::discovery_priority;
+    datagram.bytes = static_cast<std::uint32_t>(some.size()) * WireCost::kEndpoint;
+    datagram.priority = WireCost::kDiscoveryPriority;
     std::string which;
     for (const Sample& sample : some) which += std::to_string(sample.sequence) + ',';
     datagram.supersedes = number_of(which, entity, reader.entity);
@@ -196,7 +196,7 @@ void WriterState::send_endpoints(EndpointId reader, const std::vector<Sample>& s
     owner->send(
         reader.node, std::move(datagram),
         [from = EndpointId{owner->node, entity}, start = proxy->second.start, some = std::move(some)](
-            Participant& there, std::uint16_t) {
+            ParticipantState& there, std::uint16_t) {
           for (const Sample& sample : some)
             there.discovery_reader->on_data(from, start, sample, sample.frames);
         },
@@ -206,7 +206,7 @@ void WriterState::send_endpoints(EndpointId reader, const std::vector<Sample>& s
 
 void WriterState::arm_heartbeat() {
   // Inner networks lose nothing: there is nothing to repair.
-  if (heartbeat_armed || !topic.qos.reliable || owner->core->radio->inner(owner->node)) return;
+  if (heartbeat_armed || !topic.qos.reliable || owner->core->radio->is_local_domain(owner->node)) return;
   const bool wanted = std::any_of(readers.begin(), readers.end(), [this](const auto& entry) {
     return entry.second.reliable && entry.second.acknowledged + 1 < next;
   });
@@ -227,14 +227,14 @@ void WriterState::heartbeat() {
   for (const auto& [reader, proxy] : readers) {
     if (!proxy.reliable || proxy.acknowledged >= last) continue;
     Datagram datagram;
-    datagram.bytes = WireCost::heartbeat;
-    datagram.priority = WireCost::discovery_priority;
+    datagram.bytes = WireCost::kHeartbeat;
+    datagram.priority = WireCost::kDiscoveryPriority;
     datagram.supersedes = number_of("heartbeat", entity, reader.entity);
     datagram.again = true;
     owner->send(
         reader.node, std::move(datagram),
         [from = EndpointId{owner->node, entity}, reader_id = reader.entity, start = proxy.start, first, last,
-         is_discovery = discovery](Participant& there, std::uint16_t) {
+         is_discovery = discovery](ParticipantState& there, std::uint16_t) {
           if (is_discovery) return there.discovery_reader->on_heartbeat(from, start, first, last);
           const auto found = there.readers.find(reader_id);
           if (found != there.readers.end()) found->second->on_heartbeat(from, start, first, last);
@@ -250,7 +250,7 @@ void WriterState::on_acknack(EndpointId reader, std::uint64_t base, const std::v
   proxy->second.acknowledged = std::max(proxy->second.acknowledged, base - 1);
   if (missing.empty()) return;
   owner->core->after(
-      WireCost::response, [self = shared_from_this(), keep = owner->shared_from_this(), reader, missing] {
+      WireCost::kResponse, [self = shared_from_this(), keep = owner->shared_from_this(), reader, missing] {
         if (keep->stopped || !self->readers.contains(reader)) return;
         std::vector<std::uint64_t> gone;
         std::vector<Sample> endpoints;
@@ -271,12 +271,12 @@ void WriterState::on_acknack(EndpointId reader, std::uint64_t base, const std::v
         if (self->topic.qos.paced) self->pump();
         if (gone.empty()) return;
         Datagram datagram;
-        datagram.bytes = WireCost::gap;
-        datagram.priority = WireCost::discovery_priority;
+        datagram.bytes = WireCost::kGap;
+        datagram.priority = WireCost::kDiscoveryPriority;
         keep->send(
             reader.node, std::move(datagram),
             [from = EndpointId{keep->node, self->entity}, reader, gone, is_discovery = self->discovery](
-                Participant& there, std::uint16_t) {
+                ParticipantState& there, std::uint16_t) {
               if (is_discovery) return there.discovery_reader->on_gap(from, gone);
               const auto found = there.readers.find(reader.entity);
               if (found != there.readers.end()) found->second->on_gap(from, gone);

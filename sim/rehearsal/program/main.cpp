@@ -7,8 +7,8 @@
 #include "core/config/search.hpp"
 #include "core/config/usage.hpp"
 #include "sim/defects/defect.hpp"
-#include "sim/rehearsal/program/complain.hpp"
 #include "sim/rehearsal/program/interrupt.hpp"
+#include "sim/rehearsal/program/report_error.hpp"
 #include "sim/rehearsal/program/shrink_seeds.hpp"
 #include "sim/rehearsal/random_faults.hpp"
 #include "sim/rehearsal/random_script.hpp"
@@ -20,10 +20,10 @@ namespace {
 using namespace adit;
 using namespace adit::sim;
 
-constexpr int exit_interrupted = 130;
-constexpr const char* chaos_scenario = "scenarios/team_chaos.yaml";
+constexpr int kExitInterrupted = 130;
+constexpr const char* kChaosScenario = "scenarios/team_chaos.yaml";
 
-constexpr const char* examples =
+constexpr const char* kExamples =
     "Examples:\n"
     "  rehearse config/scenarios/demo.yaml --picture demo.png\n"
     "  rehearse config/scenarios/handover.yaml --seed 7 --report handover.json\n"
@@ -43,7 +43,7 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
   if (tty) params.progress = [&](Duration now) { show_progress(now, scenario.duration); };
   auto outcome = rehearse(scenario, world, params);
   if (tty) std::fprintf(stderr, "\r                      \r");
-  if (!outcome) return complain("rehearse", outcome.error());
+  if (!outcome) return report_error("rehearse", outcome.error());
   const RunReport& report = outcome->report;
   std::printf("%s seed %llu: %s, %.0f s in %.2f s (%.1f times real time), digest %s\n", scenario.name.c_str(),
               static_cast<unsigned long long>(report.seed), report.ok() ? "ok" : "FAILED", report.virtual_s,
@@ -59,11 +59,11 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
   tell_complaints(report);
   if (!report_file.empty())
     if (auto written = write_json(report, report_file); !written)
-      return complain("rehearse", written.error());
+      return report_error("rehearse", written.error());
   if (!picture_file.empty())
     if (auto drawn = draw_run(scenario, *world, *outcome, picture_file); !drawn)
-      return complain("rehearse", drawn.error());
-  return report.ok() ? 0 : exit_failed;
+      return report_error("rehearse", drawn.error());
+  return report.ok() ? 0 : kExitFailed;
 }
 
 struct ManyOptions {
@@ -75,7 +75,7 @@ int run_many(const Scenario& scenario, const std::shared_ptr<const World>& world
              const SeedRange& seeds, const ManyOptions& options) {
   note_interrupts();
   const SeedsOutcome out = run_seeds(scenario, world, params, seeds, options.until_failure);
-  if (out.broken) return complain("rehearse", *out.broken);
+  if (out.broken) return report_error("rehearse", *out.broken);
   std::printf("%llu of %llu seeds, %zu failed, %.0f s in %.1f s (%.0f times real time)\n",
               static_cast<unsigned long long>(out.done), static_cast<unsigned long long>(out.wanted),
               out.failed.size(), out.virtual_s, out.wall_s, out.virtual_s / out.wall_s);
@@ -86,9 +86,9 @@ int run_many(const Scenario& scenario, const std::shared_ptr<const World>& world
         static_cast<unsigned long long>(out.faults), static_cast<unsigned long long>(out.fewest_faults));
   if (options.chaos && !out.failed.empty())
     if (auto done = shrink_seeds(scenario, world, params, out, options.shrink_to); !done)
-      return complain("rehearse", done.error());
-  if (interrupted()) return exit_interrupted;
-  return out.failed.empty() ? 0 : exit_failed;
+      return report_error("rehearse", done.error());
+  if (interrupted()) return kExitInterrupted;
+  return out.failed.empty() ? 0 : kExitFailed;
 }
 
 std::string defect_list() {
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Runs a scenario on virtual time and judges it: its expectations, and the rules that always hold.",
       "rehearse"};
-  app.footer(examples);
+  app.footer(kExamples);
   std::string file, seeds_text, report_file, picture_file;
   std::uint64_t seed = 1;
   RunParams params;
@@ -158,18 +158,18 @@ int main(int argc, char** argv) {
     return config::end_usage(app, error);
   }
   if (file.empty() && !chaos)
-    return complain("rehearse", {Reason::bad_argument, "expected a scenario, SCENARIO.yaml, or --chaos"});
+    return report_error("rehearse", {Reason::bad_argument, "expected a scenario, SCENARIO.yaml, or --chaos"});
   if (file.empty()) {
-    const auto found = config::find_file(chaos_scenario);
-    if (!found) return complain("rehearse", found.error());
+    const auto found = config::find_file(kChaosScenario);
+    if (!found) return report_error("rehearse", found.error());
     file = *found;
   }
   auto scenario = load_scenario(file);
-  if (!scenario) return complain("rehearse", scenario.error());
+  if (!scenario) return report_error("rehearse", scenario.error());
   auto world = make_world(scenario->world);
-  if (!world) return complain("rehearse", world.error());
+  if (!world) return report_error("rehearse", world.error());
   auto factory = make_agent_factory(defect);
-  if (!factory) return complain("rehearse", factory.error());
+  if (!factory) return report_error("rehearse", factory.error());
   if (chaos) add_chaos(*scenario);
   params.seed = seed_option->count() > 0 ? seed : scenario->seed;
   params.make_agent = *factory;
@@ -177,6 +177,6 @@ int main(int argc, char** argv) {
   if (seeds_text.empty() && !chaos) return run_one(*scenario, *world, params, report_file, picture_file);
   auto seeds =
       seeds_text.empty() ? Result<SeedRange>(SeedRange{params.seed, params.seed}) : parse_seeds(seeds_text);
-  if (!seeds) return complain("rehearse", seeds.error());
+  if (!seeds) return report_error("rehearse", seeds.error());
   return run_many(*scenario, *world, params, *seeds, {chaos, until_failure, shrink_to});
 }

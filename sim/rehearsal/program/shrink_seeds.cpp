@@ -12,7 +12,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::size_t most_shrunk = 3;
+constexpr std::size_t kMaxShrunk = 3;
 
 std::string default_name(const Scenario& scenario, const Failure& failure) {
   return scenario.name + "-seed" + std::to_string(scenario.seed) +
@@ -68,7 +68,7 @@ Result<void> shrink_seeds(const Scenario& scenario, const std::shared_ptr<const 
   std::set<int> rules;
   for (const auto& [seed, report] : outcome.failed) {
     const auto failure = failure_of(scenario, report);
-    if (!failure || rules.size() >= most_shrunk || !rules.insert(failure->rule).second) continue;
+    if (!failure || rules.size() >= kMaxShrunk || !rules.insert(failure->rule).second) continue;
     const std::string to = rules.size() == 1 ? file : std::string();
     if (auto done = shrink_one(written_out(scenario, seed), *failure, run, to); !done) return done;
   }

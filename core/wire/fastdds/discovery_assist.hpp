@@ -1,0 +1,116 @@
+#pragma once
+#include <netinet/in.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "core/time/time.hpp"
+#include "core/wire/fastdds/rtps_peek.hpp"
+#include "core/wire/qos.hpp"
+
+namespace adit::wire {
+
+/// Retries participant discovery over lossy links. Fast DDS answers a new participant once and requests a
+/// missing endpoint once a second; when either message is lost, matching waits for the next announcement.
+/// This class sees all datagrams that pass the sockets, and
+/// - repeats our announcement to each peer that was heard and does not show that it heard us;
+/// - repeats a discovery heartbeat that is not acknowledged, with a count that the library would not use;
+/// - withholds announcements by unicast to peers that know us, which hear the same by multicast.
+/// A peer that was silent for Discovery::kLease is met as a new one, as the library has dropped it by then.
+/// Pure: the caller has clock and sockets. Any thread. Bounded in peers, repetitions and announcements a
+/// second.
+class DiscoveryAssist {
+ public:
+  using Send =
+      std::function<void(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)>;
+
+  /// Addresses (network order) that announcements are repeated to; an announcement can name any address.
+  /// Without this call: all. Called before the first datagram passes.
+  void set_reachable(std::function<bool(in_addr_t address)> reachable) { reachable_ = std::move(reachable); }
+  /// Processes a datagram that the library sends to a discovery port, statistics cut off. May change
+  /// heartbeat counts in it. False: the receiver does not need it.
+  bool sent(std::span<std::uint8_t> message, in_addr_t address, std::uint16_t port, Duration now);
+  /// Processes a datagram received on any port.
+  void received(std::span<const std::uint8_t> message, Duration now);
+  /// The library dropped this participant: when it comes back it is a new one.
+  void dropped(const ParticipantId& id);
+  /// Sends what is due. `link_idle`: no other datagram is queued; otherwise heartbeats are deferred.
+  void repeat(Duration now, bool link_idle, const Send& send);
+  /// Whether that participant is the one that sends here.
+  bool is_own(const ParticipantId& id) const;
+  /// When to call repeat() next; max: not before the next datagram.
+  Duration next() const;
+
+ private:
+  static constexpr std::size_t kMaxPeers = 256;
+  /// Announcements repeated a second, to all peers together: ten robots and ten stations that start together
+  /// need 95. Those beyond it are deferred.
+  static constexpr int kMaxAnnouncements = 128;
+  struct Beat {
+    std::vector<std::uint8_t> message{};
+    std::uint64_t last{};
+    int repeats{};
+    Duration at{};  ///< of the next repetition
+  };
+  struct Peer {
+    in_addr_t address{};
+    std::uint16_t port{};
+    Duration heard{};  ///< when its last datagram came
+    bool knows_us{};
+    Duration told{};  ///< when an announcement was last sent to it alone
+    Duration announce_at{Duration::max()};
+    int announcements_left{};
+    std::map<std::uint32_t, Beat> beats{};  ///< of our discovery writers, not acknowledged
+  };
+  using Peers = std::map<ParticipantId, Peer>;
+  struct Out {
+    std::vector<std::uint8_t> message{};
+    in_addr_t address{};
+    std::uint16_t port{};
+  };
+  Peer* at(in_addr_t address, std::uint16_t port);
+  /// The peer that announced itself there, made if it is new.
+  Peer& meet(const ParticipantId& id, const PeerAddress& locator, Duration now);
+  void announce(Duration now, std::vector<Out>& out);
+  void repeat_heartbeats(Peer& peer, Duration now, bool link_idle, std::vector<Out>& out);
+
+  std::function<bool(in_addr_t)> reachable_{};
+  mutable std::mutex mutex_{};
+  ParticipantId own_{};
+  std::vector<std::uint8_t> announcement_{};
+  Peers peers_{};
+  ParticipantId announced_last_{};  // to whom: the next round goes on behind it
+  Duration second_{};               // announcements are counted since then
+  int announced_{};
+};
+
+/// The thread that calls DiscoveryAssist::repeat(); it sleeps while nothing is due.
+class DiscoveryAssistThread {
+ public:
+  /// `link_idle` and `send` as in DiscoveryAssist::repeat(), called on the thread.
+  DiscoveryAssistThread(DiscoveryAssist& assist, std::function<bool()> link_idle, DiscoveryAssist::Send send);
+  ~DiscoveryAssistThread();
+  DiscoveryAssistThread(const DiscoveryAssistThread&) = delete;
+  DiscoveryAssistThread& operator=(const DiscoveryAssistThread&) = delete;
+  /// A datagram passed: something may be due earlier than planned.
+  void wake();
+
+ private:
+  void run();
+  DiscoveryAssist& assist_;
+  std::function<bool()> link_idle_;
+  DiscoveryAssist::Send send_;
+  std::mutex mutex_{};
+  std::condition_variable changed_{};
+  bool ends_{};
+  Duration planned_{Duration::max()};
+  std::thread thread_{};
+};
+
+}  // namespace adit::wire

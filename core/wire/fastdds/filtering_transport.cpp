@@ -1,0 +1,116 @@
+#include "core/wire/fastdds/filtering_transport.hpp"
+
+#include <fastrtps/utils/IPLocator.h>
+#include <fastdds/rtps/common/LocatorList.hpp>
+
+#include <cstring>
+
+#include "core/wire/cost.hpp"
+#include "core/wire/fastdds/link_shaper.hpp"
+#include "core/wire/fastdds/ports.hpp"
+#include "core/wire/fastdds/rtps_peek.hpp"
+
+namespace adit::wire {
+namespace rtps = eprosima::fastrtps::rtps;
+
+void TransportContext::sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
+  const std::uint64_t bytes = message.size() + WireCost::kUdpAndIp;
+  total_out.fetch_add(bytes, std::memory_order_relaxed);
+  if (is_discovery_port(port)) discovery_out.fetch_add(bytes, std::memory_order_relaxed);
+  peers.sent(peek(message), address, port, bytes);
+}
+
+void TransportContext::received(std::span<const std::uint8_t> message, std::uint32_t port) {
+  const RtpsPeek seen = peek(message);
+  if (seen.source && assist.is_own(*seen.source)) return;  // did not come by radio
+  const std::uint64_t bytes = message.size() + WireCost::kUdpAndIp;
+  total_in.fetch_add(bytes, std::memory_order_relaxed);
+  if (is_discovery_port(port)) discovery_in.fetch_add(bytes, std::memory_order_relaxed);
+  peers.received(seen, bytes);
+}
+
+FilteringTransport::FilteringTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
+                                       std::shared_ptr<TransportContext> context)
+    : ChainingTransport(descriptor),
+      descriptor_(const_cast<eprosima::fastdds::rtps::ChainingTransportDescriptor*>(&descriptor)),
+      context_(std::move(context)) {}
+
+eprosima::fastdds::rtps::TransportDescriptorInterface* FilteringTransport::get_configuration() {
+  return descriptor_;
+}
+
+bool FilteringTransport::OpenInputChannel(const rtps::Locator_t& locator,
+                                          eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
+                                          std::uint32_t largest) {
+  // One that somebody else has is asked for, too, before the next: not ours.
+  if (!ChainingTransport::OpenInputChannel(locator, receiver, largest)) return false;
+  if (!rtps::IPLocator::isMulticast(locator))
+    context_->own_ports.add(rtps::IPLocator::getPhysicalPort(locator));
+  return true;
+}
+
+bool FilteringTransport::is_unwanted(std::span<const std::uint8_t> message, in_addr_t address,
+                                     std::uint16_t port) const {
+  if (!context_->is_own(address, port)) return false;
+  const auto writer = peek(message).writer;
+  return writer && context_->to_others.contains(*writer);
+}
+
+void FilteringTransport::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
+  message = message.first(without_statistics(message));
+  if (context_->is_own(address, port)) return (void)context_->udp_sender->send(message, address, port);
+  const Duration now = std::chrono::steady_clock::now().time_since_epoch();
+  std::vector<std::uint8_t> changed;
+  if (is_discovery_port(port)) {
+    changed.assign(message.begin(), message.end());
+    message = changed;
+    if (!context_->assist.sent(changed, address, port, now)) return;
+  }
+  if (context_->heartbeats.passes(message, address, port, now)) context_->link->send(message, address, port);
+  if (context_->repeats) context_->repeats->wake();
+}
+
+bool FilteringTransport::send(rtps::SenderResource* low_sender_resource, const rtps::octet* send_buffer,
+                              std::uint32_t send_buffer_size,
+                              rtps::LocatorsIterator* destination_locators_begin,
+                              rtps::LocatorsIterator* destination_locators_end,
+                              const std::chrono::steady_clock::time_point& timeout) {
+  // The iterators are of several kinds and can be walked once: one datagram at a time goes down.
+  bool all_sent = true;
+  for (auto& destination = *destination_locators_begin; destination != *destination_locators_end;
+       ++destination) {
+    const rtps::Locator_t& locator = *destination;
+    if (!IsLocatorSupported(locator)) continue;
+    in_addr_t address{};
+    std::memcpy(&address, rtps::IPLocator::getIPv4(locator), sizeof address);
+    const std::uint16_t port = rtps::IPLocator::getPhysicalPort(locator);
+    if (is_unwanted({send_buffer, send_buffer_size}, address, port)) continue;
+    if (context_->link) {
+      send({send_buffer, send_buffer_size}, address, port);
+      continue;
+    }
+    context_->sent({send_buffer, send_buffer_size}, address, port);
+    rtps::LocatorList_t one;
+    one.push_back(locator);
+    rtps::Locators begin(one.begin()), end(one.end());
+    all_sent &= low_sender_resource->send(send_buffer, send_buffer_size, &begin, &end, timeout);
+  }
+  return all_sent;
+}
+
+void FilteringTransport::receive(eprosima::fastdds::rtps::TransportReceiverInterface* next_receiver,
+                                 const rtps::octet* receive_buffer, std::uint32_t receive_buffer_size,
+                                 const rtps::Locator_t& local_locator,
+                                 const rtps::Locator_t& remote_locator) {
+  const std::uint16_t port = rtps::IPLocator::getPhysicalPort(local_locator);
+  context_->received({receive_buffer, receive_buffer_size}, port);
+  if (is_discovery_port(port)) {
+    context_->assist.received({receive_buffer, receive_buffer_size},
+                              std::chrono::steady_clock::now().time_since_epoch());
+    if (context_->repeats) context_->repeats->wake();
+    context_->discovery_gate.wait();
+  }
+  next_receiver->OnDataReceived(receive_buffer, receive_buffer_size, local_locator, remote_locator);
+}
+
+}  // namespace adit::wire

@@ -1,0 +1,202 @@
+#include "core/wire/fastdds/link_shaper.hpp"
+
+#include "core/wire/cost.hpp"
+#include "core/wire/fastdds/ports.hpp"
+#include "core/wire/fastdds/rtps_peek.hpp"
+
+namespace adit::wire {
+namespace {
+
+constexpr std::size_t kMaxWaiting = 4096;  // datagrams; the queue's age bounds them long before
+/// Between two tries to give a full socket more. The kernel holds 40 kB (udp_sender.cpp), so that a radio of
+/// less than 300 Mbit/s does not run dry meanwhile. Polling the socket would not do: the interface's queue
+/// can be full while the socket's is not.
+constexpr Duration kRetry = 1ms;
+
+LinkShaper::Socket sockets_of(const std::vector<std::string>& interfaces) {
+  return [udp_sender = std::make_shared<UdpSender>(interfaces)](auto message, in_addr_t address,
+                                                                std::uint16_t port) {
+    return udp_sender->send(message, address, port);
+  };
+}
+
+}  // namespace
+
+LinkShaper::LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed,
+                       const std::vector<std::string>& interfaces, Outputs outputs)
+    : LinkShaper(std::move(link), seed, sockets_of(interfaces), std::move(outputs)) {}
+
+LinkShaper::LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, Socket socket, Outputs outputs)
+    : link_(std::move(link)), outputs_(std::move(outputs)), socket_(std::move(socket)), random_(seed) {
+  thread_ = std::thread([this] { run(); });
+}
+
+LinkShaper::~LinkShaper() { close(); }
+
+Duration LinkShaper::now() { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+void LinkShaper::add_writer(std::uint32_t entity, int priority, bool newest_wins, bool keyed) {
+  const std::lock_guard lock(mutex_);
+  writers_[entity] = {priority, newest_wins, keyed};
+}
+
+void LinkShaper::remove_writer(std::uint32_t entity) {
+  const std::lock_guard lock(mutex_);
+  writers_.erase(entity);
+}
+
+bool LinkShaper::put_in_socket(std::span<const std::uint8_t> message, in_addr_t address,
+                               std::uint16_t port) const {
+  if (!socket_(message, address, port)) return false;
+  if (outputs_.sent) outputs_.sent(message, address, port);
+  return true;
+}
+
+LinkShaper::Waiting LinkShaper::classify(std::span<const std::uint8_t> message, in_addr_t address,
+                                         std::uint16_t port) const {
+  const RtpsPeek seen = peek(message);
+  Class what{WireCost::kDiscoveryPriority, false, false};
+  if (seen.writer) {
+    const auto known = writers_.find(*seen.writer);
+    if (known != writers_.end()) what = known->second;
+  }
+  // The newest sample of a stream stands for those before it of the same key, a repair or a heartbeat for the
+  // same one that waits: else a repair that is requested again while it waits is sent once per request.
+  const std::optional<std::uint64_t> key = what.keyed ? sample_key(message) : 0;
+  const bool newest = what.newest_wins && seen.whole && key;
+  std::uint64_t number = newest ? *seen.writer ^ *key : seen.dedup_key;
+  if (number != 0) {
+    number = (number ^ (static_cast<std::uint64_t>(address) << 16 | port)) * 0x9e3779b97f4a7c15ULL;
+    number |= 1;
+  }
+  Packet packet{{message.begin(), message.end()}, address, port, what.priority};
+  const Duration cost = airtime(packet);
+  return {.item = std::move(packet),
+          .priority = what.priority,
+          .supersedes = number,
+          .again = !newest,
+          .since = now(),
+          .max_queue_age = max_queue_age(link_.value_or(LinkProfile{}), what.priority),
+          .airtime = cost};
+}
+
+void LinkShaper::send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) {
+  {
+    const std::lock_guard lock(mutex_);
+    const bool closed = close_at_ != Duration::max();
+    if (!link_ && !closed && !refused_ && queue_.size() == 0 && put_in_socket(message, address, port)) return;
+    Waiting waiting = classify(message, address, port);
+    if (closed || queue_.size() >= kMaxWaiting) {
+      queue_.note_dropped(waiting.priority);
+      return;
+    }
+    (void)queue_.push(std::move(waiting));
+  }
+  wake_.notify_one();
+}
+
+Duration LinkShaper::waiting() const {
+  const std::lock_guard lock(mutex_);
+  return queue_.oldest(now());
+}
+
+SenderState LinkShaper::sender() const {
+  const std::lock_guard lock(mutex_);
+  SenderState state{profile(), link_ ? queue_.waiting() : queue_.ages(now()), queue_.dropped()};
+  if (refused_) {
+    Duration& age = state.queue[static_cast<std::size_t>(refused_->priority)];
+    age = std::max(age, now() - refused_->since);
+  }
+  return state;
+}
+
+void LinkShaper::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (close_at_ == Duration::max()) close_at_ = now() + 1s;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LinkShaper::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    const Duration at = now();
+    const Duration next = link_ ? step(at) : refill(at);
+    const bool closing = close_at_ != Duration::max();
+    const bool empty = queue_.size() == 0 && in_air_.empty() && !refused_;
+    if (closing && (at >= close_at_ || empty)) return;
+    const auto until = std::chrono::steady_clock::time_point(std::min(next, close_at_));
+    if (next == Duration::max() && !closing) {
+      wake_.wait(lock);
+    } else {
+      wake_.wait_until(lock, until);
+    }
+  }
+}
+
+Duration LinkShaper::step(Duration at) {
+  while (free_at_ <= at) {
+    auto next = queue_.next(
+        at, [this](const Packet& packet) { return airtime(packet); }, [](const Packet&) {});
+    if (!next) break;
+    // A thread that woke late has not lost the time: the air was free since then, and this waited.
+    const Duration start = std::max({free_at_, at - 5ms, next->message.since});
+    free_at_ = start + next->airtime;
+    put_on_air(std::move(next->message.item), start, next->airtime);
+  }
+  while (!in_air_.empty() && in_air_.begin()->first <= at) {
+    const Packet& packet = in_air_.begin()->second;
+    if (!socket_(packet.bytes, packet.address, packet.port)) queue_.note_dropped(packet.priority);
+    in_air_.erase(in_air_.begin());
+  }
+  Duration soonest = in_air_.empty() ? Duration::max() : in_air_.begin()->first;
+  if (const auto ready = queue_.ready(at)) soonest = std::min(soonest, std::max(*ready, free_at_));
+  return soonest;
+}
+
+Duration LinkShaper::refill(Duration at) {
+  const auto taken = [this](const Waiting& w) {
+    return put_in_socket(w.item.bytes, w.item.address, w.item.port);
+  };
+  if (refused_) {
+    const bool stale = at - refused_->since > refused_->max_queue_age;
+    if (!stale && !taken(*refused_)) return at + kRetry;
+    if (stale) queue_.note_dropped(refused_->priority);
+    refused_.reset();
+  }
+  while (auto next = queue_.next(
+             at, [](const Packet&) { return Duration{}; }, [](const Packet&) {})) {
+    if (taken(next->message)) continue;
+    refused_ = std::move(next->message);
+    return at + kRetry;
+  }
+  return Duration::max();
+}
+
+Duration LinkShaper::airtime(const Packet& packet) const {
+  if (!link_ || link_->window > 0.0) return Duration{};
+  return from_seconds(static_cast<double>(packet.bytes.size() + WireCost::kUdpAndIp) * 8.0 /
+                      link_->bandwidth);
+}
+
+void LinkShaper::put_on_air(Packet packet, Duration at, Duration airtime) {
+  const auto bytes = static_cast<std::uint32_t>(packet.bytes.size()) + WireCost::kUdpAndIp;
+  if (link_->window > 0.0 && !window_.admit(*link_, bytes, at)) {
+    queue_.note_dropped(packet.priority);
+    return;
+  }
+  if (outputs_.sent) outputs_.sent(packet.bytes, packet.address, packet.port);
+  const Path path = outputs_.path ? outputs_.path(packet.address, packet.port) : Path{};
+  // Multicast is one frame: all hear it or nobody does.
+  if (loss_models_[peer_of(packet)].lost(*link_, path, bytes, std::nullopt, random_)) return;
+  in_air_.emplace(at + airtime + transit(*link_, random_), std::move(packet));
+}
+
+std::uint64_t LinkShaper::peer_of(const Packet& packet) const {
+  // On one machine participants differ by port; the pair of discovery and data ports is one peer.
+  return static_cast<std::uint64_t>(packet.address) << 16 | participant_of_port(packet.port);
+}
+
+}  // namespace adit::wire

@@ -1,0 +1,238 @@
+#include "robot_agent/agent_impl.hpp"
+
+#include "core/config/search.hpp"
+#include "core/time/random.hpp"
+#include "core/wire/component_io.hpp"
+
+namespace adit::agent {
+namespace {
+
+/// A clean end waits so long for what is not on disk yet. The program ends itself after 3 s.
+constexpr Duration kDiskDrain = 2s;
+
+/// Runs the robot's tree, or holds because it was refused.
+std::unique_ptr<Decider> decider_of(const AgentParams& params) {
+  const ModeTable& table = params.modes ? *params.modes : ModeTable::shipped();
+  const auto file = config::find_file(params.tree);
+  if (!file) return Decider::refused(file.error(), table);
+  auto decider = params.load_tree ? params.load_tree(*file) : Decider::load(*file, table);
+  return decider ? std::move(*decider) : Decider::refused(decider.error(), table);
+}
+
+/// What lives on the slot opens its writers and readers by it: they end when its strand is left behind.
+wire::ComponentIo io_of(const ComponentSlot& slot, wire::Participant& wire) {
+  return {wire, *slot.strand, slot.generation};
+}
+
+}  // namespace
+
+Agent::Impl::Impl(const AgentParams& agent_params, Runtime& agent_runtime)
+    : params(agent_params),
+      runtime(agent_runtime),
+      command(agent_runtime, command_unit()),
+      planner(agent_runtime, planner_unit()),
+      router(agent_runtime, router_unit()),
+      sensors(agent_runtime, sensors_unit()),
+      watch_strand(agent_runtime.strand("supervisor")) {}
+
+Agent::Impl::~Impl() {
+  watch_strand->end();
+  for (Unit* unit : {&command, &sensors, &planner, &router}) unit->end();
+  end_disk();
+  if (watch) watch->stop();
+  if (context && context->radio) context->radio->close();
+  if (context && context->driver) context->driver->close();
+}
+
+void Agent::Impl::end_disk() {
+  if (!disk_strand) return;
+  if (context && context->driver) context->driver->write({});  // the disk must not delay the zero
+  if (context && context->keeper) context->keeper->flush();
+  if (context && context->findings) context->findings->flush();
+  disk_strand->drain(kDiskDrain);  // one that does not answer must not keep the process from ending
+}
+
+UnitParams Agent::Impl::command_unit() {
+  UnitParams unit{};
+  unit.name = "command";
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(
+        std::make_unique<CommandComponent>(params, strand, decider_of(params), *context));
+  };
+  return unit;
+}
+
+UnitParams Agent::Impl::planner_unit() {
+  UnitParams unit{};
+  unit.name = "planner";
+  unit.dedicated = true;
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(
+        std::make_unique<Planner>(PlannerParams{params.platform, params.planning, params.local_planner},
+                                  strand, Log(params.log, params.name), context->planner, library()));
+  };
+  return unit;
+}
+
+UnitParams Agent::Impl::router_unit() {
+  UnitParams unit{};
+  unit.name = "router";
+  unit.dedicated = true;
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
+    RouterParams router_params{};
+    router_params.platform = params.platform;
+    return std::unique_ptr<Component>(std::make_unique<Router>(
+        std::move(router_params), strand, Log(params.log, params.name), *context->router));
+  };
+  return unit;
+}
+
+UnitParams Agent::Impl::sensors_unit() {
+  UnitParams unit{};
+  unit.name = "sensors";
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(std::make_unique<Scans>(strand, Log(params.log, params.name),
+                                                              params.platform.lidar_height, context->scans));
+  };
+  unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
+    auto readers = Scans::read(io_of(*slot, *robot_wire), [slot = std::weak_ptr<ComponentSlot>(slot)] {
+      const auto taken = slot.lock();
+      return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
+    });
+    if (!readers) return readers.error();
+    return std::shared_ptr<void>(std::make_shared<Scans::Readers>(std::move(*readers)));
+  };
+  return unit;
+}
+
+Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robot) {
+  robot_wire = &robot;
+  if (const auto opened = command.open(); !opened) return opened.error();
+  Executor& strand = command_strand();
+  context = std::make_unique<Context>(strand, radio.id());
+  Context& e = *context;
+  auto notifier = Notifier::open(radio, params.name, strand);
+  if (!notifier) return notifier.error();
+  e.notifier = std::move(*notifier);
+  auto radio_edge = RadioEdge::open(io_of(*command.slot(), radio), params.name);
+  if (!radio_edge) return radio_edge.error();
+  e.radio = std::move(*radio_edge);
+  e.wire = &radio;
+
+  e.restored = restore_state(params.disk);
+  if (params.disk && !params.disk->instant()) disk_strand = runtime.strand("disk");
+  e.keeper = std::make_unique<StateKeeper>(KeeperParams{}, params.disk, strand, disk_strand,
+                                           e.restored.generation, keeper_outputs());
+
+  e.findings =
+      std::make_unique<FindingSync>(SyncParams{.robot = params.name,
+                                               .max_findings = params.findings,
+                                               .seed = Random(params.seed).fork(kFindingsSalt).next()},
+                                    params.disk, strand, disk_strand, findings_outputs());
+  if (const std::string lost = e.findings->load().text(); !lost.empty())
+    e.notifier->send(
+        {{}, Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost});
+
+  const auto with_command = [&e](const auto& use) {
+    if (e.command_component) use(*e.command_component);
+  };
+  Driver::Handlers handlers{};
+  handlers.odometry = [with_command](const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
+                                     Time received) {
+    with_command([&](CommandComponent& component) { component.odometry(odom, twist, stamp, received); });
+  };
+  handlers.battery = [with_command](float charge) {
+    with_command([&](CommandComponent& component) { component.battery(charge); });
+  };
+  handlers.external = [with_command](const Twist2& velocity, Time received) {
+    with_command([&](CommandComponent& component) { component.external(velocity, received); });
+  };
+  handlers.rival = [with_command](const wire::ParticipantId& writer, Time received) {
+    with_command([&](CommandComponent& component) { component.rival(writer, received); });
+  };
+  auto driver = Driver::open(io_of(*command.slot(), robot), params.velocity, std::move(handlers));
+  if (!driver) return driver.error();
+  e.driver = std::move(*driver);
+
+  const bool routes_it = params.platform.router != "none";
+  for (Unit* unit : {&planner, &router, &sensors})
+    if (unit != &router || routes_it)
+      if (const auto opened = unit->open(); !opened) return opened.error();
+  if (routes_it) e.router = std::make_unique<RouteServices>();
+  auto opened = AgentSupervisor::open({params.name, params.supervision, Log(params.log, params.name),
+                                       params.end, params.alive, params.velocity},
+                                      *watch_strand, radio, robot, *e.notifier);
+  if (!opened) return opened.error();
+  watch = std::move(*opened);
+  e.watch = watch.get();
+  watch->watch(command, {.name = "command", .replaceable = false, .always = true});
+  watch->watch(planner, {.name = "planner"});
+  if (routes_it) watch->watch(router, {.name = "router"});
+  watch->watch(sensors, {.name = "sensors"});
+  if (params.disk) watch->note({.name = "store"});
+  return e.radio->listen({e.directory, e.namesakes,
+                          [with_command](const std::function<void(CommandInterface&)>& use) {
+                            with_command([&](CommandComponent& component) { component.commands(use); });
+                          },
+                          [&e](Task task) {
+                            if (e.command_component) e.command_component->keep();
+                            e.keeper->when_safe(std::move(task));
+                          },
+                          [with_command](const Eigen::Vector3d& goal, const auto& done) {
+                            with_command(
+                                [&](CommandComponent& component) { component.find_route(goal, done); });
+                          },
+                          [&e, &strand](const Id& station, std::span<const std::uint64_t> ids) {
+                            e.findings->acknowledged(station, ids, strand.now());
+                          }});
+}
+
+std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {
+  if (params.platform.planner != nav::planner_names().front()) return nullptr;  // no other planner has one
+  {
+    const std::lock_guard lock(mutex_);
+    if (library_) return library_;
+  }
+  auto made =
+      params.library ? params.library(params.platform) : nav::PlannerLibrary::build(params.platform, {});
+  const std::lock_guard lock(mutex_);
+  return library_ = std::move(made);
+}
+
+StateKeeper::Outputs Agent::Impl::keeper_outputs() {
+  return {[this](bool failing, const std::string& text) {
+    if (failing)
+      context->notifier->send({{},
+                               Severity::error,
+                               "store_failing",
+                               Reason::cannot_write,
+                               params.name + " cannot keep its state over a restart: " + text});
+    else
+      context->notifier->send({{}, Severity::info, "store_works", Reason::none, params.name + ": " + text});
+    ComponentRow row{.name = "store", .healthy = !failing};
+    if (failing) {
+      row.state = PartState::failed;
+      row.text = "the disk does not keep the state";
+    }
+    watch->note(row);
+  }};
+}
+
+FindingSync::Outputs Agent::Impl::findings_outputs() {
+  const auto notify = [this](Severity severity, const char* code, const std::string& text) {
+    context->notifier->send({{}, severity, code, Reason::none, params.name + ": " + text});
+  };
+  return {[notify](const std::string& text) { notify(Severity::warning, "findings_full", text); },
+          [notify](bool failing, const std::string& text) {
+            notify(failing ? Severity::error : Severity::info, failing ? "store_failing" : "store_works",
+                   text);
+          }};
+}
+
+Unit* Agent::Impl::find(const std::string& component) {
+  for (Unit* unit : {&command, &planner, &router, &sensors})
+    if (unit->name() == component && (unit != &router || context->router)) return unit;
+  return nullptr;
+}
+
+}  // namespace adit::agent

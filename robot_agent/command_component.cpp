@@ -1,0 +1,348 @@
+#include "robot_agent/command_component.hpp"
+
+#include <cmath>
+
+#include "core/time/random.hpp"
+#include "robot_agent/behaviour/modes/external.hpp"
+
+namespace adit::agent {
+namespace {
+
+CommandParams command_params(const AgentParams& params, const Frames& frames, std::uint32_t instance) {
+  CommandParams c{};
+  c.robot = params.name;
+  // Another one for each instance of the component. Zero is what a message holds that nobody filled in: no
+  // epoch starts with it.
+  Random starts(params.seed);
+  for (std::uint32_t i = 0; i < instance; ++i) (void)starts.next();
+  c.epoch_start = starts.next() | 1u;
+  c.lock_lease = params.lock_lease;
+  c.home = {frames.T_map_start().x, frames.T_map_start().y, std::nan("")};
+  c.protocol = kProtocolVersion;
+  return c;
+}
+
+NavigationParams navigation_params(const AgentParams& params) {
+  NavigationParams n{};
+  n.platform = params.platform;
+  return n;
+}
+
+constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
+constexpr Duration kStatePeriod = 100ms;
+constexpr Duration kStatusPeriod = 1s;
+constexpr Duration kPulse = 50ms;
+
+}  // namespace
+
+Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& command,
+                                          std::unique_ptr<Decider> decider, Context& context)
+    : Component("command", command, Log(params.log, params.name), {.beat = kPulse}),
+      params_(params),
+      context_(context),
+      frames_(params.start, params.platform, params.start_height),
+      navigation_(navigation_params(params), command, log(), frames_, context.planner, context.router.get(),
+                  navigation_outputs()),
+      mux_(navigation_),
+      behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
+      commands_(command_params(params, frames_, context.instances++), behaviour_, command_outputs()),
+      notices_(params.name, *context.notifier, log(), [this] { return commands_.authority().holder_name(); }),
+      safeguards_(params.safeguards, params.name, frames_.T_map_start(),
+                  {commands_.authority(), context.peers, behaviour_, frames_, notices_}),
+      telemetry_({*context.radio, *context.wire, context.rate, *context.driver, *context.watch, frames_,
+                  commands_, behaviour_}),
+      rivals_(now()) {}
+
+void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
+                                       Time received) {
+  protect([&] {
+    if (!frames_.update(odom, twist, stamp, received)) odometry_jumped();
+    if (waiting_scan_ && !is_ahead(waiting_scan_->stamp)) add_waiting_scan();
+  });
+}
+
+Result<MapFrame> Agent::CommandComponent::correct_map(const MapFrame& corrected) {
+  if (const auto taken = frames_.correct(corrected); !taken) return taken.error();
+  keep();  // At once: the next instance must not give the same epoch to another place.
+  return frames_.map_frame();
+}
+
+void Agent::CommandComponent::odometry_jumped() {
+  constexpr Duration kTellAgain = 5s;  // Two drivers that write in turn jump with every sample.
+  navigation_.clear();
+  waiting_scan_.reset();  // it was taken in the frame that ended
+  behaviour_.hold(Reason::odometry_jumped, now());
+  keep();  // As in correct_map().
+  if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
+  jump_told_ = now();
+  notices_.odometry_jumped(frames_.T_map_base());
+}
+
+Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
+  if (!frames_.initialised())
+    return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
+  frames_.set_pose(pose);
+  return {};
+}
+
+void Agent::CommandComponent::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received) {
+  protect([&] {
+    if (!frames_.initialised()) return;
+    if (waiting_scan_) add_waiting_scan();
+    waiting_scan_ = {std::move(points), stamp, received};
+    if (!is_ahead(stamp)) add_waiting_scan();
+  });
+}
+
+bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
+  constexpr std::uint64_t kLongest = 200'000'000;  // ns; farther ahead, the lidar has another clock.
+  const std::uint64_t newest = frames_.newest_stamp();
+  return newest != 0 && stamp > newest && stamp - newest <= kLongest;
+}
+
+void Agent::CommandComponent::add_waiting_scan() {
+  const WaitingScan waiting = *std::exchange(waiting_scan_, std::nullopt);
+  auto scan = std::make_shared<Scan>();
+  scan->points = std::move(*waiting.points);
+  const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
+  // Without a common clock the newest pose is the best guess.
+  scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
+  navigation_.add_scan(std::move(scan), waiting.received, now());
+}
+
+void Agent::CommandComponent::battery(float charge) {
+  protect([&] { safeguards_.battery(charge, now()); });
+}
+
+void Agent::CommandComponent::external(const Twist2& velocity, Time received) {
+  protect([&] {
+    if (now() - received < ExternalMode::kFresh) behaviour_.program(velocity, received);
+  });
+}
+
+void Agent::CommandComponent::rival(const wire::ParticipantId& writer, Time received) {
+  protect([&] {
+    if (rivals_.heard(writer, received)) notices_.rival(writer);
+  });
+}
+
+void Agent::CommandComponent::commands(const std::function<void(CommandInterface&)>& use) {
+  protect([&] { use(commands_); });
+}
+
+void Agent::CommandComponent::find_route(const Eigen::Vector3d& goal,
+                                         std::function<void(const Result<PlannedRoute>&)> done) {
+  protect([&] {
+    if (!goal.head<2>().allFinite() || std::isinf(goal.z()))
+      return done({Reason::out_of_range, "a place has finite coordinates"});
+    if (!context_.router)
+      return done({Reason::not_supported, "this robot has no router: its platform says none"});
+    if (!frames_.initialised()) return done({Reason::no_localisation, "the robot does not know where it is"});
+    RouteQuery query{};
+    query.odom_epoch = frames_.odom_epoch();
+    query.from = frames_.T_odom_base().position;
+    query.to = frames_.to_odom(goal);
+    call(context_.router->find, query, {.deadline = 500ms},
+         [this, epoch = query.odom_epoch, done = std::move(done)](const Result<nav::Route>& route) {
+           if (!route) return done({Reason::no_answer, "the router does not answer; see health"});
+           if (epoch != frames_.odom_epoch())
+             return done({Reason::odometry_jumped, "the odometry jumped meanwhile"});
+           done(planned_route(*route, frames_));
+         });
+  });
+}
+
+bool Agent::CommandComponent::same_boot() const {
+  const auto& snapshot = context_.restored.snapshot;
+  return snapshot && snapshot->boot == params_.boot;
+}
+
+void Agent::CommandComponent::restore() {
+  // Made anew within this process it goes on from what it gave last, else from what is on the disk.
+  if (const auto& last = context_.keeper->given()) context_.restored = restored_from(*last);
+  if (!context_.restored.snapshot) return;
+  const Snapshot& s = *context_.restored.snapshot;
+  commands_.restore(s.authority, s.answers, started_);  // listen_first asks who was heard since
+  note_holder();
+  if (s.place) frames_.restore(*s.place);
+  // Without a pose to compare with, nobody knows whether the odometry is still the same. With one, the first
+  // sample tells.
+  const bool comparable = s.place && s.place->newest;
+  const bool resume = params_.resume_after_restart && same_boot() && comparable && !context_.restored.hold;
+  behaviour_.restore(s.behaviour, commands_.stops().any(), resume, context_.instances == 1);
+  // A copy of this robot's disk in another computer proves nothing.
+  if (context_.instances == 1 && s.authority.holder && same_boot()) context_.namesakes.held_before();
+  safeguards_.restore(s.battery, started_);
+}
+
+Result<void> Agent::CommandComponent::on_start() {
+  started_ = now();
+  restore();
+  navigation_.on_failure([this](const ComponentFailure& f) { fail(f.component + ": " + f.text); });
+  navigation_.adopt(generation());
+  if (const auto started = navigation_.start(); !started) return started;
+  offer(context_.scans, [this](LidarScan lidar, const Reply<void>& reply) {
+    scan(std::move(lidar.points), lidar.stamp, lidar.received);
+    reply({});
+  });
+  offer(context_.frames.find,
+        [this](MapFrameQuery, const Reply<MapFrame>& reply) { reply(frames_.map_frame()); });
+  offer(context_.frames.correct,
+        [this](const MapFrame& corrected, const Reply<MapFrame>& reply) { reply(correct_map(corrected)); });
+  context_.command_component = this;
+  context_.driver->write({});
+  if (context_.instances == 1)
+    context_.radio->send_capabilities(params_.platform, params_.id, kProtocolVersion, behaviour_.table());
+  behaviour_.tick(now());
+  notices_.restored(context_.restored, same_boot());
+  if (const std::string& why = behaviour_.tree_refusal(); !why.empty()) notices_.tree_refused(why);
+  keep();
+  telemetry_.start(now(), started_);
+  timers_.push_back(every(kBeat, [this] { beat(); }));
+  timers_.push_back(every(kStatePeriod, [this] {
+    telemetry_.send_state(now(), safeguards_.charge());
+    context_.directory.tick(now());
+  }));
+  timers_.push_back(every(kStatusPeriod, [this] {
+    commands_.tick(now());
+    safeguards_.tick(now());
+    telemetry_.send_periodic(now());
+    send_findings();
+  }));
+  return {};
+}
+
+void Agent::CommandComponent::on_stop() {
+  context_.command_component = nullptr;
+  timers_.clear();
+  navigation_.stop();
+  context_.driver->write({});
+}
+
+void Agent::CommandComponent::beat() {
+  const Time at = now();
+  watch_driver();
+  watch_namesakes(at);
+  listen_first(at);
+  behaviour_.tick(at);
+  mux_.step(at);
+  navigation_.step(at);
+  keep();
+  context_.keeper->tick();
+}
+
+// What goes on by itself after a restart must not outrun a stop that was given meanwhile, and is repeated
+// until this agent answers it.
+void Agent::CommandComponent::listen_first(Time at) {
+  constexpr Duration min_wait = 1s, heard_for = 300ms, max_wait = 3s;
+  if (!behaviour_.listens() || context_.namesakes.verdict() == Namesakes::Verdict::undecided) return;
+  const auto& authority = commands_.authority();
+  if (!holder_heard_ && authority.holder() && authority.heard() > started_) holder_heard_ = at;
+  const bool heard = !authority.holder() || (holder_heard_ && at - *holder_heard_ >= heard_for);
+  if (at - started_ >= (heard ? min_wait : max_wait)) behaviour_.go_on(at);
+}
+
+void Agent::CommandComponent::keep() {
+  context_.keeper->save(
+      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), frames_.kept(), {}},
+      [this] { return commands_.kept_answers(); }, commands_.accepted());
+}
+
+void Agent::CommandComponent::watch_driver() {
+  if (telemetry_.driver_fell_silent(now())) notices_.driver_lost();
+}
+
+void Agent::CommandComponent::watch_namesakes(Time at) {
+  Namesakes& namesakes = context_.namesakes;
+  const Authority& authority = commands_.authority();
+  namesakes.claim({authority.holder().has_value(), authority.epoch().start}, at);
+  const auto other = namesakes.tick(at);
+  const bool gives_way = namesakes.verdict() == Namesakes::Verdict::gives_way;
+  if (other && namesakes_told_.pass(gives_way, at)) notices_.namesake(*other, gives_way);
+  if (gives_way != std::exchange(gives_way_, gives_way)) {
+    context_.radio->send_claim(namesakes.announced());
+    behaviour_.hold(gives_way ? Reason::name_taken : Reason::none, at);
+  } else if (gives_way && behaviour_.mode().name != "hold") {
+    behaviour_.hold(Reason::name_taken, at);
+  }
+}
+
+void Agent::CommandComponent::send_findings() {
+  for (const findings::Finding* f : context_.findings->due(commands_.stations().heard_ids(now()), now()))
+    context_.radio->send(*f, context_.findings->size(), context_.findings->overflowed());
+}
+
+Facts Agent::CommandComponent::sense(Time now) const {
+  Facts f{};
+  f.driver_alive = frames_.alive(now);
+  f.localised = frames_.initialised();
+  f.terrain_fresh = navigation_.terrain_fresh(now);
+  return f;
+}
+
+void Agent::CommandComponent::note_holder() {
+  const auto& holder = commands_.authority().holder();
+  context_.peers.set_holder(holder ? holder->name : std::string{}, holder ? holder->id : Id{});
+}
+
+CommandInterface::Outputs Agent::CommandComponent::command_outputs() {
+  return {[this](const Notice& notice) { notices_.send(notice); },
+          [this] {
+            note_holder();
+            keep();
+            context_.keeper->when_safe(guard([this] { telemetry_.send_authority(now()); }));
+          },
+          [this](const std::string& component) { return context_.watch->restart(component); },
+          [this](const std::string& component, bool automatic) {
+            return context_.watch->set_policy(component, automatic);
+          },
+          [this](const Epoch& epoch) { return context_.namesakes.obeys(epoch.start); },
+          [this](const Sender& station) { context_.peers.accept_station(station, now()); }};
+}
+
+Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
+  Behaviour::Inputs inputs{[this](Time at) { return sense(at); },
+                           [this](const Eigen::Vector2d& place) { return navigation_.goal_free(place); },
+                           {}};
+  // What flies keeps the height that it has.
+  if (params_.platform.flies()) inputs.height = [this] { return frames_.height(); };
+  inputs.set_pose = [this](const Pose2& pose) { return set_pose(pose); };
+  inputs.pose = [this]() -> std::optional<Pose2> {
+    if (!frames_.initialised()) return std::nullopt;
+    return frames_.T_map_base();
+  };
+  return inputs;
+}
+
+Behaviour::Outputs Agent::CommandComponent::behaviour_outputs() {
+  return {[this](const Notice& notice) { notices_.send_to_holder(notice); },
+          [this] { telemetry_.send_behaviour(now()); }};
+}
+
+Navigation::Outputs Agent::CommandComponent::navigation_outputs() {
+  return {[this](const Twist2& velocity) {
+            if (generation()->valid()) context_.driver->write(velocity);
+          },
+          [this](const Progress& progress) { behaviour_.set_progress(progress); },
+          [this](Warning warning) {
+            notices_.warning(warning,
+                             params_.platform.manual_collision_stop || behaviour_.mode().name != "manual");
+          }};
+}
+
+std::string Agent::CommandComponent::at_console(const std::string& line) {
+  if (line == "unlock") return commands_.unlock_at_console() ? "unlocked\n" : "there was no lock\n";
+  if (line == "peers") return describe(context_.peers, now());
+  if (line != "status")
+    return "unknown: " + line +
+           " (status, unlock, peers, health, restart COMPONENT, policy COMPONENT auto|manual)\n";
+  const Authority& authority = commands_.authority();
+  const BehaviourView view = behaviour_.view();
+  return params_.name + ": " +
+         (authority.holder() ? "held by " + authority.holder_name() : "held by nobody") +
+         (authority.locked() ? ", locked" : "") + (commands_.stops().any() ? ", stopped" : "") + ", mode " +
+         std::string(view.mode) +
+         (view.reason == Reason::none ? "" : " (" + std::string(adit::name(view.reason)) + ")") + "\n";
+}
+
+}  // namespace adit::agent

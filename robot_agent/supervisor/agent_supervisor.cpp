@@ -1,0 +1,233 @@
+#include "robot_agent/supervisor/agent_supervisor.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "robot_agent/supervisor/health_message.hpp"
+
+namespace adit::agent {
+namespace {
+
+constexpr Duration kHealthPeriod = 5s;
+constexpr Duration kCommandSilent = 120ms;  // the supervisor sends zero when the command strand does not
+constexpr Duration kLastWords = 100ms;      // for the notification of what was escalated
+constexpr const char* kAgent = "agent";
+
+std::string_view word(PartState state) {
+  switch (state) {
+    case PartState::starting:
+      return "starting";
+    case PartState::up:
+      return "up";
+    case PartState::waiting:
+      return "waiting";
+    case PartState::failed:
+      return "failed";
+    case PartState::hung:
+      return "hung";
+  }
+  return "failed";
+}
+
+}  // namespace
+
+class AgentSupervisor::Impl {
+ public:
+  Impl(AgentSupervisorParams params, Executor& strand, Notifier& notifier)
+      : params_(std::move(params)),
+        strand_(strand),
+        notifier_(notifier),
+        supervisor_(params_.supervision, strand, params_.log,
+                    {[this](const PartEvent& event, const std::string& part) { notify(event, part); },
+                     [this](const std::string& why) { escalate(why); }, [this](Time now) { looked(now); }}) {}
+
+  Result<void> open(wire::Participant& radio, wire::Participant& robot) {
+    auto health = wire::Writer<radio::Health>::make(radio, wire::topics::kHealth);
+    if (!health) return health.error();
+    health_ = std::move(*health);
+    auto zero = VelocityWriter::make(robot, params_.velocity);
+    if (!zero) return zero.error();
+    zero_ = std::move(*zero);
+    return {};
+  }
+
+  void watch(Unit& unit, PartSpec spec) {
+    specs_.push_back(spec);
+    supervisor_.watch(unit, std::move(spec));
+  }
+  Executor& strand() { return strand_; }
+  Supervisor& supervisor() { return supervisor_; }
+
+  const PartSpec* find(const std::string& part) const {
+    const auto found =
+        std::find_if(specs_.begin(), specs_.end(), [&](const PartSpec& s) { return s.name == part; });
+    return found == specs_.end() ? nullptr : &*found;
+  }
+  Error unknown(const std::string& part) const {
+    std::string names = kAgent;
+    for (const PartSpec& spec : specs_) names += ", " + spec.name;
+    return {Reason::bad_argument, "no component is named " + part + " (" + names + ")"};
+  }
+
+  void note(ComponentRow row) {
+    const auto known =
+        std::find_if(notes_.begin(), notes_.end(), [&](const ComponentRow& r) { return r.name == row.name; });
+    if (known != notes_.end())
+      *known = std::move(row);
+    else if (notes_.size() < kNotes)
+      notes_.push_back(std::move(row));
+    changed_ = true;
+  }
+
+  std::vector<ComponentRow> rows() const {
+    std::vector<ComponentRow> rows;
+    for (const PartStatus& s : supervisor_.status())
+      rows.push_back({s.spec.name, s.state, s.state == PartState::up,
+                      s.spec.policy == RestartPolicy::automatic, std::nullopt, s.silent, s.restarts, s.hangs,
+                      s.text});
+    for (ComponentRow row : notes_) {
+      if (row.heard) row.silent = strand_.now() - *row.heard;
+      rows.push_back(std::move(row));
+    }
+    return rows;
+  }
+
+  void escalate(const std::string& why) {
+    if (ending_.active()) return;
+    changed_ = true;
+    ending_ = strand_.after(kLastWords, [this, why] {
+      if (params_.end) params_.end(why);
+    });
+  }
+  void touched() { changed_ = true; }
+  void tell_escalated(const std::string& why) {
+    say(Severity::error, "escalated", why + "; the agent is restarted");
+  }
+
+ private:
+  static constexpr std::size_t kNotes = 16;
+  static constexpr std::size_t kUnsaid = 32;
+
+  void notify(const PartEvent& event, const std::string& part) {
+    changed_ = true;
+    switch (event.kind) {
+      case PartEvent::Kind::failed:
+        return say(Severity::error, "component_failed", part + ": " + event.text);
+      case PartEvent::Kind::hung:
+        return say(Severity::error, "component_hung", part + ": " + event.text);
+      case PartEvent::Kind::back:
+        return say(Severity::info, "component_back", part + ": " + event.text);
+      case PartEvent::Kind::escalated:
+        return tell_escalated(event.text);
+    }
+  }
+  void say(Severity severity, const char* code, const std::string& text) {
+    const Reason reason = severity == Severity::info ? Reason::none : Reason::internal;
+    if (unsaid_.size() < kUnsaid) unsaid_.push_back({{}, severity, code, reason, text});
+    say_all();
+  }
+  /// What could not be said because another strand was sending is said a little later.
+  void say_all() {
+    while (!unsaid_.empty() && notifier_.try_send(unsaid_.front())) unsaid_.pop_front();
+  }
+
+  void looked(Time now) {
+    const PartStatus& command = supervisor_.status().front();
+    const bool commands = command.state == PartState::up && command.silent <= kCommandSilent;
+    const bool ends = supervisor_.escalated() || ending_.active();
+    if (!commands || ends) zero_.write({});
+    if (commands && !ends && params_.alive) params_.alive();
+    say_all();
+    if (!changed_ && now - sent_ < kHealthPeriod) return;
+    changed_ = false;
+    sent_ = now;
+    auto sample = to_radio(rows(), params_.robot);
+    sample.seq(++seq_);
+    (void)health_.write(sample);
+  }
+
+  AgentSupervisorParams params_;
+  Executor& strand_;
+  Notifier& notifier_;
+  Supervisor supervisor_;
+  wire::Writer<radio::Health> health_{};
+  VelocityWriter zero_{};
+  std::vector<PartSpec> specs_{};  // as at the start: read from any thread
+  std::vector<ComponentRow> notes_{};
+  std::deque<Notice> unsaid_{};
+  std::uint64_t seq_{};
+  bool changed_{true};
+  Time sent_{};
+  Timer ending_{};
+};
+
+AgentSupervisor::AgentSupervisor(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+AgentSupervisor::~AgentSupervisor() = default;
+
+Result<std::unique_ptr<AgentSupervisor>> AgentSupervisor::open(AgentSupervisorParams params, Executor& strand,
+                                                               wire::Participant& radio,
+                                                               wire::Participant& robot, Notifier& notifier) {
+  auto impl = std::make_unique<Impl>(std::move(params), strand, notifier);
+  if (const auto opened = impl->open(radio, robot); !opened) return opened.error();
+  return std::unique_ptr<AgentSupervisor>(new AgentSupervisor(std::move(impl)));
+}
+
+void AgentSupervisor::watch(Unit& unit, PartSpec spec) { impl_->watch(unit, std::move(spec)); }
+
+void AgentSupervisor::start() {
+  impl_->strand().post([impl = impl_.get()] { (void)impl->supervisor().start(); });
+}
+
+void AgentSupervisor::stop() { impl_->supervisor().stop(); }
+
+void AgentSupervisor::note(ComponentRow row) {
+  impl_->strand().post([impl = impl_.get(), row = std::move(row)] { impl->note(row); });
+}
+
+Result<void> AgentSupervisor::restart(const std::string& component) {
+  if (component == kAgent) {
+    impl_->strand().post_control([impl = impl_.get()] {
+      impl->tell_escalated("an operator asked for it");
+      impl->escalate("an operator asked for it");
+    });
+    return {};
+  }
+  if (!impl_->find(component)) return impl_->unknown(component);
+  impl_->strand().post_control([impl = impl_.get(), component] {
+    (void)impl->supervisor().restart(component);
+    impl->touched();
+  });
+  return {};
+}
+
+Result<void> AgentSupervisor::set_policy(const std::string& component, bool automatic) {
+  const PartSpec* spec = impl_->find(component);
+  if (!spec) return impl_->unknown(component);
+  if (spec->always && !automatic)
+    return {Reason::not_supported, component + " takes the operators' word itself: it is always restarted"};
+  impl_->strand().post_control([impl = impl_.get(), component, automatic] {
+    (void)impl->supervisor().set_policy(component,
+                                        automatic ? RestartPolicy::automatic : RestartPolicy::by_operator);
+    impl->touched();
+  });
+  return {};
+}
+
+void AgentSupervisor::describe(std::function<void(const std::string&)> answer) {
+  impl_->strand().post([impl = impl_.get(), answer = std::move(answer)] {
+    std::string text;
+    for (const ComponentRow& row : impl->rows()) {
+      char line[320];
+      std::snprintf(line, sizeof line, "%-10s %-9s %-5s restarts %u, hung %u, silent %.1f s%s%s\n",
+                    row.name.c_str(), word(row.state).data(), row.automatic ? "auto" : "manual", row.restarts,
+                    row.hung, seconds(row.silent), row.text.empty() ? "" : ": ", row.text.c_str());
+      text += line;
+    }
+    answer(text);
+  });
+}
+
+}  // namespace adit::agent
