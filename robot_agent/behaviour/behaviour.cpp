@@ -14,6 +14,8 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
       guard_(table()),
       decision_{&guard_.admitted(), false, Reason::none},
       running_(decision_.mode) {
+  // Modules may ask for the pose at any time.
+  if (!inputs_.pose) inputs_.pose = [] { return std::optional<Pose2>{}; };
   for (const ModeRow& row : table().rows()) {
     Mode& mode = modes_.emplace_back(Mode{row});
     if (row.moves())

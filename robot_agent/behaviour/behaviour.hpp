@@ -44,7 +44,7 @@ class Behaviour : public Requests {
     /// No known obstacle covers that place (map frame, m).
     std::function<bool(const Eigen::Vector2d&)> goal_free{};
     std::function<double()> height{};  ///< of a goal that was given none, m; empty: it is on the floor
-    /// Where the robot is (map frame); nothing while localisation is not initialised.
+    /// Pose of the robot (map frame); nothing while localisation is not initialised. Empty: always nothing.
     std::function<std::optional<Pose2>()> pose{};
     /// The robot is at that pose of the map. Errors: no_localisation.
     std::function<Result<void>(const Pose2&)> set_pose{};

@@ -108,7 +108,7 @@ TEST_F(Guard, ManualModesEndWithTheirHolder) {
 TEST_F(Guard, ARestartReadmitsOnlyWhatPauses) {
   for (const ModeRow& each : table.rows()) {
     guard.readmit(each);
-    EXPECT_EQ(guard.admitted().name, each.name == "waypoint" ? "waypoint" : "hold");
+    EXPECT_EQ(guard.admitted().name, each.on_failure == OnFailure::pauses ? each.name : "hold");
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
@@ -26,6 +27,13 @@ std::string changed(const std::string& from, const std::string& to, std::size_t 
   return xml.replace(at, from.size(), to);
 }
 
+/// Where `text` is in that tree, as complaints name it.
+std::string line_of(const std::string& xml, const std::string& text) {
+  const std::size_t at = xml.find(text);
+  EXPECT_NE(at, std::string::npos) << text;
+  return std::to_string(1 + std::count(xml.begin(), xml.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+}
+
 std::string complaint(const std::string& xml) {
   const auto decider = Decider::load_text(xml);
   EXPECT_FALSE(decider);
@@ -40,17 +48,21 @@ TEST(TreeCheck, TheShippedTreeAgrees) {
 }
 
 TEST(TreeCheck, MissingConditionIsNamedWithTheLineOfItsRun) {
-  EXPECT_EQ(complaint(changed("      <NotStopped/>\n", "")),
-            "<text>:21: Run mode=\"manual\" lacks the condition NotStopped before it");
-  EXPECT_EQ(complaint(changed("      <Requested mode=\"waypoint\"/>\n", "")),
-            "<text>:47: Run mode=\"waypoint\" lacks the condition Requested mode=\"waypoint\" before it");
+  std::string xml = changed("      <NotStopped/>\n", "");
+  EXPECT_EQ(complaint(xml), "<text>:" + line_of(xml, "<Run mode=\"manual\"/>") +
+                                ": Run mode=\"manual\" lacks the condition NotStopped before it");
+  xml = changed("      <Requested mode=\"waypoint\"/>\n", "");
+  EXPECT_EQ(complaint(xml),
+            "<text>:" + line_of(xml, "<Run mode=\"waypoint\"/>") +
+                ": Run mode=\"waypoint\" lacks the condition Requested mode=\"waypoint\" before it");
 }
 
 TEST(TreeCheck, ConditionThatDoesNotCountIsExplained) {
-  EXPECT_EQ(
-      complaint(changed("<NotStopped/>", "<Inverter><NotStopped/></Inverter>")),
-      "<text>:22: Run mode=\"manual\" lacks the condition NotStopped: the one in line 19 does not count, "
-      "it is under Inverter; use ReactiveSequence");
+  const std::string xml = changed("<NotStopped/>", "<Inverter><NotStopped/></Inverter>");
+  EXPECT_EQ(complaint(xml), "<text>:" + line_of(xml, "<Run mode=\"manual\"/>") +
+                                ": Run mode=\"manual\" lacks the condition NotStopped: the one in line " +
+                                line_of(xml, "<NotStopped/>") +
+                                " does not count, it is under Inverter; use ReactiveSequence");
   EXPECT_THAT(complaint(changed("<StickKept/>", "<ForceSuccess><StickKept/></ForceSuccess>")),
               HasSubstr("it is under ForceSuccess"));
   EXPECT_THAT(complaint(changed("<StickKept/>", "<StickKept _skipIf=\"true\"/>")),
@@ -83,8 +95,9 @@ TEST(TreeCheck, ConditionsMayStandInOtherPlacesOfAReactiveSequence) {
 }
 
 TEST(TreeCheck, UnknownModesAreNamed) {
-  EXPECT_EQ(complaint(changed("<Run mode=\"manual\"/>", "<Run mode=\"fly\"/>")),
-            "<text>:22: Run: the mode table has no mode 'fly'");
+  const std::string xml = changed("<Run mode=\"manual\"/>", "<Run mode=\"fly\"/>");
+  EXPECT_EQ(complaint(xml),
+            "<text>:" + line_of(xml, "<Run mode=\"fly\"/>") + ": Run: the mode table has no mode 'fly'");
   EXPECT_THAT(complaint(changed("<Requested mode=\"manual\"/>", "<Requested mode=\"fly\"/>")),
               HasSubstr("Requested: the mode table has no mode 'fly'"));
   EXPECT_THAT(complaint(changed("<Pause mode=\"waypoint\"/>", "<Pause mode=\"{mode}\"/>")),
