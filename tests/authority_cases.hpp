@@ -4,7 +4,7 @@
 
 #include "core/result/reason.hpp"
 
-/// Authority as a table (rules 1 to 4): who asks, in what state, what the answer is, what everyone is told.
+/// Authority as a table (rules 1 to 4): who asks, in what state, the answer, and the notifications.
 /// One table, three mounts: the command interface alone, a rehearsal, processes over Fast DDS.
 namespace adit::authority_cases {
 
@@ -23,7 +23,7 @@ struct Line {
 };
 
 struct Told {
-  std::string operator_name{};  ///< empty: everybody
+  std::string operator_name{};  ///< Empty: all operators.
   std::string code{};
   auto operator<=>(const Told&) const = default;
 };
@@ -36,7 +36,7 @@ struct Case {
   std::string holder{};
   bool locked{};
   std::vector<std::string> stops{};
-  std::vector<Told> told{};  ///< because of the asked line, in any order
+  std::vector<Told> told{};  ///< Notifications caused by the asked line, in any order.
 };
 
 /// The lock lease that the cases assume, s.
@@ -209,7 +209,7 @@ inline std::vector<Case> all() {
        false,
        {},
        {{"op1", "intruder"}}},
-      // A stop needs no authority; who proves to be nobody is reported, and stops all the same.
+      // A stop needs no authority; a forger is reported, and its stop counts all the same.
       {"forger_stop", {take1}, {"forger:op1", "stop"}, R::none, "op1", false, {"op1"}, {{"op1", "intruder"}}},
       {"forger_release",
        {take1, lock1},

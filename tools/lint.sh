@@ -104,11 +104,9 @@ check_words() {
 language_open() {
   cat <<'TEXT'
 basestation  words comments columns
-bench        words comments constants columns
 core         words comments columns
 robot_agent  words comments columns
 sim          words comments columns
-tests        words comments constants columns
 nav          words comments constants columns
 TEXT
 }

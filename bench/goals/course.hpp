@@ -10,11 +10,11 @@ namespace adit::bench {
 struct Course {
   std::string kind{}, platform{};
   std::uint64_t seed{};
-  Eigen::Vector2d start{0, 0}, goal{0, 0};  ///< world, m
-  double straight{};                        ///< from start to goal, m
-  double way{};                             ///< the same along what is free, between cells side by side, m
-  double speed{1.0};                        ///< the platform's highest, m/s
-  bool reachable{};                         ///< by a disc as wide as the platform
+  Eigen::Vector2d start{0, 0}, goal{0, 0};  ///< World frame, m.
+  double straight{};                        ///< Straight line from start to goal, m.
+  double way{};                             ///< Shortest free way over the 4-neighbours of a grid, m.
+  double speed{1.0};                        ///< Top speed of the platform, m/s.
+  bool reachable{};                         ///< For a disc as wide as the platform.
 };
 
 /// Draws a goal 4 to 25 m from the start, on ground the platform can stand on with 0.1 m beside it; every

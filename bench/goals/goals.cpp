@@ -23,18 +23,17 @@ using namespace adit::bench;
 struct Outcome {
   Course course{};
   std::string error{};
-  bool arrived{}, told{};  ///< told: that it cannot be reached
+  bool arrived{}, told{};  ///< `told`: it was reported unreachable.
   int collisions{};
   double clearance{}, seconds{}, told_after{};
-  std::optional<double>
-      told_late{};  ///< after it could be known, s; negative: before; nothing: it never could
+  std::optional<double> told_late{};  ///< Delay of the report, s; negative: early; empty: never provable.
 };
 
 constexpr double kArrived = 0.35;  // m: the goal's tolerance, and what a scan is off by
 constexpr double kDrift = 0.03;    // of the way: what dead reckoning is off by, three deviations
 constexpr double kLook = 1.0;      // s: as exact as the other time is known
 constexpr double kSent = 4.0;      // s: when the goal is sent
-constexpr double kTold = 10.0;  // s: so long after it could be known that a goal is out of reach it is told
+constexpr double kTold = 10.0;     // s: delay within which an unreachable goal must be reported
 
 /// From when the goal was sent until what the robot saw proves that it cannot get there, s.
 std::optional<double> knowable_after(const Course& course, std::span<const Pose2> poses) {

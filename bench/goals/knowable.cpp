@@ -49,7 +49,7 @@ class Seen {
     while (!open.empty()) {
       const auto [i, j] = open.back();
       open.pop_back();
-      if (i < 0 || j < 0 || i >= nx_ || j >= ny_) return false;  // nobody knows what is there
+      if (i < 0 || j < 0 || i >= nx_ || j >= ny_) return false;  // outside of what was mapped
       // A robot that passes something as near as it can is let out.
       const bool here = std::hypot(i - start.first, j - start.second) <= pass_ + 1;
       if (been[index(i, j)] || (closed_[index(i, j)] && !here) || stands_[index(i, j)]) continue;

@@ -58,7 +58,7 @@ void crashes(FailureLab& lab, const char* component, int times) {
   Series back;
   for (int i = 0; i < times; ++i) {
     back.add(lab.crash(component).back);
-    lab.console(std::string("restart ") + component);  // attempts are counted anew
+    lab.console(std::string("restart ") + component);  // resets the count of attempts
     lab.ready();
   }
   print(std::string("crash of ") + component + ": back", back, 100);

@@ -150,7 +150,7 @@ bool awake(std::size_t k) {
   return k / kTurn % 2 == 1;
 }
 
-/// Threads that take what nobody else wants of each core: it does not sleep, and wakes for others at once.
+/// Threads of idle priority, one a core: no core sleeps, and each still runs other threads at once.
 class Spinners {
  public:
   Spinners() {

@@ -17,13 +17,13 @@ inline std::int64_t monotonic_ns() {
 struct Stamps {
   static constexpr std::size_t kSamples = 600;
   using Column = std::array<std::atomic<std::int64_t>, kSamples>;
-  Column stick_written;   ///< before the station's write of the joystick
-  Column cmd_written;     ///< after the agent's write of rt/cmd_vel returned
-  Column driver_called;   ///< in the driver's callback
-  Column bare_written;    ///< before a bare Fast DDS write of a payload of the same size
-  Column bare_called;     ///< in the bare reader's callback, in the agent's process
-  Column second_written;  ///< the same from there to the driver's process
-  Column relayed;         ///< after that second write returned
+  Column stick_written;   ///< Before the station writes the joystick sample.
+  Column cmd_written;     ///< After the agent's write of rt/cmd_vel returned.
+  Column driver_called;   ///< In the driver's callback.
+  Column bare_written;    ///< Before a bare Fast DDS write of a payload of that size.
+  Column bare_called;     ///< In the bare reader's callback in the agent's process.
+  Column second_written;  ///< Before the second bare write, from there to the driver.
+  Column relayed;         ///< After that second write returned.
   Column second_called;
   std::atomic<bool> agent_ready, driver_ready, stop;
 

@@ -32,7 +32,7 @@ using test::BoxWorld;
 
 struct Case {
   const char* name;
-  double goal_units;  ///< what the median shall stay below
+  double goal_units;  ///< Upper limit of the median, calibration units.
   std::vector<std::vector<Eigen::Vector3f>> scans{};
   std::vector<Pose2> poses{};
   bool expect_blocked{false};

@@ -1,5 +1,5 @@
 // soak: four supervised agents, a station and the simulated world; an agent is killed (SIGKILL) again and
-// again. What the processes that live through it hold must not grow, and nobody may restart by itself. Run it
+// again. The memory of the surviving processes must not grow, and none may restart by itself. Run it
 // by tools/soak.sh, which gives it a network and a /dev/shm of its own.
 #include <signal.h>
 
@@ -22,7 +22,7 @@ using adit::live::Seconds;
 using Clock = std::chrono::steady_clock;
 
 constexpr Seconds kPatience(30.0);  // a busy machine is late; who is not back by then does not come back
-constexpr double kLate = 5.0;       // s; told, but no failure: it says as much of the machine
+constexpr double kLate = 5.0;       // s; reported, but no failure: the machine may be the cause
 
 struct Options {
   double length{600.0}, every{10.0};

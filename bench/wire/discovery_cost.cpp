@@ -51,22 +51,22 @@ std::unique_ptr<DefaultDds> bare(const std::string& name, bool is_station, int r
   return one;
 }
 
-constexpr std::array classes{wire::QosClass::urgent, wire::QosClass::stream, wire::QosClass::state,
-                             wire::QosClass::status, wire::QosClass::bulk,   wire::QosClass::video};
+constexpr std::array kClasses{wire::QosClass::urgent, wire::QosClass::stream, wire::QosClass::state,
+                              wire::QosClass::status, wire::QosClass::bulk,   wire::QosClass::video};
 
 struct Rates {
   double discovery{}, other{};
-  std::array<double, classes.size()> payload{};  // of samples, by class: each once, however many are sent it
+  std::array<double, kClasses.size()> payload{};  // of samples, by class: each once, however many are sent it
 };
 
 /// What one has written of each class, bytes.
-std::array<double, classes.size()> written(const wire::WireCounters& counters,
-                                           const std::vector<wire::Example>& examples) {
-  std::array<double, classes.size()> bytes{};
+std::array<double, kClasses.size()> written(const wire::WireCounters& counters,
+                                            const std::vector<wire::Example>& examples) {
+  std::array<double, kClasses.size()> bytes{};
   for (const wire::TopicCount& count : counters.topics)
     for (const wire::Example& example : examples)
-      for (std::size_t k = 0; k < classes.size(); ++k)
-        if (count.topic == example.topic.name && example.topic.qos == classes[k])
+      for (std::size_t k = 0; k < kClasses.size(); ++k)
+        if (count.topic == example.topic.name && example.topic.qos == kClasses[k])
           bytes[k] += static_cast<double>(count.bytes_out);
   return bytes;
 }
@@ -88,7 +88,7 @@ Rates between(const std::vector<wire::WireCounters>& a, const std::vector<wire::
     rates.discovery += discovery / n;
     rates.other += (static_cast<double>(b[i].total_out - a[i].total_out) - discovery) / n;
     const auto before = written(a[i], examples), after = written(b[i], examples);
-    for (std::size_t k = 0; k < classes.size(); ++k) rates.payload[k] += (after[k] - before[k]) / n;
+    for (std::size_t k = 0; k < kClasses.size(); ++k) rates.payload[k] += (after[k] - before[k]) / n;
   }
   return rates;
 }

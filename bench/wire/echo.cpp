@@ -4,14 +4,14 @@ namespace adit::bench {
 
 Echo::Echo(unsigned domain) {
   wire_ = std::move(wire::open_fastdds({.domain = domain, .name = "echo"})).value();
-  urgent_ = std::move(wire_->make_writer(pong_urgent, "")).value();
-  stream_ = std::move(wire_->make_writer(pong_stream, "")).value();
+  urgent_ = std::move(wire_->make_writer(kPongUrgent, "")).value();
+  stream_ = std::move(wire_->make_writer(kPongStream, "")).value();
   urgent_in_ =
-      std::move(wire_->make_reader(ping_urgent, "", *strand_, [this](auto bytes, const wire::SampleInfo&) {
+      std::move(wire_->make_reader(kPingUrgent, "", *strand_, [this](auto bytes, const wire::SampleInfo&) {
         return urgent_->write(bytes).ok();
       })).value();
   stream_in_ =
-      std::move(wire_->make_reader(ping_stream, "", *strand_, [this](auto bytes, const wire::SampleInfo&) {
+      std::move(wire_->make_reader(kPingStream, "", *strand_, [this](auto bytes, const wire::SampleInfo&) {
         return stream_->write(bytes).ok();
       })).value();
   bare_ = std::make_unique<BareDds>(domain, "bare/pong", "bare/ping",

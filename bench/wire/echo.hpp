@@ -7,10 +7,10 @@
 
 namespace adit::bench {
 
-constexpr wire::TopicInfo ping_urgent{"adit/ping", "Bytes", wire::QosClass::urgent, 16, false, 1 << 16};
-constexpr wire::TopicInfo pong_urgent{"adit/pong", "Bytes", wire::QosClass::urgent, 16, false, 1 << 16};
-constexpr wire::TopicInfo ping_stream{"adit/ping_stream", "Bytes", wire::QosClass::stream, 1, false, 1 << 16};
-constexpr wire::TopicInfo pong_stream{"adit/pong_stream", "Bytes", wire::QosClass::stream, 1, false, 1 << 16};
+constexpr wire::TopicInfo kPingUrgent{"adit/ping", "Bytes", wire::QosClass::urgent, 16, false, 1 << 16};
+constexpr wire::TopicInfo kPongUrgent{"adit/pong", "Bytes", wire::QosClass::urgent, 16, false, 1 << 16};
+constexpr wire::TopicInfo kPingStream{"adit/ping_stream", "Bytes", wire::QosClass::stream, 1, false, 1 << 16};
+constexpr wire::TopicInfo kPongStream{"adit/pong_stream", "Bytes", wire::QosClass::stream, 1, false, 1 << 16};
 
 /// Sends back what it gets: over our wire from a strand, over bare Fast DDS from its thread.
 class Echo {

@@ -44,7 +44,7 @@ struct Idle {
                       }))
             .value());
   }
-  /// Says who this is and what it can do, kept for whoever comes later.
+  /// Publishes identity and capabilities, stored for participants that join later.
   void write_capabilities(const std::string& name, const std::string& software) {
     radio::Capabilities sample;
     sample.name(name);

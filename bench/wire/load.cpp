@@ -4,12 +4,12 @@ namespace adit::bench {
 
 Load::Load(wire::Participant& wire, Executor& strand, const wire::LinkProfile& link, std::uint8_t who) {
   const bool thin = link.frame_bytes() <= 500;
-  for (const wire::TopicInfo& topic : {load_bulk, load_video}) {
+  for (const wire::TopicInfo& topic : {kLoadBulk, kLoadVideo}) {
     readers_.push_back(
         std::move(wire.make_reader(topic, "", strand, [](auto, const auto&) { return true; })).value());
   }
-  offer(load_bulk, thin ? 340 : 1200, 1.0, strand, wire, link, who);
-  offer(load_video, thin ? 1500 : 8000, 0.5, strand, wire, link, who);
+  offer(kLoadBulk, thin ? 340 : 1200, 1.0, strand, wire, link, who);
+  offer(kLoadVideo, thin ? 1500 : 8000, 0.5, strand, wire, link, who);
 }
 
 void Load::offer(const wire::TopicInfo& topic, std::size_t bytes, double share, Executor& strand,

@@ -9,15 +9,15 @@
 namespace adit::bench {
 
 /// Topics of the classes `bulk` and `video`, as maps and pictures will be: pieces that are usable alone.
-inline constexpr wire::TopicInfo load_bulk{"adit/load_bulk", "Piece", wire::QosClass::bulk, 16, false, 4096};
-inline constexpr wire::TopicInfo load_video{
+inline constexpr wire::TopicInfo kLoadBulk{"adit/load_bulk", "Piece", wire::QosClass::bulk, 16, false, 4096};
+inline constexpr wire::TopicInfo kLoadVideo{
     "adit/load_video", "Piece", wire::QosClass::video, 1, false, 16384};
 
 /// Fills a link: offers all its bandwidth as `bulk` and half of it as `video`, and reads what others offer.
 /// Construct and destroy it on its strand.
 class Load {
  public:
-  /// `who` tells the pieces of several loads apart.
+  /// `who` distinguishes the pieces of several loads.
   Load(wire::Participant& wire, Executor& strand, const wire::LinkProfile& link, std::uint8_t who);
 
  private:

@@ -108,7 +108,7 @@ void run(const Cell& cell, const Options& options) {
     down = std::make_unique<Load>(op.radio(), *strand, link, 2);
     sticks = strand->every(50ms, [&] {
       sample.seq(sample.seq() + 1);
-      (void)stick.write(sample);  // nobody drives: the robot hears and refuses
+      (void)stick.write(sample);  // the sender holds no robot: it is heard and refused
     });
   });
   net.pass(5s);
@@ -119,7 +119,7 @@ void run(const Cell& cell, const Options& options) {
     ask(op, "stop r1", asked);
     ask(op, "reset r1", asked);
     ask(op, "release r1", asked);
-    net.pass(1s);  // nobody types faster; what the commands brought about has its time
+    net.pass(1s);  // an operator's typing speed; leaves time for the effects
   }
   passages.count(false);
   net.on(*strand, [&] {

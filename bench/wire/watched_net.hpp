@@ -41,7 +41,7 @@ class Passages {
   std::map<std::string, Row> rows_{};
 };
 
-/// A net whose radio participants tell what passes.
+/// A net whose radio participants report every message.
 class WatchedNet final : public live::Net {
  public:
   WatchedNet(std::unique_ptr<live::Net> inner, Passages& passages)

@@ -27,11 +27,11 @@ struct Path {
 struct Client {
   explicit Client(unsigned domain) {
     wire = std::move(wire::open_fastdds({.domain = domain, .name = "client"})).value();
-    urgent = std::move(wire->make_writer(ping_urgent, "")).value();
-    stream = std::move(wire->make_writer(ping_stream, "")).value();
+    urgent = std::move(wire->make_writer(kPingUrgent, "")).value();
+    stream = std::move(wire->make_writer(kPingStream, "")).value();
     const auto pong = [this](auto, const wire::SampleInfo&) { return arrived(), true; };
-    urgent_in = std::move(wire->make_reader(pong_urgent, "", *strand, pong)).value();
-    stream_in = std::move(wire->make_reader(pong_stream, "", *strand, pong)).value();
+    urgent_in = std::move(wire->make_reader(kPongUrgent, "", *strand, pong)).value();
+    stream_in = std::move(wire->make_reader(kPongStream, "", *strand, pong)).value();
     bare = std::make_unique<BareDds>(domain, "bare/ping", "bare/pong", [this](auto) { arrived(); });
   }
   void arrived() {

@@ -1,5 +1,5 @@
-// One robot or station of a fleet at rest, without its program: for the live tests of discovery. It tells on
-// its output whom it has heard, until it is killed.
+// One robot or station of a fleet at rest, without its program: for the live tests of discovery. It prints
+// the peers that it has heard until it is killed.
 #include <unistd.h>
 
 #include <cstdio>

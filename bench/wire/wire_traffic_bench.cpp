@@ -1,4 +1,4 @@
-// What the radio carries when nobody does anything, live on loopback beside the simulated network, and the
+// Radio traffic of an idle fleet, live on loopback beside the simulated network, and the
 // bytes of a start-up: bench_wire_traffic [SECONDS].
 #include <cstdio>
 #include <cstdlib>

@@ -44,7 +44,7 @@ class AgentBench {
     radio::Capabilities capabilities{};
     radio::Health health{};
     radio::LinkReport link{};
-    /// Of several robots with one name: the participant whose state is stored; none: whoever spoke last.
+    /// Of several robots with one name: the participant whose state is stored; none: the last sender.
     std::optional<wire::ParticipantId> follows{};
     std::uint64_t seq{}, stick_seq{};
     bool up{true};
@@ -165,9 +165,9 @@ class AgentBench {
   Twist2 command{};
   std::vector<Twist2> commands{};
   Duration command_at{};
-  Pose2 pose{};  ///< odometry frame, as the driver has it
+  Pose2 pose{};  ///< Pose by the driver, odometry frame.
   bool driver_alive{true}, lidar_alive{true};
-  PointCloud obstacles{};  ///< odometry frame, beside the plain
+  PointCloud obstacles{};  ///< Odometry frame; added to the plain.
   radio::Command last_command{};
   wire::SimulatedNetwork& network() { return network_; }
   const wire::Participant& radio() const { return *radio_; }

@@ -35,7 +35,7 @@ class CommandBench {
     s = {{op, id_of(op), next_participant()}, 0, true};
     interface_->hear(s.sender, 1, now);
   }
-  /// The component is made anew with what it kept, under another start.
+  /// Restarts the component with its stored state and another start id.
   void restart() {
     const KeptAuthority kept = interface_->kept();
     const std::vector<KeptAnswers> answers = interface_->kept_answers();

@@ -85,7 +85,7 @@ TEST_F(DirectoryTest, GoneWithItsParticipant) {
 TEST_F(DirectoryTest, ReturnUnderAnotherAddressIsTheSameEntry) {
   directory.capabilities(record("r2", 1), now);
   directory.presence("r2", of("r2"), id(1), now + 1s);
-  // Killed, and started again at once; what it can do now is told once only.
+  // Killed and restarted at once: its new capabilities are reported once only.
   Peer back = record("r2", 2);
   back.modes = {"explore"};
   directory.capabilities(back, now + 1500ms);

@@ -82,30 +82,30 @@ TEST(ExternalTree, MayDoWithoutTheModeAndThenSaysSo) {
 
 class Rival : public testing::Test {
  protected:
-  static constexpr wire::ParticipantId a{1}, b{2};
+  static constexpr wire::ParticipantId kA{1}, kB{2};
   Time start{Duration{1h}};
   RivalWatch watch{start};
 };
 
 TEST_F(Rival, IsToldAtItsThirdSampleAndNotAgainSoon) {
   Time now = start + 10s;
-  EXPECT_FALSE(watch.heard(a, now));
-  EXPECT_FALSE(watch.heard(a, now += 50ms));
-  EXPECT_TRUE(watch.heard(a, now += 50ms));
-  for (int i = 0; i < 200; ++i) EXPECT_FALSE(watch.heard(a, now += 100ms));
+  EXPECT_FALSE(watch.heard(kA, now));
+  EXPECT_FALSE(watch.heard(kA, now += 50ms));
+  EXPECT_TRUE(watch.heard(kA, now += 50ms));
+  for (int i = 0; i < 200; ++i) EXPECT_FALSE(watch.heard(kA, now += 100ms));
   int told = 0;
-  for (int i = 0; i < 200; ++i) told += watch.heard(a, now += 100ms);
+  for (int i = 0; i < 200; ++i) told += watch.heard(kA, now += 100ms);
   EXPECT_EQ(told, 1) << "once more after half a minute";
 }
 
 TEST_F(Rival, ASingleSampleIsAProbeByHand) {
   Time now = start + 10s;
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(watch.heard(a, now += 2s));
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(watch.heard(kA, now += 2s));
 }
 
 TEST_F(Rival, TheParentsZerosAtTheStartAreNone) {
   Time now = start;
-  for (int i = 0; i < 50; ++i) EXPECT_FALSE(watch.heard(b, now += 50ms));
+  for (int i = 0; i < 50; ++i) EXPECT_FALSE(watch.heard(kB, now += 50ms));
 }
 
 }  // namespace

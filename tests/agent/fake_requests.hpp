@@ -6,7 +6,7 @@
 
 namespace adit::agent {
 
-/// A robot that does what it is told, and remembers it.
+/// A robot that executes every request and records it.
 struct FakeRequests : Requests {
   Result<void> request_mode(const std::string& mode, Time) override {
     calls.push_back("mode " + mode);
@@ -38,13 +38,13 @@ struct FakeRequests : Requests {
   }
 
   bool stopped{};
-  Eigen::Vector3d goal{0.0, 0.0, 0.0};  ///< the last one
+  Eigen::Vector3d goal{0.0, 0.0, 0.0};  ///< The last one requested.
   bool takes_stick{true};
   bool holds{true};
-  Pose2 pose{};  ///< the last one set
+  Pose2 pose{};  ///< The last one set.
   std::vector<std::string> calls{};
   std::vector<Twist2> sticks{};
-  Time stick_at{};  ///< of the newest
+  Time stick_at{};  ///< Time of the newest sample.
 };
 
 }  // namespace adit::agent

@@ -1,4 +1,4 @@
-// What trees that contradict the mode table cannot do when nobody checked them.
+// Trees that contradict the mode table break no rule, even unchecked.
 #include <gmock/gmock.h>
 
 #include "robot_agent/behaviour/behaviour.hpp"

@@ -9,7 +9,7 @@
 namespace adit::agent {
 namespace {
 
-const wire::LinkProfile mesh_100k{.name = "mesh_100k", .bandwidth = 100e3, .latency = 0.15, .loss = 0.1};
+const wire::LinkProfile kMesh100k{.name = "mesh_100k", .bandwidth = 100e3, .latency = 0.15, .loss = 0.1};
 
 class LinkRate : public testing::Test {
  protected:
@@ -47,7 +47,7 @@ TEST_F(LinkRate, TenTimesASecondWhereThereIsRoom) {
 }
 
 TEST_F(LinkRate, FallsToWhatAThinLinkCarriesAndComesBackWithIt) {
-  link(mesh_100k);
+  link(kMesh100k);
   bench.run(5s);
   const double thin = rate(20s);
   EXPECT_LT(thin, 8.0);

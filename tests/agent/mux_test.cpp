@@ -10,7 +10,7 @@ struct MotionLog : NavigationInput {
   std::vector<Motion> passed{};
 };
 
-// Rule 5 at compile time: nobody but the mux can write to navigation.
+// Rule 5 at compile time: only the mux can write to navigation.
 template <class Input>
 concept AnyoneCanWrite = requires(Input& input) {
   input.accept({}, Motion{Stand{}}, Time{});

@@ -25,7 +25,7 @@ class ToldRouter final : public Component {
 
   RouteServices services{};
   bool answers{true};
-  std::optional<nav::RouteStep> tells{};  ///< none: straight to the goal
+  std::optional<nav::RouteStep> tells{};  ///< Empty: straight to the goal.
   std::shared_ptr<const RouteJob> last{};
 };
 

@@ -1,4 +1,4 @@
-// What a robot launches, and tells that it can, follows from its platform's file.
+// The platform's file decides which components a robot starts and which capabilities it announces.
 #include <gmock/gmock.h>
 
 #include "core/config/platform_file.hpp"

@@ -9,7 +9,7 @@ class StickGateTest : public testing::Test {
  protected:
   StickGateTest() { bench.say("op1", "take"); }
   Reason send(const StickSample& s) {
-    bench.now += 2s;  // refusals are told once a second
+    bench.now += 2s;  // refusals are reported once a second
     StickSample fresh = s;
     if (s.echo != 0 && !keep_echo) {
       bench.interface().sent_stamp(to_stamp(bench.now));

@@ -29,7 +29,7 @@ TEST(IfThenElse, ASkippedConditionFailsAndIsReported) {
 }
 
 TEST(WhileDoElse, AConditionThatKeepsItsAnswerIsNotVisitedAgain) {
-  // The condition is a stateful leaf: it succeeded and nobody reset it, so that the answer stands.
+  // The condition is a stateful leaf: it succeeded and was not reset, so its answer is still valid.
   Dry dry("<WhileDoElse><C/><A/><B/></WhileDoElse>", {{"C", "SF"}, {"A", "RRS"}, {"B", "S"}});
   EXPECT_EQ(dry.ticks(4), (Trace{"R C A", "R A", "S A", "S C B"}));
 }

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 struct Answer {
   int status{-1};
-  std::string out{};  ///< stdout and stderr
+  std::string out{};  ///< Standard output and standard error.
 };
 
 class Tool : public testing::Test {

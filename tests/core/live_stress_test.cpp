@@ -74,7 +74,7 @@ TEST(LiveStress, strands_come_and_go_under_fire) {
 
 TEST(LiveStress, two_strands_play_ball) {
   LiveRuntime runtime;
-  // A strand must outlive whoever is inside its post(): the last one there is a, in b's, so a goes first.
+  // A strand must outlive the threads inside its post(): the last of them is a, in b's, so a ends first.
   const auto b = runtime.strand("b");
   const auto a = runtime.strand("a");
   std::promise<void> done;

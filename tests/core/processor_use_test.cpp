@@ -35,7 +35,8 @@ TEST(Answerable, what_a_blocked_thread_waited_for_a_processor_before_does_not_co
 
 TEST(Answerable, a_wait_that_began_before_the_last_look_takes_no_more_than_there_is) {
   EXPECT_EQ(answerable(kBefore, later(1ms, 200ms, false), 50ms), 0ms);
-  EXPECT_EQ(answerable(kBefore, later(80ms, 0ms, true), 50ms), 50ms);  // ran up to the last look, told late
+  EXPECT_EQ(answerable(kBefore, later(80ms, 0ms, true), 50ms),
+            50ms);  // ran up to the last sample, reported late
 }
 
 TEST(ProcessorUse, tells_a_thread_that_sleeps_from_one_that_runs) {
@@ -60,7 +61,7 @@ TEST(ProcessorUse, tells_a_thread_that_sleeps_from_one_that_runs) {
   EXPECT_GT(own->ran, 0ms);
   end.set_value();
   sleeper.join();
-  // The system lets a joined thread go a moment later than it tells who joins it.
+  // The system releases a joined thread a moment after join() returned.
   while (processor_use(sleeping)) std::this_thread::yield();
   EXPECT_FALSE(processor_use(-1));
 }

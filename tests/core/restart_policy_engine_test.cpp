@@ -84,7 +84,7 @@ TEST_F(RestartPolicyEngineTest, WhoBeatsIsLeftAlone) {
 TEST_F(RestartPolicyEngineTest, WhoFailedIsMadeAnewWithinATenthOfASecond) {
   pass(1s);
   fail(1);
-  EXPECT_THAT(poll(), IsEmpty());  // at once told, started after the first pause
+  EXPECT_THAT(poll(), IsEmpty());  // reported at once, restarted after the first pause
   EXPECT_THAT(pass(50ms), ElementsAre(RestartAction{Kind::restart, 1}));
   pass(50ms);
   EXPECT_EQ(state(1), PartState::up);

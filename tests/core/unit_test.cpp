@@ -24,7 +24,7 @@ UnitParams idle_unit() {
   return params;
 }
 
-// With policy `manual` nobody replaces it: what others go on posting would wait for ever.
+// With policy `manual` it is not replaced: tasks that others post would wait for ever.
 TEST(Unit, AnAbandonedHungPartStoresNothingThatIsPostedToIt) {
   LiveRuntime runtime;
   Unit unit(runtime, idle_unit());

@@ -11,7 +11,7 @@ using live::Process;
 using live::Seconds;
 
 // Ends with the test, even when that is killed.
-const std::vector<std::string> with_us{"/usr/bin/env", "setpriv", "--pdeathsig", "KILL"};
+const std::vector<std::string> kWithUs{"/usr/bin/env", "setpriv", "--pdeathsig", "KILL"};
 
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -26,7 +26,7 @@ std::vector<std::string> entering(const Process& holder) {
 
 std::unique_ptr<Process> Hosts::hold() {
   auto holder = std::make_unique<Process>(joined(
-      with_us, {"unshare", "--net", "sh", "-c", "ip link set lo up && echo ready && exec sleep infinity"}));
+      kWithUs, {"unshare", "--net", "sh", "-c", "ip link set lo up && echo ready && exec sleep infinity"}));
   if (!holder->wait_for_output("ready", Seconds(5)))
     throw std::runtime_error("no network namespace: " + holder->err());
   return holder;
@@ -90,7 +90,7 @@ void Hosts::link(const std::string& host, bool up) {
 Process Hosts::start(const std::string& host, std::vector<std::string> words,
                      std::map<std::string, std::string> environment) const {
   if (words[0].find('/') == std::string::npos) words[0] = program_folder() + "/" + words[0];
-  return Process(joined(with_us, joined(entering(*hosts_.at(host).holder), words)), std::move(environment));
+  return Process(joined(kWithUs, joined(entering(*hosts_.at(host).holder), words)), std::move(environment));
 }
 
 }  // namespace adit::hosts

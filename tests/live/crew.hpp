@@ -12,7 +12,7 @@
 
 namespace adit::live {
 
-/// One robot's agent on its machine; its participants stay when the agent is made anew.
+/// One robot's agent on its machine; its participants stay when the agent is restarted.
 class Robot {
  public:
   /// Radio and inner network are joined here. `params.tree` is found in the source tree.
@@ -62,7 +62,7 @@ class Operator {
   std::unique_ptr<station::Station> station_{};
 };
 
-/// A participant that is no station of ours: hears everything a robot tells, and writes what it likes.
+/// A participant that is no station of ours: hears every topic of a robot and writes arbitrary samples.
 class Foreigner {
  public:
   Foreigner(Net& net, const std::string& machine, const std::string& robot);

@@ -35,7 +35,7 @@ class Member {
       edge_->send_capabilities(said, id, agent::kProtocolVersion);
     });
   }
-  /// Nothing is said any more, but nobody said goodbye: the participant stays.
+  /// Falls silent without a goodbye: the participant stays.
   void end() {
     if (!edge_) return;
     edge_->close();

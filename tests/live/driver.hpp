@@ -11,7 +11,7 @@
 
 namespace adit::live {
 
-/// A robot's driver that obeys exactly, on an empty plain; counts what it is told.
+/// A robot's driver that obeys exactly, on an empty plain; counts the velocities it receives.
 class PlainDriver {
  public:
   /// `heard`: called for each velocity, m/s, on the driver's strand.

@@ -16,8 +16,8 @@ class FailureLab {
  public:
   /// All times in ms from the failure; nothing when it did not come about.
   struct Killed {
-    std::optional<double> zero{};  ///< the driver is told zero
-    std::optional<double> back{};  ///< a station hears the new agent's authority, with its holder
+    std::optional<double> zero{};  ///< The driver receives zero.
+    std::optional<double> back{};  ///< A station hears the new agent's authority with its holder.
     /// Velocities that were not zero between the two; in a mode that goes on by itself, of who wrote before
     /// the death.
     int moved{};
@@ -31,9 +31,9 @@ class FailureLab {
   ~FailureLab();
   /// The agent is there and held by op1.
   bool ready();
-  /// hold, manual, smart_joystick or waypoint; all but the first are under way when it returns.
+  /// Enters `hold`, `manual`, `smart_joystick` or `waypoint`; in all but `hold` the robot moves on return.
   bool enter(const std::string& mode);
-  /// kill -9.
+  /// Sends SIGKILL to the agent.
   Killed kill_agent();
   /// Through the robot's console.
   Failed crash(const std::string& component);
@@ -84,7 +84,7 @@ class FailureLab {
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::unique_ptr<Operator> op_{};
   std::unique_ptr<Process> parent_{};
-  bool goes_on_{};  ///< the mode entered is one that a new agent goes on in by itself
+  bool goes_on_{};  ///< A restarted agent continues in the mode entered.
 };
 
 }  // namespace adit::live

@@ -12,7 +12,7 @@
 namespace adit::live {
 namespace {
 
-constexpr std::uint32_t radio_domain = 77, robot_domain = 100;
+constexpr std::uint32_t kRadioDomain = 77, kRobotDomain = 100;
 
 class RehearsalNet : public Net {
  public:
@@ -26,10 +26,10 @@ class RehearsalNet : public Net {
     return *machine;
   }
   std::unique_ptr<wire::Participant> join_radio(const std::string& machine) override {
-    return network_.join(radio_domain, machine);
+    return network_.join(kRadioDomain, machine);
   }
   std::unique_ptr<wire::Participant> join_robot(const std::string& machine) override {
-    return network_.join(robot_domain, machine);
+    return network_.join(kRobotDomain, machine);
   }
   void silence(const std::string& machine) override { network_.crash(machine); }
   void on(Executor&, const std::function<void()>& work) override { work(); }

@@ -29,7 +29,7 @@ class Net {
   virtual std::unique_ptr<wire::Participant> join_radio(const std::string& machine) = 0;
   /// The inner network of one robot.
   virtual std::unique_ptr<wire::Participant> join_robot(const std::string& machine) = 0;
-  /// The machine's radio participants fall silent without a goodbye; live they do when nobody uses them.
+  /// The machine's radio participants fall silent without a goodbye; live they do so when they are unused.
   virtual void silence(const std::string& machine) = 0;
   /// Runs the work on that strand and waits for its end.
   virtual void on(Executor& strand, const std::function<void()>& work) = 0;

@@ -13,7 +13,7 @@ using Seconds = std::chrono::duration<double>;
 
 /// What a finished program left.
 struct Finished {
-  int exit_code{-1};  ///< negative: killed by that signal
+  int exit_code{-1};  ///< Negative: killed by that signal.
   std::string out{};
   std::string err{};
 };
@@ -89,7 +89,7 @@ class Domains {
   int lock_{-1};
 };
 
-/// One of this process's own domains; `index` tells several apart, [0, 4].
+/// One of this process's own domains; `index` distinguishes several, [0, 4].
 unsigned domain(unsigned index = 0);
 
 }  // namespace adit::live

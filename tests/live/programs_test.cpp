@@ -37,7 +37,7 @@ TEST_F(Programs, KilledStationHasItsRobotsBackAtOnce) {
   first.signal(SIGKILL);
   first.wait(Seconds(5));
   const auto killed = std::chrono::steady_clock::now();
-  const auto sent = op("op1", {"goto", "r1", "1", "0"});  // starts the station anew
+  const auto sent = op("op1", {"goto", "r1", "1", "0"});  // restarts the station
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - killed;
   EXPECT_EQ(sent.exit_code, 0) << sent.err;
   EXPECT_LT(took.count(), 2.5);
@@ -96,7 +96,7 @@ TEST_F(Programs, ListFollowsWhoIsThere) {
   }
   EXPECT_TRUE(eventually([&] { return listed("op1", "r1").value("lost", false); }, Seconds(3)))
       << "falls silent";
-  // On one machine the port is what tells addresses apart: somebody else has the old one now.
+  // On one machine the port distinguishes addresses: another process has the old one now.
   const Foreigner squatter(*net_, "squatter", "r1");
   const std::string config = folder_.write("r1.yaml", "name: r1\nplatform: tracked\n");
   const Process back({"robot_agent", "--config", config, "--domain", std::to_string(domain()),

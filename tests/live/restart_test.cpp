@@ -20,7 +20,7 @@ class Restart : public Programs {
     return pid;
   }
   void start() { parent_ = std::make_unique<Process>(words(), folder_.environment()); }
-  /// kill -9, and until another one is there.
+  /// Sends SIGKILL and waits until another agent runs.
   void kill_agent() {
     const pid_t old = child();
     ASSERT_GT(old, 0);

@@ -72,7 +72,7 @@ class HopMeter {
   std::unique_ptr<wire::RawReader> reader_;
 };
 
-constexpr const char* plain =
+constexpr const char* kPlain =
     "world: {boxes: [[20, 21, -5, 5, 0, 2]], floor: 0, ceiling: 3}\nduration: 600\nlink: lan\nlidar: planar\n"
     "robots:\n  - {id: r1, platform: wheeled, pose: [0, 0, 0]}\nbasestations:\n  - {id: op1, pose: [0, 0]}\n";
 
@@ -86,7 +86,7 @@ class LiveWorld {
  private:
   Folder folder_{};
   Process simulate_{
-      {"simulate", folder_.write("plain.yaml", plain), "--domain-base", std::to_string(domain())}};
+      {"simulate", folder_.write("plain.yaml", kPlain), "--domain-base", std::to_string(domain())}};
 };
 
 class RehearsedWorld {
@@ -94,7 +94,7 @@ class RehearsedWorld {
   explicit RehearsedWorld(Net& net)
       : strand_(net.machine("driver").strand("driver")),
         wire_(net.join_robot("driver")),
-        scenario_(sim::parse_scenario(plain, "plain.yaml").value()),
+        scenario_(sim::parse_scenario(kPlain, "plain.yaml").value()),
         simulation_(sim::Simulation::create(sim::make_world(scenario_.world).value(),
                                             sim::make_starts(scenario_),
                                             sim::make_simulation_params(scenario_, 1))
@@ -113,12 +113,12 @@ class RehearsedWorld {
   Timer step_{};
 };
 
-/// Hears what the driver is told: how often to move, and when each velocity came first.
+/// Hears the driver's velocities: how many are not zero, and when each came first.
 class Observer {
  public:
   struct Heard {
     int moving{};
-    std::map<long, Duration> first{};  ///< by velocity, mm/s
+    std::map<long, Duration> first{};  ///< First time of each velocity, mm/s.
   };
   explicit Observer(Net& net)
       : strand_(net.machine("observer").strand("observer")), wire_(net.join_robot("observer")) {
@@ -143,12 +143,12 @@ class Observer {
 };
 
 struct Played {
-  std::vector<std::string> answers{};  ///< command and reason, in order
+  std::vector<std::string> answers{};  ///< Command and reason, in order.
   std::uint64_t sticks_sent{}, sticks_heard{}, states{};
-  int moving{};              ///< velocities other than zero at the driver
-  double way{};              ///< m, driven with the stick
-  double command_latency{};  ///< s, median: command to acknowledgement
-  double stick_latency{};    ///< s, median: joystick written to velocity at the driver
+  int moving{};              ///< Velocities other than zero at the driver.
+  double way{};              ///< Distance driven with the stick, m.
+  double command_latency{};  ///< Median from command to acknowledgement, s.
+  double stick_latency{};    ///< Median from joystick written to velocity at the driver, s.
 };
 
 /// Steers with the operator's own participant; the station's own stick is older by number, and refused.

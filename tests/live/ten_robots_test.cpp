@@ -13,17 +13,17 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string scenario = source_folder() + "/config/scenarios/ten_robots.yaml";
+const std::string kScenario = source_folder() + "/config/scenarios/ten_robots.yaml";
 
 TEST(TenRobots, Rehearsal) {
-  const auto done = run({"rehearse", scenario}, {}, Seconds(60));
+  const auto done = run({"rehearse", kScenario}, {}, Seconds(60));
   EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
 }
 
 /// The scenario up to its stop of all, in two fifths of the time; what takes longer is not expected.
 std::string shortened() {
   constexpr double last = 16.0, pace = 0.4;
-  std::ifstream in(scenario);
+  std::ifstream in(kScenario);
   std::string out;
   const std::regex timed(R"(^  - \{(at|by): ([0-9.]+),(.*))");
   std::smatch part;

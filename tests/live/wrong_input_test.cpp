@@ -1,4 +1,4 @@
-// Wrong input to every program: one line that tells what to do, and a non-zero exit.
+// Wrong input to every program: one line that says what to do, and a non-zero exit.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@ using testing::HasSubstr;
 
 struct Wrong {
   const char* name{};
-  const char* file{};  ///< written to the folder first
+  const char* file{};  ///< Written to the folder first.
   const char* text{};
   std::vector<std::string> command{};   ///< FILE is that file, RADIO and INNER are domains
-  std::vector<const char*> expected{};  ///< on stderr
+  std::vector<const char*> expected{};  ///< Parts of standard error.
 };
 
 class WrongInput : public testing::TestWithParam<Wrong> {};
@@ -38,10 +38,10 @@ TEST_P(WrongInput, IsOneLineAndNonZeroExit) {
   for (const char* text : wrong.expected) EXPECT_THAT(ended.err, HasSubstr(text));
 }
 
-const char* const scenario =
+const char* const kScenario =
     "world: {boxes: [[5, 6, -1, 1, 0, 1]], floor: 0}\nduration: 5\nlink: lan\n"
     "robots:\n  - {id: r1, platform: wheeled, pose: [0, 0, 0]}\nbasestations:\n  - {id: op1, pose: [0, 0]}\n";
-const std::string with_colour = std::string(scenario) + "colour: red\n";
+const std::string kWithColour = std::string(kScenario) + "colour: red\n";
 
 INSTANTIATE_TEST_SUITE_P(
     Programs, WrongInput,
@@ -61,9 +61,9 @@ INSTANTIATE_TEST_SUITE_P(
               "name: l\nbandwidth: 1e6\nlatency: 0.1\nloss: 0\ncolour: red\n",
               {"basestation", "--link", "FILE", "list"},
               {"l.yaml:5", "colour"}},
-        Wrong{"scenario_key", "s.yaml", with_colour.c_str(), {"rehearse", "FILE"}, {"s.yaml:8", "colour"}},
+        Wrong{"scenario_key", "s.yaml", kWithColour.c_str(), {"rehearse", "FILE"}, {"s.yaml:8", "colour"}},
         Wrong{
-            "scenario_key_live", "s.yaml", with_colour.c_str(), {"simulate", "FILE"}, {"s.yaml:8", "colour"}},
+            "scenario_key_live", "s.yaml", kWithColour.c_str(), {"simulate", "FILE"}, {"s.yaml:8", "colour"}},
         Wrong{
             "scenario_map",
             "s.yaml",
@@ -108,7 +108,7 @@ TEST(WrongInputToStations, NameInUse) {
   const Folder folder;
   const std::vector<std::string> serve{"basestation", "--domain", std::to_string(domain()), "--serve=-1"};
   Process first(serve, folder.environment());
-  // Nobody else comes before it has its name.
+  // The second station starts only once the first one has its name.
   const std::string socket = folder.environment().at("XDG_RUNTIME_DIR") + "/adit/op1.sock";
   ASSERT_TRUE(eventually([&] { return std::filesystem::exists(socket); })) << first.err();
   const auto second = run(serve, folder.environment(), Seconds(10));

@@ -20,7 +20,7 @@ struct Box {
 struct BoxWorld {
   std::vector<Box> boxes{};
   double ceiling{2.5};
-  double lowest{-15};  ///< elevation of the lidar's lowest ring, degrees
+  double lowest{-15};  ///< Elevation of the lidar's lowest ring, degrees.
 
   /// Distance along `direction` (unit length) to what is hit first, m; 100 when nothing is.
   double cast(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const {

@@ -15,8 +15,8 @@ struct ClosedLoop {
   BoxWorld world{};
   Platform platform{wheeled()};
   Pose2 truth{};
-  Pose2 bias{};        ///< the odometry is the truth followed by nothing but this offset (world frame)
-  double noise{0.01};  ///< of ranges, m
+  Pose2 bias{};        ///< The odometry is the truth with this offset alone (world frame).
+  double noise{0.01};  ///< Standard deviation of ranges, m.
   int rings{16}, columns{360};
   std::mt19937 random{7};
   Navigator navigator{platform};
@@ -27,7 +27,7 @@ struct ClosedLoop {
   Plan last{};
   double time{0};
   double least_clearance{10};
-  double driven{0}, fastest{0}, steepest{0};  ///< m, m/s, m/s2
+  double driven{0}, fastest{0}, steepest{0};  ///< In m, m/s, m/s2.
   int blocked_cycles{0}, held_steps{0}, slowed_steps{0};
   HeldWatch held{};
 

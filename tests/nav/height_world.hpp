@@ -13,7 +13,7 @@ namespace adit::nav::test {
 /// A world that is one height over each place, for terrain that boxes do not have: slopes, holes, gravel.
 struct HeightWorld {
   static constexpr double kBottomless = -1e9;
-  static constexpr double kHighest = 2.0;  ///< above the robot rays meet nothing, m
+  static constexpr double kHighest = 2.0;  ///< Above this height over the robot rays meet nothing, m.
   std::function<double(double, double)> ground;
 
   /// A spinning lidar of `rings` over +-15 degrees on a platform that stands at `body` (world): points in

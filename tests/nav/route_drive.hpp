@@ -8,7 +8,7 @@ namespace adit::nav::test {
 
 /// A robot that is led by the route keeper, as the agent does it.
 struct RouteDrive {
-  static constexpr double kHeldAfter = 1.5;  ///< s, as the agent's default: then the way is blocked
+  static constexpr double kHeldAfter = 1.5;  ///< Default of the agent, s: then the way counts as blocked.
   ClosedLoop loop;
   RoutePlanner planner;
   RouteKeeper keeper;

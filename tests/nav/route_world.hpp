@@ -16,7 +16,7 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// The middle of a cell of 0.1 m, m.
 inline Eigen::Vector3d middle(int x, int y, double z = 0) { return {(x + 0.5) * 0.1, (y + 0.5) * 0.1, z}; }
 
-/// A flat world of 0.1 m cells, `#` walls, for planners that are told it.
+/// A flat world of 0.1 m cells, `#` walls, for planners with a given map.
 struct GridWorld {
   int width, depth;
   std::vector<bool> wall{};
@@ -125,7 +125,7 @@ inline double route_clearance(const GridWorld& world, const Route& route) {
   return least;
 }
 
-/// n x n blocks of `block` metres with corridors of `corridor` between and around them, walled in.
+/// A city: n x n blocks of `block` metres with corridors of `corridor` between and around them, walled in.
 inline BoxWorld city(int n, double block, double corridor) {
   BoxWorld world;
   const double pitch = block + corridor, side = n * pitch + corridor;

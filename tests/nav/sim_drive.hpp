@@ -21,12 +21,12 @@ class SimDrive {
     std::unique_ptr<Controller> controller;
     CollisionMonitor monitor;
     Pose2 start{};
-    std::optional<Eigen::Vector2d> goal{};  ///< world, m
+    std::optional<Eigen::Vector2d> goal{};  ///< World frame, m.
     bool arrived{false};
     Plan plan{};
-    std::size_t moving{0};  ///< movers that were told, over all scans
+    std::size_t moving{0};  ///< Movers reported, over all scans.
     sim::Simulation::ScanJob job{};
-    Pose2 scanned{};  ///< where it says it was
+    Pose2 scanned{};  ///< Its own pose at the scan.
     HeldWatch held{};
   };
 

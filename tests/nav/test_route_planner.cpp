@@ -1,4 +1,4 @@
-// The global planner over maps that it is told.
+// The global planner over given maps.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -356,7 +356,7 @@ TEST(RoutePlanner, EachLegOfAWayIsPassableAsALine) {
     RoutePlanner planner(wheeled());
     std::mt19937 draw(seed);
     const auto upto = [&](int n) { return static_cast<int>(draw() % static_cast<std::uint32_t>(n)); };
-    const int known_x = 40 + upto(160), known_y = 40 + upto(160);  // the rest nobody has seen
+    const int known_x = 40 + upto(160), known_y = 40 + upto(160);  // the rest is unseen
     for (int y = 0; y < known_y; ++y)
       for (int x = 0; x < known_x; ++x) {
         if (world.at(x, y))

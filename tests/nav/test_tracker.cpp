@@ -17,7 +17,7 @@ struct Watch {
   Eigen::Vector2d person{100, 100};
   double time{0};
   int rings{1}, columns{360};
-  Pose2 slip{};  ///< what the odometry is off by
+  Pose2 slip{};  ///< Error of the odometry.
 
   void scan() {
     BoxWorld world = room;

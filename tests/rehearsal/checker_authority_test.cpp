@@ -202,7 +202,7 @@ TEST(CheckerAuthority, StrangersJoystickRefusedInSilence) {
   Record r;
   r.take(1);
   for (int i = 0; i < 30; ++i) {
-    r.push(2, forward);
+    r.push(2, kForward);
     r.pass(50ms);
   }
   EXPECT_THAT(r.broken(), ElementsAre(3)) << r.texts();
@@ -212,7 +212,7 @@ TEST(CheckerAuthority, StreamAnsweredMoreThanOnceASecond) {
   Record r;
   r.take(1);
   for (int i = 0; i < 2; ++i) {
-    r.push(2, forward);
+    r.push(2, kForward);
     r.see(AckSent{"op2", station_id(2), 0, false, Reason::not_holder, "no", "op1", 9, r.epoch});
     r.pass(500ms);
   }

@@ -12,7 +12,7 @@ using testing::IsEmpty;
 TEST(CheckerMotion, HealthyDriveBreaksNothing) {
   Record r;
   drive(r);
-  r.pass(300ms, still, &still);
+  r.pass(300ms, kStill, &kStill);
   r.pass(900ms);
   r.behave("hold");
   r.pass(1s);
@@ -25,11 +25,11 @@ TEST(CheckerMotion, AVelocityAfterAJumpOfTheOdometryNeedsANewRequest) {
   r.enter("waypoint");
   for (int i = 0; i < 10; ++i) {
     r.see(OdometryHeard{{0.05 * i, 0, 0}});
-    r.pass(100ms, forward);
+    r.pass(100ms, kForward);
   }
   EXPECT_THAT(r.broken(), ElementsAre()) << r.texts();
   r.see(OdometryHeard{{-5, 0, 0}});
-  r.pass(200ms, forward);
+  r.pass(200ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
 
@@ -37,13 +37,13 @@ TEST(CheckerMotion, VelocityInHold) {
   Record r;
   r.take(1);
   r.enter("waypoint");
-  r.pass(1s, forward);
+  r.pass(1s, kForward);
   r.pass(100ms);
   const CommandHeard c = r.ask(1, Verb::mode, "hold");
   r.answer(c);
   r.behave("hold");
   r.pass(200ms);
-  r.pass(200ms, forward);
+  r.pass(200ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(5, 7)) << r.texts();
 }
 
@@ -60,7 +60,7 @@ TEST(CheckerMotion, ChangeOfSourceWithoutZero) {
 TEST(CheckerMotion, VelocityGoesOnWhenTheStickFallsSilent) {
   Record r;
   drive(r);
-  r.pass(600ms, forward);
+  r.pass(600ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
 }
 
@@ -83,29 +83,29 @@ TEST(CheckerMotion, APlanWithoutScansIsStale) {
   Record r;
   r.take(1);
   r.enter("waypoint");
-  r.pass(1s, forward);
+  r.pass(1s, kForward);
   r.seeing = false;
-  r.pass(500ms, forward);
+  r.pass(500ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre()) << r.texts();
-  r.pass(200ms, forward);
+  r.pass(200ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
 }
 
 /// A program steers r1 for so long; the agent obeys it.
 void steer(Record& r, Duration how_long) {
   for (const Duration end = r.now + how_long; r.now < end;) {
-    r.see(ProgramHeard{forward});
-    r.pass(50ms, forward);
+    r.see(ProgramHeard{kForward});
+    r.pass(50ms, kForward);
   }
 }
 
 TEST(CheckerMotion, ExternalDriveBreaksNothing) {
   Record r;
   r.take(1);
-  r.see(ProgramHeard{forward});
+  r.see(ProgramHeard{kForward});
   r.enter("external");
   steer(r, 1s);
-  r.pass(450ms, forward);
+  r.pass(450ms, kForward);
   r.pass(100ms);
   r.behave("hold");
   r.pass(1s);
@@ -122,17 +122,17 @@ TEST(CheckerMotion, ExternalIsEnteredWithoutAProgram) {
 TEST(CheckerMotion, VelocityGoesOnWhenTheProgramFallsSilent) {
   Record r;
   r.take(1);
-  r.see(ProgramHeard{forward});
+  r.see(ProgramHeard{kForward});
   r.enter("external");
   steer(r, 1s);
-  r.pass(800ms, forward);
+  r.pass(800ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(6)) << r.texts();
 }
 
 TEST(CheckerMotion, ExternalStaysWithoutItsProgram) {
   Record r;
   r.take(1);
-  r.see(ProgramHeard{forward});
+  r.see(ProgramHeard{kForward});
   r.enter("external");
   steer(r, 500ms);
   r.pass(1s);
@@ -142,7 +142,7 @@ TEST(CheckerMotion, ExternalStaysWithoutItsProgram) {
 TEST(CheckerMotion, ExternalDrivesWithoutScans) {
   Record r;
   r.take(1);
-  r.see(ProgramHeard{forward});
+  r.see(ProgramHeard{kForward});
   r.enter("external");
   r.seeing = false;
   steer(r, 1s);
@@ -152,7 +152,7 @@ TEST(CheckerMotion, ExternalDrivesWithoutScans) {
 TEST(CheckerMotion, ExternalComesBackAfterARestart) {
   Record r;
   r.take(1);
-  r.see(ProgramHeard{forward});
+  r.see(ProgramHeard{kForward});
   r.enter("external");
   steer(r, 500ms);
   r.see(AgentDied{});
@@ -173,7 +173,7 @@ TEST(CheckerMotion, ExternalComesBackAfterARestart) {
 TEST(CheckerMotion, ManualModeUnderTheNextHolder) {
   Record r;
   drive(r);
-  r.pass(100ms, still, &still);
+  r.pass(100ms, kStill, &kStill);
   r.take(2);
   r.pass(300ms);
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
@@ -183,18 +183,18 @@ TEST(CheckerMotion, ManualModeGoesOnWhenTheHoldersStationRestarts) {
   Record r;
   drive(r);
   r.see(PresenceHeard{participant(11), "op1", station_id(1)});
-  r.pass(200ms, still, &still);
+  r.pass(200ms, kStill, &kStill);
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
 
 TEST(CheckerMotion, FirstPresenceAfterCommandsIsNoRestart) {
   Record r;
   r.stations = false;
-  r.see(AgentStarted{participant(101)});  // it has heard nobody yet; op1's presences are lost
+  r.see(AgentStarted{participant(101)});  // it has heard no station yet; op1's presences are lost
   r.publish();
   drive(r);
   r.hear_stations();
-  r.pass(200ms, still, &still);
+  r.pass(200ms, kStill, &kStill);
   EXPECT_EQ(r.texts().find("started again"), std::string::npos) << r.texts();
 }
 
@@ -211,7 +211,7 @@ TEST(CheckerMotion, ManualModeEnteredWithAPushedStick) {
   Record r;
   r.pass(1s);
   r.take(1);
-  r.pass(200ms, still, &forward);
+  r.pass(200ms, kStill, &kForward);
   r.enter("manual");
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
@@ -229,7 +229,7 @@ TEST(CheckerMotion, StaleEchoIsNoStick) {
   r.pass(1s);
   r.take(1);
   for (int i = 0; i < 4; ++i) {
-    r.see(JoystickHeard{participant(1), station_id(1), 9, r.epoch, ++r.sequence, 200'000'000, still});
+    r.see(JoystickHeard{participant(1), station_id(1), 9, r.epoch, ++r.sequence, 200'000'000, kStill});
     r.pass(50ms);
   }
   r.enter("manual");
@@ -240,13 +240,13 @@ TEST(CheckerMotion, MovedByAForeignStick) {
   Record r;
   r.pass(1s);
   r.take(1);
-  r.pass(200ms, still, &still);
+  r.pass(200ms, kStill, &kStill);
   r.enter("manual");
   for (int i = 0; i < 10; ++i) {
-    r.push(1, still);
+    r.push(1, kStill);
     const auto stamp = static_cast<std::uint64_t>((r.now / 100ms * 100ms - 100ms).count());
-    r.see(JoystickHeard{participant(66), station_id(1), 9, r.epoch, 1000, stamp, forward});
-    r.pass(50ms, forward);
+    r.see(JoystickHeard{participant(66), station_id(1), 9, r.epoch, 1000, stamp, kForward});
+    r.pass(50ms, kForward);
   }
   EXPECT_THAT(r.broken(), testing::Contains(1)) << r.texts();
 }

@@ -40,11 +40,11 @@ TEST(CheckerRestart, AnAutonomousModeGoesOnAfterARestart) {
   Record r;
   r.take(1);
   r.enter("waypoint");
-  r.pass(1s, forward);
+  r.pass(1s, kForward);
   restart(r);
   r.publish();
   r.behave("waypoint");
-  r.pass(500ms, forward);
+  r.pass(500ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre()) << r.texts();
 }
 
@@ -52,12 +52,12 @@ TEST(CheckerRestart, MotionAfterRestart) {
   Record r;
   r.take(1);
   r.enter("waypoint");
-  r.pass(1s, forward);
+  r.pass(1s, kForward);
   r.enter("hold");
   restart(r);
   r.publish();
   r.behave("waypoint");
-  r.pass(500ms, forward);
+  r.pass(500ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(7, 9)) << r.texts();
 }
 
@@ -67,7 +67,7 @@ TEST(CheckerRestart, AManualModeAfterARestart) {
   restart(r);
   r.publish();
   r.behave("manual");
-  r.pass(100ms, still, &still);
+  r.pass(100ms, kStill, &kStill);
   EXPECT_THAT(r.broken(), ElementsAre(9)) << r.texts();
 }
 
@@ -75,7 +75,7 @@ TEST(CheckerRestart, TheFirstVelocityAfterARestartIsZero) {
   Record r;
   r.take(1);
   r.enter("waypoint");
-  r.pass(1s, forward);
+  r.pass(1s, kForward);
   r.see(AgentDied{});
   r.see(VelocitySent{});
   r.pass(500ms);
@@ -84,11 +84,11 @@ TEST(CheckerRestart, TheFirstVelocityAfterARestartIsZero) {
   ++r.epoch;
   r.publish();
   r.behave("waypoint");
-  r.pass(500ms, forward);
+  r.pass(500ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
 
-/// What must not be lost in a restart, and what rule tells.
+/// State that a restart must not lose, and the rule that reports each loss.
 TEST(CheckerRestart, WhatARestartMustKeep) {
   const auto after = [](const std::function<void(Record&)>& change) {
     Record r;

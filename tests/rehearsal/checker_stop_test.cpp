@@ -32,7 +32,7 @@ TEST(CheckerStop, VelocityWhileStopped) {
   r.stops.push_back({c.station, c.id});
   r.answer(c);
   r.publish();
-  r.pass(200ms, forward, &forward);
+  r.pass(200ms, kForward, &kForward);
   EXPECT_THAT(r.broken(), testing::Contains(4)) << r.texts();
 }
 
@@ -52,24 +52,24 @@ TEST(CheckerStop, StopOfOneStationForgottenWhileAnotherLasts) {
 TEST(CheckerStop, LateRepeatOfAStopThatWasResetBreaksNothing) {
   Record r;
   drive(r);
-  r.pass(300ms, still, &still);
+  r.pass(300ms, kStill, &kStill);
   CommandHeard c = r.ask(1, Verb::stop);
   r.stops.push_back({c.station, c.id});
   r.answer(c);
   r.behave("hold", true);
   r.publish();
-  r.pass(100ms, still, &still);
+  r.pass(100ms, kStill, &kStill);
   const CommandHeard clear = r.ask(1, Verb::reset);
   r.stops.clear();
   r.answer(clear);
   r.publish();
   r.behave("hold");
-  r.pass(100ms, still, &still);
+  r.pass(100ms, kStill, &kStill);
   r.enter("manual");
-  r.pass(100ms, forward, &forward);
+  r.pass(100ms, kForward, &kForward);
   r.see(c);
   r.answer(c);
-  r.pass(100ms, forward, &forward);
+  r.pass(100ms, kForward, &kForward);
   EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
 }
 
@@ -77,7 +77,7 @@ TEST(CheckerStop, BodyThatDoesNotComeToRest) {
   Record r;
   drive(r);
   r.moving = {0.4, 0.0, 0.0};
-  r.pass(40ms, forward, &forward);
+  r.pass(40ms, kForward, &kForward);
   stop(r, 1);
   r.pass(2s);
   EXPECT_THAT(r.broken(), ElementsAre(4)) << r.texts();
@@ -98,7 +98,7 @@ TEST(CheckerStop, MotionAfterReset) {
   Record r;
   r.take(1);
   r.enter("waypoint");
-  r.pass(1s, forward);
+  r.pass(1s, kForward);
   stop(r, 1);
   r.pass(1s);
   const CommandHeard c = r.ask(1, Verb::reset);
@@ -106,7 +106,7 @@ TEST(CheckerStop, MotionAfterReset) {
   r.answer(c);
   r.publish();
   r.behave("waypoint");
-  r.pass(200ms, forward);
+  r.pass(200ms, kForward);
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
 

@@ -39,10 +39,10 @@ std::string complaints(const RunReport& report) {
   return text;
 }
 
-constexpr const char* drive = "  - {at: 3, by: op1, do: drive r1 0.6 0 0 --for 6}\n";
-constexpr const char* go = "  - {at: 3, by: op1, do: goto r1 9 0}\n";
-constexpr const char* lock = "  - {at: 3, by: op1, do: lock r1}\n";
-constexpr const char* crash = "faults:\n  - {at: 4.5, crash: r1}\n";
+constexpr const char* kDrive = "  - {at: 3, by: op1, do: drive r1 0.6 0 0 --for 6}\n";
+constexpr const char* kGo = "  - {at: 3, by: op1, do: goto r1 9 0}\n";
+constexpr const char* kLock = "  - {at: 3, by: op1, do: lock r1}\n";
+constexpr const char* kCrash = "faults:\n  - {at: 4.5, crash: r1}\n";
 
 const std::vector<Broken>& table() {
   static const std::vector<Broken> all{
@@ -56,12 +56,12 @@ const std::vector<Broken>& table() {
        "faults:\n  - {at: 1, degrade: [op1, r1], loss: 0.4, for: 9}\n  - {at: 1, degrade: [op2, r1], loss: "
        "0.4, for: 9}\n"},
       {"obey_stranger", 1, 1, "  - {at: 4, by: op2, do: goto r1 5 0}\n"},
-      {"accept_stale_joystick", 1, 1, drive,
+      {"accept_stale_joystick", 1, 1, kDrive,
        "faults:\n  - {at: 4, degrade: [op1, r1], loss: 0, delay: 0.4, for: 6}\n"},
-      {"epoch_kept_at_restart", 1, 1, "", crash},
+      {"epoch_kept_at_restart", 1, 1, "", kCrash},
       {"both_namesakes_obey", 1, 1, "  - {at: 6, by: op2, do: take r1}\n",
        "faults:\n  - {at: 3, twin: r1, for: 6}\n"},
-      {"kind_by_position", 2, 1, lock},
+      {"kind_by_position", 2, 1, kLock},
       {"ignore_lock", 2, 1, "  - {at: 3, by: op1, do: lock r1}\n  - {at: 5, by: op2, do: take r1}\n"},
       {"silent_refusal", 3, 1, "  - {at: 5, by: op2, do: lock r1}\n"},
       {"stop_needs_holder", 4, 1,
@@ -75,10 +75,10 @@ const std::vector<Broken>& table() {
       {"change_without_zero", 5, 1,
        "  - {at: 3, by: op1, do: drive r1 0.8 0 0 --for 5}\n  - {at: 5, by: op1, do: goto r1 9 0}\n",
        "faults:\n  - {at: 4, stuck: [op1, r1], for: 3}\n"},
-      {"no_zero_on_stale", 6, 1, drive, "faults:\n  - {at: 5, cut: [op1, r1], for: 4}\n"},
-      {"age_at_handling", 6, 1, go, "faults:\n  - {at: 5, sensor_silent: r1, sensor: lidar, for: 3}\n"},
-      {"zero_of_other_type", 6, 1, drive, crash, ", cmd_vel: twist_stamped"},
-      {"odometry_jump_accepted", 7, 1, go, "faults:\n  - {at: 6, odometry_reset: r1}\n"},
+      {"no_zero_on_stale", 6, 1, kDrive, "faults:\n  - {at: 5, cut: [op1, r1], for: 4}\n"},
+      {"age_at_handling", 6, 1, kGo, "faults:\n  - {at: 5, sensor_silent: r1, sensor: lidar, for: 3}\n"},
+      {"zero_of_other_type", 6, 1, kDrive, kCrash, ", cmd_vel: twist_stamped"},
+      {"odometry_jump_accepted", 7, 1, kGo, "faults:\n  - {at: 6, odometry_reset: r1}\n"},
       {"move_on_reset", 7, 1,
        "  - {at: 3, by: op1, do: goto r1 12 0}\n  - {at: 5, by: op1, do: stop r1}\n"
        "  - {at: 7, by: op1, do: reset r1}\n"},
@@ -86,10 +86,10 @@ const std::vector<Broken>& table() {
        "  - {at: 3, by: op1, do: drive r1 0.6 0 0 --for 6}\n  - {at: 5, by: op2, do: take r1}\n"},
       {"enter_off_centre", 7, 1, "  - {at: 6.03, by: op1, do: mode r1 manual}\n",
        "faults:\n  - {at: 4, stuck: [op1, r1], for: 5}\n"},
-      {"lock_forgotten", 9, 1, lock, crash},
-      {"acknowledged_lost", 9, 1, go, crash},
-      {"state_lost_whole", 9, 1, lock, crash},
-      // Nobody hears of the finding before the agent is started again.
+      {"lock_forgotten", 9, 1, kLock, kCrash},
+      {"acknowledged_lost", 9, 1, kGo, kCrash},
+      {"state_lost_whole", 9, 1, kLock, kCrash},
+      // No station hears of the finding before the agent is restarted.
       {"findings_deleted_at_start", 0, 1, "",
        "faults:\n  - {at: 2.5, cut: [op1, r1], for: 3}\n  - {at: 2.5, cut: [op2, r1], for: 3}\n"
        "  - {at: 3, finds: person, robot: r1}\n  - {at: 4, crash: r1}\n"

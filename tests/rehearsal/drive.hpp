@@ -7,10 +7,10 @@ namespace adit::sim {
 inline void drive(Record& r) {
   r.pass(1s);
   r.take(1);
-  r.pass(200ms, still, &still);
+  r.pass(200ms, kStill, &kStill);
   r.enter("manual");
-  r.pass(100ms, still, &still);
-  r.pass(500ms, forward, &forward);
+  r.pass(100ms, kStill, &kStill);
+  r.pass(500ms, kForward, &kForward);
 }
 
 inline void stop(Record& r, int by) {

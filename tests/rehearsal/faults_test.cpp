@@ -4,7 +4,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr const char* head = R"(world: {boxes: [], floor: 0, ceiling: 3}
+constexpr const char* kHead = R"(world: {boxes: [], floor: 0, ceiling: 3}
 duration: 20
 link: wifi
 lidar: planar
@@ -19,7 +19,7 @@ script:
 )";
 
 RunReport run(const std::string& rest) {
-  const RunReport report = run_text(head + rest, "faults.yaml");
+  const RunReport report = run_text(kHead + rest, "faults.yaml");
   for (const RuleResult& rule : report.rules) EXPECT_EQ(rule.violations, 0U) << rule.title;
   return report;
 }

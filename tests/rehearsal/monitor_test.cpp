@@ -5,7 +5,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr const char* head =
+constexpr const char* kHead =
     R"(world: {boxes: [[6, 6.3, -8, 8, 0, 2], [3, 3.4, -1.4, -0.6, 0, 0.4]], floor: 0, ceiling: 3}
 duration: 24
 link: wifi
@@ -18,13 +18,13 @@ script:
 )";
 
 RunReport run(const std::string& platform, const std::string& rest, const std::string& defect) {
-  std::string text = head;
+  std::string text = kHead;
   text.replace(text.find("PLATFORM"), 8, platform);
   return run_text(text + rest, "monitor.yaml", defect);
 }
 
 /// At the wall straight ahead, then at the low crate from beside it.
-constexpr const char* into_the_wall =
+constexpr const char* kIntoTheWall =
     "  - {at: 3, by: op1, do: goto r1 9 0.3}\n  - {at: 12, by: op1, do: goto r1 3.2 -1}\n";
 
 class Monitor : public testing::TestWithParam<std::tuple<const char*, const char*>> {};
@@ -32,7 +32,7 @@ class Monitor : public testing::TestWithParam<std::tuple<const char*, const char
 TEST_P(Monitor, APlannerThatDrivesIntoAWallDoesNotHitIt) {
   const auto [platform, lidar] = GetParam();
   const RunReport report =
-      run(platform, std::string(into_the_wall) + "lidar: " + lidar + "\n", "blind_planner");
+      run(platform, std::string(kIntoTheWall) + "lidar: " + lidar + "\n", "blind_planner");
   const RobotResult& robot = report.robots.at("r1");
   EXPECT_EQ(robot.collisions, 0);
   EXPECT_GT(robot.min_clearance, 0.0);
@@ -45,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& each) { return std::string(std::get<0>(each.param)) + "_" + std::get<1>(each.param); });
 
 TEST(MonitorAway, TheSamePlannerHitsIt) {
-  EXPECT_GT(run("wheeled", into_the_wall, "blind_and_unwatched").robots.at("r1").collisions, 0);
+  EXPECT_GT(run("wheeled", kIntoTheWall, "blind_and_unwatched").robots.at("r1").collisions, 0);
 }
 
 TEST(MonitorManual, ADeadLidarLeavesThirtyCentimetresASecond) {

@@ -23,15 +23,15 @@ RunReport run_jump(const std::string& rest) {
   return report;
 }
 
-constexpr const char* stands = R"(expect:
+constexpr const char* kStands = R"(expect:
   - {at: 8, robot: r1, mode: hold}
   - {at: 19, robot: r1, mode: hold, stopped: false, holder: op1}
 )";
 
 TEST(OdometryReset, EndsInHold) {
-  EXPECT_EQ(run_jump(std::string("faults:\n  - {at: 7, odometry_reset: r1}\n") + stands).complaints(),
+  EXPECT_EQ(run_jump(std::string("faults:\n  - {at: 7, odometry_reset: r1}\n") + kStands).complaints(),
             std::vector<std::string>{});
-  EXPECT_FALSE(run_jump(stands).ok()) << "the fault makes no difference";
+  EXPECT_FALSE(run_jump(kStands).ok()) << "the fault makes no difference";
 }
 
 TEST(OdometryReset, WhileTheDriverIsSilentEndsInHold) {
@@ -48,7 +48,7 @@ TEST(OdometryReset, WhileTheAgentIsAwayEndsInHold) {
   - {at: 7, crash: r1}
   - {at: 7.2, odometry_reset: r1}
 )";
-  EXPECT_EQ(run_jump(std::string(faults) + stands).complaints(), std::vector<std::string>{});
+  EXPECT_EQ(run_jump(std::string(faults) + kStands).complaints(), std::vector<std::string>{});
 }
 
 TEST(OdometryReset, AnAgentThatComesBackAloneGoesOn) {

@@ -1,5 +1,5 @@
-// Whole agents among people who walk and robots that come towards them: nobody is run into, and the goals are
-// reached.
+// Whole agents among people who walk and robots that come towards them: there is no contact, and the goals
+// are reached.
 #include <gtest/gtest.h>
 
 #include "sim/rehearsal/rehearsal.hpp"

@@ -124,14 +124,14 @@ class Record {
   Twist2 moving{};
   bool driven{true};
   bool stations{true};
-  bool seeing{true};       ///< its lidar gives scans
-  std::uint64_t start{9};  ///< of the epoch
+  bool seeing{true};       ///< Its lidar gives scans.
+  std::uint64_t start{9};  ///< Start id of the epoch.
 
  private:
   Checker checker_;
 };
 
-inline constexpr Twist2 still{};
-inline constexpr Twist2 forward{0.5, 0.0, 0.0};
+inline constexpr Twist2 kStill{};
+inline constexpr Twist2 kForward{0.5, 0.0, 0.0};
 
 }  // namespace adit::sim

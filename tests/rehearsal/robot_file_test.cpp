@@ -8,7 +8,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr const char* robot_file = R"(name: scout
+constexpr const char* kRobotFile = R"(name: scout
 platform: legged
 pose: [2, 1, 0.5]
 radio: {domain: 3, interfaces: [10.0.0.1], link: mesh_100k}
@@ -41,7 +41,7 @@ class RobotFiles : public testing::Test {
 };
 
 TEST_F(RobotFiles, GiveEverythingThatTheScenarioDoesNotSay) {
-  scratch.write("scout.yaml", robot_file);
+  scratch.write("scout.yaml", kRobotFile);
   const auto s = read("{file: scout.yaml}");
   ASSERT_TRUE(s.ok()) << s.error().text;
   const RobotSpec& r = s->robots.at(0);
@@ -61,7 +61,7 @@ TEST_F(RobotFiles, GiveEverythingThatTheScenarioDoesNotSay) {
 }
 
 TEST_F(RobotFiles, TheHeightOfTheStartBelongsToThePose) {
-  scratch.write("scout.yaml", robot_file);
+  scratch.write("scout.yaml", kRobotFile);
   const auto height = [&](const std::string& keys) {
     return read("{file: scout.yaml" + keys + "}").value().robots.at(0).settings.start_height;
   };
@@ -70,7 +70,7 @@ TEST_F(RobotFiles, TheHeightOfTheStartBelongsToThePose) {
 }
 
 TEST_F(RobotFiles, TheScenariosKeysGoBeforeTheFiles) {
-  scratch.write("scout.yaml", robot_file);
+  scratch.write("scout.yaml", kRobotFile);
   const auto s = read(
       "{file: scout.yaml, id: r7, platform: wheeled, pose: [0, 0, 0], after_restart: resume, cmd_vel: twist, "
       "battery: {low: 0.35, charge: 0.6, drain: 0.01}}");

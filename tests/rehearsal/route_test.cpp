@@ -1,5 +1,5 @@
-// The global planner in the agent: out of dead ends, round what turns out blocked, and what cannot be reached
-// told as such.
+// The global planner in the agent: out of dead ends, round places that turn out blocked, and with a report of
+// goals that cannot be reached.
 #include "tests/rehearsal/run_text.hpp"
 
 namespace adit::sim {
@@ -22,17 +22,17 @@ void expect_ok(const RunReport& report) {
 }
 
 // A pocket that is open behind the robot, and walls around it all.
-constexpr const char* pocket =
+constexpr const char* kPocket =
     "[4, 4.3, -3, 3, 0, 2], [-3, 4.3, 3, 3.3, 0, 2], [-3, 4.3, -3.3, -3, 0, 2], "
     "[-9, 13, -8, -7.7, 0, 2], [-9, 13, 7.7, 8, 0, 2], [-9, -8.7, -8, 8, 0, 2], [12.7, 13, -8, 8, 0, 2]";
 
 TEST(Route, LeavesADeadEnd) {
-  expect_ok(run(pocket, 60, "  - {at: 3, by: op1, do: goto r1 8 0}\n",
+  expect_ok(run(kPocket, 60, "  - {at: 3, by: op1, do: goto r1 8 0}\n",
                 "expect:\n  - {by: 55, robot: r1, near: [8, 0, 0.5]}\n  - {always: no_collision}\n"));
 }
 
 TEST(Route, AHungRouterIsMadeAnewOnTheWayAndLeadsOutAllTheSame) {
-  expect_ok(run(pocket, 70, "  - {at: 3, by: op1, do: goto r1 8 0}\n",
+  expect_ok(run(kPocket, 70, "  - {at: 3, by: op1, do: goto r1 8 0}\n",
                 "faults:\n  - {at: 6, hang: r1/router}\n  - {at: 15, crash: r1/router}\n"
                 "expect:\n  - {by: 65, robot: r1, near: [8, 0, 0.5]}\n  - {always: no_collision}\n"));
 }

@@ -5,7 +5,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr const char* good = R"(world: {boxes: [[0, 1, 5, 6, 0, 2]], floor: 0, ceiling: 3}
+constexpr const char* kGood = R"(world: {boxes: [[0, 1, 5, 6, 0, 2]], floor: 0, ceiling: 3}
 duration: 120
 link: mesh_500k
 lidar: planar
@@ -32,7 +32,7 @@ expect:
 )";
 
 std::string with(const std::string& what, const std::string& instead) {
-  std::string text = good;
+  std::string text = kGood;
   const std::size_t at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
   return text.replace(at, what.size(), instead);
@@ -61,7 +61,7 @@ TEST(Scenario, ReadsWhatRobotsFindAndDoByThemselves) {
 }
 
 TEST(Scenario, ReadsEveryKey) {
-  const auto s = parse_scenario(good, "a/b.yaml");
+  const auto s = parse_scenario(kGood, "a/b.yaml");
   ASSERT_TRUE(s.ok()) << s.error().text;
   EXPECT_EQ(s->name, "b");
   EXPECT_EQ(s->duration, Duration(120s));
@@ -104,7 +104,7 @@ TEST(Scenario, PeopleYieldUnlessToldOtherwise) {
 }
 
 TEST(Scenario, WhatIsAlwaysExpectedOfCollisionsIsAllOrThoseCaused) {
-  const auto all = parse_scenario(good, "b.yaml");
+  const auto all = parse_scenario(kGood, "b.yaml");
   const auto caused = parse_scenario(with("no_collision", "no_collision_caused"), "b.yaml");
   ASSERT_TRUE(all.ok() && caused.ok());
   EXPECT_FALSE(std::get<NoCollision>(all->expectations[3].what).caused);
@@ -181,7 +181,7 @@ struct Bad {
   const char* what;
   const char* instead;
   int line;
-  const char* told;  ///< a part of the message
+  const char* told;  ///< A part of the message.
 };
 
 class BadScenario : public testing::TestWithParam<Bad> {};

@@ -19,23 +19,23 @@ RunReport run(const wire::LinkProfile* link) {
   return outcome->report;
 }
 
-constexpr double robots = 6, stations = 3, time = 90;  // s
+constexpr double kRobots = 6, kStations = 3, kTime = 90;  // s
 
 TEST(ThinTeam, StatesKeepToTheLinkAndStopsGetThrough) {
   const RunReport report = run(nullptr);
   EXPECT_TRUE(report.ok()) << (report.complaints().empty() ? "" : report.complaints().front());
   const auto& states = report.topics.at("adit/robot_state");
-  EXPECT_LT(static_cast<double>(states.samples), 7.0 * robots * time);
-  EXPECT_GT(static_cast<double>(states.samples), 0.95 * robots * time);
+  EXPECT_LT(static_cast<double>(states.samples), 7.0 * kRobots * kTime);
+  EXPECT_GT(static_cast<double>(states.samples), 0.95 * kRobots * kTime);
   // What is written passes: the air loses 10 %, start-up some, a queue that overflows would lose most.
-  EXPECT_GT(static_cast<double>(states.delivered), 0.6 * stations * static_cast<double>(states.samples));
+  EXPECT_GT(static_cast<double>(states.delivered), 0.6 * kStations * static_cast<double>(states.samples));
 }
 
 TEST(ThinTeam, WithRoomForAllTheyComeTenTimesASecond) {
   const wire::LinkProfile room{.name = "room", .bandwidth = 10e6, .latency = 0.05};
   const RunReport report = run(&room);
   const auto& states = report.topics.at("adit/robot_state");
-  EXPECT_NEAR(static_cast<double>(states.samples), 10.0 * robots * time, 0.03 * 10.0 * robots * time);
+  EXPECT_NEAR(static_cast<double>(states.samples), 10.0 * kRobots * kTime, 0.03 * 10.0 * kRobots * kTime);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace adit::sim {
 namespace {
 
-constexpr double dt = 0.01;
+constexpr double kDt = 0.01;
 
 Platform platform(Drive drive) {
   Platform p;
@@ -23,9 +23,9 @@ Platform platform(Drive drive) {
 }
 
 void run(Body& body, const Twist2& wanted, double time) {
-  for (int n = 0; n < std::lround(time / dt); ++n) {
+  for (int n = 0; n < std::lround(time / kDt); ++n) {
     body.command(wanted);
-    body.take(body.advance(dt));
+    body.take(body.advance(kDt));
   }
 }
 
@@ -93,12 +93,12 @@ TEST(Body, what_flies_keeps_its_height_above_the_ground) {
   Body body(p, {}, 0.5);
   double z = 1.0;
   const auto fly = [&](double up, double ground, double ceiling, double time) {
-    for (int n = 0; n < std::lround(time / dt); ++n) {
+    for (int n = 0; n < std::lround(time / kDt); ++n) {
       body.command({0, 0, 0, up});
-      body.take(body.advance(dt));
+      body.take(body.advance(kDt));
       const double before = z;
-      z = body.climb(z, ground, ceiling, dt);
-      EXPECT_LE(std::abs(z - before), 0.5 * dt + 1e-12);
+      z = body.climb(z, ground, ceiling, kDt);
+      EXPECT_LE(std::abs(z - before), 0.5 * kDt + 1e-12);
     }
   };
   fly(0, 0, 9, 1);
@@ -116,9 +116,9 @@ TEST(Body, what_flies_keeps_its_height_above_the_ground) {
 TEST(Body, stops_when_nothing_is_commanded) {
   Body body(platform(Drive::differential), {}, 0.5);
   run(body, {1, 0, 0}, 2.0);
-  for (int n = 0; n < 48; ++n) body.take(body.advance(dt));
+  for (int n = 0; n < 48; ++n) body.take(body.advance(kDt));
   EXPECT_EQ(body.twist().vx, 1.0) << "just before 0.5 s of silence";
-  for (int n = 0; n < 120; ++n) body.take(body.advance(dt));
+  for (int n = 0; n < 120; ++n) body.take(body.advance(kDt));
   EXPECT_EQ(body.twist().vx, 0.0);
 }
 
@@ -140,7 +140,7 @@ TEST(Body, drives_a_circle) {
 Pose2 error_after(double way, std::uint64_t seed, const OdometryParams& params) {
   Odometry odometry(params, seed);
   const int steps = static_cast<int>(way / 0.01);
-  for (int n = 0; n < steps; ++n) odometry.move({3 + n * 0.01, 4, 0}, {3 + (n + 1) * 0.01, 4, 0}, dt);
+  for (int n = 0; n < steps; ++n) odometry.move({3 + n * 0.01, 4, 0}, {3 + (n + 1) * 0.01, 4, 0}, kDt);
   return {odometry.pose().x - way, odometry.pose().y, odometry.pose().yaw};
 }
 
@@ -175,7 +175,7 @@ TEST(Odometry, misjudges_turns_where_it_skids) {
   constexpr int runs = 200;
   for (int n = 0; n < runs; ++n) {
     Odometry odometry({.turn = 0.05}, n);
-    for (int i = 0; i < 100; ++i) odometry.move({1, 1, 0.01 * i}, {1, 1, 0.01 * (i + 1)}, dt);
+    for (int i = 0; i < 100; ++i) odometry.move({1, 1, 0.01 * i}, {1, 1, 0.01 * (i + 1)}, kDt);
     off += std::pow(odometry.pose().yaw - 1.0, 2) / runs;
   }
   EXPECT_NEAR(std::sqrt(off), 0.05, 0.01);
@@ -188,7 +188,7 @@ TEST(Odometry, same_seed_same_error) {
 
 TEST(Odometry, standing_and_turning_gain_no_error) {
   Odometry odometry({}, 3);
-  for (int n = 0; n < 1000; ++n) odometry.move({1, 1, 0.01 * n}, {1, 1, 0.01 * (n + 1)}, dt);
+  for (int n = 0; n < 1000; ++n) odometry.move({1, 1, 0.01 * n}, {1, 1, 0.01 * (n + 1)}, kDt);
   EXPECT_NEAR(odometry.pose().yaw, wrap_angle(10.0), 1e-9);
   EXPECT_NEAR(odometry.pose().x, 0.0, 1e-9);
 }

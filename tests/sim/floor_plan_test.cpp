@@ -8,11 +8,11 @@
 namespace adit::sim {
 namespace {
 
-const std::string yaml =
+const std::string kYaml =
     "image: plan.pgm\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n"
     "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 // Four columns, three rows from the top: the left top corner is a wall, right of it free, then unknown grey.
-const std::string plain = "P2\n# a comment\n4 3\n255\n0 254 205 254\n254 254 254 254\n254 254 254 0\n";
+const std::string kPlain = "P2\n# a comment\n4 3\n255\n0 254 205 254\n254 254 254 254\n254 254 254 0\n";
 
 bool solid(const World& world, double x, double y) {
   return world.grid().solid(world.grid().column_x(x), world.grid().column_y(y), 0);
@@ -24,8 +24,8 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 TEST(FloorPlan, rows_run_from_the_top_and_unknown_is_solid) {
   const Scratch scratch;
-  scratch.write("plan.pgm", plain);
-  const auto world = load_floor_plan(scratch.write("map.yaml", yaml));
+  scratch.write("plan.pgm", kPlain);
+  const auto world = load_floor_plan(scratch.write("map.yaml", kYaml));
   ASSERT_TRUE(world) << world.error().text;
   EXPECT_TRUE(solid(*world, -0.75, 3.25));
   EXPECT_FALSE(solid(*world, -0.25, 3.25));
@@ -40,8 +40,8 @@ TEST(FloorPlan, rows_run_from_the_top_and_unknown_is_solid) {
 
 TEST(FloorPlan, negate_swaps_black_and_white) {
   const Scratch scratch;
-  scratch.write("plan.pgm", plain);
-  const auto world = load_floor_plan(scratch.write("map.yaml", replaced(yaml, "negate: 0", "negate: 1")));
+  scratch.write("plan.pgm", kPlain);
+  const auto world = load_floor_plan(scratch.write("map.yaml", replaced(kYaml, "negate: 0", "negate: 1")));
   ASSERT_TRUE(world) << world.error().text;
   EXPECT_FALSE(solid(*world, -0.75, 3.25));
   EXPECT_TRUE(solid(*world, -0.25, 3.25));
@@ -49,26 +49,26 @@ TEST(FloorPlan, negate_swaps_black_and_white) {
 
 TEST(FloorPlan, says_what_is_wrong_and_where) {
   const Scratch scratch;
-  scratch.write("plan.pgm", plain);
+  scratch.write("plan.pgm", kPlain);
   const auto error = [&](const std::string& content) {
     const auto world = load_floor_plan(scratch.write("map.yaml", content));
     EXPECT_FALSE(world) << content;
     return world ? Error{Reason::none, ""} : world.error();
   };
-  EXPECT_EQ(error(yaml + "colour: red\n").reason, Reason::unknown_key);
-  EXPECT_NE(error(yaml + "colour: red\n").text.find("map.yaml:7"), std::string::npos);
-  EXPECT_EQ(error(replaced(yaml, "resolution: 0.5\n", "")).reason, Reason::missing_key);
-  EXPECT_EQ(error(replaced(yaml, "image: plan.pgm\n", "")).reason, Reason::missing_key);
-  EXPECT_EQ(error(replaced(yaml, "0.65", "much")).reason, Reason::wrong_type);
-  EXPECT_EQ(error(replaced(yaml, "0.65", "1.5")).reason, Reason::out_of_range);
-  EXPECT_EQ(error(replaced(yaml, "resolution: 0.5", "resolution: .nan")).reason, Reason::out_of_range);
-  EXPECT_EQ(error(replaced(yaml, "[-1.0, 2.0, 0.0]", "[-1.0, 2.0]")).reason, Reason::wrong_type);
-  EXPECT_EQ(error(replaced(yaml, "2.0, 0.0]", "2.0, 0.3]")).reason, Reason::not_supported);
-  EXPECT_EQ(error(replaced(yaml, "plan.pgm", "other.pgm")).reason, Reason::cannot_read);
+  EXPECT_EQ(error(kYaml + "colour: red\n").reason, Reason::unknown_key);
+  EXPECT_NE(error(kYaml + "colour: red\n").text.find("map.yaml:7"), std::string::npos);
+  EXPECT_EQ(error(replaced(kYaml, "resolution: 0.5\n", "")).reason, Reason::missing_key);
+  EXPECT_EQ(error(replaced(kYaml, "image: plan.pgm\n", "")).reason, Reason::missing_key);
+  EXPECT_EQ(error(replaced(kYaml, "0.65", "much")).reason, Reason::wrong_type);
+  EXPECT_EQ(error(replaced(kYaml, "0.65", "1.5")).reason, Reason::out_of_range);
+  EXPECT_EQ(error(replaced(kYaml, "resolution: 0.5", "resolution: .nan")).reason, Reason::out_of_range);
+  EXPECT_EQ(error(replaced(kYaml, "[-1.0, 2.0, 0.0]", "[-1.0, 2.0]")).reason, Reason::wrong_type);
+  EXPECT_EQ(error(replaced(kYaml, "2.0, 0.0]", "2.0, 0.3]")).reason, Reason::not_supported);
+  EXPECT_EQ(error(replaced(kYaml, "plan.pgm", "other.pgm")).reason, Reason::cannot_read);
   EXPECT_EQ(error("image: [").reason, Reason::syntax);
   EXPECT_EQ(error("- 1\n- 2\n").reason, Reason::wrong_type);
   EXPECT_EQ(error("").reason, Reason::wrong_type);
-  EXPECT_EQ(error("mode: raw\n" + yaml).reason, Reason::not_supported);
+  EXPECT_EQ(error("mode: raw\n" + kYaml).reason, Reason::not_supported);
   EXPECT_EQ(load_floor_plan(scratch.path("none.yaml")).reason(), Reason::cannot_read);
 }
 
@@ -91,7 +91,7 @@ TEST(Pgm, refuses_what_is_damaged) {
   EXPECT_EQ(parse_pgm("P5 1 1 65535 ab", "x").reason(), Reason::not_supported);
   Random random(5);
   for (int round = 0; round < 2000; ++round) {
-    std::string content = plain.substr(0, random.below(plain.size() + 1));
+    std::string content = kPlain.substr(0, random.below(kPlain.size() + 1));
     if (!content.empty()) content[random.below(content.size())] = static_cast<char>(random.next());
     const auto image = parse_pgm(content, "fuzz");
     if (!image) continue;

@@ -8,26 +8,26 @@
 namespace adit::sim {
 namespace {
 
-constexpr double all = 1e9;
+constexpr double kAll = 1e9;
 
 World room(std::vector<Box> boxes) { return *make_box_world(boxes, 0.0, 3.0); }
 
 TEST(SolidPath, AWallCountsByItsThicknessOnTheWay) {
   const World world = room({{4, 4.5, -5, 5, 0, 3}, {8, 10, -5, 5, 0, 3}});
-  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 1}, {6, 0, 1}, all), 0.5, 1e-9);
-  EXPECT_NEAR(solid_between(world.grid(), {6, 0, 1}, {0, 0, 1}, all), 0.5, 1e-9);
-  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 1}, {12, 0, 1}, all), 2.5, 1e-9);
-  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 1}, {6, 3, 1}, all), 0.5 * std::hypot(6, 3) / 6, 1e-9);
-  EXPECT_NEAR(solid_between(world.grid(), {-50, 9, 1}, {50, 9, 1}, all), 0.0, 1e-9);  // past its end
-  EXPECT_EQ(solid_between(world.grid(), {1, 1, 1}, {1, 1, 1}, all), 0.0);
+  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 1}, {6, 0, 1}, kAll), 0.5, 1e-9);
+  EXPECT_NEAR(solid_between(world.grid(), {6, 0, 1}, {0, 0, 1}, kAll), 0.5, 1e-9);
+  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 1}, {12, 0, 1}, kAll), 2.5, 1e-9);
+  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 1}, {6, 3, 1}, kAll), 0.5 * std::hypot(6, 3) / 6, 1e-9);
+  EXPECT_NEAR(solid_between(world.grid(), {-50, 9, 1}, {50, 9, 1}, kAll), 0.0, 1e-9);  // past its end
+  EXPECT_EQ(solid_between(world.grid(), {1, 1, 1}, {1, 1, 1}, kAll), 0.0);
 }
 
 TEST(SolidPath, OverAWallThatDoesNotReachTheCeilingNothingIsInTheWay) {
   const World world = room({{4, 4.5, -5, 5, 0, 1}});
-  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 2}, {9, 0, 2}, all), 0.0, 1e-9);
-  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 0.5}, {9, 0, 0.5}, all), 0.5, 1e-9);
-  EXPECT_GT(solid_between(world.grid(), {0, 0, 2}, {9, 0, -2}, all), 4.0);  // into the floor
-  EXPECT_GT(solid_between(world.grid(), {0, 0, -2}, {9, 0, 2}, all), 4.0);
+  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 2}, {9, 0, 2}, kAll), 0.0, 1e-9);
+  EXPECT_NEAR(solid_between(world.grid(), {0, 0, 0.5}, {9, 0, 0.5}, kAll), 0.5, 1e-9);
+  EXPECT_GT(solid_between(world.grid(), {0, 0, 2}, {9, 0, -2}, kAll), 4.0);  // into the floor
+  EXPECT_GT(solid_between(world.grid(), {0, 0, -2}, {9, 0, 2}, kAll), 4.0);
 }
 
 TEST(SolidPath, EndsEarlyBeyondEnough) {
@@ -56,7 +56,7 @@ TEST(SolidPath, AgreesWithSmallStepsThroughAnyGrid) {
       const int i = grid.column_x(p.x()), j = grid.column_y(p.y()), k = grid.locate(p).k;
       solid += k < 0 || (grid.inside(i, j) ? grid.solid(i, j, k) : !grid.open_sides()) ? 1 : 0;
     }
-    EXPECT_NEAR(solid_between(grid, a, b, all), solid * (b - a).norm() / steps, 0.01) << round;
+    EXPECT_NEAR(solid_between(grid, a, b, kAll), solid * (b - a).norm() / steps, 0.01) << round;
   }
 }
 

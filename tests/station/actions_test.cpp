@@ -13,9 +13,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Id asking_id{1};
+constexpr Id kAskingId{1};
 
-/// A fleet of one robot that is told its authority and modes.
+/// A fleet of one robot, fed with its authority and modes.
 class Actions : public testing::Test {
  protected:
   Actions() { behave("r1", Reason::none); }
@@ -48,7 +48,7 @@ class Actions : public testing::Test {
     for (const std::string& stop : stops) {
       radio::Stopper row;
       row.station(stop);
-      row.station_id(stop == "op1" ? asking_id : Id{2});
+      row.station_id(stop == "op1" ? kAskingId : Id{2});
       sample.stops().push_back(row);
     }
     fleet_.hear(sample, {.received = Time(1s)});
@@ -63,7 +63,7 @@ class Actions : public testing::Test {
     return {};
   }
 
-  Fleet fleet_{"op1", asking_id};
+  Fleet fleet_{"op1", kAskingId};
 };
 
 TEST_F(Actions, OfAFreeRobotOnlyTakeAndStopAreValid) {
@@ -90,7 +90,7 @@ TEST_F(Actions, TheHoldersNameWithAnotherIdIsNotTheHolder) {
 }
 
 TEST_F(Actions, TheHolderSeesTheReasonsOfTheModes) {
-  own("r1", "op1", asking_id);
+  own("r1", "op1", kAskingId);
   EXPECT_TRUE(action("release").valid);
   EXPECT_TRUE(action("mode hold").valid);
   EXPECT_TRUE(action("mode manual").valid) << "the station brings the stick";
@@ -101,7 +101,7 @@ TEST_F(Actions, TheHolderSeesTheReasonsOfTheModes) {
 }
 
 TEST_F(Actions, GotoBringsItsOwnGoal) {
-  own("r1", "op1", asking_id);
+  own("r1", "op1", kAskingId);
   behave("r1", Reason::goal_missing);
   EXPECT_EQ(action("mode waypoint").reason, Reason::goal_missing);
   EXPECT_TRUE(action("goto").valid);
@@ -110,16 +110,16 @@ TEST_F(Actions, GotoBringsItsOwnGoal) {
 }
 
 TEST_F(Actions, ResetDependsOnWhoStopped) {
-  own("r1", "op1", asking_id);
+  own("r1", "op1", kAskingId);
   EXPECT_TRUE(action("reset").valid);
-  own("r1", "op1", asking_id, false, {"op1", "op2"});
+  own("r1", "op1", kAskingId, false, {"op1", "op2"});
   EXPECT_TRUE(action("reset").valid);
-  own("r1", "op1", asking_id, false, {"op2"});
+  own("r1", "op1", kAskingId, false, {"op2"});
   EXPECT_EQ(action("reset").reason, Reason::stop_of_another);
 }
 
 TEST_F(Actions, ALostRobotCanOnlyBeStopped) {
-  own("r1", "op1", asking_id);
+  own("r1", "op1", kAskingId);
   fleet_.check(Time(60s));
   EXPECT_TRUE(action("stop").valid);
   EXPECT_EQ(action("take").reason, Reason::no_answer);
@@ -127,7 +127,7 @@ TEST_F(Actions, ALostRobotCanOnlyBeStopped) {
 }
 
 TEST_F(Actions, OfASelectionEachRobotMustAccept) {
-  own("r1", "op1", asking_id);
+  own("r1", "op1", kAskingId);
   behave("r2", Reason::none);
   own("r2", "op2", {2});
   EXPECT_TRUE(action("take", {"r1", "r2"}).valid);
@@ -136,7 +136,7 @@ TEST_F(Actions, OfASelectionEachRobotMustAccept) {
 }
 
 TEST_F(Actions, HomeAsksForWaypointAndPoseForHold) {
-  own("r1", "op1", asking_id);
+  own("r1", "op1", kAskingId);
   behave("r1", Reason::goal_missing);
   EXPECT_TRUE(action("home").valid);
   EXPECT_TRUE(action("pose").valid);
@@ -146,7 +146,7 @@ TEST_F(Actions, HomeAsksForWaypointAndPoseForHold) {
 }
 
 TEST_F(Actions, SayWhatACommandTakesAndHowDangerousItIs) {
-  own("r1", "op1", asking_id);
+  own("r1", "op1", kAskingId);
   const RobotView* robot = fleet_.robot("r1");
   nlohmann::json grant, go_to, stop, waypoint;
   for (const nlohmann::json& row : actions_json(actions(fleet_, {robot}))) {

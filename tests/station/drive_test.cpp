@@ -154,7 +154,7 @@ TEST_F(DriveTest, TakenByAnotherItEnds) {
 TEST_F(DriveTest, ARefusedStreamEndsIt) {
   begin("drive r1 0.5 0 0 --for 30");
   run_for(1s);
-  r1().refuse_stream("op1", id, Reason::identity_mismatch);
+  r1().refuse_stream("op1", kId, Reason::identity_mismatch);
   run_for(1s);
   ASSERT_EQ(late_.size(), 1U);
   EXPECT_THAT(late_[0].error, HasSubstr("[identity_mismatch]"));

@@ -393,7 +393,7 @@ TEST_F(FreshStation, StopAllWithNobodyThereIsNoAnswer) {
 
 TEST_F(FreshStation, AWrongNameDoesNotStart) {
   wire_ = network_.join(77, "op");
-  Station station({.name = "op 1", .id = id}, *strand_, *wire_);
+  Station station({.name = "op 1", .id = kId}, *strand_, *wire_);
   EXPECT_EQ(station.start().reason(), Reason::bad_argument);
 }
 

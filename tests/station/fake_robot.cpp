@@ -69,11 +69,11 @@ void FakeRobot::describe(float max_speed, float max_turn, bool holonomic) {
   (void)capabilities_.write(sample);
 }
 
-void FakeRobot::refuse_stream(const std::string& station, Id id, Reason reason) {
+void FakeRobot::refuse_stream(const std::string& station, Id kId, Reason reason) {
   radio::Acknowledgement sample;
   sample.robot(name_);
   sample.station(station);
-  sample.station_id(id);
+  sample.station_id(kId);
   sample.reason(static_cast<std::uint16_t>(reason));
   sample.holder(holder);
   sample.epoch().start(epoch_start);
@@ -145,7 +145,7 @@ FakeRobot& StationTest::add(const std::string& name) {
 Station& StationTest::start(const std::string& name) {
   op_.reset();
   wire_ = network_.join(77, "op");
-  op_ = std::make_unique<Station>(StationParams{.name = name, .id = id}, *strand_, *wire_);
+  op_ = std::make_unique<Station>(StationParams{.name = name, .id = kId}, *strand_, *wire_);
   EXPECT_TRUE(op_->start().ok());
   return *op_;
 }

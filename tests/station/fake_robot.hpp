@@ -19,7 +19,7 @@
 
 namespace adit::station {
 
-/// A robot by the contract's letter: it states what it is told to state, and answers each command by a
+/// A robot by the contract's letter: it publishes the state that a test sets, and answers each command by a
 /// function of the test. The default accepts everything and makes the asker the holder at `take`.
 class FakeRobot {
  public:
@@ -44,14 +44,14 @@ class FakeRobot {
   std::uint32_t epoch{1};
   radio::BehaviourState behaviour{};
   Answering answering{};
-  std::optional<radio::PlannedRoute> route{};  ///< its answer to `plan`
+  std::optional<radio::PlannedRoute> route{};  ///< Its answer to `plan`.
 
   /// Authority and behaviour as they are now.
   void publish();
   /// Says what it can do: m/s, rad/s.
   void describe(float max_speed, float max_turn, bool holonomic);
   /// A refused stream.
-  void refuse_stream(const std::string& station, Id id, Reason reason);
+  void refuse_stream(const std::string& station, Id kId, Reason reason);
   const std::vector<Heard>& commands() const { return commands_; }
   /// Distinct sequence numbers heard, in the order first heard.
   std::vector<std::uint64_t> numbers() const;
@@ -93,7 +93,7 @@ class StationTest : public testing::Test {
   /// Starts a line; its outcome appears in `late` under the handle.
   std::uint64_t begin(const std::string& line);
 
-  static constexpr Id id{1, 2, 3};
+  static constexpr Id kId{1, 2, 3};
   VirtualScheduler scheduler_{7};
   wire::SimulatedNetwork network_;
   std::unique_ptr<Runtime> machine_;

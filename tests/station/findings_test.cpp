@@ -32,7 +32,7 @@ class FindingsTest : public StationTest {
     wire_ = network_.join(77, "op1");
     StationParams params;
     params.name = "op1";
-    params.id = id;
+    params.id = kId;
     params.disk = disk_;
     op_ = std::make_unique<Station>(params, *strand_, *wire_);
     ASSERT_TRUE(op_->start().ok());

@@ -19,7 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
-constexpr Id own_id{1};
+constexpr Id kOwnId{1};
 
 wire::SampleInfo at(Duration when) { return {.sender = {9}, .received = Time(when)}; }
 
@@ -56,7 +56,7 @@ radio::AuthorityStatus authority(std::uint64_t start) {
 }
 
 TEST(Fleet, OfTwoRobotsWithOneNameTheFirstIsShown) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   const wire::ParticipantId first{9}, second{10};
   for (int i = 0; i < 100; ++i) {
     const Time now{100ms * i};
@@ -75,7 +75,7 @@ TEST(Fleet, OfTwoRobotsWithOneNameTheFirstIsShown) {
 }
 
 TEST(Fleet, ARobotThatGivesWayIsNotShownWhileTheOtherIsOutOfRange) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   const wire::ParticipantId first{9}, second{10};
   radio::Capabilities gives_way;
   gives_way.name("r1");
@@ -92,7 +92,7 @@ TEST(Fleet, ARobotThatGivesWayIsNotShownWhileTheOtherIsOutOfRange) {
 }
 
 TEST(Fleet, AForgerIsShownOnlyWhileTheRobotIsSilent) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   const wire::ParticipantId robot{9}, forger{10};
   fleet.hear(authority(1), {.sender = robot, .received = Time(0s)});
   fleet.hear(authority(2), {.sender = forger, .received = Time(900ms)});  // as a restart would
@@ -106,7 +106,7 @@ TEST(Fleet, AForgerIsShownOnlyWhileTheRobotIsSilent) {
 }
 
 TEST(Fleet, ManyParticipantsWithOneNameAreBounded) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   fleet.hear(authority(1), {.sender = {9}, .received = Time(0s)});
   for (std::uint8_t i = 10; i < 60; ++i) fleet.hear(authority(i), {.sender = {i}, .received = Time(10ms)});
   EXPECT_EQ(fleet.robot("r1")->epoch.start, 1U);
@@ -114,7 +114,7 @@ TEST(Fleet, ManyParticipantsWithOneNameAreBounded) {
 }
 
 TEST(Fleet, HealthNamesWhatIsNotUp) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   fleet.hear(state("r1"), at(0s));
   radio::Health health;
   health.robot("r1");
@@ -133,7 +133,7 @@ TEST(Fleet, HealthNamesWhatIsNotUp) {
 }
 
 TEST(Fleet, RobotIsLostWithinThreeSecondsAndBackAtTheNextState) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   fleet.hear(state("r1"), at(1s));
   fleet.check(Time(3500ms));
   EXPECT_FALSE(fleet.robot("r1")->lost);
@@ -146,7 +146,7 @@ TEST(Fleet, RobotIsLostWithinThreeSecondsAndBackAtTheNextState) {
 }
 
 TEST(Fleet, OnAFullLinkASignOfLifeIsEnoughNotToBeLost) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   radio::Presence presence;
   presence.name("r1");
   presence.kind(radio::AGENT_ROBOT);
@@ -164,7 +164,7 @@ TEST(Fleet, OnAFullLinkASignOfLifeIsEnoughNotToBeLost) {
 }
 
 TEST(Fleet, FirstHearingIsToldOnce) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   int told = 0;
   fleet.on_robot = [&](const RobotView& robot) { told += robot.name == "r1"; };
   radio::Capabilities capabilities;
@@ -177,20 +177,20 @@ TEST(Fleet, FirstHearingIsToldOnce) {
 }
 
 TEST(Fleet, HolderIsNameAndId) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   radio::AuthorityStatus status;
   status.robot("r1");
   status.holder("op1");
   status.holder_id({2});
   fleet.hear(status, at(0s));
   EXPECT_FALSE(fleet.held_by_me(*fleet.robot("r1")));
-  status.holder_id(own_id);
+  status.holder_id(kOwnId);
   fleet.hear(status, at(0s));
   EXPECT_TRUE(fleet.held_by_me(*fleet.robot("r1")));
 }
 
 TEST(Fleet, AnAcknowledgementIsNewerThanALateStatus) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   radio::AuthorityStatus late;
   late.robot("r1");
   late.holder("op2");
@@ -201,14 +201,14 @@ TEST(Fleet, AnAcknowledgementIsNewerThanALateStatus) {
   fleet.hear(late, at(0s));
   EXPECT_EQ(fleet.robot("r1")->holder, "op1");
   EXPECT_EQ(fleet.robot("r1")->epoch, (Epoch{7, 4}));
-  late.epoch().start(8);  // another start of the agent begins anew
+  late.epoch().start(8);  // another start of the agent starts over
   late.epoch().counter(0);
   fleet.hear(late, at(0s));
   EXPECT_EQ(fleet.robot("r1")->holder, "op2");
 }
 
 TEST(Fleet, NamesAndNumbersAreBounded) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   fleet.hear(state("bad name"), at(0s));
   fleet.hear(state("\x1b[2J"), at(0s));
   for (int i = 0; i < 100; ++i) fleet.hear(state("r" + std::to_string(i)), at(0s));
@@ -224,7 +224,7 @@ TEST(Fleet, NamesAndNumbersAreBounded) {
 }
 
 TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   radio::Notification sample;
   sample.robot("r1");
   for (int i = 0; i < 300; ++i) {
@@ -239,7 +239,7 @@ TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
 }
 
 TEST(Fleet, EveryNoticeHasAnIdThatStays) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   std::vector<std::uint64_t> seen;
   fleet.on_notice = [&](const Notice& notice) { seen.push_back(notice.id); };
   radio::Notification sample;
@@ -275,7 +275,7 @@ double newest_age(const Fleet& fleet, Duration now) {
 }
 
 TEST(Fleet, ANoticeThatComesAfterAGapIsAsOldAsItIs) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   fleet.hear(stamped_state(100s), at(100s));
   fleet.hear(arisen(100s), at(100s));
   EXPECT_DOUBLE_EQ(newest_age(fleet, 100s), 0.0);
@@ -286,7 +286,7 @@ TEST(Fleet, ANoticeThatComesAfterAGapIsAsOldAsItIs) {
 }
 
 TEST(Fleet, ANoticeBeforeTheFirstStateIsDatedByIt) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   fleet.hear(arisen(40s), at(100s));
   EXPECT_DOUBLE_EQ(newest_age(fleet, 100s), 0.0);  // not known yet
   fleet.hear(stamped_state(101s), at(101s));
@@ -296,10 +296,10 @@ TEST(Fleet, ANoticeBeforeTheFirstStateIsDatedByIt) {
 }
 
 TEST(Fleet, AnotherStartOfARobotMayHaveAnotherClock) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   fleet.hear(stamped_state(100s), at(100s));
   radio::Notification sample = arisen(0s);
-  sample.stamp(to_stamp(Time(5s)));  // its computer was started anew
+  sample.stamp(to_stamp(Time(5s)));  // its computer was restarted
   fleet.hear(sample, {.sender = {10}, .received = Time(200s)});
   EXPECT_DOUBLE_EQ(newest_age(fleet, 200s), 0.0);
   radio::RobotState after = state("r1");
@@ -311,7 +311,7 @@ TEST(Fleet, AnotherStartOfARobotMayHaveAnotherClock) {
 TEST(Fleet, WhatARobotClaimsOfTheTimeStaysWithinBounds) {
   for (const std::uint64_t stamp :
        {std::uint64_t{0}, std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{1} << 63}) {
-    Fleet fleet("op1", own_id);
+    Fleet fleet("op1", kOwnId);
     fleet.hear(stamped_state(1s), at(1s));
     radio::Notification sample = arisen(0s);
     sample.stamp(stamp);
@@ -333,7 +333,7 @@ TEST(Ages, AreShortAndReadable) {
 }
 
 TEST(Fleet, TextFromTheRadioIsMadeSafe) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   radio::Notification sample;
   sample.robot("r1");
   sample.text("a\x1b]0;owned\x07" + std::string(1000, 'x'));
@@ -345,20 +345,20 @@ TEST(Fleet, TextFromTheRadioIsMadeSafe) {
 }
 
 TEST(Fleet, AnotherStationWithOurNameIsReportedOnceAMinute) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   radio::Presence presence;
   presence.kind(radio::AGENT_STATION);
   presence.name("op1");
   presence.id({3});
   for (int i = 0; i < 10; ++i) fleet.hear(presence, at(std::chrono::seconds(i)));
   EXPECT_THAT(codes(fleet), ElementsAre("name_in_use"));
-  presence.id(own_id);  // ourselves, or our own former participant
+  presence.id(kOwnId);  // ourselves, or our own former participant
   fleet.hear(presence, at(11s));
   EXPECT_TRUE(fleet.stations().empty());
 }
 
 TEST(Fleet, SilentStationsAreForgotten) {
-  Fleet fleet("op1", own_id);
+  Fleet fleet("op1", kOwnId);
   radio::Presence presence;
   presence.kind(radio::AGENT_STATION);
   presence.name("op2");

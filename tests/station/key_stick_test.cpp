@@ -10,7 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing::ElementsAre;
 
-constexpr KeyStick::Clock::time_point start{};
+constexpr KeyStick::Clock::time_point kStart{};
 
 TEST(Keys, ArrowsLettersAndControl) {
   EXPECT_THAT(
@@ -26,33 +26,33 @@ TEST(Keys, UnknownSequencesAreLeftOut) {
 TEST(KeyStick, AFirstPressLastsUntilTheKeyboardRepeats) {
   KeyStick stick;
   stick.set_limits(1.0, 2.0);
-  EXPECT_TRUE(stick.press(key_up, start));
-  EXPECT_DOUBLE_EQ(stick.velocity(start + 590ms)[0], 0.5);
-  EXPECT_DOUBLE_EQ(stick.velocity(start + 610ms)[0], 0.0);
+  EXPECT_TRUE(stick.press(key_up, kStart));
+  EXPECT_DOUBLE_EQ(stick.velocity(kStart + 590ms)[0], 0.5);
+  EXPECT_DOUBLE_EQ(stick.velocity(kStart + 610ms)[0], 0.0);
 }
 
 TEST(KeyStick, ARepeatedKeyEndsSoonAfterItsLastRepeat) {
   KeyStick stick;
-  stick.press('w', start);
-  stick.press('w', start + 500ms);
-  stick.press('w', start + 530ms);
-  EXPECT_GT(stick.velocity(start + 770ms)[0], 0.0);
-  EXPECT_DOUBLE_EQ(stick.velocity(start + 790ms)[0], 0.0);
+  stick.press('w', kStart);
+  stick.press('w', kStart + 500ms);
+  stick.press('w', kStart + 530ms);
+  EXPECT_GT(stick.velocity(kStart + 770ms)[0], 0.0);
+  EXPECT_DOUBLE_EQ(stick.velocity(kStart + 790ms)[0], 0.0);
 }
 
 TEST(KeyStick, SpaceIsZeroAndScaleHasItsLimits) {
   KeyStick stick;
   stick.set_limits(2.0, 1.0);
-  stick.press('w', start);
-  stick.press('a', start);
-  EXPECT_DOUBLE_EQ(stick.velocity(start)[2], 0.5);
-  stick.press(' ', start);
-  EXPECT_THAT(stick.velocity(start), ElementsAre(0.0, 0.0, 0.0));
-  for (int i = 0; i < 20; ++i) stick.press('+', start);
+  stick.press('w', kStart);
+  stick.press('a', kStart);
+  EXPECT_DOUBLE_EQ(stick.velocity(kStart)[2], 0.5);
+  stick.press(' ', kStart);
+  EXPECT_THAT(stick.velocity(kStart), ElementsAre(0.0, 0.0, 0.0));
+  for (int i = 0; i < 20; ++i) stick.press('+', kStart);
   EXPECT_DOUBLE_EQ(stick.scale(), 1.0);
-  for (int i = 0; i < 20; ++i) stick.press('-', start);
+  for (int i = 0; i < 20; ++i) stick.press('-', kStart);
   EXPECT_DOUBLE_EQ(stick.scale(), 0.1);
-  EXPECT_FALSE(stick.press('z', start));
+  EXPECT_FALSE(stick.press('z', kStart));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct Calls {
   bool watch{false}, close_fails{false};
   int writer{-1};                      ///< The descriptor that wrote, not closed yet
   bool synced{false};                  ///< It was synced after its last write.
-  std::vector<std::string> folders{};  ///< synced
+  std::vector<std::string> folders{};  ///< Folders that were synced.
   int unsynced{0};                     ///< Files that were closed without
 };
 Calls calls;

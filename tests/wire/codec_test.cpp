@@ -11,7 +11,7 @@ namespace {
 
 /// A sequence's elements are made before their bytes are read: at most this many bytes for each byte
 /// received.
-constexpr std::size_t growth = 128;
+constexpr std::size_t kGrowth = 128;
 
 void set_length(std::vector<std::uint8_t>& bytes, std::size_t at, std::uint32_t value) {
   for (int i = 0; i < 4; ++i)
@@ -67,7 +67,7 @@ TEST(Codec, OversizeLengthsAnywhereAllocateNoMoreThanTheBytesAllow) {
         set_length(bytes, at, length);
         largest_allocation = 0;
         (void)e.decodes(bytes);
-        EXPECT_LE(largest_allocation, growth * bytes.size() + 4096) << e.topic.name << " at " << at;
+        EXPECT_LE(largest_allocation, kGrowth * bytes.size() + 4096) << e.topic.name << " at " << at;
       }
     }
   }
@@ -113,7 +113,7 @@ TEST(Codec, RandomDamageNeitherThrowsNorAllocatesWithoutBound) {
         }
         largest_allocation = 0;
         EXPECT_NO_THROW((void)e.decodes(bytes));
-        EXPECT_LE(largest_allocation, growth * bytes.size() + 4096) << e.topic.name << " seed " << seed;
+        EXPECT_LE(largest_allocation, kGrowth * bytes.size() + 4096) << e.topic.name << " seed " << seed;
       }
     }
   }

@@ -209,8 +209,8 @@ TYPED_TEST(Conformance, ParticipantsComeAndGo) {
   this->station->on_participant(*this->strand, [shared](const ParticipantEvent& e) {
     shared->add({e.id, e.present});
   });
-  // Whoever goes may be seen once more and go again: its last announcement and its goodbye come by two
-  // sockets.
+  // A participant that leaves may be seen once more and leave again: its last announcement and its goodbye
+  // come by two sockets.
   const auto last_is = [&](ParticipantId id, bool present) {
     const auto all = events.all();
     return !all.empty() && all.back() == std::pair(id, present);

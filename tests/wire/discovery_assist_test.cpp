@@ -13,8 +13,8 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint16_t port_of_peer = 7412;
-const in_addr_t loopback = htonl(INADDR_LOOPBACK);
+constexpr std::uint16_t kPortOfPeer = 7412;
+const in_addr_t kLoopback = htonl(INADDR_LOOPBACK);
 
 Bytes message(std::uint8_t from, const std::vector<Bytes>& submessages) {
   Bytes m{'R', 'T', 'P', 'S', 2, 3, 1, 15};
@@ -113,7 +113,7 @@ struct Talk {
   Duration now{1s};
   std::vector<Bytes> repeated{};
 
-  bool sends(Bytes m, std::uint16_t port) { return assist.sent(m, loopback, port, now); }
+  bool sends(Bytes m, std::uint16_t port) { return assist.sent(m, kLoopback, port, now); }
   void hears(const Bytes& m) { assist.received(m, now); }
   /// Repeats what is due for so long.
   std::size_t pass(Duration time, bool calm = true) {
@@ -121,8 +121,8 @@ struct Talk {
     for (const Duration end = now + time; now < end; now += 10ms) {
       if (assist.next() > now) continue;
       assist.repeat(now, calm, [&](auto m, in_addr_t address, std::uint16_t port) {
-        EXPECT_EQ(address, loopback);
-        EXPECT_EQ(port, port_of_peer);
+        EXPECT_EQ(address, kLoopback);
+        EXPECT_EQ(port, kPortOfPeer);
         repeated.emplace_back(m.begin(), m.end());
       });
     }
@@ -135,24 +135,24 @@ TEST(DiscoveryAssist, TellsWhomItHeardUntilThatShowsThatItHeardUs) {
   const Bytes own = announcement(1, 7410);
   EXPECT_TRUE(talk.sends(own, 7400));
   EXPECT_EQ(talk.pass(1s), 0U);
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   EXPECT_EQ(talk.pass(1s), 4U);
   EXPECT_EQ(talk.repeated.back(), own);
   talk.hears(message(2, {to(3), to(1)}));  // to another one
   EXPECT_GT(talk.pass(1s), 0U);
   talk.hears(acknack(0));
   EXPECT_EQ(talk.pass(1s), 0U);
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   EXPECT_EQ(talk.pass(1s), 0U);
 }
 
 TEST(DiscoveryAssist, GivesUpUntilItHearsThePeerAgain) {
   Talk talk;
   talk.sends(announcement(1, 7410), 7400);
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   EXPECT_EQ(talk.pass(1min), static_cast<std::size_t>(Discovery::kAnnounceRetries));
   EXPECT_EQ(talk.assist.next(), Duration::max());
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   EXPECT_EQ(talk.pass(1min), static_cast<std::size_t>(Discovery::kAnnounceRetries));
 }
 
@@ -160,31 +160,31 @@ TEST(DiscoveryAssist, WhoKnowsUsIsToldByMulticastAlone) {
   Talk talk;
   const Bytes own = announcement(1, 7410);
   talk.sends(own, 7400);
-  talk.hears(announcement(2, port_of_peer));
-  EXPECT_TRUE(talk.sends(own, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
+  EXPECT_TRUE(talk.sends(own, kPortOfPeer));
   talk.hears(acknack(0));
-  EXPECT_FALSE(talk.sends(own, port_of_peer));
+  EXPECT_FALSE(talk.sends(own, kPortOfPeer));
   EXPECT_TRUE(talk.sends(own, 7400));
   EXPECT_TRUE(talk.sends(own, 7414));  // another one
   talk.now += 21s;
-  EXPECT_TRUE(talk.sends(own, port_of_peer));
+  EXPECT_TRUE(talk.sends(own, kPortOfPeer));
   // Another participant came to that address: it does not know us.
-  talk.hears(announcement(3, port_of_peer));
-  EXPECT_TRUE(talk.sends(own, port_of_peer));
+  talk.hears(announcement(3, kPortOfPeer));
+  EXPECT_TRUE(talk.sends(own, kPortOfPeer));
 }
 
 TEST(DiscoveryAssist, SaysAHeartbeatAgainWithAHigherCountUntilItIsAcknowledged) {
   Talk talk;
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   talk.hears(acknack(0));
   Bytes first = heartbeat(5, 1);
-  EXPECT_TRUE(talk.assist.sent(first, loopback, port_of_peer, talk.now));
+  EXPECT_TRUE(talk.assist.sent(first, kLoopback, kPortOfPeer, talk.now));
   const auto count = [](const Bytes& m) { return m[m.size() - 4] + (m[m.size() - 3] << 8); };
   EXPECT_EQ(count(first), 16);
   EXPECT_EQ(talk.pass(3s), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(count(talk.repeated[i]), 17 + static_cast<int>(i));
   Bytes second = heartbeat(5, 2);
-  talk.assist.sent(second, loopback, port_of_peer, talk.now);
+  talk.assist.sent(second, kLoopback, kPortOfPeer, talk.now);
   EXPECT_EQ(count(second), 32);
   EXPECT_EQ(talk.pass(3s, false), 0U);  // other things wait to be sent
   talk.hears(acknack(5));
@@ -197,36 +197,36 @@ TEST(DiscoveryAssist, APeerThatComesBackAfterItsLeaseIsMetAsANewOne) {
   Talk talk;
   const Bytes own = announcement(1, 7410);
   talk.sends(own, 7400);
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   talk.hears(acknack(0));
   EXPECT_EQ(talk.pass(1s), 0U);
   // Our last announcement to it alone is recent, and got lost in the gap.
   talk.now += Discovery::kLease - 5s;
-  EXPECT_TRUE(talk.sends(own, port_of_peer));
+  EXPECT_TRUE(talk.sends(own, kPortOfPeer));
   talk.now += 10s;
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   EXPECT_NE(talk.assist.next(), Duration::max());
-  EXPECT_TRUE(talk.sends(own, port_of_peer));  // the library's only answer
+  EXPECT_TRUE(talk.sends(own, kPortOfPeer));  // the library's only answer
   EXPECT_EQ(talk.pass(1s), 4U);
 }
 
 TEST(DiscoveryAssist, AnythingHeardRenewsThePeersLease) {
   Talk talk;
   talk.sends(announcement(1, 7410), 7400);
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   talk.hears(acknack(0));
   for (int i = 0; i < 4; ++i) {
     talk.now += Discovery::kLease / 2;
     talk.hears(message(2, {to(3)}));
   }
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   EXPECT_EQ(talk.assist.next(), Duration::max());
 }
 
 TEST(DiscoveryAssist, SpoofedAnnouncementsCauseABoundedNumberOfOurs) {
   Talk talk;
   talk.sends(announcement(1, 7410), 7400);
-  const auto forge = [&](std::uint8_t from) { talk.hears(announcement(from, port_of_peer + from)); };
+  const auto forge = [&](std::uint8_t from) { talk.hears(announcement(from, kPortOfPeer + from)); };
   for (std::uint8_t from = 2; from < 202; ++from) forge(from);
   std::size_t sent = 0;
   const auto count = [&](auto, in_addr_t, std::uint16_t) { ++sent; };
@@ -240,9 +240,9 @@ TEST(DiscoveryAssist, AnnouncesItselfToItsOwnNetworksAlone) {
   Talk talk;
   talk.assist.set_reachable([](in_addr_t address) { return (ntohl(address) >> 24) == 127; });
   talk.sends(announcement(1, 7410), 7400);
-  talk.hears(announcement(3, port_of_peer, 10));
+  talk.hears(announcement(3, kPortOfPeer, 10));
   EXPECT_EQ(talk.assist.next(), Duration::max());
-  talk.hears(announcement(2, port_of_peer));
+  talk.hears(announcement(2, kPortOfPeer));
   EXPECT_EQ(talk.pass(1s), 4U);
 }
 
@@ -258,21 +258,21 @@ TEST(DiscoveryAssist, HelpsANewcomerAfterManyPeersFellSilent) {
   for (int i = 0; i < 40; ++i, talk.now += 1s)
     talk.assist.repeat(talk.now, true, [](auto, in_addr_t, std::uint16_t) {});
   ASSERT_EQ(talk.assist.next(), Duration::max());
-  talk.hears(announcement(3, port_of_peer));
+  talk.hears(announcement(3, kPortOfPeer));
   EXPECT_NE(talk.assist.next(), Duration::max());
 }
 
 TEST(DiscoveryAssist, CutShortOrStrangeMessagesAreOfNoConcern) {
   Talk talk;
   talk.sends(announcement(1, 7410), 7400);
-  for (const Bytes& whole : {announcement(2, port_of_peer), heartbeat(5, 1), acknack(0)}) {
+  for (const Bytes& whole : {announcement(2, kPortOfPeer), heartbeat(5, 1), acknack(0)}) {
     for (std::size_t n = 0; n < whole.size(); ++n) {
       Bytes cut(whole.begin(), whole.begin() + static_cast<long>(n));
       talk.hears(cut);
-      (void)talk.assist.sent(cut, loopback, 7410, talk.now);
+      (void)talk.assist.sent(cut, kLoopback, 7410, talk.now);
     }
   }
-  Bytes big_endian = announcement(2, port_of_peer);
+  Bytes big_endian = announcement(2, kPortOfPeer);
   big_endian[21] = 4;
   talk.hears(big_endian);
   talk.pass(1s);
@@ -283,7 +283,7 @@ struct Pair {
   template <class Net>
   explicit Pair(Net& net) : robot(bench::robot(net, "r0")), station(bench::station(net, "op0", 1)) {}
   bool complete() const {
-    // Each matches its own capabilities, and nobody reads a station's link report.
+    // Each matches its own capabilities, and no peer reads a station's link report.
     const auto all = [](const auto& writers) {
       return std::all_of(writers.begin(), writers.end(), [](const auto& w) { return w->matched() > 0; });
     };
@@ -292,12 +292,12 @@ struct Pair {
   }
   std::unique_ptr<bench::Idle> robot, station;
 };
-const LinkProfile lossy{.name = "lossy", .bandwidth = 500e3, .latency = 0.02, .loss = 0.4};
+const LinkProfile kLossy{.name = "lossy", .bandwidth = 500e3, .latency = 0.02, .loss = 0.4};
 
 /// MemoryNet of a seed; the second one joins when the first has fallen into its long period.
 class SeededNet {
  public:
-  explicit SeededNet(std::uint64_t seed) : network_(scheduler_, {.seed = seed, .link = lossy}) {}
+  explicit SeededNet(std::uint64_t seed) : network_(scheduler_, {.seed = seed, .link = kLossy}) {}
   std::unique_ptr<Participant> join(const std::string& name) {
     if (machines_++ > 0) pass(late);
     began = scheduler_.elapsed();
@@ -341,8 +341,9 @@ class PairNet {
  public:
   PairNet(unsigned index, std::uint64_t seed) : index_(index), seed_(seed) {}
   std::unique_ptr<Participant> join(const std::string& name) {
-    return std::move(open_fastdds(
-                         {.domain = live::domain(index_), .name = name, .link = lossy, .link_seed = ++seed_}))
+    return std::move(
+               open_fastdds(
+                   {.domain = live::domain(index_), .name = name, .link = kLossy, .link_seed = ++seed_}))
         .value();
   }
   std::shared_ptr<Executor> strand(const std::string& name) { return runtime_.strand(name); }

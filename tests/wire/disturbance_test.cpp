@@ -6,21 +6,21 @@
 namespace adit::wire {
 namespace {
 
-constexpr TopicInfo numbers{"adit/test_numbers", "Number", QosClass::state, 1, false, 64};
+constexpr TopicInfo kNumbers{"adit/test_numbers", "Number", QosClass::state, 1, false, 64};
 
 /// One writer and one reader on two machines; counts what arrives.
 struct Pair {
   explicit Pair(LinkProfile link = {.latency = 0.01}) : network(scheduler, {.link = std::move(link)}) {
     a = network.join(77, "a"), b = network.join(77, "b"), c = network.join(77, "c");
-    writer = std::move(a->make_writer(numbers, "")).value();
-    back = std::move(b->make_writer(numbers, "")).value();
+    writer = std::move(a->make_writer(kNumbers, "")).value();
+    back = std::move(b->make_writer(kNumbers, "")).value();
     reader = hear(*b, at_b);
     back_reader = hear(*a, at_a);
     c_reader = hear(*c, at_c);
     scheduler.run_until(2s);
   }
   std::unique_ptr<RawReader> hear(Participant& wire, std::vector<std::uint8_t>& seen) {
-    return std::move(wire.make_reader(numbers, "", *strand,
+    return std::move(wire.make_reader(kNumbers, "", *strand,
                                       [&seen](auto bytes, const SampleInfo&) {
                                         seen.push_back(bytes[4]);
                                         return true;

@@ -6,10 +6,10 @@
 namespace adit::wire {
 namespace {
 
-constexpr TopicInfo urgent{"adit/test_urgent", "Number", QosClass::urgent, 16, false, 1024};
-constexpr TopicInfo state{"adit/test_state", "Number", QosClass::state, 1, false, 4096};
-constexpr TopicInfo keyed{"adit/test_keyed", "Keyed", QosClass::state, 1, true, 4096};
-constexpr TopicInfo bulk{"adit/test_bulk", "Block", QosClass::bulk, 64, false, 4096};
+constexpr TopicInfo kUrgent{"adit/test_urgent", "Number", QosClass::urgent, 16, false, 1024};
+constexpr TopicInfo kState{"adit/test_state", "Number", QosClass::state, 1, false, 4096};
+constexpr TopicInfo kKeyed{"adit/test_keyed", "Keyed", QosClass::state, 1, true, 4096};
+constexpr TopicInfo kBulk{"adit/test_bulk", "Block", QosClass::bulk, 64, false, 4096};
 
 std::vector<std::uint8_t> sample(std::uint32_t number, std::size_t size = 8) {
   std::vector<std::uint8_t> bytes(std::max<std::size_t>(size, 8));
@@ -36,7 +36,7 @@ class LinkConformance : public testing::Test {
     net = std::make_unique<Net>(link);
     strand = net->strand("test");
     a = net->join("a"), b = net->join("b");
-    for (const TopicInfo& topic : {urgent, state, bulk}) {
+    for (const TopicInfo& topic : {kUrgent, kState, kBulk}) {
       writers[topic.name] = std::move(a->make_writer(topic, "")).value();
       readers.push_back(
           std::move(b->make_reader(topic, "", *strand,
@@ -71,8 +71,8 @@ TYPED_TEST_SUITE(LinkConformance, Nets, NetNames);
 
 TYPED_TEST(LinkConformance, LatencyIsTheLinksAndTheAirs) {
   this->open({.bandwidth = 100e3, .latency = 0.1});
-  const Duration sent = this->write(urgent, 1);
-  auto& seen = this->heard[urgent.name];
+  const Duration sent = this->write(kUrgent, 1);
+  auto& seen = this->heard[kUrgent.name];
   ASSERT_TRUE(this->net->until([&] { return seen.size() == 1; }));
   const Duration took = seen.all()[0].at - sent;
   EXPECT_GE(took, 105ms);  // 100 B and more at 100 kbit/s
@@ -82,13 +82,13 @@ TYPED_TEST(LinkConformance, LatencyIsTheLinksAndTheAirs) {
 TYPED_TEST(LinkConformance, BestEffortLosesItsShareReliableNothing) {
   this->open({.bandwidth = 2e6, .latency = 0.01, .loss = 0.2});
   for (std::uint32_t i = 1; i <= 200; ++i) {
-    this->write(state, i);
-    if (i % 20 == 0) this->write(urgent, i);
+    this->write(kState, i);
+    if (i % 20 == 0) this->write(kUrgent, i);
     this->net->pass(10ms);
   }
-  auto& urgents = this->heard[urgent.name];
+  auto& urgents = this->heard[kUrgent.name];
   EXPECT_TRUE(this->net->until([&] { return urgents.size() == 10; }));
-  EXPECT_NEAR(static_cast<double>(this->heard[state.name].size()), 160, 25);
+  EXPECT_NEAR(static_cast<double>(this->heard[kState.name].size()), 160, 25);
 }
 
 TYPED_TEST(LinkConformance, ASaturatedLinkCarriesItsBandwidthAndUrgentGoesFirst) {
@@ -97,15 +97,15 @@ TYPED_TEST(LinkConformance, ASaturatedLinkCarriesItsBandwidthAndUrgentGoesFirst)
   const Duration start = this->net->elapsed();
   std::vector<Duration> sent;
   for (std::uint32_t i = 0; i < 300; ++i) {
-    this->write(bulk, i, 1000);  // 800 kbit/s
-    if (i % 20 == 10) sent.push_back(this->write(urgent, i));
+    this->write(kBulk, i, 1000);  // 800 kbit/s
+    if (i % 20 == 10) sent.push_back(this->write(kUrgent, i));
     this->net->pass(10ms);
   }
   const double time = seconds(this->net->elapsed() - start);
   const double bits = 8.0 * static_cast<double>(this->a->counters().total_out - before.total_out);
   EXPECT_LT(bits / time, 205e3);
   EXPECT_GT(bits / time, 90e3);  // bulk has its share, 60 %
-  auto& urgents = this->heard[urgent.name];
+  auto& urgents = this->heard[kUrgent.name];
   ASSERT_TRUE(this->net->until([&] { return urgents.size() == sent.size(); }));
   std::vector<Duration> took;
   for (std::size_t i = 0; i < sent.size(); ++i) took.push_back(urgents.all()[i].at - sent[i]);
@@ -119,7 +119,7 @@ TYPED_TEST(LinkConformance, TheSenderKnowsItsQueueAndWhatItDroppedAndWhatPeersGo
   const SenderState rest = this->a->sender();
   ASSERT_NE(rest.link, nullptr);
   EXPECT_EQ(rest.link->bandwidth, 200e3);
-  for (std::uint32_t i = 0; i < 5; ++i) this->write(state, i, 4000);
+  for (std::uint32_t i = 0; i < 5; ++i) this->write(kState, i, 4000);
   const SenderState full = this->a->sender();
   EXPECT_GT(full.queue[3], 100ms);
   EXPECT_EQ(full.queue[0], 0ms);
@@ -134,7 +134,7 @@ TYPED_TEST(LinkConformance, TheSenderKnowsItsQueueAndWhatItDroppedAndWhatPeersGo
 
 TYPED_TEST(LinkConformance, LongSamplesOfEveryClassPassInSmallFrames) {
   this->open({.bandwidth = 200e3, .latency = 0.01});
-  for (const TopicInfo& topic : {urgent, state, bulk}) {
+  for (const TopicInfo& topic : {kUrgent, kState, kBulk}) {
     this->write(topic, 7, 1000);
     auto& seen = this->heard[topic.name];
     EXPECT_TRUE(this->net->until([&] { return seen.size() == 1; })) << topic.name;
@@ -145,10 +145,10 @@ TYPED_TEST(LinkConformance, OfStatesTheNewestIsSent) {
   this->open({.bandwidth = 50e3, .latency = 0.01});
   this->net->pass(1s);
   for (std::uint32_t i = 1; i <= 100; ++i) {
-    this->write(state, i);  // 100 a second, where 25 pass
+    this->write(kState, i);  // 100 a second, where 25 pass
     this->net->pass(10ms);
   }
-  auto& seen = this->heard[state.name];
+  auto& seen = this->heard[kState.name];
   ASSERT_TRUE(this->net->until([&] { return seen.size() > 0 && seen.all().back().number == 100; }));
   const auto all = seen.all();
   EXPECT_LT(all.size(), 60U);
@@ -158,9 +158,9 @@ TYPED_TEST(LinkConformance, OfStatesTheNewestIsSent) {
 TYPED_TEST(LinkConformance, OfStatesTheNewestOfEachKeyIsSent) {
   this->open({.bandwidth = 50e3, .latency = 0.01, .queue = 4.0});
   Seen<char> keys;
-  const auto writer = this->a->make_writer(keyed, "").value();
+  const auto writer = this->a->make_writer(kKeyed, "").value();
   const auto reader = this->b
-                          ->make_reader(keyed, "", *this->strand,
+                          ->make_reader(kKeyed, "", *this->strand,
                                         [&](auto bytes, const SampleInfo&) {
                                           keys.add(static_cast<char>(bytes[8]));
                                           return true;
@@ -169,7 +169,7 @@ TYPED_TEST(LinkConformance, OfStatesTheNewestOfEachKeyIsSent) {
   ASSERT_TRUE(this->net->until([&] { return writer->matched() == 1; }));
   this->net->pass(1s);
   // A datagram of 500 B holds the air for 80 ms while the others are written.
-  this->write(state, 1, 440);
+  this->write(kState, 1, 440);
   for (const char key : {'a', 'b', 'a', 'b', 'a', 'b'}) EXPECT_TRUE(writer->write(keyed_sample(key)).ok());
   const auto seen = [&](char key) {
     const auto all = keys.all();
@@ -184,8 +184,8 @@ TEST(LiveRange, WhoIsBelievedFarAwayHearsNothingUntilHeIsNear) {
   const auto strand = net.strand("test");
   const auto a = net.join("a"), b = net.join("b");
   Seen<int> seen;
-  const auto writer = a->make_writer(state, "").value();
-  const auto reader = b->make_reader(state, "", *strand, [&](auto, const SampleInfo&) {
+  const auto writer = a->make_writer(kState, "").value();
+  const auto reader = b->make_reader(kState, "", *strand, [&](auto, const SampleInfo&) {
                          seen.add(1);
                          return true;
                        }).value();

@@ -163,7 +163,7 @@ TEST(HeartbeatFilter, RemembersABoundedNumberOfHeartbeats) {
   HeartbeatFilter filter(200ms);
   const Bytes beat = message({heartbeat(1, 5, 1)});
   for (std::uint16_t port = 1; port <= 10000; ++port) EXPECT_TRUE(filter.passes(beat, 1, port, 1ms));
-  // What it has no room for is sent each time.
+  // A heartbeat that does not fit into the filter is sent each time.
   EXPECT_TRUE(filter.passes(beat, 1, 10000, 2ms));
   EXPECT_FALSE(filter.passes(beat, 1, 1, 2ms));
   EXPECT_TRUE(filter.passes(beat, 1, 10000, 300ms));
@@ -200,20 +200,20 @@ class Receiver {
   int fd_;
 };
 
-const in_addr_t loopback = htonl(INADDR_LOOPBACK);
-const std::vector<std::string> interfaces{"127.0.0.1"};
+const in_addr_t kLoopback = htonl(INADDR_LOOPBACK);
+const std::vector<std::string> kInterfaces{"127.0.0.1"};
 
 TEST(LinkShaper, SendsByPriorityAndTheNewestOfAStream) {
   Receiver receiver;
   std::atomic<int> sent{0};
   // 69 B and 28 of headers: 40 ms each.
-  LinkShaper link(LinkProfile{.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, interfaces,
+  LinkShaper link(LinkProfile{.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, kInterfaces,
                   {[&](auto, in_addr_t, std::uint16_t) { ++sent; }, {}});
   link.add_writer(0x103, 0, false);
   link.add_writer(0x203, 3, true);
-  for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x303, tag), loopback, receiver.port);
-  for (const std::uint8_t tag : {11, 12, 13}) link.send(rtps(0x15, 0x203, tag), loopback, receiver.port);
-  link.send(rtps(0x15, 0x103, 21), loopback, receiver.port);
+  for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x303, tag), kLoopback, receiver.port);
+  for (const std::uint8_t tag : {11, 12, 13}) link.send(rtps(0x15, 0x203, tag), kLoopback, receiver.port);
+  link.send(rtps(0x15, 0x103, 21), kLoopback, receiver.port);
   const Bytes tags = receiver.tags(300);
   ASSERT_EQ(tags.size(), 5U);
   EXPECT_EQ(sent, 5);
@@ -227,10 +227,10 @@ TEST(LinkShaper, SendsByPriorityAndTheNewestOfAStream) {
 
 TEST(LinkShaper, TellsWhatWaitsAndWhatWasDroppedByClass) {
   Receiver receiver;
-  LinkShaper link(LinkProfile{.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, interfaces, {});
+  LinkShaper link(LinkProfile{.bandwidth = 1e3, .latency = 0, .queue = 10}, 1, kInterfaces, {});
   link.add_writer(0x203, 3, true);
-  for (int i = 0; i < 4; ++i) link.send(rtps(0x15, 0x203), loopback, receiver.port);
-  link.send(rtps(0x15, 0x303), loopback, receiver.port);  // of no writer that it knows: as discovery
+  for (int i = 0; i < 4; ++i) link.send(rtps(0x15, 0x203), kLoopback, receiver.port);
+  link.send(rtps(0x15, 0x303), kLoopback, receiver.port);  // of no writer that it knows: as discovery
   const SenderState state = link.sender();
   EXPECT_EQ(state.link->bandwidth, 1e3);
   // 92 bytes each; the first may be on the air already.
@@ -243,23 +243,23 @@ TEST(LinkShaper, TellsWhatWaitsAndWhatWasDroppedByClass) {
 TEST(LinkShaper, BeyondTheRangeNothingArrives) {
   Receiver receiver;
   std::optional<double> metres{};
-  LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0, .range = 50}, 1, interfaces,
+  LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0, .range = 50}, 1, kInterfaces,
                   {{}, [&](in_addr_t, std::uint16_t) {
                      return Path{metres, 0.0};
                    }});
   metres = 60.0;
-  link.send(rtps(0x15, 1, 7), loopback, receiver.port);
+  link.send(rtps(0x15, 1, 7), kLoopback, receiver.port);
   EXPECT_TRUE(receiver.tags(100).empty());
   metres = 40.0;
-  link.send(rtps(0x15, 1, 8), loopback, receiver.port);
+  link.send(rtps(0x15, 1, 8), kLoopback, receiver.port);
   EXPECT_EQ(receiver.tags(100), Bytes{8});
 }
 
 TEST(LinkShaper, WhatIsAskedForAgainWhileItWaitsIsSentOnce) {
   Receiver receiver;
-  LinkShaper link(LinkProfile{.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, interfaces, {});
+  LinkShaper link(LinkProfile{.bandwidth = 14e3, .latency = 0, .queue = 2}, 1, kInterfaces, {});
   for (int i = 0; i < 10; ++i) {
-    for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x3c2, tag), loopback, receiver.port);
+    for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x3c2, tag), kLoopback, receiver.port);
   }
   const Bytes tags = receiver.tags(300);
   EXPECT_LE(tags.size(), 4U);  // the first may have been on the air already
@@ -293,17 +293,17 @@ TEST(LinkShaper, WhatARealRadioRefusesWaitsByPriority) {
   LinkShaper link(std::nullopt, 1, radio.socket(), {});
   link.add_writer(0x103, 0, false);
   link.add_writer(0x203, 3, true);
-  link.send(rtps(0x15, 0x303, 1), loopback, 7411);
+  link.send(rtps(0x15, 0x303, 1), kLoopback, 7411);
   ASSERT_TRUE(live::eventually([&] { return link.sender().queue[1] > 0ms; }));
-  for (const std::uint8_t tag : {11, 12, 13}) link.send(rtps(0x15, 0x203, tag), loopback, 7411);
-  link.send(rtps(0x15, 0x103, 21), loopback, 7411);
+  for (const std::uint8_t tag : {11, 12, 13}) link.send(rtps(0x15, 0x203, tag), kLoopback, 7411);
+  link.send(rtps(0x15, 0x103, 21), kLoopback, 7411);
   EXPECT_EQ(link.sender().dropped[3], 2U);
   radio.set_open(true);
   ASSERT_TRUE(live::eventually([&] { return radio.tags().size() == 3; }));
   // The thread may have tried the first one already when the urgent one came.
   const Bytes tags = radio.tags();
   EXPECT_TRUE(tags == (Bytes{1, 21, 13}) || tags == (Bytes{21, 1, 13}));
-  link.send(rtps(0x15, 0x303, 2), loopback, 7411);
+  link.send(rtps(0x15, 0x303, 2), kLoopback, 7411);
   EXPECT_EQ(radio.tags().size(), 4U);  // on the caller's thread
 }
 
@@ -311,7 +311,7 @@ TEST(LinkShaper, WhatARealRadioRefusesForTooLongIsDroppedAndCounted) {
   FullRadio radio;
   LinkShaper link(std::nullopt, 1, radio.socket(), {});
   link.add_writer(0x203, 3, false);
-  for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x203, tag), loopback, 7411);
+  for (const std::uint8_t tag : {1, 2, 3}) link.send(rtps(0x15, 0x203, tag), kLoopback, 7411);
   EXPECT_TRUE(live::eventually([&] { return link.sender().dropped[3] == 3; }));
   EXPECT_TRUE(live::eventually([&] { return link.sender().queue[3] == 0ms; }));
   EXPECT_TRUE(radio.tags().empty());
@@ -320,14 +320,14 @@ TEST(LinkShaper, WhatARealRadioRefusesForTooLongIsDroppedAndCounted) {
 TEST(LinkShaper, LosesDropsAndCounts) {
   Receiver receiver;
   {
-    LinkShaper all(LinkProfile{.bandwidth = 1e6, .loss = 1.0}, 1, interfaces, {});
-    all.send(rtps(0x15, 1), loopback, receiver.port);
+    LinkShaper all(LinkProfile{.bandwidth = 1e6, .loss = 1.0}, 1, kInterfaces, {});
+    all.send(rtps(0x15, 1), kLoopback, receiver.port);
     EXPECT_TRUE(receiver.tags(50).empty());
   }
-  LinkShaper slow(LinkProfile{.bandwidth = 1e3, .queue = 0.01}, 1, interfaces, {});
-  for (std::uint8_t i = 0; i < 5; ++i) slow.send(rtps(0x15, 1, i), loopback, receiver.port);
+  LinkShaper slow(LinkProfile{.bandwidth = 1e3, .queue = 0.01}, 1, kInterfaces, {});
+  for (std::uint8_t i = 0; i < 5; ++i) slow.send(rtps(0x15, 1, i), kLoopback, receiver.port);
   slow.close();
-  slow.send(rtps(0x15, 1), loopback, receiver.port);
+  slow.send(rtps(0x15, 1), kLoopback, receiver.port);
   EXPECT_GE(slow.dropped(), 1U);  // after the end
   EXPECT_LE(receiver.tags(50).size(), 2U);
 }
@@ -335,8 +335,8 @@ TEST(LinkShaper, LosesDropsAndCounts) {
 TEST(LinkShaper, WhatWaitsIsSentBeforeItEnds) {
   Receiver receiver;
   {
-    LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0.1}, 1, interfaces, {});
-    for (std::uint8_t i = 0; i < 10; ++i) link.send(rtps(0x15, 1, i), loopback, receiver.port);
+    LinkShaper link(LinkProfile{.bandwidth = 1e6, .latency = 0.1}, 1, kInterfaces, {});
+    for (std::uint8_t i = 0; i < 10; ++i) link.send(rtps(0x15, 1, i), kLoopback, receiver.port);
   }
   EXPECT_EQ(receiver.tags(10).size(), 10U);
 }

@@ -19,8 +19,8 @@
 namespace adit::wire {
 namespace {
 
-constexpr TopicInfo ping{"adit/ping", "Bytes", QosClass::urgent, 16, topics::kUnkeyed, 1 << 16};
-constexpr TopicInfo pong{"adit/pong", "Bytes", QosClass::urgent, 16, topics::kUnkeyed, 1 << 16};
+constexpr TopicInfo kPing{"adit/ping", "Bytes", QosClass::urgent, 16, topics::kUnkeyed, 1 << 16};
+constexpr TopicInfo kPong{"adit/pong", "Bytes", QosClass::urgent, 16, topics::kUnkeyed, 1 << 16};
 
 /// Resident memory of this process, KiB.
 long resident_kb() {
@@ -37,11 +37,11 @@ TEST(LiveWire, TwoProcessesEchoSmallAndLargeSamples) {
   ASSERT_TRUE(echo.wait_for_output("ready", live::Seconds(10)));
   const auto wire = net.join("client");
   Seen<std::vector<std::uint8_t>> seen;
-  const auto reader = std::move(wire->make_reader(pong, "", *strand, [&](auto bytes, const SampleInfo&) {
+  const auto reader = std::move(wire->make_reader(kPong, "", *strand, [&](auto bytes, const SampleInfo&) {
     seen.add({bytes.begin(), bytes.end()});
     return true;
   }));
-  const auto writer = std::move(wire->make_writer(ping, "")).value();
+  const auto writer = std::move(wire->make_writer(kPing, "")).value();
   ASSERT_TRUE(net.until([&] { return writer->matched() == 1; }));
   std::size_t expected = 0;
   for (const std::size_t size : {8U, 100U, 1400U, 5000U, 32768U}) {
@@ -65,7 +65,7 @@ TEST(LiveWire, AKilledProcessDoesNotHoldUpAWriter) {
   live::Process echo({"wire_echo", std::to_string(live::domain())});
   ASSERT_TRUE(echo.wait_for_output("ready", live::Seconds(10)));
   const auto wire = net.join("client");
-  const auto writer = std::move(wire->make_writer(ping, "")).value();
+  const auto writer = std::move(wire->make_writer(kPing, "")).value();
   ASSERT_TRUE(net.until([&] { return writer->matched() == 1; }));
   echo.signal(SIGKILL);
   echo.wait(live::Seconds(5));
@@ -137,9 +137,9 @@ TEST(LiveWire, PeersAreFoundWithoutMulticast) {
   LiveNet net;
   FastDdsParams params{.domain = live::domain(1), .peers = {"127.0.0.1"}, .multicast = false};
   const auto a = std::move(open_fastdds(params)).value(), b = std::move(open_fastdds(params)).value();
-  const auto writer = std::move(a->make_writer(ping, "")).value();
+  const auto writer = std::move(a->make_writer(kPing, "")).value();
   const auto strand = net.strand("test");
-  const auto reader = b->make_reader(ping, "", *strand, [](auto, const SampleInfo&) { return true; });
+  const auto reader = b->make_reader(kPing, "", *strand, [](auto, const SampleInfo&) { return true; });
   EXPECT_TRUE(net.until([&] { return writer->matched() == 1; }));
 }
 
@@ -284,8 +284,8 @@ TEST(LiveWire, TheEnvironmentOfRos2ChangesNothing) {
   ::setenv("ROS_DISCOVERY_SERVER", "127.0.0.1:11811", 1);
   ::setenv("FASTRTPS_DEFAULT_PROFILES_FILE", profiles.c_str(), 1);
   const auto a = net.join("a"), b = net.join("b");
-  const auto writer = std::move(a->make_writer(ping, "")).value();
-  const auto reader = b->make_reader(ping, "", *strand, [](auto, const SampleInfo&) { return true; });
+  const auto writer = std::move(a->make_writer(kPing, "")).value();
+  const auto reader = b->make_reader(kPing, "", *strand, [](auto, const SampleInfo&) { return true; });
   EXPECT_TRUE(net.until([&] { return writer->matched() == 1; }));
   ::unsetenv("ROS_DISCOVERY_SERVER");
   ::unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");
@@ -304,14 +304,14 @@ TEST(LiveWire, ClosesWhileSamplesAndCallbacksAreUnderWay) {
   LiveNet net;
   const auto strand = net.strand("test");
   const auto sender = net.join("sender");
-  const auto writer = std::move(sender->make_writer(ping, "")).value();
+  const auto writer = std::move(sender->make_writer(kPing, "")).value();
   const std::vector<std::uint8_t> sample{0, 1, 0, 0, 1, 2, 3, 4};
   for (int round = 0; round < 5; ++round) {
     auto count = std::make_unique<std::atomic<int>>(0);
     auto receiver = net.join("receiver");
     receiver->on_participant(*strand, [&](const ParticipantEvent&) { ++*count; });
     auto reader =
-        receiver->make_reader(ping, "", *strand, [&](auto, const SampleInfo&) { return ++*count > 0; });
+        receiver->make_reader(kPing, "", *strand, [&](auto, const SampleInfo&) { return ++*count > 0; });
     ASSERT_TRUE(net.until([&] { return writer->matched() == 1; }));
     for (int i = 0; i < 200; ++i) (void)writer->write(sample);
     reader = Error{Reason::none, ""};

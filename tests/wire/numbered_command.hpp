@@ -3,7 +3,7 @@
 
 namespace adit::wire {
 
-/// A command to r1 that is told from others by its number.
+/// A command to r1, distinguished from others by its number.
 inline radio::Command numbered_command(std::uint64_t seq) {
   radio::Command c;
   c.robot("r1");

@@ -7,17 +7,17 @@ namespace adit::wire {
 namespace {
 
 ParticipantId id(std::uint8_t first, std::uint8_t second = 0) { return {first, second}; }
-const in_addr_t machine = htonl(0x0a000002);
-constexpr std::uint16_t discovery_port = 7412, data_port = 7413;
+const in_addr_t kMachine = htonl(0x0a000002);
+constexpr std::uint16_t kDiscoveryPort = 7412, kDataPort = 7413;
 
 RtpsPeek from(ParticipantId who) { return {.source = who}; }
 RtpsPeek to(ParticipantId who) { return {.destination = who}; }
 
 TEST(PeerStatistics, CountsBytesByParticipantOnceItsAddressIsKnown) {
   PeerStatistics book;
-  book.sent({}, machine, data_port, 100);  // to somebody
-  book.sent(to(id(1)), machine, discovery_port, 10);
-  book.sent({}, machine, data_port, 5);  // its other port
+  book.sent({}, kMachine, kDataPort, 100);  // to somebody
+  book.sent(to(id(1)), kMachine, kDiscoveryPort, 10);
+  book.sent({}, kMachine, kDataPort, 5);  // its other port
   book.sent(to(id(1)), inet_addr("239.255.0.1"), 7400, 1000);
   book.received(from(id(1)), 7);
   book.received({}, 1000);
@@ -32,9 +32,9 @@ TEST(PeerStatistics, CountsBytesByParticipantOnceItsAddressIsKnown) {
 
 TEST(PeerStatistics, AnAddressThatChangedHandsIsTheNewOnes) {
   PeerStatistics book;
-  book.sent(to(id(1)), machine, data_port, 10);
-  book.sent(to(id(2)), machine, data_port, 20);
-  book.sent({}, machine, data_port, 1);
+  book.sent(to(id(1)), kMachine, kDataPort, 10);
+  book.sent(to(id(2)), kMachine, kDataPort, 20);
+  book.sent({}, kMachine, kDataPort, 1);
   EXPECT_EQ(book.all({}, nullptr)[0].bytes_out, 10U);
   EXPECT_EQ(book.all({}, nullptr)[1].bytes_out, 21U);
 }
@@ -42,14 +42,14 @@ TEST(PeerStatistics, AnAddressThatChangedHandsIsTheNewOnes) {
 TEST(PeerStatistics, DistanceAndSignalAreKnownOnceBothPlacesAre) {
   PeerStatistics book;
   const LinkProfile link{.fading = 2.0, .path_loss = 40, .power = 20};
-  book.sent(to(id(1)), machine, data_port, 10);
-  EXPECT_FALSE(book.path(machine, data_port).distance);
+  book.sent(to(id(1)), kMachine, kDataPort, 10);
+  EXPECT_FALSE(book.path(kMachine, kDataPort).distance);
   book.set_place(id(1), {10, 0, 0});
-  EXPECT_FALSE(book.path(machine, data_port).distance);
+  EXPECT_FALSE(book.path(kMachine, kDataPort).distance);
   book.set_own_place({0, 0, 0});
-  EXPECT_EQ(book.path(machine, data_port).distance, 10.0);
+  EXPECT_EQ(book.path(kMachine, kDataPort).distance, 10.0);
   EXPECT_NEAR(book.all({}, &link)[0].signal.value(), -40.0, 1e-9);
-  EXPECT_FALSE(book.path(machine, 9000).distance);  // nobody is known there
+  EXPECT_FALSE(book.path(kMachine, 9000).distance);  // no peer is known there
 }
 
 TEST(PeerStatistics, StrangersWithoutEndTakeTheSilentOnesPlace) {

@@ -14,11 +14,11 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr TopicInfo newest{"adit/test_newest", "Newest", QosClass::state, 1, topics::kUnkeyed, 1 << 10};
-constexpr TopicInfo last_three{"adit/test_three", "Three", QosClass::status, 3, topics::kUnkeyed, 1 << 10};
-constexpr TopicInfo by_key{"adit/test_keys", "Keys", QosClass::status, 2, topics::kKeyed, 1 << 10};
-constexpr TopicInfo requests{"adit/test_requests", "Requests", QosClass::urgent, 1,
-                             topics::kUnkeyed,     1 << 10};
+constexpr TopicInfo kNewest{"adit/test_newest", "Newest", QosClass::state, 1, topics::kUnkeyed, 1 << 10};
+constexpr TopicInfo kLastThree{"adit/test_three", "Three", QosClass::status, 3, topics::kUnkeyed, 1 << 10};
+constexpr TopicInfo kByKey{"adit/test_keys", "Keys", QosClass::status, 2, topics::kKeyed, 1 << 10};
+constexpr TopicInfo kRequests{"adit/test_requests", "Requests", QosClass::urgent, 1,
+                              topics::kUnkeyed,     1 << 10};
 
 /// A sample whose key is `key` and whose last four bytes are `number`.
 Bytes sample(const std::string& key, std::uint8_t number) {
@@ -78,8 +78,8 @@ class ReaderConformance : public testing::Test {
 TYPED_TEST_SUITE(ReaderConformance, Nets, NetNames);
 
 TYPED_TEST(ReaderConformance, ASampleIsStampedWhenItComes) {
-  const auto reader = this->hear(newest);
-  const auto writer = std::move(this->station->make_writer(newest, "")).value();
+  const auto reader = this->hear(kNewest);
+  const auto writer = std::move(this->station->make_writer(kNewest, "")).value();
   ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
   this->net.pass(300ms);
   const Time before = this->strand->now();
@@ -94,8 +94,8 @@ TYPED_TEST(ReaderConformance, ASampleIsStampedWhenItComes) {
 }
 
 TYPED_TEST(ReaderConformance, ASlowReaderGetsTheNewest) {
-  const auto reader = this->hear(newest);
-  const auto writer = std::move(this->station->make_writer(newest, "")).value();
+  const auto reader = this->hear(kNewest);
+  const auto writer = std::move(this->station->make_writer(kNewest, "")).value();
   ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
   this->net.pass(300ms);
   for (std::uint8_t i = 1; i <= 20; ++i) this->write(*writer, sample("", i));
@@ -108,8 +108,8 @@ TYPED_TEST(ReaderConformance, ASlowReaderGetsTheNewest) {
 }
 
 TYPED_TEST(ReaderConformance, ASlowReaderGetsTheLastThreeInOrder) {
-  const auto reader = this->hear(last_three);
-  const auto writer = std::move(this->station->make_writer(last_three, "")).value();
+  const auto reader = this->hear(kLastThree);
+  const auto writer = std::move(this->station->make_writer(kLastThree, "")).value();
   ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
   this->net.pass(300ms);
   for (std::uint8_t i = 1; i <= 10; ++i) this->write(*writer, sample("", i));
@@ -122,8 +122,8 @@ TYPED_TEST(ReaderConformance, ASlowReaderGetsTheLastThreeInOrder) {
 }
 
 TYPED_TEST(ReaderConformance, EachKeyOfASlowReaderKeepsItsOwnNewest) {
-  const auto reader = this->hear(by_key);
-  const auto writer = std::move(this->station->make_writer(by_key, "")).value();
+  const auto reader = this->hear(kByKey);
+  const auto writer = std::move(this->station->make_writer(kByKey, "")).value();
   ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
   this->net.pass(300ms);
   for (std::uint8_t i = 1; i <= 5; ++i) {
@@ -139,9 +139,9 @@ TYPED_TEST(ReaderConformance, EachKeyOfASlowReaderKeepsItsOwnNewest) {
 
 // One station that floods a robot does not replace what another one asks.
 TYPED_TEST(ReaderConformance, ASenderReplacesItsOwnSamplesOnly) {
-  const auto reader = this->hear(newest);
-  const auto quiet = std::move(this->station->make_writer(newest, "")).value();
-  const auto loud = std::move(this->other->make_writer(newest, "")).value();
+  const auto reader = this->hear(kNewest);
+  const auto quiet = std::move(this->station->make_writer(kNewest, "")).value();
+  const auto loud = std::move(this->other->make_writer(kNewest, "")).value();
   ASSERT_TRUE(this->net.until([&] { return quiet->matched() == 1 && loud->matched() == 1; }));
   this->net.pass(300ms);
   this->write(*quiet, sample("", 7));
@@ -154,8 +154,8 @@ TYPED_TEST(ReaderConformance, ASenderReplacesItsOwnSamplesOnly) {
 
 // Requests are all different: the newest does not make the one before it void.
 TYPED_TEST(ReaderConformance, RequestsWaitBesideEachOther) {
-  const auto reader = this->hear(requests);
-  const auto writer = std::move(this->station->make_writer(requests, "")).value();
+  const auto reader = this->hear(kRequests);
+  const auto writer = std::move(this->station->make_writer(kRequests, "")).value();
   ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
   this->net.pass(300ms);
   for (std::uint8_t i = 1; i <= 12; ++i) this->write(*writer, sample("", i));
@@ -166,7 +166,7 @@ TYPED_TEST(ReaderConformance, RequestsWaitBesideEachOther) {
 }
 
 TYPED_TEST(ReaderConformance, AFailedHandlerCostsItsOwnSampleOnly) {
-  const auto reader = std::move(this->robot->make_reader(last_three, "", this->held,
+  const auto reader = std::move(this->robot->make_reader(kLastThree, "", this->held,
                                                          [this](auto bytes, const SampleInfo&) -> bool {
                                                            this->got.add({"", bytes.back(), {}, {}, {}});
                                                            if (bytes.back() == 2)
@@ -174,7 +174,7 @@ TYPED_TEST(ReaderConformance, AFailedHandlerCostsItsOwnSampleOnly) {
                                                            return true;
                                                          }))
                           .value();
-  const auto writer = std::move(this->station->make_writer(last_three, "")).value();
+  const auto writer = std::move(this->station->make_writer(kLastThree, "")).value();
   ASSERT_TRUE(this->net.until([&] { return writer->matched() == 1; }));
   this->net.pass(300ms);
   for (std::uint8_t i = 1; i <= 3; ++i) this->write(*writer, sample("", i));

@@ -79,7 +79,7 @@ TEST(SimulatedNetwork, CarriesASampleWithItsSenderAndTheReceiversClock) {
 }
 
 /// Like the commands' topic, but with a history.
-constexpr Topic<radio::Command> kept{
+constexpr Topic<radio::Command> kKept{
     {"adit/test_kept", "adit::radio::Command", QosClass::urgent, 16, false, 512}};
 
 TEST(SimulatedNetwork, RepairsReliableSamplesAfterLossAndKeepsTheirOrder) {
@@ -88,9 +88,9 @@ TEST(SimulatedNetwork, RepairsReliableSamplesAfterLossAndKeepsTheirOrder) {
   Machine station(scheduler, network, "op1"), robot(scheduler, network, "r1");
   std::vector<std::uint64_t> seen;
   const auto reader =
-      make_reader(*robot.wire, kept, *robot.strand,
+      make_reader(*robot.wire, kKept, *robot.strand,
                   [&](const radio::Command& c, const SampleInfo&) { seen.push_back(c.seq()); });
-  auto writer = std::move(Writer<radio::Command>::make(*station.wire, kept)).value();
+  auto writer = std::move(Writer<radio::Command>::make(*station.wire, kKept)).value();
   scheduler.run_until(10s);
   for (std::uint64_t i = 1; i <= 100; ++i) {
     ASSERT_TRUE(writer.write(numbered_command(i)).ok());

@@ -220,7 +220,7 @@ TYPED_TEST(TopicConformance, APartyOfAnotherReleaseDoesNotMatchAndIsReported) {
   this->net.pass(300ms);
   EXPECT_EQ(reported(*this->robot, "version"), 1);
   EXPECT_EQ(writer->matched(), 0U);
-  // A handler that comes later is told, too.
+  // A handler that is added later is notified, too.
   const auto late = std::make_shared<Seen<ParticipantEvent>>();
   this->station->on_participant(*this->strand, [late](const ParticipantEvent& e) { late->add(e); });
   EXPECT_TRUE(this->net.until([&] {

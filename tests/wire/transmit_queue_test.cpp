@@ -9,7 +9,7 @@ namespace {
 
 using Queue = TransmitQueue<std::string>;
 
-/// Sends what waits for `time`, 10 ms a frame; "a" or "a.1" for frame 1 of a message of several.
+/// Sends the queued messages for `time`, 10 ms a frame; "a" or "a.1" for frame 1 of a message of several.
 struct Line {
   Queue queue{};
   Duration now{};
