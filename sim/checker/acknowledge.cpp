@@ -43,9 +43,9 @@ class Acknowledge : public Rule {
 
  private:
   struct Stream {
-    std::optional<Duration> refused_since{};  ///< the first refused sample that an answer is due to
+    std::optional<Duration> refused_since{};  ///< Time of the first refused sample without an answer.
     std::optional<Duration> answered{};
-    std::map<wire::ParticipantId, Duration> senders{};  ///< who streamed under this id, and when last
+    std::map<wire::ParticipantId, Duration> senders{};  ///< Time of each participant's last sample.
   };
 
   void see_sample(const RobotModel& robot, const JoystickHeard& sample) {
@@ -60,7 +60,7 @@ class Acknowledge : public Rule {
 
   void see_stream_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
     Stream& stream = streams_[ack.id];
-    // An answer names no participant: of several that stream under one id each is told once a second.
+    // An answer names no participant: of several that stream under one id, each gets one a second.
     std::erase_if(stream.senders, [&](const auto& s) { return robot.now() - s.second > 2s; });
     const bool one = stream.senders.size() <= 1;
     if (one && stream.answered && robot.age(*stream.answered) < kStreamAnswerPeriod - 10ms)

@@ -31,7 +31,7 @@ struct Checker::WatchedRobot {
     rules[7] = make_nothing_lost_rule();
   }
   RobotModel model;
-  std::array<std::unique_ptr<Rule>, Checker::kNumbers.size()> rules{};  ///< as in numbers
+  std::array<std::unique_ptr<Rule>, Checker::kNumbers.size()> rules{};  ///< Same order as kNumbers.
   Duration instant{};
   std::vector<Event> waiting{};
 };
@@ -85,14 +85,14 @@ void Checker::dispatch(WatchedRobot& watch) {
   if (last != watch.waiting.rend()) {
     const Event kept = *last;
     std::erase_if(watch.waiting, is_status);
-    // First of what is published: a component made anew shows itself by it.
+    // Published first: a restarted component is recognised by it.
     watch.waiting.insert(watch.waiting.begin(), kept);
   }
   std::stable_sort(watch.waiting.begin(), watch.waiting.end(),
                    [](const Event& a, const Event& b) { return rank(a) < rank(b); });
   watch.model.set_now(watch.instant);
   for (const Event& event : watch.waiting) {
-    // A command component that failed and speaks under another start was made anew.
+    // A failed command component that publishes under another start id was restarted.
     if (watch.model.begins_again(event)) judge(watch, AgentStarted{watch.model.participant()});
     judge(watch, event);
   }

@@ -9,12 +9,12 @@ namespace adit::sim {
 
 struct Violation {
   int rule{};
-  Duration at{};  ///< since the start of the run
+  Duration at{};  ///< Time since the start of the run.
   std::string robot{};
   std::string text{};
 };
 
-/// Watches the rules of docs/architecture.md from outside: it is told what reached each robot, what each
+/// Watches the rules of docs/architecture.md from outside: it receives what reached each robot, what each
 /// robot sent, and what the world did, and never looks into an agent.
 class Checker {
  public:
@@ -44,7 +44,7 @@ class Checker {
 
   std::map<std::string, std::unique_ptr<WatchedRobot>> robots_;
   std::vector<Violation> violations_{};
-  std::array<std::uint64_t, 10> counts_{};  ///< by number
+  std::array<std::uint64_t, 10> counts_{};  ///< Violations by rule number.
 };
 
 }  // namespace adit::sim

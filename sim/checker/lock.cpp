@@ -6,8 +6,9 @@
 namespace adit::sim {
 namespace {
 
-/// Rule 2: an unlocked robot goes to whoever asks and the former holder is told; a locked one refuses with
-/// its holder's name and the holder is told who asked; a lock lapses only when its holder was silent.
+/// Rule 2: an unlocked robot goes to the station that asks, and the former holder is notified; a locked one
+/// refuses with its holder's name, and the holder is notified of the request; a lock lapses only when its
+/// holder was silent.
 class Lock : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {
@@ -36,7 +37,7 @@ class Lock : public Rule {
     bool operator==(const Owed& other) const { return code == other.code && to == other.to; }
   };
 
-  // Nothing is owed when it was told between the command and its answer, which may wait for the disk.
+  // A notification between the command and its answer, which may wait for the disk, counts.
   void owe(const RobotModel& robot, const RobotModel::Pending& asked, const char* code) {
     const Owed owed{code, robot.authority().holder, robot.now()};
     const auto told = std::find_if(told_.begin(), told_.end(),

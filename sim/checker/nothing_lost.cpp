@@ -7,7 +7,7 @@ namespace {
 
 /// Rule 9, and the restoring half of rule 7: holder, lock, stops and goal that were acknowledged before a
 /// restart are there after it. What was received and not answered may have been done or not. When the disk
-/// took nothing the state may be lost as a whole: then nobody holds the robot, and it holds.
+/// took nothing the state may be lost as a whole: then the robot has no holder and is in `hold`.
 class NothingLost : public Rule {
  public:
   void see(const RobotModel& robot, const Event& event, const Report& broken) override {

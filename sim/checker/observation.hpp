@@ -18,9 +18,9 @@ namespace adit::sim {
 using StationId = std::array<std::uint8_t, 16>;
 
 struct Authority {
-  std::uint64_t start{};    ///< of the epoch: this start of the agent
-  std::uint32_t counter{};  ///< of the epoch
-  std::string holder{};     ///< empty: nobody
+  std::uint64_t start{};    ///< Epoch: random id of this start of the agent.
+  std::uint32_t counter{};  ///< Epoch: its counter.
+  std::string holder{};     ///< Empty: none.
   StationId holder_id{};
   bool locked{};
   bool operator==(const Authority&) const = default;
@@ -42,13 +42,13 @@ enum class Verb {
   stop,
   reset,
   mode,
-  go_to,  ///< also home, then without a position
+  go_to,  ///< Also `home`, which has no position.
   query,
-  restart,  ///< of a component, named in the text
-  policy,   ///< of a component
-  plan,     ///< a question to the global planner
-  pose,     ///< where the robot is
-  unknown   ///< a number that the checker does not know
+  restart,  ///< Restarts the component named in the text.
+  policy,   ///< Sets the restart policy of a component.
+  plan,     ///< Asks the global planner for a route.
+  pose,     ///< Sets the pose of the robot.
+  unknown   ///< A number that the checker does not know.
 };
 
 /// The agent's process began to run as that participant of the radio domain.
@@ -76,13 +76,13 @@ struct CommandHeard {
   wire::ParticipantId from{};
   std::string station{};
   StationId id{};
-  std::uint64_t start{};    ///< of the epoch it was given under
-  std::uint32_t counter{};  ///< of that epoch
+  std::uint64_t start{};    ///< Start id of the epoch it was given under.
+  std::uint32_t counter{};  ///< Counter of that epoch.
   std::uint64_t seq{};
   Verb verb{Verb::query};
   std::string text{};
   bool flag{};
-  std::optional<std::array<double, 2>> position{};  ///< goto: map frame, m
+  std::optional<std::array<double, 2>> position{};  ///< Goal of goto, map frame, m.
 };
 struct JoystickHeard {
   wire::ParticipantId from{};
@@ -90,7 +90,7 @@ struct JoystickHeard {
   std::uint64_t start{};
   std::uint32_t counter{};
   std::uint64_t seq{};
-  std::uint64_t echo{};  ///< ns, the robot's clock
+  std::uint64_t echo{};  ///< Robot's clock, ns.
   Twist2 stick{};
 };
 
@@ -98,11 +98,11 @@ struct JoystickHeard {
 struct ScanHeard {};
 /// A sample of its driver's odometry reached the robot.
 struct OdometryHeard {
-  Pose2 pose{};  ///< odometry frame
+  Pose2 pose{};  ///< Odometry frame.
 };
 /// A velocity of the program that steers in mode `external` reached the robot.
 struct ProgramHeard {
-  Twist2 velocity{};  ///< body frame
+  Twist2 velocity{};  ///< Body frame.
 };
 
 // Sent by the robot -----------------------------------------------------------------------------------
@@ -134,11 +134,11 @@ struct BehaviourSent {
   std::uint32_t goal_id{};
 };
 struct StateSent {
-  std::uint64_t stamp{};  ///< ns, the robot's clock
+  std::uint64_t stamp{};  ///< Robot's clock, ns.
 };
 struct NotificationSent {
   std::string code{};
-  std::string to{};  ///< operator; empty: everybody
+  std::string to{};  ///< Operator; empty: all.
   std::uint64_t seq{};
 };
 /// cmd_vel, from the agent or from its parent process.
@@ -148,8 +148,8 @@ struct VelocitySent {
 
 // What the world did ----------------------------------------------------------------------------------
 struct Motion {
-  Pose2 pose{};       ///< world frame
-  Twist2 velocity{};  ///< body frame
+  Pose2 pose{};       ///< World frame.
+  Twist2 velocity{};  ///< Body frame.
 };
 
 /// The robot's clock went on by so much at once.
@@ -167,7 +167,7 @@ struct RobotFacts {
   std::string name{};
   double max_acceleration{1.0};       ///< m/s2
   double max_turn_acceleration{3.0};  ///< rad/s2
-  double lock_lease{300.0};           ///< s; 0: a lock never lapses
+  double lock_lease{300.0};           ///< Lease of a lock, s; 0: it never lapses.
 };
 
 }  // namespace adit::sim

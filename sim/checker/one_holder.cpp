@@ -31,7 +31,7 @@ class OneHolder : public Rule {
  private:
   enum class Obeyed { nobody, own, other, both };
 
-  // A station that was started again counts from 1 anew.
+  // A restarted station counts from 1 again.
   void see_command(const CommandHeard& command) {
     if (!needs_holder(command.verb) && command.verb != Verb::take) return;
     auto& [from, by] = obeyed_[{command.id, command.seq}];

@@ -26,7 +26,7 @@ class OneSource : public Rule {
   }
 
  private:
-  std::string moving_in_{};  ///< the mode of the velocities since the last zero
+  std::string moving_in_{};  ///< Mode of the velocities since the last zero.
 };
 
 }  // namespace

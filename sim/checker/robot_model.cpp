@@ -10,7 +10,7 @@ void RobotModel::take_in(const Event& event) {
 }
 
 void RobotModel::take_in_event(const AgentStarted& e) {
-  // A new process, or a component made anew, knows what is on its disk: what it then says is compared with
+  // A new process or a restarted component knows what is on its disk: what it then says is compared with
   // what was. It does not know whom it heard.
   RobotModel next(facts_);
   if (authority_.start != 0 || before_) next.before_ = authority_.start != 0 ? remember() : *before_;
@@ -164,8 +164,8 @@ bool RobotModel::is_holder(const CommandHeard& command) const {
   const Heard* bound = heard(command.station);
   if (bound && bound->id == command.id) {
     if (bound->participant == command.from) return true;
-    // Whoever got the place in a silence keeps it a little when the first is heard again: what comes then may
-    // have been under way.
+    // A station that took the place during a silence keeps it briefly when the first is heard again: a
+    // command may have been under way.
     if (bound->former && bound->former->first == command.from && age(bound->former->second) < kGivingBack)
       return true;
   }

@@ -35,7 +35,7 @@ class RobotModel {
   struct Pending {
     CommandHeard command{};
     Duration at{};
-    bool repeat{};  ///< the same command had been received before
+    bool repeat{};  ///< The same command had been received before.
   };
   /// A joystick sample that came from the holder under the authority in force.
   struct Stick {
@@ -49,13 +49,13 @@ class RobotModel {
     Authority authority{};
     std::vector<Latch> latches{};
     BehaviourSent behaviour{};
-    std::deque<Pending> unanswered{};  ///< done or not: either is right
-    bool lock_lapsed{};                ///< its lease had run out
-    bool disk_failed{};  ///< the disk took nothing: the state may be lost, but must not be guessed
+    std::deque<Pending> unanswered{};  ///< Executed or not: both are valid.
+    bool lock_lapsed{};                ///< The lease had run out.
+    bool disk_failed{};                ///< The disk failed: the state may be lost, but must not be guessed.
   };
 
   void take_in(const Event& event);
-  /// Whether with this event the command component speaks that was made anew.
+  /// Whether this event is the first one of the restarted command component.
   bool begins_again(const Event& event) const;
   void set_now(Duration now) { now_ = now; }
 
@@ -163,11 +163,11 @@ class RobotModel {
   std::optional<Before> before_{};
   BehaviourSent behaviour_{};
   Authority authority_{};
-  Authority restored_{};  ///< what the process published first: it read this from its disk
+  Authority restored_{};  ///< First published authority: read from the disk.
   std::vector<Latch> latches_{};
   std::map<std::string, Heard> stations_{};
   std::map<wire::ParticipantId, std::set<std::pair<std::string, StationId>>> participants_{};
-  std::deque<Pending> pending_{}, unanswered_{};  ///< unanswered: when the agent died
+  std::deque<Pending> pending_{}, unanswered_{};  ///< `unanswered_`: at the agent's death.
   std::map<CommandKey, std::optional<AckSent>> commands_{};
   std::deque<std::pair<std::uint64_t, Duration>> stamps_{};
   std::string mode_{}, mode_before_{};
@@ -175,7 +175,7 @@ class RobotModel {
   std::optional<Stick> stick_{}, pushed_stick_{};
   std::optional<std::pair<std::string, Duration>> forbidden_stick_{};
   Motion truth_{};
-  std::vector<std::pair<Duration, Duration>> jumps_{};  ///< when, by how much
+  std::vector<std::pair<Duration, Duration>> jumps_{};  ///< Time and size of each jump.
 };
 
 }  // namespace adit::sim

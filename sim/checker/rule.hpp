@@ -20,13 +20,13 @@ class Rule {
   virtual void settle(const RobotModel& robot, const Report& broken) { (void)robot, (void)broken; }
 };
 
-std::unique_ptr<Rule> make_one_holder_rule();     ///< rule 1
-std::unique_ptr<Rule> make_lock_rule();           ///< rule 2
-std::unique_ptr<Rule> make_acknowledge_rule();    ///< rule 3
-std::unique_ptr<Rule> make_stop_rule();           ///< rule 4
-std::unique_ptr<Rule> make_one_source_rule();     ///< rule 5
-std::unique_ptr<Rule> make_stale_is_zero_rule();  ///< rule 6
-std::unique_ptr<Rule> make_no_surprise_rule();    ///< rule 7
-std::unique_ptr<Rule> make_nothing_lost_rule();   ///< rule 9
+std::unique_ptr<Rule> make_one_holder_rule();     ///< Rule 1.
+std::unique_ptr<Rule> make_lock_rule();           ///< Rule 2.
+std::unique_ptr<Rule> make_acknowledge_rule();    ///< Rule 3.
+std::unique_ptr<Rule> make_stop_rule();           ///< Rule 4.
+std::unique_ptr<Rule> make_one_source_rule();     ///< Rule 5.
+std::unique_ptr<Rule> make_stale_is_zero_rule();  ///< Rule 6.
+std::unique_ptr<Rule> make_no_surprise_rule();    ///< Rule 7.
+std::unique_ptr<Rule> make_nothing_lost_rule();   ///< Rule 9.
 
 }  // namespace adit::sim

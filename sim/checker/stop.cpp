@@ -39,7 +39,7 @@ class Stop : public Rule {
       broken("did not tell " + owed_.front().first + " that a stop was reset by override");
       owed_.erase(owed_.begin());
     }
-    // A stop that was refused (see_answer has told), the last latch cleared, or one that came in vain before
+    // A refused stop (reported by see_answer), the last latch cleared, or a stop without effect before
     // the agent ended.
     if (stopped_since_ && robot.authority().start != 0 && robot.latches().empty() &&
         robot.pending().empty() && robot.now() > *stopped_since_)
@@ -74,11 +74,11 @@ class Stop : public Rule {
     }
   }
 
-  // Who stopped it and who clears it are both told.
+  // Both stations are notified: the one that stopped it and the one that clears it.
   void owe(const RobotModel& robot, const RobotModel::Pending& reset) {
     const Latch own{reset.command.station, reset.command.id};
     const auto owe_to = [&](const std::string& station) {
-      // Told already: the answer may have waited for the disk.
+      // Notified already: the answer may have waited for the disk.
       const auto told = told_.find(station);
       if (told == told_.end() || told->second < reset.at) owed_.emplace_back(station, robot.now());
     };
@@ -114,8 +114,8 @@ class Stop : public Rule {
   std::optional<Duration> stopped_since_{};
   Duration at_rest_by_{};
   bool told_moving_{};
-  std::map<std::string, Duration> told_{};                ///< of a reset, when last
-  std::vector<std::pair<std::string, Duration>> owed_{};  ///< who is to be told of a reset, since when
+  std::map<std::string, Duration> told_{};                ///< Last notification of a reset, by operator.
+  std::vector<std::pair<std::string, Duration>> owed_{};  ///< Operators to be notified, since when.
 };
 
 }  // namespace

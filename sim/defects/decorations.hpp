@@ -24,7 +24,7 @@ Decoration change_without_zero(const Subject& subject);
 Decoration no_zero_on_stale(const Subject& subject);
 Decoration manual_survives_handover(const Subject& subject);
 
-// Of what its sensors tell.
+// Defects of its sensor input.
 Decoration age_at_handling(const Subject& subject);
 Decoration odometry_jump_accepted(const Subject& subject);
 Decoration return_forgotten(const Subject& subject);

@@ -1,4 +1,4 @@
-// Defects of what the robot's sensors tell the agent.
+// Defects of the sensor input of the agent.
 #include <cmath>
 #include <optional>
 #include <string_view>

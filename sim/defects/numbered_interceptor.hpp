@@ -21,10 +21,10 @@ class NumberedInterceptor : public RadioInterceptor {
   /// Hands the command on under a number that was never used; its answer gets the command's number back.
   void pass_as_new(CommandFrom command, std::vector<Arrival>& out);
   /// Hands the command on as if the holder had sent it; the answer goes to who sent it. Nothing changes while
-  /// nobody holds the robot.
+  /// the robot has no holder.
   void pass_as_holders(const CommandFrom& command, std::vector<Arrival>& out);
-  /// Gives a command in the holder's name; nobody hears its answer. Does nothing while nobody holds the
-  /// robot.
+  /// Gives a command in the holder's name; its answer goes to no station. Does nothing without a holder of
+  /// the robot.
   void give(radio::CommandKind kind, std::vector<Arrival>& out, std::string_view word = {},
             std::uint16_t options = 0);
 
@@ -32,7 +32,7 @@ class NumberedInterceptor : public RadioInterceptor {
   bool on_answer(radio::Acknowledgement& answer) override;
 
  private:
-  /// Who asked, and under which number; a number of 0: nobody.
+  /// The station that asked and its sequence number; 0: none.
   struct Asked {
     std::string station{};
     StationId id{};

@@ -14,8 +14,8 @@ namespace adit::sim {
 
 struct LiveWorldParams {
   std::uint64_t seed{1};
-  std::uint32_t domain_base{100};  ///< robot k (from 1) is on DDS domain domain_base + k, [0, 200]
-  bool await_script{false};        ///< the scenario's time begins with begin_script(), not with start()
+  std::uint32_t domain_base{100};  ///< Robot k (from 1) is on DDS domain domain_base + k, [0, 200].
+  bool await_script{false};        ///< Scenario time begins with begin_script(), not with start().
 };
 
 /// A scenario's world and robots in real time, speaking each robot's domain over Fast DDS on loopback. The
@@ -42,7 +42,7 @@ class LiveWorld {
   /// Runs the task on the world's strand and waits for it.
   void on_strand(const Task& task);
 
-  Scenario judged_;  ///< the scenario with the expectations that truth alone answers
+  Scenario judged_;  ///< The scenario with the expectations that need the truth alone.
   LiveWorldParams params_;
   Simulation simulation_;
   Expectations expectations_;

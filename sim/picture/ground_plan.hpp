@@ -12,7 +12,7 @@ struct GroundPlan {
 
   int nx{}, ny{};
   std::vector<Kind> kind{};
-  Eigen::Vector2d low{}, high{};  ///< corners of the part worth showing, world, m
+  Eigen::Vector2d low{}, high{};  ///< Corners of the drawn part, world, m.
 
   Kind at(int i, int j) const { return kind[static_cast<std::size_t>(j) * nx + i]; }
 };

@@ -15,7 +15,7 @@ namespace {
 constexpr Colour kPaper{0.955, 0.95, 0.935}, kFloorTone{1.0, 1.0, 0.995}, kGlimpsedTone{0.865, 0.875, 0.88},
     kFurnitureTone{0.57, 0.61, 0.66}, kWallTone{0.17, 0.20, 0.25}, kInk{0.13, 0.15, 0.19},
     kFaint{0.42, 0.45, 0.50}, kGridTone{0.35, 0.45, 0.55, 0.16};
-// Okabe and Ito: told apart by the colour-blind too.
+// Okabe and Ito: also distinguishable for the colour-blind.
 constexpr std::array<Colour, 6> kPalette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
                                          {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
 constexpr Colour kEventTone{0.13, 0.15, 0.19};
@@ -25,7 +25,7 @@ constexpr std::size_t kMaxEvents = 40;
 /// World to pixels.
 struct View {
   Eigen::Vector2d low, high;
-  double scale;  ///< pixels a metre
+  double scale;  ///< Pixels per metre.
   double x(double wx) const { return kMargin + (wx - low.x()) * scale; }
   double y(double wy) const { return kHeader + (high.y() - wy) * scale; }
   double width() const { return (high.x() - low.x()) * scale; }

@@ -39,9 +39,8 @@ struct AgentContext {
   Runtime& runtime;
   wire::Participant& radio;
   wire::Participant& robot;
-  std::shared_ptr<store::Disk> disk{};  ///< the robot's; it outlives the agent. Null: none
-  std::function<void(const std::string& why)>
-      end{};              ///< the agent's process ends itself, to be started again
+  std::shared_ptr<store::Disk> disk{};  ///< The robot's disk, which outlives the agent. Null: none.
+  std::function<void(const std::string& why)> end{};  ///< Ends the agent's process, which is then restarted.
   double start_ground{};  ///< Height of the ground at the robot's start, world frame, m
 };
 

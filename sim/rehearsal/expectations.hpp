@@ -11,11 +11,11 @@ namespace adit::sim {
 /// What expectations are judged by, read when they are judged.
 struct Evidence {
   std::function<const RobotWord&(const std::string& robot)> word{};
-  std::function<Pose2(const std::string& robot)> pose{};  ///< true, world frame
+  std::function<Pose2(const std::string& robot)> pose{};  ///< True pose, world frame.
   std::function<int(const std::string& robot)> collisions{};
-  std::function<int(const std::string& robot)> caused{};  ///< of them, by the robot itself
-  std::map<std::string, Reason> last_answer{};            ///< by operator
-  std::map<std::string, std::size_t> findings{};          ///< by operator whose station runs
+  std::function<int(const std::string& robot)> caused{};  ///< Contacts caused by the robot.
+  std::map<std::string, Reason> last_answer{};            ///< By operator.
+  std::map<std::string, std::size_t> findings{};          ///< By operator whose station runs.
 };
 
 /// Judges a scenario's expectations as time goes on.

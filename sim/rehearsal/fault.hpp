@@ -15,8 +15,8 @@ namespace adit::sim {
 /// The process of a robot's agent or of a basestation dies and is started again; or a component of an agent
 /// throws.
 struct Crash {
-  std::string victim{};     ///< a robot or a basestation
-  std::string component{};  ///< of a robot's agent; empty: the whole process
+  std::string victim{};     ///< A robot or a basestation.
+  std::string component{};  ///< Component of a robot's agent; empty: the process.
 };
 /// A callback of a robot's component does not return.
 struct Hang {
@@ -24,13 +24,13 @@ struct Hang {
 };
 struct CutLink {
   std::string a{}, b{};
-  bool one_way{};  ///< only what a sends to b
+  bool one_way{};  ///< Only messages from a to b.
   Duration duration{};
 };
 struct DegradeLink {
   std::string a{}, b{};
-  double loss{};   ///< chance, instead of the link's
-  double delay{};  ///< added to the latency, s
+  double loss{};   ///< Probability in place of the link's.
+  double delay{};  ///< Added to the latency, s.
   Duration duration{};
 };
 /// Nothing passes between the groups; who is in none of them is not concerned.
@@ -42,7 +42,7 @@ struct Partition {
 struct Reorder {
   std::string a{}, b{};
   double chance{};
-  double by{};  ///< up to so long, s
+  double by{};  ///< Maximum, s.
   Duration duration{};
 };
 struct Duplicate {
@@ -59,7 +59,7 @@ struct SensorSilent {
   Sensor sensor{Sensor::lidar};
   Duration duration{};
 };
-/// The drive stands, whatever it is told.
+/// The drive is stationary and ignores commands.
 struct StuckDrive {
   std::string robot{};
   Duration duration{};
@@ -88,10 +88,10 @@ struct Find {
 /// No fault either: a program on the robot steers, in mode `external`, 20 times a second.
 struct Steer {
   std::string robot{};
-  Twist2 velocity{};  ///< body frame
+  Twist2 velocity{};  ///< Body frame.
   Duration duration{};
 };
-/// The robot's driver is started again: its odometry begins anew at zero, where the robot is.
+/// The robot's driver is restarted: its odometry starts at zero where the robot is.
 struct OdometryReset {
   std::string robot{};
 };

@@ -11,15 +11,15 @@ namespace adit::sim {
 /// straight way. Remembers what it found by cells of a quarter of a metre; bounded. Not for several threads.
 class RadioWalls {
  public:
-  static constexpr double kAntenna = 0.5;           ///< above where a machine stands, m
-  static constexpr double kMaxAttenuation = 300.0;  ///< dB; more makes no difference
+  static constexpr double kAntenna = 0.5;           ///< Height of the antenna above the machine's place, m.
+  static constexpr double kMaxAttenuation = 300.0;  ///< Attenuation limit, dB; more makes no difference.
   static constexpr double kCell = 0.25;             ///< m
-  static constexpr std::size_t kMaxPairs = 4096;    ///< pairs of cells
+  static constexpr std::size_t kMaxPairs = 4096;    ///< Bound on stored pairs of cells.
 
   /// `per_metre`: dB, > 0. The world must outlive it.
   RadioWalls(const World& world, double per_metre) : world_(world), per_metre_(per_metre) {}
 
-  /// dB between two places where machines stand, m; the same both ways.
+  /// Attenuation between two machines' places (m), dB; symmetric.
   double operator()(const wire::Position& a, const wire::Position& b);
 
  private:

@@ -15,23 +15,23 @@ namespace adit::sim {
 
 struct RunParams {
   std::uint64_t seed{1};
-  int workers{2};  ///< threads for the heavy work of one run, [1, 64]
+  int workers{2};  ///< Threads for the heavy work of one run, [1, 64].
   AgentFactory make_agent{};
   WireDecorator parent_wire{};  ///< Decorates the wire of each robot's parent process; empty: nothing does
-  std::function<void(Duration)> progress{};  ///< told the virtual time, every second of it
-  std::string record{};                      ///< an MCAP file that everything said goes into; empty: none
+  std::function<void(Duration)> progress{};  ///< Called with the virtual time, once per virtual second.
+  std::string record{};                      ///< MCAP file for all messages; empty: none.
 };
 
 /// A robot's way, for the picture.
 struct Trail {
   static constexpr Duration kPeriod{100ms};
-  std::vector<Pose2> poses{};  ///< one a period, true, world frame
+  std::vector<Pose2> poses{};  ///< True poses, one per period, world frame.
 };
 
 struct RunOutcome {
   RunReport report{};
   std::map<std::string, Trail> trails{};
-  std::vector<Goal> goals{};  ///< accepted
+  std::vector<Goal> goals{};  ///< Accepted goals.
   std::vector<Collision> collisions{};
 };
 

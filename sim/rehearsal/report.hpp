@@ -11,25 +11,25 @@
 namespace adit::sim {
 
 struct ExpectationResult {
-  std::string text{};  ///< as written in the scenario
+  std::string text{};  ///< As written in the scenario.
   int line{};
   bool ok{};
-  std::string found{};  ///< what was there instead, for people; empty when ok
+  std::string found{};  ///< What was found instead, as text; empty when ok.
 };
 
 struct RuleResult {
   int number{};
   std::string title{};
   std::uint64_t violations{};
-  std::vector<Violation> first{};  ///< the first of them
+  std::vector<Violation> first{};  ///< The first ones.
 };
 
 struct RobotResult {
-  double distance{};       ///< driven, m, truth
-  int collisions{};        ///< contacts that began
-  int caused{};            ///< of them, by the robot itself (sim/world/simulation.hpp, Collision)
-  double min_clearance{};  ///< m; to anything, over the run
-  double moving{};         ///< part of the time in motion, 0..1
+  double distance{};       ///< True distance driven, m.
+  int collisions{};        ///< Contacts that began.
+  int caused{};            ///< Those caused by the robot (sim/world/simulation.hpp, Collision).
+  double min_clearance{};  ///< Smallest clearance of the run, m.
+  double moving{};         ///< Share of the time in motion, [0, 1].
   std::map<std::string, double> mode_seconds{};
 
   /// "clearance 0.20 m", or that nothing was near.
@@ -38,13 +38,13 @@ struct RobotResult {
 
 struct TopicResult {
   std::uint64_t samples{};
-  std::uint64_t bytes{};  ///< payload handed to the wire
+  std::uint64_t bytes{};  ///< Payload written, bytes.
   std::uint64_t delivered{};
 };
 
 struct CommandResult {
   std::uint64_t sent{}, accepted{}, refused{};
-  std::map<std::string, std::uint64_t> reasons{};  ///< refusals by reason
+  std::map<std::string, std::uint64_t> reasons{};  ///< Refusals by reason.
 };
 
 /// An event on the time line: for the picture and for people.
@@ -65,9 +65,9 @@ struct RunReport {
   std::map<std::string, RobotResult> robots{};
   std::map<std::string, TopicResult, std::less<>> topics{};
   CommandResult commands{};
-  std::map<std::string, std::uint64_t> faults{};  ///< those that happened, by kind
+  std::map<std::string, std::uint64_t> faults{};  ///< Executed faults by kind.
   std::vector<TimedEvent> events{};
-  std::uint64_t failures{};  ///< exceptions that left a task
+  std::uint64_t failures{};  ///< Exceptions that left a task.
 
   std::uint64_t fault_count() const;
   bool ok() const;

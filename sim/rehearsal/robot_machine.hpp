@@ -61,7 +61,7 @@ class RobotMachine {
   Random random_;
   Duration clock_offset_;
   std::uint32_t domain_;
-  std::shared_ptr<store::MemoryDisk> disk_;  ///< of the agent's computer; it outlives crashes
+  std::shared_ptr<store::MemoryDisk> disk_;  ///< Disk of the agent's computer; outlives crashes.
   int disk_full_{};
   // In the order they are needed: a wire before what speaks on it.
   std::unique_ptr<Runtime> driver_runtime_{};

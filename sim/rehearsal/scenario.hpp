@@ -41,7 +41,7 @@ struct RobotSpec {
 
 struct StationSpec {
   std::string id{};
-  Eigen::Vector2d position{Eigen::Vector2d::Zero()};  ///< world frame, m
+  Eigen::Vector2d position{Eigen::Vector2d::Zero()};  ///< World frame, m.
 };
 
 /// A command line that an operator types at a given time.
@@ -58,29 +58,29 @@ struct RandomScript {
   std::vector<std::string> by{};
   std::vector<std::string> robots{};
   std::vector<std::string> verbs{};
-  double reach{3.0};  ///< of a random goto from the robot's start, m
+  double reach{3.0};  ///< Largest distance of a random goto from the start, m.
 };
 
 /// Random faults: `faults` of them that begin between `from` and `to`, each of one of `kinds`.
 struct RandomFaults {
   int faults{};
   Duration from{}, to{};
-  std::vector<std::string> kinds{};  ///< names of fault_kinds()
-  int finds{};                       ///< beside them: findings, each of one of the robots
+  std::vector<std::string> kinds{};  ///< Names of fault_kinds().
+  int finds{};                       ///< Findings beside the faults, each of one robot.
 };
 
 struct NearExpectation {
   std::string robot{};
-  double x{}, y{}, tolerance{};  ///< true position in the world, m
+  double x{}, y{}, tolerance{};  ///< True position in the world, m.
 };
 /// What a robot says of itself, all at once.
 struct StateExpectation {
   std::string robot{};
   std::optional<std::string> mode{};
-  std::optional<std::string> holder{};  ///< empty: nobody
+  std::optional<std::string> holder{};  ///< Empty: none.
   std::optional<bool> locked{};
   std::optional<bool> stopped{};
-  std::optional<NearExpectation> near{};  ///< and there, when both are expected
+  std::optional<NearExpectation> near{};  ///< Combined with the others: both must hold.
 };
 struct AnswerExpectation {
   std::string by{};
@@ -92,11 +92,11 @@ struct FindingsExpectation {
   std::size_t findings{};
 };
 struct NoCollision {
-  bool caused{};  ///< those alone that a robot caused, see Collision
+  bool caused{};  ///< Only contacts caused by a robot, see Collision.
 };
 /// Counted over the whole run.
 struct AtLeast {
-  std::string what{};  ///< commands, refusals, faults, or distance and moving (of every robot)
+  std::string what{};  ///< `commands`, `refusals`, `faults`, or `distance` and `moving` (of every robot).
   double amount{};
 };
 struct Expectation {
@@ -105,25 +105,25 @@ struct Expectation {
   std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
                AtLeast>
       what{};
-  int line{};          ///< in the scenario file
-  std::string text{};  ///< as written
+  int line{};          ///< In the scenario file.
+  std::string text{};  ///< As written.
 };
 
 struct Scenario {
   std::filesystem::path file{};
-  std::string text{};  ///< of the file
+  std::string text{};  ///< Text of the file.
   std::string name{};
   WorldSpec world{};
   Duration duration{};
-  std::uint64_t seed{1};  ///< when the command line names none
+  std::uint64_t seed{1};  ///< Used when the command line names none.
   wire::LinkProfile link{};
   LidarKind lidar{LidarKind::full};
   std::vector<RobotSpec> robots{};
   std::vector<StationSpec> stations{};
   std::vector<PersonSpec> people{};
-  std::vector<ScriptLine> script{};  ///< by time
+  std::vector<ScriptLine> script{};  ///< By time.
   std::optional<RandomScript> random{};
-  std::vector<Fault> faults{};  ///< by time
+  std::vector<Fault> faults{};  ///< By time.
   std::optional<RandomFaults> random_faults{};
   std::vector<Expectation> expectations{};
 

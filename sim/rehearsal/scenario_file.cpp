@@ -21,10 +21,10 @@ std::filesystem::path find_map(const Node& world, const std::string& key, const 
   if (name.empty()) return {};
   auto found = config::find_file(name, file);
   if (!found) {
-    // Where liboctomap-dev's package leaves it when nobody ran ./run setup.
+    // Place of liboctomap-dev's package, for machines without ./run setup.
     const std::filesystem::path package =
         std::filesystem::path("/usr/share/doc/liboctomap-dev/examples/data") / name;
-    std::error_code ignored;  // not there: the error below tells
+    std::error_code ignored;  // missing: the error below names it
     if (std::filesystem::exists(package, ignored)) return package;
     world.child(key).fail(found.error().reason,
                           found.error().text + "; put it there (./run setup fetches geb079.bt)");
@@ -133,7 +133,7 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.file = file;
   out.text = text;
   out.name = std::filesystem::path(file).stem().string();
-  // Missing: that is told, and not what it makes of every time in the file.
+  // A missing key is reported itself, not its effect on every time in the file.
   out.duration =
       from_seconds(root.has("duration") ? root.number("duration", config::above(0.0, kLongest)) : kLongest);
   if (!root.has("duration")) root.number("duration", config::above(0.0, kLongest));
@@ -156,7 +156,7 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
 }  // namespace
 
 Result<Scenario> load_scenario(const std::string& file) {
-  std::error_code unknown;  // then reading it tells
+  std::error_code unknown;  // then reading it reports the error
   if (!std::filesystem::is_regular_file(file, unknown))
     return Error{Reason::cannot_read,
                  file + ": no such scenario; those that come along are in config/scenarios/"};

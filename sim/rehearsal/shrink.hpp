@@ -11,7 +11,7 @@ namespace adit::sim {
 /// What a run failed by, of several the one that came first.
 struct Failure {
   int rule{};  ///< 0: no rule
-  int line{};  ///< of the expectation that failed, when no rule was broken
+  int line{};  ///< Line of the failed expectation, when no rule was broken.
   Duration at{};
   std::string text{};
   /// The same rule, or the same expectation.
@@ -30,11 +30,11 @@ using RunScenario = std::function<Result<RunReport>(const Scenario&)>;
 struct ShrinkParams {
   std::size_t max_runs{600};
   std::function<void(const std::string& what, std::size_t runs)> progress{};
-  std::function<bool()> stop{};  ///< asked before each run; true: what was found by then is the result
+  std::function<bool()> stop{};  ///< Called before each run; true ends the search with its best result.
 };
 
 struct ShrinkResult {
-  Scenario scenario{};  ///< fails as the first one did
+  Scenario scenario{};  ///< Fails as the first one did.
   Failure failure{};
   std::size_t runs{};
 };

@@ -18,7 +18,7 @@ class StickStream {
   ~StickStream();
   Result<void> start();
 
-  bool heard() const;  ///< the robot's state was heard: samples go out
+  bool heard() const;  ///< The robot's state was heard: samples are sent.
   std::uint64_t start_of_epoch() const;
   std::uint32_t epoch_counter() const;
   std::uint64_t sequence() const;

@@ -28,7 +28,7 @@ struct RobotWord {
 };
 
 /// Sees every frame of a rehearsal: feeds the checker, the digest and the counters, and keeps each robot's
-/// last word. Robots and their helpers on the inner network are told apart by machine name.
+/// last word. Robots and their helpers on the inner network are distinguished by machine name.
 class Witness {
  public:
   static constexpr std::uint32_t kRadioDomain = 77;

@@ -11,7 +11,7 @@ struct SeedRange {
   std::uint64_t first{1}, last{1};
 };
 
-/// Reason::bad_argument tells what to type.
+/// The text of Reason::bad_argument says what to type.
 Result<SeedRange> parse_seeds(const std::string& text);
 
 }  // namespace adit::sim

@@ -6,8 +6,8 @@
 /// How the programs that read a scenario end, and how they say why.
 namespace adit::sim {
 
-inline constexpr int kExitFailed = 1;      ///< an expectation or a rule does not hold
-inline constexpr int kExitUnreadable = 2;  ///< the scenario, or what it needs, is not there
+inline constexpr int kExitFailed = 1;      ///< An expectation or a rule does not hold.
+inline constexpr int kExitUnreadable = 2;  ///< The scenario, or a file it needs, is missing or unreadable.
 
 /// One line on stderr; gives the exit status.
 inline int report_error(const char* program, const Error& error) {

@@ -11,10 +11,10 @@ namespace adit::sim {
 /// What many runs of one scenario gave.
 struct SeedsOutcome {
   std::uint64_t done{}, wanted{};
-  std::map<std::uint64_t, RunReport> failed{};  ///< by seed
-  std::optional<Error> broken{};                ///< a run that could not be made
+  std::map<std::uint64_t, RunReport> failed{};  ///< By seed.
+  std::optional<Error> broken{};                ///< Error of a run that could not start.
   std::uint64_t fewest_commands{}, fewest_faults{}, commands{}, faults{};
-  double virtual_s{}, wall_s{};  ///< wall: of all together
+  double virtual_s{}, wall_s{};  ///< `wall_s`: of all runs together.
 };
 
 /// One run for each seed, as many at a time as there are cores, and a line of a table for each. Ctrl-C ends

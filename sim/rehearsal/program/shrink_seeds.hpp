@@ -3,7 +3,7 @@
 
 namespace adit::sim {
 
-/// Shrinks the first failing seed of each rule that was broken (of at most three), tells what is left, and
+/// Shrinks the first failing seed of each rule that was broken (of at most three), prints what is left, and
 /// writes each as a scenario that fails by itself: the first to `file`, when that is not empty, the others to
 /// NAME-seedN-ruleM.yaml in the working folder. Ctrl-C writes what was found by then. Errors: a file that
 /// cannot be written.
