@@ -29,44 +29,48 @@ class Decider;
 class ModeTable;
 
 struct AgentParams {
-  std::string name{"r1"};  ///< 1 to 32 of [A-Za-z0-9_-]
+  std::string name{"r1"};  ///< 1 to 32 characters of [A-Za-z0-9_-].
   Platform platform{};
-  Id id{};                    ///< kept on the robot's disk; all zero: drawn from the seed
-  std::uint64_t seed{1};      ///< of the epoch; another one at each start
-  Pose2 start{};              ///< map frame, where odometry begins
-  double start_height{};      ///< Of the ground there, map frame, m; odometry's z counts from it.
-  Duration lock_lease{300s};  ///< a lock lapses when its holder was silent so long; 0: never
+  Id id{};                ///< Stored on the robot's disk; all zero: drawn from the seed.
+  std::uint64_t seed{1};  ///< Of the epoch; differs at each start of the agent.
+  Pose2 start{};          ///< Map frame; the pose where odometry begins.
+  double start_height{};  ///< Height of the ground at `start`, map frame, m; the z of odometry is relative to
+                          ///< it.
+  Duration lock_lease{300s};  ///< A lock expires after its holder was silent for this long; 0: never.
   /// Behaviour tree, on the configuration's search path. A tree that cannot be read, or contradicts the mode
   /// table, is refused: the agent runs in `hold` with the reason tree_refused.
   std::string tree{"trees/robot.xml"};
   std::shared_ptr<const ModeTable> modes{};  ///< The robot's modes; null: those that are shipped.
-  /// Loads that file, for tests that replace the check against the mode table; empty: Decider::load.
+  /// Loads the tree file, for tests that replace the check against the mode table; empty: Decider::load.
   std::function<Result<std::unique_ptr<Decider>>(const std::string& file)> load_tree{};
-  Duration planning{20ms};  ///< what a planning cycle takes in rehearsal
+  Duration planning{20ms};  ///< Duration of a planning cycle in rehearsal.
   std::shared_ptr<LogSink> log{};
-  /// What the local planner of that platform looks up, when several robots share it; empty: made here.
+  /// Returns the local planner's lookup tables for a platform, when several robots share them; empty: the
+  /// agent computes its own.
   std::function<std::shared_ptr<const nav::PlannerLibrary>(const Platform&)> library{};
-  /// Makes a local planner of its own; empty: the one that the platform names.
+  /// Makes a local planner that replaces the one that the platform names; empty: the platform's.
   std::function<std::unique_ptr<nav::Planner>()> local_planner{};
-  std::shared_ptr<store::Disk> disk{};  ///< what outlives the agent; null: nothing is kept
-  std::uint64_t
-      boot{};  ///< of this computer's start: after another one odometry is another one; 0: not known
-  bool resume_after_restart{true};  ///< an autonomous mode goes on after a restart; false: hold, goal kept
-  VelocityType velocity{};          ///< what the driver's /cmd_vel is
+  std::shared_ptr<store::Disk>
+      disk{};            ///< Stores the state that survives a restart; null: nothing is stored.
+  std::uint64_t boot{};  ///< Id of the computer's boot; odometry starts again at each boot; 0: unknown.
+  bool resume_after_restart{
+      true};  ///< An autonomous mode resumes after a restart; false: the robot holds, and its goal is stored.
+  VelocityType velocity{};  ///< Message type of the driver's /cmd_vel.
   SafeguardParams safeguards{};
-  std::size_t findings{512};  ///< kept at most, [1, 65536]
+  std::size_t findings{512};  ///< Maximum number of stored findings, [1, 65536].
   SupervisionParams supervision{};
-  /// The agent's process is to end and to be started anew: a component could not be brought back. Called
-  /// once, on a strand of the agent; empty: the agent stays as it is, with zero at the driver.
+  /// Requests a restart of the agent's process, because a component could not be restarted. Called once, on a
+  /// strand of the agent; empty: the agent keeps running and sends zero to the driver.
   std::function<void(const std::string& why)> end{};
-  /// Called twenty times a second while supervisor and command component live, on the supervisor's strand.
+  /// Called at 20 Hz on the supervisor's strand while the supervisor and the command component are alive.
   std::function<void()> alive{};
 };
 
-/// One robot's agent: discovery, command interface, behaviours, mux, navigation, driver, telemetry, composed
-/// of components that a supervisor watches and makes anew, each alone: command, planner, sensors. The same
-/// object live and in rehearsal. Made, started and destroyed outside its strands; runtime and wires must
-/// outlive it.
+/// The agent of one robot: discovery, command interface, behaviours, mux, navigation, driver and telemetry.
+///
+/// The components command, planner and sensors are supervised, and each is restarted separately. The same
+/// class runs live and in rehearsal. Construct, start and destroy it outside its strands; the runtime and the
+/// participants must outlive it.
 class Agent {
  public:
   Agent(AgentParams params, Runtime& runtime, wire::Participant& radio, wire::Participant& robot);
@@ -74,34 +78,35 @@ class Agent {
   Agent(const Agent&) = delete;
   Agent& operator=(const Agent&) = delete;
 
-  /// Errors: bad_argument (name, platform), those of the wires.
+  /// Errors: bad_argument (name, platform), those of the participants.
   Result<void> start();
 
-  /// The robot's own console: "status", "unlock", "peers", "health", "restart COMPONENT", "policy COMPONENT
-  /// auto|manual". `answer` runs on a strand of the agent, or never when that hangs. From any thread, after
-  /// start().
+  /// Executes a line of the robot's own console: "status", "unlock", "peers", "health", "restart COMPONENT",
+  /// "policy COMPONENT auto|manual". `answer` runs on a strand of the agent, or never if that strand hangs.
+  /// Callable from any thread, after start().
   void at_console(const std::string& line, std::function<void(const std::string&)> answer);
 
-  /// Something was found: kept on the disk, sent until every station that is heard has it (rule 9). Its robot
-  /// is this one; id 0: it gets one; stamp 0: now. What is not taken (no room, no finding) is told to
-  /// everybody. From any thread live, after start().
+  /// Reports a finding. It is stored on the disk and sent until every station that is heard has it (rule 9).
+  /// The agent sets its robot; id 0 is replaced by a new id, stamp 0 by the present time. If the finding is
+  /// invalid or there is no room, all operators are notified. Callable from any thread live, after start().
   void report(findings::Finding finding);
 
-  /// Asks for the place of the odometry frame in the map, from which a correction is computed. `done` runs on
-  /// `caller` exactly once, unless that strand ends first. Errors: no_answer (the command component is away,
-  /// or does not answer within 2 s), cancelled (it was restarted meanwhile, or the agent ended), queue_full.
-  /// Called on `caller`, after start().
+  /// Requests the pose of the odometry frame in the map, from which a correction is computed. `done` runs on
+  /// `caller` exactly once, unless that strand ends first. Errors: no_answer (the command component is not
+  /// running, or does not answer within 2 s), cancelled (it was restarted meanwhile, or the agent ended),
+  /// queue_full. Call it on `caller`, after start().
   void map_frame(Executor& caller, std::function<void(const Result<MapFrame>&)> done);
 
-  /// Corrects the place of the odometry frame in the map, as SLAM does; no robot moves by that (rule 7).
-  /// `done` is called as for map_frame(), with the place then in force. Errors: those of Frames::correct and
-  /// of map_frame(). After no_answer and cancelled the correction may be in force: map_frame() tells.
+  /// Corrects the pose of the odometry frame in the map, as SLAM does; this moves no robot (rule 7). `done`
+  /// is called as for map_frame(), with the pose then in force. Errors: those of Frames::correct and of
+  /// map_frame(). After no_answer and cancelled the correction may be in force; map_frame() returns the
+  /// actual pose.
   void correct_map(Executor& caller, const MapFrame& corrected,
                    std::function<void(const Result<MapFrame>&)> done);
 
-  /// For tests and rehearsals: a callback on the strand of that component throws or never returns.
-  /// Components: command, planner, sensors. Errors: bad_argument for another name. From any thread live,
-  /// after start().
+  /// For tests and rehearsals: makes a callback on the strand of that component throw or never return.
+  /// Components: command, planner, sensors. Errors: bad_argument for another name. Callable from any thread
+  /// live, after start().
   Result<void> inject(const std::string& component, ComponentFault fault);
 
  private:

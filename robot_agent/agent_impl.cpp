@@ -7,10 +7,10 @@
 namespace adit::agent {
 namespace {
 
-/// A clean end waits so long for what is not on disk yet. The program ends itself after 3 s.
+/// Maximum wait of a clean end for pending disk writes. The program ends itself after 3 s.
 constexpr Duration kDiskDrain = 2s;
 
-/// Runs the robot's tree, or holds because it was refused.
+/// Makes the decider of the robot's tree, or one that holds because the tree was refused.
 std::unique_ptr<Decider> decider_of(const AgentParams& params) {
   const ModeTable& table = params.modes ? *params.modes : ModeTable::shipped();
   const auto file = config::find_file(params.tree);
@@ -19,7 +19,8 @@ std::unique_ptr<Decider> decider_of(const AgentParams& params) {
   return decider ? std::move(*decider) : Decider::refused(decider.error(), table);
 }
 
-/// What lives on the slot opens its writers and readers by it: they end when its strand is left behind.
+/// Returns what a component on the slot needs to open its writers and readers: they end when its strand is
+/// left behind.
 wire::ComponentIo io_of(const ComponentSlot& slot, wire::Participant& wire) {
   return {wire, *slot.strand, slot.generation};
 }
@@ -46,10 +47,10 @@ Agent::Impl::~Impl() {
 
 void Agent::Impl::end_disk() {
   if (!disk_strand) return;
-  if (context && context->driver) context->driver->write({});  // the disk must not delay the zero
+  if (context && context->driver) context->driver->write({});  // The disk must not delay the zero velocity.
   if (context && context->keeper) context->keeper->flush();
   if (context && context->findings) context->findings->flush();
-  disk_strand->drain(kDiskDrain);  // one that does not answer must not keep the process from ending
+  disk_strand->drain(kDiskDrain);  // A disk that does not answer must not prevent the end of the process.
 }
 
 UnitParams Agent::Impl::command_unit() {
@@ -188,7 +189,8 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
 }
 
 std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {
-  if (params.platform.planner != nav::planner_names().front()) return nullptr;  // no other planner has one
+  if (params.platform.planner != nav::planner_names().front())
+    return nullptr;  // No other planner has a library.
   {
     const std::lock_guard lock(mutex_);
     if (library_) return library_;

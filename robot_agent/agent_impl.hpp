@@ -6,15 +6,15 @@
 
 namespace adit::agent {
 
-// What a seed is used for beside the epoch; each has its own sequence.
+// Random sequences drawn from the seed beside the epoch's.
 inline constexpr std::uint64_t kIdentitySalt = 1;
 inline constexpr std::uint64_t kFindingsSalt = 2;
 
-/// The parts of an agent, composed: four units on strands of their own, what they share, and who watches
-/// them. Private to agent.cpp.
+/// The implementation of Agent: four units, each on a strand of its own, their shared context, and the
+/// supervisor. Private to agent.cpp.
 struct Agent::Impl {
   Impl(const AgentParams& agent_params, Runtime& agent_runtime);
-  /// First nothing runs any more, then the parts go.
+  /// Stops all strands before it destroys the parts.
   ~Impl();
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -29,13 +29,13 @@ struct Agent::Impl {
   std::unique_ptr<Context> context{};
   Unit command, planner, router, sensors;
   std::shared_ptr<Strand> watch_strand;
-  std::shared_ptr<Strand> disk_strand{};  ///< null: there is no disk, or one that takes no time
+  std::shared_ptr<Strand> disk_strand{};  ///< Null: there is no disk, or its writes take no time.
   std::unique_ptr<AgentSupervisor> watch{};
 
  private:
-  /// Writes what waits for the disk, for a bounded time.
+  /// Completes queued disk writes, for a bounded time.
   void end_disk();
-  std::mutex mutex_{};  // guards the next one: a planner that hangs may still be making it
+  std::mutex mutex_{};  // Guards library_: a planner that hangs may still be computing it.
   std::shared_ptr<const nav::PlannerLibrary> library_{};
 
   StateKeeper::Outputs keeper_outputs();

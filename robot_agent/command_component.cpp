@@ -11,8 +11,8 @@ namespace {
 CommandParams command_params(const AgentParams& params, const Frames& frames, std::uint32_t instance) {
   CommandParams c{};
   c.robot = params.name;
-  // Another one for each instance of the component. Zero is what a message holds that nobody filled in: no
-  // epoch starts with it.
+  // A different value for each instance of the component. No epoch starts with zero, the value of an unset
+  // field in a message.
   Random starts(params.seed);
   for (std::uint32_t i = 0; i < instance; ++i) (void)starts.next();
   c.epoch_start = starts.next() | 1u;
@@ -28,7 +28,7 @@ NavigationParams navigation_params(const AgentParams& params) {
   return n;
 }
 
-constexpr Duration kBeat = 50ms;  // tree, mux, follower and driver: 20 Hz
+constexpr Duration kBeat = 50ms;  // Tree, mux, follower and driver run at 20 Hz.
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
 constexpr Duration kPulse = 50ms;
@@ -63,14 +63,14 @@ void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, s
 
 Result<MapFrame> Agent::CommandComponent::correct_map(const MapFrame& corrected) {
   if (const auto taken = frames_.correct(corrected); !taken) return taken.error();
-  keep();  // At once: the next instance must not give the same epoch to another place.
+  keep();  // Stores at once: the next instance must not use the same epoch for another place.
   return frames_.map_frame();
 }
 
 void Agent::CommandComponent::odometry_jumped() {
-  constexpr Duration kTellAgain = 5s;  // Two drivers that write in turn jump with every sample.
+  constexpr Duration kTellAgain = 5s;  // Two drivers that write alternately cause a jump with every sample.
   navigation_.clear();
-  waiting_scan_.reset();  // it was taken in the frame that ended
+  waiting_scan_.reset();  // It was taken in the previous odometry frame.
   behaviour_.hold(Reason::odometry_jumped, now());
   keep();  // As in correct_map().
   if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
@@ -95,7 +95,7 @@ void Agent::CommandComponent::scan(std::shared_ptr<PointCloud> points, std::uint
 }
 
 bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
-  constexpr std::uint64_t kLongest = 200'000'000;  // ns; farther ahead, the lidar has another clock.
+  constexpr std::uint64_t kLongest = 200'000'000;  // In ns; a stamp farther ahead is from another clock.
   const std::uint64_t newest = frames_.newest_stamp();
   return newest != 0 && stamp > newest && stamp - newest <= kLongest;
 }
@@ -158,15 +158,17 @@ bool Agent::CommandComponent::same_boot() const {
 }
 
 void Agent::CommandComponent::restore() {
-  // Made anew within this process it goes on from what it gave last, else from what is on the disk.
+  // A component that was restarted within this process continues from its last state in memory, otherwise
+  // from the state on the disk.
   if (const auto& last = context_.keeper->given()) context_.restored = restored_from(*last);
   if (!context_.restored.snapshot) return;
   const Snapshot& s = *context_.restored.snapshot;
-  commands_.restore(s.authority, s.answers, started_);  // listen_first asks who was heard since
+  commands_.restore(s.authority, s.answers,
+                    started_);  // listen_first() checks which stations were heard since.
   note_holder();
   if (s.place) frames_.restore(*s.place);
-  // Without a pose to compare with, nobody knows whether the odometry is still the same. With one, the first
-  // sample tells.
+  // Without a stored pose it is unknown whether the odometry frame is still the same. With one, the first
+  // odometry sample decides.
   const bool comparable = s.place && s.place->newest;
   const bool resume = params_.resume_after_restart && same_boot() && comparable && !context_.restored.hold;
   behaviour_.restore(s.behaviour, commands_.stops().any(), resume, context_.instances == 1);
@@ -231,8 +233,8 @@ void Agent::CommandComponent::beat() {
   context_.keeper->tick();
 }
 
-// What goes on by itself after a restart must not outrun a stop that was given meanwhile, and is repeated
-// until this agent answers it.
+// A mode that resumes after a restart must not move before a stop from the meantime arrives; stations repeat
+// the stop until this agent answers it.
 void Agent::CommandComponent::listen_first(Time at) {
   constexpr Duration min_wait = 1s, heard_for = 300ms, max_wait = 3s;
   if (!behaviour_.listens() || context_.namesakes.verdict() == Namesakes::Verdict::undecided) return;
@@ -304,7 +306,7 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
   Behaviour::Inputs inputs{[this](Time at) { return sense(at); },
                            [this](const Eigen::Vector2d& place) { return navigation_.goal_free(place); },
                            {}};
-  // What flies keeps the height that it has.
+  // A flying robot keeps its height.
   if (params_.platform.flies()) inputs.height = [this] { return frames_.height(); };
   inputs.set_pose = [this](const Pose2& pose) { return set_pose(pose); };
   inputs.pose = [this]() -> std::optional<Pose2> {

@@ -30,35 +30,35 @@
 
 namespace adit::agent {
 
-/// What outlives the command component: the endpoints that other machines know, who is there, the last known
-/// safe state, and the way to the components beside it. Touched on the command strand, but for what says
+/// The objects that outlive the command component: the endpoints that other computers know, the peers, the
+/// last known safe state, and the services of the other components. Used on the command strand unless noted
 /// otherwise.
 struct Agent::Context {
   Context(Executor& command, const wire::ParticipantId& own)
       : peers(command), directory(peers), namesakes(own) {}
 
-  std::unique_ptr<Notifier> notifier{};  ///< from any thread
+  std::unique_ptr<Notifier> notifier{};  ///< From any thread.
   std::unique_ptr<RadioEdge> radio{};
   std::unique_ptr<Driver> driver{};
   PeerTable peers;
   Directory directory;
   Namesakes namesakes;
-  Restored restored{};  ///< what was there at the start, or when the component was made anew
-  std::unique_ptr<StateKeeper> keeper{};  ///< what the component gave last, here and on the disk
+  Restored restored{};                    ///< State at the start, or when the component was restarted.
+  std::unique_ptr<StateKeeper> keeper{};  ///< The component's last state, in memory and on the disk.
   std::unique_ptr<FindingSync> findings{};
-  PlanService planner{"planner", 2};        ///< These are for any thread.
-  std::unique_ptr<RouteServices> router{};  ///< Null: this robot has none.
+  PlanService planner{"planner", 2};        ///< The services are callable from any thread.
+  std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};
   FrameServices frames{};
-  AgentSupervisor* watch{};               ///< from any thread
-  CommandComponent* command_component{};  ///< null while the command component is away
-  std::uint32_t instances{};              ///< of the command component so far
-  wire::Participant* wire{};              ///< the radio domain
-  wire::RateControl rate{};               ///< of RobotState; the rest of the telemetry follows
+  AgentSupervisor* watch{};               ///< From any thread.
+  CommandComponent* command_component{};  ///< Null while the command component is not running.
+  std::uint32_t instances{};              ///< Number of instances of the command component so far.
+  wire::Participant* wire{};              ///< The radio domain.
+  wire::RateControl rate{};               ///< Rate of RobotState; the rest of the telemetry follows.
 };
 
-/// The command component: command interface, behaviour, mux, navigation's light half. Everything in it is
-/// made anew when it is restarted; what must survive that is put back in restore().
+/// The command component: command interface, behaviour, mux, and the part of navigation without heavy
+/// computation. A restart rebuilds all of it; restore() restores the state that must survive.
 class Agent::CommandComponent : public Component {
  public:
   CommandComponent(const AgentParams& params, Executor& command, std::unique_ptr<Decider> decider,
@@ -68,13 +68,14 @@ class Agent::CommandComponent : public Component {
   void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received);
   void battery(float charge);
   void external(const Twist2& velocity, Time received);
-  /// Somebody else writes velocities to this robot's driver.
+  /// Reports another participant that writes velocities to this robot's driver.
   void rival(const wire::ParticipantId& writer, Time received);
   void commands(const std::function<void(CommandInterface&)>& use);
-  /// The route to a place (map frame, m): `done` is called once, within half a second.
+  /// Asks the robot's global planner for a route to `goal` (map frame, m) and calls `done` exactly once,
+  /// within 0.5 s.
   void find_route(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done);
   std::string at_console(const std::string& line);
-  /// What must survive, as it is now.
+  /// Stores the state that must survive a restart.
   void keep();
 
  protected:
@@ -82,26 +83,27 @@ class Agent::CommandComponent : public Component {
   void on_stop() override;
 
  private:
-  /// The last known safe state, before anything is sent or heard.
+  /// Restores the last known safe state, before any message is sent or processed.
   void restore();
-  /// What was restored is of this computer's present start.
+  /// Whether the restored state is from the computer's present boot.
   bool same_boot() const;
   void beat();
   void listen_first(Time at);
   void watch_driver();
-  /// The odometry began again elsewhere: zero, hold, and a new local map.
+  /// Handles odometry that started again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
   Result<void> set_pose(const Pose2& pose);
   Result<MapFrame> correct_map(const MapFrame& corrected);
-  /// Whether that stamp is a little newer than the odometry: the next sample brings the pose of then.
+  /// Whether the stamp is slightly newer than the odometry, so that the next sample gives the pose at that
+  /// time.
   bool is_ahead(std::uint64_t stamp) const;
   void add_waiting_scan();
-  /// Holds while this robot gives way to another one of its name.
+  /// Keeps the robot in hold while it gives way to another one of its name.
   void watch_namesakes(Time at);
   void send_findings();
   Facts sense(Time now) const;
   CommandInterface::Outputs command_outputs();
-  /// The table of peers never evicts the holder.
+  /// Passes the holder to the table of peers, which never evicts it.
   void note_holder();
   Behaviour::Inputs behaviour_inputs();
   Behaviour::Outputs behaviour_outputs();
@@ -122,13 +124,13 @@ class Agent::CommandComponent : public Component {
     std::uint64_t stamp{};
     Time received{};
   };
-  std::optional<WaitingScan> waiting_scan_{};  ///< For odometry as new as it is.
+  std::optional<WaitingScan> waiting_scan_{};  ///< Waits for odometry as new as its stamp.
   Time started_{};
-  std::optional<Time> holder_heard_{};  ///< First time since the start that the holder was heard.
+  std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
   std::optional<Time> jump_told_{};
   RivalWatch rivals_;
-  bool gives_way_{};                     ///< to another robot of its name
-  RateLimit<bool> namesakes_told_{10s};  // by whether it gives way
+  bool gives_way_{};                     ///< It gives way to another robot of its name.
+  RateLimit<bool> namesakes_told_{10s};  // The key is `gives_way_`.
   std::vector<Timer> timers_{};
 };
 

@@ -105,7 +105,6 @@ language_open() {
   cat <<'TEXT'
 basestation  words comments columns
 core         words comments columns
-robot_agent  words comments columns
 sim          words comments columns
 nav          words comments constants columns
 TEXT

@@ -121,7 +121,8 @@ void Behaviour::holder_changed(Time now) {
 }
 
 void Behaviour::holder_restarted(Time now) {
-  // A stick that is held pushed across the restart must not go on by itself: manual modes fall to hold.
+  // A stick that stays pushed across the restart must not continue to move the robot: manual modes fall to
+  // hold.
   stick_.forget();
   tick(now);
 }
@@ -199,10 +200,11 @@ void Behaviour::tick(Time now) {
 
 void Behaviour::fall(const ModeRow& from, Reason reason) {
   fell_because_ = reason;
-  if (reason == Reason::stopped) return;  // who stopped it was told already
+  if (reason == Reason::stopped) return;  // The stopping operator was already notified.
   const std::string text = std::string(from.name) + " ended: " + std::string(describe(reason));
   const bool stale = reason == Reason::joystick_stale;
-  if (stale && stick_.centred())  // the last that was heard of it: it was let go, and nothing was moving
+  if (stale &&
+      stick_.centred())  // The last sample was centred: the stick was released, and the robot did not move.
     return outputs_.tell_holder({{}, Severity::info, "mode_changed", reason, text});
   outputs_.tell_holder({{}, Severity::warning, stale ? "joystick_lost" : "mode_changed", reason, text});
 }
@@ -216,7 +218,7 @@ void Behaviour::watch(Time now) {
       {{}, Severity::info, "idle", Reason::none, "idle in " + std::string(decision_.mode->name)});
 }
 
-// The goal of the mode, else one that another mode keeps.
+// Returns the goal of the mode, otherwise one that another mode stores.
 ModeProgress Behaviour::progress() const {
   ModeProgress best{};
   for (const Mode& mode : modes_) {

@@ -12,7 +12,7 @@ namespace adit::agent {
 /// Runs the robot's behaviour tree (config/trees/robot.xml). Leaves: the conditions of the mode table by
 /// name, `Requested mode=""`, and the two ways of deciding, `Run mode=""` and `Pause mode=""`.
 ///
-/// Its decisions are wishes: MotionGuard enforces the mode table in front of the mux.
+/// Its decisions are requests: MotionGuard enforces the mode table in front of the mux.
 class Decider {
  public:
   /// Loads a tree and checks it against the mode table. Errors: those of the loader and of check_tree(), with
@@ -24,19 +24,19 @@ class Decider {
   /// Loads a tree without the check, for tests of what the guard enforces. Errors: those of the loader.
   static Result<std::unique_ptr<Decider>> load_unchecked(const std::string& tree_file,
                                                          const ModeTable& table = ModeTable::shipped());
-  /// Decides for `hold` always, because of a tree that was refused with `why`.
+  /// Makes a decider that always chooses `hold`, because the tree was refused with `why`.
   static std::unique_ptr<Decider> refused(const Error& why, const ModeTable& table = ModeTable::shipped());
   Decider(const Decider&) = delete;
   Decider& operator=(const Decider&) = delete;
 
-  /// Ticks the tree once. A tree that decides nothing, or fails, holds.
+  /// Ticks the tree once. A tree that decides nothing, or fails, chooses `hold`.
   Decision decide(std::string_view requested, const Facts& facts, Time now);
-  /// The tree has a Run for that mode.
+  /// Whether the tree has a Run for that mode.
   bool installed(const ModeRow& row) const { return modes_.contains(row.name); }
   const ModeTable& table() const { return table_; }
   /// Why the tree was refused; empty: it runs.
   const std::string& refusal() const { return refusal_; }
-  /// What a leaf threw in the last tick; empty: nothing.
+  /// The text of an exception that a leaf threw in the last tick; empty: none.
   const std::string& error() const { return error_; }
 
  private:
@@ -49,7 +49,7 @@ class Decider {
 
   const ModeTable& table_;
   bt::Tree tree_{};
-  std::set<std::string, std::less<>> modes_{};  ///< that the tree runs
+  std::set<std::string, std::less<>> modes_{};  ///< Names of the modes that the tree runs.
   std::string_view requested_{};
   Facts facts_{};
   Decision decision_{};

@@ -5,19 +5,19 @@
 
 namespace adit::agent {
 
-/// What the conditions of the modes look at.
+/// The inputs of the conditions of the modes.
 struct Facts {
   bool stopped{};
-  bool driver_alive{};   ///< odometry within the last 0.5 s
-  bool localised{};      ///< start pose known and odometry heard
-  bool terrain_fresh{};  ///< lidar points within the last 0.5 s
-  bool stick_fresh{};    ///< a sample within the last 0.3 s
-  bool stick_kept{};     ///< a sample within the last 1 s
+  bool driver_alive{};   ///< Odometry arrived within the last 0.5 s.
+  bool localised{};      ///< The start pose is known, and odometry was received.
+  bool terrain_fresh{};  ///< Lidar points arrived within the last 0.5 s.
+  bool stick_fresh{};    ///< A stick sample arrived within the last 0.3 s.
+  bool stick_kept{};     ///< A stick sample arrived within the last 1 s.
   bool stick_centred{};
   bool goal_known{};
-  bool goal_free{};      ///< no obstacle that is known covers it
-  bool program_fresh{};  ///< the program that steers from outside spoke within the last 0.5 s
-  /// Further facts that hold, for conditions of modes that need others; the mode's module adds them.
+  bool goal_free{};      ///< No known obstacle covers the goal.
+  bool program_fresh{};  ///< The program that steers in `external` sent a velocity within the last 0.5 s.
+  /// Names of further facts that hold, for conditions of additional modes; the mode's module adds them.
   std::vector<std::string_view> also{};
 
   bool has(std::string_view fact) const { return std::find(also.begin(), also.end(), fact) != also.end(); }

@@ -47,7 +47,7 @@ std::vector<ModeRow> shipped_rows() {
        .commanded_by = kHolder,
        .accepts = Accepts::stick,
        .on_handover = OnHandover::falls_to_hold,
-       // StickKept comes last: StickFresh has spoken already.
+       // StickKept comes last: StickFresh reports first.
        .conditions = {kNotStopped, kDriverAlive, kStickFresh, kStickCentred, kStickKept},
        .make = ManualMode::make,
        .source_age = Stick::kFresh},
@@ -67,7 +67,8 @@ std::vector<ModeRow> shipped_rows() {
        .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kGoalKnown, kGoalFree},
        .make = WaypointMode::make,
        .source_age = kPlannerAge},
-      // Falls to hold when its program is silent: one that comes back must not move the robot by that alone.
+      // Falls to hold when its program is silent, so that a program which resumes sending does not move the
+      // robot by that alone.
       {.name = "external",
        .commanded_by = kHolder,
        .accepts = Accepts::program,

@@ -14,11 +14,11 @@ namespace adit::agent {
 struct ModeContext;
 class ModeModule;
 
-/// When a condition is asked.
+/// When a condition is evaluated.
 enum class Scope {
   entry,    ///< Only when the mode is entered.
   lasting,  ///< On entry and while the mode lasts; the row's `on_failure` says what its failure does.
-  ending,   ///< The same, and its failure ends every mode, even one that pauses.
+  ending,   ///< As `lasting`, and its failure ends every mode, even one that pauses.
 };
 
 /// A condition: the leaf of that name in the behaviour tree, and what the operator reads when it fails.
@@ -37,26 +37,27 @@ extern const Condition kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kSt
     kStickKept, kGoalKnown, kGoalFree, kProgramFresh;
 }
 
-/// Who asks for a mode.
+/// The party that requests a mode.
 enum class Commander : std::uint8_t {
   holder,  ///< The operator who holds the robot.
   agent,   ///< The robot's own safeguards.
 };
-/// The commanders that may ask for a mode.
+/// The parties that may request a mode.
 struct CommandedBy {
   bool holder{};
   bool agent{};
   constexpr bool allows(Commander who) const { return who == Commander::holder ? holder : agent; }
 };
 
-/// What a mode's module is given while the mode lasts.
+/// The input that a mode's module receives while the mode lasts.
 enum class Accepts {
   nothing,
   stick,    ///< The holder's stick: a manual mode.
   goal,     ///< The places of `goto`.
   program,  ///< Velocities of a program on the robot.
 };
-/// What becomes of the mode's goal when another mode is requested. On stop and restart it is always stored.
+/// What happens to the mode's goal when another mode is requested. On stop and restart the goal is always
+/// stored.
 enum class GoalOnLeaving { none, cleared };
 /// What the failure of a lasting condition does.
 enum class OnFailure { falls_to_hold, pauses };
@@ -71,21 +72,21 @@ struct ModeRow {
   GoalOnLeaving goal{};
   OnFailure on_failure{};  ///< `pauses`: it also resumes after a restart.
   OnHandover on_handover{};
-  /// In the order in which an operator is told of them.
+  /// In the order in which they are reported to operators.
   std::vector<Condition> conditions{};
   /// Makes the mode's module; null: nothing moves the robot in this mode.
   std::unique_ptr<ModeModule> (*make)(const ModeContext&){};
-  Duration source_age{};  ///< What the module wrote counts for so long (rule 6).
-  bool optional{};        ///< A tree may do without it: it is then not installed.
+  Duration source_age{};  ///< Period for which the module's last output is valid (rule 6).
+  bool optional{};        ///< The tree may have no `Run` for this mode; the mode is then not installed.
 
   bool manual() const { return accepts == Accepts::stick; }
   bool moves() const { return make != nullptr; }
-  /// Goes on without its operator.
+  /// Whether the mode continues without an operator.
   bool autonomous() const { return moves() && !manual(); }
 };
 
 /// The modes of a robot: `hold`, the fallback of all modes, and others. Guard, behaviour tree, command
-/// interface and BehaviourState read it. Decisions point into it: it must outlive who uses it.
+/// interface and BehaviourState read it. Decisions point into it: the table must outlive its users.
 class ModeTable {
  public:
   /// The first row must be `hold`; names must be unique.
@@ -98,9 +99,9 @@ class ModeTable {
 
   const std::vector<ModeRow>& rows() const { return rows_; }
   const ModeRow& hold() const { return rows_.front(); }
-  /// The row of that name, null when this robot has no module for it.
+  /// The row with that name; null if the table has none.
   const ModeRow* find(std::string_view name) const;
-  /// The first row that accepts it, null when there is none.
+  /// The first row that accepts that input; null if there is none.
   const ModeRow* accepting(Accepts what) const;
   /// Every distinct condition.
   const std::vector<Condition>& conditions() const { return conditions_; }
@@ -110,9 +111,9 @@ class ModeTable {
   std::vector<Condition> conditions_{};
 };
 
-/// A mode of the design that no shipped module provides.
+/// Whether the mode is part of the design, but no shipped module provides it.
 bool known_but_not_installed(std::string_view name);
-/// Why the mode cannot be entered now; none when it can.
+/// Why the mode cannot be entered now; `none` if it can.
 Reason entry_refusal(const ModeRow& row, const Facts& facts);
 
 }  // namespace adit::agent

@@ -5,28 +5,28 @@ namespace adit::agent {
 
 /// Enforces the mode table in front of the mux, whatever the behaviour tree decides (rules 4, 6 and 7).
 ///
-/// A request admits a mode when its commander may ask for it and all its conditions hold. From then on the
-/// tree's decision can only ask for less: what passes is the admitted mode or nothing, and only while all
-/// lasting conditions of its row hold in this very tick. The admission ends when a condition fails that ends
-/// the mode, when the tree decides for another mode, or when the row does not survive a change of holder;
-/// nothing but a further request brings it back. The guard reads neither tree nor configuration.
+/// A request admits a mode if its commander may request it and all its conditions hold. From then on the
+/// tree's decision can only restrict: the admitted mode passes or nothing does, and only while all lasting
+/// conditions of its row hold in the same tick. The admission ends when a condition fails that ends the mode,
+/// when the tree decides for another mode, or when the row does not survive a change of holder; only another
+/// request admits a mode again. The guard reads neither tree nor configuration.
 class MotionGuard {
  public:
   /// Starts in `hold`. `table` must outlive this.
   explicit MotionGuard(const ModeTable& table);
 
-  /// Admits `row` when `by` may ask for it and every condition holds; asking for the manual mode that is
-  /// admitted already needs no centred stick. Returns the reason of the refusal, or none.
+  /// Admits `row` if `by` may request it and every condition holds; requesting the manual mode that is
+  /// already admitted needs no centred stick. Returns the reason of the refusal, or none.
   Reason admit(const ModeRow& row, Commander by, const Facts& facts);
   /// Admits `row` without its entry conditions, after a restart. A mode that does not pause (manual modes,
-  /// `external`) needs a request: `hold` is admitted in its stead.
+  /// `external`) needs a request: `hold` is admitted instead.
   void readmit(const ModeRow& row);
   /// Admits `hold`.
   void hold() { admitted_ = hold_; }
   /// Ends a mode that does not survive a change of holder. Returns whether it ended.
   bool holder_changed();
 
-  /// The decision that counts: `wanted` by the tree, or less.
+  /// Returns the decision in force: the tree's decision `wanted`, or a more restricted one.
   Decision judge(const Decision& wanted, const Facts& facts);
 
   const ModeRow& admitted() const { return *admitted_; }

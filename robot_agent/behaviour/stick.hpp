@@ -4,11 +4,11 @@
 
 namespace adit::agent {
 
-/// The holder's stick as far as it is known.
+/// The last sample of the holder's stick, and its age.
 class Stick {
  public:
-  static constexpr Duration kFresh = 300ms;  ///< older: zero is sent
-  static constexpr Duration kKept = 1s;      ///< older: manual modes fall to hold
+  static constexpr Duration kFresh = 300ms;  ///< For an older sample, zero is sent.
+  static constexpr Duration kKept = 1s;      ///< Without a newer sample, manual modes fall to hold.
 
   void update(const Twist2& value, Time now) {
     value_ = value;

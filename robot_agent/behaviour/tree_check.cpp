@@ -29,7 +29,7 @@ std::string mode_of(const TreeNode& node) {
   return mode == node.config().ports.end() ? std::string{} : mode->second;
 }
 
-/// The name under which a leaf counts as asked: a condition's, or `Requested mode="NAME"`.
+/// The name under which a leaf counts as evaluated: a condition's, or `Requested mode="NAME"`.
 std::string requested(std::string_view mode) { return "Requested mode=\"" + std::string(mode) + "\""; }
 
 std::optional<std::string> asked_by(const TreeNode& leaf, const ModeTable& table) {
@@ -38,7 +38,7 @@ std::optional<std::string> asked_by(const TreeNode& leaf, const ModeTable& table
   return std::nullopt;
 }
 
-/// The scripts that let a node answer without being ticked.
+/// Whether scripts let the node return a status without being ticked.
 bool may_be_passed_over(const TreeNode& node) {
   const auto has = [&](Hook hook) { return node.config().hooks[static_cast<std::size_t>(hook)] != nullptr; };
   return has(Hook::success_if) || has(Hook::skip_if) || has(Hook::while_true);
@@ -49,8 +49,8 @@ bool is_reactive(const TreeNode& node) {
          node.id() == "ReactiveFallback";
 }
 
-/// The conditions that were asked in this tick, and held, when the node succeeds. A node with such a
-/// condition is never skipped.
+/// Returns the conditions that were evaluated in this tick, and held, if the node succeeds. A node with such
+/// a condition is never skipped.
 Names guaranteed(const TreeNode& node, const ModeTable& table) {
   if (may_be_passed_over(node)) return {};
   if (const auto name = asked_by(node, table)) return {*name};

@@ -29,7 +29,7 @@ void AnswerMemory::remember(const wire::ParticipantId& from, const Answer& answe
   Entry& entry = entries_[from];
   if (entry.answers.empty()) entry.answers.resize(kAnswers);
   entry.used = now;
-  // A number older than what its slot holds was answered stale; the newer answer stays.
+  // A number older than the one in its slot was refused as stale; the newer answer stays.
   Answer& slot = entry.answers[answer.seq % kAnswers];
   if (answer.seq > slot.seq) slot = answer;
   entry.newest = std::max(entry.newest, answer.seq);

@@ -6,18 +6,19 @@
 
 namespace adit::agent {
 
-/// A station that holds or stops a robot: name and id, whatever its participant.
+/// A station that holds or stops a robot, identified by name and id, independent of its participant.
 struct Party {
   std::string name{};
   Id id{};
   bool operator==(const Party&) const = default;
 };
 
-/// Who holds the robot: (holder, locked, epoch) and the lease of the lock (rules 1 and 2). Decides nothing
-/// about who may ask; CommandInterface does.
+/// The authority over the robot: holder, lock and its lease, and epoch (rules 1 and 2). CommandInterface
+/// decides which station may change it.
 class Authority {
  public:
-  /// `start`: random id of this start. `lease`: a lock ends when its holder is silent for so long; 0: never.
+  /// `start`: random id of this start. `lease`: a lock ends after its holder was silent for this long; 0:
+  /// never.
   Authority(std::uint64_t start, Duration lease) : epoch_{start, 0}, lease_(lease) {}
 
   const std::optional<Party>& holder() const { return holder_; }
@@ -28,7 +29,7 @@ class Authority {
   bool locked() const { return locked_; }
   const Epoch& epoch() const { return epoch_; }
 
-  /// A change of holder: unlocked, under the next epoch.
+  /// Changes the holder: unlocked, under the next epoch.
   void give(Party party, Time now) {
     holder_ = std::move(party);
     change(now);
@@ -40,7 +41,7 @@ class Authority {
   void lock() { locked_ = holder_.has_value(); }
   void unlock() { locked_ = false; }
 
-  /// After a restart: as it was, under the next epoch of this start; the lease starts anew.
+  /// Restores holder and lock after a restart, under the next epoch of this start; the lease starts again.
   void restore(std::optional<Party> holder, bool locked, std::uint32_t counter, Time now) {
     holder_ = std::move(holder);
     locked_ = locked && holder_;
@@ -48,15 +49,15 @@ class Authority {
     epoch_.counter = counter + 1;
   }
 
-  /// The holder gave a sign of life.
+  /// Records a heartbeat of the holder.
   void hear(Time now) { heard_ = now; }
-  /// The holder's last sign of life.
+  /// Time of the holder's last heartbeat.
   Time heard() const { return heard_; }
-  /// Seconds until the lock lapses; negative when no lease runs.
+  /// Time until the lock expires, s; negative if no lease runs.
   double lease_left(Time now) const {
     return locked_ && lease_ > Duration{0} ? std::max(0.0, seconds(heard_ + lease_ - now)) : -1.0;
   }
-  /// Ends the lock when its lease ran out; true when it did.
+  /// Ends the lock if its lease expired; returns whether it did.
   bool lapse(Time now) {
     if (!locked_ || lease_ <= Duration{0} || now - heard_ < lease_) return false;
     locked_ = false;

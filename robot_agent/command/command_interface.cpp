@@ -7,16 +7,16 @@ namespace {
 
 using command::verb;
 
-/// Asks the supervisor, where there is one.
+/// Asks the supervisor, if there is one.
 template <class Function, class... Arguments>
 Result<void> supervised(const Function& function, const Arguments&... arguments) {
   if (!function) return {Reason::not_supported, std::string(describe(Reason::not_supported))};
   return function(arguments...);
 }
 
-/// A question changes nothing, however often it is asked. The answer to every other accepted command is
-/// stored before it is sent, also when the command changed nothing: a repeat after a restart must not have
-/// the effect that it lacked the first time.
+/// Whether the command only queries state and changes nothing. The answer to every other accepted command is
+/// stored before it is sent, even if the command changed nothing: a repeat after a restart must not have an
+/// effect that the first command did not have.
 bool is_question(const command::CommandInfo& row) {
   return !row.conditions.holder && row.line == command::Line::none;
 }
@@ -56,9 +56,9 @@ void CommandInterface::hear(const Sender& from, std::uint16_t protocol, Time now
 
 std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   if (const Answer* first = memory_.find(c.from.participant, c.seq)) {
-    identify(c.from, StationTable::Sign::command, now);  // a repeat is a sign of life, too
+    identify(c.from, StationTable::Sign::command, now);  // A repeat also counts as a heartbeat.
     Answer again = *first;
-    if (again.epoch == Epoch{}) {  // given before a restart: what is in force is not what was
+    if (again.epoch == Epoch{}) {  // It was given before a restart: holder and epoch may have changed since.
       again.holder = authority_.holder_name();
       again.epoch = authority_.epoch();
     }
@@ -66,7 +66,7 @@ std::optional<Answer> CommandInterface::handle(const Command& c, Time now) {
   }
   const Outcome outcome = judge(c, now);
   const Answer result = answer(c, outcome);
-  // A name that is refused is refused each time, and is not worth a place in the memory or on the disk.
+  // A command with an invalid name is refused each time and needs no memory or disk space.
   if (c.seq != 0 && valid_name(c.from.name))
     memory_.remember(c.from.participant, result, c.request.info->line, !is_question(*c.request.info), now);
   return result;
@@ -80,8 +80,8 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
       identity.reason != Reason::none) {
     if (identity.reason == Reason::identity_mismatch && !may_be_back(c.from))
       report_intruder(c.from.name, c.from.participant, now);
-    // A stop needs no authority: neither that this participant is the station it says, nor a place in the
-    // table is asked for it (rule 4).
+    // A stop needs no authority: it is accepted without proof of the station's identity and without an entry
+    // in the table (rule 4).
     const Station* known = stations_.find(c.from.name);
     if (!stops || (known && known->id != c.from.id)) return identity;
   }
@@ -103,14 +103,14 @@ CommandInterface::Outcome CommandInterface::identify(const Sender& from, Station
   const bool holds = authority_.held_by(from.name, from.id);
   const auto verdict = stations_.hear(from, sign, authority_.holder(), now);
   if (verdict.found_out) report_intruder(from.name, *verdict.found_out, now);
-  // Already when it claims to be back: a manual mode does not go on meanwhile.
+  // A claim to be restarted suffices: a manual mode must not continue meanwhile.
   if (holds && verdict.restarted) requests_.holder_restarted(now);
   if (verdict.reason == Reason::none) {
     if (outputs_.accepted) outputs_.accepted(from);
     if (holds) authority_.hear(now);
     return {};
   }
-  // Whoever uses the holder's name without being him is more than a clash of names.
+  // Use of the holder's name by another station is an intrusion, not only a clash of names.
   if (verdict.reason == Reason::name_in_use && from.name == authority_.holder_name())
     return {Reason::identity_mismatch};
   return {verdict.reason};
@@ -125,7 +125,7 @@ CommandInterface::Outcome CommandInterface::check_holder(const Command& c) const
 }
 
 CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) {
-  if (c.request.verb == verb("stop")) return stop(c, now);  // whatever arguments it came with
+  if (c.request.verb == verb("stop")) return stop(c, now);  // A stop is accepted with any arguments.
   if (c.invalid) return {c.invalid->reason, c.invalid->text};
   switch (c.request.verb) {
     case verb("take"):
@@ -154,7 +154,7 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       outputs_.changed();
       return {};
     case verb("query"):
-    case verb("plan"):  // RadioEdge asks the global planner and puts the route into the answer
+    case verb("plan"):  // RadioEdge asks the global planner and adds the route to the answer.
       return {};
     case verb("restart"):
       return outcome(supervised(outputs_.restart, c.request.word("COMPONENT")));
@@ -168,7 +168,7 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
 
 CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {
   if (authority_.held_by(c.from.name, c.from.id)) return {};
-  tick(now);  // a lock that lapsed since the last second
+  tick(now);  // Ends a lock that expired since the last tick.
   const std::string former = authority_.holder_name();
   if (authority_.locked()) {
     notify(former, Severity::info, "asked", Reason::locked, c.from.name + " asked for " + params_.robot);
@@ -275,7 +275,7 @@ CommandInterface::Outcome CommandInterface::judge(const StickSample& s, Time now
   const Time received = now - s.waited;
   stick_heard_ = received;
   if (const Reason reason = gate_.judge(s, now); reason != Reason::none) return {reason};
-  identify({holder->name, holder->id, s.participant}, StationTable::Sign::command, now);  // a sign of life
+  identify({holder->name, holder->id, s.participant}, StationTable::Sign::command, now);  // A heartbeat.
   const Result<void> taken = requests_.stick(s.twist, received);
   return taken ? Outcome{} : Outcome{taken.reason(), taken.error().text};
 }

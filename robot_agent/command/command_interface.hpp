@@ -15,57 +15,60 @@
 namespace adit::agent {
 
 struct CommandParams {
-  std::string robot{};           ///< our name
-  std::uint64_t epoch_start{1};  ///< random id of this start
-  Duration lock_lease{300s};     ///< a lock lapses when its holder was silent so long; 0: never
-  std::uint16_t protocol{1};     ///< the version we speak
-  Eigen::Vector3d home{0.0, 0.0,
-                       std::numeric_limits<double>::quiet_NaN()};  ///< `home` goes there; map frame, m
+  std::string robot{};           ///< Name of this robot.
+  std::uint64_t epoch_start{1};  ///< Random id of this start.
+  Duration lock_lease{300s};     ///< A lock expires after its holder was silent for this long; 0: never.
+  std::uint16_t protocol{1};     ///< Protocol version of this robot.
+  Eigen::Vector3d home{
+      0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};  ///< Goal of the command `home`; map frame, m.
 };
 
-/// Everything that arrives by radio enters the robot here (rules 1 to 4, and 7 where it concerns the
-/// joystick). A pure state machine: it is told the time, and tells whoever made it what to send.
+/// Judges and executes the commands and joystick samples that arrive on the radio domain (rules 1 to 4, and 7
+/// for the joystick). A pure state machine: the caller passes the time, and outputs are returned or reported
+/// through Outputs.
 class CommandInterface {
  public:
   struct Outputs {
     std::function<void(const Notice&)> notify{};
-    std::function<void()> changed{};  ///< authority or stops are not what they were
-    /// The supervisor is asked; an error refuses the command. Null: there is no supervisor.
+    std::function<void()> changed{};  ///< Authority or stops changed.
+    /// Asks the supervisor for a restart; an error refuses the command. Null: there is no supervisor.
     std::function<Result<void>(const std::string& component)> restart{};
     std::function<Result<void>(const std::string& component, bool automatic)> policy{};
-    /// Whether what was given under that epoch is for this robot and not for another one of the same name.
-    /// Null: always.
+    /// Whether a command with that epoch is for this robot and not for another one of the same name. Null:
+    /// always.
     std::function<bool(const Epoch& epoch)> is_meant{};
-    /// A station gave a sign of life that is its own.
+    /// Reports a genuine heartbeat of a station.
     std::function<void(const Sender& station)> accepted{};
   };
 
   CommandInterface(CommandParams params, Requests& requests, Outputs outputs);
 
-  /// A station's sign of life; `protocol` is what it announced.
+  /// Processes a station's heartbeat; `protocol` is the version that it announced.
   void hear(const Sender& from, std::uint16_t protocol, Time now);
-  /// A participant left, or its lease ran out.
+  /// Records that a participant left, or that its lease expired.
   void departed(const wire::ParticipantId& participant) { stations_.leave(participant); }
-  /// Does what is asked, or not, and answers.
+  /// Executes or refuses a command, and returns the answer.
   std::optional<Answer> handle(const Command& command, Time now);
-  /// The answer to a refused sample; nothing when it was taken, or when that sender was told within a second.
+  /// Processes a stick sample. Returns the answer to a refused sample; nothing if the sample was accepted, or
+  /// if that sender got such an answer within the last second.
   std::optional<Answer> handle(const StickSample& sample, Time now);
-  /// Notices what time alone changes: the lock's lease. Once a second is often enough.
+  /// Ends a lock whose lease expired. Call it once a second.
   void tick(Time now);
-  /// A robot state with that stamp went out.
+  /// Records the stamp of a robot state that was sent.
   void sent_stamp(std::uint64_t stamp) { gate_.sent(stamp); }
-  /// The holder's stick was heard within the last second, fresh or stale: it lives on the stamps we send.
+  /// Whether a sample of the holder's stick arrived within the last second, fresh or stale; such samples echo
+  /// the stamps of our robot states.
   bool stick_used(Time now) const { return stick_heard_ && now - *stick_heard_ < 1s; }
-  /// The robot's own console: it can always end a lock. False when there was none.
+  /// Ends the lock from the robot's own console, which is always permitted. Returns false if there was none.
   bool unlock_at_console();
 
-  /// What must survive a restart of the agent.
+  /// The state that must survive a restart of the agent.
   KeptAuthority kept() const;
   std::vector<KeptAnswers> kept_answers() const { return memory_.kept(); }
-  /// Commands accepted since the start of this agent whose answers a restart must not forget.
+  /// Number of commands accepted since the start of this agent whose answers must survive a restart.
   std::uint64_t accepted() const { return memory_.accepted(); }
-  /// Comes back with it, before anything was heard: holder, lock and stops as they were, under a new epoch.
-  /// Tells nobody.
+  /// Restores holder, lock and stops under a new epoch, before any message is processed. Sends no
+  /// notification.
   void restore(const KeptAuthority& kept, const std::vector<KeptAnswers>& answers, Time now);
 
   const Authority& authority() const { return authority_; }
@@ -91,11 +94,11 @@ class CommandInterface {
   static Outcome outcome(const Result<void>& result) {
     return result ? Outcome{} : Outcome{result.reason(), result.error().text};
   }
-  /// The same for what the behaviour was asked; the sender is notified of a refusal, too.
+  /// The same for a request to the behaviour; the sender also gets a notification of a refusal.
   Outcome asked(const Command& c, const Result<void>& result) const;
   Outcome judge(const StickSample& s, Time now);
   Answer answer(const Command& c, const Outcome& outcome) const;
-  /// Null when nobody holds, or he was not heard.
+  /// The holder's station; null if the robot has no holder, or the station was not heard.
   const Station* holders_station() const;
   bool may_be_back(const Sender& from) const;
   void report_intruder(const std::string& name, const wire::ParticipantId& participant, Time now);

@@ -11,7 +11,7 @@
 
 namespace adit::agent {
 
-/// An answer that was given: enough to give it again.
+/// A stored answer, with all that is needed to repeat it.
 struct KeptAnswer {
   static constexpr std::size_t kText = 64;
 
@@ -21,7 +21,7 @@ struct KeptAnswer {
   bool operator==(const KeptAnswer&) const = default;
 };
 
-/// The last answers to one participant, its highest numbers.
+/// The last answers to one participant, those with the highest numbers.
 struct KeptAnswers {
   static constexpr std::size_t kParticipants = 8;  ///< Participants whose answers are stored
   static constexpr std::size_t kAnswers = 8;       ///< Answers stored for each
@@ -29,18 +29,19 @@ struct KeptAnswers {
   wire::ParticipantId participant{};
   std::string station{};
   Id station_id{};
-  std::uint64_t newest{};                    ///< highest number seen
-  std::array<std::uint64_t, 3> newest_of{};  ///< of each line of commands that must not be overtaken
-  std::uint64_t floor{};                     ///< lower numbers that are not among the answers are too old
+  std::uint64_t newest{};  ///< Highest number received.
+  std::array<std::uint64_t, 3>
+      newest_of{};        ///< Highest number of each line of commands that must stay in order.
+  std::uint64_t floor{};  ///< Lower numbers that are not among the answers are too old.
   std::vector<KeptAnswer> answers{};
   bool operator==(const KeptAnswers&) const = default;
 };
 
-/// What a restart of the agent must not lose of the command interface.
+/// The state of the command interface that must survive a restart of the agent.
 struct KeptAuthority {
-  Epoch epoch{};  ///< the counter goes on; the start is drawn anew
+  Epoch epoch{};  ///< The counter continues; the start is drawn again.
   std::optional<Party> holder{};
-  std::optional<Binding::Kept> speaker{};  ///< for the holder
+  std::optional<Binding::Kept> speaker{};  ///< Participant that is bound to the holder's name.
   bool locked{};
   std::vector<Party> stops{};
   bool operator==(const KeptAuthority&) const = default;

@@ -8,25 +8,25 @@
 
 namespace adit::agent {
 
-/// What the command interface lets through to the robot: the way in. Everything takes effect before the
-/// call returns, so that the output is zero before a stop is acknowledged.
+/// The interface through which accepted commands act on the robot. Every call takes effect before it returns,
+/// so that the output is zero before a stop is acknowledged.
 class Requests {
  public:
   virtual ~Requests() = default;
-  /// Refused with the first condition of the mode table that does not hold.
+  /// Requests a mode. Errors: the first condition of the mode table that does not hold.
   virtual Result<void> request_mode(const std::string& mode, Time now) = 0;
-  /// `goal`: map frame, m.
+  /// Requests a goal, map frame, m.
   virtual Result<void> request_goal(const Eigen::Vector3d& goal, Time now) = 0;
-  /// `pose`: map frame. The robot is there; moves nothing. Errors: wrong_mode outside hold, out_of_range,
+  /// Sets the robot's pose, map frame; moves nothing. Errors: wrong_mode outside hold, out_of_range,
   /// no_localisation.
   virtual Result<void> set_pose(const Pose2& pose, Time now) = 0;
   virtual void stop_changed(bool stopped, Time now) = 0;
-  /// Also when the holder let go.
+  /// Called when the holder changed, also when it released the robot.
   virtual void holder_changed(Time now) = 0;
-  /// The holder's station was started again: what its stick said is forgotten.
+  /// Called when the holder's station was restarted: its stick samples are discarded.
   virtual void holder_restarted(Time now) = 0;
-  /// A fresh sample of the holder's stick. Refused with wrong_mode when it is pushed and the mode does not
-  /// take it.
+  /// Passes on a fresh sample of the holder's stick. Errors: wrong_mode if the stick is pushed and the mode
+  /// does not accept it.
   virtual Result<void> stick(const Twist2& twist, Time now) = 0;
 };
 

@@ -12,12 +12,12 @@ StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, const st
   if (found == stations_.end()) return {add(from, holder, now) ? Reason::none : Reason::unknown_station};
   Station& station = *found;
   if (station.id != from.id) {
-    // The holder has the better right to his name than whoever used it while he was away.
+    // The holder takes precedence over a station that used its name meanwhile.
     if (!holds && station.binding.alive(now, kHeardFor)) return {Reason::name_in_use};
     station = Station{from.name, from.id, Binding(from.participant, now)};
     return {};
   }
-  // Before it held, a command was claim enough; for the place of the holder it takes a presence.
+  // A command suffices as a claim for other stations, but a claim to be the holder needs a presence.
   if (holds && !station.holds) station.binding.forget_claim();
   station.holds = holds;
   const auto verdict = station.binding.hear(from.participant, sign == Sign::presence || !holds, now);

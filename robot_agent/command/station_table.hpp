@@ -9,48 +9,48 @@
 
 namespace adit::agent {
 
-/// A station counts as heard for this long after its last sign of life.
+/// A station counts as heard for this long after its last heartbeat.
 inline constexpr Duration kHeardFor = Binding::kSilent;
 
 struct Station {
   std::string name{};
   Id id{};
-  Binding binding;           ///< the participant that speaks for it
-  std::uint16_t protocol{};  ///< 0: not announced yet
-  bool holds{};              ///< the robot, when it was heard last
+  Binding binding;           ///< The participant that sends for this station.
+  std::uint16_t protocol{};  ///< 0: not announced yet.
+  bool holds{};              ///< It held the robot when it was heard last.
 };
 
-/// Which stations are on the air, and which participant speaks for each name (rule 1). Bounded; the holder is
-/// never evicted, and it alone finds room in a table full of stations that are heard.
+/// The table of stations in radio contact, and of the participant bound to each name (rule 1). Bounded; the
+/// holder is never evicted, and only the holder is added to a table full of stations that are heard.
 ///
-/// - Same name and id from a new participant: the operator came back, as Binding judges. Of the holder a
-///   presence is asked; of others a command tells as much.
-/// - Same name, other id: refused while the first is heard.
+/// - Same name and id from a new participant: the station was restarted, as Binding judges. The holder must
+/// send a presence for this; for other stations a command suffices.
+/// - Same name, other id: refused while the first station is heard.
 class StationTable {
  public:
   static constexpr std::size_t kCapacity = 64;
 
   enum class Sign { presence, command };
   struct Verdict {
-    Reason reason{Reason::none};  ///< name_in_use, identity_mismatch, unknown_station (the table is full)
-    bool pending{};               ///< identity_mismatch, but it may be the operator come back
-    bool restarted{};             ///< a new participant speaks for the station, or claims to
-    std::optional<wire::ParticipantId> found_out{};  ///< one that claimed an identity that is another's
+    Reason reason{
+        Reason::none};  ///< `name_in_use`, `identity_mismatch` or `unknown_station` (the table is full).
+    bool pending{};     ///< With `identity_mismatch`: it may be the station after a restart.
+    bool restarted{};   ///< A new participant sends for the station, or claims to.
+    std::optional<wire::ParticipantId> found_out{};  ///< A participant that claimed another one's identity.
   };
 
-  /// Judges a sign of life and records it when it is genuine. `holder`: of the robot.
+  /// Judges a heartbeat and records it if it is genuine. `holder`: the robot's holder.
   Verdict hear(const Sender& from, Sign sign, const std::optional<Party>& holder, Time now);
-  /// After a restart, before anything was heard: `name` and `id` are the holder's, and this is who speaks for
-  /// them.
+  /// Restores the holder's name, id and bound participant after a restart, before any message is processed.
   void restore(const std::string& name, const Id& id, const Binding::Kept& speaker, Time now);
   void announce(const std::string& name, std::uint16_t protocol);
-  /// A participant left, or its lease ran out.
+  /// Records that a participant left, or that its lease expired.
   void leave(const wire::ParticipantId& participant);
 
   const Station* find(const std::string& name) const;
   const Station* by_participant(const wire::ParticipantId& participant) const;
   bool heard(const std::string& name, Time now) const;
-  /// The ids of all that are heard.
+  /// The ids of all stations that are heard.
   std::vector<Id> heard_ids(Time now) const;
   std::size_t size() const { return stations_.size(); }
 

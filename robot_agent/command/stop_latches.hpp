@@ -6,8 +6,8 @@
 
 namespace adit::agent {
 
-/// The software stop: one latch per stopper, beside the mode (rule 4). Bounded: when there is no room left
-/// the last latch becomes everybody else's, which only an override clears.
+/// The software stop: one latch for each stopping station, independent of the mode (rule 4). Bounded: when
+/// all latches are in use, the last one stands for all further stations, and only an override clears it.
 class StopLatches {
  public:
   static constexpr std::size_t kCapacity = 16;

@@ -12,14 +12,14 @@
 #include "robot_agent/common/notice.hpp"
 #include "robot_agent/common/planned_route.hpp"
 
-/// What the command interface speaks, free of generated message types: robot_agent/radio/convert.cpp
-/// converts at the edge.
+/// The message types of the command interface, independent of the generated ones:
+/// robot_agent/radio/convert.cpp converts between them.
 namespace adit::agent {
 
-/// Who rules since when; compared for equality only.
+/// A period of unchanged authority; compared for equality only.
 struct Epoch {
-  std::uint64_t start{};    ///< drawn anew at each start of the agent
-  std::uint32_t counter{};  ///< rises with every change of holder
+  std::uint64_t start{};    ///< Drawn again at each start of the agent.
+  std::uint32_t counter{};  ///< Rises with every change of holder.
   bool operator==(const Epoch&) const = default;
 };
 
@@ -29,19 +29,19 @@ struct Command {
   Epoch epoch{};
   std::uint64_t seq{};
   command::Request request{command::verb("query")};
-  std::optional<Error> invalid{};  ///< why the arguments are refused; `request` has its row alone then
+  std::optional<Error> invalid{};  ///< Why the arguments are refused; `request` then has only its row.
 };
 
-/// Exactly one per command and repeat.
+/// The answer to a command: exactly one for each command and repeat.
 struct Answer {
   std::string station{};
   Id station_id{};
-  std::uint64_t seq{};  ///< 0 for a refused stream
+  std::uint64_t seq{};  ///< 0 for a refused stick sample.
   Reason reason{Reason::none};
   std::string text{};
   std::string holder{};
   Epoch epoch{};
-  std::optional<PlannedRoute> route{};  ///< of an accepted plan
+  std::optional<PlannedRoute> route{};  ///< Of an accepted `plan`.
   bool accepted() const { return reason == Reason::none; }
 };
 
@@ -51,12 +51,12 @@ struct StickSample {
   wire::ParticipantId participant{};
   Epoch epoch{};
   std::uint64_t seq{};
-  std::uint64_t echo{};  ///< a stamp of ours, ns
-  Twist2 twist{};        ///< body frame
-  Duration waited{};     ///< from its reception until it was handled
+  std::uint64_t echo{};  ///< A stamp that this robot sent, ns.
+  Twist2 twist{};        ///< Body frame.
+  Duration waited{};     ///< From reception until the sample was handled.
 };
 
-/// The point that a command names, map frame, m; z is NaN when it was not given.
+/// The point in a command's arguments, map frame, m; z is NaN if it was not given.
 inline Eigen::Vector3d place_of(const command::Request& request) {
   return {request.number("X"), request.number("Y"), request.number("Z")};
 }

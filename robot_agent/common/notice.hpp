@@ -8,9 +8,9 @@ namespace adit::agent {
 
 enum class Severity : std::uint8_t { info, warning, error };
 
-/// Something an operator should know.
+/// A notification for operators.
 struct Notice {
-  std::string operator_name{};  ///< whom it concerns; empty: everybody
+  std::string operator_name{};  ///< The operator concerned; empty: all operators.
   Severity severity{Severity::info};
   std::string code{};
   Reason reason{Reason::none};

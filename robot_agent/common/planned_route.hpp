@@ -5,14 +5,14 @@
 
 namespace adit::agent {
 
-/// A route that somebody asked for, as it travels to stations. Map frame, m.
+/// A requested route as it is sent to stations. Map frame, m.
 struct PlannedRoute {
-  static constexpr std::size_t kMaxCorners = 24;  ///< an acknowledgement has no room for more
+  static constexpr std::size_t kMaxCorners = 24;  ///< An acknowledgement has no room for more.
 
   double length{};                        ///< m
-  double unknown_length{};                ///< of it through space that was not seen yet, m
-  std::size_t corners{};                  ///< of the complete route, its start and its goal included
-  std::vector<Eigen::Vector3d> points{};  ///< the first corners, at most kMaxCorners
+  double unknown_length{};                ///< Length through space that was not observed yet, m.
+  std::size_t corners{};                  ///< Of the complete route, its start and its goal included.
+  std::vector<Eigen::Vector3d> points{};  ///< The first corners, at most kMaxCorners.
 };
 
 }  // namespace adit::agent

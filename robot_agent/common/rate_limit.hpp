@@ -5,7 +5,7 @@
 
 namespace adit::agent {
 
-/// Lets one event per key and period through. Bounded: beyond `capacity` keys the oldest is forgotten.
+/// Limits events to one per key and period. Bounded: beyond `capacity` keys the oldest is dropped.
 template <class Key>
 class RateLimit {
  public:

@@ -6,35 +6,39 @@
 
 namespace adit::agent {
 
-/// Which participant speaks for one name and id. What is announced can be copied by anybody who hears it;
-/// that somebody goes on speaking cannot be prevented by a copy. So:
+/// Binds a name and id to one DDS participant.
 ///
-/// - A new participant that announces the same name and id claims them. It gets them when the one that speaks
-///   for them left, or was quiet for longer than signs of life are apart: a process that was killed and
-///   started again is back after 1.25 s at the latest, counted from its death.
-/// - When the first speaks again although another claimed, or got, its place, both live, so the newcomer was
-/// no
-///   restart: the first keeps it, or has it back, and the newcomer is shut out while the first is heard.
+/// An announcement can be copied by any participant that receives it, but a copy cannot stop the original
+/// from sending. Therefore:
 ///
-/// A forger gets a place only for as long as the real one is not heard, as by loss on the radio.
+/// - A new participant that announces the same name and id claims them. It gets them if the bound participant
+/// left, or was silent for longer than the heartbeat period: a process that was killed and restarted is bound
+/// again 1.25 s after its death at the latest.
+/// - If the bound participant sends again although another one claimed or got its binding, both are alive, so
+/// the new participant is no restart: the original keeps or regains the binding, and the new one is rejected
+/// while the original is heard.
+///
+/// A forger is therefore bound only while the original is not heard, e.g. because of radio loss.
 class Binding {
  public:
-  /// Signs of life are due every second; one that is later than this is missing.
+  /// Heartbeats are due every second; one that is later than this counts as missing.
   static constexpr Duration kQuiet = 1250ms;
-  /// Silent for so long, anybody with the name and id may have the place without announcing himself.
+  /// After this silence of the bound participant, any participant with the name and id is bound without an
+  /// announcement.
   static constexpr Duration kSilent = 3s;
-  /// Late samples of a participant that ended are no sign of life.
+  /// Samples that arrive later than this after a participant left do not count as heartbeats.
   static constexpr Duration kGrace = 1s;
 
   struct Verdict {
-    bool bound{};                                    ///< the participant speaks for the name and id
-    bool pending{};                                  ///< it claims to, and nothing speaks against it yet
-    bool restarted{};                                ///< it claimed just now, or got the place without
-    std::optional<wire::ParticipantId> found_out{};  ///< the newcomer that was shown to be no restart
+    bool bound{};      ///< The participant is bound to the name and id.
+    bool pending{};    ///< It claims the binding, and nothing contradicts the claim yet.
+    bool restarted{};  ///< It claimed the binding just now, or got it without a claim.
+    std::optional<wire::ParticipantId>
+        found_out{};  ///< The new participant that turned out to be no restart.
   };
 
-  /// Who has the place, who had it before and may have it back, and who was found out: what a restart must
-  /// not forget, or the first to speak after it would have the place.
+  /// The bound participant, the previous one, which may regain the binding, and the one that was rejected.
+  /// This state must survive a restart, or the first participant heard afterwards would be bound.
   struct Kept {
     wire::ParticipantId participant{};
     std::optional<wire::ParticipantId> former{}, rival{};
@@ -42,15 +46,16 @@ class Binding {
   };
 
   Binding(const wire::ParticipantId& participant, Time now) : participant_(participant), heard_(now) {}
-  /// As if the participant had spoken just now.
+  /// Restores a binding, as if its participant had been heard just now.
   Binding(const Kept& kept, Time now)
       : participant_(kept.participant), heard_(now), former_(kept.former), moved_(now), rival_(kept.rival) {}
 
-  /// A sign of life. `announces`: it may claim the place; else it counts only for who has it.
+  /// Processes a heartbeat. `announces`: it may claim the binding; otherwise it counts only for the bound
+  /// participant.
   Verdict hear(const wire::ParticipantId& from, bool announces, Time now);
-  /// Whoever claims the place has to announce himself anew.
+  /// Discards the claim: the claimant must announce itself again.
   void forget_claim() { claimant_.reset(); }
-  /// The participant left, or its lease ran out.
+  /// Records that a participant left, or that its lease expired.
   void leave(const wire::ParticipantId& participant) { left_ = left_ || participant == participant_; }
 
   const wire::ParticipantId& participant() const { return participant_; }
@@ -68,7 +73,7 @@ class Binding {
   bool left_{};
   std::optional<wire::ParticipantId> claimant_{};
   Time claimed_{};
-  /// Who had the place before, since when it has not, and one that was found out.
+  /// The participant that was bound before, the time of the change, and a rejected participant.
   std::optional<wire::ParticipantId> former_{};
   Time moved_{};
   std::optional<wire::ParticipantId> rival_{};

@@ -24,10 +24,11 @@ void Directory::adopt(Entry& entry, Peer said, Time now) {
 }
 
 void Directory::add(const Peer& said, Time now) {
-  // Names that the table evicted.
+  // Drops the entries of names that the table evicted.
   std::erase_if(entries_, [&](const Entry& e) { return !peers_.find(e.name); });
   if (const Peer* known = peers_.find(said.name)) {
-    // A station that was known by its commands alone: the participant that sent them has its name and id.
+    // The station was known only from its commands: the participant that sent them is bound to its name and
+    // id.
     entries_.push_back({said.name, Binding(known->participant, known->heard), {}, {}});
     return hear(entries_.back(), said, now);
   }
@@ -66,7 +67,7 @@ void Directory::capabilities(const Peer& said, Time now) {
 void Directory::presence(const std::string& name, const Id& id, const wire::ParticipantId& participant,
                          Time now) {
   Entry* known = find(name);
-  if (!known) return;  // its capabilities are on their way
+  if (!known) return;  // Its capabilities will follow.
   const Peer& peer = *peers_.find(name);
   const auto said = [&](const Peer& p) { return p.id == id && p.participant == participant; };
   if (known->waiting && said(*known->waiting)) {
@@ -74,14 +75,14 @@ void Directory::presence(const std::string& name, const Id& id, const wire::Part
   } else if (known->former && said(*known->former)) {
     hear(*known, Peer(*known->former), now);
   } else if (peer.id == id) {
-    Peer same = peer;  // the capabilities say what it is now
+    Peer same = peer;  // Its new capabilities will follow.
     same.participant = participant;
     hear(*known, same, now);
   }
 }
 
 void Directory::participant(const wire::ParticipantEvent& event) {
-  if (event.present) return;  // it will speak for itself
+  if (event.present) return;  // Its messages will follow.
   for (Entry& entry : entries_) {
     entry.binding.leave(event.id);
     if (entry.waiting && entry.waiting->participant == event.id) entry.waiting.reset();

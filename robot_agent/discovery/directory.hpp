@@ -9,36 +9,36 @@
 
 namespace adit::agent {
 
-/// Decides who speaks for each name on the air, and enters it into the PeerTable. An agent that comes back as
-/// another participant, under whatever address, is the same peer; a name belongs to its id, and a name and id
-/// to the participant that Binding says, so that nobody takes the place of one that is there. The holder's
-/// place stays its own while it is silent, too. Bounded.
+/// Decides which participant is bound to each announced name, and enters it into the PeerTable. An agent that
+/// returns as another participant, under any address, is the same peer. A name belongs to its id, and Binding
+/// decides which participant has a name and id, so that no participant can displace one that is present. The
+/// holder's name stays reserved while the holder is silent. Bounded.
 class Directory {
  public:
   /// `peers` must outlive the directory.
   explicit Directory(PeerTable& peers) : peers_(peers) {}
 
-  /// A peer described itself.
+  /// Processes the capabilities that a peer announced.
   void capabilities(const Peer& said, Time now);
-  /// A sign of life of a robot or a station.
+  /// Processes a heartbeat of a robot or a station.
   void presence(const std::string& name, const Id& id, const wire::ParticipantId& participant, Time now);
-  /// Another robot with this robot's name gave a sign of life.
+  /// Processes a heartbeat of another robot with this robot's name.
   void namesake(const std::string& name, const Id& id, const wire::ParticipantId& participant, Time now) {
     peers_.hear_namesake(name, id, participant, now);
   }
   void participant(const wire::ParticipantEvent& event);
-  /// Those that fell silent, and those that may take their places. Ten times a second is often enough.
+  /// Updates the peers that fell silent and the participants that may replace them. Call it at 10 Hz.
   void tick(Time now);
 
  private:
   struct Entry {
     std::string name{};
     Binding binding;
-    std::optional<Peer> waiting{};  ///< What a newcomer says that may not have the place yet
-    std::optional<Peer> former{};   ///< What was there before a newcomer got the place
+    std::optional<Peer> waiting{};  ///< Capabilities of a new participant that is not bound yet.
+    std::optional<Peer> former{};   ///< The entry before a new participant was bound.
   };
 
-  /// Null: the name is not in the table, or nobody described himself by it.
+  /// The entry of a name; null if the name is not in the table, or no peer announced capabilities with it.
   Entry* find(const std::string& name);
   void add(const Peer& said, Time now);
   void hear(Entry& entry, const Peer& said, Time now);

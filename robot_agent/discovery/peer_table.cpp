@@ -7,7 +7,7 @@
 namespace adit::agent {
 namespace {
 
-/// Without the ages.
+/// All fields except the ages.
 auto content(const Peer& p) {
   return std::tie(p.name, p.id, p.station, p.participant, p.described, p.protocol, p.software, p.platform,
                   p.length, p.width, p.height, p.max_speed, p.modes, p.place, p.namesake, p.present);
@@ -89,8 +89,8 @@ void PeerTable::accept_station(const Sender& from, Time now) {
   peer.participant = from.participant;
   Peer* known = edit(from.name);
   if (known && known->station && known->id == from.id) return touch(*known, now);
-  // A name belongs to its id while that is heard, or holds the robot; the holder alone has the better right
-  // to it.
+  // A name belongs to its id while that station is heard or holds the robot; only the holder takes
+  // precedence.
   if (known && (known->present || is_holder(*known)) && !is_holder(peer)) return;
   put(std::move(peer), now);
 }

@@ -9,72 +9,74 @@
 
 namespace adit::agent {
 
-/// Another robot or a station: what it answers to "who are you and what can you do?", and when it was heard.
+/// Another robot or a station: identity, capabilities and time of the last heartbeat.
 struct Peer {
   std::string name{};
   Id id{};
   bool station{};
-  wire::ParticipantId participant{};  ///< The one that speaks for name and id
-  bool described{};                   ///< The capabilities below were heard.
+  wire::ParticipantId participant{};  ///< The participant that is bound to name and id.
+  bool described{};                   ///< The capabilities below were received.
   std::uint16_t protocol{};
   std::string software{};
-  std::string platform{};              ///< wheeled, tracked, legged; empty for a station
+  std::string platform{};  ///< Name of the platform: wheeled, tracked, legged, ...; empty for a station.
   double length{}, width{}, height{};  ///< Footprint and height, m
   double max_speed{};                  ///< m/s
   std::vector<std::string> modes{};
-  std::optional<Eigen::Vector3d> place{};  ///< Where a station stands, map frame, m; unset: it did not say
+  std::optional<Eigen::Vector3d> place{};  ///< Position of a station, map frame, m; unset: not announced.
 
-  bool namesake{};              ///< Another robot with the name of this one
-  bool present{};               ///< Heard within PeerTable::kSilence, and it did not leave
-  Time first_heard{}, heard{};  ///< First and last sign of life, by this robot's clock
+  bool namesake{};              ///< Another robot with this robot's name.
+  bool present{};               ///< It was heard within PeerTable::kSilence, and did not leave.
+  Time first_heard{}, heard{};  ///< First and last heartbeat, by this robot's clock.
 
   Duration age(Time now) const { return now - heard; }
 };
-using PeerList = std::vector<Peer>;  ///< Sorted by name
+using PeerList = std::vector<Peer>;  ///< Sorted by name.
 
-/// All that this robot knows of other robots and of stations, with ages by its own clock.
+/// The table of the other robots and the stations, with ages by this robot's clock.
 ///
-/// Discovery fills it: `Directory` decides who speaks for a name and what it can do, the command interface
-/// reports the stations it accepts, and other robots with this robot's name are entries of their own. Every
-/// other component reads a const PeerTable. Runs on the command strand.
+/// Discovery fills it: `Directory` decides which participant is bound to a name and stores its capabilities,
+/// the command interface reports the stations it accepts, and other robots with this robot's name are entries
+/// of their own. Every other component reads a const PeerTable. Runs on the command strand.
 ///
-/// Bounded: a new peer takes the place of the absent one that was heard longest ago. The holder is never
-/// evicted, and when every entry is present it alone still finds room.
+/// Bounded: a new peer replaces the absent one that was heard longest ago. The holder is never evicted, and
+/// when every peer is present only the holder is still added.
 class PeerTable {
  public:
   static constexpr std::size_t kCapacity = 128;
-  static constexpr std::size_t kNamesakes = 8;  ///< Of the capacity
-  /// Two lost signs of life are forgiven; silence shows within 3 s.
+  static constexpr std::size_t kNamesakes = 8;  ///< Included in the capacity.
+  /// Tolerates two lost heartbeats; silence is detected within 3 s.
   static constexpr Duration kSilence = 2500ms;
 
   explicit PeerTable(Executor& owner) : list_(owner) {}
 
-  /// Null: no such peer is known. Namesakes are not found by name.
+  /// The peer with that name; null if there is none. Namesakes are not found by name.
   const Peer* find(const std::string& name) const;
   const Peer* by_participant(const wire::ParticipantId& participant) const;
-  /// The station that holds this robot; null while nobody does, or while it was not heard yet.
+  /// The station that holds this robot; null if the robot has no holder, or the station was not heard yet.
   const Peer* holder() const;
   const PeerList& all() const { return peers_; }
-  /// Published on every change but those of the ages, with this table's entries.
+  /// Subscribes to this table's entries; they are published on every change except of the ages.
   Subscription follow(Executor& strand, LocalTopic<PeerList>::Handler handler) const {
     return list_.subscribe(strand, std::move(handler));
   }
 
-  // What discovery and the command interface report.
+  // Reports of discovery and the command interface.
 
-  /// Enters a peer that spoke just now, or replaces the entry of its name. False: there is no room.
+  /// Adds a peer that was heard just now, or replaces the entry of its name. Returns false if there is no
+  /// room.
   bool put(Peer peer, Time now);
-  /// The command interface accepted a sign of life of a station; it may not have described itself yet.
+  /// Records a heartbeat of a station that the command interface accepted; the station may not have announced
+  /// its capabilities yet.
   void accept_station(const Sender& from, Time now);
-  /// Another robot with this robot's name spoke.
+  /// Records a heartbeat of another robot with this robot's name.
   void hear_namesake(const std::string& name, const Id& id, const wire::ParticipantId& participant, Time now);
-  /// The station that holds this robot; an empty name: nobody does.
+  /// Sets the station that holds this robot; an empty name: no holder.
   void set_holder(const std::string& name, const Id& id) {
     holder_ = name;
     holder_id_ = id;
   }
   void leave(const wire::ParticipantId& participant);
-  /// Marks the silent ones. Ten times a second is often enough.
+  /// Marks silent peers as absent. Call it at 10 Hz.
   void tick(Time now);
 
  private:
@@ -89,10 +91,10 @@ class PeerTable {
   PeerList peers_{};
   std::string holder_{};
   Id holder_id_{};
-  mutable LocalTopic<PeerList> list_;  // following it changes no peer
+  mutable LocalTopic<PeerList> list_;  // Mutable: a subscription changes no peer.
 };
 
-/// The peers as a table for people: name, kind, age, participant, place.
+/// The peers as a readable table: name, kind, age, participant, place.
 std::string describe(const PeerTable& peers, Time now);
 
 }  // namespace adit::agent

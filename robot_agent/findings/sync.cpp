@@ -14,7 +14,7 @@ using findings::Finding;
 
 constexpr const char* kTracksFile = "findings-known";
 constexpr store::StateFormat kTracksFormat{{'F', 'A', 'C', 'K'}, 1, 512 * 1024};
-constexpr Duration kTracksPeriod = 5s;  // one that is lost is sent once more, nothing else
+constexpr Duration kTracksPeriod = 5s;  // If the last write is lost, its findings are only sent once more.
 
 }  // namespace
 
@@ -33,7 +33,7 @@ findings::LoadReport FindingSync::load() {
   findings::LoadReport report = finding_store_.load();
   if (!disk_) return report;
   const store::State state = store::StateFile(disk_, kTracksFile, kTracksFormat).load();
-  // Without it every finding is sent once more, and no station is harmed by that.
+  // Without the file every finding is sent once more, which harms no station.
   if (state.found != store::LoadStatus::good) {
     if (state.found != store::LoadStatus::nothing)
       (void)store::set_aside(*disk_, kTracksFile, store::name(state.found));
@@ -59,12 +59,12 @@ Result<std::uint64_t> FindingSync::report(Finding finding) {
   if (finding_store_.all().contains(finding.key)) return id;
   if (finding_store_.full() && !make_room(finding.importance))
     return {Reason::queue_full, "no room for one more finding"};
-  (void)finding_store_.put(std::move(finding));  // valid, and there is room
+  (void)finding_store_.put(std::move(finding));  // It is valid, and there is room.
   return id;
 }
 
 bool FindingSync::make_room(std::uint8_t importance) {
-  const Finding* least = nullptr;  // the one that matters least, those that somebody has before others
+  const Finding* least = nullptr;  // The least important one; findings that a station has go first.
   bool least_known = false;
   for (const auto& [key, finding] : finding_store_.all()) {
     const auto found = tracks_.find(key.id);
@@ -106,7 +106,7 @@ std::vector<const Finding*> FindingSync::due(const std::vector<StationId>& heard
   const auto contains = [](const std::vector<StationId>& set, const StationId& s) {
     return std::find(set.begin(), set.end(), s) != set.end();
   };
-  // Who is heard again waits for nothing: the pauses grew while its link was going.
+  // A station that is heard again gets its findings at once: the pauses had grown while its link was bad.
   const std::vector<StationId> before_this = std::exchange(heard_, heard);
   if (heard.empty()) return out;
   const bool anew =
@@ -148,7 +148,7 @@ void FindingSync::save_tracks(Time now) {
     out.put(id).put(static_cast<std::uint16_t>(t.has.size()));
     for (const StationId& station : t.has) out.put(station);
   }
-  // What is lost here is sent once more.
+  // If this write is lost, its findings are only sent once more.
   const auto save = [file = store::StateFile(disk_, kTracksFile, kTracksFormat), bytes = out.bytes()] {
     (void)file.save(1, bytes);
   };

@@ -16,7 +16,7 @@ std::uint64_t stamp_of(const std_msgs::msg::Header& header) {
   return static_cast<std::uint64_t>(header.stamp().sec()) * 1'000'000'000u + header.stamp().nanosec();
 }
 
-// Maps count their cells in 32 bits: no robot's odometry comes as far as 1000 km.
+// Maps index their cells with 32 bits, so positions must be nearer than 1000 km.
 bool usable(const Pose3& pose, const Twist2& twist) {
   const double turn = pose.orientation.norm();
   return pose.position.allFinite() && pose.position.cwiseAbs().maxCoeff() < 1e6 && turn > 1e-6 &&
@@ -64,7 +64,8 @@ Result<std::unique_ptr<Driver>> Driver::open(const wire::ComponentIo& io, Veloci
                      Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
                      const auto& v = o.twist().twist();
                      const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
-                     if (!usable(pose, twist)) return;  // as good as silence: the robot stops when it goes on
+                     if (!usable(pose, twist))
+                       return;  // It counts as silence: the robot stops if it continues.
                      pose.orientation.normalize();
                      odometry(pose, twist, stamp_of(o.header()), info.received);
                    }),

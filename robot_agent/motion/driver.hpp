@@ -13,34 +13,35 @@ struct ComponentIo;
 
 namespace adit::agent {
 
-/// The robot domain: ROS 2 messages from and to the robot's driver, the lidar's clouds apart (scans.hpp).
-/// Programs of the robot that steer in the mode `external` speak here, too.
+/// The agent's readers and writers on the robot domain: ROS 2 messages from and to the robot's driver, except
+/// the lidar's (scans.hpp), and velocities of programs that steer in the mode `external`.
 class Driver {
  public:
-  /// Called on the command strand. `stamp`: the driver's clock, ns. `received`: when the sample arrived, by
-  /// our clock; it may have waited for the strand since.
+  /// Called on the command strand. `stamp`: time by the driver's clock, ns. `received`: time of reception by
+  /// the agent's clock; the sample may have waited for the strand since.
   struct Handlers {
     std::function<void(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received)>
         odometry{};
-    std::function<void(float charge)> battery{};                            ///< 0..1
-    std::function<void(const Twist2& velocity, Time received)> external{};  ///< what a program asks for
-    /// Another participant wrote a velocity.
+    std::function<void(float charge)> battery{};  ///< State of charge, [0, 1].
+    std::function<void(const Twist2& velocity, Time received)>
+        external{};  ///< Velocity that a program requests.
+    /// Reports that another participant wrote a velocity.
     std::function<void(const wire::ParticipantId& writer, Time received)> rival{};
   };
 
-  /// `io`: the command component's, on the robot domain; strand and wire must outlive the driver's last
-  /// callback. Errors of the wire.
+  /// `io`: the command component's, on the robot domain; strand and participant must outlive the driver's
+  /// last callback. Errors: those of the participant.
   static Result<std::unique_ptr<Driver>> open(const wire::ComponentIo& io, VelocityType type,
                                               Handlers handlers);
   ~Driver();
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
-  /// Nothing is called any more. From any thread.
+  /// Ends all calls of the handlers. Callable from any thread.
   void close();
-  /// Body frame. A failed write is counted by the wire; the next one follows within 50 ms.
+  /// Writes a velocity, body frame. The participant counts a failed write; the next one follows within 50 ms.
   void write(const Twist2& velocity);
-  /// Samples of the driver, and of whoever else writes its topics, that were none; since the wire was opened.
+  /// Number of malformed samples on the driver's topics since the participant was opened.
   std::uint64_t malformed() const;
 
  private:

@@ -6,15 +6,16 @@
 namespace adit::agent {
 namespace {
 
-/// How long a body may drive on after a sample: until the agent sends zero, or its parent does. The sample
-/// that was stored over a restart is up to 1 s older than the end of the agent.
+/// Maximum time that a body drives after an odometry sample: until the agent sends zero, or its parent
+/// process does. A sample stored over a restart is up to 1 s older than the end of the agent.
 constexpr Duration kUnwatched = Frames::kAlive + 250ms, kRestart = kUnwatched + 1250ms;
 
-// A driver's clock that was set back shows samples older than the newest one, too, but no others.
-constexpr std::uint64_t kLongestDelay = 500'000'000;  // ns, of a sample that others overtook
-constexpr int kMostOvertaken = 3;                     // in a row
+// If the driver's clock was set back, all samples are older than the newest one; if samples were only
+// delayed, others are not.
+constexpr std::uint64_t kLongestDelay = 500'000'000;  // Delay of a sample that others overtook, ns.
+constexpr int kMostOvertaken = 3;                     // Consecutive samples.
 
-constexpr double kLevel = 0.02;  // rad
+constexpr double kLevel = 0.02;  // Tilt, rad.
 
 }  // namespace
 
@@ -61,7 +62,7 @@ Result<void> Frames::correct(const MapFrame& corrected) {
   const Pose3& T_map_odom = corrected.T_map_odom;
   const Eigen::Quaterniond& q = T_map_odom.orientation;
   const bool is_pose = T_map_odom.position.allFinite() && std::fabs(q.norm() - 1.0) < 1e-3;
-  // Negated, so that what is not a number is no pose.
+  // Negated, so that NaN is rejected.
   if (!is_pose || !((q * Eigen::Vector3d::UnitZ()).head<2>().norm() <= std::sin(kLevel)))
     return {Reason::out_of_range, "map and odom are level, and a correction is finite"};
   T_map_odom_ = T_map_odom.planar();

@@ -19,14 +19,14 @@ struct OdometrySample {
   }
 };
 
-/// What survives a restart of the agent about where the robot is.
+/// The localisation state that survives a restart of the agent.
 struct KeptPlace {
   Pose2 T_map_odom{};
   std::uint32_t odom_epoch{};              ///< Rises when the odometry begins again elsewhere.
-  std::optional<OdometrySample> newest{};  ///< The last pose in the odometry frame; empty: there was none.
-  /// Of the odometry frame's origin in the map, m; empty: a version that did not know it wrote the place.
+  std::optional<OdometrySample> newest{};  ///< The last pose in the odometry frame; unset: there was none.
+  /// Height of the odometry frame's origin in the map, m; unset: written by a version without this field.
   std::optional<double> height{};
-  /// Rises with each change of T_map_odom; 0 also in a place that a version without it wrote.
+  /// Rises with each change of T_map_odom; also 0 if written by a version without this field.
   std::uint32_t map_epoch{};
   bool same_frame(const KeptPlace& other) const {
     return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch &&

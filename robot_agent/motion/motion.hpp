@@ -9,17 +9,18 @@
 
 namespace adit::agent {
 
-/// No motion: the output is zero, at once.
+/// No motion: the output is zero immediately.
 struct Stand {
   bool operator==(const Stand&) const = default;
 };
-/// A velocity for the wheels, body frame, cut to the platform's limits.
+/// A velocity command, body frame, limited to the platform's limits.
 struct Velocity {
   Twist2 twist{};
-  bool by_program{false};  ///< nobody sees where it leads: the collision monitor stops it, not warns
+  bool by_program{
+      false};  ///< No operator watches the motion: the collision monitor stops the robot instead of warning.
   bool operator==(const Velocity&) const = default;
 };
-/// A stick that says where to, for the local planner: direction and speed in the body frame, turn rate.
+/// A stick command for the local planner: direction and speed in the body frame, and turn rate.
 struct Guidance {
   Twist2 stick{};
   bool operator==(const Guidance&) const = default;
@@ -34,24 +35,25 @@ struct GoTo {
   }
 };
 
-/// How navigation gets on with the place that was asked for last.
+/// Navigation's progress towards the place that was requested last.
 struct Progress {
   bool arrived{};
-  bool blocked{};      ///< every path is blocked
-  bool unreachable{};  ///< no path leads there, not even through what was not seen yet; then `blocked`, too
+  bool blocked{};  ///< Every path is blocked.
+  bool
+      unreachable{};  ///< No path leads there, not even through unobserved space; `blocked` is then also set.
   bool operator==(const Progress&) const = default;
 };
 
-/// What a source asks of navigation.
+/// A motion that a source requests from navigation.
 using Motion = std::variant<Stand, Velocity, Guidance, GoTo>;
 
-/// The right to write to navigation. Only the mux can make one (rule 5).
+/// The permission to write to navigation (passkey idiom). Only the mux can construct it (rule 5).
 class MuxKey {
   friend class Mux;
-  explicit MuxKey() {}  // user-provided: nobody else gets one by braces either
+  explicit MuxKey() {}  // User-provided, so that braces cannot construct it elsewhere.
 };
 
-/// The one way into navigation.
+/// The only input interface of navigation.
 class NavigationInput {
  public:
   virtual ~NavigationInput() = default;

@@ -9,11 +9,11 @@ namespace {
 constexpr Duration kLongestTransport = 1s;  // From a sample's stamp to its reception.
 constexpr double kFaster = 1.25;        // A body may exceed its platform's speed by this factor, downhill.
 constexpr double kTurnsFaster = 1.5;    // The same for turns: tracks and legs overshoot more.
-constexpr double kNoise = 0.10;         // m: of one pose.
-constexpr double kHeadingNoise = 0.15;  // rad
-constexpr double kHeightNoise = 0.15;   // m
+constexpr double kNoise = 0.10;         // Position noise of one pose, m.
+constexpr double kHeadingNoise = 0.15;  // Heading noise, rad.
+constexpr double kHeightNoise = 0.15;   // Height noise, m.
 
-/// The longest time between the two measurements that receptions and stamps allow.
+/// Returns the longest time between the two measurements that is consistent with receptions and stamps.
 Duration time_between(const OdometrySample& from, const OdometrySample& to) {
   const Duration received = std::max(to.received - from.received, Duration{0});
   if (from.stamp == 0 || to.stamp <= from.stamp) return received;

@@ -13,7 +13,8 @@ void Mux::enable(std::string_view name, Time now) {
     if (inputs_[i].name == name) next = i;
   if (next == enabled_) return;
   enabled_ = next;
-  if (next != kNone) inputs_[next].written = false;  // what it said before it was enabled moves nothing
+  if (next != kNone)
+    inputs_[next].written = false;  // A motion written before the source was enabled is discarded.
   settled_ = now + params_.settle;
   pass(Stand{}, now);
 }

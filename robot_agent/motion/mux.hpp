@@ -8,21 +8,21 @@
 namespace adit::agent {
 
 struct MuxParams {
-  /// The output stays zero for so long when the source changes: one period of the driver, so that the zero
-  /// is seen by a reader that keeps only the last command.
+  /// The output stays zero for this time when the source changes: one period of the driver, so that a driver
+  /// that reads only the last command receives the zero.
   Duration settle{50ms};
 };
 
-/// Passes exactly one source to navigation, the one that the behaviour tree enabled (rule 5), and zero when
-/// that one falls silent (rule 6).
+/// A multiplexer that passes exactly one source to navigation, the one that the behaviour tree enabled (rule
+/// 5), and zero when that source falls silent (rule 6).
 class Mux {
  public:
-  /// A source's way in. Valid as long as the mux.
+  /// The input of a source. Valid as long as the mux exists.
   class Output {
    public:
     Output() = default;
-    /// Passed on at once when this source is enabled; else kept until the next write, and forgotten when the
-    /// source is enabled.
+    /// Writes a motion. It is passed on immediately if this source is enabled; otherwise it is discarded when
+    /// the source is enabled.
     void write(const Motion& motion, Time now) const {
       if (mux_) mux_->write(index_, motion, now);
     }
@@ -39,16 +39,16 @@ class Mux {
   Mux(const Mux&) = delete;
   Mux& operator=(const Mux&) = delete;
 
-  /// A new source; what it wrote counts for `max_age`. At start-up.
+  /// Adds a source; its motions are valid for `max_age`. Call it at start-up.
   Output connect(std::string name, Duration max_age);
-  /// From now on this source passes; "" (or a name that nobody connected): none. Through zero.
+  /// Enables a source, with zero output during the change; "" or an unknown name: none.
   void enable(std::string_view name, Time now);
-  /// Passes what the enabled source said last, or zero. At the driver's rate.
+  /// Passes the last motion of the enabled source, or zero. Call it at the driver's rate.
   void step(Time now);
 
   /// The enabled source; empty: none.
   const std::string& enabled() const;
-  /// The enabled source spoke within its age.
+  /// Whether the enabled source wrote within its `max_age`.
   bool fresh(Time now) const;
 
  private:

@@ -8,10 +8,11 @@
 namespace adit::agent {
 namespace {
 
-constexpr double kTurnLooksAhead = 0.6;   // s: how far a stick's turn rate shifts the direction asked for
-constexpr double kTurningSpeed = 0.05;    // m/s: of a stick that only turns
-constexpr Duration kAnswerDeadline = 2s;  // of planner and router: one that hangs is replaced sooner
-constexpr double kGoalMoved = 0.05;       // m: by a correction of the map
+constexpr double kTurnLooksAhead =
+    0.6;  // Time over which a stick's turn rate shifts the requested direction, s.
+constexpr double kTurningSpeed = 0.05;    // Speed for a stick that only turns, m/s.
+constexpr Duration kAnswerDeadline = 2s;  // Of planner and router; one that hangs is replaced earlier.
+constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction of the map, m.
 
 }  // namespace
 
@@ -56,7 +57,7 @@ void Navigation::clear() {
 }
 
 void Navigation::send(const Twist2& velocity) {
-  // What it was told is not what it does at once.
+  // The robot does not follow a new velocity immediately.
   const double since = seconds(now() - sent_at_);
   sent_at_ = now();
   sent_speed_ =
@@ -182,7 +183,7 @@ void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now) {
 
 const nav::RouteStep* Navigation::step_on(Time now) const {
   if (!step_ || now - step_made_ >= params_.step_age) return nullptr;
-  // The goal itself has moved in the odometry frame since.
+  // The goal has moved in the odometry frame since.
   const bool outdated =
       step_->last && step_->state != nav::RouteStep::State::unreachable && !is_goal(step_goal_);
   return outdated ? nullptr : &*step_;
@@ -215,7 +216,7 @@ void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step)
   step_goal_ = job.goal->head<2>();
   step_made_ = job.made;
   if (!unreachable) return;
-  has_plan_ = false;  // it stands: every way would be a wrong one
+  has_plan_ = false;  // The robot stops: no direction leads to the goal.
   outputs_.progress({.blocked = true, .unreachable = true});
 }
 
@@ -223,7 +224,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   auto job = std::make_shared<PlanJob>();
   job->scan = std::move(scan);
   job->target = target();
-  // The router, where there is one, has half of that time to lead another way first.
+  // The router, if there is one, first has half of that time to find another route.
   job->target.held = held_.held(seconds(now.time_since_epoch()), 2 * seconds(params_.held_after));
   const auto* step = step_on(now);
   job->last = !step || step->last;

@@ -15,7 +15,7 @@ nav::Navigator make_navigator(const PlannerParams& params,
 
 struct Planner::Maps {
   nav::Navigator navigator;
-  std::uint32_t odom_epoch{};  ///< Of the frame that they are in.
+  std::uint32_t odom_epoch{};  ///< Odometry epoch of the points.
 };
 
 Planner::Planner(PlannerParams params, Executor& strand, Log log, PlanService& service,

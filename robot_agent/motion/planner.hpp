@@ -8,21 +8,21 @@
 
 namespace adit::agent {
 
-/// A scan: points in the frame of base_link, m, and where base_link was.
+/// A scan: points in the frame of base_link, m, and the pose of base_link.
 struct Scan {
   PointCloud points{};
-  Pose3 body{};  ///< odometry frame
+  Pose3 body{};  ///< Odometry frame.
 };
 
-/// One planning cycle: what to plan.
+/// The input of one planning cycle.
 struct PlanJob {
   std::shared_ptr<Scan> scan{};
-  nav::Target target{};        ///< kind none: the scan enters the map, nothing is planned
-  bool last{true};             ///< `target` is the goal itself, no place on the way there
-  Eigen::Vector2d goal{0, 0};  ///< where the goal was that `target` leads to, odometry frame, m
-  Pose2 pose{};                ///< odometry frame
-  std::uint32_t odom_epoch{};  ///< Of that frame; what was mapped in another one is forgotten.
-  std::uint64_t generation{};  ///< of the goal, for whoever asked
+  nav::Target target{};        ///< Kind none: the scan enters the map, and nothing is planned.
+  bool last{true};             ///< `target` is the goal itself, not an intermediate point of the route.
+  Eigen::Vector2d goal{0, 0};  ///< Position of the goal to which `target` leads, odometry frame, m.
+  Pose2 pose{};                ///< Odometry frame.
+  std::uint32_t odom_epoch{};  ///< Epoch of that frame; maps of another epoch are discarded.
+  std::uint64_t generation{};  ///< Generation of the goal, for the caller.
   Time made{};
 };
 struct PlanAnswer {
@@ -33,16 +33,16 @@ using PlanService = Service<std::shared_ptr<const PlanJob>, std::shared_ptr<cons
 
 struct PlannerParams {
   Platform platform{};
-  Duration planning{20ms};  ///< what a cycle takes in rehearsal
-  /// Makes the local planner; empty: the one that the platform names.
+  Duration planning{20ms};  ///< Duration of a cycle in rehearsal.
+  /// Makes the local planner; empty: the platform's.
   nav::PlannerFactory local_planner{};
 };
 
-/// The planning work: terrain map and local planner, on a strand of its own, offered as a service. When it is
-/// made anew its map is empty; the next scans fill it.
+/// The component of terrain map and local planner, on a strand of its own, offered as a service. After a
+/// restart its map is empty; the next scans fill it.
 class Planner : public Component {
  public:
-  /// `library`: from the planner before this one, so that it need not be made again; null: it is made here.
+  /// `library`: from the previous planner, so that it need not be computed again; null: it is computed here.
   Planner(PlannerParams params, Executor& strand, Log log, PlanService& service,
           std::shared_ptr<const nav::PlannerLibrary> library = nullptr);
 

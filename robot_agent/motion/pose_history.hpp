@@ -7,9 +7,9 @@
 
 namespace adit::agent {
 
-/// Bounded history of a body's stamped poses in one frame, for its pose between two samples.
+/// Bounded history of a body's stamped poses in one frame; interpolates between samples.
 ///
-/// Stamps are of one clock, ns. The oldest samples are dropped when the history is full.
+/// All stamps are of one clock, ns. The oldest samples are dropped when the history is full.
 class PoseHistory {
  public:
   static constexpr std::size_t kCapacity = 256;  ///< Samples: 5 s at 50 Hz.
@@ -17,7 +17,7 @@ class PoseHistory {
   static constexpr std::uint64_t kLongestGap = 500'000'000;
 
   /// Adds a sample, also one older than the newest. A sample without a stamp (0), with the stamp of another
-  /// one, or older than all of a full history is left out.
+  /// one, or older than all of a full history is ignored.
   void add(std::uint64_t stamp, const Pose3& pose);
   /// The pose at `stamp`: linear in position, spherical linear in orientation. Errors: out_of_range before
   /// the oldest sample, after the newest one, in a gap longer than kLongestGap, and for stamp 0.
@@ -25,7 +25,7 @@ class PoseHistory {
   void clear() { size_ = 0; }
 
   std::size_t size() const { return size_; }
-  /// 0: there is none.
+  /// Stamp of the newest sample; 0: there is none.
   std::uint64_t newest() const { return size_ > 0 ? entry(size_ - 1).stamp : 0; }
 
  private:
@@ -33,7 +33,7 @@ class PoseHistory {
     std::uint64_t stamp{};
     Pose3 pose{};
   };
-  /// In the order of their stamps.
+  /// The `n`-th entry in the order of stamps.
   const Entry& entry(std::size_t n) const { return entries_[(first_ + n) % kCapacity]; }
   Entry& entry(std::size_t n) { return entries_[(first_ + n) % kCapacity]; }
 

@@ -7,20 +7,20 @@
 
 namespace adit::agent {
 
-/// Notices a second writer of /cmd_vel: wheels with two masters obey neither, and no rule of ours holds.
+/// Detects a second writer of /cmd_vel, with which none of the agent's safety rules can be guaranteed.
 class RivalWatch {
  public:
-  /// The agent's parent sends zeros while the agent is away, and a little longer.
+  /// The agent's parent process sends zeros while the agent is not running, and slightly longer.
   static constexpr Duration kGrace{3s};
-  /// One sample may be a probe by hand; this many within kWindow are a master.
+  /// One sample may be a manual test; this many within kWindow count as a writer.
   static constexpr int kSamples{3};
   static constexpr Duration kWindow{1s};
-  /// The same one is told again after this.
+  /// Period of repeated reports of the same writer.
   static constexpr Duration kAgain{30s};
 
   explicit RivalWatch(Time started) : started_(started) {}
 
-  /// Somebody else's velocity. True: tell of him now.
+  /// Processes a velocity of another participant. Returns true if operators must be notified now.
   bool heard(const wire::ParticipantId& writer, Time now);
 
  private:

@@ -15,7 +15,7 @@ struct Router::Maps {
       : planner(params.platform, params.route), keeper(params.platform) {}
   nav::RoutePlanner planner;
   nav::RouteKeeper keeper;
-  std::uint32_t odom_epoch{};  ///< Of the frame that they are in.
+  std::uint32_t odom_epoch{};  ///< Odometry epoch of the points.
 
   void enter(std::uint32_t epoch) {
     if (std::exchange(odom_epoch, epoch) == epoch) return;
@@ -37,7 +37,7 @@ Result<void> Router::on_start() {
 }
 
 void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply) {
-  // What a robot sees that stands and goes nowhere is the same again.
+  // A stationary robot without a goal sees the same points again.
   const bool stands = !job->goal && (job->place - taken_at_).norm() < kMoved;
   const bool takes =
       !taken_ || job->made - *taken_ >= (stands ? params_.min_period_standing : params_.min_period);

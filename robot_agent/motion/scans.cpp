@@ -13,7 +13,7 @@
 namespace adit::agent {
 namespace {
 
-constexpr Duration kScanDeadline = 500ms;  // an older scan tells nothing of the terrain
+constexpr Duration kScanDeadline = 500ms;  // An older scan is outdated.
 constexpr std::uint8_t kFloat32 = 7;       // sensor_msgs/msg/PointField.FLOAT32
 
 }  // namespace
@@ -27,7 +27,7 @@ void Scans::give(const std::function<Result<PointCloud>()>& unpack, const std_ms
                  Time received) {
   protect([&] {
     auto points = unpack();
-    if (!points) return;  // terrain_stale follows, which the operator sees
+    if (!points) return;  // The operator then sees terrain_stale.
     const auto& stamp = header.stamp();
     const auto nanoseconds = static_cast<std::uint64_t>(stamp.sec()) * 1'000'000'000u + stamp.nanosec();
     call(output_, {std::make_shared<PointCloud>(std::move(*points)), nanoseconds, received},

@@ -25,26 +25,26 @@ namespace adit::agent {
 struct LidarScan {
   std::shared_ptr<PointCloud> points{};  ///< In the frame of base_link, m.
   std::uint64_t stamp{};                 ///< Of the driver's clock, ns.
-  Time received{};                       ///< When the sample arrived, by our clock.
+  Time received{};                       ///< Time of reception, by the agent's clock.
 };
-/// Takes scans; offered by whoever uses them.
+/// The service that accepts scans; the component that uses them offers it.
 using ScanService = Service<LidarScan, void>;
 
-/// Unpacks the lidar's clouds, or a planar one's scans, on a strand of its own, so that they never hold the
-/// command strand up.
+/// The component that unpacks the lidar's point clouds, or the scans of a planar lidar, on a strand of its
+/// own, so that they never delay the command strand.
 class Scans : public Component {
  public:
-  /// `lidar_height`: of a planar lidar above the ground, m.
+  /// `lidar_height`: height of a planar lidar above the ground, m.
   Scans(Executor& strand, Log log, double lidar_height, const ScanService& output);
-  /// On its strand; nothing when it does not run.
+  /// Processes a message. Call it on the component's strand; it does nothing if the component is not running.
   void take(const sensor_msgs::msg::PointCloud2& cloud, Time received);
   void take(const sensor_msgs::msg::LaserScan& scan, Time received);
 
   struct Readers {
     std::unique_ptr<wire::RawReader> points{}, scan{};
   };
-  /// Readers of /points and of /scan; `taker` gives who takes them now, on the strand of `io`, or null.
-  /// Errors of the wire.
+  /// Makes the readers of /points and /scan. `taker` returns the component that processes them, or null; it
+  /// is called on the strand of `io`. Errors: those of the participant.
   static Result<Readers> read(const wire::ComponentIo& io, std::function<Scans*()> taker);
 
  private:
@@ -55,11 +55,11 @@ class Scans : public Component {
   const ScanService& output_;
 };
 
-/// The points of a cloud that has float32 x, y and z; not finite ones are left out. Reason::malformed when
-/// the layout does not fit the data.
+/// Converts a cloud with float32 x, y and z; points that are not finite are omitted. Errors: malformed if the
+/// layout does not fit the data.
 Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud);
-/// The points of a planar scan, `height` m above the ground; what met nothing, or is out of the scanner's
-/// range, is left out. Reason::malformed when its angles are no numbers or turn more than once.
+/// Converts a planar scan, `height` m above the ground, to points; beams without a return or out of the
+/// scanner's range are omitted. Errors: malformed if its angles are not finite or span more than one turn.
 Result<PointCloud> to_points(const sensor_msgs::msg::LaserScan& scan, double height);
 
 }  // namespace adit::agent

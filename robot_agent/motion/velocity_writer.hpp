@@ -7,10 +7,11 @@
 
 namespace adit::agent {
 
-/// Which type /cmd_vel has: ROS 2's drivers know one or the other.
+/// The message type of /cmd_vel: a ROS 2 driver accepts one of them.
 enum class VelocityType : std::uint8_t { twist, twist_stamped };
 
-/// Writes /cmd_vel; the agent has one, and its parent for the zeros it sends when the agent is gone.
+/// Writes /cmd_vel. Used by the agent, and by its parent process for the zeros while the agent is not
+/// running.
 class VelocityWriter {
  public:
   VelocityWriter();
@@ -18,11 +19,12 @@ class VelocityWriter {
   VelocityWriter(VelocityWriter&&) noexcept;
   VelocityWriter& operator=(VelocityWriter&&) noexcept;
 
-  /// With a `generation` it writes while that is valid. Errors of the wire.
+  /// With a `generation` it writes only while that is valid. Errors: those of the participant.
   static Result<VelocityWriter> make(wire::Participant& wire, VelocityType type,
                                      const std::shared_ptr<const Generation>& generation = nullptr);
-  /// Body frame. A TwistStamped has stamp zero, "now" to a driver: its clock is not ours. A failed write is
-  /// counted by the wire. Nothing before make().
+  /// Writes a velocity, body frame. A TwistStamped has stamp zero, which means "now" to a driver, because the
+  /// driver's clock may differ from the agent's. The participant counts a failed write. Does nothing before
+  /// make().
   void write(const Twist2& velocity);
 
  private:

@@ -10,28 +10,31 @@
 
 namespace adit::agent {
 
-/// Words the notices of the command component, and sends them to operators. Runs on the command strand.
+/// Composes the notifications of the command component and sends them to operators. Runs on the command
+/// strand.
 class Notices {
  public:
-  /// `holder`: name of the robot's holder, empty while nobody holds it. `notifier` must outlive this.
+  /// `holder`: name of the robot's holder, empty if there is none. `notifier` must outlive this.
   Notices(std::string robot, Notifier& notifier, Log log, std::function<std::string()> holder);
 
-  /// Sends it to the operator it names, to every operator if it names none.
+  /// Sends a notice to the operator it names, or to every operator if it names none.
   void send(const Notice& notice) const;
-  /// Sends it to the holder; nothing is sent while nobody holds the robot.
+  /// Sends a notice to the holder; nothing is sent if there is no holder.
   void send_to_holder(Notice notice) const;
 
-  /// Says what a restart restored or lost. `same_boot`: the computer was not restarted.
+  /// Reports what a restart restored or lost. `same_boot`: the computer was not restarted.
   void restored(const Restored& found, bool same_boot) const;
-  /// `why`: file, line and what is missing.
+  /// Reports a refused behaviour tree. `why`: file, line and what is missing.
   void tree_refused(const std::string& why) const;
-  /// Another robot has this robot's name. `gives_way`: this one does, else it stays in service.
+  /// Reports that another robot has this robot's name. `gives_way`: this robot gives way; otherwise it stays
+  /// in service.
   void namesake(const wire::ParticipantId& other, bool gives_way) const;
   void rival(const wire::ParticipantId& writer) const;
-  /// `guess`: where the robot takes itself to be, map frame.
+  /// Reports a jump of the odometry. `guess`: the assumed pose of the robot, map frame.
   void odometry_jumped(const Pose2& guess) const;
   void driver_lost() const;
-  /// `stops`: the collision monitor stops the robot in its present mode; otherwise it only slows it down.
+  /// Reports a warning. `stops`: the collision monitor stops the robot in its present mode; otherwise it only
+  /// slows the robot down.
   void warning(Warning warning, bool stops) const;
 
  private:

@@ -19,10 +19,10 @@
 namespace adit::agent {
 namespace {
 
-constexpr int kPatience = 2000;  // ms: for a line, and for its answer
+constexpr int kPatience = 2000;  // ms, for a line and for its answer.
 constexpr std::size_t kLine = 256;
 
-/// A file descriptor that is closed with its owner.
+/// An owned file descriptor; the destructor closes it.
 class Fd {
  public:
   explicit Fd(int fd = -1) : fd_(fd) {}
@@ -78,7 +78,7 @@ bool readable(int fd, int patience) {
   return ::poll(&wait, 1, patience) > 0;
 }
 
-/// Up to the end of the line, without it.
+/// Reads up to the end of the line; the result excludes the newline.
 std::string read_line(int fd) {
   std::string line;
   char c{};
@@ -87,7 +87,7 @@ std::string read_line(int fd) {
 }
 
 void write_all(int fd, const std::string& text) {
-  // Who asked and went away before the answer misses nothing that anybody waits for.
+  // An error is ignored: a client that closed the connection does not need the answer.
   (void)!::send(fd, text.data(), text.size(), MSG_NOSIGNAL);
 }
 
@@ -98,7 +98,7 @@ bool our_user(int fd) {
          (peer.uid == ::geteuid() || peer.uid == 0);
 }
 
-/// An answer that comes on another thread, or not at all.
+/// An answer that arrives on another thread, or not at all.
 struct Waiting {
   std::mutex mutex{};
   std::condition_variable come{};
@@ -126,7 +126,7 @@ struct Console::Server {
   }
   void serve(int client) const {
     const std::string line = read_line(client);
-    if (line.empty()) return;  // somebody looked whether we are here
+    if (line.empty()) return;  // A client that only checked whether an agent runs here.
     const auto waiting = std::make_shared<Waiting>();
     handler(line, [waiting](const std::string& text) {
       const std::lock_guard lock(waiting->mutex);
@@ -150,7 +150,7 @@ Result<std::unique_ptr<Console>> Console::open(const std::string& robot, Console
   if (connected(*address))
     return Error{Reason::in_use, "a robot_agent named " + robot +
                                      " runs on this machine already; stop it, or choose another --name"};
-  ::unlink(path->c_str());  // what an agent that was killed left behind
+  ::unlink(path->c_str());  // Removes the socket of an agent that was killed.
 
   std::unique_ptr<Console> console(new Console);
   Server& server = *console->server_;

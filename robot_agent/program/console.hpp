@@ -7,11 +7,11 @@
 
 namespace adit::agent {
 
-/// Asks the agent; calls the answer from any thread, or never.
+/// Passes a line to the agent, which calls `answer` from any thread, or never.
 using ConsoleHandler =
     std::function<void(const std::string& line, std::function<void(const std::string&)> answer)>;
 
-/// The robot's own console: a socket that only its user (and root) may open,
+/// The robot's own console: a Unix socket that only its user (and root) may open,
 /// $XDG_RUNTIME_DIR/adit/robot-NAME.sock or /tmp/adit-UID/robot-NAME.sock. One line in, one answer out.
 class Console {
  public:
@@ -27,7 +27,7 @@ class Console {
   std::unique_ptr<Server> server_;
 };
 
-/// Sends a line to the robot's console and gives its answer. Errors: no_answer when no agent of that name
+/// Sends a line to the robot's console and returns the answer. Errors: no_answer when no agent of that name
 /// runs here.
 Result<std::string> ask_console(const std::string& robot, const std::string& line);
 

@@ -32,7 +32,7 @@ namespace {
 using namespace adit;
 using namespace adit::agent;
 
-constexpr int kBeatsOfStart = 40;  // 2 s: planner and sensors are made, too
+constexpr int kBeatsOfStart = 40;  // 2 s at 20 Hz: by then planner and sensors exist as well.
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -59,7 +59,8 @@ int fail(const Error& error, int code) {
 }
 
 Result<RobotConfig> load(const Options& options) {
-  const auto file = config::find_file(options.config, "./");  // as typed, then where all configuration is
+  const auto file = config::find_file(
+      options.config, "./");  // Tries the path as given, then the configuration's search path.
   if (!file) return file.error();
   auto config = load_robot_config(*file);
   if (!config) return config;
@@ -102,7 +103,7 @@ std::uint64_t drawn_seed() {
   return seed;
 }
 
-/// Another one after each start of this computer, whose odometry begins anew; 0: not known.
+/// Id of the computer's boot, after which odometry starts again; 0: unknown.
 std::uint64_t this_boot() {
   std::ifstream file("/proc/sys/kernel/random/boot_id");
   std::string text;
@@ -122,7 +123,7 @@ sigset_t end_signals() {
   return set;
 }
 
-/// What came of a line at the robot's console that only --allow-faults knows.
+/// Executes a line of the robot's console that only --allow-faults permits, and returns the answer.
 std::string inject(agent::Agent& agent, const std::string& line) {
   std::istringstream words(line);
   std::string verb, fault, component;
@@ -132,13 +133,13 @@ std::string inject(agent::Agent& agent, const std::string& line) {
   return done ? "done\n" : done.error().text + "\n";
 }
 
-/// Once everything is made; a limit that is too little is wrong configuration.
+/// Sets the memory limit once all components exist; a limit that is too low is a configuration error.
 void bound_memory(double limit) {
   const auto bounded = limit_memory(limit);
   if (!bounded) std::_Exit(fail(bounded.error(), 2));
 }
 
-/// A component that hangs must not hold up the end of the process.
+/// Ends the process after a timeout, because a component that hangs must not delay its end.
 void end_soon() {
   (void)::signal(SIGALRM, [](int) { std::_Exit(0); });
   ::alarm(3);
@@ -186,7 +187,7 @@ int run_agent(const RobotConfig& config, const Options& options) {
   };
   agent::Agent agent(params, runtime, flight_recorder.tap(**radio, "radio"),
                      flight_recorder.tap(**robot, "robot"));
-  // The console's socket is also what keeps two agents of one name apart.
+  // The console's socket also prevents two agents with one name on this computer.
   std::atomic<bool> up{false};
   const bool faults = options.allow_faults;
   auto console = Console::open(config.name, [&agent, &up, faults](const std::string& line, auto answer) {
@@ -209,7 +210,7 @@ int run_agent(const RobotConfig& config, const Options& options) {
   service.notify("STOPPING=1");
   end_soon();
   console->reset();
-  if (runtime.left_behind() > 0) std::_Exit(0);  // threads that hang would meet objects that are gone
+  if (runtime.left_behind() > 0) std::_Exit(0);  // Threads that hang would access destroyed objects.
   return 0;
 }
 
@@ -273,8 +274,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 1e6));
   app.add_flag("--allow-faults", options.allow_faults,
                "let the robot's console make components fail: fault crash|hang COMPONENT");
-  app.add_flag("--reports", options.reports)->group("");  // set by the parent
-  // For measurements that kill the agent again and again.
+  app.add_flag("--reports", options.reports)->group("");  // Set by the parent process.
+  // For measurements that kill the agent repeatedly.
   app.add_option("--good-run", options.good_run)->group("")->check(CLI::Range(0.0, 3600.0));
   auto* console =
       app.add_subcommand("console", "the robot's own console: status, unlock, peers, health, restart");

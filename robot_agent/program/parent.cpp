@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <cstring>
 
-// glibc 2.36 forgets that C++ reads this header, too.
+// The header of glibc 2.36 lacks extern "C".
 extern "C" {
 #include <sys/pidfd.h>
 }
@@ -22,7 +22,7 @@ namespace adit::agent {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr Duration kTurn = 100ms;  // how often the child is looked at
+constexpr Duration kTurn = 100ms;  // Period of the checks of the child.
 
 int milliseconds(Duration d) {
   return static_cast<int>(std::chrono::duration_cast<std::chrono::milliseconds>(d).count());
@@ -52,10 +52,10 @@ bool Parent::spawn() {
   posix_spawnattr_init(&attributes);
   sigset_t none;
   sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);  // the caller's is not the child's
+  posix_spawnattr_setsigmask(&attributes, &none);  // The child does not inherit the caller's signal mask.
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   posix_spawn_file_actions_adddup2(&actions, pipe[1], kReportFd);
-  // The sockets of our participant are not the child's.
+  // The child does not inherit the sockets of this process's participant.
   posix_spawn_file_actions_addclosefrom_np(&actions, kReportFd + 1);
   const int failed =
       ::posix_spawn(&child_, params_.program.c_str(), &actions, &attributes, argv.data(), environ);
@@ -77,7 +77,7 @@ bool Parent::spawn() {
 int Parent::reap() {
   int status = 0;
   ::waitpid(child_, &status, 0);
-  if (prepared_) send_zero_();  // before anything else
+  if (prepared_) send_zero_();  // The zero velocity comes first.
   commands_ = false;
   close_fd(pidfd_);
   close_fd(report_);
@@ -111,13 +111,13 @@ int Parent::wait_for_end() {
       killed_at = Clock::now() + params_.patience;
     }
     const auto now = Clock::now();
-    // Where we ourselves got no processor, the child's silence tells nothing.
+    // While this process got no CPU time, the silence of the child does not count.
     heard_ += std::max(now - turned - 2 * kTurn, Clock::duration{});
     turned = now;
     const bool silent = report_ >= 0 && now - heard_ > (commands_ ? params_.pulse : params_.start);
     if (silent && !ending_) {
       std::fprintf(stderr, "robot_agent: the agent hangs; ending it\n");
-      heard_ = now;  // once
+      heard_ = now;  // Kills once.
       ::kill(child_, SIGKILL);
     }
     if (now > killed_at) ::kill(child_, SIGKILL);

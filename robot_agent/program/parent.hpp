@@ -8,30 +8,32 @@
 namespace adit::agent {
 
 struct ParentParams {
-  std::string program{"/proc/self/exe"};  ///< the executable of the child
-  std::vector<std::string> command{};     ///< its arguments, its name first
-  Duration zero_period{50ms};             ///< of the zeros while no agent lives
-  Duration first_restart{20ms};           ///< pause before a restart; four times as long at each next
+  std::string program{"/proc/self/exe"};  ///< Executable of the child.
+  std::vector<std::string> command{};     ///< Arguments of the child, its name first.
+  Duration zero_period{50ms};             ///< Period of the zero velocities while no agent is running.
+  Duration first_restart{20ms};  ///< Pause before a restart; four times as long before each further one.
   Duration longest_restart{10s};
-  Duration good_run{10s};  ///< a child that lived so long starts the pauses anew
-  Duration patience{5s};   ///< from SIGTERM to SIGKILL
-  Duration start{30s};     ///< a child that does not command the driver after so long is killed
-  Duration pulse{3s};      ///< a child that was silent for so long hangs, and is killed
+  Duration good_run{10s};  ///< After a child ran for this long, the pauses start again at `first_restart`.
+  Duration patience{5s};   ///< From SIGTERM to SIGKILL.
+  Duration start{30s};     ///< A child that does not command the driver within this time is killed.
+  Duration pulse{3s};      ///< A child that was silent for this long hangs, and is killed.
 };
 
-/// The descriptor in the child on which it reports: a byte from when it sends commands itself, and then again
-/// and again while it lives.
+/// File descriptor on which the child reports: it writes a byte when it starts to send commands itself, and
+/// repeats that while it is alive.
 inline constexpr int kReportFd = 3;
-/// With this code the agent ends itself to be started anew: a component hangs, or fails for good.
+/// Exit code with which the agent requests a restart: a component hangs, or cannot be restarted.
 inline constexpr int kEscalatedExit = 70;
 
-/// Runs the agent as a child and outlives it: `send_zero` is called from the moment the child dies, every
-/// period, until a new one has reported that it commands the driver itself (rule 6). A child that hangs is
-/// killed. SIGINT and SIGTERM,
-/// which must be blocked by the caller, are passed on. Returns when told to end, or when the child ended by
-/// itself or with exit code 2 (wrong usage, which a restart does not mend): the child's exit code.
+/// Runs the agent as a child process and restarts it. `send_zero` is called from the moment the child dies,
+/// every period, until a new child has reported that it commands the driver itself (rule 6). A child that
+/// hangs is killed.
 ///
-/// `prepare` is called once the first child runs: what it opens is not inherited by that child.
+/// SIGINT and SIGTERM, which the caller must block, are passed on to the child. After such a signal run()
+/// returns 0. It also returns when the child ends by itself with code 0 or 2 (wrong usage, which a restart
+/// does not fix), with that code, and with 1 when no child can be started.
+///
+/// `prepare` is called once the first child runs: that child does not inherit the descriptors that it opens.
 class Parent {
  public:
   Parent(ParentParams params, std::function<void()> prepare, std::function<void()> send_zero);

@@ -33,8 +33,8 @@ void read_radio(const config::Node& node, const std::string& file, wire::FastDds
     node.child("link").fail(link.error().reason, link.error().text);
 }
 
-/// Whether this machine has them is asked when the robot domain is opened: a robot's file is also read on
-/// other machines.
+/// Whether the interfaces exist is checked when the robot domain is opened, because a robot's file is also
+/// read on other computers.
 void read_interfaces(const config::Node& root, RobotInterfaces& interfaces) {
   if (!root.has("robot_interfaces")) return;
   const config::Node node = root.child("robot_interfaces");
@@ -78,7 +78,7 @@ void read_battery(const config::Node& node, SafeguardParams& c) {
     battery.child("at_last").fail(Reason::out_of_range, "expected hold or return");
 }
 
-/// A tree that is missing stays as it was written: the agent starts, holds and reports it.
+/// The path of a missing tree stays as it was written: the agent starts, holds and reports the error.
 std::string find_tree(const std::string& tree, const std::string& beside) {
   const auto found = config::find_file(tree, beside);
   return found ? std::filesystem::absolute(*found).lexically_normal().string() : tree;

@@ -19,53 +19,53 @@ namespace adit::agent {
 
 struct AgentParams;
 
-/// `robot_interfaces`: what the robot domain uses beside loopback.
+/// The key `robot_interfaces`: network interfaces that the robot domain uses beside loopback.
 struct RobotInterfaces {
-  std::vector<std::string> names{};  ///< Of network interfaces, as `ip link` lists them.
+  std::vector<std::string> names{};  ///< Names as `ip link` lists them.
   std::string where{};               ///< "file:line" of the key, for errors.
 };
 
-/// What config/robots/NAME.yaml says; docs/configuration.md lists the keys.
+/// The contents of config/robots/NAME.yaml; docs/configuration.md lists the keys.
 struct RobotConfig {
-  std::string name{};  ///< 1 to 32 of [A-Za-z0-9_-]
+  std::string name{};  ///< 1 to 32 characters of [A-Za-z0-9_-].
   Platform platform{};
-  Pose2 start{};  ///< map frame: m, m, rad
-  /// Height of the ground at the start, map frame, m; empty: not given.
+  Pose2 start{};  ///< Map frame; m, m, rad.
+  /// Height of the ground at the start, map frame, m; unset: not given.
   std::optional<double> start_height{};
-  wire::FastDdsParams radio{};    ///< radio domain
-  std::uint32_t robot_domain{0};  ///< of the driver, [0, 232]
+  wire::FastDdsParams radio{};    ///< Radio domain.
+  std::uint32_t robot_domain{0};  ///< Domain of the driver, [0, 232].
   RobotInterfaces robot_interfaces{};
   VelocityType velocity{};    ///< `cmd_vel: twist` or `twist_stamped`
   Duration lock_lease{300s};  ///< 0: never
   std::string tree{"trees/robot.xml"};
-  std::string state{};              ///< folder of what survives a restart; empty: the usual one; "none"
+  std::string state{};  ///< Folder of the state that survives a restart; empty: the default folder; "none":
+                        ///< no state is stored.
   bool resume_after_restart{true};  ///< `after_restart: resume`, else `hold`
-  double memory_limit{0.0};         ///< MB that the agent may use, [0, 1e6]; 0: no limit
+  double memory_limit{0.0};         ///< Maximum memory of the agent, MB, [0, 1e6]; 0: no limit.
   SafeguardParams safeguards{};
   LogLevel log{LogLevel::info};
-  std::string record{};  ///< folder of recordings, "none"; empty: below the state folder
+  std::string record{};  ///< Folder of recordings; empty: below the state folder; "none": no recording.
 };
 
-/// The folder of a robot's state: the one configured, nothing for "none", else
+/// The folder of a robot's state: the configured one, an empty string for "none", otherwise
 /// $XDG_STATE_HOME/adit/robot-NAME; without that /var/lib/adit/robot-NAME for root,
 /// ~/.local/state/adit/robot-NAME for others.
 std::string state_folder(const RobotConfig& config);
 
-/// Reads the keys that mean the same in a robot's file and for a robot of a scenario: cmd_vel, lock_lease,
+/// Reads the keys that a robot's file and a scenario have in common: cmd_vel, lock_lease,
 /// start_height, tree, on_link_loss, link_loss_after, battery, after_restart. A missing key leaves `config`
-/// as it is; a wrong one is noted at `node`. `file`: the tree is looked for beside it first, and becomes an
-/// absolute path.
+/// as it is; a wrong one is noted at `node`. The tree is searched first in the folder of `file`, and becomes
+/// an absolute path.
 void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& config);
 
 /// IPv4 addresses of the named interfaces, 127.0.0.1 first. Errors: bad_argument with file and line, for an
-/// interface that this machine does not have, or that is down or has no IPv4 address.
+/// interface that does not exist on this computer, is down or has no IPv4 address.
 Result<std::vector<std::string>> addresses_of(const RobotInterfaces& interfaces);
 
-/// An agent's parameters as far as the file gives them: the rest (seed, log, disk, boot, handlers) is the
-/// caller's.
+/// Makes the agent's parameters from the file; the caller sets the others (seed, log, disk, boot, handlers).
 AgentParams agent_params(const RobotConfig& config);
 
-/// Reads it. Errors: one line with file, line and what was expected.
+/// Loads a robot's file. Errors: one line with file, line and the expected value.
 Result<RobotConfig> load_robot_config(const std::string& file);
 
 }  // namespace adit::agent

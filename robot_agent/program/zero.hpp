@@ -6,12 +6,12 @@
 
 namespace adit::agent {
 
-/// The parent's own writer of rt/cmd_vel.
+/// The parent process's own writer of rt/cmd_vel.
 class ZeroSender {
  public:
-  /// Errors of the wire.
+  /// Errors: those of the participant.
   Result<void> open(const wire::FastDdsParams& robot, VelocityType type);
-  /// Nothing when open() failed; a failed write is followed by the next one.
+  /// Sends a zero velocity; does nothing if open() failed. The next call follows a failed write.
   void send() { cmd_vel_.write({}); }
 
  private:

@@ -9,7 +9,7 @@
 namespace adit::agent {
 namespace {
 
-// A message that is too large for its topic would not be sent at all, and a refusal would be silent. A
+// A message that is too large for its topic is not sent, and a refusal would be lost without notice. A
 // complete acknowledgement stays below 512 bytes, a notification below 1 kB.
 constexpr std::size_t kAnswerText = 200;
 constexpr std::size_t kNoticeText = 500;
@@ -44,7 +44,8 @@ radio::GoalState to_radio(GoalState state) {
   return radio::GOAL_NONE;
 }
 
-/// A name as it came, or one of 32 bytes that is no valid name: cut alone, it could become another station's.
+/// Returns the name, or for a longer one 32 bytes that are no valid name: a plainly cut name could be another
+/// station's.
 std::string bounded_name(const std::string& name) { return clipped(name, kName); }
 
 }  // namespace
@@ -61,7 +62,7 @@ Command from_radio(const radio::Command& in, const wire::ParticipantId& sender) 
     c.request = std::move(*request);
     return c;
   }
-  // A number that this version does not know is no reason to stop reading; neither are wrong arguments.
+  // An unknown command number does not end the conversion; neither do wrong arguments.
   c.invalid = request.error();
   if (const command::CommandInfo* row = command::find_number(number))
     c.request = command::Request(command::verb_of(*row));

@@ -1,5 +1,5 @@
 #pragma once
-// Between the radio contract's generated types and ours. Included by .cpp files only.
+// Conversions between the radio contract's generated types and the agent's. Included by .cpp files only.
 #include "adit/authority.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
@@ -14,8 +14,8 @@
 
 namespace adit::agent {
 
-/// The service that a robot announces while it gives way to another one of its name, and what it claims;
-/// nothing where `in` has none.
+/// Conversion of a claim to and from the service that a robot announces while it gives way to another one of
+/// its name. claim_of() returns nothing if `in` has no claim.
 std::string service_word(const Namesakes::Claim& claim);
 std::optional<Namesakes::Claim> claim_of(const radio::Capabilities& in);
 

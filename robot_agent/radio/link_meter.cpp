@@ -4,7 +4,7 @@ namespace adit::agent {
 
 radio::LinkReport LinkMeter::report(const wire::WireCounters& counters, const wire::SenderState& sender,
                                     const std::string& agent, Time now) {
-  constexpr std::size_t kTopics = 16;  // as many as the contract lets through
+  constexpr std::size_t kTopics = 16;  // The contract's maximum.
   const double period = at_ ? std::max(1e-3, seconds(now - *at_)) : 1.0;
   const auto rate = [&](std::uint64_t is, std::uint64_t was) {
     return static_cast<float>(static_cast<double>(is - was) / period);

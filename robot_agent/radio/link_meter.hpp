@@ -8,10 +8,11 @@
 
 namespace adit::agent {
 
-/// Turns the wire's counters into rates. Included by .cpp files only.
+/// Computes rates from the participant's counters. Included by .cpp files only.
 class LinkMeter {
  public:
-  /// Rates since the last call; since the start of the wire for the first one, which is taken as 1 s.
+  /// Returns the rates since the last call. The first call counts from the start of the participant and
+  /// assumes 1 s.
   radio::LinkReport report(const wire::WireCounters& counters, const wire::SenderState& sender,
                            const std::string& agent, Time now);
 

@@ -11,7 +11,7 @@ namespace adit::agent {
 struct Notifier::Endpoint {
   std::string robot{};
   const Executor* clock{};
-  std::mutex mutex{};  // guards what follows
+  std::mutex mutex{};  // Guards the members below.
   wire::Writer<radio::Notification> writer{};
   std::uint64_t seq{};
   void write(const Notice& notice) {

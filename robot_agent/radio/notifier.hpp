@@ -9,11 +9,12 @@
 
 namespace adit::agent {
 
-/// Sends notifications, from any strand, numbers them and says when they arose. A failed write is counted by
-/// the wire. Bound to no component: the supervisor still speaks by it when one was revoked.
+/// Sends notifications from any strand, with a number and the time of the event. The participant counts
+/// failed writes. It belongs to no component: the supervisor uses it even when a component was revoked.
 class Notifier {
  public:
-  /// `clock`: asked for the time alone, from any thread; it outlives this. Errors of the wire.
+  /// `clock` only provides the time, from any thread, and must outlive this. Errors: those of the
+  /// participant.
   static Result<std::unique_ptr<Notifier>> open(wire::Participant& radio, const std::string& robot,
                                                 const Executor& clock);
   ~Notifier();
@@ -21,7 +22,8 @@ class Notifier {
   Notifier& operator=(const Notifier&) = delete;
 
   void send(const Notice& notice);
-  /// The same for who must not wait: false, and nothing sent, while another strand is sending. It may hang.
+  /// As send(), but never blocks: returns false and sends nothing while another strand, which may hang, is
+  /// sending.
   bool try_send(const Notice& notice);
 
  private:

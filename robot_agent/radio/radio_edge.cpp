@@ -30,7 +30,7 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::Finding> finding{};
   radio::Presence presence_sample{};
   radio::Capabilities capabilities_sample{};
-  wire::PeerMeter stations{};  // what the link from each of them gives
+  wire::PeerMeter stations{};  // Quality of the link from each station.
   Timer presence_timer{};
   radio::RobotState state_sample{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
@@ -40,11 +40,11 @@ struct RadioEdge::Endpoints {
     return io.open(readers.emplace_back(), topic, std::move(handler), partition);
   }
   void say_present() {
-    if (presence_sample.name().empty()) return;  // not started yet
+    if (presence_sample.name().empty()) return;  // send_capabilities() was not called yet.
     presence_sample.seq(presence_sample.seq() + 1);
     (void)presence.write(presence_sample);
   }
-  // A failed write is counted by the wire, and the link report shows it.
+  // The participant counts failed writes, and the link report shows them.
   template <class T>
   void send(wire::Writer<T>& writer, T sample) {
     sample.seq(++seq);
@@ -72,18 +72,19 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
   const auto& commands = dependencies.commands;
   const auto answer = [&e, settle = dependencies.settle](const std::optional<Answer>& a) {
     if (!a) return;
-    if (a->seq == 0) return (void)e.acknowledgement.write(to_radio(*a, e.robot));  // a stream changes nothing
+    if (a->seq == 0)
+      return (void)e.acknowledgement.write(to_radio(*a, e.robot));  // A stick sample changes no stored state.
     settle([&e, a = *a] { (void)e.acknowledgement.write(to_radio(a, e.robot)); });
   };
   Namesakes& namesakes = dependencies.namesakes;
   e.wire.on_participant(e.strand,
                         [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
                           if (!e.io.valid()) return;
-                          if (!event.incompatible.empty()) return;  // stations tell their operators
+                          if (!event.incompatible.empty()) return;  // Stations notify their operators.
                           directory.participant(event);
                           if (!event.present) namesakes.left(event.id);
                           if (event.present)
-                            e.say_present();  // it need not wait for the next second
+                            e.say_present();  // Sends a heartbeat at once, not at the next second.
                           else
                             commands([&](CommandInterface& interface) { interface.departed(event.id); });
                         });
@@ -180,7 +181,7 @@ void RadioEdge::send(const findings::Finding& f, std::size_t kept, std::uint32_t
   out.data(f.data);
   out.kept(static_cast<std::uint32_t>(kept));
   out.overflowed(overflowed);
-  (void)endpoints_->finding.write(out);  // sent again until it is acknowledged
+  (void)endpoints_->finding.write(out);  // It is sent again until it is acknowledged.
 }
 
 void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
@@ -230,8 +231,8 @@ void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed, double
   radio::LinkReport report = e.meter.report(e.wire.counters(), e.wire.sender(), e.robot, now);
   report.state_rate(static_cast<float>(state_rate));
   report.malformed(report.malformed() + static_cast<std::uint32_t>(inner_malformed));
-  constexpr std::size_t kPeers = 16;    // as many as the contract lets through
-  constexpr Duration kForgotten = 60s;  // a station that is gone is no link
+  constexpr std::size_t kPeers = 16;    // The contract's maximum.
+  constexpr Duration kForgotten = 60s;  // A station that was silent for longer has no link.
   for (const wire::PeerMeter::Peer& peer : e.stations.peers(now)) {
     if (peer.held > kForgotten) e.stations.forget(peer.name);
     if (peer.held > kForgotten || report.peers().size() == kPeers) continue;

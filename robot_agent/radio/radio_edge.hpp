@@ -17,58 +17,61 @@ struct ComponentIo;
 
 namespace adit::agent {
 
-/// The state of the robot that goes out ten times a second.
+/// The state of the robot that is sent at 10 Hz.
 struct RobotReport {
-  Pose2 pose{};         ///< map frame
+  Pose2 pose{};         ///< Map frame.
   double z{};           ///< m
-  Twist2 twist{};       ///< body frame
-  float battery{-1.0};  ///< 0..1; negative: not known
+  Twist2 twist{};       ///< Body frame.
+  float battery{-1.0};  ///< State of charge, [0, 1]; negative: unknown.
 };
 
-/// The radio domain: what arrives goes to the command interface and the directory, what we say goes out. All
-/// on the command strand. Every message is numbered here.
+/// The agent's readers and writers on the radio domain. Passes received messages to the command interface and
+/// the directory, and numbers and sends the agent's messages. Runs on the command strand.
 class RadioEdge {
  public:
   struct Dependencies {
     Directory& directory;
     Namesakes& namesakes;
-    /// Runs it with the command interface; not at all while there is none.
+    /// Calls a function with the command interface; does nothing while there is none.
     std::function<void(const std::function<void(CommandInterface&)>&)> commands;
-    /// Runs what gives an answer once all that it tells of is on disk.
+    /// Runs a task that sends an answer, once the state that the answer reports is on disk.
     std::function<void(Task)> settle{};
-    /// The route to a place (map frame, m): `done` is called once, within half a second.
+    /// Asks the robot's global planner for a route to `goal` (map frame, m) and calls `done` exactly once,
+    /// within 0.5 s.
     std::function<void(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done)>
         find_route{};
-    /// A station has these findings of ours on its disk.
+    /// Reports that a station has these findings of this robot on its disk.
     std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};
   };
 
-  /// `io`: the command component's, on the radio domain. Errors of the wire.
+  /// `io`: the command component's, on the radio domain. Errors: those of the participant.
   static Result<std::unique_ptr<RadioEdge>> open(const wire::ComponentIo& io, const std::string& robot);
   ~RadioEdge();
   RadioEdge(const RadioEdge&) = delete;
   RadioEdge& operator=(const RadioEdge&) = delete;
 
-  /// From now on the parts hear what arrives; they must outlive this. Errors of the wire.
+  /// Passes received messages to the dependencies from now on; they must outlive this. Errors: those of the
+  /// participant.
   Result<void> listen(Dependencies dependencies);
 
-  /// Nothing is heard any more. From any thread.
+  /// Stops the reception of messages. Callable from any thread.
   void close();
 
-  /// `kept`: how many there are; `overflowed`: given up or not taken.
+  /// Sends a finding. `kept`: number of stored findings; `overflowed`: number of findings discarded or not
+  /// accepted.
   void send(const findings::Finding& finding, std::size_t kept, std::uint32_t overflowed);
   void send_authority(const CommandInterface& commands, Time now);
   void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
   void send_state(const RobotReport& report, std::uint64_t stamp);
-  /// And from now on a sign of life once a second, and when somebody appears.
+  /// Sends the capabilities, and from now on a heartbeat once a second and when a participant appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
                          const ModeTable& modes = ModeTable::shipped());
   /// Sends the capabilities once more, with what this robot claims while it gives way to another one of its
   /// name.
   void send_claim(const std::optional<Namesakes::Claim>& claim);
-  /// What passed on the wire since the last call. `inner_malformed`: samples on the robot's inner network
-  /// that were none, since the start; operators see them with the radio's.
-  /// `state_rate`: RobotStates a second, as the link lets it.
+  /// Reports the traffic since the last call. `inner_malformed`: number of malformed samples on the robot's
+  /// inner network since the start; operators see it together with the radio's. `state_rate`: rate of
+  /// RobotState that the link allows, Hz.
   void send_link_report(Time now, std::uint64_t inner_malformed, double state_rate);
 
  private:

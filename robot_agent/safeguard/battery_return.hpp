@@ -22,17 +22,17 @@ class BatteryReturn {
   struct Inputs {
     bool autonomous{};         ///< The mode follows goals by itself.
     bool nearly_empty{};       ///< The charge is below the last threshold.
-    std::uint64_t requests{};  ///< Of the holder that were accepted so far.
+    std::uint64_t requests{};  ///< Number of the holder's requests accepted so far.
   };
 
-  /// The return is due. `requests`: as in Inputs, at this time.
+  /// Starts the attempts. `requests`: as in Inputs, at this time.
   void begin(std::uint64_t requests, Time now) {
     requests_ = requests;
     next_ = now;
     pause_ = first_pause_;
     refused_because_ = Reason::none;
   }
-  /// Whether it is to be attempted now; accepted() or refused() follows.
+  /// Whether the return must be attempted now; the caller then calls accepted() or refused().
   bool due(const Inputs& in, Time now) {
     if (!in.autonomous || !in.nearly_empty || in.requests != requests_) next_.reset();
     return next_ && now >= *next_;
@@ -46,12 +46,12 @@ class BatteryReturn {
     refused_because_ = reason;
     return unknown;
   }
-  /// Whether it is to be attempted again after a restart. `requests`: as in Inputs.
+  /// Whether the return must be attempted again after a restart. `requests`: as in Inputs.
   bool pending(std::uint64_t requests) const { return next_ && requests == requests_; }
 
  private:
   std::uint64_t requests_{};
-  std::optional<Time> next_{};  ///< Of the next attempt; empty: no return is due.
+  std::optional<Time> next_{};  ///< Time of the next attempt; unset: no return is pending.
   Duration first_pause_, pause_{first_pause_};
   Reason refused_because_{Reason::none};
 };

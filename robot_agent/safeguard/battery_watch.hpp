@@ -9,20 +9,21 @@ enum class BatteryLevel : unsigned char { good, warning, low, last };
 
 struct BatteryParams {
   double warning{0.30};  ///< (0, 1)
-  double low{0.20};      ///< below warning
-  double last{0.10};     ///< below low
-  double rise{0.05};     ///< the charge is above a threshold again when it is by so much, [0, 0.5]
+  double low{0.20};      ///< Below `warning`.
+  double last{0.10};     ///< Below `low`.
+  double rise{0.05};  ///< Hysteresis: a threshold is left when the charge exceeds it by this much, [0, 0.5].
 };
 
-/// Notices that the charge passed a threshold. Each is told once: a charge that wavers around one is not told
-/// again and again, nor is one that a restart finds as it was.
+/// Detects that the charge fell below a threshold. Each threshold is reported once: neither a charge that
+/// varies around it nor a restart repeats the report.
 class BatteryWatch {
  public:
   explicit BatteryWatch(BatteryParams params) : params_(params) {}
 
-  /// After a restart.
+  /// Restores the level after a restart.
   void restore(BatteryLevel level) { level_ = level; }
-  /// `charge` 0..1; negative or not a number: not known. The level when it fell to a lower one.
+  /// Processes the charge, [0, 1]; negative or NaN: unknown. Returns the new level if the charge fell to a
+  /// lower one.
   std::optional<BatteryLevel> update(double charge) {
     if (!(charge >= 0.0)) return std::nullopt;
     const BatteryLevel now = level_of(charge);

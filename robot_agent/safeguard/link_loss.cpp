@@ -11,7 +11,7 @@ LinkLoss::Step LinkLoss::tick(const Inputs& in, Time now) {
     lost_ = acted_ = false;
     way_ = Way::none;
     retry_.reset();
-    // Once a second he is heard: what was a moment ago is where he still was.
+    // Heartbeats arrive once a second: a position with a recent heartbeat counts as linked.
     if (in.held && in.place && step.silence < 1500ms) linked_ = in.place;
     return step;
   }
@@ -33,7 +33,7 @@ LinkLoss::Step LinkLoss::tick(const Inputs& in, Time now) {
     if (now - since_ < params_.after) return step;
     way_ = Way::to_start;
   } else if (!again) {
-    if (!in.arrived) since_ = now;  // the wait begins on arrival
+    if (!in.arrived) since_ = now;  // The wait begins on arrival.
     return step;
   }
   step.go_to = way_ == Way::to_link ? *linked_ : params_.start;

@@ -51,7 +51,7 @@ void Safeguards::watch_link(Time now) {
   const Frames& at = dependencies_.frames;
   LinkLoss::Inputs in{};
   in.held = authority.holder().has_value();
-  // A restart of the command component begins the lease anew, but the holder is not heard by it.
+  // A restart of the command component starts the lease again, but it is no heartbeat of the holder.
   const Peer* peer = dependencies_.peers.holder();
   in.heard = peer ? peer->heard : authority.heard();
   in.autonomous = dependencies_.behaviour.mode().autonomous();
@@ -127,7 +127,7 @@ void Safeguards::battery_fell(BatteryLevel level, Time now) {
        code,
        Reason::none,
        robot_ + " has " + std::to_string(std::lround(charge_ * 100)) + " % of its battery left"});
-  // An operator who drives by hand sees it, and decides.
+  // An operator who drives manually sees the charge, and decides.
   if (level != BatteryLevel::last || !dependencies_.behaviour.mode().autonomous()) return;
   if (params_.return_at_last_battery) {
     battery_return_.begin(dependencies_.behaviour.holder_requests(), now);

@@ -16,7 +16,7 @@ namespace adit::agent {
 /// Only autonomous modes are changed. Runs on the command strand.
 class Safeguards {
  public:
-  /// What it watches and acts on; all of it must outlive the safeguards.
+  /// The objects that the safeguards watch and act on; they must outlive the safeguards.
   struct Dependencies {
     const Authority& authority;
     const PeerTable& peers;
@@ -25,17 +25,17 @@ class Safeguards {
     const Notices& notices;
   };
 
-  /// `robot`: its name. `start`: its start pose, map frame.
+  /// `robot`: name of the robot. `start`: its start pose, map frame.
   Safeguards(SafeguardParams params, std::string robot, const Pose2& start, const Dependencies& dependencies);
 
-  /// After a restart, what kept() gave.
+  /// Restores the state that kept() returned before a restart.
   void restore(std::uint8_t kept, Time now);
-  /// What must survive a restart: the threshold that was passed last, and whether a return that it asked for
-  /// is still to be accepted. See Snapshot::battery.
+  /// The state that must survive a restart: the last threshold that was passed, and whether a return is still
+  /// pending. See Snapshot::battery.
   std::uint8_t kept() const;
-  /// Once a second: the link to the holder, and a return that was refused.
+  /// Checks the link to the holder, and repeats a refused return. Call it once a second.
   void tick(Time now);
-  /// A new state of charge, [0, 1]; anything that is not finite counts as unknown.
+  /// Processes a new state of charge, [0, 1]; a value that is not finite counts as unknown.
   void battery(float charge, Time now);
   /// State of charge, [0, 1]; negative while unknown.
   float charge() const { return charge_; }
@@ -43,7 +43,7 @@ class Safeguards {
  private:
   void watch_link(Time now);
   void battery_fell(BatteryLevel level, Time now);
-  /// Attempts the return that the battery asks for, when it is due.
+  /// Attempts the return to the start that is pending because of the battery, if it is due.
   void watch_return(Time now);
   Result<void> go_back(const Eigen::Vector2d& place, const std::string& why, Time now);
 

@@ -60,7 +60,8 @@ Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   if (!read) {
     Restored r{};
     r.lost = true;
-    const bool broken = state.found == store::LoadStatus::good;  // whole, and no list of sections
+    const bool broken =
+        state.found == store::LoadStatus::good;  // The file is complete, but has no list of sections.
     r.text =
         broken ? "corrupt: it makes no sense" : std::string(store::name(state.found)) + ": " + state.text;
     r.preserved = store::set_aside(*disk, kStateFile, broken ? "corrupt" : store::name(state.found));
@@ -96,7 +97,7 @@ Id restore_identity(const std::shared_ptr<store::Disk>& disk, const Id& drawn) {
   }
   if (state.found != store::LoadStatus::nothing)
     (void)store::set_aside(*disk, kIdentityFile, store::name(state.found));
-  (void)file.save(1, drawn);  // a disk that fails is reported with the first state
+  (void)file.save(1, drawn);  // A disk failure is reported with the first state.
   return drawn;
 }
 

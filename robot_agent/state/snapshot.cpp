@@ -20,15 +20,17 @@ using store::Unpacker;
 struct Row {
   store::SectionTag tag;
   std::uint16_t version;  ///< Rises when the layout of the payload changes.
-  const char* name;       ///< As operators see it in `state_damaged`
-  bool always;            ///< Every program that writes version 3 writes it: missing, it was lost.
-  /// Calls `add` with each payload, once for most rows.
+  const char* name;       ///< As operators read it in `state_damaged`.
+  bool always;  ///< Every program that writes version 3 writes this section: if it is missing, it was lost.
+  /// Calls `add` with each payload; most rows have one.
   void (*write)(const Snapshot& snapshot, const std::function<void(const Packer&)>& add);
-  /// Takes one payload into the snapshot; false, and the snapshot as it was, when no robot wrote it.
+  /// Reads one payload into the snapshot. Returns false and leaves the snapshot unchanged if the payload is
+  /// invalid.
   bool (*read)(Unpacker& in, Snapshot& snapshot);
 };
 
-/// Nothing when bytes are missing or left, or when the value is not what encode() writes.
+/// Reads a value. Returns nothing if bytes are missing or left over, or if encode() would write the value
+/// differently.
 template <class T>
 std::optional<T> checked(const Unpacker& in, T value) {
   if (!in.done() || fields::sanitized(value) != value) return std::nullopt;
@@ -99,7 +101,7 @@ bool read_host(Unpacker& in, Snapshot& s) {
 
 constexpr store::SectionTag kAuthority{'A', 'U', 'T', 'H'}, kStops{'S', 'T', 'O', 'P'};
 
-/// In order of importance: what does not fit into the file any more is left out from the end.
+/// In order of importance: if the file is full, the last sections are omitted.
 const std::array kRows{
     Row{kAuthority, 1, "authority", true,
         [](const Snapshot& s, const auto& add) { add_one(add, s.authority); }, read_authority},
@@ -143,7 +145,7 @@ const Row* find_row(const store::SectionTag& tag) {
   return found == kRows.end() ? nullptr : &*found;
 }
 
-/// Sets what a robot must assume of the entries that were lost.
+/// Sets safe values for the entries that were lost.
 void assume_safe(ReadSnapshot& read) {
   if (read.stops_lost) read.snapshot.authority.stops = {{StopLatches::kOthers, Id{}}};
 }
@@ -241,7 +243,7 @@ std::optional<ReadSnapshot> decode_snapshot_v2(std::span<const std::uint8_t> byt
   if (!in.done()) read.lost.emplace_back("answers to a station");
   const KeptAuthority written = s.authority;
   s = sanitized(std::move(s));
-  if (s.authority != written) return std::nullopt;  // no robot wrote it
+  if (s.authority != written) return std::nullopt;  // The authority is invalid.
   return read;
 }
 

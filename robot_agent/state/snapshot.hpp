@@ -11,21 +11,21 @@
 
 namespace adit::agent {
 
-/// What the module of a mode stores, beside the goal of `waypoint`.
+/// State that a mode's module stores, beside the goal of `waypoint`.
 struct KeptMode {
   std::string mode{};
   store::Bytes bytes{};  ///< At most Snapshot::kModeBytes; only that module reads them.
   bool operator==(const KeptMode&) const = default;
 };
 
-/// Of the behaviour: what was asked for, not what the tree made of it.
+/// State of the behaviour: what was requested, not what the tree decided.
 struct KeptBehaviour {
   std::string mode{"hold"};
-  Reason reason{Reason::none};  ///< why it fell to hold
+  Reason reason{Reason::none};  ///< Why the robot fell to hold.
   bool goal_known{}, goal_reached{};
   std::uint32_t goal_id{};
-  Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< map frame, m
-  bool goal_on_floor{};                           ///< it was given no height
+  Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< Map frame, m.
+  bool goal_on_floor{};                           ///< The goal has no z of its own.
   std::vector<KeptMode> modes{};                  ///< At most Snapshot::kModes, each mode once.
 
   /// The bytes that a mode's module stored; null: none.
@@ -33,19 +33,19 @@ struct KeptBehaviour {
   bool operator==(const KeptBehaviour&) const = default;
 };
 
-/// The last known safe state (rule 7): what an agent comes back with.
+/// The last known safe state (rule 7), from which an agent restarts.
 struct Snapshot {
   static constexpr std::size_t kStops = 16, kModes = 8, kModeBytes = 512;
 
   KeptAuthority authority{};
   KeptBehaviour behaviour{};
-  std::uint64_t boot{};  ///< of the computer when it was written; 0: not known
+  std::uint64_t boot{};  ///< Boot id of the computer when the state was written; 0: unknown.
   /// Threshold of the charge that was passed last: 0 none, 1 warning, 2 low, 3 last; 4: last, and the return
-  /// to the start that it asked for was not accepted yet.
+  /// to the start is still pending.
   std::uint8_t battery{};
-  std::optional<KeptPlace> place{};  ///< Empty: it could not be read.
+  std::optional<KeptPlace> place{};  ///< Unset: it could not be read.
   std::vector<KeptAnswers> answers{};
-  /// Without the answers and the odometry: what tells whether something changed that must survive.
+  /// Compares all but the answers and the odometry, i.e. the state that must survive a restart.
   bool same_state(const Snapshot& other) const {
     return authority == other.authority && behaviour == other.behaviour && boot == other.boot &&
            battery == other.battery && place.has_value() == other.place.has_value() &&
@@ -57,27 +57,28 @@ struct Snapshot {
 /// Version 3: sections (core/store/sections.hpp), see snapshot.cpp. Version 2 is still read.
 inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 3, 16 * 1024};
 
-/// What the bytes of a state file gave.
+/// The result of decoding a state file.
 struct ReadSnapshot {
-  Snapshot snapshot{};                 ///< What was lost in it has its default value.
-  std::vector<std::string> lost{};     ///< Entries that could not be read, for people: "stops", "an answer"
-  std::vector<std::string> unknown{};  ///< Sections of a newer version of this program, skipped
-  bool authority_lost{};               ///< Holder, lock and epoch are not known.
-  bool stops_lost{};  ///< Who stopped the robot is not known: `snapshot` holds a stop of "others".
+  Snapshot snapshot{};  ///< Lost entries have their default values.
+  std::vector<std::string>
+      lost{};  ///< Readable names of entries that could not be read: "stops", "an answer".
+  std::vector<std::string> unknown{};  ///< Skipped sections of a newer version of this program.
+  bool authority_lost{};               ///< Holder, lock and epoch are unknown.
+  bool stops_lost{};  ///< The stopping stations are unknown: `snapshot` has a stop of "others".
   bool safe() const { return !authority_lost && !stops_lost; }
 };
 
-/// The snapshot as it is written and read: bounded, and nothing in it that no robot could have meant. A stop
-/// whose name is not valid becomes one of "others"; an answer that is not valid is left out.
+/// Returns the snapshot in the form in which it is written and read: bounded, and without invalid values. A
+/// stop whose name is not valid becomes one of "others"; an answer that is not valid is left out.
 Snapshot sanitized(Snapshot snapshot);
 
 /// Encodes the sanitized snapshot, at most 16 kB: decoding gives it back without loss.
 store::Bytes encode(const Snapshot& snapshot);
 
-/// Decodes the sections that are intact. Nothing when not even their directory can be read.
+/// Decodes the sections that are intact. Returns nothing if the directory of sections cannot be read.
 std::optional<ReadSnapshot> decode_snapshot(std::span<const std::uint8_t> bytes);
 
-/// Decodes the payload of version 2, which has no sections: what is behind the first error is lost.
+/// Decodes the payload of version 2, which has no sections: everything after the first error is lost.
 std::optional<ReadSnapshot> decode_snapshot_v2(std::span<const std::uint8_t> bytes);
 
 }  // namespace adit::agent

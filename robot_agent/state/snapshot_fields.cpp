@@ -77,7 +77,7 @@ std::vector<Party> stops(Unpacker& in) {
   return all;
 }
 
-// A stop is never lost: what cannot be written by its name stays as one that only an override clears.
+// A stop is never lost: one whose name cannot be written becomes a stop that only an override clears.
 std::vector<Party> sanitized(std::vector<Party> stops) {
   const Party others{StopLatches::kOthers, Id{}};
   for (Party& stopper : stops)
@@ -159,7 +159,7 @@ KeptPlace place(Unpacker& in) {
   return kept;
 }
 
-// A place that is none is as good as no odometry: nothing goes on by itself.
+// An invalid place counts as missing odometry: no mode resumes by itself.
 KeptPlace sanitized(KeptPlace place) {
   const Pose2& frame = place.T_map_odom;
   if (!std::isfinite(frame.x) || !std::isfinite(frame.y) || !std::isfinite(frame.yaw)) return {};
@@ -216,7 +216,7 @@ KeptAnswers answers(Unpacker& in) {
   return from;
 }
 
-// An answer that is left out counts as one that is too old: its command is refused and not done again.
+// An omitted answer counts as too old: its command is refused and not executed again.
 KeptAnswers sanitized(KeptAnswers from) {
   if (!valid_name(from.station)) from.station.clear();
   const auto invalid = [&](const KeptAnswer& a) { return a.seq == 0 || a.seq > from.newest; };

@@ -14,16 +14,16 @@ void put(store::Packer& out, const KeptBehaviour& behaviour);
 void put(store::Packer& out, const KeptPlace& place);
 void put(store::Packer& out, const KeptAnswers& from);
 
-/// Ask `in.good()` afterwards. The authority comes without its stops.
+/// Unpack one field each; check `in.good()` afterwards. The authority has no stops.
 KeptAuthority authority(store::Unpacker& in);
 std::vector<Party> stops(store::Unpacker& in);
 KeptBehaviour behaviour(store::Unpacker& in);
 KeptPlace place(store::Unpacker& in);
 KeptAnswers answers(store::Unpacker& in);
 
-// Each gives its argument as it may be written: bounded, and nothing that no robot could have meant. What is
-// read must be equal to its own sanitized form.
-KeptAuthority sanitized(KeptAuthority authority);  ///< without its stops
+// Each returns its argument in the form in which it is written: bounded, and without invalid values. A value
+// that was read must equal its own sanitized form.
+KeptAuthority sanitized(KeptAuthority authority);  ///< Without its stops.
 std::vector<Party> sanitized(std::vector<Party> stops);
 KeptBehaviour sanitized(KeptBehaviour behaviour);
 KeptPlace sanitized(KeptPlace place);

@@ -9,20 +9,20 @@ namespace {
 
 constexpr std::size_t kWaiting = 256;
 
-/// Off the command strand, one at a time. What cannot be written is removed: an old state that comes back
-/// would be a guess.
+/// Writes the state, not on the command strand, one write at a time. After a failed write the old file is
+/// removed, because an outdated state would be a guess.
 Result<void> write(const std::shared_ptr<store::Disk>& disk, std::uint64_t generation,
                    const store::Bytes& payload, bool mark) {
   Result<void> done{};
   if (mark) done = disk->replace(kMarkerFile, {});
   if (done) done = store::StateFile(disk, kStateFile, kSnapshotFormat).save(generation, payload);
-  if (!done) (void)disk->remove(kStateFile);  // the first error is the one to tell
+  if (!done) (void)disk->remove(kStateFile);  // Only the first error is reported.
   return done;
 }
 
 }  // namespace
 
-/// Shared with the writes under way, which outlive the keeper when its component ends.
+/// Shared with the pending writes, which outlive the keeper when its component ends.
 struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
   KeeperParams params;
   std::shared_ptr<store::Disk> disk;
@@ -30,14 +30,14 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
   std::shared_ptr<Executor> strand;
   Outputs outputs;
 
-  std::optional<Snapshot> state{};         ///< given last
-  std::uint64_t needed{};                  ///< the last one that changed the state: answers wait for it
-  std::uint64_t accepted{};                // commands, when that was given
-  std::optional<store::Bytes> next{};      ///< not being written yet
-  std::uint64_t asked{}, done{};           ///< generations: given, and settled one way or the other
-  std::optional<std::uint64_t> writing{};  ///< the one under way
-  Time since{};                            ///< of the write under way, or of the last one
-  std::optional<KeptPlace> placed{};       // with the state given last
+  std::optional<Snapshot> state{};         ///< The last state passed.
+  std::uint64_t needed{};                  ///< Generation that last changed the state: answers wait for it.
+  std::uint64_t accepted{};                // Commands accepted when `state` was passed.
+  std::optional<store::Bytes> next{};      ///< Not being written yet.
+  std::uint64_t asked{}, done{};           ///< Generations: passed, and written or failed.
+  std::optional<std::uint64_t> writing{};  ///< Generation of the pending write.
+  Time since{};                            ///< Start of the pending write, or of the last one.
+  std::optional<KeptPlace> placed{};       // Place in the last state passed.
   Time placed_at{};
   bool marked{}, failed{}, stuck{};
   std::optional<Time> retry{};
@@ -49,7 +49,7 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
 
   /// Whether a restart would compare the odometry with a place that the robot has left.
   bool place_due(const Snapshot& now) const {
-    constexpr double kMoved = 0.05, kTurned = 0.05;  // m, rad
+    constexpr double kMoved = 0.05, kTurned = 0.05;  // In m and rad.
     if (!now.place || !now.place->newest || command.now() - placed_at < params.place) return false;
     if (!placed || !placed->newest) return true;
     const Pose3 &a = placed->newest->T_odom_base, &b = now.place->newest->T_odom_base;
@@ -94,7 +94,7 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
       set_failed(true, result.error().text);
     }
     release(done);
-    // A newer state is tried at once, whatever became of this one: answers wait for it.
+    // A newer state is written at once, whether this write succeeded or not, because answers wait for it.
     if (next) return start();
     if (result) return;
     next = bytes;
@@ -167,7 +167,7 @@ void StateKeeper::flush() {
   Writer& w = *writer_;
   if (!w.disk || w.disk->instant() || !w.strand || !w.next) return;
   w.strand->post([disk = w.disk, bytes = std::move(*w.next), generation = w.asked, mark = !w.marked] {
-    (void)write(disk, generation, bytes, mark);  // the last one: no strand is left to report an error to
+    (void)write(disk, generation, bytes, mark);  // The last write: no strand is left to report an error to.
   });
   w.next.reset();
 }

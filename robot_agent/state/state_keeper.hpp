@@ -11,46 +11,47 @@
 namespace adit::agent {
 
 struct KeeperParams {
-  Duration write{3ms};    ///< what a write takes in rehearsal, [0, 1 s]
-  Duration patience{1s};  ///< a write that takes longer holds back no answer any more
-  Duration retry{1s};     ///< after a write that failed
+  Duration write{3ms};    ///< Duration of a write in rehearsal, [0, 1 s].
+  Duration patience{1s};  ///< A write that takes longer no longer delays answers.
+  Duration retry{1s};     ///< Pause after a failed write.
   Duration place{1s};     ///< Between two writes of the place of a robot that drives, (0, 1 s].
 };
 
-/// Writes the last known safe state, and holds back what must not be said before it is on disk. One write at
-/// a time, the newest state next: nothing piles up. Lives on the command strand; the disk is written on
-/// another one. A disk that fails, is full or does not answer holds up nothing: everybody is told, and a
-/// state that it could not write is taken away, so that no restart believes an old one.
+/// Writes the last known safe state, and delays answers until the state that they report is on disk. There is
+/// one write at a time, and the newest state is next, so that no writes accumulate. Runs on the command
+/// strand; the disk is written on another one. A disk that fails, is full or does not answer delays nothing:
+/// operators are notified, and the old state file is removed, so that no restart uses an outdated state.
 class StateKeeper {
  public:
   struct Outputs {
-    /// The disk began to fail (with the reason), or keeps the state again.
+    /// Reports that the disk began to fail (with the reason), or stores the state again.
     std::function<void(bool failing, const std::string& text)> failing{};
   };
 
-  /// `disk` null: nothing is kept beyond this process. `writer`: where a disk that takes time is written.
+  /// `disk` null: nothing survives this process. `writer`: strand on which a slow disk is written.
   StateKeeper(KeeperParams params, std::shared_ptr<store::Disk> disk, Executor& command,
               std::shared_ptr<Executor> writer, std::uint64_t generation, Outputs outputs);
   ~StateKeeper();
   StateKeeper(const StateKeeper&) = delete;
   StateKeeper& operator=(const StateKeeper&) = delete;
 
-  /// The state as it is now; written when it differs from the last one given, or when more commands were
-  /// accepted than then: one that changed nothing is answered as before after a restart, too; and once a
-  /// second while its place changes, which no answer waits for. `answers` is asked then.
+  /// Passes the present state. It is written if it differs from the last one passed, or if further commands
+  /// were accepted, because their answers must survive a restart even if they changed nothing. While only the
+  /// place changes, it is written once a second, and no answer waits for that write. `answers` is called only
+  /// for a write.
   void save(Snapshot state, const std::function<std::vector<KeptAnswers>()>& answers,
             std::uint64_t accepted = 0);
-  /// Runs once every state given so far is on disk: at once when it is, or when the disk fails. At most 256
-  /// wait: beyond that the first of them is dropped (who sent it repeats).
+  /// Runs `task` once every state passed so far is on disk; at once if it already is, or if the disk fails.
+  /// At most 256 tasks are queued: beyond that the oldest is dropped, and the station repeats its command.
   void when_safe(Task task);
-  /// At a clean end, after the command strand has ended: hands the newest state to the writer's strand when
-  /// it is not on disk yet. Nothing without such a strand, so that in rehearsal an end is a crash.
+  /// Hands the newest state to the writer's strand if it is not on disk yet, at a clean end after the command
+  /// strand has ended. Does nothing without such a strand, so that in rehearsal an end is a crash.
   void flush();
-  /// At 20 Hz: patience and retries.
+  /// Checks timeouts and retries. Call it at 20 Hz.
   void tick();
 
   bool failing() const;
-  /// The state given last, with or without a disk; nothing before the first.
+  /// The last state passed, with or without a disk; unset before the first.
   const std::optional<Snapshot>& given() const;
 
  private:

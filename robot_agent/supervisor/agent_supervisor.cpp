@@ -12,8 +12,9 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kHealthPeriod = 5s;
-constexpr Duration kCommandSilent = 120ms;  // the supervisor sends zero when the command strand does not
-constexpr Duration kLastWords = 100ms;      // for the notification of what was escalated
+constexpr Duration kCommandSilent =
+    120ms;  // After this silence of the command strand the supervisor sends zero itself.
+constexpr Duration kLastWords = 100ms;  // Time for the notification of an escalated failure.
 constexpr const char* kAgent = "agent";
 
 std::string_view word(PartState state) {
@@ -129,7 +130,7 @@ class AgentSupervisor::Impl {
     if (unsaid_.size() < kUnsaid) unsaid_.push_back({{}, severity, code, reason, text});
     say_all();
   }
-  /// What could not be said because another strand was sending is said a little later.
+  /// Sends the queued notifications; those that another strand blocks are sent at the next call.
   void say_all() {
     while (!unsaid_.empty() && notifier_.try_send(unsaid_.front())) unsaid_.pop_front();
   }
@@ -155,7 +156,7 @@ class AgentSupervisor::Impl {
   Supervisor supervisor_;
   wire::Writer<radio::Health> health_{};
   VelocityWriter zero_{};
-  std::vector<PartSpec> specs_{};  // as at the start: read from any thread
+  std::vector<PartSpec> specs_{};  // Constant after the start: read from any thread.
   std::vector<ComponentRow> notes_{};
   std::deque<Notice> unsaid_{};
   std::uint64_t seq_{};

@@ -15,19 +15,20 @@ struct AgentSupervisorParams {
   std::string robot{};
   SupervisionParams supervision{};
   Log log{};
-  /// The agent's process is to end and to be started anew. On the supervisor's strand.
+  /// Requests a restart of the agent's process. Called on the supervisor's strand.
   std::function<void(const std::string& why)> end{};
-  /// Supervisor and command component both live: at each look, on the supervisor's strand.
+  /// Called at each check while the supervisor and the command component are alive, on the supervisor's
+  /// strand.
   std::function<void()> alive{};
-  VelocityType velocity{VelocityType::twist};  ///< of the zeros for the driver
+  VelocityType velocity{VelocityType::twist};  ///< Message type of the zero velocities for the driver.
 };
 
-/// The supervisor of an agent, on a strand of its own beside the command strand: tells operators of health
-/// and failures, sends zero to the driver while the command component is away or silent, has the agent
-/// restarted when nothing else helps. The first unit watched is the command component.
+/// The supervisor of an agent, on a strand of its own beside the command strand. Reports health and failures
+/// to operators, sends zero to the driver while the command component is not running or silent, and requests
+/// a restart of the agent as the last resort. The first unit passed to watch() is the command component.
 class AgentSupervisor {
  public:
-  /// Errors of the wires.
+  /// Errors: those of the participants.
   static Result<std::unique_ptr<AgentSupervisor>> open(AgentSupervisorParams params, Executor& strand,
                                                        wire::Participant& radio, wire::Participant& robot,
                                                        Notifier& notifier);
@@ -35,21 +36,22 @@ class AgentSupervisor {
   AgentSupervisor(const AgentSupervisor&) = delete;
   AgentSupervisor& operator=(const AgentSupervisor&) = delete;
 
-  /// Before start().
+  /// Adds a unit. Call it before start().
   void watch(Unit& unit, PartSpec spec);
-  /// Starts the units, on the strand.
+  /// Starts the units. Call it on the strand.
   void start();
-  /// After the strand's end.
+  /// Call it after the strand's end.
   void stop();
 
-  // From any thread.
+  // Callable from any thread:
 
-  /// A line of the health report that is no component's; replaces the one of that name.
+  /// Adds a line of the health report for a part that is no component, or replaces the line of that name.
   void note(ComponentRow row);
-  /// The operator's word. "agent" restarts the whole of it. Errors: bad_argument, not_supported.
+  /// Restarts a component on the operator's request; "agent" restarts all. Errors: bad_argument,
+  /// not_supported.
   Result<void> restart(const std::string& component);
   Result<void> set_policy(const std::string& component, bool automatic);
-  /// Health as a table for the robot's console; called on the strand.
+  /// Passes the health as a table for the robot's console to `answer`; called on the strand.
   void describe(std::function<void(const std::string&)> answer);
 
  private:

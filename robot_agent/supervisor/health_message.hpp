@@ -8,7 +8,7 @@
 
 namespace adit::agent {
 
-/// The health report of a robot as it travels on the radio; longer texts are cut.
+/// Makes the health report that a robot sends on the radio domain; long texts are cut.
 radio::Health to_radio(const std::vector<ComponentRow>& components, const std::string& robot);
 
 }  // namespace adit::agent

@@ -10,7 +10,7 @@ void Telemetry::start(Time now, Time started) {
 }
 
 void Telemetry::follow_link(Time now) {
-  // The stick echoes our stamps, and at 600 ms an echo is stale.
+  // The stick echoes the stamps of RobotState, and an echo is stale after 600 ms.
   constexpr double kRateWithStick = 5.0;
   const wire::SenderState sender = dependencies_.wire.sender();
   dependencies_.rate.observe(now, sender.waiting(wire::kStatusPriority), sender.lost(wire::kStatusPriority));
@@ -31,7 +31,7 @@ void Telemetry::send_state(Time now, float charge) {
 }
 
 void Telemetry::send_periodic(Time now) {
-  constexpr std::uint32_t kLinkSeconds = 2;  // between two link reports
+  constexpr std::uint32_t kLinkSeconds = 2;  // Period of the link reports, s.
   const std::uint32_t at = seconds_++;
   const auto stretch = static_cast<std::uint32_t>(dependencies_.rate.stretch());
   if (at % stretch == 0) {

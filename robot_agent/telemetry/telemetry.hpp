@@ -16,7 +16,7 @@ namespace adit::agent {
 /// the command strand, as part of the command component.
 class Telemetry {
  public:
-  /// Where the reports come from and go to; all of it must outlive the telemetry.
+  /// Sources and destinations of the reports; they must outlive the telemetry.
   struct Dependencies {
     RadioEdge& radio;
     wire::Participant& wire;  ///< The radio domain.
@@ -35,11 +35,12 @@ class Telemetry {
   /// Adapts the rate to the link, and sends RobotState when it is due. At 10 Hz. `charge`: of the battery,
   /// [0, 1], negative while unknown.
   void send_state(Time now, float charge);
-  /// Repeats the status for stations that came late, and reports on the link. Once a second.
+  /// Repeats the status for stations that joined late, and reports on the link. Once a second.
   void send_periodic(Time now);
   void send_authority(Time now);
   void send_behaviour(Time now);
-  /// Compares the driver's health with the last call and reports a change. True when it fell silent.
+  /// Compares the driver's health with the last call and reports a change. Returns whether the driver fell
+  /// silent.
   bool driver_fell_silent(Time now);
 
  private:

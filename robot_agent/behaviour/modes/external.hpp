@@ -5,12 +5,12 @@
 
 namespace adit::agent {
 
-/// The mode `external`: a program on the robot domain steers, one that speaks only ROS 2 types. What it
-/// writes to /external/cmd_vel passes within the platform's limits and behind the collision monitor, as every
-/// source does.
+/// The mode `external`: a program on the robot domain, which uses only ROS 2 types, steers the robot. Its
+/// velocities on /external/cmd_vel pass the platform's limits and the collision monitor, as those of every
+/// source.
 class ExternalMode : public ModeModule {
  public:
-  static constexpr Duration kFresh{500ms};  ///< rule 6: a planner
+  static constexpr Duration kFresh{500ms};  ///< Rule 6, as for a planner.
 
   explicit ExternalMode(const ModeContext& context) : output_(context.output) {}
   static std::unique_ptr<ModeModule> make(const ModeContext& context) {
@@ -19,7 +19,7 @@ class ExternalMode : public ModeModule {
 
   void note(Facts& facts, Time now) const override { facts.program_fresh = fresh(now); }
   void tick(bool, Time) override {}
-  /// A velocity that is not finite counts as silence.
+  /// Receives a velocity; one that is not finite is ignored.
   void program(const Twist2& velocity, Time now) override;
   bool fresh(Time now) const { return last_ && now - *last_ <= kFresh; }
 

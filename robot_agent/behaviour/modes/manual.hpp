@@ -18,7 +18,7 @@ class ManualMode : public ModeModule {
   Mux::Output output_;
 };
 
-/// The mode `smart_joystick`: the stick says where to, the local planner how.
+/// The mode `smart_joystick`: the stick gives the direction, and the local planner finds a path.
 class SmartJoystickMode : public ModeModule {
  public:
   explicit SmartJoystickMode(const ModeContext& context) : output_(context.output) {}

@@ -49,7 +49,7 @@ void WaypointMode::watch(GoalState state, Time now) {
 }
 
 Result<void> WaypointMode::check_goal(const Eigen::Vector3d& goal, Facts& facts) const {
-  // z is NaN where none was given.
+  // z is NaN if it was not given.
   if (!goal.head<2>().allFinite() || std::isinf(goal.z()) || goal.head<2>().norm() > kFarthestPlace)
     return {Reason::out_of_range, "goto: the goal is no place within 10 km"};
   facts.goal_known = true;

@@ -3,10 +3,11 @@
 
 namespace adit::agent {
 
-/// The mode `waypoint`: navigation drives to the goal, and stands there.
+/// The mode `waypoint`: navigation drives to the goal and stops there.
 class WaypointMode : public ModeModule {
  public:
-  static constexpr Duration kBlockedAfter = 5s;  ///< Until the holder is notified that every path is blocked.
+  static constexpr Duration kBlockedAfter =
+      5s;  ///< Time until the holder is notified that every path is blocked.
 
   explicit WaypointMode(ModeContext context) : context_(std::move(context)) {}
   static std::unique_ptr<ModeModule> make(const ModeContext& context) {
@@ -33,7 +34,7 @@ class WaypointMode : public ModeModule {
     bool reached{};
     std::uint32_t id{};
     Eigen::Vector3d place{Eigen::Vector3d::Zero()};
-    bool on_floor{};  ///< It was given no height.
+    bool on_floor{};  ///< The goal has no z of its own.
   };
 
   ModeContext context_;
