@@ -8,14 +8,14 @@
 namespace adit::command {
 namespace {
 
-/// A whole word as a finite number, with no locale and no hexadecimal.
+/// Parses a complete word as a finite number, without locale and without hexadecimal.
 bool to_number(std::string_view word, double& out) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
   return error == std::errc() && end == word.data() + word.size() && std::isfinite(out);
 }
 
-/// An argument in a sentence: "a robot", "X", "auto or manual".
+/// Describes an argument for use in a sentence: "a robot", "X", "auto or manual".
 std::string named(const Argument& argument) {
   if (!argument.what.empty()) return std::string(argument.what);
   if (argument.type != Type::choice) return std::string(argument.name);
@@ -24,7 +24,7 @@ std::string named(const Argument& argument) {
   return text;
 }
 
-/// What a command takes, in a sentence: "a robot and a component", "one robot".
+/// Describes the arguments of a command in a sentence: "a robot and a component", "one robot".
 std::string takes(const CommandInfo& command) {
   std::vector<std::string> all;
   for (const Argument& argument : command.arguments)
@@ -39,7 +39,7 @@ std::string takes(const CommandInfo& command) {
   return text;
 }
 
-/// Reads the words of one line for one row of the table.
+/// Reads the words of one line according to one row of the table.
 class Reader {
  public:
   Reader(const CommandInfo& row, std::vector<std::string> words) : row_(row), words_(std::move(words)) {}
@@ -96,13 +96,14 @@ class Reader {
     return {};
   }
 
-  /// `stop all`: names beside `all` change nothing.
+  /// `stop all`: robot names beside `all` change nothing.
   bool names_all() {
     request_.all = row_.arguments[0].all && std::find(words_.begin(), words_.end(), "all") != words_.end();
     return request_.all;
   }
 
-  /// Gives the words [from, to) to the arguments [begin, end), of which the optional ones take what is left.
+  /// Assigns the words [from, to) to the arguments [begin, end); the optional arguments take the words that
+  /// are left.
   Result<void> assign(std::size_t begin, std::size_t end, std::size_t from, std::size_t to) {
     std::size_t min_words = 0, max_words = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -160,7 +161,8 @@ class Reader {
   std::string missing_{};
 };
 
-/// Of the rows with one first word, the one whose keyword was typed, else the one that has none.
+/// Of the rows with the same first word, returns the one whose keyword was typed, else the one without a
+/// keyword.
 Result<const CommandInfo*> choose(const std::vector<const CommandInfo*>& found,
                                   const std::vector<std::string>& words) {
   const CommandInfo* plain = nullptr;

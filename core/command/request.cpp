@@ -8,7 +8,7 @@
 namespace adit::command {
 namespace {
 
-/// Whether an argument's values travel to the robot, and as what.
+/// Whether an argument's values are sent to the robot as words.
 bool sends_words(const Argument& a) {
   return a.type == Type::name || a.type == Type::file || a.type == Type::choice;
 }
@@ -23,7 +23,7 @@ std::string shown(double number, int decimals) {
   return text;
 }
 
-/// A limit, as short as it can be written.
+/// A limit in its shortest notation.
 std::string shown(double number) {
   std::string text = shown(number, 2);
   text.erase(text.find_last_not_of('0') + 1);
@@ -31,7 +31,7 @@ std::string shown(double number) {
   return text;
 }
 
-/// `field` is a name, and for a number the decimals behind a point: "MODE", "X.2".
+/// `field` is a name, for a number with the count of decimals after a point: "MODE", "X.2".
 std::string shown(const Request& request, std::string_view field) {
   const std::size_t point = std::min(field.find('.'), field.size());
   const std::string_view name = field.substr(0, point);
@@ -40,7 +40,7 @@ std::string shown(const Request& request, std::string_view field) {
   return shown(request.number(name), point + 1 < field.size() ? field[point + 1] - '0' : 2);
 }
 
-/// Takes the values of a row out of a payload, front to back.
+/// Reads the values of a row from a payload, front to back.
 class PayloadReader {
  public:
   PayloadReader(const CommandInfo& row, const Payload& payload) : row_(row), payload_(payload) {

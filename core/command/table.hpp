@@ -3,12 +3,13 @@
 
 namespace adit::command {
 
-inline constexpr double kMaxSpeed = 20.0;    ///< m/s, rad/s: beyond any robot; more is a slip of the finger
-inline constexpr double kMaxDistance = 1e4;  ///< m
-inline constexpr double kMaxDuration = 3600.0;  ///< s
-inline constexpr std::uint8_t kMaxRobots = 64;  ///< of one command
+/// Limit of speeds, m/s or rad/s: faster than any robot, so a larger value is a typing error.
+inline constexpr double kMaxSpeed = 20.0;
+inline constexpr double kMaxDistance = 1e4;     ///< Largest distance, m.
+inline constexpr double kMaxDuration = 3600.0;  ///< Largest duration, s.
+inline constexpr std::uint8_t kMaxRobots = 64;  ///< Largest number of robots of one command.
 
-/// What completion proposes. The robot judges the name of a mode, by its own table of modes.
+/// Modes that completion proposes. The robot checks the name of a mode against its own table of modes.
 inline constexpr std::string_view kUsualModes = "hold|manual|smart_joystick|waypoint|explore|external";
 
 inline constexpr Argument kRobot{.name = "R", .type = Type::robots, .what = "a robot"};
@@ -34,9 +35,9 @@ constexpr Argument component(std::string_view choices) {
   return {.name = "COMPONENT", .type = Type::name, .what = "a component", .choices = choices};
 }
 
-/// The command vocabulary. Parser, help, completion, what travels on the radio, the catalogue of actions, the
-/// words of the answers and the table of docs/operators.md are read from these rows, in this order. A further
-/// command is a row here and a handler: CommandInterface::perform() for a robot's, Station for its own.
+/// The command vocabulary. Parser, help, completion, the radio payload, the catalogue of actions, the texts
+/// of answers and the table of docs/operators.md are derived from these rows, in this order. A new command
+/// needs a row here and a handler: CommandInterface::perform() for a robot's command, Station for its own.
 inline constexpr std::array kTable{
     CommandInfo{.name = "up",
                 .runs = Runs::station,

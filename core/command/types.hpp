@@ -7,35 +7,36 @@
 
 #include "core/result/reason.hpp"
 
-/// The types that describe one command: core/command/table.hpp is written with them.
+/// The types that describe one command; core/command/table.hpp uses them.
 namespace adit::command {
 
 enum class Type : std::uint8_t {
   none,
-  robots,   ///< robot names; they address the command and do not travel in it
-  name,     ///< 1 to 32 of [A-Za-z0-9_-]: an operator, a component, a mode, an area
-  file,     ///< a path
-  choice,   ///< one of `choices`
-  number,   ///< finite, within the range
-  command,  ///< the name of a command
-  keyword,  ///< `name` itself; tells commands with the same first word apart
+  robots,   ///< Robot names; they address the command and are not part of its payload.
+  name,     ///< An operator, a component, a mode or an area: 1 to 32 of [A-Za-z0-9_-].
+  file,     ///< A path.
+  choice,   ///< One of `choices`.
+  number,   ///< A finite number within the range.
+  command,  ///< The name of a command.
+  keyword,  ///< The word `name` itself; it distinguishes commands with the same first word.
 };
 
 /// One argument of a command, or a value of an option.
 struct Argument {
-  std::string_view name{};  ///< as in the usage: "X", "COMPONENT"; of a keyword the word itself
+  std::string_view name{};  ///< Name as in the usage: "X", "COMPONENT"; of a keyword the word itself.
   Type type{Type::none};
-  std::string_view what{};     ///< in messages: "an operator"; empty: the name
-  std::string_view choices{};  ///< separated by |; of a name or a file only what completion proposes
-  Reason refusal{Reason::bad_argument};                      ///< for a word that is no choice or no name
-  double minimum{-std::numeric_limits<double>::infinity()};  ///< of a number, in `unit`
+  std::string_view what{};  ///< Name in messages: "an operator"; empty: `name`.
+  /// Choices, separated by |; for a name or a file only proposals for completion.
+  std::string_view choices{};
+  Reason refusal{Reason::bad_argument};  ///< Error for a word that is no valid choice or name.
+  double minimum{-std::numeric_limits<double>::infinity()};  ///< Lower limit of a number, in `unit`.
   double maximum{std::numeric_limits<double>::infinity()};
-  bool above{false};                        ///< the minimum itself is out of range
-  std::string_view unit{};                  ///< m, m/s, rad, rad/s, s
-  std::string_view unlimited{};             ///< a word that stands for an infinite number
-  std::uint8_t min_count{1}, max_count{1};  ///< how many are given; 0 and 1: optional
-  std::uint8_t group{1};                    ///< numbers that belong together: 2 for points X Y
-  bool all{false};                          ///< robots: the word `all` stands for every robot that is heard
+  bool above{false};                        ///< The minimum itself is out of range.
+  std::string_view unit{};                  ///< One of m, m/s, rad, rad/s, s.
+  std::string_view unlimited{};             ///< A word that means an infinite number.
+  std::uint8_t min_count{1}, max_count{1};  ///< Number of values; 0 and 1: optional.
+  std::uint8_t group{1};                    ///< Numbers that belong together: 2 for points X Y.
+  bool all{false};                          ///< For robots: the word `all` means every robot that is heard.
 
   constexpr explicit operator bool() const { return type != Type::none; }
 };
@@ -44,57 +45,57 @@ struct Argument {
 struct Option {
   std::string_view name{};
   std::array<Argument, 2> values{};
-  double preset{std::numeric_limits<double>::quiet_NaN()};  ///< its number when it is not given
-  bool local{false};        ///< concerns the station alone and is not sent to the robot
-  std::string_view done{};  ///< replaces the command's `done` when it is given
+  double preset{std::numeric_limits<double>::quiet_NaN()};  ///< Number used when the option is not given.
+  bool local{false};        ///< Concerns only the station and is not sent to the robot.
+  std::string_view done{};  ///< Replaces the command's `done` when the option is given.
 
   constexpr explicit operator bool() const { return !name.empty(); }
   constexpr std::size_t count() const { return (values[0] ? 1U : 0U) + (values[1] ? 1U : 0U); }
 };
 
-/// Who carries a command out.
+/// The party that executes a command.
 enum class Runs : std::uint8_t {
-  terminal,  ///< the program in a terminal: it reads keys or files
-  query,     ///< the station, from what it has heard
-  station,   ///< the station, about itself
-  stick,     ///< the station, with a stream of joystick samples
-  robot,     ///< the robot
-  nobody,    ///< it takes the place of a withdrawn command and is never typed
+  terminal,  ///< The program in a terminal, which reads keys or files.
+  query,     ///< The station, from data it has received.
+  station,   ///< The station, about itself.
+  stick,     ///< The station, with a stream of joystick samples.
+  robot,     ///< The robot.
+  nobody,    ///< Reserves the number of a withdrawn command; it cannot be typed.
 };
 
-/// What can go wrong when a command is given by mistake: how much a front end asks for before it sends it.
+/// Harm that a command given by mistake can do; it sets how much confirmation a front end requires.
 enum class Danger : std::uint8_t {
-  none,  ///< changes nothing, or makes the robot safer: at once
-  some,  ///< moves a robot or changes who commands it: one deliberate action
-  high,  ///< takes something from others or restarts parts: press and hold, or confirm
+  none,  ///< Changes nothing, or makes the robot safer: sent at once.
+  some,  ///< Moves a robot or changes its commander: one deliberate action.
+  high,  ///< Takes something from other operators or restarts parts: press and hold, or confirm.
 };
 
-/// What must hold before the robot accepts a command. The robot has the last word.
+/// Preconditions of a command. A front end checks them in advance, but the robot decides.
 struct Conditions {
-  bool holder{false};       ///< the sender holds the robot, under the epoch in force
-  std::string_view mode{};  ///< this mode could be entered now; "MODE": the one that is asked for
-  std::string_view in{};    ///< the robot is in this mode
+  bool holder{false};       ///< The sender has authority over the robot, under the current epoch.
+  std::string_view mode{};  ///< This mode can be entered now; "MODE": the requested one.
+  std::string_view in{};    ///< The robot is in this mode.
 };
 
-/// Commands that must not be overtaken by what was sent before them: what moves the robot among itself, and
-/// what says who may.
+/// Ordering class: a command must not be overtaken by an earlier one of its class. One class is for commands
+/// that move the robot, one for those that change authority.
 enum class Line : std::uint8_t { none, steering, authority };
 
 /// One row of the vocabulary.
 struct CommandInfo {
-  std::string_view name{};  ///< the first word, and a keyword where several rows share that
+  std::string_view name{};  ///< First word; rows that share it differ by a keyword.
   std::array<Argument, 7> arguments{};
   std::array<Option, 4> options{};
   Runs runs{Runs::robot};
-  std::int16_t number{-1};  ///< on the radio: radio::CommandKind. Never used again; negative: never sent
+  std::int16_t number{-1};  ///< Number on the radio: radio::CommandKind. Never reused; negative: never sent.
   Danger danger{Danger::none};
   Conditions conditions{};
   Line line{Line::none};
-  std::string_view summary{};  ///< one line
-  std::string_view details{};  ///< what the page for operators says beside it
+  std::string_view summary{};  ///< One line.
+  std::string_view details{};  ///< Further text for the operators' page.
   std::string_view example{};
-  std::string_view done{};   ///< what an accepted command reads like; see done_text()
-  std::string_view label{};  ///< of a button, where the name itself does not read well
+  std::string_view done{};   ///< Text of an accepted command; see done_text().
+  std::string_view label{};  ///< Label of a button, where `name` is not suitable.
 
   constexpr std::string_view first_word() const { return name.substr(0, name.find(' ')); }
 };

@@ -5,7 +5,8 @@
 namespace adit::command {
 namespace {
 
-constexpr std::size_t kShortChoices = 24;  // longer lists of choices are named in the usage, not spelled out
+// The usage names longer lists of choices without spelling them out.
+constexpr std::size_t kShortChoices = 24;
 constexpr std::size_t kHelpColumn = 30;
 
 bool typed(const CommandInfo& row) { return row.runs != Runs::nobody; }
@@ -30,7 +31,7 @@ std::string usage(const Argument& argument) {
   return argument.min_count == 0 ? "[" + text + "]" : text;
 }
 
-/// The keyword of a row; null when it has none.
+/// Returns the keyword of a row, or null when it has none.
 const Argument* keyword_of(const CommandInfo& row) {
   const auto found = std::find_if(row.arguments.begin(), row.arguments.end(),
                                   [](const Argument& a) { return a.type == Type::keyword; });
@@ -48,11 +49,11 @@ void propose(const Argument& argument, const std::vector<std::string>& robots, T
   if (!argument.unlimited.empty()) out.emplace_back(argument.unlimited);
 }
 
-/// What the arguments [begin, end) of a row propose for the word at place `at`; true when all that must be
-/// there before it is there.
+/// Adds the proposals of arguments [begin, end) of a row for the word at position `at`; returns true when all
+/// required words before it are present.
 bool propose(const CommandInfo& row, std::size_t begin, std::size_t end, std::size_t at,
              const std::vector<std::string>& robots, Table rows, std::vector<std::string>& out) {
-  std::size_t first = 0, last = 0;  // the places where the next argument may begin
+  std::size_t first = 0, last = 0;  // Positions at which the next argument may begin.
   for (std::size_t i = begin; i < end; ++i) {
     const Argument& argument = row.arguments[i];
     const std::size_t max_words = std::size_t{argument.max_count} * argument.group;
@@ -76,7 +77,7 @@ std::vector<std::string> complete(const CommandInfo& row, const std::vector<std:
       given.push_back(words[i]);
       continue;
     }
-    const std::size_t missing = words.size() - 2 - i;  // typed behind the option
+    const std::size_t missing = words.size() - 2 - i;  // Number of words typed after the option.
     if (missing < (*option)->count()) {
       propose((*option)->values[missing], robots, rows, out);
       return out;

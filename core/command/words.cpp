@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kMaxLine = 4096;
 
-/// Optimal string alignment distance, bounded by what a command word can be.
+/// Optimal string alignment distance, for words up to the length of a command word.
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> cost(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i) cost[i][0] = i;
@@ -29,7 +29,7 @@ Result<std::vector<std::string>> split_words(std::string_view line) {
   if (line.size() > kMaxLine) return {Reason::syntax, "the line is longer than 4096 bytes"};
   std::vector<std::string> words;
   std::string word;
-  bool open = false;  // a word has begun, which may be empty: ""
+  bool open = false;  // A word has begun; it may be empty: "".
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const char c = line[i];
@@ -62,7 +62,7 @@ Result<std::vector<std::string>> split_words(std::string_view line) {
 std::string nearest(std::string_view typed, const std::vector<std::string>& candidates) {
   if (typed.empty() || typed.size() > 32) return {};
   std::string best;
-  std::size_t best_distance = std::min<std::size_t>(3, typed.size());  // fewer edits than this
+  std::size_t best_distance = std::min<std::size_t>(3, typed.size());  // Only fewer edits than this count.
   for (const std::string& candidate : candidates) {
     if (typed.size() >= 2 && candidate.starts_with(typed)) return candidate;
     const std::size_t d = distance(typed, candidate);

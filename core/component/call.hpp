@@ -12,20 +12,20 @@
 #include "core/exec/executor.hpp"
 #include "core/exec/generation.hpp"
 
-/// Calls between components of one process. A Service is a method with a name that exists as long as the
-/// process; the component that implements it offers it while it runs (Component::offer), and any other one
-/// calls it (Component::call). core/component/README.md has an example.
+/// Calls between components of one process. A Service is a named method that exists as long as the process;
+/// the component that implements it offers it while it runs (Component::offer), and other components call it
+/// (Component::call). core/component/README.md has an example.
 namespace adit {
 
 struct CallSpec {
-  /// From the call to its completion, which carries no_answer then, by the caller's clock. (0, 1 h]
+  /// Time from the call to its completion, by the caller's clock, (0, 1 h]; after it the completion carries
+  /// no_answer.
   Duration deadline{2s};
-  /// Of the caller; a request of a revoked one has no effect. Null: it cannot be revoked.
+  /// Generation of the caller; a request of a revoked one has no effect. Null: it cannot be revoked.
   std::shared_ptr<const Generation> caller{};
 };
 
-/// A call from its begin to its completion. The first who settles it decides what the completion carries.
-/// Thread safe.
+/// A call from its start to its completion. The first call of settle() decides the result. Thread safe.
 template <class R>
 class PendingCall final : public JobControl, public std::enable_shared_from_this<PendingCall<R>> {
  public:
@@ -34,13 +34,13 @@ class PendingCall final : public JobControl, public std::enable_shared_from_this
   PendingCall(std::string name, std::shared_ptr<Inbox> home, Done done)
       : name_(std::move(name)), home_(std::move(home)), done_(std::move(done)) {}
 
-  /// Sets the deadline on the caller's strand. Call it before other threads know of the call.
+  /// Starts the deadline on the caller's strand. Call it before other threads can access the call.
   void watch(Executor& caller, Duration deadline) {
     deadline_ = caller.after(deadline, [weak = this->weak_from_this()] {
       if (const auto call = weak.lock()) call->fail(Reason::no_answer, "no answer by its deadline");
     });
   }
-  /// An answer counts while `callee` is valid. Call it before other threads know of the call.
+  /// Accepts an answer only while `callee` is valid. Call it before other threads can access the call.
   void depend_on(std::shared_ptr<const Generation> callee) { callee_ = std::move(callee); }
 
   bool settled() const { return settled_.load(std::memory_order_acquire); }
@@ -65,12 +65,13 @@ class PendingCall final : public JobControl, public std::enable_shared_from_this
   std::atomic<bool> settled_{false};
 };
 
-/// A call under way, as its caller sees it; dropping it changes nothing.
+/// A running call, as its caller sees it; dropping the handle changes nothing.
 class CallHandle {
  public:
   CallHandle() = default;
   explicit CallHandle(std::weak_ptr<JobControl> call) : call_(std::move(call)) {}
-  /// On the caller's strand. Unless the call is settled, its completion carries `cancelled`.
+  /// Cancels the call, on the caller's strand. Unless the call is settled, its completion carries
+  /// `cancelled`.
   void cancel() const {
     if (const auto call = call_.lock()) call->cancel();
   }
@@ -79,8 +80,8 @@ class CallHandle {
   std::weak_ptr<JobControl> call_{};
 };
 
-/// The answer to one request. Copies share it; when the last one goes without an answer, the completion
-/// carries `cancelled`. Not to be captured in the work of a computation, but in its completion.
+/// Sends the answer to one request. Copies share it; when the last copy is destroyed without an answer, the
+/// completion carries `cancelled`. Capture it in the completion of a computation, never in its work.
 template <class R>
 class Reply {
  public:
@@ -88,9 +89,9 @@ class Reply {
   Reply(Call call, std::shared_ptr<std::atomic<std::size_t>> in_flight)
       : slot_(std::make_shared<Slot>(std::move(call), std::move(in_flight))) {}
 
-  /// The first answer counts. Any thread of a live process.
+  /// Sends an answer; only the first one counts. Safe to call from any thread while the process lives.
   void operator()(Result<R> result) const { slot_->call->settle(std::move(result)); }
-  /// False once the caller has its completion: the answer is too late, or it cancelled.
+  /// False once the caller has its completion: the answer is too late, or the caller cancelled.
   bool wanted() const { return !slot_->call->settled(); }
 
  private:
@@ -108,7 +109,7 @@ class Reply {
   std::shared_ptr<Slot> slot_;
 };
 
-/// Ends what a component offers when dropped: calls under way complete with `cancelled`.
+/// Withdraws a service when destroyed: pending calls complete with `cancelled`.
 class [[nodiscard]] Offer {
  public:
   Offer() = default;
@@ -130,27 +131,27 @@ class [[nodiscard]] Offer {
   std::function<void()> withdraw_{};
 };
 
-/// A method that one component implements for every other of its process. Components come and go; the service
-/// stays, and knows which instance offers it now. Thread safe.
+/// A method that one component implements for all others of its process. Components start and stop; the
+/// service persists and knows which instance offers it now. Thread safe.
 ///
 /// A call completes exactly once with Result<Response>, in a later task of the caller's strand, whatever
-/// happens: no_answer (nobody offers the service, or the deadline passed), queue_full (the component still
-/// holds the Reply of `max_in_flight` requests), cancelled (by the caller; or the instance that had the
-/// request failed, was replaced, or dropped it). Only when the caller's strand ends first is there no
-/// completion. An answer of an instance that was revoked never arrives. In rehearsal all of it happens on
-/// modelled time.
+/// happens. Errors: no_answer (no component offers the service, or the deadline passed), queue_full (the
+/// component still holds the Reply of `max_in_flight` requests), cancelled (by the caller; or the instance
+/// with the request failed, was replaced, or dropped it). Only when the caller's strand ends first is there
+/// no completion. An answer of a revoked instance never arrives. In rehearsal all of it happens on modelled
+/// time.
 template <class Request, class Response>
 class Service {
  public:
   using Handler = std::function<void(Request, Reply<Response>)>;
   using Done = std::function<void(Result<Response>)>;
 
-  /// `name`: in the texts of errors; `max_in_flight`: requests that a component has not answered, >= 1.
+  /// `name`: for texts of errors; `max_in_flight`: requests that a component may hold unanswered, >= 1.
   explicit Service(std::string name, std::size_t max_in_flight = 8)
       : state_(std::make_shared<State>(std::move(name), std::max<std::size_t>(1, max_in_flight))) {}
 
-  /// From now on `handler` is called on `strand` for each request, and the instance that offered it before
-  /// gets none. The answers count while `generation` is valid; an instance that was revoked offers nothing.
+  /// Makes `handler` receive each request on `strand`, in place of the instance that offered the service
+  /// before. Answers count while `generation` is valid; the offer of a revoked instance has no effect.
   Offer offer(Executor& strand, std::shared_ptr<const Generation> generation, Handler handler) {
     auto next = std::make_shared<Offering>(strand.inbox(), std::move(generation), std::move(handler));
     const auto before = state_->exchange(next);
@@ -164,7 +165,7 @@ class Service {
     });
   }
 
-  /// On `caller`, or before it runs.
+  /// Call it on `caller`, or before that strand runs.
   CallHandle call(Executor& caller, Request request, CallSpec spec, Done done) const {
     const auto call = std::make_shared<PendingCall<Response>>(state_->name, caller.inbox(), std::move(done));
     call->watch(caller, std::clamp<Duration>(spec.deadline, 1ns, 1h));
@@ -178,7 +179,7 @@ class Service {
       call->fail(admitted.reason(), admitted.error().text);
       return CallHandle(call);
     }
-    // Refused, the task is dropped, and with it the reply, which completes the call.
+    // When the post is refused, the task is destroyed, and with it the reply, which completes the call.
     offering->inbox->post([offering, from = std::move(spec.caller), request = std::move(request),
                            reply = Reply<Response>(call, offering->in_flight)]() mutable {
       if (from && !from->valid()) return;
@@ -188,7 +189,7 @@ class Service {
   }
 
  private:
-  /// What one instance offers.
+  /// The service as one instance offers it.
   struct Offering {
     Offering(std::shared_ptr<Inbox> i, std::shared_ptr<const Generation> g, Handler h)
         : inbox(std::move(i)), generation(std::move(g)), handler(std::move(h)) {}
@@ -219,7 +220,7 @@ class Service {
     const std::shared_ptr<const Generation> generation;
     const Handler handler;
     const std::shared_ptr<std::atomic<std::size_t>> in_flight{std::make_shared<std::atomic<std::size_t>>(0)};
-    std::mutex mutex{};  // guards what follows
+    std::mutex mutex{};  // Guards the members below.
     std::vector<std::weak_ptr<PendingCall<Response>>> calls{};
     bool closed{false};
   };
@@ -230,8 +231,8 @@ class Service {
       const std::lock_guard lock(mutex);
       return offering;
     }
-    /// Returns what was offered before, which may be null. Nothing when the instance of `next` was revoked:
-    /// it must not replace another.
+    /// Sets the current offering and returns the previous one, which may be null. Returns nothing when the
+    /// instance of `next` was revoked: it must not replace another.
     std::optional<std::shared_ptr<Offering>> exchange(std::shared_ptr<Offering> next) {
       const std::lock_guard lock(mutex);
       if (!next->generation->valid()) return std::nullopt;
@@ -243,7 +244,7 @@ class Service {
     }
     const std::string name;
     const std::size_t max_in_flight;
-    mutable std::mutex mutex{};  // guards the next one
+    mutable std::mutex mutex{};  // Guards the next member.
     std::shared_ptr<Offering> offering{};
   };
   std::shared_ptr<State> state_;

@@ -12,7 +12,8 @@ Component::Component(std::string name, Executor& executor, Log log, HealthParams
       health_state_(std::make_shared<HealthState>(std::move(name), health)) {}
 
 Component::~Component() {
-  // on_stop() of a derived class can no longer be called: its part is gone. Those who need it call stop().
+  // on_stop() of a derived class can no longer be called, because that part is already destroyed. Components
+  // that need it call stop().
   if (life_) life_->owner = nullptr;
   health_state_->stopped();
 }
@@ -32,7 +33,7 @@ Result<void> Component::start() {
     result = Error{Reason::internal, name() + " did not start: " + text};
   }
   if (result && failures_ != failures_before) {
-    // A guarded callback threw within on_start(), before anyone could handle the failure.
+    // A guarded callback threw within on_start(), before any handler could process the failure.
     stop();
     return Error{Reason::internal, name() + " did not start: " + health_state_->health(now()).last_failure};
   }

@@ -16,20 +16,21 @@
 
 namespace adit {
 
-/// A failure of a component, as a value: an exception left one of its callbacks.
+/// A failure of a component as a value: an exception thrown by one of its callbacks.
 struct ComponentFailure {
   std::string component{};
   std::string text{};
   Time at{};
-  std::uint64_t count{0};  ///< of this component, this one included
+  std::uint64_t count{0};  ///< Failures of this component so far, this one included.
 };
 
-/// Base of what lives on a strand. It is made, started, stopped and destroyed on its strand, or while that
-/// strand does not run (before it is used, after it was dropped); the executor must outlive stop().
+/// Base class of components that live on a strand. A component is created, started, stopped and destroyed on
+/// its strand, or while that strand does not run (before its first use, after its end); the executor must
+/// outlive stop().
 ///
-/// Everything it hands out to be called later goes through guard(): such a callback does nothing once
-/// the component is gone, and an exception that leaves it becomes a ComponentFailure instead of the end of
-/// the process. The heartbeat is a timer of the loop it vouches for: when a callback hangs, it stops.
+/// Every callback that it passes to others goes through guard(): such a callback does nothing once the
+/// component is gone, and an exception that it throws becomes a ComponentFailure instead of ending the
+/// process. The heartbeat is a timer of the same loop: it stops when a callback hangs.
 class Component {
  public:
   Component(std::string name, Executor& executor, Log log = {}, HealthParams health = {});
@@ -40,21 +41,21 @@ class Component {
   /// Starts the heartbeat and calls on_start(); an exception in it is an Error (internal). A second start
   /// without a stop is an Error (in_use).
   Result<void> start();
-  /// Ends the heartbeat and calls on_stop(). Callbacks are dropped from here on.
+  /// Ends the heartbeat and calls on_stop(). Callbacks are dropped from then on.
   void stop();
   bool running() const { return life_ != nullptr; }
 
   const std::string& name() const { return health_state_->name(); }
-  /// For watchers on other strands; lives on after the component.
+  /// State for watchers on other strands; it outlives the component.
   std::shared_ptr<const HealthState> health_state() const { return health_state_; }
   ComponentHealth health() const { return health_state_->health(executor_.now()); }
-  /// For tests and rehearsals of failures: a callback of this component throws, or never returns.
+  /// Makes a callback of this component throw or never return. For tests and rehearsals of failures.
   void inject(ComponentFault fault);
-  /// Which instance this is. What it hands to other strands counts while that is valid.
+  /// Identifies this instance. Whatever it passes to other strands counts only while the generation is valid.
   const std::shared_ptr<const Generation>& generation() const { return generation_; }
-  /// Before start(): the generation that its supervisor revokes.
+  /// Sets the generation that the supervisor revokes. Call it before start().
   void adopt(std::shared_ptr<const Generation> generation) { generation_ = std::move(generation); }
-  /// Told of each failure, on the strand.
+  /// Sets the handler that receives each failure, on the strand.
   void on_failure(std::function<void(const ComponentFailure&)> handler) {
     failure_handler_ = std::move(handler);
   }
@@ -66,10 +67,10 @@ class Component {
   Executor& executor() const { return executor_; }
   Time now() const { return executor_.now(); }
   const Log& log() const { return log_; }
-  /// Reports a failure that is no exception.
+  /// Reports a failure that is not an exception.
   void fail(const std::string& text);
 
-  /// Wraps a callback that returns nothing; valid between start() and stop(). It must be called on the
+  /// Wraps a callback that returns nothing; it works between start() and stop() and must be called on the
   /// strand.
   template <class F>
   auto guard(F callback) {
@@ -84,12 +85,12 @@ class Component {
       }
     };
   }
-  /// Calls it now, on the strand; an exception becomes a failure.
+  /// Calls `f` now, on the strand; an exception becomes a failure.
   template <class F>
   void protect(F callback) {
     guard(std::move(callback))();
   }
-  /// Guarded post, timers and compute.
+  /// Guarded versions of post, timers and compute.
   template <class F>
   bool post(F task) {
     return executor_.post(guard(std::move(task)));
@@ -103,7 +104,7 @@ class Component {
     return executor_.every(period, guard(std::move(task)));
   }
   /// Implements a service until stop(): `handler(Request, Reply<Response>)` runs on this strand for each
-  /// request, and calls the reply now or later, from a completion. When it throws, the call completes with
+  /// request, and answers at once or later, from a completion. When it throws, the call completes with
   /// `cancelled`.
   template <class Request, class Response, class Handler>
   void offer(Service<Request, Response>& service, Handler handler) {
@@ -117,8 +118,9 @@ class Component {
     spec.caller = generation_;
     return service.call(executor_, std::move(request), std::move(spec), guard(std::move(done)));
   }
-  /// Executor::compute with a guarded completion: it never comes once this component is stopped. An exception
-  /// of `work` is a failure of this component; when it still runs after that, `done` gets the Error, too.
+  /// Executor::compute with a guarded completion, which never runs once this component is stopped. An
+  /// exception of `work` is a failure of this component; if the component still runs afterwards, `done`
+  /// receives the Error, too.
   template <class Work, class Done>
   JobHandle compute(JobSpec spec, Work work, Done done) {
     using Value = job_value_t<Work>;
@@ -138,7 +140,8 @@ class Component {
     };
     auto completed = [this, life = std::weak_ptr<Life>(life_), failure,
                       done = std::move(done)](Result<Value> result) mutable {
-      // The failure is read only once the work has returned: an Error of the executor has another reason.
+      // The failure text is valid only once the work has returned; an Error of the executor has another
+      // reason.
       if (result.reason() == Reason::internal && !failure->empty()) fail(*failure);
       if (const auto alive = life.lock(); alive && alive->owner) done(std::move(result));
     };

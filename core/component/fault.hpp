@@ -3,10 +3,10 @@
 
 namespace adit {
 
-/// What a test does to a component on purpose, on the component's own strand.
+/// Fault that a test injects into a component, on the component's own strand.
 enum class ComponentFault : std::uint8_t {
-  crash,  ///< a callback throws
-  hang,   ///< a callback does not return
+  crash,  ///< A callback throws.
+  hang,   ///< A callback does not return.
 };
 
 }  // namespace adit

@@ -8,24 +8,26 @@
 
 namespace adit {
 
-/// What a watcher sees of a component.
+/// Health of a component as its watchers see it.
 struct ComponentHealth {
   std::string name{};
   bool running{false};
-  bool healthy{false};   ///< running, beating, and no failure in the last HealthParams::failure_memory
-  Duration beat_age{0};  ///< since its loop last turned
+  /// It runs, its heart beats, and there was no failure in the last HealthParams::failure_memory.
+  bool healthy{false};
+  Duration beat_age{0};  ///< Time since its loop last ran the heartbeat.
   std::uint64_t heartbeats{0};
   std::uint64_t failures{0};
-  std::string last_failure{};  ///< text of the newest exception, "" when there was none
+  std::string last_failure{};  ///< Text of the newest exception, "" when there was none.
 };
 
 struct HealthParams {
-  Duration beat{200ms};          ///< period of the heartbeat, [1 ms, 10 s]
-  Duration silence{1s};          ///< without a beat for longer: unhealthy
-  Duration failure_memory{10s};  ///< so long after a failure: unhealthy
+  Duration beat{200ms};          ///< Period of the heartbeat, [1 ms, 10 s].
+  Duration silence{1s};          ///< Time without a heartbeat after which it is unhealthy.
+  Duration failure_memory{10s};  ///< Time after a failure during which it is unhealthy.
 };
 
-/// The health of a component: written on its strand, read from any thread, and outliving it.
+/// The health of a component. It is written on the component's strand, read from any thread, and outlives the
+/// component.
 class HealthState {
  public:
   HealthState(std::string name, HealthParams params) : name_(std::move(name)), params_(params) {}
@@ -69,7 +71,7 @@ class HealthState {
   std::atomic<bool> running_{false};
   std::atomic<std::int64_t> last_beat_{0};
   std::atomic<std::uint64_t> heartbeats_{0};
-  mutable std::mutex mutex_{};  // guards what follows; taken for a failure and by watchers only
+  mutable std::mutex mutex_{};  // Guards the members below; only failures and watchers lock it.
   std::uint64_t failures_{0};
   Time last_failure_at_{};
   std::string last_failure_{};

@@ -18,8 +18,9 @@
 namespace adit {
 namespace {
 
-constexpr std::size_t kMaxHung = 8;       // threads that may hang; then their group gets no more
-constexpr std::int64_t kLooksPerJob = 4;  // at a job within its watchdog time
+// Threads of a group that may hang; after that the group gets no more threads.
+constexpr std::size_t kMaxHung = 8;
+constexpr std::int64_t kLooksPerJob = 4;  // Checks of a job within its watchdog time.
 
 }  // namespace
 
@@ -32,9 +33,9 @@ struct ComputePool::Worker {
   std::size_t group{};
   std::thread thread{};
   int system_id{};
-  std::shared_ptr<LiveJob> job{};  ///< That it runs now.
-  std::int64_t looked_at{};        ///< When the watch looked last, or the job's begin, ns.
-  Duration stalled{};              ///< How long the job has run, waits for a processor apart.
+  std::shared_ptr<LiveJob> job{};  ///< The job that it runs now.
+  std::int64_t looked_at{};        ///< Time of the watchdog's last check, or the start of the job, ns.
+  Duration stalled{};              ///< How long the job has run, excluding waits for a processor.
   std::optional<ProcessorUse> use{};
   bool hung{}, exited{};
 };
@@ -45,7 +46,7 @@ struct ComputePool::State {
     std::size_t limit;
     int nice;
     const char* name;
-    std::size_t threads{0};  ///< That do not hang.
+    std::size_t threads{0};  ///< Threads that do not hang.
     std::size_t idle{0};
   };
   explicit State(const LiveParams& p)
@@ -59,7 +60,7 @@ struct ComputePool::State {
         std::count_if(workers.begin(), workers.end(), [](const auto& w) { return w->hung && !w->exited; }));
   }
 
-  std::mutex mutex{};  // guards what follows
+  std::mutex mutex{};  // Guards the members below.
   std::condition_variable added{}, began{}, exited{};
   FailureHandler on_failure;
   std::array<Group, 2> groups;
@@ -125,7 +126,7 @@ void ComputePool::work(const std::shared_ptr<State>& state, Worker& worker) {
     worker.job->run();
     lock.lock();
     group.queue.finished(*worker.job);
-    const auto done = std::move(worker.job);  // its captures die outside the lock
+    const auto done = std::move(worker.job);  // Its captures are destroyed outside the lock.
     worker.job = nullptr;
     lock.unlock();
     if (!done->spec.lane.empty()) s.added.notify_all();
@@ -153,7 +154,7 @@ void ComputePool::watch(const std::shared_ptr<State>& state) {
       s.began.wait(lock);
       continue;
     }
-    s.watching = true;  // a job that begins meanwhile is seen within the shortest watchdog, 100 ms
+    s.watching = true;  // A job that begins meanwhile is seen within the shortest watchdog time, 100 ms.
     const std::int64_t now = steady_ns();
     if (next > now) {
       s.began.wait_for(lock, std::min<Duration>(Duration(next - now), 100ms), [&] { return s.stopping; });
@@ -177,7 +178,7 @@ void ComputePool::watch(const std::shared_ptr<State>& state) {
       for (auto& job : group.queue.hangs(w->job)) behind.push_back(std::move(job));
     }
     if (hanging.empty()) continue;
-    // Another thread for what waits, unless too many hang already.
+    // Starts another thread for the queued jobs, unless too many hang already.
     std::erase_if(s.workers, [](const auto& w) {
       if (w->exited) w->thread.join();
       return w->exited;

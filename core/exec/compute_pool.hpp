@@ -7,9 +7,9 @@
 
 namespace adit {
 
-/// Two groups of threads: of low priority for computations, and for disk I/O. A thread starts when there is
-/// work for it. Another one watches jobs that run: the thread of a job that hangs is replaced, so that the
-/// others go on, up to a bound.
+/// Two groups of threads: low-priority ones for computations, and one group for disk I/O. A thread starts
+/// when there is work for it. A watchdog thread checks running jobs: the thread of a job that hangs is
+/// replaced, up to a bound, so that other jobs continue.
 class ComputePool {
  public:
   explicit ComputePool(const LiveParams& params);
@@ -17,13 +17,13 @@ class ComputePool {
   ComputePool(const ComputePool&) = delete;
   ComputePool& operator=(const ComputePool&) = delete;
 
-  /// Takes the job, or settles it with the error that it returns: queue_full, no_answer (a job of its lane
+  /// Queues the job, or settles it with the error that it returns: queue_full, no_answer (a job of its lane
   /// hangs, or no thread is left), cancelled (the pool has stopped).
   Result<void> add(const std::shared_ptr<LiveJob>& job);
-  /// Cancels the jobs that wait, requests those that run to stop, and joins the threads. A thread that does
-  /// not end within `limit` is left behind.
+  /// Cancels the queued jobs, requests running ones to stop, and joins the threads. A thread that does not
+  /// end within `limit` is abandoned.
   void stop(Duration limit);
-  /// Threads whose job hangs now.
+  /// Number of threads whose job hangs now.
   std::size_t hung() const;
 
  private:
@@ -34,7 +34,7 @@ class ComputePool {
   std::shared_ptr<State> state_;  ///< Shared with the threads, which may outlive the pool.
 };
 
-/// Lowers the priority of the calling thread, which never needs a right.
+/// Lowers the priority of the calling thread, which needs no privilege.
 void lower_priority(int nice);
 
 }  // namespace adit

@@ -11,8 +11,8 @@ namespace adit {
 
 using Task = std::function<void()>;
 
-/// Keeps a scheduled task alive: destroying or cancelling it before it ran means that it never runs.
-/// Must be cancelled on the strand it was made on.
+/// Handle of a scheduled task: a task whose timer is destroyed or cancelled before it ran never runs. Must be
+/// cancelled on the strand where it was created.
 class [[nodiscard]] Timer {
  public:
   Timer() = default;
@@ -37,7 +37,7 @@ class [[nodiscard]] Timer {
   std::shared_ptr<std::atomic<bool>> alive_{};
 };
 
-/// Posts to a strand from any thread, also after the strand is gone: posts are refused then.
+/// Posts tasks to a strand from any thread. It outlives the strand; posts are then refused.
 class Inbox {
  public:
   virtual ~Inbox() = default;
@@ -45,19 +45,19 @@ class Inbox {
   Inbox(const Inbox&) = delete;
   Inbox& operator=(const Inbox&) = delete;
 
-  /// Runs the task on the strand later. False when it never will: the strand has ended, or its queue is full
-  /// (counted and reported).
+  /// Runs the task later on the strand. Returns false when it will never run: the strand has ended, or its
+  /// queue is full (counted and reported).
   bool post(Task task) { return add(std::move(task), false); }
-  /// The same for what must not be lost because others flood the strand: restarts, completions, participant
-  /// events. Not bounded by the queue of post(), but by one of its own that only a defect fills.
+  /// The same for tasks that must not be lost because others flood the strand: restarts, completions,
+  /// participant events. They have a separate bounded queue that only a defect fills.
   bool post_control(Task task) { return add(std::move(task), true); }
 
  private:
   virtual bool add(Task task, bool control) = 0;
 };
 
-/// What a component needs of its strand: a loop that runs its tasks one at a time, in the order posted,
-/// timers when due. Everything that a component owns is touched from its strand only, so components hold no
+/// Interface of a strand for its components: a loop that runs tasks one at a time, in the order posted, and
+/// timers when due. Everything that a component owns is accessed only on its strand, so components need no
 /// locks.
 class Executor {
  public:
@@ -66,29 +66,29 @@ class Executor {
   Executor& operator=(const Executor&) = delete;
 
   virtual const std::string& name() const = 0;
-  /// The machine's clock, read on this strand: constant while a task runs in rehearsal.
+  /// The machine's clock, read on this strand; in rehearsal it is constant while a task runs.
   virtual Time now() const = 0;
 
-  /// Those of the inbox. May be called from any thread; the strand must outlive the call.
+  /// Forwards to the inbox. Safe to call from any thread; the strand must outlive the call.
   bool post(Task task) { return inbox_->post(std::move(task)); }
   bool post_control(Task task) { return inbox_->post_control(std::move(task)); }
-  /// For those that may outlive the strand. Any thread.
+  /// The inbox, for objects that may outlive the strand. Safe to call from any thread.
   const std::shared_ptr<Inbox>& inbox() const { return inbox_; }
 
-  /// Runs the task once, `delay` from now. Called on the strand (or before it runs).
+  /// Runs the task once, `delay` from now. Call it on the strand, or before the strand runs.
   virtual Timer after(Duration delay, Task task) = 0;
   /// Runs the task every `period`, first one period from now; a late run does not cause a burst.
   virtual Timer every(Duration period, Task task) = 0;
 
-  /// Runs `work`, callable as R() or R(std::stop_token), on a pool, beside everything else, then `done` on
-  /// this strand with Result<R> (work that returns Result<T>: with that). `done` is called exactly once, in a
-  /// later task, whatever happens; an Error says what: internal (the work threw, which is reported as a
-  /// failure of the strand, too), queue_full, no_answer (deadline or watchdog), cancelled (also: replaced by
-  /// a newer job, the runtime ends). Only when the strand itself ends first is it never called.
+  /// Runs `work`, callable as R() or R(std::stop_token), on a thread pool, then `done` on this strand with
+  /// Result<R> (work that returns Result<T>: with that). `done` is called exactly once, in a later task,
+  /// whatever happens. The reasons of an Error: internal (the work threw, which is also reported as a failure
+  /// of the strand), queue_full, no_answer (deadline or watchdog), cancelled (also: replaced by a newer job,
+  /// the runtime ends). Only when the strand itself ends first is `done` never called.
   ///
-  /// `work` must own or share all that it touches. In rehearsal `done` comes exactly JobSpec::modelled after
-  /// the job's begin in virtual time, however long the work takes, deadlines and replacements act on virtual
-  /// time alone, and the stop token of work that has begun is never triggered.
+  /// `work` must own or share everything that it accesses. In rehearsal `done` runs exactly JobSpec::modelled
+  /// after the start of the job in virtual time, however long the work takes; deadlines and replacements act
+  /// on virtual time only, and the stop token of work that has begun is never triggered.
   template <class Work, class Done>
   JobHandle compute(JobSpec spec, Work work, Done done) {
     using Value = job_value_t<Work>;
@@ -118,18 +118,18 @@ class Executor {
   std::shared_ptr<Inbox> inbox_;
 };
 
-/// A strand as its owner sees it. The functions are called on another strand or thread.
+/// A strand as its owner uses it. Call these functions on another strand or thread.
 class Strand : public Executor {
  public:
-  /// Ends the strand: queued tasks never run, new work is refused. Live returns once the task that runs now
+  /// Ends the strand: queued tasks never run, and new work is refused. Live, it returns once the running task
   /// has returned.
   virtual void end() = 0;
-  /// Runs the posts that are queued, and those that they post, then ends the strand; timers no longer run.
-  /// False when that took longer than `limit`: the strand is left behind then, as by abandon(). For strands
+  /// Runs the queued posts and those that they post, then ends the strand; timers no longer run. Returns
+  /// false when that takes longer than `limit`: the strand is then abandoned, as by abandon(). For strands
   /// that do I/O.
   virtual bool drain(Duration limit) = 0;
-  /// Leaves the strand behind together with the task that it runs now, which may never return: queued tasks
-  /// never run and are dropped, new work is refused, dropping the strand waits for nothing. What that task
+  /// Abandons the strand together with its running task, which may never return: queued tasks are dropped and
+  /// never run, new work is refused, and destroying the strand does not wait. Objects that the running task
   /// refers to must live until it has returned.
   virtual void abandon() = 0;
 
@@ -137,17 +137,18 @@ class Strand : public Executor {
   using Executor::Executor;
 };
 
-/// Makes the strands of one machine (an agent, a station, the simulated world).
+/// Creates the strands of one machine (an agent, a station, the simulated world).
 class Runtime {
  public:
   virtual ~Runtime() = default;
   Runtime() = default;
   Runtime(const Runtime&) = delete;
   Runtime& operator=(const Runtime&) = delete;
-  /// A new strand; it lives until the pointer is dropped, which must not happen on the strand itself.
+  /// Creates a strand. It lives until the pointer is dropped, which must not happen on the strand itself.
   virtual std::shared_ptr<Strand> strand(const std::string& name) = 0;
-  /// A strand for heavy work: live its `compute` runs on its own thread, of low priority, so that work that
-  /// does not return holds up no other strand and its own timers show it. In rehearsal as any other.
+  /// Creates a strand for heavy work. Live, its `compute` work runs on its own thread, of low priority: work
+  /// that does not return delays no other strand, and stops this strand's timers, which shows the hang. In
+  /// rehearsal it is an ordinary strand.
   virtual std::shared_ptr<Strand> dedicated_strand(const std::string& name) { return strand(name); }
 };
 

@@ -5,14 +5,14 @@
 
 namespace adit {
 
-/// Told of an exception that left a task, or of work that was dropped because a queue was full: the
-/// strand's name, and what happened. Live it is called on the thread concerned.
+/// Called for an exception thrown by a task, or for work that was dropped because a queue was full, with the
+/// strand's name and a description. Live, it is called on the thread concerned.
 using FailureHandler = std::function<void(const std::string& strand, const std::string& what)>;
 
-/// The default handler: one line on stderr, so that nothing is lost when nobody asked to be told.
+/// The default handler: writes one line to stderr, so that no failure is lost when no handler was set.
 void report_on_stderr(const std::string& strand, const std::string& what);
 
-/// The text of the exception being handled; call it inside a catch block. HangReleased passes through.
+/// Text of the exception being handled; call it inside a catch block. HangReleased passes through.
 std::string current_exception_text();
 
 }  // namespace adit

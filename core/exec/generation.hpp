@@ -3,9 +3,9 @@
 
 namespace adit {
 
-/// Says whether one instance of a component still counts. Its supervisor revokes it for good when the
-/// instance fails, hangs or is replaced; whatever the instance hands out afterwards has no effect. Any
-/// thread.
+/// Token that shows whether an instance of a component is still valid. Its supervisor revokes it for good
+/// when the instance fails, hangs or is replaced; whatever the instance passes on afterwards has no effect.
+/// Safe to use from any thread.
 class Generation {
  public:
   bool valid() const { return valid_.load(std::memory_order_acquire); }

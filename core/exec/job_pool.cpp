@@ -35,7 +35,7 @@ void JobPool::run(std::shared_ptr<Job> job, std::unique_lock<std::mutex>& lock) 
     job->failed = true;
     job->failure = current_exception_text();
   }
-  job->work = nullptr;  // what the work captured dies here, not under the lock
+  job->work = nullptr;  // The captures of the work are destroyed here, outside the lock.
   lock.lock();
   job->state = Job::State::finished;
   finished_.notify_all();

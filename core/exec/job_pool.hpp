@@ -18,26 +18,28 @@ struct Job {
   Job(Task the_work, std::int64_t due_ns, std::uint64_t number)
       : work(std::move(the_work)), due(due_ns), sequence(number) {}
   Task work;
-  std::int64_t due;        ///< virtual time at which the result is needed
-  std::uint64_t sequence;  ///< breaks ties
+  std::int64_t due;        ///< Virtual time at which the result is needed.
+  std::uint64_t sequence;  ///< Breaks ties.
   State state{State::queued};
   bool failed{false};
   std::string failure{};
 };
 
-/// Threads that run jobs, those needed first before others. The thread that needs a result helps.
+/// Threads that run jobs in the order in which their results are needed. The thread that needs a result
+/// helps.
 class JobPool {
  public:
-  /// `threads` beside the calling one; 0: every job runs when it is needed.
+  /// `threads`: besides the calling one; 0: every job runs when its result is needed.
   explicit JobPool(int threads);
   ~JobPool();
   JobPool(const JobPool&) = delete;
   JobPool& operator=(const JobPool&) = delete;
 
   void add(std::shared_ptr<Job> job);
-  /// Returns when the job has finished: runs it here when nobody has begun, else runs others meanwhile.
+  /// Returns when the job has finished: runs it here when no thread has begun it, else runs other jobs
+  /// meanwhile.
   void finish(const std::shared_ptr<Job>& job);
-  /// Forgets a job that nobody has begun; one that runs goes on unheard.
+  /// Drops a job that no thread has begun; a running one continues, but its result is ignored.
   void forget(const std::shared_ptr<Job>& job);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Jobs that wait for a thread. Private to core/exec.
+// Queue of jobs for the threads of a pool. Private to core/exec.
 #include <deque>
 #include <memory>
 #include <vector>
@@ -8,23 +8,23 @@
 
 namespace adit {
 
-/// Orders waiting jobs by priority, then submission, with lanes and replacement. Its owner locks it.
+/// Orders queued jobs by priority, then submission, with lanes and replacement. Its owner locks it.
 class JobQueue {
  public:
   explicit JobQueue(std::size_t capacity) : capacity_(capacity) {}
 
   struct Added {
-    Result<void> taken{};               ///< queue_full; no_answer when a job of the lane hangs
-    std::shared_ptr<LiveJob> replaced;  ///< To be settled by the caller, outside its lock.
+    Result<void> taken{};               ///< Errors: queue_full; no_answer when a job of the lane hangs.
+    std::shared_ptr<LiveJob> replaced;  ///< The caller settles it, outside its lock.
   };
   Added add(std::shared_ptr<LiveJob> job);
-  /// The job to run now, null when there is none. Its lane is busy until finished().
+  /// Returns the job to run now, or null. Its lane is busy until finished().
   std::shared_ptr<LiveJob> next();
   void finished(const LiveJob& job);
-  /// The jobs that wait behind this one, which hangs; they never run. New ones of its lane are refused until
-  /// it has finished.
+  /// Marks a job as hanging and returns the jobs queued behind it, which never run. New jobs of its lane are
+  /// refused until it has finished.
   std::vector<std::shared_ptr<LiveJob>> hangs(const std::shared_ptr<LiveJob>& job);
-  /// All that wait.
+  /// Removes and returns all queued jobs.
   std::vector<std::shared_ptr<LiveJob>> clear();
   bool runnable() const { return best() != waiting_.size(); }
   std::size_t size() const { return waiting_.size(); }
@@ -35,8 +35,8 @@ class JobQueue {
 
   std::size_t capacity_;
   std::deque<std::shared_ptr<LiveJob>> waiting_{};   ///< In the order of submission.
-  std::vector<std::shared_ptr<LiveJob>> running_{};  ///< Those that have a lane.
-  std::vector<std::shared_ptr<LiveJob>> hanging_{};  ///< Of the running ones.
+  std::vector<std::shared_ptr<LiveJob>> running_{};  ///< Jobs that occupy a lane.
+  std::vector<std::shared_ptr<LiveJob>> hanging_{};  ///< The running jobs that hang.
 };
 
 }  // namespace adit

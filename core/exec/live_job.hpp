@@ -1,5 +1,5 @@
 #pragma once
-// A job of a live strand. Private to core/exec.
+// One job of a live strand. Private to core/exec.
 #include <atomic>
 #include <string>
 
@@ -8,19 +8,19 @@
 
 namespace adit {
 
-/// One job from its submission to its completion. The first who settles it decides what its completion
-/// carries. Thread safe; `spec` and `strand` do not change.
+/// One job from its submission to its completion. The first call of settle() decides the result. Thread safe;
+/// `spec` and `strand` do not change.
 class LiveJob final : public JobControl, public std::enable_shared_from_this<LiveJob> {
  public:
   /// `on_failure` receives exceptions of the work.
   LiveJob(JobSpec the_spec, JobWork work, JobDone done, std::shared_ptr<Inbox> home, std::string strand_name,
           FailureHandler on_failure);
 
-  /// Starts the deadline's timer on the home strand. Before the job is queued.
+  /// Starts the deadline's timer on the home strand. Call it before the job is queued.
   void watch_deadline(Executor& home_strand);
-  /// Does the work, unless the job was settled before, and settles it. Called once.
+  /// Runs the work, unless the job is already settled, and settles the job. Called once.
   void run();
-  /// Posts the completion to the home strand. False when the job was settled before.
+  /// Posts the completion to the home strand. Returns false when the job is already settled.
   bool settle(Result<void> result);
   bool settled() const { return settled_.load(std::memory_order_acquire); }
   void request_stop() { stop_.request_stop(); }
@@ -40,12 +40,12 @@ class LiveJob final : public JobControl, public std::enable_shared_from_this<Liv
   std::shared_ptr<Inbox> home_;
   FailureHandler on_failure_;
   std::stop_source stop_{};
-  Timer deadline_{};       ///< Made before the job is queued, cancelled in the completion on the home strand.
+  Timer deadline_{};  ///< Created before the job is queued; cancelled in the completion on the home strand.
   std::int64_t due_ns_{};  ///< End of the deadline on the steady clock; 0: none.
   std::atomic<bool> settled_{false};
 };
 
-/// Now, on the clock of live strands, ns.
+/// Current time on the clock of live strands, ns.
 std::int64_t steady_ns();
 
 }  // namespace adit

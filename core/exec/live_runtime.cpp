@@ -26,8 +26,8 @@ void WakeWord::wait(std::int64_t deadline_ns) {
   timespec deadline{};
   deadline.tv_sec = static_cast<std::time_t>(deadline_ns / 1'000'000'000);
   deadline.tv_nsec = static_cast<long>(deadline_ns % 1'000'000'000);
-  // FUTEX_WAIT_BITSET takes an absolute time on CLOCK_MONOTONIC, which is what steady_clock reads.
-  // Any return (woken, timed out, interrupted, word changed) makes the caller look again.
+  // FUTEX_WAIT_BITSET takes an absolute time on CLOCK_MONOTONIC, which is the clock of steady_clock. After
+  // any return (woken, timed out, interrupted, word changed) the caller checks again.
   syscall(SYS_futex, &word_, FUTEX_WAIT_BITSET_PRIVATE, 1U, &deadline, nullptr, FUTEX_BITSET_MATCH_ANY);
   clear();
 }

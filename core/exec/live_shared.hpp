@@ -1,5 +1,5 @@
 #pragma once
-// What the strands of one LiveRuntime share. Private to core/exec.
+// State that the strands of one LiveRuntime share. Private to core/exec.
 #include <memory>
 
 #include "core/exec/compute_pool.hpp"
@@ -10,26 +10,29 @@ namespace adit {
 /// A futex word with an absolute deadline on the steady clock: cheaper to wake than a condition variable.
 class WakeWord {
  public:
-  /// Owner's thread. Returns when woken since the last prepare(), or at the deadline (ns of steady_clock).
+  /// Blocks until woken since the last prepare(), or until the deadline (ns of steady_clock). Owner's thread
+  /// only.
   void wait(std::int64_t deadline_ns);
-  /// Owner's thread, before it looks for work a last time.
+  /// Announces that the owner is about to sleep. The owner's thread calls it before it looks for work a last
+  /// time.
   void prepare() { word_.store(1, std::memory_order_seq_cst); }
   void clear() { word_.store(0, std::memory_order_relaxed); }
-  /// Any thread; a system call only when the owner sleeps.
+  /// Wakes the owner, from any thread; makes a system call only when the owner sleeps.
   void wake();
 
  private:
-  std::atomic<std::uint32_t> word_{0};  // 1: sleeping or about to
+  std::atomic<std::uint32_t> word_{0};  // 1: sleeping or about to sleep.
 };
 
 struct LiveRuntime::Shared {
   explicit Shared(LiveParams p) : params(std::move(p)), pool(params) {}
   void fail(const std::string& strand, const std::string& what) {
     if (params.on_failure) params.on_failure(strand, what);
-    failures.fetch_add(1, std::memory_order_release);  // whoever sees the count finds the report made
+    // Release order: a thread that reads the count finds the report complete.
+    failures.fetch_add(1, std::memory_order_release);
   }
   void drop(const std::string& strand, const std::string& what) {
-    // The first, then each thousandth: a full queue must not flood the log as well.
+    // Reports the first loss, then each thousandth: a full queue must not flood the log as well.
     if (dropped.fetch_add(1, std::memory_order_relaxed) % 1000 == 0 && params.on_failure)
       params.on_failure(strand, what);
   }

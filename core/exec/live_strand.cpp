@@ -21,8 +21,9 @@ namespace {
 
 using Alive = std::shared_ptr<std::atomic<bool>>;
 
-constexpr std::size_t kControlQueue = 65536;  // control posts that wait, beyond those of the queue
-constexpr std::size_t kChunk = 32;            // tasks taken out of the queue at once
+// Length of the queue of control posts, beyond the queue of other posts.
+constexpr std::size_t kControlQueue = 65536;
+constexpr std::size_t kChunk = 32;  // Tasks taken out of the queue at once.
 
 struct Alarm {
   std::int64_t when;
@@ -37,7 +38,7 @@ struct LaterAlarm {
   }
 };
 
-/// Queue and loop of one strand, owned by its thread, by the executor and by those that post to it.
+/// Queue and loop of one strand. Its thread, its executor and the inboxes of other threads share ownership.
 class Loop final : public Inbox {
  public:
   Loop(std::shared_ptr<LiveRuntime::Shared> shared, std::string name)
@@ -78,7 +79,7 @@ class Loop final : public Inbox {
 
   Timer add_alarm(Duration delay, Duration period, Task task) {
     auto alive = std::make_shared<std::atomic<bool>>(true);
-    std::vector<Alarm> dead;  // dies after the lock
+    std::vector<Alarm> dead;  // Destroyed after the lock is released.
     {
       const std::lock_guard lock(mutex_);
       if (stopping_) return Timer(std::move(alive));
@@ -92,7 +93,7 @@ class Loop final : public Inbox {
     return Timer(std::move(alive));
   }
 
-  /// Nothing runs after the task that runs now. The thread drops the queued tasks when that has returned.
+  /// Stops the loop: no task runs after the current one. The thread then drops the queued tasks.
   void stop() {
     stop_now_.store(true, std::memory_order_relaxed);
     {
@@ -102,9 +103,9 @@ class Loop final : public Inbox {
     wake_.wake();
   }
 
-  /// Drops the queued tasks, and those that the thread has taken and not run. Any thread.
+  /// Drops the queued tasks, and those that the thread has taken but not run. Safe to call from any thread.
   void drop() {
-    std::deque<Task> posted;  // these die after the lock
+    std::deque<Task> posted;  // Destroyed after the lock is released.
     std::vector<Alarm> alarms;
     std::vector<Task> batch;
     const std::scoped_lock lock(mutex_, batch_mutex_);
@@ -115,7 +116,8 @@ class Loop final : public Inbox {
     refresh_next();
   }
 
-  /// True when all posts have run and the loop has returned, false when it did not within `limit`.
+  /// Returns true when all posts have run and the loop has returned, false when that takes longer than
+  /// `limit`.
   bool drain(Duration limit) {
     std::unique_lock lock(mutex_);
     draining_ = true;
@@ -145,7 +147,7 @@ class Loop final : public Inbox {
       }
       if (drained) break;
       if (sleep) {
-        running.unlock();  // while it sleeps, another thread may run a task for it
+        running.unlock();  // While this thread sleeps, another thread may run a task for it.
         wake_.wait(next_alarm_.load(std::memory_order_relaxed));
         running.lock();
         continue;
@@ -153,8 +155,8 @@ class Loop final : public Inbox {
       wake_.clear();
       while (Task task = next_of_batch()) {
         invoke(task);
-        task = nullptr;  // what it holds must not wait for the timers
-        run_alarms();    // a flood of posts must not hold timers up
+        task = nullptr;  // Its captures must not live until the next task.
+        run_alarms();    // Timers run between tasks, so that a flood of posts does not delay them.
       }
     }
     stop();
@@ -164,7 +166,7 @@ class Loop final : public Inbox {
     exited_.notify_all();
   }
 
-  /// Of the thread that runs its tasks now; 0: it does not run yet.
+  /// System id of the thread that runs the strand's tasks now; 0: not started.
   int system_id() const {
     const int guest = guest_system_id_.load(std::memory_order_relaxed);
     return guest != 0 ? guest : system_id_.load(std::memory_order_relaxed);
@@ -178,7 +180,7 @@ class Loop final : public Inbox {
   }
 
  private:
-  /// Null at the end of the batch, or when nothing runs any more.
+  /// Returns null at the end of the batch, or when the loop has stopped.
   Task next_of_batch() {
     const std::lock_guard lock(batch_mutex_);
     if (stop_now_.load(std::memory_order_relaxed) || next_in_batch_ >= batch_.size()) return nullptr;
@@ -193,7 +195,7 @@ class Loop final : public Inbox {
     }
   }
 
-  /// Runs what is due now; alarms made meanwhile wait for the next round.
+  /// Runs the timers that are due; timers created meanwhile run in the next round.
   void run_alarms() {
     const std::int64_t now = steady_ns();
     if (next_alarm_.load(std::memory_order_relaxed) > now) return;
@@ -220,7 +222,8 @@ class Loop final : public Inbox {
     }
   }
 
-  /// The next instant of its raster that is not past: a late run costs beats, it makes no burst.
+  /// Reschedules a periodic timer at its next multiple of the period that is not past: a late run skips beats
+  /// and causes no burst.
   void again(Alarm alarm) {
     alarm.when += alarm.period;
     const std::int64_t now = steady_ns();
@@ -249,17 +252,17 @@ class Loop final : public Inbox {
   std::shared_ptr<LiveRuntime::Shared> shared_;
   std::string name_;
   std::atomic<std::thread::id> thread_id_{};
-  std::atomic<int> system_id_{0};  // 0: does not run yet
+  std::atomic<int> system_id_{0};  // 0: not started.
   std::atomic<bool> stop_now_{false};
   std::atomic<std::int64_t> next_alarm_{kNever};
   WakeWord wake_{};
-  std::mutex running_{};                  // held by the thread that runs a task of this strand
-  std::atomic<std::thread::id> guest_{};  // which is not its own one
-  std::atomic<int> guest_system_id_{0};   // of that thread
+  std::mutex running_{};                  // Held by the thread that runs a task of this strand.
+  std::atomic<std::thread::id> guest_{};  // A foreign thread that runs a task of this strand.
+  std::atomic<int> guest_system_id_{0};   // System id of that thread.
   std::mutex batch_mutex_{};              // guards the next two
-  std::vector<Task> batch_{};             // taken out of the queue by the thread
-  std::size_t next_in_batch_{0};          // the first that was not run
-  std::mutex mutex_{};                    // guards what follows
+  std::vector<Task> batch_{};             // Tasks that the thread has taken out of the queue.
+  std::size_t next_in_batch_{0};          // The first task that was not run.
+  std::mutex mutex_{};                    // Guards the members below.
   std::deque<Task> posted_{};
   std::vector<Alarm> alarms_{};
   std::uint64_t order_{0};
@@ -268,10 +271,10 @@ class Loop final : public Inbox {
   std::condition_variable exited_{};
 };
 
-/// Jobs of a worker, which run on its own thread.
+/// Jobs of a worker strand, which run on its own thread.
 struct OwnJobs {
   explicit OwnJobs(std::size_t capacity) : queue(capacity) {}
-  std::mutex mutex{};  // guards the queue
+  std::mutex mutex{};  // Guards the queue.
   JobQueue queue;
 
   void run_next() {
@@ -280,7 +283,7 @@ struct OwnJobs {
       const std::lock_guard lock(mutex);
       job = queue.next();
     }
-    if (!job) return;  // it was replaced or cancelled
+    if (!job) return;  // It was replaced or cancelled.
     job->run();
     const std::lock_guard lock(mutex);
     queue.finished(*job);
@@ -304,7 +307,7 @@ class LiveStrand final : public Strand, public OnProcessor, public InPlace, publ
     loop_->stop();
     if (!thread_.joinable()) return;
     if (loop_->on_own_thread()) {
-      // Against the contract of Runtime::strand; the thread ends after the task that runs now.
+      // Violates the contract of Runtime::strand; the thread ends after the current task.
       loop_->shared()->fail(loop_->name(), "strand dropped on itself");
       thread_.detach();
     } else {
@@ -321,7 +324,7 @@ class LiveStrand final : public Strand, public OnProcessor, public InPlace, publ
   void abandon() override {
     loop_->stop();
     if (!thread_.joinable()) return;
-    loop_->drop();  // here, for the thread may never return
+    loop_->drop();  // Drops them here, as the thread may never return.
     thread_.detach();
     loop_->shared()->left_behind.fetch_add(1, std::memory_order_relaxed);
   }
@@ -329,7 +332,7 @@ class LiveStrand final : public Strand, public OnProcessor, public InPlace, publ
   const std::string& name() const override { return loop_->name(); }
   Time now() const override { return Time(Duration(steady_ns())); }
   bool try_run(const Task& task) override {
-    const auto loop = loop_;  // the strand may be abandoned meanwhile
+    const auto loop = loop_;  // The strand may be abandoned meanwhile.
     return loop->try_run(task);
   }
   Timer after(Duration delay, Task task) override { return loop_->add_alarm(delay, 0ns, std::move(task)); }
@@ -373,14 +376,14 @@ class LiveStrand final : public Strand, public OnProcessor, public InPlace, publ
       added.replaced->settle(
           Error{Reason::cancelled, added.replaced->spec.name + ": replaced by a newer one"});
     if (added.taken)
-      loop_->post_control([own = own_] { own->run_next(); });  // bounded by that queue
+      loop_->post_control([own = own_] { own->run_next(); });  // That queue bounds these posts.
     else
       job->settle(added.taken.error());
     return added.taken;
   }
 
   std::shared_ptr<Loop> loop_;
-  std::shared_ptr<OwnJobs> own_;  ///< null: its jobs run on the pools
+  std::shared_ptr<OwnJobs> own_;  ///< Null: its jobs run on the pools.
   std::thread thread_;
 };
 

@@ -9,8 +9,8 @@
 
 namespace adit {
 
-/// Runs a loop on a thread of its own while the caller waits. A task of the loop that hangs keeps that
-/// thread, and the next run gets another one: at any time one thread works, the others are blocked.
+/// Runs a loop on a separate thread while the caller waits. A task of the loop that hangs keeps that thread,
+/// and the next run gets another one: at any time one thread works and the others are blocked.
 class LoopThreads {
  public:
   LoopThreads() = default;
@@ -18,18 +18,18 @@ class LoopThreads {
   LoopThreads(const LoopThreads&) = delete;
   LoopThreads& operator=(const LoopThreads&) = delete;
 
-  /// True when the loop returned, false when it hangs. Rethrows what the loop threw.
+  /// Returns true when the loop returned, false when it hangs. Rethrows exceptions of the loop.
   bool run(const std::function<void()>& loop);
-  /// Called inside the loop: blocks this thread until release(), then throws HangReleased.
+  /// Blocks this thread until release(), then throws HangReleased. Called inside the loop.
   [[noreturn]] void hang();
-  /// Ends all threads, one after the other; hung loops are unwound.
+  /// Ends all threads one after another; hung loops are unwound.
   void release();
-  /// Loops that hang.
+  /// Number of loops that hang.
   std::size_t hung() const { return hung_.size(); }
 
  private:
   struct Worker {
-    const std::function<void()>* loop{nullptr};  ///< what to run; null: nothing
+    const std::function<void()>* loop{nullptr};  ///< The loop to run; null: nothing.
     bool hangs{false};
     bool released{false};
     std::exception_ptr failure{};

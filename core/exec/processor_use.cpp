@@ -11,7 +11,7 @@
 namespace adit {
 namespace {
 
-/// The file's beginning as text, "" when it cannot be read.
+/// Returns the beginning of a file as text, "" when it cannot be read.
 template <std::size_t N>
 void read_text(const char* path, char (&text)[N]) {
   text[0] = '\0';
@@ -32,7 +32,7 @@ std::optional<ProcessorUse> processor_use(int thread_id) {
   if (std::sscanf(text, "%" SCNd64 " %" SCNd64, &ran, &waited) != 2 || ran == 0) return std::nullopt;
   std::snprintf(path, sizeof path, "/proc/self/task/%d/stat", thread_id);
   read_text(path, text);
-  const char* name_end = std::strrchr(text, ')');  // a name may hold anything
+  const char* name_end = std::strrchr(text, ')');  // A thread name may contain any character.
   if (!name_end || name_end[1] != ' ') return std::nullopt;
   return ProcessorUse{Duration(ran), Duration(waited), name_end[2] == 'R'};
 }

@@ -5,27 +5,29 @@
 
 namespace adit {
 
-/// What a thread had of the processor so far, as the system counts it.
+/// Processor time of a thread so far, as the system counts it.
 struct ProcessorUse {
-  Duration ran{};     ///< on a processor
-  Duration waited{};  ///< for one, without the wait that has not ended yet
-  bool ready{};       ///< runs now, or waits for a processor
+  Duration ran{};     ///< Time on a processor.
+  Duration waited{};  ///< Time waiting for a processor, without the current wait.
+  bool ready{};       ///< Runs now, or waits for a processor.
 };
 
-/// What a strand is, too, that has a thread: one of a rehearsal takes no time, and is not.
+/// Interface of a strand with a thread of its own. Strands of a rehearsal take no time and do not implement
+/// it.
 class OnProcessor {
  public:
   virtual ~OnProcessor() = default;
-  /// From any thread. Nothing when there is no telling.
+  /// Safe to call from any thread. Nothing when the system does not count it.
   virtual std::optional<ProcessorUse> processor_use() const = 0;
 };
 
-/// Of a thread of this process, from any thread. Nothing when it has ended, or when the system counts
-/// nothing.
+/// Processor use of a thread of this process; safe to call from any thread. Nothing when the thread has ended
+/// or the system does not count it.
 std::optional<ProcessorUse> processor_use(int thread_id);
 
-/// Of `passed`, the time between two looks at a thread, what it cannot lay to the lack of a processor: what
-/// it ran when it still wants to, else (it is blocked) all that it did not wait for a processor.
+/// The part of `passed`, the time between two readings of a thread, that does not come from a lack of
+/// processors: the time it ran if it is still ready to run, else (it is blocked) all time in which it did not
+/// wait for a processor.
 Duration answerable(const ProcessorUse& before, const ProcessorUse& now, Duration passed);
 
 }  // namespace adit

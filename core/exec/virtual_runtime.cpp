@@ -21,17 +21,17 @@ using Alive = std::shared_ptr<std::atomic<bool>>;
 
 class VirtualStrand;
 
-/// What is to be done, in a slot that is used again.
+/// A scheduled event, in a slot that is reused.
 struct Event {
   VirtualStrand* strand{nullptr};
   Task task{};
-  Alive alive{};               ///< null: cannot be cancelled
-  std::int64_t period{0};      ///< 0: once
-  std::shared_ptr<Job> job{};  ///< finished before the task runs
+  Alive alive{};               ///< Null: cannot be cancelled.
+  std::int64_t period{0};      ///< 0: once.
+  std::shared_ptr<Job> job{};  ///< Finished before the task runs.
   std::uint32_t next_free{0};
 };
 
-/// When it is to be done. `order` is the machine's place at that instant, then the posting order.
+/// When an event is due. `order` is the machine's rank at that instant, then the posting order.
 struct Due {
   std::int64_t when;
   std::uint64_t order;
@@ -44,7 +44,7 @@ struct Later {
 };
 
 constexpr std::uint32_t kNoSlot = ~0U;
-constexpr int kOrderBits = 48;  // of the posting order: 2^48 events are more than a rehearsal runs
+constexpr int kOrderBits = 48;  // Bits of the posting order: 2^48 events are more than a rehearsal runs.
 
 }  // namespace
 
@@ -76,7 +76,7 @@ struct VirtualScheduler::State {
   }
 
   void push(std::int64_t when, std::uint64_t machine, std::uint32_t slot) {
-    // The place of a machine at an instant depends on nothing but seed, machine and instant.
+    // The rank of a machine at an instant depends only on seed, machine and instant.
     const std::uint64_t place = Random(params.seed ^ (machine * 0xd1342543de82ef95ULL) ^
                                        (static_cast<std::uint64_t>(when) * 0x9e3779b97f4a7c15ULL))
                                     .next() >>
@@ -89,7 +89,8 @@ struct VirtualScheduler::State {
   bool add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task, Alive alive,
            std::int64_t period, std::shared_ptr<Job> job);
 
-  /// Takes out every event that `gone` names; their captures die after the structure is whole again.
+  /// Removes every event that `gone` selects; their captures are destroyed after the heap is consistent
+  /// again.
   template <class Gone>
   void remove_if(Gone gone) {
     std::vector<Event> dead;
@@ -105,7 +106,8 @@ struct VirtualScheduler::State {
     std::make_heap(heap.begin(), heap.end(), Later{});
   }
 
-  /// Cancelled timers stay in the heap until due; this keeps their number below that of the live ones.
+  /// Removes cancelled timers, which stay in the heap until due, so that there are fewer of them than live
+  /// ones.
   void sweep() {
     sweep_at = ~std::size_t{0};
     remove_if([](const Event& e) { return e.alive && !e.alive->load(std::memory_order_relaxed); });
@@ -148,7 +150,7 @@ namespace {
 
 using State = VirtualScheduler::State;
 
-/// Where posts to a strand go; it outlives the strand.
+/// Inbox of a virtual strand; it outlives the strand.
 class VirtualInbox final : public Inbox {
  public:
   explicit VirtualInbox(std::shared_ptr<State> core) : core_(std::move(core)) {}
@@ -159,7 +161,7 @@ class VirtualInbox final : public Inbox {
  private:
   bool add(Task task, bool control) override;
   std::shared_ptr<State> core_;
-  VirtualStrand* strand_{nullptr};  ///< null: it is gone
+  VirtualStrand* strand_{nullptr};  ///< Null: the strand is gone.
 };
 
 /// A job from its submission to its completion.
@@ -170,19 +172,19 @@ struct VirtualJob final : public JobControl, public std::enable_shared_from_this
   JobWork work{};
   JobDone done{};
   std::shared_ptr<VirtualInbox> home{};
-  std::shared_ptr<Job> job{};  ///< null: it waits in its lane
-  std::int64_t due{};          ///< once begun
+  std::shared_ptr<Job> job{};  ///< Null: it is queued in its lane.
+  std::int64_t due{};          ///< Set when it begins.
   std::stop_source stop{};
   bool settled{false};
 };
 
-/// The jobs of one lane: one runs, the others wait.
+/// The jobs of one lane: one runs, the others are queued.
 struct Lane {
   std::shared_ptr<VirtualJob> running{};
   std::deque<std::shared_ptr<VirtualJob>> waiting{};
 };
 
-constexpr std::size_t kLaneQueue = 256;  // as LiveParams::compute_queue
+constexpr std::size_t kLaneQueue = 256;  // Same value as LiveParams::compute_queue.
 
 class VirtualStrand final : public Strand, public CanHang {
  public:
@@ -222,7 +224,7 @@ class VirtualStrand final : public Strand, public CanHang {
     return Timer(std::move(alive));
   }
 
-  /// Completes the job, later, unless it was settled before.
+  /// Completes the job in a later task, unless it is already settled.
   void settle(const std::shared_ptr<VirtualJob>& job, Result<void> result) {
     if (std::exchange(job->settled, true)) return;
     take([job, result = std::move(result)]() mutable {
@@ -317,7 +319,7 @@ class VirtualStrand final : public Strand, public CanHang {
     core_->pool.add(job->job);
   }
 
-  /// At the job's modelled end: its work is done, and its lane is free.
+  /// Ends the job at its modelled time: its work is complete, and its lane is free.
   void finished(const std::shared_ptr<VirtualJob>& job) {
     if (!job->spec.lane.empty()) {
       Lane& lane = lanes_[job->spec.lane];
@@ -337,7 +339,7 @@ class VirtualStrand final : public Strand, public CanHang {
     std::exchange(job->done, nullptr)(std::move(result));
   }
 
-  /// A job that has not begun never begins.
+  /// Removes a job that has not begun; it never begins.
   void leave_lane(const std::shared_ptr<VirtualJob>& job) {
     if (const auto lane = lanes_.find(job->spec.lane); !job->job && lane != lanes_.end())
       std::erase(lane->second.waiting, job);
@@ -386,7 +388,7 @@ class VirtualMachine final : public Runtime {
  private:
   std::shared_ptr<State> core_;
   std::uint64_t machine_;
-  std::shared_ptr<Duration> offset_;  ///< shared with its strands
+  std::shared_ptr<Duration> offset_;  ///< Shared with its strands.
   std::string name_;
 };
 
@@ -394,7 +396,7 @@ class VirtualMachine final : public Runtime {
 
 bool VirtualScheduler::State::add(VirtualStrand* strand, std::uint64_t machine, std::int64_t when, Task task,
                                   Alive alive, std::int64_t period, std::shared_ptr<Job> job) {
-  if (closed || strand->over()) return false;  // nothing will run any more
+  if (closed || strand->over()) return false;  // No task will run any more.
   const std::uint32_t slot = take_slot();
   Event& event = events[slot];
   event.strand = strand;
@@ -427,7 +429,7 @@ bool VirtualScheduler::State::step(std::int64_t limit) {
 }
 
 void VirtualScheduler::State::run(std::uint32_t slot) {
-  // The slot is moved out first: a task may add events (which moves the slots) or drop its strand.
+  // The slot is moved out first: a task may add events, which moves the slots, or destroy its strand.
   const Event& event = events[slot];
   const std::string& strand_name = event.strand->name();
   if (++at_this_instant > params.max_per_instant)
@@ -448,7 +450,7 @@ void VirtualScheduler::State::run(std::uint32_t slot) {
   try {
     task();
   } catch (const HangReleased&) {
-    throw;  // the end of the scheduler: strand and machine may be gone
+    throw;  // The scheduler ends: strand and machine may be gone.
   } catch (...) {
     fail(running ? strand_name : "(dropped)", current_exception_text());
   }
@@ -492,7 +494,7 @@ void VirtualScheduler::State::run_until(std::int64_t limit) {
   if (in_task) throw std::logic_error("a task of a rehearsal cannot run the scheduler");
   const auto caller = std::this_thread::get_id();
   try {
-    while (!loops.run(loop)) {  // a task hangs: its thread is lost, the loop goes on on the next
+    while (!loops.run(loop)) {  // A task hangs and occupies its thread; the loop continues on the next one.
       in_task = false;
       running = nullptr;
     }
@@ -510,7 +512,7 @@ void VirtualScheduler::State::hang(VirtualStrand& strand) {
   try {
     loops.hang();
   } catch (...) {
-    thread = std::this_thread::get_id();  // the frames below may post while they are unwound
+    thread = std::this_thread::get_id();  // The stack frames below may post while they are unwound.
     throw;
   }
 }

@@ -7,8 +7,9 @@
 
 namespace adit::wire {
 
-/// The first member of a serialised sample (encapsulation header first, plain CDR), when that is a string:
-/// the key of every keyed topic. Nothing when the bytes are too short or say something else.
+/// Returns the first member of a serialised sample (plain CDR, encapsulation header first) when that member
+/// is a string; it is the key of every keyed topic. Returns nothing when the bytes are too short or hold
+/// another type.
 inline std::optional<std::string_view> first_string(std::span<const std::uint8_t> cdr) {
   if (cdr.size() < 8 || cdr[0] != 0 || cdr[1] > 1) return std::nullopt;
   std::uint32_t length{};
@@ -19,11 +20,11 @@ inline std::optional<std::string_view> first_string(std::span<const std::uint8_t
   }
   if (length > cdr.size() - 8) return std::nullopt;
   const char* text = reinterpret_cast<const char*>(cdr.data()) + 8;
-  if (length > 0 && text[length - 1] == '\0') --length;  // the terminator travels, too
+  if (length > 0 && text[length - 1] == '\0') --length;  // The terminator is part of the serialised string.
   return std::string_view(text, length);
 }
 
-/// A number for a key (FNV-1a), equal for equal keys.
+/// Hash of a key (FNV-1a); equal keys have equal hashes.
 inline std::uint64_t key_number(std::string_view key) {
   std::uint64_t hash = 0xcbf29ce484222325ULL;
   for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;

@@ -6,8 +6,8 @@
 
 namespace adit::wire {
 
-/// The one place where a component that can be replaced opens its writers and readers. All of them work while
-/// `generation` is valid: afterwards nothing is written, and no handler is called.
+/// Opens the writers and readers of a component that can be restarted. They work while `generation` is valid;
+/// afterwards nothing is written and no handler is called.
 struct ComponentIo {
   Participant& wire;                               ///< Must outlive the writers and readers.
   Executor& strand;                                ///< Handlers run on it.
@@ -15,7 +15,7 @@ struct ComponentIo {
 
   bool valid() const { return !generation || generation->valid(); }
 
-  /// Errors are the wire's. `partition` empty: the default one.
+  /// Errors are those of Participant. An empty `partition` means the default one.
   template <class T>
   Result<void> open(Writer<T>& writer, const Topic<T>& topic, const std::string& partition = {}) const {
     auto made = Writer<T>::make(wire, topic, partition);
@@ -24,7 +24,7 @@ struct ComponentIo {
     writer.bind(generation);
     return {};
   }
-  /// `handler(const T&, const SampleInfo&)` runs until the reader goes.
+  /// Calls `handler(const T&, const SampleInfo&)` for each sample until the reader is destroyed.
   template <class T, class Handler>
   Result<void> open(std::unique_ptr<RawReader>& reader, const Topic<T>& topic, Handler handler,
                     const std::string& partition = {}) const {

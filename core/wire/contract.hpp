@@ -4,13 +4,13 @@
 
 namespace adit::wire {
 
-/// The radio contract's version, which every type name of the radio domain contains: parties of releases that
-/// cannot read each other do not match. It changes with every change of a type in idl/adit/.
+/// Version of the radio contract. Every type name of the radio domain contains it, so endpoints of releases
+/// that cannot read each other do not match. It changes with every change of a type in idl/adit/.
 inline constexpr int kContractVersion = 1;
 inline constexpr std::string_view kContractTypes = "adit::radio::v1::";
 
-/// Empty for our own release and for types that are none of the contract; else the version that a type of the
-/// contract has: "2", or "0" for one from before there were versions.
+/// Returns the contract version in a type name when it differs from ours: "2", or "0" for a type name without
+/// a version. Empty for our own version and for types outside the contract.
 inline std::string other_release(std::string_view type) {
   constexpr std::string_view family = "adit::radio::";
   if (!type.starts_with(family) || type.starts_with(kContractTypes)) return {};
@@ -21,7 +21,7 @@ inline std::string other_release(std::string_view type) {
                       version.find_first_not_of("0123456789") == std::string_view::npos;
   return number ? std::string(version) : "0";
 }
-/// What an operator reads of a party of another release.
+/// Text for the operator about a station or robot of another release.
 inline std::string describe_release(std::string_view name, const std::string& version) {
   return std::string(name.substr(0, 64)) + " speaks version " + version +
          " of the radio contract, we speak " + std::to_string(kContractVersion) +

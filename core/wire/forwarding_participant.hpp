@@ -3,10 +3,11 @@
 
 namespace adit::wire {
 
-/// A wire that passes everything on to another one. Decorators derive from it and override what they change.
+/// A participant that forwards all calls to another one. Decorators derive from it and override what they
+/// change.
 class ForwardingParticipant : public Participant {
  public:
-  /// `inner` must outlive this.
+  /// `inner` must outlive this object.
   explicit ForwardingParticipant(Participant& inner) : inner_(inner) {}
 
   ParticipantId id() const override { return inner_.id(); }

@@ -6,12 +6,12 @@
 
 namespace adit::wire {
 
-/// The topics of one participant. DDS has one type per topic name and one kind of key per type name: what
-/// contradicts that is refused here, equally by both adapters.
+/// The topics of one participant. DDS has one type per topic name and one kind of key per type name; both
+/// adapters refuse a topic that contradicts that here.
 class KnownTopics {
  public:
-  /// Notes the topic. Error bad_argument: a topic of this name has another type, key or bound, or the type
-  /// has a key elsewhere and none here.
+  /// Adds a topic. Error bad_argument: a topic of this name has another type, key or bound, or the type is
+  /// keyed in another topic and not here (or the reverse).
   Result<void> add(const TopicInfo& topic) {
     const auto known = topics_.find(topic.name);
     if (known != topics_.end() && known->second != Known{topic.type, topic.keyed, topic.max_bytes}) {
@@ -36,7 +36,7 @@ class KnownTopics {
     bool operator==(const Known&) const = default;
   };
   std::map<std::string, Known> topics_{};
-  std::map<std::string, bool> types_{};  // keyed?
+  std::map<std::string, bool> types_{};  // Whether each type is keyed.
 };
 
 }  // namespace adit::wire

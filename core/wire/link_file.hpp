@@ -7,13 +7,13 @@
 
 namespace adit::wire {
 
-/// The keys of a link profile but its name, from a node of any file; what is not given stays as it is in
-/// `link`.
+/// Reads the keys of a link profile except its name from a node of any file; keys that are absent leave
+/// `link` unchanged.
 void read_link_keys(const config::Node& node, LinkProfile& link);
-/// Reads a link profile's file; every key of docs/configuration.md.
+/// Reads a link profile's file, with every key of docs/configuration.md.
 Result<LinkProfile> load_link_file(const std::string& path);
-/// The profile of that name (config/links/NAME.yaml on the search path), or the file when `name` ends in
-/// .yaml. `beside`: the file that named it.
+/// Loads the profile of that name (config/links/NAME.yaml on the search path), or the file when `name` ends
+/// in .yaml. `beside`: the file that refers to it.
 Result<LinkProfile> load_link(const std::string& name, const std::string& beside = "");
 
 }  // namespace adit::wire

@@ -9,26 +9,26 @@
 
 namespace adit::wire {
 
-/// Samples of one reader that were received and that its strand has not handled yet. Of each sender and key
-/// it holds the newest mailbox_depth(), and of all together a bounded number of samples and bytes: a reader
-/// that is slow or hangs loses its oldest samples and costs no memory. Not thread safe.
+/// Samples that one reader has received and its strand has not handled yet. Of each sender and key it holds
+/// the newest mailbox_depth() samples, and in total a bounded number of samples and bytes: a slow or hung
+/// reader loses its oldest samples and needs no more memory. Not thread safe.
 template <class Payload>
 class Mailbox {
  public:
   struct Entry {
     ParticipantId sender{};
-    std::uint64_t key{};  ///< equal for equal keys
+    std::uint64_t key{};  ///< Equal for equal keys.
     Time received{};
     std::size_t bytes{};
     Payload payload{};
   };
 
-  /// `depth`: samples per sender and key; `max_bytes`: of one sample.
+  /// `depth`: samples per sender and key; `max_bytes`: largest size of one sample.
   Mailbox(std::size_t depth, std::size_t max_bytes)
       : depth_(depth), max_samples_(kMaxKeys * depth), max_bytes_(std::max(kMinBytes, depth * max_bytes)) {}
 
   bool empty() const { return waiting_.empty(); }
-  /// Adds the newest sample. Calls `overwritten(Entry)` for each one that had to go for it.
+  /// Adds the newest sample. Calls `overwritten(Entry)` for each sample that is removed for it.
   template <class Overwritten>
   void put(Entry entry, Overwritten overwritten) {
     std::size_t same = 0;
@@ -43,7 +43,7 @@ class Mailbox {
     bytes_ += entry.bytes;
     waiting_.push_back(std::move(entry));
   }
-  /// The sample that waits longest; the mailbox is not empty.
+  /// Removes and returns the oldest sample; the mailbox must not be empty.
   Entry take() {
     Entry entry = std::move(waiting_.front());
     waiting_.erase(waiting_.begin());
@@ -67,7 +67,7 @@ class Mailbox {
   }
 
   std::size_t depth_, max_samples_, max_bytes_;
-  std::vector<Entry> waiting_{};  // oldest first; most often one
+  std::vector<Entry> waiting_{};  // Oldest first; usually one entry.
   std::size_t bytes_{};
 };
 

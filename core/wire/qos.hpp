@@ -4,16 +4,17 @@
 
 #include "core/wire/participant.hpp"
 
-/// What the QoS classes and discovery get: one table for both adapters, so that a rehearsal does not flatter.
+/// QoS of the classes and of discovery. Both adapters use this table, so that a rehearsal is not better than
+/// the real wire.
 namespace adit::wire {
 
 struct Qos {
-  bool reliable{};         ///< repaired after loss
-  bool transient_local{};  ///< the history is sent to late joiners
-  Duration heartbeat{};    ///< between heartbeats while something is not acknowledged
-  int priority{};          ///< on a link that is full: 0 goes first
-  bool newest_wins{};      ///< what waits to be sent is replaced by the next sample of the same key
-  bool paced{};            ///< handed on as the link takes it, by a flow controller
+  bool reliable{};         ///< Lost samples are repaired.
+  bool transient_local{};  ///< Late joiners receive the history.
+  Duration heartbeat{};    ///< Heartbeat period while a sample is not acknowledged.
+  int priority{};          ///< Priority on a full link: 0 goes first.
+  bool newest_wins{};      ///< A queued sample is replaced by the next one of the same key.
+  bool paced{};            ///< A flow controller passes samples on as the link takes them.
 };
 
 inline Qos qos_of(QosClass qos) {
@@ -36,9 +37,9 @@ inline Qos qos_of(QosClass qos) {
   return {};
 }
 
-/// Topics of ROS 2 peers. Default subscriptions there are reliable and match a reliable writer only; sensor
-/// publishers are often best effort and match a best-effort reader only. So our writers are reliable and our
-/// readers best effort: they match everybody.
+/// Whether a topic is one of ROS 2 peers. Default subscriptions there are reliable and match only a reliable
+/// writer; sensor publishers are often best effort and match only a best-effort reader. Our writers are
+/// therefore reliable and our readers best effort, so that they match all of them.
 inline bool is_ros2(const TopicInfo& topic) { return std::string_view(topic.name).starts_with("rt/"); }
 
 inline Qos writer_qos(const TopicInfo& topic) {
@@ -52,39 +53,43 @@ inline Qos reader_qos(const TopicInfo& topic) {
   return qos;
 }
 
-/// Keys of one topic that a writer writes, and that a reader stores at a time: those of writers that left
-/// give way to new ones. The library's default of 10 loses every peer beyond the tenth in silence.
+/// Largest number of keys of one topic that a writer writes, or that a reader stores at a time: keys of
+/// writers that left make room for new ones. With the library's default of 10, every peer beyond the tenth is
+/// lost without a report.
 inline constexpr std::size_t kMaxKeys = 256;
 
-/// Samples of one sender and key that wait for a reader's strand; then the newest replaces the oldest. A
-/// request or an answer is not made void by the one after it, although its writer repeats the newest alone.
+/// Samples of one sender and key that a reader's mailbox holds until the strand takes them; beyond that, the
+/// newest replaces the oldest. Requests and answers get a queue, because a later one does not supersede an
+/// earlier one, although their writers repeat only the newest.
 inline std::size_t mailbox_depth(const TopicInfo& topic) {
   constexpr std::uint16_t requests = 8;
   const bool request = topic.qos == QosClass::urgent && !is_ros2(topic);
   return std::max<std::uint16_t>(topic.depth, request ? requests : 1);
 }
-/// True: when the strand is idle, the handler runs on the thread that received the sample, which saves the
-/// wake-up of another one. For a velocity on its way to the wheels only: such a handler must not make or drop
-/// endpoints, and while it does not return, its participant receives nothing.
+/// True when the handler may run on the thread that received the sample while the strand is idle, which saves
+/// waking another thread. Only for velocity commands on their path to the motors: such a handler must not
+/// create or destroy endpoints, and its participant receives nothing until it returns.
 inline bool handled_in_place(const TopicInfo& topic) {
   return topic.qos == QosClass::stream || (topic.qos == QosClass::urgent && is_ros2(topic));
 }
-/// Samples that a reader handles in one go; then other tasks of its strand have their turn.
+/// Samples that a reader handles in one task; then other tasks of its strand may run.
 inline constexpr int kBurstSamples = 16;
 
-/// Discovery, equal everywhere: with leases of different lengths endpoints are not matched again after a
-/// gap between the two. Any message renews a lease, so announcements can be rare on a thin link.
+/// Discovery parameters, equal for all participants: with leases of different lengths, endpoints are not
+/// matched again after a gap longer than one lease and shorter than the other. Any message renews a lease, so
+/// announcements can be rare on a slow link.
 struct Discovery {
-  static constexpr Duration kLease = 60s;            ///< a silent participant is dropped after it
-  static constexpr Duration kAnnouncement = 25s;     ///< period of participant announcements
-  static constexpr Duration kInitialPeriod = 400ms;  ///< period of the first ones
-  static constexpr int kInitialAnnouncements = 15;   ///< their number: 6 s of them
-  /// Whoever was heard and does not show that it heard us is told of us again, each time that it announces
-  /// itself so often. Fast DDS alone answers once: that lost, the other hears of us with our next
-  /// announcement.
+  static constexpr Duration kLease = 60s;            ///< A participant that is silent for longer is dropped.
+  static constexpr Duration kAnnouncement = 25s;     ///< Period of participant announcements.
+  static constexpr Duration kInitialPeriod = 400ms;  ///< Period of the initial announcements.
+  static constexpr int kInitialAnnouncements = 15;   ///< Number of initial announcements: they take 6 s.
+  /// Shortest interval at which our announcement is repeated to a peer that was heard and does not show that
+  /// it heard us, each time the peer announces itself. Fast DDS alone answers once; when that answer is lost,
+  /// the peer waits for our next announcement.
   static constexpr Duration kAnnounceRetryPeriod = 200ms;
   static constexpr int kAnnounceRetries = 12;
-  static constexpr Duration kHeartbeat = 150ms;  ///< of endpoints that a peer has not acknowledged
+  /// Heartbeat period of endpoints that a peer has not acknowledged.
+  static constexpr Duration kHeartbeat = 150ms;
 };
 
 }  // namespace adit::wire

@@ -36,9 +36,9 @@ namespace adit::wire::topics {
 inline constexpr bool kKeyed = true;
 inline constexpr bool kUnkeyed = false;
 
-/// Every topic of the radio domain. Commands and their answers keep the newest alone: a lost one is not
-/// repaired in its turn, which would hold up those behind it for a round trip and more, but repeated by
-/// whoever waits for an answer. Nobody else writes a topic name or a QoS.
+/// Every topic of the radio domain; topic names and QoS are defined only here. Commands and their answers use
+/// the newest sample only: a lost one is not repaired by the wire, which would delay those behind it by a
+/// round trip or more, but repeated by the sender that waits for an answer.
 inline constexpr Topic<radio::Capabilities> kCapabilities{
     {"adit/capabilities", "adit::radio::v1::Capabilities", QosClass::status, 1, kKeyed, 4096}};
 inline constexpr Topic<radio::Presence> kPresence{
@@ -66,28 +66,28 @@ inline constexpr Topic<radio::Finding> kFinding{
 inline constexpr Topic<radio::FindingsAck> kFindingsAck{
     {"adit/findings_ack", "adit::radio::v1::FindingsAck", QosClass::bulk, 8, kUnkeyed, 1024}};
 
-/// The robot domain: ROS 2 names and types towards drivers.
+/// Topics of the robot domain: ROS 2 names and types, for drivers.
 inline constexpr Topic<geometry_msgs::msg::Twist> kCmdVel{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::urgent, 1, kUnkeyed, 64}};
 inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelStamped{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_", QosClass::urgent, 1, kUnkeyed, 256}};
-/// The same topic for a reader that looks for a second writer, reliable or not.
+/// The same topic for a reader that detects a second writer, reliable or not.
 inline constexpr Topic<geometry_msgs::msg::Twist> kCmdVelHeard{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::state, 1, kUnkeyed, 64}};
 inline constexpr Topic<geometry_msgs::msg::TwistStamped> kCmdVelStampedHeard{
     {"rt/cmd_vel", "geometry_msgs::msg::dds_::TwistStamped_", QosClass::state, 1, kUnkeyed, 256}};
-/// What a program of the robot asks for in the mode `external`.
+/// Velocity that a program of the robot requests in the mode `external`.
 inline constexpr Topic<geometry_msgs::msg::Twist> kExternalCmdVel{
     {"rt/external/cmd_vel", "geometry_msgs::msg::dds_::Twist_", QosClass::state, 1, kUnkeyed, 64}};
 inline constexpr Topic<nav_msgs::msg::Odometry> kOdom{
     {"rt/odom", "nav_msgs::msg::dds_::Odometry_", QosClass::state, 1, kUnkeyed, 2048}};
 inline constexpr Topic<sensor_msgs::msg::PointCloud2> kPoints{
     {"rt/points", "sensor_msgs::msg::dds_::PointCloud2_", QosClass::sensor, 1, kUnkeyed, 4 << 20}};
-/// A lidar that sees one plane.
+/// Scan of a planar lidar.
 inline constexpr Topic<sensor_msgs::msg::LaserScan> kScan{
     {"rt/scan", "sensor_msgs::msg::dds_::LaserScan_", QosClass::sensor, 1, kUnkeyed, 1 << 20}};
-/// Angular velocity and specific force. Its history holds what the fastest sensor, 400 Hz, gives in 100 ms: a
-/// reader integrates every sample.
+/// Angular velocity and specific force. The history holds the samples of the fastest sensor, 400 Hz, in 100
+/// ms, as a reader integrates every sample.
 inline constexpr Topic<sensor_msgs::msg::Imu> kImu{
     {"rt/imu/data", "sensor_msgs::msg::dds_::Imu_", QosClass::sensor, 40, kUnkeyed, 2048}};
 inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{

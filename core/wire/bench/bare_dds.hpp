@@ -7,12 +7,12 @@
 
 namespace adit::bench {
 
-/// Fast DDS with nothing of ours around it: one participant on UDP loopback, one writer, one reader, best
-/// effort. What our wire is measured against.
+/// Fast DDS without any code of ours around it: one participant on UDP loopback, one writer, one reader, best
+/// effort. It is the baseline of the wire benchmark.
 class BareDds {
  public:
   using Handler = std::function<void(std::span<const std::uint8_t>)>;
-  /// `handler` runs in Fast DDS's receiving thread.
+  /// `handler` runs on Fast DDS's receiving thread.
   BareDds(unsigned domain, const std::string& writes, const std::string& reads, Handler handler);
   ~BareDds();
   void write(std::span<const std::uint8_t> bytes);

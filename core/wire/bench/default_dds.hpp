@@ -7,8 +7,8 @@
 
 namespace adit::bench {
 
-/// A participant with Fast DDS's own defaults for discovery, liveliness and QoS, on loopback alone: what our
-/// wire is compared with. Its datagrams are counted as ours are.
+/// A participant with Fast DDS's default settings for discovery, liveliness and QoS, on loopback only. It is
+/// the baseline for our wire; its datagrams are counted as ours are.
 class DefaultDds {
  public:
   DefaultDds(unsigned domain, const std::string& name);
@@ -16,11 +16,12 @@ class DefaultDds {
   DefaultDds(const DefaultDds&) = delete;
   DefaultDds& operator=(const DefaultDds&) = delete;
 
-  /// Opens a writer, and writes a sample of that many bytes of one key (the topic's first string).
+  /// Opens a writer and writes one sample of `bytes` serialised bytes with one key (the topic's first
+  /// string).
   void write(const wire::TopicInfo& topic, const std::string& partition,
              std::span<const std::uint8_t> sample);
   void read(const wire::TopicInfo& topic, const std::string& partition);
-  /// Totals alone; no topics.
+  /// Returns totals only, without counts per topic.
   wire::WireCounters counters() const;
 
  private:

@@ -54,7 +54,8 @@ bool BytesType::getKey(void* data, rtps::InstanceHandle_t* handle, bool) {
     for (int i = 0; i < 16; ++i) handle->value[i] = 0xff;
     return true;
   }
-  // As RTPS has it: MD5 of the key in big-endian CDR, which is the length with terminator, then the text.
+  // RTPS defines the key hash as the MD5 of the key in big-endian CDR: the length with terminator, then the
+  // text.
   const auto length = static_cast<std::uint32_t>(key->size() + 1);
   const unsigned char prefix[4] = {
       static_cast<unsigned char>(length >> 24), static_cast<unsigned char>(length >> 16),

@@ -7,9 +7,10 @@ namespace {
 
 // Entity ids of RTPS 2.2, 9.3.1.3.
 constexpr std::uint32_t kPublicationsWriter = 0x000003c2, kSubscriptionsWriter = 0x000004c2;
-constexpr Duration kUnicastInterval = 20s;  // between two announcements by unicast to a peer that knows us
-constexpr int kRepeats = 3;                 // of a heartbeat, until the library sends the next
-constexpr std::uint32_t kCounts = 16;       // counts of ours for one of the library's
+// Interval between two unicast announcements to a peer that knows us.
+constexpr Duration kUnicastInterval = 20s;
+constexpr int kRepeats = 3;            // Repetitions of a heartbeat until the library sends the next one.
+constexpr std::uint32_t kCounts = 16;  // Number of our heartbeat counts for each count of the library.
 
 bool of_discovery(std::uint32_t writer) {
   return writer == kPublicationsWriter || writer == kSubscriptionsWriter;
@@ -31,7 +32,7 @@ bool DiscoveryAssist::sent(std::span<std::uint8_t> message, in_addr_t address, s
   const std::lock_guard lock(mutex_);
   own_ = *seen.source;
   if (seen.writer == kAnnouncingWriter) {
-    if (!announced_address(message)) return true;  // a goodbye
+    if (!announced_address(message)) return true;  // The datagram says goodbye.
     announcement_.assign(message.begin(), message.end());
     Peer* peer = at(address, port);
     if (peer == nullptr) return true;
@@ -53,7 +54,7 @@ DiscoveryAssist::Peer& DiscoveryAssist::meet(const ParticipantId& id, const Peer
   const auto known = peers_.find(id);
   if (known != peers_.end() && now - known->second.heard >= Discovery::kLease) peers_.erase(known);
   if (!peers_.contains(id)) {
-    // The participant that had this address before is gone.
+    // The participant that had this address before has left.
     std::erase_if(peers_, [&](const auto& entry) {
       return entry.second.address == locator.address && entry.second.port == locator.port;
     });
@@ -82,7 +83,8 @@ void DiscoveryAssist::received(std::span<const std::uint8_t> message, Duration n
     return;
   }
   const auto known = peers_.find(*seen.source);
-  // After its lease nothing but an announcement tells that it is back: the library has forgotten it.
+  // When its lease has expired, the library has forgotten the peer: only an announcement shows that it is
+  // back.
   if (known == peers_.end() || now - known->second.heard >= Discovery::kLease) return;
   Peer& peer = known->second;
   peer.heard = now;
@@ -96,7 +98,7 @@ void DiscoveryAssist::received(std::span<const std::uint8_t> message, Duration n
     if (answer->base > beat->second.last) {
       peer.beats.erase(beat);
     } else {
-      // The library is sending what the peer asks for.
+      // The library is sending the samples that the peer requested.
       beat->second.at = std::max(beat->second.at, now + Discovery::kHeartbeat);
     }
   }

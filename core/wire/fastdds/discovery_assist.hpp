@@ -18,55 +18,56 @@ namespace adit::wire {
 
 /// Retries participant discovery over lossy links. Fast DDS answers a new participant once and requests a
 /// missing endpoint once a second; when either message is lost, matching waits for the next announcement.
-/// This class sees all datagrams that pass the sockets, and
+/// This class inspects all datagrams that pass the sockets, and
 /// - repeats our announcement to each peer that was heard and does not show that it heard us;
 /// - repeats a discovery heartbeat that is not acknowledged, with a count that the library would not use;
-/// - withholds announcements by unicast to peers that know us, which hear the same by multicast.
-/// A peer that was silent for Discovery::kLease is met as a new one, as the library has dropped it by then.
-/// Pure: the caller has clock and sockets. Any thread. Bounded in peers, repetitions and announcements a
-/// second.
+/// - withholds unicast announcements to peers that know us, as they receive the same by multicast. A peer
+/// that was silent for Discovery::kLease counts as new when it returns, because the library has dropped it by
+/// then. The class holds neither clock nor sockets: the caller passes the time and sends the datagrams. Safe
+/// to call from any thread. Peers, repetitions and announcements per second are bounded.
 class DiscoveryAssist {
  public:
   using Send =
       std::function<void(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)>;
 
-  /// Addresses (network order) that announcements are repeated to; an announcement can name any address.
-  /// Without this call: all. Called before the first datagram passes.
+  /// Sets the addresses (network order) that announcements are repeated to, because an announcement can name
+  /// any address. Without this call all are allowed. Call it before the first datagram passes.
   void set_reachable(std::function<bool(in_addr_t address)> reachable) { reachable_ = std::move(reachable); }
-  /// Processes a datagram that the library sends to a discovery port, statistics cut off. May change
-  /// heartbeat counts in it. False: the receiver does not need it.
+  /// Processes a datagram that the library sends to a discovery port, statistics removed. May change
+  /// heartbeat counts in it. Returns false when the receiver does not need it.
   bool sent(std::span<std::uint8_t> message, in_addr_t address, std::uint16_t port, Duration now);
   /// Processes a datagram received on any port.
   void received(std::span<const std::uint8_t> message, Duration now);
-  /// The library dropped this participant: when it comes back it is a new one.
+  /// Forgets a participant that the library dropped: when it returns it counts as new.
   void dropped(const ParticipantId& id);
-  /// Sends what is due. `link_idle`: no other datagram is queued; otherwise heartbeats are deferred.
+  /// Sends the repetitions that are due. `link_idle`: no other datagram is queued; otherwise heartbeats are
+  /// deferred.
   void repeat(Duration now, bool link_idle, const Send& send);
-  /// Whether that participant is the one that sends here.
+  /// Whether `id` is the participant that sends from here.
   bool is_own(const ParticipantId& id) const;
-  /// When to call repeat() next; max: not before the next datagram.
+  /// Time at which repeat() must be called next; max: not before the next datagram.
   Duration next() const;
 
  private:
   static constexpr std::size_t kMaxPeers = 256;
-  /// Announcements repeated a second, to all peers together: ten robots and ten stations that start together
-  /// need 95. Those beyond it are deferred.
+  /// Largest number of repeated announcements per second, to all peers together; the rest is deferred. Ten
+  /// robots and ten stations that start together need 95.
   static constexpr int kMaxAnnouncements = 128;
   struct Beat {
     std::vector<std::uint8_t> message{};
     std::uint64_t last{};
     int repeats{};
-    Duration at{};  ///< of the next repetition
+    Duration at{};  ///< Time of the next repetition.
   };
   struct Peer {
     in_addr_t address{};
     std::uint16_t port{};
-    Duration heard{};  ///< when its last datagram came
+    Duration heard{};  ///< When its last datagram arrived.
     bool knows_us{};
-    Duration told{};  ///< when an announcement was last sent to it alone
+    Duration told{};  ///< When an announcement was last sent to it by unicast.
     Duration announce_at{Duration::max()};
     int announcements_left{};
-    std::map<std::uint32_t, Beat> beats{};  ///< of our discovery writers, not acknowledged
+    std::map<std::uint32_t, Beat> beats{};  ///< Unacknowledged heartbeats of our discovery writers.
   };
   using Peers = std::map<ParticipantId, Peer>;
   struct Out {
@@ -75,7 +76,7 @@ class DiscoveryAssist {
     std::uint16_t port{};
   };
   Peer* at(in_addr_t address, std::uint16_t port);
-  /// The peer that announced itself there, made if it is new.
+  /// Returns the peer that announced itself at `locator`, created if it is new.
   Peer& meet(const ParticipantId& id, const PeerAddress& locator, Duration now);
   void announce(Duration now, std::vector<Out>& out);
   void repeat_heartbeats(Peer& peer, Duration now, bool link_idle, std::vector<Out>& out);
@@ -85,8 +86,8 @@ class DiscoveryAssist {
   ParticipantId own_{};
   std::vector<std::uint8_t> announcement_{};
   Peers peers_{};
-  ParticipantId announced_last_{};  // to whom: the next round goes on behind it
-  Duration second_{};               // announcements are counted since then
+  ParticipantId announced_last_{};  // Last receiver; the next round continues after it.
+  Duration second_{};               // Start of the second in which announcements are counted.
   int announced_{};
 };
 
@@ -98,7 +99,7 @@ class DiscoveryAssistThread {
   ~DiscoveryAssistThread();
   DiscoveryAssistThread(const DiscoveryAssistThread&) = delete;
   DiscoveryAssistThread& operator=(const DiscoveryAssistThread&) = delete;
-  /// A datagram passed: something may be due earlier than planned.
+  /// Wakes the thread after a datagram passed, as something may be due earlier than planned.
   void wake();
 
  private:

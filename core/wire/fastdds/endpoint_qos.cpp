@@ -8,7 +8,7 @@ namespace adit::wire {
 namespace dds = eprosima::fastdds::dds;
 namespace {
 
-constexpr int kReaderDepth = 64;  // unkeyed: samples of all writers together until taken, which is at once
+constexpr int kReaderDepth = 64;  // Unkeyed: samples of all writers until they are taken, which is immediate.
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
   return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
@@ -17,7 +17,8 @@ eprosima::fastrtps::Duration_t duration(Duration d) {
 template <class EndpointQos>
 void common(const TopicInfo& topic, const Qos& qos, int depth, EndpointQos& out) {
   out.reliability().kind = qos.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
-  out.reliability().max_blocking_time = duration(0ms);  // never blocks: the newest samples are kept
+  // Writing never blocks; the newest samples stay in the history.
+  out.reliability().max_blocking_time = duration(0ms);
   out.durability().kind =
       qos.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
   out.history().kind = dds::KEEP_LAST_HISTORY_QOS;
@@ -39,10 +40,11 @@ dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link) {
   common(topic, qos, std::max<int>(1, topic.depth), out);
   out.writer_data_lifecycle().autodispose_unregistered_instances = false;
   if (qos.reliable) out.reliable_writer_qos().times.heartbeatPeriod = duration(qos.heartbeat);
-  // Written from the caller's thread: the shortest way. What may be large and can wait does not hold it up.
+  // By default the caller's thread sends, which has the lowest latency. Large samples that can be deferred go
+  // through a flow controller, so that they do not hold that thread up.
   const bool wait = topic.qos == QosClass::bulk || topic.qos == QosClass::video;
   out.publish_mode().kind = wait ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
-  // Its readers would acknowledge each piece.
+  // Its readers would otherwise acknowledge each fragment.
   if (topic.qos == QosClass::bulk) out.reliable_writer_qos().disable_heartbeat_piggyback = true;
   if (on_link && wait) {
     out.publish_mode().flow_controller_name = topic.qos == QosClass::bulk ? kBulkFlow : kVideoFlow;

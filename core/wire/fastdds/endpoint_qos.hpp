@@ -6,12 +6,12 @@
 
 namespace adit::wire {
 
-/// Flow controllers of a participant on a link: for `bulk` and for `video`.
+/// Names of the flow controllers of a participant with a link: for the classes `bulk` and `video`.
 inline constexpr const char* kBulkFlow = "adit_bulk";
 inline constexpr const char* kVideoFlow = "adit_video";
 
-/// The QoS class of a topic in Fast DDS's terms, all limits set together.
-/// `on_link`: its participant has the flow controllers of a link.
+/// Returns a topic's QoS class in terms of Fast DDS, with all resource limits. `on_link`: the participant has
+/// the flow controllers of a link.
 eprosima::fastdds::dds::DataWriterQos dds_writer_qos(const TopicInfo& topic, bool on_link);
 eprosima::fastdds::dds::DataReaderQos dds_reader_qos(const TopicInfo& topic);
 

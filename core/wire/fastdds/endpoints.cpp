@@ -41,7 +41,8 @@ Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher
   const Qos qos = writer_qos(topic);
   const auto& id = writer->writer_->guid().entityId.value;
   writer->entity_ = static_cast<std::uint32_t>(id[0]) << 24 | id[1] << 16 | id[2] << 8 | id[3];
-  // A reader of ours that is reliable has to acknowledge, or the writer would go on to ask all others, too.
+  // A reliable reader of ours must acknowledge samples not meant for it; otherwise the writer requests
+  // acknowledgement from all other readers, too.
   if (!qos.reliable || !reader_qos(topic).reliable) context->to_others.add(writer->entity_);
   if (context->link)
     context->link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable, topic.keyed);
@@ -122,7 +123,7 @@ Result<std::unique_ptr<RawReader>> FastDdsReader::make(dds::Subscriber& subscrib
 
 FastDdsReader::~FastDdsReader() {
   if (target_) target_->close();
-  if (reader_ != nullptr) subscriber_.delete_datareader(reader_);  // waits for our listener
+  if (reader_ != nullptr) subscriber_.delete_datareader(reader_);  // Blocks until our listener has returned.
 }
 
 FastDdsReader::Target::Target(const TopicInfo& info, std::shared_ptr<SharedCounts> shared, Executor& strand,
@@ -145,7 +146,7 @@ FastDdsReader::Buffer FastDdsReader::Target::buffer() {
 }
 
 void FastDdsReader::Target::recycle(Buffer buffer) {
-  constexpr std::size_t most = 2;  // one that is handled, one that is received into
+  constexpr std::size_t most = 2;  // One buffer is being handled while another is received into.
   if (spare_.size() < most) spare_.push_back(std::move(buffer));
 }
 
@@ -169,7 +170,7 @@ void FastDdsReader::Target::notify() {
 }
 
 void FastDdsReader::Target::post() {
-  // Not bounded by the strand's queue: a reader has one such task.
+  // Uses the control queue: a reader has one such task at a time, so it needs no bound.
   if (strand_.post_control([self = shared_from_this()] { self->handle(); })) return;
   const std::lock_guard lock(mutex_);
   posted_ = false;
@@ -199,7 +200,7 @@ void FastDdsReader::Target::handle() {
       if (!handle_one()) return;
     }
   } catch (...) {
-    post();  // the samples behind it are not lost
+    post();  // The samples after it are still handled.
     throw;
   }
   post();
@@ -227,7 +228,7 @@ void FastDdsReader::on_data_available(dds::DataReader* reader) {
     if (!info.valid_data) continue;
     const Time received(std::chrono::duration_cast<Duration>(SteadyClock::now().time_since_epoch()));
     const rtps::GUID_t writer = rtps::iHandle2GUID(info.publication_handle);
-    if (writer.guidPrefix == reader->guid().guidPrefix) continue;  // one of this participant
+    if (writer.guidPrefix == reader->guid().guidPrefix) continue;  // This participant's own writer.
     ParticipantId sender{};
     std::copy(std::begin(writer.guidPrefix.value), std::end(writer.guidPrefix.value), sender.begin());
     target_->counts->change(target_->topic, sender, [&](TopicCount& c) {
@@ -245,7 +246,7 @@ void FastDdsReader::on_data_available(dds::DataReader* reader) {
 }
 
 void FastDdsReader::on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) {
-  // Which writer's is not said here.
+  // Fast DDS does not say here which writer it was.
   target_->counts->change(target_->topic, {}, [&](TopicCount& c) {
     c.lost += static_cast<std::uint64_t>(std::max(0, status.total_count_change));
   });

@@ -20,7 +20,7 @@ namespace adit::wire {
 
 struct TransportContext;
 
-/// Counts of a wire, touched by the application's strands and by Fast DDS's threads.
+/// Counters of one participant; the application's strands and Fast DDS's threads update them.
 class SharedCounts {
  public:
   template <class Change>
@@ -28,7 +28,7 @@ class SharedCounts {
     const std::lock_guard lock(mutex_);
     auto found = counts_.find({topic, peer});
     if (found == counts_.end()) {
-      // Peers come and go for days: beyond the bound they share one line.
+      // Peers come and go for days: beyond the bound they share one entry.
       const ParticipantId counted = counts_.size() < kMaxCounts ? peer : ParticipantId{};
       found = counts_.try_emplace({topic, counted}).first;
       found->second.topic = topic;
@@ -70,34 +70,35 @@ class FastDdsWriter final : public RawWriter, private eprosima::fastdds::dds::Da
   std::shared_ptr<SharedCounts> counts_;
   std::shared_ptr<TransportContext> context_{};
   std::uint32_t entity_{};
-  int own_{};  ///< matched readers of this participant, which get nothing; changed by the listener alone
+  int own_{};  ///< Matched readers of this participant, which receive nothing. Only the listener changes it.
   std::atomic<int> matched_{0};
 };
 
-/// One Fast DDS DataReader: takes samples on Fast DDS's threads into a mailbox, which its strand empties. The
-/// participant's own samples are left out.
+/// One Fast DDS DataReader. It takes samples on Fast DDS's threads into a mailbox, which the reader's strand
+/// empties. Samples of the same participant are left out.
 class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::DataReaderListener {
  public:
   static Result<std::unique_ptr<RawReader>> make(eprosima::fastdds::dds::Subscriber& subscriber,
                                                  eprosima::fastdds::dds::Topic& dds_topic,
                                                  const TopicInfo& topic, std::shared_ptr<SharedCounts> counts,
                                                  Executor& strand, RawHandler handler);
-  /// The handler is not running when this returns, and will not run again.
+  /// On return the handler is not running and will not run again.
   ~FastDdsReader() override;
 
  private:
   using Buffer = std::vector<std::uint8_t>;
   using Box = Mailbox<Buffer>;
 
-  /// What a task on the strand needs; outlives the reader while one waits there.
+  /// State that a task on the strand needs; it outlives the reader while such a task is queued.
   struct Target : std::enable_shared_from_this<Target> {
     Target(const TopicInfo& topic, std::shared_ptr<SharedCounts> counts, Executor& strand,
            RawHandler handler);
-    /// A buffer to receive into, of a sample that was handled if there is one. Any thread.
+    /// Returns a buffer to receive into; reuses one whose sample was handled. Safe to call from any thread.
     Buffer buffer();
-    /// Any thread.
+    /// Adds a sample. Safe to call from any thread.
     void put(Box::Entry entry);
-    /// Has the strand handle what is in the mailbox; one task of it is under way at a time. Any thread.
+    /// Posts a task that handles the samples in the mailbox; at most one such task is queued at a time. Safe
+    /// to call from any thread.
     void notify();
     void close();
     void handle();
@@ -113,10 +114,10 @@ class FastDdsReader final : public RawReader, private eprosima::fastdds::dds::Da
     void recycle(Buffer buffer);
 
     Executor& strand_;
-    InPlace* in_place_;  ///< null: samples are posted to the strand
+    InPlace* in_place_;  ///< Null: samples are posted to the strand.
     RawHandler handler_;
-    std::recursive_mutex handling_{};  // recursive: a handler may drop its own reader
-    std::mutex mutex_{};               // guards what follows
+    std::recursive_mutex handling_{};  // Recursive, because a handler may destroy its own reader.
+    std::mutex mutex_{};               // Guards the members below.
     Box mailbox_;
     std::vector<Buffer> spare_{};
     bool posted_{};

@@ -31,19 +31,20 @@ ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
   return id;
 }
 
-/// What Fast DDS takes from the environment of a ROS 2 robot would make our participants clients of a
-/// discovery server, or load profiles, and the radio would go deaf.
+/// Removes the environment variables of a ROS 2 robot that Fast DDS reads: they would make our participants
+/// clients of a discovery server or load profiles, and no peer would be heard any more.
 void ignore_environment() {
   for (const char* name : {"ROS_DISCOVERY_SERVER", "FASTRTPS_DEFAULT_PROFILES_FILE",
                            "FASTDDS_ENVIRONMENT_FILE", "FASTDDS_STATISTICS"}) {
     if (std::getenv(name) != nullptr) ::unsetenv(name);
   }
-  constexpr const char* skip = "SKIP_DEFAULT_XML_FILE";  // DEFAULT_FASTRTPS_PROFILES.xml in this folder
+  // Skips DEFAULT_FASTRTPS_PROFILES.xml in this folder.
+  constexpr const char* skip = "SKIP_DEFAULT_XML_FILE";
   const char* skipped = std::getenv(skip);
   if (skipped == nullptr || std::string_view(skipped) != "1") ::setenv(skip, "1", 1);
 }
 
-/// Who is there, told to one handler on its strand.
+/// Reports the participants on the domain to one handler on its strand.
 class DiscoveryListener final : public dds::DomainParticipantListener {
  public:
   explicit DiscoveryListener(std::shared_ptr<TransportContext> context) : context_(std::move(context)) {}
@@ -60,7 +61,7 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
       if (!peer.incompatible.empty()) notify({id, true, peer.incompatible});
     }
   }
-  /// The handler is not running when this returns, and will not run again.
+  /// On return the handler is not running and will not run again.
   void close() {
     const std::lock_guard lock(mutex_);
     if (target_) target_->close();
@@ -69,8 +70,8 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
 
  private:
   struct Peer {
-    std::string name{};          ///< as it announces itself
-    std::string incompatible{};  ///< as in ParticipantEvent
+    std::string name{};          ///< The name it announces.
+    std::string incompatible{};  ///< As in ParticipantEvent.
   };
   struct Target {
     std::recursive_mutex mutex{};
@@ -99,7 +100,7 @@ class DiscoveryListener final : public dds::DomainParticipantListener {
   void on_subscriber_discovery(dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) override {
     look(info.info.guid().guidPrefix, info.info.typeName().to_string());
   }
-  /// An endpoint of a peer has this type.
+  /// Checks the type of an endpoint of a peer for another contract version.
   void look(const rtps::GuidPrefix_t& prefix, const std::string& type) {
     const std::string version = other_release(type);
     if (version.empty()) return;
@@ -141,7 +142,7 @@ class FastDdsParticipant final : public Participant {
 
   Result<void> open(const FastDdsParams& params) {
     ignore_environment();
-    // Everything passes the transports, also between participants of one process: it is counted there.
+    // All datagrams pass our transports and are counted there. Delivery within a process would bypass them.
     eprosima::fastrtps::LibrarySettingsAttributes settings;
     settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);

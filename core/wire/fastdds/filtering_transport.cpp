@@ -22,7 +22,7 @@ void TransportContext::sent(std::span<const std::uint8_t> message, in_addr_t add
 
 void TransportContext::received(std::span<const std::uint8_t> message, std::uint32_t port) {
   const RtpsPeek seen = peek(message);
-  if (seen.source && assist.is_own(*seen.source)) return;  // did not come by radio
+  if (seen.source && assist.is_own(*seen.source)) return;  // The datagram did not come by radio.
   const std::uint64_t bytes = message.size() + WireCost::kUdpAndIp;
   total_in.fetch_add(bytes, std::memory_order_relaxed);
   if (is_discovery_port(port)) discovery_in.fetch_add(bytes, std::memory_order_relaxed);
@@ -42,7 +42,7 @@ eprosima::fastdds::rtps::TransportDescriptorInterface* FilteringTransport::get_c
 bool FilteringTransport::OpenInputChannel(const rtps::Locator_t& locator,
                                           eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
                                           std::uint32_t largest) {
-  // One that somebody else has is asked for, too, before the next: not ours.
+  // When another process has a port, the library asks for the next one; only a port that opens is ours.
   if (!ChainingTransport::OpenInputChannel(locator, receiver, largest)) return false;
   if (!rtps::IPLocator::isMulticast(locator))
     context_->own_ports.add(rtps::IPLocator::getPhysicalPort(locator));
@@ -75,7 +75,7 @@ bool FilteringTransport::send(rtps::SenderResource* low_sender_resource, const r
                               rtps::LocatorsIterator* destination_locators_begin,
                               rtps::LocatorsIterator* destination_locators_end,
                               const std::chrono::steady_clock::time_point& timeout) {
-  // The iterators are of several kinds and can be walked once: one datagram at a time goes down.
+  // The iterators are of several kinds and single-pass, so datagrams are passed down one at a time.
   bool all_sent = true;
   for (auto& destination = *destination_locators_begin; destination != *destination_locators_end;
        ++destination) {

@@ -20,9 +20,9 @@ namespace adit::wire {
 
 class LinkShaper;
 
-/// Closed until the participant is whole. Until then Fast DDS 2.9 drops what it hears of others: an answer to
-/// its first announcement that came back before would be lost, and the next comes with the other's
-/// announcement period.
+/// Blocks received discovery datagrams until the participant is fully created. Until then Fast DDS 2.9 drops
+/// announcements of others: an answer to our first announcement would be lost, and the next one comes only
+/// with the peer's announcement period.
 class DiscoveryGate {
  public:
   void open() {
@@ -32,7 +32,7 @@ class DiscoveryGate {
     }
     opened_.notify_all();
   }
-  /// At most a second: a participant that cannot be made waits for its receiving threads.
+  /// Waits for at most one second, because a participant whose creation fails joins its receiving threads.
   void wait() {
     if (open_.load(std::memory_order_acquire)) return;
     std::unique_lock lock(mutex_);
@@ -45,7 +45,8 @@ class DiscoveryGate {
   std::condition_variable opened_{};
 };
 
-/// Ports that a participant hears on; opened while it is made, and asked for meanwhile.
+/// Ports that a participant receives on. They are opened while it is created, and other threads read them
+/// meanwhile.
 class OwnPorts {
  public:
   void add(std::uint16_t port) {
@@ -61,7 +62,7 @@ class OwnPorts {
   std::atomic<std::size_t> used_{};
 };
 
-/// Entity ids, added and removed by one thread and asked for by others. Beyond its bound it takes no more.
+/// Set of entity ids that one thread modifies and others read. When it is full, further ids are ignored.
 class EntitySet {
  public:
   void add(std::uint32_t entity) {
@@ -81,38 +82,39 @@ class EntitySet {
   std::array<std::atomic<std::uint32_t>, 64> entities_{};
 };
 
-/// Bytes that went through a participant's sockets, UDP and IP headers included.
+/// State shared by the transports of one participant, including the byte counts of its sockets, UDP and IP
+/// headers included.
 struct TransportContext {
   std::atomic<std::uint64_t> discovery_out{}, discovery_in{}, total_out{}, total_in{};
-  PeerStatistics peers{};          ///< the same by peer
-  DiscoveryGate discovery_gate{};  ///< discovery datagrams wait here
-  /// Of a radio: what is sent to others leaves by it, without what is of no use there. Null: by the library's
-  /// own sockets, as it is.
+  PeerStatistics peers{};          ///< Byte counts by peer.
+  DiscoveryGate discovery_gate{};  ///< Received discovery datagrams wait for it.
+  /// For a radio: datagrams to other participants leave through it, without parts that are useless there.
+  /// Null: the library's own sockets send them unchanged.
   std::shared_ptr<LinkShaper> link{};
-  std::set<in_addr_t> own_addresses{};  ///< network order
+  std::set<in_addr_t> own_addresses{};  ///< In network order.
   OwnPorts own_ports{};
-  std::shared_ptr<UdpSender> udp_sender{};  ///< of a radio: what goes to ourselves
-  EntitySet to_others{};                    ///< writers whose samples do not go to ourselves
-  /// Whether a datagram to that place would come back to this participant.
+  std::shared_ptr<UdpSender> udp_sender{};  ///< For a radio: sends datagrams to this participant itself.
+  EntitySet to_others{};  ///< Writers whose samples this participant does not receive itself.
+  /// Whether a datagram to that address and port would come back to this participant.
   bool is_own(in_addr_t address, std::uint16_t port) const {
     return own_ports.contains(port) && own_addresses.contains(address);
   }
   HeartbeatFilter heartbeats{Discovery::kHeartbeat};
   DiscoveryAssist assist{};
-  std::unique_ptr<DiscoveryAssistThread> repeats{};  ///< by radio
+  std::unique_ptr<DiscoveryAssistThread> repeats{};  ///< For a radio.
 
-  /// Counts a datagram that leaves.
+  /// Counts a sent datagram.
   void sent(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
-  /// One that came in at that port.
+  /// Counts a datagram received on that port.
   void received(std::span<const std::uint8_t> message, std::uint32_t port);
 };
 
-/// Stands between the RTPS library and UDP: every datagram passes here, both ways. It counts them, takes from
-/// those that leave by radio what is of no use there, and hands them to the link model where one is named.
+/// Transport between the RTPS library and UDP that every datagram passes in both directions. It counts
+/// datagrams, removes parts that are useless on a radio, and passes them to the link model if there is one.
 ///
-/// The library matches a participant's readers with its own writers and, in this version, cannot be told not
-/// to. A sample that none of them has to acknowledge is not sent to ourselves: it would cost a call of the
-/// system and the wake-up of a thread.
+/// The library matches a participant's readers with its own writers; this version cannot disable that. A
+/// sample that none of these readers must acknowledge is not sent to ourselves, which saves a system call and
+/// waking a thread.
 class FilteringTransport final : public eprosima::fastdds::rtps::ChainingTransport {
  public:
   FilteringTransport(const eprosima::fastdds::rtps::ChainingTransportDescriptor& descriptor,
@@ -133,12 +135,13 @@ class FilteringTransport final : public eprosima::fastdds::rtps::ChainingTranspo
                const eprosima::fastrtps::rtps::Locator_t& remote_locator) override;
 
  private:
-  /// A sample to ourselves that no reader of ours takes.
+  /// Whether a datagram is a sample to ourselves that none of our readers takes.
   bool is_unwanted(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
-  /// Sends by radio what the library sends to one address, as far as it is needed.
+  /// Sends a datagram for one address by radio, unless it is not needed.
   void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 
-  eprosima::fastdds::rtps::ChainingTransportDescriptor* descriptor_;  // owned by whoever made us
+  // Owned by the creator of the transport.
+  eprosima::fastdds::rtps::ChainingTransportDescriptor* descriptor_;
   std::shared_ptr<TransportContext> context_;
 };
 

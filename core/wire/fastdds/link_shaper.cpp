@@ -7,10 +7,10 @@
 namespace adit::wire {
 namespace {
 
-constexpr std::size_t kMaxWaiting = 4096;  // datagrams; the queue's age bounds them long before
-/// Between two tries to give a full socket more. The kernel holds 40 kB (udp_sender.cpp), so that a radio of
-/// less than 300 Mbit/s does not run dry meanwhile. Polling the socket would not do: the interface's queue
-/// can be full while the socket's is not.
+constexpr std::size_t kMaxWaiting = 4096;  // Datagrams; the maximum queue age limits the queue long before.
+/// Interval between two attempts to send on a full socket. The kernel holds 40 kB (udp_sender.cpp), so a
+/// radio below 300 Mbit/s does not run dry meanwhile. Polling the socket would not work: the interface's
+/// queue can be full while the socket's is not.
 constexpr Duration kRetry = 1ms;
 
 LinkShaper::Socket sockets_of(const std::vector<std::string>& interfaces) {
@@ -60,8 +60,8 @@ LinkShaper::Waiting LinkShaper::classify(std::span<const std::uint8_t> message, 
     const auto known = writers_.find(*seen.writer);
     if (known != writers_.end()) what = known->second;
   }
-  // The newest sample of a stream stands for those before it of the same key, a repair or a heartbeat for the
-  // same one that waits: else a repair that is requested again while it waits is sent once per request.
+  // A new sample of a stream replaces a queued one of the same key, and a repair or heartbeat replaces a
+  // queued equal one. Otherwise a repair that is requested again while it is queued is sent once per request.
   const std::optional<std::uint64_t> key = what.keyed ? sample_key(message) : 0;
   const bool newest = what.newest_wins && seen.whole && key;
   std::uint64_t number = newest ? *seen.writer ^ *key : seen.dedup_key;
@@ -141,7 +141,7 @@ Duration LinkShaper::step(Duration at) {
     auto next = queue_.next(
         at, [this](const Packet& packet) { return airtime(packet); }, [](const Packet&) {});
     if (!next) break;
-    // A thread that woke late has not lost the time: the air was free since then, and this waited.
+    // The channel was free while this thread woke late and the datagram waited, so that time may be used.
     const Duration start = std::max({free_at_, at - 5ms, next->message.since});
     free_at_ = start + next->airtime;
     put_on_air(std::move(next->message.item), start, next->airtime);
@@ -189,13 +189,13 @@ void LinkShaper::put_on_air(Packet packet, Duration at, Duration airtime) {
   }
   if (outputs_.sent) outputs_.sent(packet.bytes, packet.address, packet.port);
   const Path path = outputs_.path ? outputs_.path(packet.address, packet.port) : Path{};
-  // Multicast is one frame: all hear it or nobody does.
+  // A multicast is one frame: either all receivers get it or none.
   if (loss_models_[peer_of(packet)].lost(*link_, path, bytes, std::nullopt, random_)) return;
   in_air_.emplace(at + airtime + transit(*link_, random_), std::move(packet));
 }
 
 std::uint64_t LinkShaper::peer_of(const Packet& packet) const {
-  // On one machine participants differ by port; the pair of discovery and data ports is one peer.
+  // Participants of one machine differ by port; a participant's discovery and data ports count as one peer.
   return static_cast<std::uint64_t>(packet.address) << 16 | participant_of_port(packet.port);
 }
 

@@ -19,25 +19,25 @@
 
 namespace adit::wire {
 
-/// The queue between a participant and its sockets. With a link profile it is the link model: datagrams leave
-/// by priority, within their budget, at the link's bandwidth, and arrive late or not at all. Without one
-/// datagrams go straight to the sockets; those that a socket has no room for, as when a real radio is full,
-/// wait here by priority and are tried again. One thread. It has sockets of its own, so that what is still in
-/// the air does not depend on the library's life.
+/// The transmit queue between a participant and its sockets. With a link profile it is the link model:
+/// datagrams leave by priority, within their budget, at the link's bandwidth, and arrive late or are lost.
+/// Without one, datagrams go straight to the sockets; those that a socket has no room for, as when a real
+/// radio is full, are queued by priority and retried. It runs one thread and has its own sockets, so that
+/// queued datagrams do not depend on the library's lifetime.
 class LinkShaper {
  public:
-  /// Functions that it calls from any thread; each may be empty.
+  /// Functions that the shaper calls from any thread; each may be empty.
   struct Outputs {
-    /// A datagram was put on the air.
+    /// Called when a datagram was transmitted.
     std::function<void(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)> sent{};
-    /// What lies between us and the peer at that address.
+    /// Returns the path (distance and walls) to the peer at that address.
     std::function<Path(in_addr_t address, std::uint16_t port)> path{};
   };
-  /// Puts a datagram into a socket; false: the socket has no room now. Never blocks.
+  /// Sends a datagram on a socket and never blocks; returns false when the socket has no room now.
   using Socket =
       std::function<bool(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)>;
 
-  /// `seed`: of losses and jitter. `interfaces`: addresses that multicast goes out on.
+  /// `seed`: of losses and jitter. `interfaces`: addresses on which multicast is sent.
   LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, const std::vector<std::string>& interfaces,
              Outputs outputs);
   LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, Socket socket, Outputs outputs);
@@ -45,22 +45,22 @@ class LinkShaper {
   LinkShaper(const LinkShaper&) = delete;
   LinkShaper& operator=(const LinkShaper&) = delete;
 
-  /// How a writer's samples are sent: their priority, and whether the newest sample replaces those that wait;
-  /// of a keyed topic, those of the same key.
+  /// Sets how a writer's samples are sent: their priority, and whether the newest sample replaces queued ones
+  /// (for a keyed topic, those of the same key).
   void add_writer(std::uint32_t entity, int priority, bool newest_wins, bool keyed = false);
   void remove_writer(std::uint32_t entity);
 
-  /// A datagram to an IPv4 address (network order) and port. Never blocks.
+  /// Queues a datagram to an IPv4 address (network order) and port. Never blocks.
   void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 
-  /// Null: it has none.
+  /// Null: there is no profile.
   const LinkProfile* profile() const { return link_ ? &*link_ : nullptr; }
-  /// Datagrams that were dropped before they went on the air, since the start.
+  /// Number of datagrams dropped before transmission, since the start.
   std::uint64_t dropped() const { return sender().lost(kPriorities - 1); }
   SenderState sender() const;
-  /// The longest that anything waits to be sent.
+  /// Queueing time of the oldest datagram.
   Duration waiting() const;
-  /// Sends what waits, which takes as long as it takes on the link but at most a second, and ends.
+  /// Sends the queued datagrams at the link's rate, for at most a second, and stops.
   void close();
 
  private:
@@ -79,9 +79,9 @@ class LinkShaper {
 
   static Duration now();
   void run();
-  /// Puts what is due on the air and into sockets; when to be asked again.
+  /// Transmits what is due; returns when to call it next.
   Duration step(Duration at);
-  /// The same without a profile: gives the sockets what they take.
+  /// The same without a profile: fills the sockets.
   Duration refill(Duration at);
   Waiting classify(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
   bool put_in_socket(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
@@ -99,9 +99,9 @@ class LinkShaper {
   Window window_{};
   std::map<std::uint64_t, LossModel> loss_models_{};
   std::multimap<Duration, Packet> in_air_{};
-  std::optional<Waiting> refused_{};  // by a socket; goes before all others
+  std::optional<Waiting> refused_{};  // Refused by a socket; it goes before all others.
   std::map<std::uint32_t, Class> writers_{};
-  Duration free_at_{};  // the air is ours again
+  Duration free_at_{};  // When the channel is free again.
   Duration close_at_{Duration::max()};
   std::thread thread_{};
 };

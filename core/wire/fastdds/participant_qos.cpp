@@ -22,20 +22,21 @@ namespace rtps = eprosima::fastrtps::rtps;
 namespace {
 
 constexpr std::uint32_t kLoopbackDatagram = 65000;
-/// Whole scans must wait here until they are read; the kernel gives at most net.core.rmem_max.
+/// Receive buffer for complete scans until they are read, bytes; the kernel gives at most net.core.rmem_max.
 constexpr std::uint32_t kScanBuffer = 4 << 20;
-constexpr std::uint32_t kParticipantsPerHost = 16;  // ports tried at an address that is named without one
-constexpr std::uint32_t kSendBuffer = 212992;       // B, as Linux has it
-/// The library keeps room in each message for statistics, 60 B that are cut off again, and for a heartbeat,
-/// 32 B, which hardly ever goes with a fragment. With 20 of these an endpoint fits one frame of 500 B.
+constexpr std::uint32_t kParticipantsPerHost = 16;  // Ports tried at an address that is given without one.
+constexpr std::uint32_t kSendBuffer = 212992;       // Bytes, the default of Linux.
+/// The library reserves room in each message for statistics, 60 bytes that are removed again, and for a
+/// heartbeat, 32 bytes, which hardly ever goes with a fragment. With 20 of these, an endpoint announcement
+/// fits one frame of 500 bytes.
 constexpr std::uint32_t kNeverSent = 60 + 20;
-constexpr const char* kRtpsMulticast = "239.255.0.1";  // RTPS multicast group
+constexpr const char* kRtpsMulticast = "239.255.0.1";  // RTPS multicast group.
 
 eprosima::fastrtps::Duration_t duration(Duration d) {
   return {static_cast<std::int32_t>(d / 1s), static_cast<std::uint32_t>((d % 1s).count())};
 }
 
-/// ADDRESS or ADDRESS:PORT; port 0: those of the first participants there.
+/// Parses ADDRESS or ADDRESS:PORT; port 0: the ports of the first participants there.
 Result<rtps::Locator_t> locator(const std::string& text) {
   rtps::Locator_t result;
   result.kind = LOCATOR_KIND_UDPv4;
@@ -57,7 +58,7 @@ Result<rtps::Locator_t> locator(const std::string& text) {
   return result;
 }
 
-/// IPv4 addresses of the interfaces of this machine that are up, as the library counts them.
+/// Returns the IPv4 addresses of this machine's interfaces that are up, as the library determines them.
 std::set<std::string> own_addresses() {
   std::set<std::string> result;
   ifaddrs* first = nullptr;
@@ -73,10 +74,10 @@ std::set<std::string> own_addresses() {
   return result;
 }
 
-/// Lets through so many bytes per period that the class gets its share of the link: four frames at least, as
-/// a sample is sent when all of a fragment of it fits.
+/// Adds a flow controller that gives the class its share of the link per period: at least four frames,
+/// because a sample is sent only when a complete fragment of it fits.
 void add_flow(const char* name, double share, const LinkProfile& link, dds::DomainParticipantQos& qos) {
-  const double frames = std::max(4.0, share * link.bandwidth / 8.0 * 0.02 / link.frame_bytes());  // in 20 ms
+  const double frames = std::max(4.0, share * link.bandwidth / 8.0 * 0.02 / link.frame_bytes());  // In 20 ms.
   const double bytes = std::floor(frames) * link.frame_bytes();
   auto flow = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
   flow->name = name;
@@ -94,10 +95,10 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   }
   dds::DomainParticipantQos qos;
   qos.name(params.name.c_str());
-  // Host, user and process would go out with every announcement: a third of it.
+  // Otherwise every announcement would contain host, user and process, a third of its size.
   qos.properties().properties().clear();
 
-  // Never the built-in transports: they use every interface of the machine.
+  // The built-in transports are off because they use every interface of the machine.
   qos.transport().use_builtin_transports = false;
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = params.interfaces;
@@ -107,7 +108,7 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
       return Error{Reason::bad_argument,
                    "interface " + address + ": expected an IPv4 address of this machine"};
     }
-    // The library would go on without a word, and neither send nor hear anything.
+    // The library would continue without an error, and neither send nor receive.
     if (!own.contains(address)) {
       return Error{Reason::bad_argument,
                    "interface " + address + ": no interface of this machine that is up has this address"};
@@ -115,8 +116,8 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   }
   if (udp->interfaceWhiteList.empty()) udp->interfaceWhiteList.push_back("127.0.0.1");
   udp->non_blocking_send = true;
-  // Without a size the library takes the buffer for full after each sample, and a heartbeat goes with each
-  // fragment and each repair to every reader, which every reader acknowledges.
+  // Without a size the library takes the buffer for full after each sample; a heartbeat then goes with each
+  // fragment and each repair to every reader, and every reader acknowledges it.
   udp->sendBufferSize = kSendBuffer;
   udp->maxMessageSize = params.large_samples ? kLoopbackDatagram : WireCost::kFrame + kNeverSent;
   if (params.large_samples) udp->receiveBufferSize = kScanBuffer;
@@ -139,7 +140,7 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
   discovery.initial_announcements.period = duration(Discovery::kInitialPeriod);
   builtin.typelookup_config.use_client = false;
   builtin.typelookup_config.use_server = false;
-  builtin.use_WriterLivelinessProtocol = false;  // silence is judged by the application's own samples
+  builtin.use_WriterLivelinessProtocol = false;  // The application's own samples show liveliness.
 
   for (const std::string& peer : params.peers) {
     auto parsed = locator(peer);
@@ -147,7 +148,7 @@ Result<dds::DomainParticipantQos> dds_participant_qos(const FastDdsParams& param
     builtin.initialPeersList.push_back(*parsed);
   }
   if (!params.multicast) {
-    // A unicast list of our own keeps the library from listening to the group.
+    // An own unicast list keeps the library from listening to the multicast group.
     rtps::Locator_t any;
     any.kind = LOCATOR_KIND_UDPv4;
     any.port = 0;

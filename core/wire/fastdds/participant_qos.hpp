@@ -9,7 +9,8 @@ namespace adit::wire {
 
 struct TransportContext;
 
-/// Transports, discovery and limits of a participant. Errors: bad_argument for a wrong domain or address.
+/// Returns the transports, discovery settings and limits of a participant. Errors: bad_argument for a wrong
+/// domain or address.
 Result<eprosima::fastdds::dds::DomainParticipantQos> dds_participant_qos(
     const FastDdsParams& params, std::shared_ptr<TransportContext> context);
 

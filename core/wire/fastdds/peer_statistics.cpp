@@ -7,7 +7,7 @@
 namespace adit::wire {
 
 std::uint64_t PeerStatistics::key(in_addr_t address, std::uint16_t port) {
-  // On one machine participants differ by port; the pair of discovery and data ports is one peer.
+  // Participants of one machine differ by port; a participant's discovery and data ports count as one peer.
   return static_cast<std::uint64_t>(address) << 16 | participant_of_port(port);
 }
 

@@ -13,28 +13,31 @@
 
 namespace adit::wire {
 
-/// Who stands behind which address, by what passes the sockets: bytes to and from each participant, and where
-/// it is. From any thread; bounded: whoever was silent longest gives way.
+/// Traffic and positions of the peers, derived from the datagrams that pass the sockets: which participant
+/// uses an address, bytes to and from it, and where it is. Safe to call from any thread. Bounded: a new peer
+/// replaces the one that was silent longest.
 class PeerStatistics {
  public:
   static constexpr std::size_t kMaxPeers = 256;
 
-  /// A datagram leaves. Who it is for is told by itself (INFO_DST), or known since an earlier one was.
+  /// Counts a sent datagram. Its receiver is in the datagram (INFO_DST), or is known from an earlier one to
+  /// the same address.
   void sent(const RtpsPeek& seen, in_addr_t address, std::uint16_t port, std::uint64_t bytes);
-  /// A datagram came in from the participant that it names.
+  /// Counts a datagram received from the participant that it names.
   void received(const RtpsPeek& seen, std::uint64_t bytes);
   void set_place(const ParticipantId& who, const Position& at);
   void set_own_place(const Position& at);
 
-  /// What lies between us and whoever that address is; no distance when one of both places is not known.
+  /// Returns the path to the participant at that address; it has no distance when one of the two positions is
+  /// not known.
   Path path(in_addr_t address, std::uint16_t port) const;
-  /// All whose bytes were seen, by id, `us` not among them; their signals by that link.
+  /// Returns all participants whose bytes were counted, by id, without `us`; signals are computed for `link`.
   std::vector<PeerState> all(const ParticipantId& us, const LinkProfile* link) const;
 
  private:
   struct Peer {
     std::uint64_t bytes_out{}, bytes_in{};
-    std::uint64_t used{};  // by the count below
+    std::uint64_t used{};  // Time of last use, by the counter below.
     std::optional<Position> place{};
   };
   Peer& peer(const ParticipantId& id);

@@ -6,7 +6,7 @@
 namespace adit::wire {
 
 inline bool is_discovery_port(std::uint32_t port) { return port >= 7400 && (port - 7400) % 250 % 2 == 0; }
-/// The same number for both ports of a participant.
+/// Maps both ports of a participant to one number.
 inline std::uint32_t participant_of_port(std::uint32_t port) { return port & ~1U; }
 
 }  // namespace adit::wire

@@ -17,19 +17,19 @@ constexpr std::uint8_t kAcknack = 0x06, kHeartbeat = 0x07, kGap = 0x08, kInfoTim
                        kDataFrag = 0x16;
 // DDS Security 1.1, 7.3.6: SEC_BODY, SEC_PREFIX, SEC_POSTFIX, SRTPS_PREFIX, SRTPS_POSTFIX.
 constexpr std::uint8_t kFirstSecurity = 0x30, kLastSecurity = 0x34;
-constexpr std::uint8_t kWithQos = 2, kWithData = 4;  // flags of DATA
+constexpr std::uint8_t kWithQos = 2, kWithData = 4;  // Flags of DATA.
 constexpr std::uint16_t kSentinel = 1, kKeyHash = 0x70, kMetatrafficUnicast = 0x32;
-constexpr std::uint8_t kStatistics = 0x80;  // of the vendor: 56 bytes
+constexpr std::uint8_t kStatistics = 0x80;  // Of the vendor: 56 bytes.
 constexpr std::size_t kStatisticsSize = 60;
 constexpr std::uint8_t kEprosima[2] = {0x01, 0x0f};
 
 struct Submessage {
   std::uint8_t kind{}, flags{};
   bool little{};
-  Message body{};  // without its header
+  Message body{};  // Without the submessage header.
 };
 
-/// Calls `see` for each whole submessage until it returns false.
+/// Calls `see` for each complete submessage until it returns false.
 template <class See>
 void each(Message message, See see) {
   if (message.size() < kHeader || std::memcmp(message.data(), "RTPS", 4) != 0) return;
@@ -39,7 +39,7 @@ void each(Message message, See see) {
     const std::size_t length =
         sub.little ? message[at + 2] | message[at + 3] << 8 : message[at + 3] | message[at + 2] << 8;
     const std::size_t rest = message.size() - at - 4;
-    // A length of 0 is that of the last one, up to the end. One that is cut short is seen up to there.
+    // Length 0 means that the last submessage extends to the end. A truncated one is visible up to the end.
     sub.body = message.subspan(at + 4, length == 0 ? rest : std::min(length, rest));
     if (!see(sub) || length == 0) return;
     at += 4 + length;
@@ -64,7 +64,7 @@ std::uint64_t word(const Submessage& sub, std::size_t at) {
   return value;
 }
 
-/// RTPS sequence numbers are two words, the high one first.
+/// RTPS sequence numbers are two 32-bit words, the high one first.
 std::uint64_t sequence(const Submessage& sub, std::size_t at) {
   return word(sub, at) << 32 | word(sub, at + 4);
 }
@@ -88,7 +88,7 @@ bool is_protected(Message message) {
 }
 
 /// Calls `see(id, value)` for each parameter of the list at `at` until it returns false. Returns the offset
-/// behind the list; nothing where the list is cut short or `see` returned false.
+/// after the list; nothing when the list is truncated or `see` returned false.
 template <class See>
 std::optional<std::size_t> each_parameter(const Submessage& sub, std::size_t at, See see) {
   const auto half = [&](std::size_t i) {
@@ -106,7 +106,7 @@ std::optional<std::size_t> each_parameter(const Submessage& sub, std::size_t at,
   return std::nullopt;
 }
 
-/// Mixes in what the submessage says. Returns false for a kind that it cannot read.
+/// Adds the submessage to the hash. Returns false for a kind that it cannot read.
 bool add_to_dedup_key(const Submessage& sub, std::uint64_t& hash) {
   const Message body = sub.body;
   mix(hash, sub.kind);
@@ -153,7 +153,7 @@ RtpsPeek peek(Message message) {
     if (sub.kind == kData || sub.kind == kDataFrag) {
       if (sub.body.size() < 12) return has_dedup_key = false;
       if (!result.writer) {
-        result.writer = entity(sub.body, 8);  // extra flags 2, offset of inline QoS 2, reader 4, writer 4
+        result.writer = entity(sub.body, 8);  // Extra flags 2, offset of inline QoS 2, reader 4, writer 4.
         result.whole = sub.kind == kData;
       }
       if (++samples > 1) result.whole = false;
@@ -167,7 +167,7 @@ RtpsPeek peek(Message message) {
 }
 
 std::optional<std::uint64_t> sample_key(Message message) {
-  constexpr std::size_t fixed = 20;  // in front of the parameters and the payload
+  constexpr std::size_t fixed = 20;  // Before the parameters and the payload.
   std::optional<std::uint64_t> result;
   each(message, [&](const Submessage& sub) {
     if (sub.kind != kData) return true;
@@ -197,7 +197,7 @@ std::size_t without_statistics(Message message) {
   if (size < kHeader + kStatisticsSize || std::memcmp(message.data() + 6, kEprosima, 2) != 0) return size;
   const std::uint8_t* const tail = message.data() + size - kStatisticsSize;
   if (tail[0] != kStatistics || tail[2] + (tail[3] << 8) != kStatisticsSize - 4) return size;
-  // A payload can end with the same bytes: the tail counts where a submessage begins there.
+  // A payload can end with the same bytes: the tail is removed only when a submessage begins there.
   bool begins = false;
   each(message, [&](const Submessage& sub) {
     begins = sub.kind == kStatistics && sub.body.data() == tail + 4;
@@ -221,12 +221,12 @@ std::optional<LoneHeartbeat> lone_heartbeat(Message message) {
 }
 
 std::optional<PeerAddress> announced_address(Message message) {
-  constexpr std::size_t fixed = 20;  // in front of the parameters
+  constexpr std::size_t fixed = 20;  // Before the parameters.
   constexpr std::uint32_t udp_v4 = 1;
   std::optional<PeerAddress> result;
   each(message, [&](const Submessage& sub) {
     if (sub.kind != kData || sub.body.size() < fixed || entity(sub.body, 8) != kAnnouncingWriter) return true;
-    // Little-endian parameter lists alone, as every machine that we know of sends them.
+    // Only little-endian parameter lists are read, as all known implementations send them.
     if (!sub.little || (sub.flags & kWithData) == 0) return false;
     std::optional<std::size_t> at = fixed;
     if ((sub.flags & kWithQos) != 0) at = each_parameter(sub, fixed, [](auto, auto) { return true; });

@@ -6,11 +6,11 @@
 
 namespace adit::wire {
 
-/// IPv4 networks that this machine is in by the named interfaces, and single addresses beside them.
+/// The IPv4 networks of the given interfaces, together with single addresses.
 class Subnets {
  public:
-  /// `interfaces`: addresses of this machine; one that no interface has counts as a network of that address
-  /// alone. `peers`: ADDRESS or ADDRESS:PORT.
+  /// `interfaces`: addresses of this machine; one that no interface has counts as a single address. `peers`:
+  /// ADDRESS or ADDRESS:PORT.
   Subnets(const std::vector<std::string>& interfaces, const std::vector<std::string>& peers);
   /// `address` is in network order.
   bool contains(in_addr_t address) const;

@@ -9,8 +9,8 @@
 namespace adit::wire {
 namespace {
 
-/// B. The kernel counts its own overhead and doubles what is asked for: some 40 kB of datagrams wait in the
-/// kernel, 0.3 s at 1 Mbit/s; the rest waits here, by priority.
+/// Bytes. The kernel adds its own overhead and doubles the value: it holds some 40 kB of datagrams, 0.3 s at
+/// 1 Mbit/s. The others are queued in the LinkShaper, by priority.
 constexpr int kSendBuffer = 32768;
 
 void drop_errors(int socket) {
@@ -33,7 +33,7 @@ UdpSender::UdpSender(const std::vector<std::string>& interfaces) {
     ::inet_pton(AF_INET, address.c_str(), &interface);
     ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &interface, sizeof interface);
     ::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &kSendBuffer, sizeof kSendBuffer);
-    // Without it Linux reports success for a datagram that the interface's queue drops.
+    // Without this option Linux reports success for a datagram that the interface's queue drops.
     const int on = 1;
     ::setsockopt(fd, IPPROTO_IP, IP_RECVERR, &on, sizeof on);
     sockets_.push_back(fd);

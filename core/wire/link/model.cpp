@@ -7,9 +7,9 @@
 namespace adit::wire {
 namespace {
 
-constexpr double kOutOfRange = -1000.0;  // dBm
+constexpr double kOutOfRange = -1000.0;  // In dBm.
 
-/// Standard normal, by the polar form's trigonometric sibling (Box and Muller 1958).
+/// Standard normal deviate by the Box-Muller transform (Box and Muller 1958).
 double normal(Random& random) {
   const double u = 1.0 - random.uniform();
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * std::numbers::pi * random.uniform());
@@ -22,7 +22,7 @@ double distance(const Position& a, const Position& b) { return std::hypot(a.x - 
 std::optional<double> received_power(const LinkProfile& link, const Path& path) {
   if (!path.distance || link.fading <= 0.0) return std::nullopt;
   if (link.range > 0.0 && *path.distance > link.range) return kOutOfRange;
-  const double metres = std::max(1.0, *path.distance);  // nearer than a metre nothing is gained
+  const double metres = std::max(1.0, *path.distance);  // Below one metre the received power no longer rises.
   return link.power - link.path_loss - 10.0 * link.fading * std::log10(metres) - path.walls;
 }
 
@@ -41,7 +41,8 @@ bool LossModel::lost(const LinkProfile& link, const Path& path, std::uint32_t by
     is_lost = random.chance(chance);
     bad_ = false;
   } else {
-    // Leaves the bad state after `burst` frames in the mean, enters it so that `chance` of all are lost.
+    // Leaves the bad state after `burst` frames on average, and enters it so that the fraction `chance` of
+    // all frames is lost.
     const double leave = 1.0 / link.burst;
     const double enter = std::min(1.0, leave * chance / (1.0 - chance));
     bad_ = bad_ ? !random.chance(leave) : random.chance(enter);

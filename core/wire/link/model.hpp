@@ -7,46 +7,48 @@
 #include "core/time/time.hpp"
 #include "core/wire/link.hpp"
 
-/// The one link model: pure, seeded from outside, used by the rehearsal's radio and by the live transport.
+/// The link model, shared by the rehearsal's radio and the live transport. It has no state of its own; the
+/// caller passes the random generator.
 namespace adit::wire {
 
-/// m
+/// Distance between two positions, m.
 double distance(const Position& a, const Position& b);
 
-/// What lies between two machines.
+/// Propagation path between two machines.
 struct Path {
-  std::optional<double> distance{};  ///< m; none: not known, then neither range nor fading count
-  double walls{};                    ///< attenuation by walls, dB
+  std::optional<double> distance{};  ///< Distance, m; none: unknown, then neither range nor fading apply.
+  double walls{};                    ///< Attenuation by walls, dB.
 };
 
 /// Mean received power, dBm: power - path_loss - 10 * fading * log10(distance) - walls, after the public SubT
-/// simulator (osrf/subt, subt_rf_interface, log-normal range model). Nothing where the link does not fade or
+/// simulator (osrf/subt, subt_rf_interface, log-normal range model). Nothing when the link does not fade or
 /// the distance is not known; below -300 beyond the range.
 std::optional<double> received_power(const LinkProfile& link, const Path& path);
 
-/// Chance that a frame of that many bytes is lost at that received power, dBm, over that noise, dBm: QPSK's
-/// bit errors, erfc(sqrt(signal / noise)), one of which loses the frame (osrf/subt,
+/// Probability that a frame of `bytes` bytes is lost at that received power, dBm, over that noise, dBm: the
+/// bit error rate of QPSK, erfc(sqrt(signal / noise)), where one bit error loses the frame (osrf/subt,
 /// subt_communication_model).
 double fading_loss(double power, double noise, std::uint32_t bytes);
 
-/// One direction between two machines: remembers whether it is in a burst of losses.
+/// Loss process of one direction between two machines, with the state of the current burst (Gilbert-Elliott
+/// model).
 class LossModel {
  public:
-  /// Whether a frame of that many bytes is lost. `loss`: instead of the link's own chance.
+  /// Whether a frame of `bytes` bytes is lost. `loss` replaces the link's own probability.
   bool lost(const LinkProfile& link, const Path& path, std::uint32_t bytes, std::optional<double> loss,
             Random& random);
 
  private:
-  bool bad_{};  // Gilbert-Elliott: everything is lost in the bad state, nothing in the good one
+  bool bad_{};  // Gilbert-Elliott: every frame is lost in the bad state, none in the good one.
 };
 
-/// Latency of one frame, with its jitter.
+/// Latency of one frame, jitter included.
 Duration transit(const LinkProfile& link, Random& random);
 
-/// Bits of the last `window` seconds against capacity, as the SubT simulator counts them.
+/// Rate limit over the last `window` seconds, as the SubT simulator counts it.
 class Window {
  public:
-  /// Whether that many bytes may still be sent now; counts them when they may.
+  /// Whether `bytes` bytes may be sent now; counts them if so.
   bool admit(const LinkProfile& link, std::uint32_t bytes, Duration now);
 
  private:

@@ -16,7 +16,7 @@ void PeerMeter::heard(const std::string& name, std::uint32_t number, Time now) {
     heard = {number, now, 1, 1, heard.round_trip};
     return;
   }
-  if (number <= heard.number) {  // late or twice
+  if (number <= heard.number) {  // Late or duplicate.
     const std::uint32_t behind = heard.number - number;
     heard.bits |= 1U << behind;
     heard.at = now;
@@ -33,7 +33,7 @@ void PeerMeter::echoed(const std::string& name, std::uint32_t number, Duration h
   const auto peer = heard_.find(name);
   if (peer == heard_.end() || own != number || number == 0) return;
   const double trip = seconds(now - at - held);
-  if (trip < 0.0) return;  // nobody can answer before being asked
+  if (trip < 0.0) return;  // No peer can answer before our message was sent.
   auto& mean = peer->second.round_trip;
   mean = mean ? 0.75 * *mean + 0.25 * trip : trip;
 }

@@ -6,32 +6,34 @@
 
 namespace adit::wire {
 
-/// How a periodic message's rate follows the link.
+/// Parameters of RateControl.
 struct RateParams {
-  double max_rate{10.0};     ///< 1/s, where the link lets it, (0, 1000]
-  double min_rate{1.0};      ///< 1/s, however bad the link is, (0, most]
-  double step{1.0};          ///< 1/s, added every `rise` while the link is calm, (0, most]
-  double fall{0.5};          ///< the rate is multiplied by this when the link is full, (0, 1)
-  Duration rise{500ms};      ///< between two steps up, (0, 10 s]
-  Duration settle{500ms};    ///< after a fall, until another may follow, (0, 10 s]
-  Duration calm{1s};         ///< without a sign of a full link, before the rate rises, (0, 60 s]
-  Duration full{200ms};      ///< airtime that waits, above which the link is full, (0, 10 s]
-  Duration low{50ms};        ///< below which it is calm; in between the rate stays, (0, full]
-  Duration standing{300ms};  ///< how long the queue must stay above `full`: bursts drain, (0, 10 s]
-  std::uint64_t drops{3};    ///< messages dropped within a second that mean a full link, [1, 1000]
-  Duration tick{100ms};      ///< how often due() is asked, (0, 1 s]
+  double max_rate{10.0};   ///< Rate on a link with room for it, 1/s, (0, 1000].
+  double min_rate{1.0};    ///< Lowest rate, however bad the link is, 1/s, (0, max_rate].
+  double step{1.0};        ///< Added every `rise` while the link is not full, 1/s, (0, max_rate].
+  double fall{0.5};        ///< Factor on the rate when the link is full, (0, 1).
+  Duration rise{500ms};    ///< Time between two increases, (0, 10 s].
+  Duration settle{500ms};  ///< Time after a decrease until another may follow, (0, 10 s].
+  Duration calm{1s};       ///< Time without a sign of a full link before the rate rises, (0, 60 s].
+  Duration full{200ms};    ///< Queued airtime above which the link counts as full, (0, 10 s].
+  /// Queued airtime below which the rate may rise; in between it does not change, (0, full].
+  Duration low{50ms};
+  /// How long the queue must stay above `full`, as bursts drain by themselves, (0, 10 s].
+  Duration standing{300ms};
+  std::uint64_t drops{3};  ///< Messages dropped within a second that mean a full link, [1, 1000].
+  Duration tick{100ms};    ///< Period at which due() is called, (0, 1 s].
 };
 
-/// Additive increase, multiplicative decrease (Chiu and Jain 1989) by the sender's own queue: a queue that
-/// stands, rather than one that is there for a moment, says that the link is full (CoDel: Nichols and
-/// Jacobson 2012), and so do messages that the queue dropped. What the air loses says nothing of that, and
-/// is no reason to send less. Pure, no allocation.
+/// Adapts the rate of a periodic message to the link: additive increase, multiplicative decrease (Chiu and
+/// Jain 1989) on the sender's own queue. A queue that persists, rather than a momentary one, shows a full
+/// link (CoDel: Nichols and Jacobson 2012), and so do messages that the queue dropped. Losses on the radio
+/// say nothing about load and are no reason to send less. It reads no clock and allocates nothing.
 class RateControl {
  public:
   explicit RateControl(RateParams params = {}) : params_(params), rate_(params.max_rate) {}
 
-  /// What waits to be sent, and what was dropped since the start, both of this message's class and those that
-  /// go before it. At each tick.
+  /// Updates the rate; call it at each tick. `queue`: airtime queued; `dropped`: messages dropped since the
+  /// start; both of this message's class and those before it.
   void observe(Time now, Duration queue, std::uint64_t dropped) {
     if (!started_) {
       started_ = true;
@@ -63,15 +65,15 @@ class RateControl {
     rose_ = now;
   }
 
-  /// Never below this, 1/s, whatever the link; 0: `least`.
+  /// Lower limit of the rate whatever the link does, 1/s; 0: `min_rate`.
   void set_floor(double floor) { floor_ = std::min(floor, params_.max_rate); }
-  /// 1/s
+  /// Current rate, 1/s.
   double rate() const { return std::max(rate_, floor_); }
-  /// How many times as rarely as usual, in [1, 4]: for what is less urgent.
+  /// Period factor for less urgent messages, in [1, 4].
   int stretch() const {
     return rate_ >= 0.7 * params_.max_rate ? 1 : rate_ >= 0.35 * params_.max_rate ? 2 : 4;
   }
-  /// Whether one should be sent at this tick; when it is, it counts as sent.
+  /// Whether a message should be sent at this tick; if so, it counts as sent.
   bool due(Time now) {
     if (sent_any_ && now - sent_ < from_seconds(1.0 / rate()) - params_.tick / 2) return false;
     sent_ = now;
@@ -84,10 +86,10 @@ class RateControl {
   double rate_;
   double floor_{};
   bool started_{};
-  Time was_below_full_{}, was_low_{};  // when the queue was last seen so short
+  Time was_below_full_{}, was_low_{};  // When the queue was last below `full` and below `low`.
   Time trouble_{}, fell_{}, rose_{};
-  Time counted_{};           // drops are counted from here on
-  std::uint64_t dropped_{};  // then
+  Time counted_{};           // Start of the interval in which drops are counted.
+  std::uint64_t dropped_{};  // Value of the drop counter at that time.
   std::uint64_t seen_{};
   bool sent_any_{};
   Time sent_{};

@@ -13,27 +13,28 @@
 
 namespace adit::wire {
 
-/// The sender's side of a link: what waits for the air, by priority, each class within its share of the
-/// airtime. Frame by frame, so that an urgent message waits for one frame at most. Pure: the caller has the
-/// clock and the air. `Item` is what it carries.
+/// The transmit queue of a link: messages by priority, each class within its share of the airtime. It
+/// proceeds frame by frame, so that an urgent message waits for one frame at most. It has no clock and sends
+/// nothing itself: the caller does both. `Item` is the queued message type.
 template <class Item>
 class TransmitQueue {
  public:
   struct Waiting {
     Item item{};
-    std::uint16_t frames{1};  ///< of the message
-    std::uint16_t sent{};     ///< of them already
+    std::uint16_t frames{1};  ///< Frames of the message.
+    std::uint16_t sent{};     ///< Frames already sent.
     int priority{};
-    std::uint64_t supersedes{};  ///< not 0: replaces a waiting one of this number
-    bool again{};                ///< it says the same as that one: nothing is lost then
+    std::uint64_t supersedes{};  ///< Not 0: replaces a queued message with this number.
+    bool again{};                ///< It repeats the replaced message, which then does not count as lost.
     Duration since{};
-    Duration max_queue_age{};  ///< dropped when it waited longer
-    Duration airtime{};        ///< of one frame, as it was when it began to wait: for waiting()
+    Duration max_queue_age{};  ///< Dropped when queued for longer.
+    Duration airtime{};        ///< Airtime of one frame, computed when the message was queued; for waiting().
   };
 
   explicit TransmitQueue(Budget budget = {}) : budget_(budget) {}
 
-  /// Returns what it replaced: a waiting message of the same number of which nothing was sent yet.
+  /// Adds a message and returns the one it replaced: a queued message of the same number of which nothing was
+  /// sent yet.
   std::optional<Item> push(Waiting waiting) {
     waiting.priority = std::clamp(waiting.priority, 0, static_cast<int>(kPriorities) - 1);
     auto& queue = queues_[static_cast<std::size_t>(waiting.priority)];
@@ -49,8 +50,9 @@ class TransmitQueue {
     return std::nullopt;
   }
 
-  /// The message whose next frame goes now: its frame number and whether it is the last one. Nothing: none
-  /// waits, or see ready(). `airtime(item)` is that of one frame of it; what waited too long goes to `drop`.
+  /// The next frame to send: its message, its frame number and whether it is the last one. Nothing when the
+  /// queue is empty or no class may send yet (see ready()). `airtime(item)` is that of one frame of it;
+  /// messages that were queued too long are passed to `drop`.
   struct Next {
     Waiting message{};
     Duration airtime{};
@@ -80,8 +82,8 @@ class TransmitQueue {
     return std::nullopt;
   }
 
-  /// When next() should be asked again although it had nothing: a class that waits for its share. Nothing
-  /// when nothing waits.
+  /// When to call next() again although it returned nothing, because a class waits for its share. Nothing
+  /// when the queue is empty.
   std::optional<Duration> ready(Duration now) {
     std::optional<Duration> soonest;
     for (std::size_t p = 0; p < kPriorities; ++p) {
@@ -99,18 +101,18 @@ class TransmitQueue {
     return n;
   }
   std::size_t size(int priority) const { return queues_[static_cast<std::size_t>(priority)].size(); }
-  /// Airtime that what waits needs, by priority.
+  /// Airtime of the queued messages, by priority.
   std::array<Duration, kPriorities> waiting() const {
     std::array<Duration, kPriorities> need{};
     for (std::size_t p = 0; p < kPriorities; ++p)
       for (const Waiting& w : queues_[p]) need[p] += w.airtime * (w.frames - w.sent);
     return need;
   }
-  /// Messages that never went on the air, by priority.
+  /// Messages that were never sent, by priority.
   const std::array<std::uint64_t, kPriorities>& dropped() const { return dropped_; }
-  /// One that was given up elsewhere.
+  /// Counts a message that was dropped elsewhere.
   void note_dropped(int priority) { ++dropped_[static_cast<std::size_t>(priority)]; }
-  /// The longest that anything has waited.
+  /// Queueing time of the oldest message.
   Duration oldest(Duration now) const {
     Duration longest{};
     for (const auto& queue : queues_) {
@@ -118,7 +120,7 @@ class TransmitQueue {
     }
     return longest;
   }
-  /// The longest that anything of each priority has waited.
+  /// Queueing time of the oldest message of each priority.
   std::array<Duration, kPriorities> ages(Duration now) const {
     std::array<Duration, kPriorities> result{};
     for (std::size_t p = 0; p < kPriorities; ++p)
@@ -139,8 +141,8 @@ class TransmitQueue {
 
   Budget budget_;
   std::array<std::deque<Waiting>, kPriorities> queues_{};
-  std::array<double, kPriorities> tokens_{};     // airtime, s; below zero: over its share
-  std::array<Duration, kPriorities> counted_{};  // when it was last brought up to date
+  std::array<double, kPriorities> tokens_{};     // Airtime, s; below zero: over its share.
+  std::array<Duration, kPriorities> counted_{};  // When the tokens were last updated.
   std::array<std::uint64_t, kPriorities> dropped_{};
 };
 

@@ -9,33 +9,34 @@
 
 namespace adit::wire {
 
-/// Attenuation by what stands between two places, dB.
+/// Attenuation by obstacles between two positions, dB.
 using Attenuation = std::function<double(const Position& a, const Position& b)>;
 
-/// What is wrong between machines for a while. Several may be on at once, also of the same kind between the
-/// same machines: each ends alone. The worst loss counts, delays add up, chances combine.
+/// A temporary fault between machines. Several may be active at once, also of the same kind between the same
+/// machines: each ends separately. The highest loss applies, delays add up, probabilities combine.
 struct Disturbance {
-  /// Whom it concerns: frames from one of `from` to one of `to`; empty: all machines.
+  /// Affects frames from a machine of `from` to one of `to`; empty: all machines.
   std::vector<std::string> from{}, to{};
-  bool both_ways{true};  ///< also from one of `to` to one of `from`
-  /// Instead: machines of different groups; a machine of no group is not concerned.
+  bool both_ways{true};  ///< Affects also frames from `to` to `from`.
+  /// If not empty, replaces `from` and `to`: affects machines of different groups; a machine without a group
+  /// is not affected.
   std::vector<std::vector<std::string>> groups{};
 
-  bool cut{};                    ///< nothing passes
-  std::optional<double> loss{};  ///< chance that a frame is lost, instead of the link's, [0, 1]
-  Duration delay{};              ///< added to the latency
-  double reorder{};              ///< chance that a message is held back by up to `reorder_by`, [0, 1]
+  bool cut{};                    ///< Nothing passes.
+  std::optional<double> loss{};  ///< Probability that a frame is lost, instead of the link's, [0, 1].
+  Duration delay{};              ///< Added to the latency.
+  double reorder{};              ///< Probability that a message is delayed by up to `reorder_by`, [0, 1].
   Duration reorder_by{200ms};
-  double duplicate{};  ///< chance that a message arrives twice, [0, 1]
-  double slower{1.0};  ///< the bandwidth is divided by this, [1, 1e6]
+  double duplicate{};  ///< Probability that a message arrives twice, [0, 1].
+  double slower{1.0};  ///< Divisor of the bandwidth, [1, 1e6].
 };
 
 using DisturbanceId = std::uint64_t;
 
-/// Those that are on.
+/// The active disturbances.
 class Disturbances {
  public:
-  /// All of them together on one direction.
+  /// Combined effect of all disturbances on one direction.
   struct Effect {
     bool cut{};
     std::optional<double> loss{};

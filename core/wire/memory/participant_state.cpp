@@ -38,8 +38,8 @@ void ParticipantState::announce() {
   for (const auto& other : core->participants) {
     if (other.get() != this && other->domain == domain && !other->stopped) everybody.push_back(other->node);
   }
-  // By multicast to whoever is there, and to each that is known: what Fast DDS does. Those who know us need
-  // that once a period, as DiscoveryAssist has it live.
+  // As Fast DDS: by multicast, and by unicast to each known peer. Peers that know us need that once a period,
+  // as DiscoveryAssist does live.
   Datagram to_all;
   to_all.bytes = WireCost::kParticipant;
   to_all.priority = WireCost::kDiscoveryPriority;
@@ -95,7 +95,7 @@ void ParticipantState::announce_to(int peer) {
   Datagram datagram;
   datagram.bytes = WireCost::kParticipant;
   datagram.priority = WireCost::kDiscoveryPriority;
-  datagram.supersedes = 1;  // one that waits is enough
+  datagram.supersedes = 1;  // One queued acknowledgement is enough.
   datagram.again = true;
   send(
       peer, std::move(datagram),
@@ -169,7 +169,7 @@ void ParticipantState::stop(bool goodbye) {
     for (const auto& [peer, state] : peers) known.push_back(peer);
     Datagram datagram;
     datagram.bytes = WireCost::kGoodbye;
-    datagram.priority = 6;  // after what was written before
+    datagram.priority = 6;  // After samples that were written before.
     datagram.arrived = [self = shared_from_this()](int to, std::uint16_t) {
       ParticipantState* there = self->peer_participant(to);
       if (there != nullptr && !there->stopped) there->drop(self->node);
@@ -247,7 +247,7 @@ void ParticipantState::send(int to, Datagram datagram,
     const auto peer = there->peers.find(self->node);
     if (peer != there->peers.end()) {
       peer->second.heard = there->core->scheduler.elapsed();
-      peer->second.knows_us = true;  // we are sent to because we are known
+      peer->second.knows_us = true;  // The peer sends to us, so it knows us.
     }
     arrive(*there, through);
   };

@@ -13,19 +13,19 @@
 #include "core/wire/memory/simulated_network.hpp"
 #include "core/wire/qos.hpp"
 
-/// How the in-memory wire behaves inside: RTPS in miniature. Everything here runs on the scheduler's thread.
+/// Implementation of the in-memory wire, a reduced RTPS. Everything here runs on the scheduler's thread.
 namespace adit::wire {
 
 using Payload = std::shared_ptr<const std::vector<std::uint8_t>>;
 
-/// A participant's endpoint, as everybody names it.
+/// Identifies an endpoint of a participant in the network.
 struct EndpointId {
   int node{};
   int entity{};
   auto operator<=>(const EndpointId&) const = default;
 };
 
-/// What a topic is, with the strings its constant may not outlive.
+/// Copy of a TopicInfo that owns its strings, as it may outlive the topic's constant.
 struct TopicOf {
   std::string name{}, type{}, partition{};
   QosClass qos_class{};
@@ -39,14 +39,14 @@ struct Sample {
   std::uint64_t sequence{};
   std::string key{};
   Payload bytes{};
-  int endpoint{-1};  ///< discovery: the entity this sample announces
+  int endpoint{-1};  ///< Discovery: the entity that this sample announces.
   std::uint16_t frames{1};
   std::uint32_t wire_bytes{};
 };
 
 struct Missing {
   std::uint64_t sequence{};
-  std::uint16_t frames{};  ///< of it that did not arrive; 0: all
+  std::uint16_t frames{};  ///< Frames that did not arrive; 0: all.
 };
 
 struct ParticipantState;
@@ -55,15 +55,15 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   /// One matched reader.
   struct Proxy {
     bool reliable{};
-    std::uint64_t start{};         ///< first sequence that concerns it
-    std::uint64_t acknowledged{};  ///< all up to here
+    std::uint64_t start{};         ///< First sequence that concerns it.
+    std::uint64_t acknowledged{};  ///< Highest sequence up to which all are acknowledged.
   };
-  static constexpr std::size_t kMaxSamples = 1024;  ///< of a history, all keys together
+  static constexpr std::size_t kMaxSamples = 1024;  ///< Samples of a history, all keys together.
 
-  /// What the flow controller holds back: for one reader (a repair) or for all.
+  /// A message that the flow controller holds: for one reader (a repair) or for all.
   struct Pending {
     std::uint64_t sequence{};
-    std::uint16_t frames{};  ///< 0: all
+    std::uint16_t frames{};  ///< 0: all.
     EndpointId reader{-1, -1};
   };
 
@@ -72,9 +72,10 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   void add(Sample sample);
   void match(EndpointId reader, bool reader_reliable);
   void send(EndpointId reader, const Sample& sample, std::uint16_t frames);
-  /// Discovery: as many endpoints in a frame as fit.
+  /// Sends discovery samples, as many endpoints in a frame as fit.
   void send_endpoints(EndpointId reader, const std::vector<Sample>& samples);
-  /// `bulk`: hands on what waits as the air takes it, so that what is replaced meanwhile is never sent.
+  /// For `bulk`: passes queued samples on at the rate of the radio, so that a sample replaced meanwhile is
+  /// never sent.
   void pump();
   void repair(Pending entry);
   void arm_heartbeat();
@@ -87,17 +88,18 @@ struct WriterState : std::enable_shared_from_this<WriterState> {
   bool discovery{};
   std::uint64_t next{1};
   std::deque<Sample> history{};
-  std::set<std::string> keys{};  ///< written so far
+  std::set<std::string> keys{};  ///< Keys written so far.
   std::map<EndpointId, Proxy> readers{};
   bool heartbeat_armed{};
   std::deque<Pending> pending{};
-  std::uint64_t sent{};  ///< the newest one handed on
+  std::uint64_t sent{};  ///< The newest sequence passed to the radio.
   bool pump_armed{};
 };
 
 struct ReaderState : std::enable_shared_from_this<ReaderState> {
   using Box = Mailbox<Payload>;
-  /// A sample that waits for those before it, or for its own missing frames. No bytes: never coming.
+  /// A sample that waits for earlier ones, or for its own missing frames. Without bytes: it will never
+  /// arrive.
   struct Held {
     Sample sample{};
     std::uint16_t missing{};
@@ -105,7 +107,7 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
   /// One matched writer.
   struct Proxy {
     bool reliable{};
-    std::uint64_t next{};  ///< the sequence to deliver next; 0: nothing heard of it yet
+    std::uint64_t next{};  ///< Next sequence to deliver; 0: nothing received from it yet.
     std::map<std::uint64_t, Held> held{};
   };
 
@@ -114,9 +116,10 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
   void on_gap(EndpointId writer, const std::vector<std::uint64_t>& sequences);
   void drain(EndpointId writer, Proxy& proxy);
   void deliver(EndpointId writer, const Sample& sample);
-  /// Notes the key of a sample. False: there are too many, all of writers that are still there.
+  /// Records the key of a sample. Returns false when there are too many keys, all of writers that are still
+  /// present.
   bool take_key(EndpointId writer, const std::string& key);
-  /// Has the strand handle what is in the mailbox; one task of it is under way at a time.
+  /// Posts a task that handles the samples in the mailbox; at most one such task is queued at a time.
   void post();
   void handle();
 
@@ -124,9 +127,9 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
   int entity{};
   TopicOf topic{};
   bool discovery{};
-  Executor* strand{};  ///< null: the reader is gone
+  Executor* strand{};  ///< Null: the reader is gone.
   RawHandler handler{};
-  std::map<std::string, std::set<EndpointId>> keys{};  ///< with those that wrote them
+  std::map<std::string, std::set<EndpointId>> keys{};  ///< Keys with their writers.
   Box mailbox{1, 0};
   bool posted{};
   std::map<EndpointId, Proxy> writers{};
@@ -135,18 +138,18 @@ struct ReaderState : std::enable_shared_from_this<ReaderState> {
 struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   struct Peer {
     Duration heard{};
-    bool knows_us{};  ///< it sent something to us alone
-    int tells{};      ///< announcements to it that are left, while it does not know us
+    bool knows_us{};  ///< It sent something to us by unicast.
+    int tells{};      ///< Announcements left to send to it while it does not know us.
     bool telling{};
-    std::map<int, TopicOf> writers{}, readers{};  ///< as announced, by entity
-    std::string incompatible{};                   ///< as in ParticipantEvent
+    std::map<int, TopicOf> writers{}, readers{};  ///< As announced, by entity.
+    std::string incompatible{};                   ///< As in ParticipantEvent.
   };
 
   void start();
   void announce();
   void check_leases();
   void on_announcement(int from);
-  /// Announces itself to a peer until that shows that it heard.
+  /// Repeats our announcement to a peer until it shows that it received one.
   void announce_again(int peer);
   void announce_to(int peer);
   void on_endpoint(int from, int entity);
@@ -157,10 +160,11 @@ struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   void add_reader(const std::shared_ptr<ReaderState>& reader);
   void remove_writer(int entity);
   void remove_reader(int entity);
-  /// Tells all peers of an endpoint that came or went.
+  /// Announces to all peers an endpoint that was created or destroyed.
   void publish_endpoint(int entity);
 
-  /// Sends to one peer; `arrive` runs there with the frames that arrived, when it is still in the network.
+  /// Sends to one peer; `arrive` runs at the peer, if it is still in the network, with the number of frames
+  /// that arrived.
   void send(int to, Datagram datagram, std::function<void(ParticipantState&, std::uint16_t)> arrive,
             bool discovery);
   ParticipantState* peer_participant(int peer_node) const;
@@ -175,7 +179,7 @@ struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   bool stopped{};
   int announced{};
   KnownTopics known_topics{};
-  int next_entity{3};  ///< 1 and 2 are discovery's own writer and reader
+  int next_entity{3};  ///< 1 and 2 are discovery's own writer and reader.
   std::map<int, Peer> peers{};
   std::map<int, std::shared_ptr<WriterState>> writers{};
   std::map<int, std::shared_ptr<ReaderState>> readers{};
@@ -184,11 +188,12 @@ struct ParticipantState : std::enable_shared_from_this<ParticipantState> {
   Executor* event_strand{};
   std::shared_ptr<std::function<void(const ParticipantEvent&)>> event_handler{};
   std::map<std::pair<std::string, ParticipantId>, TopicCount> counts{};
-  std::map<int, PeerState> carried{};  ///< by node; those in `peers` and some that were not yet or no more
+  /// By node; those in `peers`, and some that are not yet or no longer there.
+  std::map<int, PeerState> carried{};
   WireCounters totals{};
 };
 
-/// What all wires of a simulated network share.
+/// State that all participants of a simulated network share.
 struct SimulatedNetwork::State : std::enable_shared_from_this<SimulatedNetwork::State> {
   State(VirtualScheduler& s, SimulatedNetworkParams p);
   ParticipantId new_id();
@@ -199,7 +204,7 @@ struct SimulatedNetwork::State : std::enable_shared_from_this<SimulatedNetwork::
   VirtualScheduler& scheduler;
   SimulatedNetworkParams params;
   std::shared_ptr<Radio> radio;
-  std::vector<std::shared_ptr<ParticipantState>> participants{};  ///< by node, those that left included
+  std::vector<std::shared_ptr<ParticipantState>> participants{};  ///< By node, including those that left.
   std::function<void(const SampleEvent&)> tap{};
   Random ids;
   bool closed{};

@@ -17,56 +17,57 @@
 
 namespace adit::wire {
 
-/// What a participant puts on the air: sizes and what becomes of it, never its content.
+/// A transmission of a participant: its sizes and callbacks, never its content.
 struct Datagram {
-  std::uint32_t bytes{};  ///< headers included, all frames together
+  std::uint32_t bytes{};  ///< Headers included, all frames together.
   std::uint16_t frames{1};
-  int priority{};                ///< core/wire/link/budget.hpp
-  std::uint64_t supersedes{};    ///< not 0: replaces a waiting datagram of this number to the same node
-  bool again{};                  ///< it says the same as that one: nothing is lost then
-  std::function<void()> sent{};  ///< it went on the air
-  std::function<void(int to, std::uint16_t frames)> arrived{};  ///< so many of its frames, at least one
-  std::function<void(int to)> lost{};  ///< none of its frames, or dropped at the sender
+  int priority{};                ///< Priority as in core/wire/link/budget.hpp.
+  std::uint64_t supersedes{};    ///< Not 0: replaces a queued datagram of this number to the same node.
+  bool again{};                  ///< It repeats the replaced one, which then does not count as lost.
+  std::function<void()> sent{};  ///< Called when it was transmitted.
+  /// Called with the number of frames that arrived, at least one.
+  std::function<void(int to, std::uint16_t frames)> arrived{};
+  std::function<void(int to)> lost{};  ///< Called when no frame arrived, or it was dropped at the sender.
 };
 
-/// The rehearsal's radio on the link model: one transmit queue per node, latency and loss per pair of
-/// machines and direction, faults on top. Inner nodes have a perfect network.
+/// The rehearsal's radio, built on the link model: one transmit queue per node, latency and loss per pair of
+/// machines and direction, and faults. Local nodes have a perfect network.
 class Radio : public std::enable_shared_from_this<Radio> {
  public:
   Radio(VirtualScheduler& scheduler, std::uint64_t seed, LinkProfile standard, Duration inner_latency)
       : scheduler_(scheduler), random_(seed), standard_(std::move(standard)), inner_latency_(inner_latency) {}
 
-  /// A new transmitter and receiver; nodes are numbered from 0 and never reused.
+  /// Adds a transmitter and receiver; nodes are numbered from 0, and numbers are never reused.
   int add(std::string machine, bool is_local);
-  /// Nothing is sent or received there any more; what waits to be sent is forgotten.
+  /// Switches a node off: it sends and receives nothing more, and its queue is dropped.
   void remove(int node) { nodes_[static_cast<std::size_t>(node)].on = false; }
-  /// Everything falls silent; what is in the air is forgotten.
+  /// Switches the radio off: all nodes are silent, and frames in transit are dropped.
   void close() { closed_ = true; }
   bool is_on(int node) const { return nodes_[static_cast<std::size_t>(node)].on; }
   const std::string& machine(int node) const { return nodes_[static_cast<std::size_t>(node)].machine; }
   bool is_local_domain(int node) const { return nodes_[static_cast<std::size_t>(node)].is_local; }
-  /// Largest frame that the node may send to anybody.
+  /// Largest frame that the node may send to any other, bytes.
   std::uint32_t frame_bytes(int node) const;
-  /// Messages of that priority that wait there.
+  /// Number of messages of that priority queued at the node.
   std::size_t backlog(int node, int priority) const {
     return nodes_[static_cast<std::size_t>(node)].queue.size(priority);
   }
-  /// The longest that anything has waited there to be sent.
+  /// Queueing time of the node's oldest message.
   Duration waiting(int node) const {
     return nodes_[static_cast<std::size_t>(node)].queue.oldest(scheduler_.elapsed());
   }
 
-  /// What waits there, and what was given up.
+  /// State of the node's queue, and its dropped messages.
   SenderState sender(int node) const;
 
   void send(int from, int to, Datagram datagram) { multicast(from, {to}, std::move(datagram)); }
-  /// One transmission, heard by all of `to`.
+  /// Sends one transmission that all of `to` can receive.
   void multicast(int from, std::vector<int> to, Datagram datagram);
 
   void set_link(const std::string& a, const std::string& b, const LinkProfile& profile);
   void set_position(const std::string& machine, Position position) { positions_[machine] = position; }
   void set_attenuation(Attenuation walls) { walls_ = std::move(walls); }
-  /// Mean received power, dBm, where the link fades and both positions are known.
+  /// Mean received power, dBm, when the link fades and both positions are known.
   std::optional<double> signal(const std::string& from, const std::string& to) const;
   Disturbances& disturbances() { return disturbances_; }
 
@@ -74,14 +75,14 @@ class Radio : public std::enable_shared_from_this<Radio> {
   struct Packet {
     std::shared_ptr<Datagram> datagram{};
     std::vector<int> to{};
-    std::vector<std::uint16_t> through{};  // frames that arrived, by receiver
+    std::vector<std::uint16_t> through{};  // Frames that arrived, by receiver.
   };
   struct RadioNode {
     std::string machine{};
     bool is_local{};
     bool on{true};
     bool busy{};
-    std::uint64_t asked{};  // the latest wake-up counts, earlier ones are void
+    std::uint64_t asked{};  // Only the latest wake-up counts; earlier ones are void.
     TransmitQueue<std::shared_ptr<Packet>> queue{};
     Window window{};
   };
@@ -90,7 +91,7 @@ class Radio : public std::enable_shared_from_this<Radio> {
   const LinkProfile& profile(const std::string& a, const std::string& b) const;
   const LinkProfile& profile(int from, int to) const { return profile(machine(from), machine(to)); }
   Path path(const std::string& from, const std::string& to) const;
-  /// Of one frame of it, from that node; multicast goes out at the rate of the slowest of those it is for.
+  /// Airtime of one frame from that node; multicast is sent at the rate of the slowest receiver.
   Duration airtime(int from, const Packet& packet) const;
   void pump(int node);
   void put_on_air(int node, const std::shared_ptr<Packet>& packet, bool last, Duration airtime);
@@ -105,7 +106,7 @@ class Radio : public std::enable_shared_from_this<Radio> {
   Duration inner_latency_;
   std::deque<RadioNode> nodes_{};
   std::map<Pair, LinkProfile> links_{};
-  std::map<std::pair<int, int>, LossModel> loss_models_{};  // by sender, receiver
+  std::map<std::pair<int, int>, LossModel> loss_models_{};  // By sender and receiver.
   std::map<std::string, Position> positions_{};
   Attenuation walls_{};
   Disturbances disturbances_{};

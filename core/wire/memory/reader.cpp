@@ -8,10 +8,10 @@ namespace adit::wire {
 void ReaderState::on_data(EndpointId writer, std::uint64_t start, const Sample& sample,
                           std::uint16_t frames) {
   const auto found = writers.find(writer);
-  if (found == writers.end()) return;  // not matched yet: a reliable writer repeats it
+  if (found == writers.end()) return;  // Not matched yet: a reliable writer repeats it.
   Proxy& proxy = found->second;
   if (proxy.next == 0) proxy.next = start;
-  if (sample.sequence < proxy.next) return;  // seen already
+  if (sample.sequence < proxy.next) return;  // Duplicate.
   if (!proxy.reliable) {
     if (frames < sample.frames) return;
     if (!discovery)
@@ -28,12 +28,12 @@ void ReaderState::on_data(EndpointId writer, std::uint64_t start, const Sample& 
 
 void ReaderState::on_heartbeat(EndpointId writer, std::uint64_t start, std::uint64_t first,
                                std::uint64_t last) {
-  constexpr std::size_t at_once = 32;  // missing samples asked for in one go
+  constexpr std::size_t at_once = 32;  // Number of missing samples requested at once.
   const auto found = writers.find(writer);
   if (found == writers.end()) return;
   Proxy& proxy = found->second;
   if (proxy.next == 0) proxy.next = start;
-  // What is older than the writer's history never comes.
+  // Samples older than the writer's history will never arrive.
   while (proxy.next < first) {
     const auto held = proxy.held.begin();
     if (held == proxy.held.end() || held->first >= first) {
@@ -166,7 +166,7 @@ void ReaderState::handle() {
     try {
       good = handler(*entry.payload, SampleInfo{entry.sender, entry.received});
     } catch (...) {
-      if (strand != nullptr) post();  // the samples behind it are not lost
+      if (strand != nullptr) post();  // The samples after it are still handled.
       throw;
     }
     if (!good) ++owner->count(topic.name, entry.sender).malformed;

@@ -105,7 +105,7 @@ class MemoryParticipant final : public Participant {
   }
 
   void set_place(const ParticipantId&, const Position&) override {
-  }  // SimulatedNetwork::set_position() tells the truth
+  }  // SimulatedNetwork::set_position() sets the true position.
 
  private:
   std::shared_ptr<SimulatedNetwork::State> core_;
@@ -131,7 +131,7 @@ ParticipantId SimulatedNetwork::State::new_id() {
   ParticipantId id{};
   const std::uint64_t drawn = ids.next();
   for (std::size_t i = 0; i < 8; ++i) id[i] = static_cast<std::uint8_t>(drawn >> (8 * i));
-  const std::uint64_t number = participants.size() + 1;  // unique even if two draws were equal
+  const std::uint64_t number = participants.size() + 1;  // Unique even if two draws are equal.
   for (std::size_t i = 0; i < 4; ++i) id[8 + i] = static_cast<std::uint8_t>(number >> (8 * i));
   return id;
 }

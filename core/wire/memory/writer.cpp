@@ -70,7 +70,7 @@ void WriterState::add(Sample sample) {
 }
 
 void WriterState::pump() {
-  constexpr std::size_t ahead = 2;  // messages per reader handed to the radio before it took them
+  constexpr std::size_t ahead = 2;  // Messages per reader passed to the radio before it has sent them.
   if (pump_armed) return;
   while (!pending.empty() && owner->core->radio->backlog(owner->node, topic.qos.priority) <
                                  ahead * std::max<std::size_t>(1, readers.size())) {
@@ -78,7 +78,7 @@ void WriterState::pump() {
     pending.pop_front();
     const auto sample = std::find_if(history.begin(), history.end(),
                                      [&](const Sample& s) { return s.sequence == entry.sequence; });
-    if (sample == history.end()) continue;  // replaced meanwhile
+    if (sample == history.end()) continue;  // Replaced meanwhile by a newer sample.
     const std::uint16_t frames = entry.frames == 0 ? sample->frames : entry.frames;
     sent = std::max(sent, entry.sequence);
     for (const auto& [reader, proxy] : readers) {
@@ -101,7 +101,7 @@ void WriterState::repair(Pending entry) {
     return p.sequence == entry.sequence && (p.reader.node < 0 || p.reader == entry.reader);
   });
   if (known != pending.end()) return;
-  // Before what was never sent, in order among repairs.
+  // Repairs go before samples that were never sent, in order among themselves.
   const auto at = std::find_if(pending.begin(), pending.end(),
                                [&entry](const Pending& p) { return p.sequence > entry.sequence; });
   pending.insert(at, entry);
@@ -130,8 +130,8 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
   datagram.bytes = sample.wire_bytes * frames / sample.frames;
   const auto proxy = readers.find(reader);
   const std::uint64_t start = proxy == readers.end() ? next : proxy->second.start;
-  // A full history tells with each sample from where it goes on, as in Fast DDS: nobody waits for what is
-  // gone.
+  // A full history announces with each sample the first one that is still available, as in Fast DDS: no
+  // reader then waits for samples that are gone.
   const bool piggyback = topic.qos.reliable && !topic.qos.paced && !discovery && proxy != readers.end() &&
                          proxy->second.reliable && !history.empty() && !topic.keyed &&
                          proxy->second.acknowledged + topic.depth < next &&
@@ -142,8 +142,8 @@ void WriterState::send(EndpointId reader, const Sample& sample, std::uint16_t fr
   if (topic.qos.newest_wins && !topic.qos.reliable) {
     datagram.supersedes = number_of(sample.key, entity, reader.entity);
   } else if (topic.qos.reliable) {
-    // Asked for again while it waits: sent once, as the link shaper has it. Other frames of it are another
-    // repair.
+    // A repair requested again while it is queued is sent once, as in the link shaper. Other frames of it are
+    // a separate repair.
     datagram.supersedes =
         number_of(std::to_string(sample.sequence) + '/' + std::to_string(frames), entity, reader.entity);
     datagram.again = true;
@@ -205,7 +205,7 @@ void WriterState::send_endpoints(EndpointId reader, const std::vector<Sample>& s
 }
 
 void WriterState::arm_heartbeat() {
-  // Inner networks lose nothing: there is nothing to repair.
+  // Inner networks lose nothing, so there is nothing to repair.
   if (heartbeat_armed || !topic.qos.reliable || owner->core->radio->is_local_domain(owner->node)) return;
   const bool wanted = std::any_of(readers.begin(), readers.end(), [this](const auto& entry) {
     return entry.second.reliable && entry.second.acknowledged + 1 < next;
