@@ -1,4 +1,4 @@
-// What a station does with a command line.
+// Execution of command lines by a station.
 #include <algorithm>
 #include <utility>
 
@@ -41,7 +41,8 @@ Outcome unknown_robot(const Request& request, const Fleet& fleet, const std::str
   return outcome;
 }
 
-/// ", did you mean waypoint?" of a mode that the robot does not know; empty when it has none like it.
+/// Suggests a mode for one that the robot does not know, e.g. ", did you mean waypoint?"; empty if none is
+/// similar.
 std::string nearest_mode(const RobotView* robot, const std::string& typed) {
   std::vector<std::string> offered;
   if (robot)
@@ -50,7 +51,7 @@ std::string nearest_mode(const RobotView* robot, const std::string& typed) {
   return meant.empty() ? "" : ", did you mean " + meant + "?";
 }
 
-/// How a command with a joystick stream is driven; nothing for the others.
+/// Parameters of a command with a joystick stream; unset for other commands.
 std::optional<SteerParams> steering(const Request& request) {
   const std::string mode = request.word("MODE");
   if (request.verb == verb("mode") && (mode == "manual" || mode == "smart_joystick"))
@@ -77,16 +78,16 @@ bool Station::Impl::complete() const {
 }
 
 bool Station::Impl::must_wait(const Request& request) const {
-  // A stop does not wait for anything: it goes out to robots that were not heard yet, too.
+  // A stop is never delayed: it is also sent to robots that were not heard yet.
   if (request.verb != verb("stop") && !known(request) && fresh(params_.discovery_grace)) return true;
   if (request.info->runs != Runs::query) return false;
-  // The first answers: what is there at once is half of it, and nobody there cannot be told from late.
+  // Just after the start the first results are incomplete, and an absent robot looks like a late one.
   return fresh(params_.settle) || (fresh(2 * params_.settle) && !complete());
 }
 
 std::uint64_t Station::Impl::execute(const Request& request, Done done) {
   const std::uint64_t handle = next_handle_++;
-  // What was typed later does not pass what waits for the same robot.
+  // A later command does not overtake commands that are queued for the same robot.
   const bool behind = request.verb != verb("stop") &&
                       std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {
                         return std::find_first_of(earlier.request.robots.begin(),
@@ -130,7 +131,7 @@ void Station::Impl::run(std::uint64_t handle, const Request& request, Done done)
 }
 
 void Station::Impl::answer_query(const Request& request, const Done& done) {
-  if (request.verb == verb("findings")) {  // what is here stays here when its robot is gone
+  if (request.verb == verb("findings")) {  // Findings stay available when their robot is lost.
     for (const std::string& robot : request.robots) {
       const auto& all = desk_.all();
       const bool found =
@@ -246,7 +247,7 @@ void Station::Impl::ask_stop(StopAll& all, const std::string& robot) {
 void Station::Impl::finish_stop_all() {
   for (StopAll& all : std::exchange(stop_alls_, {})) {
     if (all.gather->missing == 0) finish(*all.gather);
-    // Otherwise its last answer finishes it.
+    // Otherwise the last answer completes it.
   }
 }
 
@@ -296,7 +297,7 @@ void Station::Impl::down(Done done) {
   gather->done = [this, done = std::move(done)](const Outcome& released) {
     closed_ = true;
     const std::vector<std::string> unheard = sender_.drop_unheard();
-    // A robot that does not answer keeps its holder; the station goes down all the same, and says so.
+    // A robot that does not answer keeps its holder; the station still closes, and reports this.
     Outcome outcome = released;
     outcome.exit_code = 0;
     if (!unheard.empty())
@@ -340,7 +341,7 @@ void Station::Impl::late_stop(const Answer& answer) {
 
 void Station::Impl::add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, const Flow::Done& ended) {
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
-  // A drive takes the place of the robot's former one; a wait takes nobody's.
+  // A drive replaces the robot's previous drive; a wait replaces none.
   const bool drives = dynamic_cast<Steer*>(flow.get()) != nullptr;
   const auto replaced = [&](const Flow& other) {
     return drives && other.robot() == flow->robot() && dynamic_cast<const Steer*>(&other);
@@ -365,7 +366,7 @@ void Station::Impl::end_flows(const std::string& robot, Reason reason) {
 }
 
 Flow::Done Station::Impl::end_drives_when_accepted(const std::string& robot) const {
-  std::vector<std::weak_ptr<Flow>> drives;  // those of now: a drive that begins later is meant to last
+  std::vector<std::weak_ptr<Flow>> drives;  // The present drives: one that begins later must continue.
   for (const auto& [handle, flow] : flows_)
     if (flow->robot() == robot && dynamic_cast<Steer*>(flow.get())) drives.push_back(flow);
   return [drives](const Answer& answer) {

@@ -6,10 +6,10 @@ namespace adit::station {
 
 /// How a command line ended.
 struct Outcome {
-  int exit_code{0};       ///< 0 done, 1 refused, 2 wrong usage, 3 no answer
-  std::string text{};     ///< for people: what was done or asked for; lines end in \n
-  std::string error{};    ///< for people: what was refused and why; lines end in \n
-  nlohmann::json json{};  ///< the same for scripts: one object
+  int exit_code{0};       ///< 0: done, 1: refused, 2: wrong usage, 3: no answer.
+  std::string text{};     ///< Readable result; lines end in a newline.
+  std::string error{};    ///< Readable refusals and reasons; lines end in a newline.
+  nlohmann::json json{};  ///< The same for scripts, as one object.
 };
 
 }  // namespace adit::station

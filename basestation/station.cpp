@@ -127,7 +127,7 @@ Result<void> Station::Impl::start() {
   if (auto written = topics_->capabilities.write(self); !written) return written.error();
   announce();
 
-  // The wire keeps this handler for longer than we may live.
+  // The participant may keep this handler longer than the station exists.
   radio_.on_participant(strand_, [this, alive = std::weak_ptr(alive_)](const wire::ParticipantEvent& event) {
     if (alive.expired() || !event.present) return;
     if (event.incompatible.empty()) return announce_often();
@@ -136,7 +136,7 @@ Result<void> Station::Impl::start() {
                 .code = "other_release",
                 .text = command::clean(event.incompatible, 240)});
   });
-  // Phases drawn apart, so that stations that start together do not talk all at once.
+  // Random phases, so that stations that start together do not send at the same time.
   timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {
     timers_.push_back(strand_.every(params_.presence, [this] { announce(); }));
   }));
@@ -150,7 +150,7 @@ Result<void> Station::Impl::start() {
 FindingDesk::Outputs Station::Impl::desk_outputs() {
   return {
       [this](const std::string& robot, const std::vector<std::uint64_t>& ids) {
-        // When it is lost, the robot sends them again, and so do we.
+        // If it is lost, the robot sends the findings again, and they are acknowledged again.
         if (!closed_) (void)topics_->findings.write(to_radio(robot, params_.id, ids));
       },
       [this](const findings::Finding& f) {
@@ -175,12 +175,12 @@ void Station::Impl::announce() {
   presence.protocol(kProtocol);
   presence.seq(++presence_seq_);
   fleet_.said_present(presence_seq_, strand_.now());
-  (void)topics_->presence.write(presence);  // the next one is at most a second away
+  (void)topics_->presence.write(presence);  // The next one follows within 1 s.
 }
 
 void Station::Impl::announce_often() {
   announce();
-  // Its endpoints may not be matched yet, and presence is sent without repair.
+  // Its endpoints may not be matched yet, and presence is best effort.
   std::erase_if(timers_, [](const Timer& timer) { return !timer.active(); });
   if (timers_.size() > 32) return;
   for (const Duration delay : {100ms, 300ms, 700ms})
@@ -214,13 +214,13 @@ void Station::Impl::report_traffic() {
     report.topics().push_back(row);
   }
   fleet_.own_traffic(std::move(view));
-  if (!closed_) (void)topics_->report.write(report);  // best effort; the next one replaces it
+  if (!closed_) (void)topics_->report.write(report);  // Best effort: the next one replaces it.
 }
 
 void Station::Impl::heard_acknowledgement(const radio::Acknowledgement& sample,
                                           const wire::SampleInfo& info) {
   if (sample.station() != params_.name || sample.station_id() != params_.id) return;
-  // Another robot of that name answers as well.
+  // Another robot of that name also answers.
   if (!fleet_.speaks_for(sample.robot(), info.sender)) return;
   fleet_.learn_authority(sample.robot(), sample.holder(), {sample.epoch().start(), sample.epoch().counter()});
   if (sample.seq() != 0) return sender_.hear(sample, info);

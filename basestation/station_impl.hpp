@@ -16,7 +16,7 @@ namespace adit::station {
 /// Collects the answers of one command line to several robots.
 struct Gather {
   command::Request request{};
-  std::vector<Answer> answers{};  ///< in the order of the robots typed
+  std::vector<Answer> answers{};  ///< In the order of the robots in the command.
   std::size_t missing{};
   Station::Done done{};
 };
@@ -52,13 +52,13 @@ class Station::Impl {
     command::Request request{};
     Done done{};
   };
-  /// A `stop all` of a station that has only begun to hear robots.
+  /// A `stop all` of a station that was just started and has not heard all robots yet.
   struct StopAll {
     std::shared_ptr<Gather> gather{};
     std::set<std::string> asked{};
   };
 
-  // station.cpp: what is heard and said
+  // Defined in station.cpp: reception and transmission.
   template <class T>
   Result<void> read(const wire::Topic<T>& topic);
   void announce();
@@ -68,10 +68,10 @@ class Station::Impl {
   void tick();
   void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
 
-  // execute.cpp: what is asked
+  // Defined in execute.cpp: command lines.
   bool must_wait(const command::Request& request) const;
   bool known(const command::Request& request) const;
-  /// Somebody was heard, and of each all that `list` shows.
+  /// Whether a peer was heard, and of each peer all messages that `list` shows.
   bool complete() const;
   void run(std::uint64_t handle, const command::Request& request, Done done);
   void answer_query(const command::Request& request, const Done& done);
@@ -87,11 +87,11 @@ class Station::Impl {
   void note(const Answer& answer);
   /// Notifies the operator of the end of a stop that was reported as not acknowledged.
   void late_stop(const Answer& answer);
-  /// Starts the flow; when too many are going on, `ended` gets `queue_full` instead.
+  /// Starts the flow; if too many are running, `ended` gets `queue_full` instead.
   void add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, const Flow::Done& ended);
   void end_flows(const std::string& robot, Reason reason);
-  /// Takes the robot's answer to a command that asks for a mode: an accepted one ends what drives the robot
-  /// now.
+  /// Returns a handler of the robot's answer to a command that requests a mode: if accepted, it ends the
+  /// flows that drive the robot now.
   Flow::Done end_drives_when_accepted(const std::string& robot) const;
   FlowDependencies flow_dependencies() { return {strand_, fleet_, sender_, stick_}; }
   bool fresh(Duration span) const { return strand_.now() - started_ < span; }
@@ -107,7 +107,7 @@ class Station::Impl {
   std::deque<Waiting> waiting_{};
   std::vector<StopAll> stop_alls_{};
 
-  struct Radio;  // the typed writers and readers
+  struct Radio;  // The typed writers and readers.
   std::unique_ptr<Radio> topics_;
   std::vector<Timer> timers_{};
   std::shared_ptr<bool> alive_{std::make_shared<bool>(true)};

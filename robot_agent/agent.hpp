@@ -50,8 +50,8 @@ struct AgentParams {
   std::function<std::shared_ptr<const nav::PlannerLibrary>(const Platform&)> library{};
   /// Makes a local planner that replaces the one that the platform names; empty: the platform's.
   std::function<std::unique_ptr<nav::Planner>()> local_planner{};
-  std::shared_ptr<store::Disk>
-      disk{};            ///< Stores the state that survives a restart; null: nothing is stored.
+  /// Stores the state that survives a restart; null: nothing is stored.
+  std::shared_ptr<store::Disk> disk{};
   std::uint64_t boot{};  ///< Id of the computer's boot; odometry starts again at each boot; 0: unknown.
   bool resume_after_restart{
       true};  ///< An autonomous mode resumes after a restart; false: the robot holds, and its goal is stored.

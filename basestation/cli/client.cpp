@@ -38,7 +38,7 @@ void Client::cancel(std::int64_t id) { send({{"cancel", id}}); }
 
 void Client::handle(const std::string& line) {
   const json object = json::parse(line, nullptr, false);
-  if (!object.is_object()) return;  // a station of another version; what it says is not for us
+  if (!object.is_object()) return;  // A message of a station of another version is ignored.
   if (object.contains("snapshot") && on_snapshot) on_snapshot(object["snapshot"]);
   if (object.contains("notice") && on_notice) on_notice(object["notice"]);
   if (object.contains("missed") && on_missed) on_missed(object.value("missed", std::size_t{0}));
@@ -66,7 +66,7 @@ bool Client::wait(int timeout_ms, int other_fd) {
       ::poll(fds, other_fd >= 0 ? 2 : 1, can_send_ ? timeout_ms : 0) > 0 && fds[0].revents != 0;
   if (can_send_ && !ready) return true;
   can_send_ = can_send_ && socket_.flush();
-  // Reads after the last send: when that failed, the station may have written why.
+  // Reads after the last send: if that failed, the station may have written the reason.
   const bool open = socket_.pump() && can_send_;
   for (auto line = socket_.line(); line; line = socket_.line()) handle(*line);
   connected_ = connected_ && open;
@@ -117,7 +117,7 @@ int run_line(Client& client, const Options& options, const std::string& line) {
       cancelled = now;
       client.cancel(id);
     }
-    // What cannot be cancelled (a command under way) is left to the station.
+    // A command that cannot be cancelled any more is left to the station.
     if (cancelled && now - *cancelled > std::chrono::milliseconds(800)) return 130;
   }
   const int code = print_outcome(options, *outcome);
@@ -129,7 +129,7 @@ std::string command_of_another(const json& event) {
       event.value("phase", std::string()) != "ended")
     return {};
   const json by = event.value("by", json::object());
-  if (by.value("pid", 0) == ::getpid()) return {};  // a stop has a connection of its own
+  if (by.value("pid", 0) == ::getpid()) return {};  // A stop uses a connection of its own.
   std::string answer = event.value("text", std::string()) + event.value("error", std::string());
   while (answer.ends_with('\n')) answer.pop_back();
   std::replace(answer.begin(), answer.end(), '\n', ' ');

@@ -9,24 +9,24 @@
 
 namespace adit::station::cli {
 
-/// One process's talk with its station. Calls back from wait().
+/// A connection of one process to its station. Callbacks run within wait().
 class Client {
  public:
-  /// `front_end`: what the station's other clients read of who began a command.
+  /// `front_end`: name under which the station's other clients see this client's commands.
   Client(LineSocket socket, const std::string& front_end) : socket_(std::move(socket)) {
     send({{"front_end", front_end}});
   }
 
   std::function<void(const nlohmann::json&)> on_snapshot{};
   std::function<void(const nlohmann::json&)> on_notice{};
-  /// A command that was begun or has ended, of this client and of others; server.hpp has its keys.
+  /// Called when a command of this or another client began or ended; server.hpp lists the keys.
   std::function<void(const nlohmann::json&)> on_command{};
-  /// So many notices and commands were lost because this client did not read.
+  /// Called with the number of notices and command events that were lost because this client did not read.
   std::function<void(std::size_t)> on_missed{};
   std::function<void(std::int64_t id)> on_begun{};
   std::function<void(std::int64_t id, const nlohmann::json& outcome)> on_outcome{};
 
-  /// Each returns the request's id.
+  /// Send a request; each returns the request's id.
   std::int64_t execute(const std::string& line);
   std::int64_t teleop(const std::string& robot);
   void stick(std::int64_t id, double vx, double vy, double wz);
@@ -34,11 +34,11 @@ class Client {
   void watch() { send({{"watch", true}}); }
   void notices() { send({{"notices", true}}); }
 
-  /// Handles what comes within `timeout_ms`, or until `other_fd` (-1: none) has input. False when the station
-  /// is gone.
+  /// Handles the messages that arrive within `timeout_ms`, or until `other_fd` (-1: none) has input. Returns
+  /// false if the connection to the station is closed.
   bool wait(int timeout_ms, int other_fd = -1);
   bool connected() const { return connected_; }
-  /// Why the station is gone.
+  /// Why the connection to the station is closed.
   std::string gone() const;
 
  private:
@@ -52,15 +52,17 @@ class Client {
   std::string cut_off_{};
 };
 
-/// Runs one line at the station and prints its outcome; SIGINT ends it. The exit code.
+/// Runs one line at the station and prints its outcome; SIGINT ends it. Returns the exit code.
 int run_line(Client& client, const Options& options, const std::string& line);
-/// Prints an outcome: text on stdout, refusals on stderr, or with --json its object on stdout. Its exit code.
+/// Prints an outcome: text on stdout, refusals on stderr, or with --json its object on stdout. Returns its
+/// exit code.
 int print_outcome(const Options& options, const nlohmann::json& outcome);
-/// "basestation: TEXT" on stderr, with --json an object on stdout; returns `exit_code`.
+/// Prints "basestation: TEXT" on stderr, or with --json an object on stdout; returns `exit_code`.
 int fail(const Options& options, int exit_code, const Error& error);
-/// "watch: take r1: r1: yours" of a command of another front end that has ended; empty for all other events.
+/// Describes an ended command of another front end, e.g. "watch: take r1: r1: yours"; empty for all other
+/// events.
 std::string command_of_another(const nlohmann::json& event);
-/// Words as one line that splits into the same words.
+/// Joins words into one line that splits into the same words.
 std::string quoted(const std::vector<std::string>& words);
 
 }  // namespace adit::station::cli

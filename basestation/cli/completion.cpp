@@ -31,7 +31,7 @@ constexpr const char* kFishScript =
     R"sh(complete -c basestation -f -a '(basestation completion words (commandline -opc)[2..-1] (commandline -ct) 2>/dev/null)'
 )sh";
 
-/// The robots a running station knows; none when it does not say so at once.
+/// The robots that a running station knows; empty if it does not answer immediately.
 std::vector<std::string> known_robots(const Options& options) {
   std::vector<std::string> robots;
   auto path = socket_path(options);
@@ -56,7 +56,7 @@ std::vector<std::string> known_robots(const Options& options) {
 
 std::vector<std::string> candidates(const std::vector<std::string>& all_words,
                                     const std::vector<std::string>& robots) {
-  // Options before the command.
+  // Skips the options before the command.
   std::size_t at = 0;
   while (at + 1 < all_words.size() && all_words[at].starts_with('-')) at += all_words[at] == "--json" ? 1 : 2;
   std::vector<std::string> words(

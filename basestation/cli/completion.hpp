@@ -6,11 +6,12 @@
 
 namespace adit::station::cli {
 
-/// `completion bash|zsh|fish`: prints the shell's script. Hidden: `completion words WORD...` prints what may
-/// follow these words, one a line; the scripts ask it, so that robots' names are there as well.
+/// `completion bash|zsh|fish`: prints the shell's script. The hidden form `completion words WORD...` prints
+/// the possible next words, one per line; the scripts call it, so that the names of robots are also
+/// completed.
 int print_completion(const Options& options, const std::vector<std::string>& words);
 
-/// What may follow `words` (the last one is being typed): commands, modes, options, and `robots`.
+/// The possible completions of `words` (the last one is incomplete): commands, modes, options, and `robots`.
 std::vector<std::string> candidates(const std::vector<std::string>& words,
                                     const std::vector<std::string>& robots);
 

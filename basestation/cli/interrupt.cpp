@@ -7,7 +7,7 @@
 namespace adit::station::cli {
 namespace {
 
-// A signal handler can reach nothing but globals.
+// A signal handler can only access globals.
 volatile sig_atomic_t interrupt_flag = 0;
 volatile sig_atomic_t resize_flag = 0;
 
@@ -17,7 +17,7 @@ void on_signal(int number) { (number == SIGWINCH ? resize_flag : interrupt_flag)
 
 void catch_interrupts() {
   struct sigaction action {};
-  action.sa_handler = on_signal;  // without SA_RESTART: poll returns
+  action.sa_handler = on_signal;  // Without SA_RESTART, poll() returns on a signal.
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGWINCH}) ::sigaction(number, &action, nullptr);
 }
 

@@ -1,4 +1,4 @@
-// The program basestation: options, then one command, the prompt or the dashboard.
+// The program basestation: parses the options, then runs one command, the prompt or the dashboard.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -40,7 +40,7 @@ int show_help(const std::vector<std::string>& words, const Options& options) {
     std::printf("usage: basestation [--name op1] [--link wifi] [--json] COMMAND\n\n%s\n", footer().c_str());
     return kExitDone;
   }
-  if (words[1] == "--markdown") {  // the table of docs/operators.md
+  if (words[1] == "--markdown") {  // Prints the table of docs/operators.md.
     std::fputs(command::help_markdown().c_str(), stdout);
     return kExitDone;
   }
@@ -72,7 +72,7 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
     return run_line(client, options, line);
   }
   if (request->verb == verb("run")) {
-    auto script = read_script(request->word("FILE"));  // before anything starts
+    auto script = read_script(request->word("FILE"));  // It is read before anything starts.
     if (!script) return fail(options, kExitUsage, script.error());
     return play(options, *script, request->has("--all"));
   }
@@ -102,7 +102,7 @@ int main(int argc, char** argv) {
   app.add_option("--link", options.link, "Link profile (config/links), for a station that is started");
   app.add_flag("--json", options.json, "One JSON object instead of text");
   CLI::Option* domain = app.add_option("--domain", options.domain, "Radio domain")->check(CLI::Range(0, 232));
-  // One value each, or they would swallow the command.
+  // These options take one value each, otherwise they would consume the command.
   app.add_option("--interface", options.interfaces,
                  "Address of a network interface to use, may be repeated; loopback when none is named")
       ->allow_extra_args(false);
@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
   if (!words.empty() && words[0].starts_with('-'))
     return fail(options, kExitUsage,
                 {Reason::bad_argument, "no option " + command::clean(words[0], 40) + "; try --help"});
-  // These two are understood behind the command as well.
+  // These two options may also follow the command.
   if (std::erase(words, "--json") > 0) options.json = true;
   if (std::erase(words, "--help") + std::erase(words, "-h") > 0) words.insert(words.begin(), "help");
   catch_interrupts();

@@ -5,18 +5,19 @@
 
 namespace adit::station::cli {
 
-/// What stands before the command on the command line.
+/// The options before the command on the command line.
 struct Options {
-  std::string name{"op1"};  ///< the operator's
-  std::string link{};  ///< profile of config/links, or a .yaml file, that what is sent keeps to; empty: none
+  std::string name{"op1"};  ///< Name of the operator.
+  /// Link profile that limits the traffic: one of config/links, or a .yaml file; empty: none.
+  std::string link{};
   bool json{false};
-  std::uint32_t domain{77};               ///< radio domain, [0, 232]
-  bool domain_given{false};               ///< a station that runs must be on `domain`
-  std::vector<std::string> interfaces{};  ///< addresses; none: loopback
-  std::vector<std::string> peers{};       ///< for networks without multicast
-  std::vector<float> at{};                ///< X Y Z of the station, map frame, m; empty: not known
-  std::string record{};                   ///< folder of recordings, "none"; empty: below the state folder
-  std::string program{};                  ///< path of this program, to start a station with
+  std::uint32_t domain{77};               ///< Radio domain, [0, 232].
+  bool domain_given{false};               ///< A running station must be on `domain`.
+  std::vector<std::string> interfaces{};  ///< IPv4 addresses of interfaces; empty: loopback.
+  std::vector<std::string> peers{};       ///< Addresses of peers, for networks without multicast.
+  std::vector<float> at{};                ///< Position X Y Z of the station, map frame, m; empty: unknown.
+  std::string record{};   ///< Folder of recordings; empty: below the state folder; "none": no recording.
+  std::string program{};  ///< Path of this program, with which a station is started.
 };
 
 /// Exit codes of the program.

@@ -44,7 +44,7 @@ class Prompt {
     return {};
   }
 
-  /// False when the line ends the prompt.
+  /// Runs a line; returns false if it ends the prompt.
   bool execute(const std::string& line) {
     auto words = command::split_words(line);
     if (words && words->empty()) return true;
@@ -64,7 +64,7 @@ class Prompt {
     return !request || request->verb != verb("down");
   }
 
-  /// Prints what came in; true when something was printed.
+  /// Prints received notices; returns whether something was printed.
   bool poll_notices(int timeout_ms, int other_fd) {
     printed_ = false;
     if (client_ && client_->connected() && !client_->wait(timeout_ms, other_fd)) {
@@ -132,14 +132,14 @@ class Prompt {
   }
 
   Options options_;
-  const char* clear_{::isatty(STDOUT_FILENO) != 0 ? "\r\x1b[K" : ""};  ///< takes the typed line away
+  const char* clear_{::isatty(STDOUT_FILENO) != 0 ? "\r\x1b[K" : ""};  ///< Erases the typed line.
   std::optional<Client> client_{};
   std::vector<std::string> robots_{};
   int code_{kExitDone};
   bool printed_{false};
 };
 
-// libedit calls back without a context.
+// The callbacks of libedit have no context argument.
 Prompt* current = nullptr;
 std::optional<std::string> typed;
 bool at_end = false;
@@ -200,7 +200,7 @@ int read_terminal(Prompt& prompt, const Options& options) {
     if (!typed || typed->empty()) continue;
     add_history(typed->c_str());
     going = prompt.execute(*typed);
-    catch_interrupts();  // libedit puts handlers of its own
+    catch_interrupts();  // libedit installs its own handlers.
   }
   if (!history.empty()) write_history(history.c_str());
   if (at_end) std::printf("\n");

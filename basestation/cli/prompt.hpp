@@ -3,8 +3,8 @@
 
 namespace adit::station::cli {
 
-/// Takes command lines until `quit` or Ctrl-D: in a terminal with history, completion and notifications as
-/// they come; from a pipe line by line. The exit code is that of the last line that was not done, else 0.
+/// Reads and runs command lines until `quit` or Ctrl-D: in a terminal with history, completion and
+/// notifications; from a pipe line by line. Returns the exit code of the last line that failed, otherwise 0.
 int prompt(const Options& options);
 
 }  // namespace adit::station::cli

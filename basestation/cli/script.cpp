@@ -17,7 +17,7 @@
 namespace adit::station::cli {
 namespace {
 
-/// One operator's part of a play.
+/// Plays the lines of one operator.
 struct Player {
   std::unique_ptr<Client> client{};
   std::map<std::int64_t, std::string> open{};
@@ -59,7 +59,7 @@ class Play {
     Player& player = players_[next.by];
     player.open[player.client->execute(next.line)] = next.line;
   }
-  /// False when a station went away.
+  /// Returns false if the connection to a station was lost.
   bool wait() {
     const int share = static_cast<int>(20 / players_.size()) + 1;
     return std::all_of(players_.begin(), players_.end(),
@@ -100,7 +100,7 @@ Result<std::vector<ScriptLine>> read_script(const std::string& path) {
   auto root = config::load(path);
   if (!root) return root.error();
   std::vector<ScriptLine> script;
-  (void)root->entries();  // the rest of a scenario is the rehearsal's
+  (void)root->entries();  // Marks the other keys as used: they are for the rehearsal.
   for (const config::Node& node : root->list("script")) {
     ScriptLine line{node.number("at", config::within(0.0, 1e6)), node.text("by"), node.text("do"),
                     node.text("say", "")};

@@ -9,18 +9,19 @@ namespace adit::station::cli {
 
 /// One line of a scenario's script.
 struct ScriptLine {
-  double at{};  ///< s from the start
+  double at{};  ///< Time from the start, s.
   std::string by{};
   std::string line{};
-  std::string say{};  ///< told to whoever looks on, before the line is run
+  std::string say{};  ///< Text shown to viewers before the line is run.
 };
 
-/// The `script:` of a scenario, in the order of time. Errors: cannot_read, syntax, and whatever is wrong with
-/// a line, with file and line number; a command that does not parse is one of them.
+/// Reads the `script:` of a scenario, in the order of time. Errors: cannot_read, syntax, and invalid lines,
+/// e.g. a command that does not parse, with file and line number.
 Result<std::vector<ScriptLine>> read_script(const std::string& path);
 
-/// Plays it on the real clock: the lines of options.name, or every operator's at his station. A refusal is an
-/// event, not a failure. 0 at the end, 3 when a station went away, 130 when interrupted.
+/// Plays a script on the real clock: the lines of options.name, or of every operator at the operator's own
+/// station. A refusal is an event, not a failure. Returns 0 at the end, 3 if the connection to a station was
+/// lost, 130 if interrupted.
 int play(const Options& options, const std::vector<ScriptLine>& script, bool all_operators);
 
 }  // namespace adit::station::cli

@@ -14,8 +14,8 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-/// The outcome when the station took the stop in time. An outcome of a command that was not begun is none:
-/// the station refused the line, and no stop goes out.
+/// Returns the outcome if the station accepted the stop in time. The outcome of a command that was not begun
+/// does not count: the station refused the line and sends no stop.
 std::optional<nlohmann::json> ask_station(const Options& options, const std::string& line) {
   auto path = socket_path(options);
   if (!path) return std::nullopt;
@@ -42,8 +42,9 @@ int stop(const Options& options, const std::string& line, bool all) {
   if (const auto outcome = ask_station(options, line)) return print_outcome(options, *outcome);
   std::fprintf(stderr, "no answer from the station of %s: the stop goes out by itself\n",
                options.name.c_str());
-  // Announced often: robots have to know this participant before they believe who it is.
-  // A stop to a robot that was named is repeated for 10 s, heard or not; `all` are those heard within 5 s.
+  // The presence period is short, because robots must know this participant before they accept its identity.
+  // A stop to a named robot is repeated for 10 s, whether it is heard or not; `all` are the robots heard
+  // within 5 s.
   auto live = LiveStation::open(options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s});
   if (!live) return fail(options, kExitNoAnswer, live.error());
   const Outcome outcome = (*live)->execute(line, 25s);

@@ -3,8 +3,8 @@
 
 namespace adit::station::cli {
 
-/// `stop`: by the station when it takes the command within 300 ms, else by a participant of this very process
-/// with the same name and identity. The exit code.
+/// Runs `stop`: through the station if that accepts the command within 300 ms, otherwise with a participant
+/// of this process that has the same name and identity. Returns the exit code.
 int stop(const Options& options, const std::string& line, bool all);
 
 }  // namespace adit::station::cli

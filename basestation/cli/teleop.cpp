@@ -18,14 +18,14 @@ namespace {
 using nlohmann::json;
 using Clock = KeyStick::Clock;
 
-constexpr auto kPeriod = std::chrono::milliseconds(50);  // the joystick's
+constexpr auto kPeriod = std::chrono::milliseconds(50);  // Period of the joystick samples.
 
 constexpr const char* kInstructions =
     "arrows or w a s d: drive   q e: sideways   space: zero   + -: speed   x: software stop   Esc: let go\r\n"
     "game controller: left stick drives, right stick turns, A stops, B lets go; k: dead man's switch (left "
     "shoulder)\r\n";
 
-/// What the robot does, in one line.
+/// Describes the robot's motion in one line.
 std::string status_line(const json& robot, const std::array<double, 3>& asked, double scale, bool dead_man,
                         const std::string& pad) {
   const json speed = robot.value("velocity", json::array({0.0, 0.0, 0.0}));

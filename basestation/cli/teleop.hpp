@@ -5,7 +5,7 @@
 
 namespace adit::station::cli {
 
-/// Drives a robot by keyboard or game controller until Esc, Ctrl-C or a refusal. The exit code.
+/// Drives a robot by keyboard or game controller until Esc, Ctrl-C or a refusal. Returns the exit code.
 int teleop(Client& client, const Options& options, const std::string& robot);
 
 }  // namespace adit::station::cli

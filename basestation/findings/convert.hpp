@@ -1,5 +1,5 @@
 #pragma once
-// Between the radio's findings and ours. Included by .cpp files only.
+// Conversions between the radio contract's findings and the station's. Included by .cpp files only.
 #include "adit/findings.h"
 #include "basestation/findings/desk.hpp"
 

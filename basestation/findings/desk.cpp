@@ -22,10 +22,10 @@ void FindingDesk::hear(findings::Finding finding, const Robot& robot) {
   if (!robots_.contains(key.robot) && robots_.size() >= kRobots) return;
   robots_[key.robot] = robot;
   if (finding_store_.kept(key)) {
-    answers_[key.robot].insert(key.id);  // our answer was lost
+    answers_[key.robot].insert(key.id);  // The previous acknowledgement was lost.
     return;
   }
-  if (finding_store_.all().contains(key)) return;  // on its way to the disk
+  if (finding_store_.all().contains(key)) return;  // It is being written to the disk.
   if (!finding_store_.put(std::move(finding))) {
     if (!told_full_)
       outputs_.trouble("findings_full", "no room for more findings here; " + key.robot + " keeps its own");

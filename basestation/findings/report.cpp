@@ -21,7 +21,7 @@ std::vector<const Finding*> chosen(const FindingDesk& desk, const std::vector<st
   return rows;
 }
 
-/// Seconds since, by the robot's own clock; negative when that is not known.
+/// Age of a finding by the robot's clock, s; negative: unknown.
 double age(const Finding& finding, const Fleet& fleet) {
   const RobotView* robot = fleet.robot(finding.key.robot);
   if (!robot || !robot->located || robot->stamp < finding.stamp) return -1.0;

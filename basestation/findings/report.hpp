@@ -8,7 +8,7 @@
 
 namespace adit::station {
 
-/// Of the robots named, or of all: most important first.
+/// The findings of the named robots, or of all, as text; the most important first.
 std::string findings_text(const FindingDesk& desk, const Fleet& fleet,
                           const std::vector<std::string>& robots);
 nlohmann::json findings_json(const FindingDesk& desk, const Fleet& fleet,

@@ -7,7 +7,7 @@ namespace {
 
 using command::CommandInfo;
 
-/// One robot's answers to be.
+/// Predicts the answers of one robot.
 class Judge {
  public:
   Judge(const Fleet& fleet, const RobotView& robot, const std::vector<std::string>& modes)
@@ -37,7 +37,7 @@ class Judge {
   void add(const CommandInfo& row, std::string typed, Action action) {
     action.info = &row;
     action.command = std::move(typed);
-    // A lost robot hears nothing; a stop is worth trying all the same.
+    // A lost robot receives nothing, but a stop is still attempted.
     if (robot_.lost && row.name != "stop") {
       action.valid = false;
       action.reason = Reason::no_answer;
@@ -46,7 +46,7 @@ class Judge {
     actions_.push_back(std::move(action));
   }
 
-  /// By the row's conditions; `take` and `reset` have more of their own.
+  /// Judges by the row's conditions; `take` and `reset` have further ones.
   Action judge(const CommandInfo& row, std::string_view mode_wanted) const {
     if (row.name == "take") return take();
     if (row.conditions.holder) {
@@ -58,10 +58,10 @@ class Judge {
       return refuse(Reason::wrong_mode,
                     "only in " + std::string(row.conditions.in) + "; the robot is in " + robot_.mode);
     if (mode_wanted.empty()) return {.valid = true};
-    // A stick that is pushed in smart_joystick leaves the robot in it.
+    // A stick that is pushed in smart_joystick does not change the mode.
     const bool stick = row.name != "mode" && mode_wanted == "manual";
     Action action = mode(stick && robot_.mode == "smart_joystick" ? robot_.mode : std::string(mode_wanted));
-    // These two speak of the goal there is now, not of the one to be given.
+    // These two reasons concern the present goal, not the one that will be given.
     const bool goal = action.reason == Reason::goal_missing || action.reason == Reason::goal_unreachable;
     return goal && row.name != "mode" ? Action{.valid = true} : action;
   }
@@ -86,7 +86,7 @@ class Judge {
     return {.valid = true};
   }
 
-  /// For the holder.
+  /// Judges `reset`, for the holder.
   Action reset() const {
     const auto& stops = robot_.stops;
     const bool own = std::any_of(stops.begin(), stops.end(), [&](const StopLatch& stop) {
@@ -105,7 +105,7 @@ class Judge {
   std::vector<Action> actions_{};
 };
 
-/// What any robot of the selection offers, in the order offered.
+/// The modes that any robot of the selection offers, in the order offered.
 std::vector<std::string> offered(const std::vector<const RobotView*>& selection) {
   std::vector<std::string> modes;
   for (const RobotView* robot : selection)
@@ -147,7 +147,7 @@ std::vector<Action> actions(const Fleet& fleet, const std::vector<const RobotVie
       merged = std::move(own);
       continue;
     }
-    for (std::size_t i = 0; i < merged.size(); ++i)  // same commands, same order
+    for (std::size_t i = 0; i < merged.size(); ++i)  // All robots have the same commands in the same order.
       if (merged[i].valid && (!own[i].valid || merged[i].text.empty())) merged[i] = std::move(own[i]);
   }
   return merged;

@@ -17,9 +17,9 @@ using namespace std::chrono_literals;
 constexpr std::size_t kTextLimit = 240;
 constexpr std::size_t kNameLimit = 32;
 constexpr Duration kForgetAfter = 60s;
-constexpr Duration kOldestNotice = 240h;  // what a robot may claim
+constexpr Duration kOldestNotice = 240h;  // Maximum age that a robot may claim.
 
-/// What a sample says of an amount; 0 for a value that cannot be one.
+/// Validates an amount in a sample; 0 for an invalid value.
 float amount(float value) { return value >= 0.0F && value < 1e12F ? value : 0.0F; }
 double number(float value) { return static_cast<double>(amount(value)); }
 
@@ -120,14 +120,14 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
       speaks_for(sample.name(), info.sender))
     links_.heard(sample.name(), sample.seq(), info.received);
   if (sample.kind() != radio::AGENT_STATION) {
-    // Its states say more, but where the link is full they come as rarely as this.
+    // RobotState has more content, but on a full link it is as rare as this.
     const auto robot = robots_.find(sample.name());
     if (robot != robots_.end() && robot->second.participant == info.sender)
       robot->second.last_sign = robot->second.spoke = info.received;
     return;
   }
   if (sample.name() == own_name_ && sample.id() != own_id_) {
-    // Robots will refuse one of the two: its operator has to choose another name.
+    // Robots will refuse one of the two stations: its operator must choose another name.
     if (!clashed_ || info.received - last_clash_ > kForgetAfter)
       notice({.at = info.received,
               .level = Level::warning,
@@ -145,7 +145,7 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
     return;
   }
   StationView& station = stations_[sample.name()];
-  if (station.id != sample.id()) station.place.reset();  // another station of that name
+  if (station.id != sample.id()) station.place.reset();  // Another station has that name.
   station.name = sample.name();
   station.id = sample.id();
   station.participant = info.sender;
@@ -179,7 +179,7 @@ void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& i
   RobotView* robot = touch(sample.robot(), info);
   if (!robot) return;
   const Epoch epoch{sample.epoch().start(), sample.epoch().counter()};
-  // An acknowledgement can be newer than a status that was under way.
+  // An acknowledgement can be newer than a status that arrives later.
   if (robot->owned && robot->epoch.start == epoch.start && epoch.counter < robot->epoch.counter) return;
   robot->owned = true;
   robot->epoch = epoch;
@@ -231,12 +231,13 @@ void Fleet::hear(const radio::Notification& sample, const wire::SampleInfo& info
   notice(std::move(told));
 }
 
-/// By the robot's own clock alone: what it showed last, and what passed since. A notification that is
-/// repeated after a gap is as old as it is; another start of the robot may have another clock.
+/// Computes the time of a notice from the robot's clock only: its last stamp, and the time since then. A
+/// notification that is repeated after a gap keeps its true age; the clock may differ after a restart of the
+/// robot.
 void Fleet::date(Notice& notice, const RobotView& robot) const {
   if (!notice.undated || !robot.located || robot.stamped_by != notice.said_by) return;
   const Duration since_shown = notice.at - robot.last_heard;
-  // Negative: it arose since. Whatever a robot claims, it stays within bounds.
+  // Negative if the event is newer than the stamp. Clamped, because the robot's values are not trusted.
   const auto shown = std::clamp(Duration(static_cast<std::int64_t>(robot.stamp - *notice.undated)),
                                 -kOldestNotice, kOldestNotice);
   notice.at -= std::clamp(shown + since_shown, Duration{}, kOldestNotice);
@@ -287,7 +288,7 @@ void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) 
   }
   for (const auto& peer : sample.peers()) {
     if (peer.peer() != own_name_) continue;
-    if (peer.held() >= 0.0F && peer.held() < 1e6F)  // false for what is no number, too
+    if (peer.held() >= 0.0F && peer.held() < 1e6F)  // Also false for NaN.
       links_.echoed(view.agent, peer.number(), from_seconds(peer.held()), info.received);
     if (peer.lost() >= 0.0F && peer.lost() <= 1.0F) view.lost_there = peer.lost();
   }
@@ -304,9 +305,9 @@ void Fleet::learn_authority(const std::string& robot, const std::string& holder,
   view.epoch = epoch;
   if (!changed) return;
   view.holder = command::clean(holder, kNameLimit);
-  // The acknowledgement names the holder only; the next status tells whose station it is.
+  // The acknowledgement has only the holder's name; the next status has its id.
   view.holder_id = holder == own_name_ ? own_id_ : Id{};
-  view.locked = false;  // every change of holder ends a lock
+  view.locked = false;  // Every change of holder ends a lock.
   view.lease_left = -1.0F;
 }
 

@@ -12,18 +12,18 @@ namespace adit::station {
 
 class Fleet;
 
-/// What the link to one other participant carries now.
+/// Traffic of the link to one other participant.
 struct PeerRate {
-  double out{}, in{};              ///< bytes a second
+  double out{}, in{};              ///< Bytes/s.
   std::optional<double> signal{};  ///< dBm
 };
 
-/// Turns what the wire counted for each peer into rates.
+/// Computes rates from the participant's counters for each peer.
 class PeerRates {
  public:
-  /// Over the time since the last reading; all that is not in `peers` is forgotten.
+  /// Computes the rates since the last reading; peers that are not in `peers` are dropped.
   void read(const std::vector<wire::PeerState>& peers, Time now);
-  /// Null before it was read twice.
+  /// The rate of a peer; null before its second reading.
   const PeerRate* find(const wire::ParticipantId& peer) const;
 
  private:
@@ -35,27 +35,27 @@ class PeerRates {
   Time at_{};
 };
 
-/// What an agent's own sender says of its link.
+/// An agent's own report of its link.
 struct SenderView {
-  std::string link{};                                      ///< profile; empty: nothing limits what it sends
-  double bandwidth{};                                      ///< bit/s; 0: not known
-  double queue{};                                          ///< airtime that waits, bulk and video apart, s
-  std::array<std::uint32_t, wire::kPriorities> dropped{};  ///< since its start, by priority
-  double state_rate{};                                     ///< RobotStates a second
+  std::string link{};  ///< Link profile; empty: the traffic is not limited.
+  double bandwidth{};  ///< In bit/s; 0: unknown.
+  double queue{};      ///< Queued airtime without bulk and video, s.
+  std::array<std::uint32_t, wire::kPriorities> dropped{};  ///< Since its start, by priority.
+  double state_rate{};                                     ///< Rate of RobotState, Hz.
 };
 
-/// All that is known of the link to one agent. What is measured here and what it reported.
+/// The state of the link to one agent, measured here and reported by the agent.
 struct LinkView {
-  wire::PeerMeter::Peer peer{};        ///< loss from it, round trip
-  std::optional<double> lost_to{};     ///< share of ours that it missed, [0, 1]
-  std::optional<PeerRate> rate{};      ///< to it and from it
-  std::optional<SenderView> sender{};  ///< nothing before its first report
+  wire::PeerMeter::Peer peer{};     ///< Loss from the agent, and round-trip time.
+  std::optional<double> lost_to{};  ///< Fraction of this station's heartbeats that the agent missed, [0, 1].
+  std::optional<PeerRate> rate{};   ///< To the agent and from it.
+  std::optional<SenderView> sender{};  ///< Unset before its first report.
 };
 
-/// One for each agent whose signs of life were heard, by name.
+/// The links to all agents whose heartbeats were heard, by name.
 std::vector<LinkView> links(const Fleet& fleet, Time now);
 
-/// What each priority carries, for people.
+/// Readable name of a priority's traffic.
 const char* priority_name(std::size_t priority);
 
 }  // namespace adit::station

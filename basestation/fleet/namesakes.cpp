@@ -1,4 +1,4 @@
-// Several robots with one name: which of them is shown and commanded. The robots decide who gives way
+// Selects which of several robots with one name is shown and commanded. The robots decide who gives way
 // (robot_agent/discovery/namesakes.hpp); a station follows them.
 #include <algorithm>
 
@@ -9,11 +9,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Duration kQuiet =
-    250ms;                        // RobotStates come ten times a second: another participant may be a restart
-constexpr Duration kGrace = 1s;   // samples of an agent that ended may come so late
-constexpr Duration kSilent = 3s;  // then a participant that was found out may speak for the name
-constexpr Duration kForgotten = 60s;  // then one that gives way may
+// RobotState has 10 Hz: after this silence another participant may be a restart.
+constexpr Duration kQuiet = 250ms;
+constexpr Duration kGrace = 1s;       // Samples of an agent that ended may arrive this late.
+constexpr Duration kSilent = 3s;      // After this silence a rejected participant may get the name.
+constexpr Duration kForgotten = 60s;  // After this silence a robot that gives way may get the name.
 
 bool gives_way(const RobotView& robot) {
   return std::any_of(robot.services.begin(), robot.services.end(),
@@ -26,7 +26,7 @@ bool Fleet::replaces(const Namesake& namesake, const RobotView& shown, Time now)
   const Duration since = now - shown.spoke;
   if (gives_way(namesake.view) != gives_way(shown)) return gives_way(shown) || since >= kForgotten;
   if (namesake.displaced)
-    return now - *namesake.displaced >= kGrace;  // it lives, the newcomer was no restart
+    return now - *namesake.displaced >= kGrace;  // It is alive, so the new participant was no restart.
   return since >= (namesake.rival ? kSilent : kQuiet);
 }
 
@@ -40,7 +40,7 @@ RobotView* Fleet::touch_namesake(RobotView& shown, const wire::SampleInfo& info)
     }
     Namesake fresh;
     if (replaces(fresh, shown, info.received)) {
-      // What is known of the robot stays until its new participant says something else.
+      // The robot's state stays until its new participant sends another one.
       namesakes_[{name, shown.participant}] = {shown, info.received, false};
       shown.participant = info.sender;
       shown.spoke = info.received;

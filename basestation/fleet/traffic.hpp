@@ -3,10 +3,10 @@
 
 namespace adit::station {
 
-/// Turns a wire's counters into rates since the last reading.
+/// Computes rates from a participant's counters.
 class TrafficMeter {
  public:
-  /// Bytes and samples a second since the reading before; zero rates at the first one.
+  /// Returns bytes/s and samples/s since the previous reading; zero at the first one.
   TrafficView read(const std::string& agent, const wire::WireCounters& counters,
                    const wire::SenderState& sender, Time now);
 

@@ -26,7 +26,7 @@ struct StopLatch {
   Id station_id{};
 };
 
-/// A mode, and why it could not be entered now (none: it could).
+/// A mode, and why it could not be entered now (`none`: it could).
 struct ModeChoice {
   std::string mode{};
   bool available{};
@@ -41,67 +41,67 @@ struct ComponentView {
   std::string name{};
   ComponentPhase phase{ComponentPhase::starting};
   bool healthy{};
-  bool automatic{};    ///< restarted without being asked
-  float silent_for{};  ///< s
+  bool automatic{};    ///< Restarts automatically.
+  float silent_for{};  ///< In s.
   std::uint32_t restarts{};
-  std::uint32_t hung{};  ///< threads that it left behind
+  std::uint32_t hung{};  ///< Number of threads that it left behind.
   std::string text{};
 };
 
-/// The box around a robot's body, m; 0: not known.
+/// The bounding box of a robot's body, m; 0: unknown.
 struct Size {
-  float length{};  ///< along x of the body frame
+  float length{};  ///< Along x of the body frame.
   float width{};
   float height{};
 };
 
-/// All that was heard of one robot. Positions in the map frame (m, rad), speeds in the body frame (m/s,
-/// rad/s).
+/// The state of one robot as received. Positions are in the map frame (m, rad), speeds in the body frame
+/// (m/s, rad/s).
 struct RobotView {
   std::string name{};
   wire::ParticipantId participant{};
   Time first_heard{};
-  Time last_heard{};  ///< last RobotState, or the first sign of life before that
-  Time spoke{};       ///< last sample of any kind
-  Time last_sign{};   ///< of life, by what it says once a second beside its RobotStates
-  bool lost{false};   ///< neither for 2.5 s
+  Time last_heard{};  ///< Last RobotState, or the first heartbeat before that.
+  Time spoke{};       ///< Last sample of any kind.
+  Time last_sign{};   ///< Last heartbeat, sent once a second beside RobotState.
+  bool lost{false};   ///< Neither RobotState nor heartbeat for 2.5 s.
 
-  bool described{false};  ///< capabilities were heard
+  bool described{false};  ///< Capabilities were received.
   std::string platform{};
   std::string software{};
   std::uint16_t protocol{};
   float max_speed{};         ///< m/s
   float max_turn{};          ///< rad/s
-  float max_acceleration{};  ///< m/s2; 0: not known
-  bool holonomic{};          ///< moves sideways, too
+  float max_acceleration{};  ///< In m/s2; 0: unknown.
+  bool holonomic{};          ///< It can also move sideways.
   Size size{};
-  float max_step{};      ///< height of a step that it climbs, m; 0: none
-  float max_slope{};     ///< rad; 0: not known
-  bool climbs_stairs{};  ///< takes stairs
+  float max_step{};      ///< Maximum height of a step, m; 0: none.
+  float max_slope{};     ///< In rad; 0: unknown.
+  bool climbs_stairs{};  ///< It can climb stairs.
   std::vector<std::string> modes{};
   std::vector<std::string> sensors{};
   std::vector<std::string> services{};
 
-  bool located{false};    ///< a RobotState was heard
-  std::uint64_t stamp{};  ///< the robot's clock, as it is to be echoed
+  bool located{false};    ///< A RobotState was received.
+  std::uint64_t stamp{};  ///< Stamp of the robot's clock, to be echoed.
   wire::ParticipantId stamped_by{};
   float x{}, y{}, z{}, yaw{};
   float vx{}, vy{}, wz{};
-  float battery{-1.0F};  ///< 0..1; negative: not known
+  float battery{-1.0F};  ///< State of charge, [0, 1]; negative: unknown.
 
-  bool owned{false};  ///< an AuthorityStatus was heard
+  bool owned{false};  ///< An AuthorityStatus was received.
   Epoch epoch{};
-  std::string holder{};  ///< empty: nobody
+  std::string holder{};  ///< Empty: no holder.
   Id holder_id{};
   bool locked{};
-  float lease_left{-1.0F};  ///< s; negative: no lease runs
+  float lease_left{-1.0F};  ///< In s; negative: no lease runs.
   std::vector<StopLatch> stops{};
 
-  std::uint64_t behaviour_count{};  ///< BehaviourStates heard; 0: none yet
+  std::uint64_t behaviour_count{};  ///< Number of BehaviourStates received.
   std::string mode{};
   bool stopped{};
   bool moving_allowed{};
-  Reason reason{Reason::none};  ///< why it does not move
+  Reason reason{Reason::none};  ///< Why the robot does not move.
   GoalPhase goal_phase{GoalPhase::none};
   std::uint32_t goal_id{};
   std::array<double, 3> goal{};
@@ -115,42 +115,43 @@ struct StationView {
   Id id{};
   wire::ParticipantId participant{};
   Time last_heard{};
-  std::optional<std::array<float, 3>> place{};  ///< where it stands, map frame, m; nothing: not known
+  std::optional<std::array<float, 3>> place{};  ///< Position of the station, map frame, m; unset: unknown.
 };
 
 enum class Level : std::uint8_t { info, warning, error };
 
-/// Something an operator should know, from a robot or from this station (lost, back).
+/// A notification for operators, from a robot or from this station (lost, back).
 struct Notice {
-  std::uint64_t id{};  ///< unique in this run of the station, rising from 1; it never changes
-  Time at{};           ///< when it arose, by this station's clock
+  std::uint64_t id{};  ///< Unique in this run of the station, rising from 1; never changes.
+  Time at{};           ///< Time of the event, by this station's clock.
   std::string robot{};
-  std::string operator_name{};  ///< whom it concerns; empty: everybody
+  std::string operator_name{};  ///< The operator concerned; empty: all operators.
   Level level{Level::info};
   std::string code{};
   Reason reason{Reason::none};
   std::string text{};
-  bool mine{};  ///< concerns this operator
-  /// Until the robot's clock is known, `at` is when this was heard; then it is made earlier.
-  std::optional<std::uint64_t> undated{};  ///< the robot's stamp
+  bool mine{};  ///< It concerns this operator.
+  /// Set while the robot's clock is unknown: `at` is then the time of reception, and is corrected later.
+  std::optional<std::uint64_t> undated{};  ///< Stamp of the robot's clock.
   wire::ParticipantId said_by{};
 };
 
-/// Bytes and samples a second of one topic at one agent.
+/// Bytes/s and samples/s of one topic at one agent.
 struct TopicRate {
   std::string topic{};
   float bytes_out{}, samples_out{}, bytes_in{}, samples_in{};
-  std::uint32_t dropped{};  ///< since its start
+  std::uint32_t dropped{};  ///< Since its start.
 };
 
 struct TrafficView {
   std::string agent{};
   Time last_heard{};
-  float discovery_out{}, discovery_in{}, total_out{}, total_in{};  ///< bytes a second
-  std::uint32_t malformed{};                                       ///< samples since its start
+  float discovery_out{}, discovery_in{}, total_out{}, total_in{};  ///< Bytes/s.
+  std::uint32_t malformed{};                                       ///< Malformed samples since its start.
   std::vector<TopicRate> topics{};
   SenderView sender{};
-  float lost_there{-1.0F};  ///< share of our signs of life that the agent missed; negative: not known
+  float lost_there{
+      -1.0F};  ///< Fraction of this station's heartbeats that the agent missed, [0, 1]; negative: unknown.
 };
 
 const char* to_string(GoalPhase phase);

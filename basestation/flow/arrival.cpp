@@ -40,7 +40,7 @@ void Arrival::poll() {
   if (now - robot_now->last_heard > 30s)
     return end(Reason::no_answer, "the robot has not been heard for 30 s");
   if (!seen_) {
-    // The state that shows the new goal may be under way still, or have come before the answer.
+    // The state with the new goal may arrive later, or may have arrived before the answer.
     seen_ = robot_now->goal_id != goal_before_ &&
             std::hypot(robot_now->goal[0] - goal_[0], robot_now->goal[1] - goal_[1]) < 0.5;
     goal_id_ = robot_now->goal_id;

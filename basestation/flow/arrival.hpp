@@ -5,11 +5,11 @@
 
 namespace adit::station {
 
-/// `goto --wait`: asks for the goal, then waits until it is reached, or the robot is blocked for 5 s, leaves
-/// the mode, gets another goal, or is lost for 30 s.
+/// The flow of `goto --wait`: requests the goal, then waits until it is reached, or the robot is blocked for
+/// 5 s, leaves the mode, gets another goal, or is lost for 30 s.
 class Arrival final : public Flow {
  public:
-  /// `order`: a goto. `answered` is called with the robot's answer to it, also when the wait ended before.
+  /// `order`: a goto. `answered` is called with the robot's answer to it, also if the wait ended before.
   Arrival(FlowDependencies dependencies, RobotCommand robot_command, Done answered, Done done);
   void start() override;
   void cancel(Reason reason, const std::string& text) override;
@@ -21,7 +21,7 @@ class Arrival final : public Flow {
 
   RobotCommand robot_command_;
   Done on_answer_;
-  std::array<double, 2> goal_;  ///< map frame, m
+  std::array<double, 2> goal_;  ///< Map frame, m.
   Answer outcome_{};
   Timer timer_{};
   Time accepted_at_{};

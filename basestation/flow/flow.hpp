@@ -11,7 +11,7 @@
 
 namespace adit::station {
 
-/// What flows work with.
+/// The objects that flows use.
 struct FlowDependencies {
   Executor& strand;
   Fleet& fleet;
@@ -19,8 +19,8 @@ struct FlowDependencies {
   Stick& stick;
 };
 
-/// Something that takes time at one robot: driving, waiting for arrival. It ends by itself or is cancelled,
-/// and tells its end once.
+/// A command that takes time at one robot, e.g. driving or waiting for arrival. It ends by itself or is
+/// cancelled, and reports its end once.
 class Flow : public std::enable_shared_from_this<Flow> {
  public:
   using Done = std::function<void(const Answer&)>;
@@ -31,14 +31,14 @@ class Flow : public std::enable_shared_from_this<Flow> {
   Flow& operator=(const Flow&) = delete;
 
   virtual void start() = 0;
-  /// Ends it in a safe way; the end is told with this reason.
+  /// Ends the flow safely; the end is reported with this reason.
   virtual void cancel(Reason reason, const std::string& text) = 0;
-  /// Another flow takes the robot over: ends at once and leaves a stream, if any, centred but running.
+  /// Ends at once because another flow takes over the robot; leaves a stream, if any, centred but running.
   virtual void hand_over() { cancel(Reason::cancelled, "another command took its place"); }
-  /// A refused joystick stream.
+  /// Processes a refusal of the joystick stream.
   virtual void stream_refused(Reason, const std::string& /*text*/) {}
   const std::string& robot() const { return robot_; }
-  /// Nothing is left to do: it can be dropped.
+  /// Whether the flow has ended and can be dropped.
   virtual bool over() const { return told_; }
 
  protected:

@@ -12,11 +12,11 @@ using namespace std::chrono_literals;
 
 namespace {
 constexpr std::array<double, 3> kCentred{0.0, 0.0, 0.0};
-constexpr Duration kLead = 150ms;        // zeros ahead of asking, so that one of them arrives
-constexpr Duration kInsist = 3s;         // a robot that has not heard the stick yet is asked again
-constexpr Duration kSettle = 300ms;      // zeros before letting go
-constexpr Duration kStickLapse = 250ms;  // a live stick that is not renewed counts as let go
-constexpr Duration kAppear = 2s;         // by then the mode shows in the behaviour state
+constexpr Duration kLead = 150ms;  // Zeros before the request, so that one of them arrives.
+constexpr Duration kInsist = 3s;   // A robot that did not receive the stick yet is asked again for this long.
+constexpr Duration kSettle = 300ms;      // Zeros before the end of the stream.
+constexpr Duration kStickLapse = 250ms;  // A live stick that is not renewed counts as released.
+constexpr Duration kAppear = 2s;         // By then the behaviour state has the mode.
 }  // namespace
 
 Steer::Steer(FlowDependencies dependencies, std::string robot, SteerParams params, Done done)
@@ -85,8 +85,7 @@ void Steer::begin() {
     keep_after_ = seen_in_mode_ = true;
     return move();
   }
-  if (!mine)
-    return ask();  // the robot will say why not; a stream that it does not take tells nobody anything
+  if (!mine) return ask();  // The robot's answer has the reason; a refused stream would report nothing.
   enter_phase(Phase::centring);
   stream(kCentred);
 }
@@ -152,7 +151,7 @@ bool Steer::left_mode(Reason& reason, std::string& text) {
 }
 
 void Steer::stream_refused(Reason reason, const std::string& text) {
-  // A stale echo passes; these do not.
+  // A stale echo is temporary; these reasons are not.
   const bool lasting = reason == Reason::not_holder || reason == Reason::nobody_holds ||
                        reason == Reason::stopped || reason == Reason::stale_epoch ||
                        reason == Reason::wrong_mode || reason == Reason::identity_mismatch ||

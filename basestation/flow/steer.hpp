@@ -7,18 +7,19 @@ namespace adit::station {
 
 struct SteerParams {
   enum class Purpose : std::uint8_t {
-    enter,   ///< ask for a manual mode, then keep a centred stick while the robot is in it
-    drive,   ///< one velocity for a time
-    teleop,  ///< a live stick until cancelled
+    enter,   ///< Requests a manual mode, then streams a centred stick while the robot is in it.
+    drive,   ///< One velocity for a period.
+    teleop,  ///< A live stick until cancelled.
   };
   Purpose purpose{Purpose::drive};
-  std::string mode{"manual"};        ///< manual or smart_joystick
-  std::array<double, 3> velocity{};  ///< drive: m/s, m/s, rad/s
+  std::string mode{"manual"};        ///< `manual` or `smart_joystick`.
+  std::array<double, 3> velocity{};  ///< For `drive`; m/s, m/s, rad/s.
   Duration duration{std::chrono::seconds(1)};
 };
 
-/// Everything with a joystick: streams zero, asks for the mode with the stick centred, streams the value,
-/// then zero for 300 ms, then lets go. A robot that is in smart_joystick stays in it, with the stick centred.
+/// The flow of all commands with a joystick: streams zero, requests the mode with the stick centred, streams
+/// the value, then zero for 300 ms, then ends the stream. A robot in smart_joystick stays in it, with the
+/// stick centred.
 class Steer final : public Flow {
  public:
   Steer(FlowDependencies dependencies, std::string robot, SteerParams params, Done done);
@@ -27,9 +28,9 @@ class Steer final : public Flow {
   void hand_over() override;
   void stream_refused(Reason reason, const std::string& text) override;
   bool over() const override { return phase_ == Phase::over; }
-  /// teleop: the stick's new position.
+  /// Sets the stick's new position, for `teleop`.
   void set_velocity(const std::array<double, 3>& velocity);
-  /// enter: true while it only keeps the stick centred; its end was told.
+  /// True while `enter` only keeps the stick centred; its end was reported.
   bool keeping() const { return phase_ == Phase::keeping; }
 
  private:
@@ -42,7 +43,7 @@ class Steer final : public Flow {
   void move();
   void end(Reason reason, const std::string& text);
   void settled();
-  /// What of the velocity asked for is beyond the robot; empty when nothing.
+  /// Describes the parts of the requested velocity that exceed the robot's limits; empty: none.
   std::string clipped() const;
   bool left_mode(Reason& reason, std::string& text);
   void stream(const std::array<double, 3>& velocity, Stick::Source source = Stick::Source::held);

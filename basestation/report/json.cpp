@@ -10,7 +10,7 @@ namespace {
 
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
-/// 0 stands for an amount that is not known.
+/// Returns null for 0, which means unknown.
 json known(float amount) { return amount > 0.0F ? json(amount) : json(nullptr); }
 
 json abilities_json(const RobotView& robot) {
@@ -150,7 +150,7 @@ json argument_json(const command::Argument& argument) {
   return out;
 }
 
-/// What a front end has to know of an action to offer it: robots, arguments, options, danger.
+/// The properties of an action that a front end needs: robots, arguments, options, danger.
 json info_json(const Action& action) {
   const command::CommandInfo& info = *action.info;
   json arguments = json::array(), options = json::array();

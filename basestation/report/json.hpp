@@ -5,10 +5,10 @@
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/send/answer.hpp"
 
-/// The fleet model for scripts and dashboards. Units as in the views: m, rad, m/s, s, bytes a second.
+/// The fleet model as JSON, for scripts and dashboards. Units as in the views: m, rad, m/s, s, bytes/s.
 namespace adit::station {
 
-/// One object each; what is not known is left out or null.
+/// Return one object each; unknown values are omitted or null.
 nlohmann::json robot_json(const Fleet& fleet, const RobotView& robot, Time now);
 nlohmann::json notice_json(const Notice& notice, Time now);
 nlohmann::json answer_json(const Answer& answer);
@@ -16,7 +16,7 @@ nlohmann::json actions_json(const std::vector<Action>& actions);
 nlohmann::json net_json(const Fleet& fleet, Time now);
 nlohmann::json health_json(const RobotView& robot);
 
-/// {"robots": [...], "stations": [...]}
+/// Returns {"robots": [...], "stations": [...]}.
 nlohmann::json list_json(const Fleet& fleet, Time now);
 
 }  // namespace adit::station

@@ -33,14 +33,14 @@ std::string place_text(const std::array<float, 3>& place) {
   return " at " + fixed(place[0], 1) + " " + fixed(place[1], 1) + " " + fixed(place[2], 1);
 }
 
-/// "0.90 x 0.60 x 0.50 m"; "-" when the robot did not say it.
+/// The size: "0.90 x 0.60 x 0.50 m"; "-" if unknown.
 std::string size_text(const Size& size) {
   if (size.length <= 0.0F || size.width <= 0.0F) return "-";
   return fixed(size.length, 2) + " x " + fixed(size.width, 2) +
          (size.height > 0.0F ? " x " + fixed(size.height, 2) : "") + " m";
 }
 
-/// What the robot says of its own limits.
+/// The robot's own limits.
 std::string limits_text(const RobotView& robot) {
   std::vector<std::string> limits{fixed(robot.max_speed, 1) + " m/s", fixed(robot.max_turn, 1) + " rad/s"};
   if (robot.max_acceleration > 0.0F) limits.push_back(fixed(robot.max_acceleration, 1) + " m/s2");
@@ -165,7 +165,7 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
       {"AGENT", "TOPIC", "B/S OUT", "N/S OUT", "B/S IN", "N/S IN", "DROPPED"}};
   double out_sum = 0.0, discovery_sum = 0.0;
   for (const auto& [agent, traffic] : fleet.traffic()) {
-    // On a full link reports come every 8 s.
+    // On a full link the report period is 8 s.
     const bool silent = now - traffic.last_heard > 4 * Fleet::kLostAfter;
     std::string first = agent + (silent ? " (silent)" : "");
     for (const TopicRate& row : traffic.topics) {
@@ -231,7 +231,7 @@ std::string actions_text(const std::vector<Action>& actions) {
 }
 
 std::string route_text(const Route& route) {
-  constexpr std::size_t most = 12;  // corners after the start
+  constexpr std::size_t most = 12;  // Corners after the start.
   std::string out = fixed(route.length, 1) + " m";
   if (route.unknown_length > 0.0) out += ", " + fixed(route.unknown_length, 1) + " m of it not seen yet";
   for (std::size_t i = 1; i < route.points.size() && i <= most; ++i)

@@ -23,26 +23,26 @@ struct RobotCommand {
 /// A route that a robot would take: its answer to `plan`. Map frame, m.
 struct Route {
   double length{};
-  double unknown_length{};                      ///< of it through space that was not seen yet
-  std::size_t corners{};                        ///< of the complete route, start and goal included
-  std::vector<std::array<double, 3>> points{};  ///< its first corners, at most 24
+  double unknown_length{};                      ///< Length through space that was not observed yet, m.
+  std::size_t corners{};                        ///< Of the complete route, start and goal included.
+  std::vector<std::array<double, 3>> points{};  ///< The first corners, at most 24.
 };
 
-/// How an order ended: the robot's answer, or why none came.
+/// The result of a command: the robot's answer, or why there was none.
 struct Answer {
   std::string robot{};
-  std::string command{};  ///< its name in the command table
-  std::uint64_t seq{};    ///< 0: nothing was sent, or a stream was refused
+  std::string command{};  ///< Name in the command table.
+  std::uint64_t seq{};    ///< 0: nothing was sent, or a stick sample was refused.
   bool accepted{};
-  bool answered{};  ///< by the robot
+  bool answered{};  ///< The robot answered.
   Reason reason{Reason::none};
   std::string text{};
   std::string holder{};
-  std::optional<Route> route{};  ///< of an accepted plan
-  Duration latency{};            ///< from the first sending to the answer
+  std::optional<Route> route{};  ///< Of an accepted `plan`.
+  Duration latency{};            ///< From the first transmission to the answer.
 };
 
-/// Commands of this station since its start; repeats are not commands.
+/// Counts of this station's commands since its start; repeats do not count.
 struct Counts {
   std::uint64_t sent{}, repeats{}, accepted{}, refused{}, unanswered{};
 };

@@ -15,7 +15,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Nothing when it is no route: numbers that are not finite, or a corner cut in two. A height may be unknown.
+/// Converts a route. Returns nothing if it is invalid: numbers that are not finite, or an incomplete corner.
+/// A height may be unknown.
 std::optional<Route> from_radio(const radio::PlannedRoute& in) {
   Route route{in.length(), in.unknown_length(), in.corners(), {}};
   if (!std::isfinite(route.length) || !std::isfinite(route.unknown_length) || in.points().size() % 3 != 0)
@@ -34,14 +35,14 @@ struct Sender::Pending {
   std::vector<Done> done{};
   radio::Command message{};
   Time first_sent{};
-  Time waits_since{};  ///< of the limit; of a robot that was not heard yet it has not begun
+  Time waits_since{};  ///< Start of the time limit; not started for a robot that was not heard yet.
   Time repeated{};
   Timer timer{};
-  bool reported{};   ///< a caller was told that it is not acknowledged yet
-  bool overtaken{};  ///< a stop went out after it, with a higher number
-  bool blind{};      ///< sent before this station knew the authority in force
-  bool resting{};    ///< refused for a cause that passes: sent anew at the next repeat
-  Answer refusal{};  ///< that refusal
+  bool reported{};   ///< It was reported as not acknowledged yet.
+  bool overtaken{};  ///< A stop with a higher number was sent after it.
+  bool blind{};      ///< It was sent before this station knew the authority in force.
+  bool resting{};    ///< It was refused for a temporary cause, and is sent again at the next repeat.
+  Answer refusal{};  ///< The refusal.
   bool is_stop() const { return robot_command.request.verb == command::verb("stop"); }
 };
 
@@ -85,7 +86,7 @@ void Sender::send(RobotCommand robot_command, Done done) {
   pending->robot_command = std::move(robot_command);
   pending->done.push_back(std::move(done));
   if (pending->is_stop()) {
-    if (to->stop) {  // one is on its way: the same answer serves both
+    if (to->stop) {  // A stop is pending: the same answer serves both.
       to->stop->done.push_back(std::move(pending->done.front()));
       return;
     }
@@ -115,7 +116,8 @@ void Sender::make_room() {
     if (!unheard(robot)) continue;
     ++count;
     if (lane->current) continue;
-    const Time sent = lane->stop ? lane->stop->first_sent : Time::min();  // one without a stop goes first
+    // A lane without a stop is closed first.
+    const Time sent = lane->stop ? lane->stop->first_sent : Time::min();
     if (oldest && sent >= since) continue;
     oldest = &robot;
     since = sent;
@@ -128,7 +130,7 @@ void Sender::close_lane(std::string robot, const std::string& why) {
   const auto found = lanes_.find(robot);
   const std::shared_ptr<Lane> lane = found->second;
   lanes_.erase(found);
-  // A number that was used would get the robot's first answer to it again.
+  // A used number would get the robot's first answer to it again.
   first_seq_ = std::max(first_seq_, lane->next_seq);
   if (const std::shared_ptr<Pending> stop = lane->stop)
     finish(*lane, stop, {.reason = Reason::no_answer, .text = why});
@@ -168,7 +170,7 @@ void Sender::renumber(Lane& to, Pending& pending) {
 }
 
 void Sender::transmit(Lane& to, Pending& pending) {
-  // A sample that could not be queued is counted by the wire, and the next repeat takes its place.
+  // The participant counts a sample that could not be queued, and the next repeat replaces it.
   (void)to.writer.write(pending.message);
 }
 
@@ -181,7 +183,7 @@ void Sender::tick(const std::string& robot, const std::shared_ptr<Pending>& pend
   if (pending->is_stop() && unheard(robot)) {
     pending->waits_since = now;
     report_unheard(*pending);
-    if (to.stop != pending) return;  // whoever was told gave a command that ended it
+    if (to.stop != pending) return;  // A callback gave a command that ended this one.
     if (now - pending->first_sent >= limit && now - pending->repeated < slow) return;
   }
   if (now - pending->waits_since >= limit) {
@@ -229,8 +231,8 @@ std::vector<std::string> Sender::drop_unheard() {
 }
 
 void Sender::withdraw(Lane& to, const Pending& pending) {
-  // The writer keeps its newest sample and repairs it across a gap of any length: a question takes its place.
-  // A stop does no harm late, and one on its way has taken the place already.
+  // The writer stores its newest sample and retransmits it after a gap of any length: a query replaces it. A
+  // late stop is harmless, and a pending stop has replaced the sample already.
   if (pending.is_stop() || to.stop) return;
   radio::Command question = pending.message;
   question.seq(to.next_seq++);
@@ -243,15 +245,15 @@ void Sender::withdraw(Lane& to, const Pending& pending) {
 
 bool Sender::worth_another(const Pending& pending, const radio::Acknowledgement& sample) const {
   const auto reason = static_cast<Reason>(sample.reason());
-  // The robot never saw it: a stop overtook it, or a later command a stop that was lost on its way.
+  // The robot never received it: a stop overtook it, or a later command overtook a lost stop.
   if (reason == Reason::stale_sequence && (pending.overtaken || pending.is_stop())) return true;
-  // A station that has just been started again did not know the epoch yet; the refusal told it.
+  // A restarted station did not know the epoch yet; the refusal contains it.
   if (reason == Reason::stale_epoch && pending.blind) return true;
-  // The robot's agent was started again while this was under way, and we are its holder still.
+  // The robot's agent was restarted while this was pending, and this station is still the holder.
   if (reason == Reason::stale_epoch && sample.holder() == params_.name &&
       sample.epoch().start() != pending.message.epoch().start())
     return true;
-  // The robot has not heard this participant's presence yet.
+  // The robot has not received this participant's presence yet.
   const bool unknown = reason == Reason::identity_mismatch || reason == Reason::unknown_station;
   return unknown && (pending.is_stop() || pending.first_sent - started_ < 5s);
 }

@@ -13,8 +13,8 @@ struct Stick::Stream {
   radio::Joystick sample{};
   Source source{Source::held};
   bool active{false};
-  bool pushed{false};  ///< the last sample that went out was not centred
-  Time earliest{};     ///< of the next sample at 20 a second
+  bool pushed{false};  ///< The last sample sent was not centred.
+  Time earliest{};     ///< Earliest time of the next sample at 20 Hz.
   Timer timer{};
 
   bool centred() const { return sample.vx() == 0.0F && sample.vy() == 0.0F && sample.wz() == 0.0F; }
@@ -52,7 +52,7 @@ Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>
   stream->active = true;
   if (repeat_suffices && !slower) return {};
   const Time now = strand_.now();
-  const bool lets_go = stream->pushed && stream->centred();  // a zero waits for nothing; what follows it does
+  const bool lets_go = stream->pushed && stream->centred();  // A zero is sent at once; samples after it wait.
   if (lets_go || now + kTolerance >= stream->earliest)
     send(*stream, now);
   else
@@ -69,7 +69,7 @@ void Stick::send(Stream& stream, Time at) {
 
 void Stick::arm(Stream& stream, Time due) {
   const Time now = strand_.now();
-  // A strand that was held up does not send what it missed.
+  // After a delay of the strand, missed samples are not sent.
   if (due < now) due = now;
   stream.timer = strand_.after(due - now, [this, &stream, due] { send(stream, due); });
 }
@@ -78,7 +78,7 @@ void Stick::end(const std::string& robot) {
   const auto found = streams_.find(robot);
   if (found == streams_.end()) return;
   found->second->timer.cancel();
-  found->second->active = false;  // the writer stays: its sequence goes on
+  found->second->active = false;  // The writer stays: its sequence continues.
 }
 
 bool Stick::streaming(const std::string& robot) const {
@@ -88,12 +88,13 @@ bool Stick::streaming(const std::string& robot) const {
 
 void Stick::transmit(Stream& stream) {
   const RobotView* robot = fleet_.robot(stream.robot);
-  if (!robot || !robot->located) return;  // nothing to echo: the robot would refuse it
+  if (!robot || !robot->located) return;  // Without a stamp to echo, the robot would refuse the sample.
   stream.sample.epoch().start(robot->epoch.start);
   stream.sample.epoch().counter(robot->epoch.counter);
   stream.sample.seq(stream.sample.seq() + 1);
   stream.sample.echo(robot->stamp);
-  (void)stream.writer.write(stream.sample);  // the next sample is 50 ms away; the wire counts failures
+  // The next sample follows after 50 ms; the participant counts failures.
+  (void)stream.writer.write(stream.sample);
 }
 
 }  // namespace adit::station

@@ -9,21 +9,21 @@
 
 namespace adit::station {
 
-/// Streams joystick samples to robots, each with the last RobotState stamp that was heard.
+/// Streams joystick samples to robots, each with the stamp of the last RobotState received.
 ///
-/// A new value goes out when it comes, and the last one is repeated: 20 samples a second on average, however
-/// often values come. A stream goes on until end(); the caller chooses the last samples before that.
+/// A new value is sent at once, and the last one is repeated: 20 Hz on average, independent of the rate of
+/// new values. A stream continues until end(); the caller chooses the last samples before that.
 class Stick {
  public:
   enum class Source : std::uint8_t {
-    held,  ///< one value for a while: repeated each `kPeriod`
-    live,  ///< a stick that is renewed each `kPeriod` or more often: repeated only when a renewal is missing
+    held,  ///< One value for some time: repeated each `kPeriod`.
+    live,  ///< A stick that is renewed each `kPeriod` or more often: repeated only if a renewal is missing.
   };
   static constexpr Duration kPeriod = std::chrono::milliseconds(50);
   /// A live value is repeated after this time without another one.
   static constexpr Duration kLiveRepeat = std::chrono::milliseconds(75);
-  /// A sample may go out so much earlier than the rate says: one period, whatever the phase of the renewals
-  /// is, and their jitter.
+  /// A sample may be sent this much earlier than the rate requires: one period, for any phase of the
+  /// renewals, plus their jitter.
   static constexpr Duration kTolerance = std::chrono::milliseconds(70);
 
   Stick(Id id, Executor& strand, wire::Participant& radio, Fleet& fleet);
@@ -32,13 +32,13 @@ class Stick {
   /// Streams this velocity (m/s, m/s, rad/s, body frame) from now on. Error: wire_failed.
   Result<void> stream(const std::string& robot, const std::array<double, 3>& velocity,
                       Source source = Source::held);
-  /// Lets go: the robot hears nothing more.
+  /// Ends the stream: nothing more is sent to the robot.
   void end(const std::string& robot);
   bool streaming(const std::string& robot) const;
 
  private:
   struct Stream;
-  /// `at`: now, or when the sample was due.
+  /// Sends a sample. `at`: now, or the time when the sample was due.
   void send(Stream& stream, Time at);
   void arm(Stream& stream, Time due);
   void transmit(Stream& stream);

@@ -10,7 +10,7 @@
 namespace adit::agent {
 
 /// Runs the robot's behaviour tree (config/trees/robot.xml). Leaves: the conditions of the mode table by
-/// name, `Requested mode=""`, and the two ways of deciding, `Run mode=""` and `Pause mode=""`.
+/// name, `Requested mode=""`, and the two kinds of decision, `Run mode=""` and `Pause mode=""`.
 ///
 /// Its decisions are requests: MotionGuard enforces the mode table in front of the mux.
 class Decider {

@@ -57,7 +57,7 @@ class CommandInterface {
   /// Records the stamp of a robot state that was sent.
   void sent_stamp(std::uint64_t stamp) { gate_.sent(stamp); }
   /// Whether a sample of the holder's stick arrived within the last second, fresh or stale; such samples echo
-  /// the stamps of our robot states.
+  /// the stamps of the robot states sent.
   bool stick_used(Time now) const { return stick_heard_ && now - *stick_heard_ < 1s; }
   /// Ends the lock from the robot's own console, which is always permitted. Returns false if there was none.
   bool unlock_at_console();

@@ -30,8 +30,8 @@ struct KeptAnswers {
   std::string station{};
   Id station_id{};
   std::uint64_t newest{};  ///< Highest number received.
-  std::array<std::uint64_t, 3>
-      newest_of{};        ///< Highest number of each line of commands that must stay in order.
+  /// Highest number of each line of commands that must stay in order.
+  std::array<std::uint64_t, 3> newest_of{};
   std::uint64_t floor{};  ///< Lower numbers that are not among the answers are too old.
   std::vector<KeptAnswer> answers{};
   bool operator==(const KeptAnswers&) const = default;

@@ -24,7 +24,7 @@ struct Station {
 /// holder is never evicted, and only the holder is added to a table full of stations that are heard.
 ///
 /// - Same name and id from a new participant: the station was restarted, as Binding judges. The holder must
-/// send a presence for this; for other stations a command suffices.
+///   send a presence for this; for other stations a command suffices.
 /// - Same name, other id: refused while the first station is heard.
 class StationTable {
  public:

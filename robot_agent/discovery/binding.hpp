@@ -12,11 +12,11 @@ namespace adit::agent {
 /// from sending. Therefore:
 ///
 /// - A new participant that announces the same name and id claims them. It gets them if the bound participant
-/// left, or was silent for longer than the heartbeat period: a process that was killed and restarted is bound
-/// again 1.25 s after its death at the latest.
+///   left, or was silent for longer than the heartbeat period: a process that was killed and restarted is
+///   bound again 1.25 s after its death at the latest.
 /// - If the bound participant sends again although another one claimed or got its binding, both are alive, so
-/// the new participant is no restart: the original keeps or regains the binding, and the new one is rejected
-/// while the original is heard.
+///   the new participant is no restart: the original keeps or regains the binding, and the new one is
+///   rejected while the original is heard.
 ///
 /// A forger is therefore bound only while the original is not heard, e.g. because of radio loss.
 class Binding {
@@ -33,8 +33,8 @@ class Binding {
     bool bound{};      ///< The participant is bound to the name and id.
     bool pending{};    ///< It claims the binding, and nothing contradicts the claim yet.
     bool restarted{};  ///< It claimed the binding just now, or got it without a claim.
-    std::optional<wire::ParticipantId>
-        found_out{};  ///< The new participant that turned out to be no restart.
+    /// The new participant that turned out to be no restart.
+    std::optional<wire::ParticipantId> found_out{};
   };
 
   /// The bound participant, the previous one, which may regain the binding, and the one that was rejected.

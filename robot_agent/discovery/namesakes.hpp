@@ -12,13 +12,13 @@ namespace adit::agent {
 /// Decides which of several robots with one name stays in service, from the messages of the others.
 ///
 /// - A robot that a station had heard for `kSettled` before another one appeared stays; so does one that was
-/// held for that long, or before a restart of its agent. No announcement of another robot changes that,
-/// because it could be forged.
+///   held for that long, or before a restart of its agent. No announcement of another robot changes that,
+///   because it could be forged.
 /// - A newer robot gives way, and announces that with its claim: whether it is held, and its start id. If all
-/// the others also give way, e.g. because two robots started together, the one that is held stays, otherwise
-/// the one with the lowest start id.
+///   the others also give way, e.g. because two robots started together, the one that is held stays,
+///   otherwise the one with the lowest start id.
 /// - A robot gives way until the others left or were silent for the lease of discovery: one that is out of
-/// range for a while still owns the name.
+///   range for a while still owns the name.
 ///
 /// Pure: the caller has the clock. Bounded.
 class Namesakes {

@@ -23,8 +23,8 @@ class Driver {
     std::function<void(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received)>
         odometry{};
     std::function<void(float charge)> battery{};  ///< State of charge, [0, 1].
-    std::function<void(const Twist2& velocity, Time received)>
-        external{};  ///< Velocity that a program requests.
+    /// Velocity that a program requests.
+    std::function<void(const Twist2& velocity, Time received)> external{};
     /// Reports that another participant wrote a velocity.
     std::function<void(const wire::ParticipantId& writer, Time received)> rival{};
   };

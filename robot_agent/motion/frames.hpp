@@ -11,8 +11,8 @@ namespace adit::agent {
 ///
 /// - `T_odom_base` is the driver's odometry. It is continuous, so local maps, plans and routes are in `odom`.
 /// - `T_map_odom` places the odometry frame in the map. It is level (x, y, z, yaw) and changes in steps, so
-/// only data that operators enter or see is in `map`: goals, poses, corners of routes, findings. A component
-/// that follows a goal in the map converts it with to_odom() each time.
+///   only data that operators enter or see is in `map`: goals, poses, corners of routes, findings. A
+///   component that follows a goal in the map converts it with to_odom() each time.
 ///
 /// Two epochs mark stored coordinates as invalid: odom_epoch() changes when the odometry started again
 /// elsewhere (all coordinates in `odom` are invalid), map_epoch() when T_map_odom changed (converted

@@ -39,8 +39,8 @@ struct GoTo {
 struct Progress {
   bool arrived{};
   bool blocked{};  ///< Every path is blocked.
-  bool
-      unreachable{};  ///< No path leads there, not even through unobserved space; `blocked` is then also set.
+  /// No path leads there, not even through unobserved space; `blocked` is then also set.
+  bool unreachable{};
   bool operator==(const Progress&) const = default;
 };
 

@@ -8,8 +8,8 @@
 namespace adit::agent {
 namespace {
 
-constexpr double kTurnLooksAhead =
-    0.6;  // Time over which a stick's turn rate shifts the requested direction, s.
+// Time over which a stick's turn rate shifts the requested direction, s.
+constexpr double kTurnLooksAhead = 0.6;
 constexpr double kTurningSpeed = 0.05;    // Speed for a stick that only turns, m/s.
 constexpr Duration kAnswerDeadline = 2s;  // Of planner and router; one that hangs is replaced earlier.
 constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction of the map, m.

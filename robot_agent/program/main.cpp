@@ -59,8 +59,8 @@ int fail(const Error& error, int code) {
 }
 
 Result<RobotConfig> load(const Options& options) {
-  const auto file = config::find_file(
-      options.config, "./");  // Tries the path as given, then the configuration's search path.
+  // Tries the path as given, then the configuration's search path.
+  const auto file = config::find_file(options.config, "./");
   if (!file) return file.error();
   auto config = load_robot_config(*file);
   if (!config) return config;

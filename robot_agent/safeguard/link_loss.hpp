@@ -26,8 +26,8 @@ class LinkLoss {
     bool autonomous{};  ///< The mode follows goals by itself.
     bool arrived{};     ///< The robot is at the goal.
     Time heard{};       ///< Time of the holder's last heartbeat.
-    std::optional<Eigen::Vector2d>
-        place{};  ///< Position of the robot, map frame, m; unset while not localised.
+    /// Position of the robot, map frame, m; unset while not localised.
+    std::optional<Eigen::Vector2d> place{};
   };
   struct Step {
     bool lost{}, found{};  ///< The loss began, or ended, in this step.

@@ -60,8 +60,8 @@ Restored restore_state(const std::shared_ptr<store::Disk>& disk) {
   if (!read) {
     Restored r{};
     r.lost = true;
-    const bool broken =
-        state.found == store::LoadStatus::good;  // The file is complete, but has no list of sections.
+    // The file is complete, but has no list of sections.
+    const bool broken = state.found == store::LoadStatus::good;
     r.text =
         broken ? "corrupt: it makes no sense" : std::string(store::name(state.found)) + ": " + state.text;
     r.preserved = store::set_aside(*disk, kStateFile, broken ? "corrupt" : store::name(state.found));

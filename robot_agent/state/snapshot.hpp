@@ -60,8 +60,8 @@ inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 3, 16 
 /// The result of decoding a state file.
 struct ReadSnapshot {
   Snapshot snapshot{};  ///< Lost entries have their default values.
-  std::vector<std::string>
-      lost{};  ///< Readable names of entries that could not be read: "stops", "an answer".
+  /// Readable names of entries that could not be read: "stops", "an answer".
+  std::vector<std::string> lost{};
   std::vector<std::string> unknown{};  ///< Skipped sections of a newer version of this program.
   bool authority_lost{};               ///< Holder, lock and epoch are unknown.
   bool stops_lost{};  ///< The stopping stations are unknown: `snapshot` has a stop of "others".

@@ -12,8 +12,8 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kHealthPeriod = 5s;
-constexpr Duration kCommandSilent =
-    120ms;  // After this silence of the command strand the supervisor sends zero itself.
+// After this silence of the command strand the supervisor sends zero itself.
+constexpr Duration kCommandSilent = 120ms;
 constexpr Duration kLastWords = 100ms;  // Time for the notification of an escalated failure.
 constexpr const char* kAgent = "agent";
 

@@ -13,8 +13,8 @@ struct ComponentRow {
   PartState state{PartState::up};
   bool healthy{true};
   bool automatic{true};
-  std::optional<Time>
-      heard{};  ///< Last heartbeat, for a part that is not one of the supervisor's components.
+  /// Last heartbeat, for a part that is not one of the supervisor's components.
+  std::optional<Time> heard{};
   Duration silent{};
   std::uint32_t restarts{};
   std::uint32_t hung{};  ///< Number of threads that it left behind.

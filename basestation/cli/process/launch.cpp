@@ -33,10 +33,10 @@ std::vector<std::string> arguments(const Options& options) {
   return words;
 }
 
-/// Between fork and exec: only what is safe there.
+/// Runs between fork and exec: calls only functions that are async-signal-safe.
 [[noreturn]] void become_station(char* const* argv, int ready, int log) {
   ::setsid();
-  if (::fork() != 0) ::_exit(0);  // the grandchild belongs to init: nobody has to reap it
+  if (::fork() != 0) ::_exit(0);  // The grandchild belongs to init, which reaps it.
   const int null = ::open("/dev/null", O_RDWR);
   ::dup2(null, 0);
   ::dup2(log >= 0 ? log : null, 1);
@@ -55,7 +55,8 @@ std::vector<std::string> arguments(const Options& options) {
   ::_exit(127);
 }
 
-/// What the station says of itself; null when it does not answer at once: the command itself reports that.
+/// Asks the station for its description; null if it does not answer immediately, which the command itself
+/// then reports.
 nlohmann::json ask_hello(LineSocket& socket) {
   if (!socket.send({{"hello", true}})) return {};
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kHelloLimitMs);
@@ -74,7 +75,7 @@ nlohmann::json ask_hello(LineSocket& socket) {
   }
 }
 
-/// A station on another domain would take the command to other robots than those that were meant.
+/// Checks the running station's domain: a station on another domain would send the command to other robots.
 Result<void> check_running(LineSocket& socket, const Options& options) {
   const nlohmann::json hello = ask_hello(socket);
   if (hello.is_null()) return {};
@@ -153,7 +154,7 @@ Result<LineSocket> connect_or_launch(const Options& options) {
   if (const auto link = wire::load_link(options.link.empty() ? "lan" : options.link); !link)
     return Error{Reason::bad_argument, "--link: " + link.error().text};
   if (auto started = launch(options); !started) {
-    socket = LineSocket::connect(*path);  // another process may have started it at the same time
+    socket = LineSocket::connect(*path);  // Another process may have started it at the same time.
     if (socket) return socket;
     return started.error();
   }

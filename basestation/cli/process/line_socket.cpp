@@ -35,7 +35,7 @@ bool LineSocket::pump() {
     if (size > 0) {
       in_.append(buffer, static_cast<std::size_t>(size));
       if (in_.size() > kMaxLine && in_.find('\n') == std::string::npos) return false;
-      if (in_.size() > 4 * kMaxLine) return true;  // the rest after these lines
+      if (in_.size() > 4 * kMaxLine) return true;  // The rest is read after these lines are taken.
     } else {
       return size < 0 && (errno == EAGAIN || errno == EINTR);
     }

@@ -10,8 +10,8 @@
 
 namespace adit::station::cli {
 
-/// One end of a local stream socket that carries JSON, one object a line. Never blocks; what comes in and
-/// what waits to go out is bounded.
+/// One end of a local stream socket that carries JSON, one object per line. Never blocks; input and output
+/// buffers are bounded.
 class LineSocket {
  public:
   static constexpr std::size_t kMaxLine = 256 << 10;
@@ -19,28 +19,30 @@ class LineSocket {
 
   LineSocket() = default;
   explicit LineSocket(File socket);
-  /// Errors: no_station (nobody listens there), cannot_read.
+  /// Connects to a listening socket. Errors: no_station (no process listens there), cannot_read.
   static Result<LineSocket> connect(const std::string& path);
 
   int fd() const { return file_.get(); }
-  /// Reads what has arrived; false when the other side is gone or sent an endless line.
+  /// Reads the available bytes; returns false if the peer closed the connection or sent a line that is too
+  /// long.
   bool pump();
-  /// The next whole line; nullopt when there is none yet.
+  /// The next complete line; nullopt if there is none yet.
   std::optional<std::string> line();
-  /// Queues an object and sends what fits; false when the other side is gone or does not read.
+  /// Queues an object and sends as much as possible; returns false if the peer closed the connection or does
+  /// not read.
   bool send(const nlohmann::json& object);
-  /// The same for an object that text_of() wrote.
+  /// As send(), for an object that text_of() wrote.
   bool send_line(const std::string& text);
-  /// One line without its end; bytes that are no UTF-8 are replaced.
+  /// Writes an object as one line without the newline; bytes that are no UTF-8 are replaced.
   static std::string text_of(const nlohmann::json& object);
-  /// Sends what waits; false when the other side is gone.
+  /// Sends queued output; returns false if the peer closed the connection.
   bool flush();
   bool has_backlog() const { return !out_.empty(); }
-  /// True when the other side has read all that was sent.
+  /// Whether the peer has read everything that was sent.
   bool is_read() const;
-  /// Reads nothing more; what the other side writes from now on fails there.
+  /// Stops reading; further writes of the peer fail.
   void stop_reading();
-  /// The process at the other end; 0 when it is not known.
+  /// Process id of the peer; 0: unknown.
   pid_t peer_pid() const;
 
  private:

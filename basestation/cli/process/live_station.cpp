@@ -42,7 +42,7 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const Options& options, c
                        .discovery_grace = hooks.discovery_grace};
   if (options.at.size() == 3) params.place = {options.at[0], options.at[1], options.at[2]};
   for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
-  // A disk that cannot be used is no reason not to stop a robot: findings stay in memory then.
+  // An unusable disk must not prevent stops of robots: findings then stay in memory.
   if (const auto folder = state_folder()) {
     auto disk = store::FileDisk::open(*folder + "/findings-" + options.name);
     if (disk)

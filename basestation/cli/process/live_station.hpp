@@ -9,14 +9,14 @@
 
 namespace adit::station::cli {
 
-/// A station on the real clock and the real wire, in this process.
+/// A station in this process, on the real clock and the real network.
 class LiveStation {
  public:
   struct Hooks {
-    std::function<void(Station&)> ready{};  ///< called on the strand before the station starts
+    std::function<void(Station&)> ready{};  ///< Called on the strand before the station starts.
     Duration presence{std::chrono::seconds(1)};
     Duration discovery_grace{std::chrono::seconds(5)};
-    bool record{false};  ///< the last minutes are kept where the options say
+    bool record{false};  ///< Records the last minutes in the folder of the options.
   };
   /// Errors: as of station_id(), load_link(), open_fastdds() and Station::start().
   static Result<std::unique_ptr<LiveStation>> open(const Options& options, const Hooks& hooks);
@@ -24,9 +24,10 @@ class LiveStation {
 
   Station& station() { return *station_; }
   Executor& strand() { return *strand_; }
-  /// Runs a line and waits for its end, at most `limit`: no_answer then. Not on the strand.
+  /// Runs a line and waits for its end, at most `limit`, after which the outcome is no_answer. Do not call it
+  /// on the strand.
   Outcome execute(const std::string& line, std::chrono::milliseconds limit);
-  /// As `down`, for a station that is told to end: at most a second.
+  /// Releases all robots as `down` does, when the station has to end; takes at most 1 s.
   void release_all() { (void)execute("down", std::chrono::milliseconds(1000)); }
 
  private:

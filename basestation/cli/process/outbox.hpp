@@ -6,27 +6,27 @@
 
 namespace adit::station::cli {
 
-/// The lines that wait for one client of the station, in the order in which they arose.
+/// The queue of lines for one client of the station, in the order of their events.
 ///
-/// A reply is never dropped: a client that lets too many wait has to be cut off. Events are bounded: the
-/// oldest makes room for a new one, and the client reads how many it missed. Of snapshots only the newest
-/// waits.
+/// A reply is never dropped: a client with too many unread replies must be disconnected. Events are bounded:
+/// the oldest is dropped for a new one, and the client reads how many it missed. Only the newest snapshot is
+/// queued.
 class Outbox {
  public:
   static constexpr std::size_t kMaxReplyBytes = 4 << 20;
   static constexpr std::size_t kMaxEvents = 256;
 
-  /// False when more than `kMaxReplyBytes` of replies wait.
+  /// Queues a reply. Returns false if more than `kMaxReplyBytes` of replies are queued.
   [[nodiscard]] bool reply(std::string line);
   void event(std::string line);
   void snapshot(std::string line);
-  /// So many events were lost before they came here.
+  /// Counts events that were lost before they were queued here.
   void lost(std::size_t events) { missed_ += events; }
-  /// Everything is dropped.
+  /// Drops all queued lines.
   void clear();
 
   /// The next line to send. `client_is_done`: the client has read all that was sent; a snapshot waits for
-  /// that, so that a client which was busy gets the newest one instead of all those that it missed.
+  /// that, so that a busy client gets only the newest one.
   std::optional<std::string> next(bool client_is_done);
   bool empty() const { return waiting_.empty() && missed_ == 0; }
 

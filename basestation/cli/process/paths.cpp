@@ -22,7 +22,7 @@ std::string variable(const char* name) {
 std::string because() { return std::string(": ") + std::strerror(errno); }
 
 Result<std::string> private_folder(const std::string& path) {
-  std::error_code ignored;  // mkdir below says what is wrong
+  std::error_code ignored;  // mkdir() below reports the error.
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
   if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
     return {Reason::cannot_write, "cannot make the folder " + path + because()};
@@ -82,11 +82,11 @@ Result<Id> station_id(const std::string& name) {
     for (const int nibble : {byte >> 4, byte & 15}) text += "0123456789abcdef"[nibble];
   text += '\n';
   std::string scratch = path + ".XXXXXX";
-  File file(::mkostemp(scratch.data(), O_CLOEXEC));  // mode 0600
+  File file(::mkostemp(scratch.data(), O_CLOEXEC));  // Mode 0600.
   if (!file) return {Reason::cannot_write, "cannot write in " + *folder + because()};
   const bool written = ::write(file.get(), text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
                        ::fsync(file.get()) == 0;
-  // link() does not replace: of two processes that start at once the first one's identity stays.
+  // link() does not replace: if two processes start at the same time, the first one's identity stays.
   const bool placed = written && (::link(scratch.c_str(), path.c_str()) == 0 || errno == EEXIST);
   const std::string why = because();
   ::unlink(scratch.c_str());

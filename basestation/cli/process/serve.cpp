@@ -49,7 +49,8 @@ int serve(const Options& options, int ready_fd) {
   sigset_t set;
   sigemptyset(&set);
   for (const int number : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, number);
-  ::pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread, so that all of them have it
+  ::pthread_sigmask(SIG_BLOCK, &set,
+                    nullptr);  // Set before any thread starts, so that all threads inherit it.
   const File signals(::signalfd(-1, &set, SFD_CLOEXEC));
   const auto ended = run(options, ready_fd, signals);
   if (ended) return kExitDone;

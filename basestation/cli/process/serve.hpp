@@ -3,8 +3,8 @@
 
 namespace adit::station::cli {
 
-/// Runs the station of this name in this process until it is told to end. `ready_fd` (-1: none) is told
-/// "ready" or why it could not start, then closed. Returns the exit code.
+/// Runs the station of this name in this process until a signal or a client ends it. Writes "ready" or the
+/// reason of a failed start to `ready_fd` (-1: none) and closes it. Returns the exit code.
 int serve(const Options& options, int ready_fd);
 
 }  // namespace adit::station::cli

@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 
 constexpr int kSnapshotPeriodMs = 200;
 constexpr const char* kUnreadText = "the program did not read what the station answered";
-constexpr std::size_t kMaxEventText = 400;  // of an outcome, in the event for the others
+constexpr std::size_t kMaxEventText = 400;  // Length of an outcome's text in the event for the other clients.
 
 json outcome_json(std::int64_t id, const Outcome& outcome) {
   return {{"id", id},
@@ -35,7 +35,7 @@ json outcome_json(std::int64_t id, const Outcome& outcome) {
             {"json", outcome.json}}}};
 }
 
-/// Only the user who runs the station, and root, may command it.
+/// Whether the peer is the user who runs the station, or root.
 bool allowed(int fd) {
   ucred peer{};
   socklen_t size = sizeof peer;
@@ -55,7 +55,7 @@ Result<std::unique_ptr<Server>> Server::open(const std::string& folder, const st
             "the path " + server->path_ + " is too long for a socket; set XDG_RUNTIME_DIR"};
   std::memcpy(address.sun_path, server->path_.c_str(), server->path_.size() + 1);
 
-  // The lock goes with the process, however it ends; the socket's file does not.
+  // The lock ends with the process in any case; the socket's file remains.
   const std::string lock = folder + "/" + name + ".lock";
   server->lock_.reset(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
   if (!server->lock_) return {Reason::cannot_write, "cannot write " + lock + ": " + std::strerror(errno)};
@@ -84,13 +84,13 @@ Server::~Server() {
 
 void Server::wake() {
   const std::uint64_t one = 1;
-  (void)!::write(wake_.get(), &one, sizeof one);  // full means that it wakes anyway
+  (void)!::write(wake_.get(), &one, sizeof one);  // If the counter is full, the thread wakes anyway.
 }
 
 void Server::hand_over(Reply reply) {
   {
     const std::lock_guard guard(mutex_);
-    // Answers are bounded by the requests that are open.
+    // The number of answers is bounded by the open requests.
     if (reply.kind != Reply::Kind::answer && handed_over_ == kMaxHandedOver) {
       ++lost_;
     } else {
@@ -128,7 +128,7 @@ void Server::accept_client() {
 }
 
 void Server::cancel_all(Client& client) {
-  // What a client began ends even when the strand's queue is full.
+  // The requests of a client end even if the strand's queue is full.
   for (const auto& [id, handle] : std::exchange(client.open, {}))
     strand_->post_control([station = station_, h = handle] { station->cancel(*h); });
 }
@@ -310,7 +310,7 @@ void Server::ask_snapshot() {
 
 void Server::read(std::uint64_t number, Client& client) {
   const bool open = client.socket.pump();
-  // What came with the last bytes of a client that closed is done all the same.
+  // Requests in the last bytes of a client that closed the connection are still executed.
   for (auto line = client.socket.line(); line && !client.cut_off; line = client.socket.line())
     handle(number, client, *line);
   if (!open) drop(number);
@@ -343,7 +343,7 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
       const auto found = clients_.find(numbers[i]);
       if (found == clients_.end() || (fds[i + 3].revents & ~POLLOUT) == 0) continue;
       if (found->second.cut_off)
-        drop(numbers[i]);  // it has gone
+        drop(numbers[i]);  // It disconnected.
       else
         read(numbers[i], found->second);
     }
@@ -357,7 +357,7 @@ void Server::serve(Station& station, Executor& strand, const json& hello, int st
       next_snapshot = now + std::chrono::milliseconds(kSnapshotPeriodMs - 10);
     }
   }
-  // The last answers, for clients that still read.
+  // Sends the last answers to clients that still read.
   deliver();
   for (auto& [number, client] : clients_) {
     pollfd writable{client.socket.fd(), POLLOUT, 0};

@@ -14,43 +14,43 @@
 
 namespace adit::station::cli {
 
-/// The station's socket: takes requests of this user's processes to the station's strand, and answers back.
-/// One JSON object a line:
+/// The server of the station's socket: passes requests of this user's processes to the station's strand, and
+/// returns the answers. One JSON object per line:
 ///
 ///     {"id": 1, "do": "take r1"}       -> {"id": 1, "begun": true}, then {"id": 1, "outcome": {...}}
-///     {"id": 2, "teleop": "r1"}        -> the same; {"id": 2, "stick": [vx, vy, wz]} moves it
-///     {"cancel": 1}                    ends what runs under the id
-///     {"watch": true}                  -> {"snapshot": {...}} five times a second, the newest alone
-///     {"notices": true}                -> {"notice": {...}} as they come
+///     {"id": 2, "teleop": "r1"}        -> the same; {"id": 2, "stick": [vx, vy, wz]} drives
+///     {"cancel": 1}                    ends the request with the id
+///     {"watch": true}                  -> {"snapshot": {...}} at 5 Hz, only the newest
+///     {"notices": true}                -> {"notice": {...}} on each notice
 ///     {"hello": true}                  -> {"hello": {...}}
 ///     {"front_end": "watch"}           names the client for the others
 ///
-/// Whatever else arrives is answered with {"wrong": "..."}. What a client began ends when it goes.
+/// Any other line is answered with {"wrong": "..."}. The requests of a client end when it disconnects.
 ///
-/// Every client, the one that began it included, hears of every command and of how it ended:
+/// Every client, including the one that began it, receives the begin and the end of every command:
 ///
 ///     {"event": "command", "id": 7, "phase": "begun", "line": "take r1", "query": false,
 ///      "mine": false, "by": {"client": 3, "front_end": "shell", "pid": 4711}}
 ///     the same with "phase": "ended", "exit", "text" and "error"
 ///
 /// A client that does not read misses the oldest notices and events, and reads {"missed": N}. It never misses
-/// an outcome: when too many wait it is cut off, with {"cut_off": "why"} as the last line.
+/// an outcome: if too many are unread, it is disconnected, with {"cut_off": "why"} as the last line.
 class Server {
  public:
   static constexpr std::size_t kMaxClients = 32;
-  static constexpr std::size_t kMaxOpen = 32;  ///< requests of one client that have not ended
+  static constexpr std::size_t kMaxOpen = 32;  ///< Open requests of one client.
 
-  /// Takes the name (in_use when another process has it) and listens; a socket that a killed station left is
+  /// Locks the name (in_use if another process has it) and listens; the socket of a killed station is
   /// replaced.
   static Result<std::unique_ptr<Server>> open(const std::string& folder, const std::string& name);
   ~Server();
 
-  /// Serves until `stop_fd` becomes readable or end() was called. Call on the program's main thread;
+  /// Serves until `stop_fd` becomes readable or end() is called. Call it on the program's main thread;
   /// `station` lives on `strand`.
   void serve(Station& station, Executor& strand, const nlohmann::json& hello, int stop_fd);
-  /// From any thread: serve() returns once what is queued has been sent.
+  /// Makes serve() return once all queued lines are sent. Callable from any thread.
   void end();
-  /// From any thread: tells those who asked for notices.
+  /// Sends a notice to the clients that requested notices. Callable from any thread.
   void notify(const nlohmann::json& notice);
 
  private:
@@ -59,24 +59,24 @@ class Server {
     Outbox outbox{};
     std::string front_end{"program"};
     pid_t pid{};
-    bool cut_off{false};  ///< only what it has not read yet is still sent
+    bool cut_off{false};  ///< Only its unread lines are still sent.
     bool watches{false};
     bool notices{false};
-    /// Id of the client -> handle of the station, which only the strand writes and reads.
+    /// Maps the client's request id to the station's handle, which only the strand writes and reads.
     std::map<std::int64_t, std::shared_ptr<std::uint64_t>> open{};
   };
-  /// What the strand has for clients.
+  /// A message of the strand for clients.
   struct Reply {
     enum class Kind : std::uint8_t {
-      answer,  ///< for `client`
-      notice,  ///< for all that want notices
-      event,   ///< for all; `client` began it
+      answer,  ///< For `client`.
+      notice,  ///< For all clients that requested notices.
+      event,   ///< For all clients; `client` began it.
     };
     Kind kind{};
     std::uint64_t client{};
     nlohmann::json object{};
   };
-  static constexpr std::size_t kMaxHandedOver = 1024;  ///< notices and events on their way from the strand
+  static constexpr std::size_t kMaxHandedOver = 1024;  ///< Notices and events queued by the strand.
 
   Server() = default;
   void accept_client();
@@ -87,7 +87,7 @@ class Server {
   void wake();
   void deliver();
   void deliver(const Reply& reply);
-  /// Sends what the client takes; false when it is gone.
+  /// Sends as many lines as the client accepts; returns false if it disconnected.
   bool push(Client& client);
   void cut_off(Client& client, const std::string& why);
   void cancel_all(Client& client);
@@ -106,12 +106,12 @@ class Server {
   std::atomic<bool> ending_{false};
   bool snapshot_asked_{false};
 
-  std::uint64_t last_command_{};  // of events; the strand's
+  std::uint64_t last_command_{};  // Id of the last command event; used on the strand.
 
-  std::mutex mutex_{};  // of what follows: written by the strand, read by the serving thread
+  std::mutex mutex_{};  // Guards the members below: the strand writes them, the serving thread reads them.
   std::vector<Reply> replies_{};
-  std::size_t handed_over_{};  // notices and events of these
-  std::size_t lost_{};         // that found no room
+  std::size_t handed_over_{};  // Notices and events in `replies_`.
+  std::size_t lost_{};         // Notices and events that were dropped.
   std::optional<nlohmann::json> snapshot_{};
 };
 

@@ -5,8 +5,8 @@
 
 namespace adit::station::cli {
 
-/// What a dashboard shows: the robots and stations of `list`, the newest notices, what each agent sends, and
-/// this station's counts. Called on the station's strand.
+/// The contents of the dashboard: the robots and stations of `list`, the newest notices, the traffic of each
+/// agent, and this station's counts. Call it on the station's strand.
 nlohmann::json snapshot_json(const Station& station);
 
 }  // namespace adit::station::cli

@@ -10,7 +10,7 @@
 namespace adit::station::cli {
 namespace {
 
-/// -1..1 without the dead zone of a worn stick.
+/// Scales an axis to [-1, 1] and removes the dead zone of a worn stick.
 double axis(Sint16 raw) {
   constexpr double dead = 0.12;
   const double value = std::clamp(raw / 32767.0, -1.0, 1.0);
@@ -19,7 +19,7 @@ double axis(Sint16 raw) {
 
 }  // namespace
 
-/// Loaded by hand: the library brings audio and video along, which every other command would wait for.
+/// Loads the library at run time: it brings audio and video libraries, which would delay every other command.
 struct Gamepad::Sdl {
   void* library{};
   SDL_GameController* controller{};
@@ -59,7 +59,7 @@ Gamepad::Gamepad() {
   auto sdl = std::make_unique<Sdl>();
   sdl->library = ::dlopen("libSDL2-2.0.so.0", RTLD_NOW | RTLD_LOCAL);
   if (!sdl->library) return;
-  ::setenv("SDL_VIDEODRIVER", "dummy", 0);  // no display is needed
+  ::setenv("SDL_VIDEODRIVER", "dummy", 0);  // No display is needed.
   if (!sdl->load_all()) return;
   sdl->set_hint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
   sdl->set_hint(SDL_HINT_JOYSTICK_ALLOW_BACKGROUND_EVENTS, "1");
@@ -72,7 +72,7 @@ Gamepad::~Gamepad() {
   if (!sdl_) return;
   if (sdl_->controller) sdl_->close(sdl_->controller);
   sdl_->quit();
-  // The library stays loaded: its threads may still be on their way out.
+  // The library stays loaded: its threads may not have ended yet.
 }
 
 Gamepad::State Gamepad::read() {

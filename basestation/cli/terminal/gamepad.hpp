@@ -5,14 +5,15 @@
 
 namespace adit::station::cli {
 
-/// The first game controller, by SDL2, which is loaded when it is there: without it, or without a controller,
-/// there is just none. Left stick: forward and sideways; right stick: turn; A: software stop; B: let go.
+/// The first game controller, read with SDL2, which is loaded at run time if it is installed: without SDL2 or
+/// a controller, no gamepad is available. Left stick: forward and sideways; right stick: turn; A: software
+/// stop; B: end teleoperation.
 class Gamepad {
  public:
   struct State {
     bool present{false};
-    std::array<double, 3> stick{};  ///< forward, left, turn left; -1..1, dead zone taken out
-    bool shoulder{false};           ///< the left one: the dead man's switch
+    std::array<double, 3> stick{};  ///< Forward, left, turn left; [-1, 1], dead zone removed.
+    bool shoulder{false};           ///< The left shoulder button, the dead man's switch.
     bool stop{false};
     bool quit{false};
   };
@@ -20,7 +21,7 @@ class Gamepad {
   Gamepad();
   ~Gamepad();
   State read();
-  /// The controller's name, or why there is none.
+  /// The controller's name, or why none is available.
   std::string name() const;
 
  private:

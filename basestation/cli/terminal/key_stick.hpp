@@ -4,20 +4,21 @@
 
 namespace adit::station::cli {
 
-/// A joystick made of keys. A terminal tells of presses and repeats, never of a release: a key that does not
-/// repeat counts as released, after 0.6 s at its first press (longer than a keyboard waits before it
-/// repeats), after 0.25 s from then on.
+/// A joystick emulated with keys. A terminal reports presses and repeats, but no releases: a key that does
+/// not repeat counts as released, 0.6 s after its first press (longer than a keyboard's repeat delay), and
+/// 0.25 s after a repeat.
 class KeyStick {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// The robot's limits: m/s, rad/s.
+  /// Sets the robot's limits, m/s and rad/s.
   void set_limits(double speed, double turn);
-  /// True when the key was one of the stick's: arrows, w a s d, q e (sideways), space (zero), + and -.
+  /// Processes a key; returns whether it belongs to the stick: arrows, w a s d, q e (sideways), space (zero),
+  /// + and -.
   bool press(int key, Clock::time_point now);
-  /// vx vy in m/s, wz in rad/s.
+  /// The velocity: vx, vy in m/s, wz in rad/s.
   std::array<double, 3> velocity(Clock::time_point now) const;
-  /// Share of the limits that a pressed key gives, (0, 1].
+  /// Fraction of the limits that a pressed key commands, (0, 1].
   double scale() const { return scale_; }
 
  private:

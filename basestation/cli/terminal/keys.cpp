@@ -8,7 +8,7 @@ std::vector<int> decode_keys(const std::string& bytes) {
     const char c = bytes[i];
     if (c == '\x1b' && i + 1 < bytes.size() && (bytes[i + 1] == '[' || bytes[i + 1] == 'O')) {
       i += 2;
-      // Parameters, then one final byte.
+      // Skips the parameters, then one final byte follows.
       while (i < bytes.size() && (bytes[i] < 0x40 || bytes[i] > 0x7e)) ++i;
       if (i == bytes.size()) break;
       if (bytes[i] >= 'A' && bytes[i] <= 'D') {

@@ -4,7 +4,7 @@
 
 namespace adit::station::cli {
 
-/// A key: its character, or one of these.
+/// A key: its character code, or one of these values.
 enum Key : int {
   key_up = 1000,
   key_down,
@@ -16,7 +16,7 @@ enum Key : int {
   key_interrupt,  ///< Ctrl-C
 };
 
-/// The keys in what a terminal sent at once; escape sequences that mean nothing here are left out.
+/// Decodes the keys in a chunk of terminal input; unknown escape sequences are omitted.
 std::vector<int> decode_keys(const std::string& bytes);
 
 }  // namespace adit::station::cli

@@ -2,7 +2,7 @@
 
 namespace adit::station::cli {
 
-// What is built instead of gamepad.cpp where SDL2's headers are missing: there is never a controller.
+// Built instead of gamepad.cpp if SDL2's headers are missing: a controller is never available.
 struct Gamepad::Sdl {};
 
 Gamepad::Gamepad() = default;

@@ -57,7 +57,7 @@ void Terminal::write(const std::string& text) const {
       pollfd writable{STDOUT_FILENO, POLLOUT, 0};
       if (::poll(&writable, 1, 1000) <= 0) return;
     } else if (errno != EINTR) {
-      return;  // the terminal is gone; the loop ends with its input
+      return;  // The terminal is closed; the loop ends when its input ends.
     }
   }
 }

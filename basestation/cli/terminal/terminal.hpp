@@ -5,17 +5,17 @@
 
 namespace adit::station::cli {
 
-/// The terminal in raw mode: keys arrive at once and unseen. Restored when dropped, also after SIGINT, which
-/// arrives as a key (signals are off) or as a flag (interrupt.hpp).
+/// The terminal in raw mode: keys arrive immediately and without echo. The destructor restores the terminal,
+/// also after SIGINT, which arrives as a key (signals are off) or as a flag (interrupt.hpp).
 class Terminal {
  public:
-  /// `full_screen`: on a screen of its own, without a cursor.
+  /// `full_screen`: uses the alternate screen, without a cursor.
   explicit Terminal(bool full_screen);
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// False when stdin or stdout is no terminal; nothing was changed then.
+  /// False if stdin or stdout is no terminal; nothing was changed then.
   bool usable() const { return usable_; }
   int rows() const;
   int columns() const;

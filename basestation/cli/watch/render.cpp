@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Cells of one line; colours are put on afterwards, so that cutting never cuts an escape sequence.
+/// A text in one line with its colour; colours are applied after clipping, so that no escape sequence is cut.
 struct Cell {
   std::string text{};
   const char* colour{""};
@@ -29,7 +29,7 @@ class Page {
   Page(int rows, int columns, bool colour)
       : rows_(static_cast<std::size_t>(rows)), columns_(static_cast<std::size_t>(columns)), colour_(colour) {}
 
-  /// `whole`: a colour for the whole line, blanks up to the edge included.
+  /// Adds a line. `whole`: a colour for the complete line, including blanks up to the edge.
   void line(const std::vector<Cell>& cells, const char* whole = "") {
     if (lines_.size() == rows_) return;
     std::string out;
@@ -45,7 +45,7 @@ class Page {
     if (colour_ && *whole != 0) out += "\x1b[0m";
     lines_.push_back(out);
   }
-  /// So many lines more from here on.
+  /// Permits `more` further lines.
   void allow(std::size_t more) { rows_ += more; }
   std::size_t left() const { return rows_ - lines_.size(); }
   std::size_t columns() const { return columns_; }
@@ -130,7 +130,7 @@ void robots(Page& page, const json& snapshot, const WatchState& state) {
             kBold);
   const json list = snapshot.value("robots", json::array());
   const json traffic = snapshot.value("traffic", json::object());
-  // The selected robot stays in view.
+  // Keeps the selected robot in view.
   const std::size_t room = page.left() > 8 ? page.left() - 8 : 1;
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < list.size(); ++i)
@@ -162,7 +162,7 @@ void robots(Page& page, const json& snapshot, const WatchState& state) {
   if (list.empty()) page.line({{"   no robot has been heard", kDim}});
 }
 
-/// What is worth a line about the selected robot.
+/// Adds the detail lines of the selected robot.
 void detail(Page& page, const json& snapshot, const WatchState& state) {
   for (const json& robot : snapshot.value("robots", json::array())) {
     if (text(robot, "robot") != state.selected) continue;
@@ -240,7 +240,7 @@ std::vector<std::string> robots_of(const json& snapshot) {
 
 std::vector<std::string> render(const json& snapshot, const WatchState& state, int rows, int columns,
                                 bool colour) {
-  const int footer = std::min(rows, 2);  // always in view: what was typed and answered, and the keys
+  const int footer = std::min(rows, 2);  // Always visible: typed line or answer, and the keys.
   Page page(rows - footer, columns, colour);
   const json counts = snapshot.value("commands", json::object());
   std::string title =

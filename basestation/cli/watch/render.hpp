@@ -5,25 +5,25 @@
 
 namespace adit::station::cli {
 
-/// What the dashboard shows besides the fleet.
+/// State of the dashboard beside the fleet.
 struct WatchState {
-  std::string selected{};  ///< robot
-  std::string message{};   ///< answer to the last key
-  bool refused{false};     ///< the message is a refusal
+  std::string selected{};  ///< Name of the selected robot.
+  std::string message{};   ///< Answer to the last key.
+  bool refused{false};     ///< The message is a refusal.
   bool help{false};
-  bool driving{false};  ///< the keys are the stick of the selected robot
+  bool driving{false};  ///< The keys steer the selected robot.
   std::string driving_text{};
-  bool typing{false};  ///< a command line is being typed
+  bool typing{false};  ///< A command line is being typed.
   std::string line{};
-  bool silent{false};  ///< the station does not answer
+  bool silent{false};  ///< The station does not answer.
 };
 
-/// The dashboard as `rows` lines of at most `columns` cells. Colours by escape sequences when `colour`; they
-/// take no cells. Pure: same input, same lines.
+/// Renders the dashboard as `rows` lines of at most `columns` cells. `colour`: adds escape sequences, which
+/// take no cells. A pure function.
 std::vector<std::string> render(const nlohmann::json& snapshot, const WatchState& state, int rows,
                                 int columns, bool colour);
 
-/// The robots' names in the order shown.
+/// The robots' names in display order.
 std::vector<std::string> robots_of(const nlohmann::json& snapshot);
 
 }  // namespace adit::station::cli

@@ -43,7 +43,7 @@ class Dashboard {
     client_.watch();
   }
 
-  /// False when the station is gone.
+  /// Returns false if the connection to the station was lost.
   bool run() {
     while (!leaving_) {
       for (const int key : decode_keys(terminal_.read())) press(key);
@@ -84,7 +84,7 @@ class Dashboard {
     terminal_.write(out);
   }
 
-  /// The snapshot with the commands of other front ends among its notices, by age.
+  /// The snapshot with the commands of other front ends merged into its notices, by age.
   json with_others() const {
     json snapshot = snapshot_;
     json& notices = snapshot["notices"];

@@ -3,7 +3,7 @@
 
 namespace adit::station::cli {
 
-/// The live dashboard: redraws five times a second, takes keys until q or Ctrl-C. The exit code.
+/// Runs the live dashboard: redraws at 5 Hz and processes keys until q or Ctrl-C. Returns the exit code.
 int watch(Client& client, const Options& options);
 
 }  // namespace adit::station::cli

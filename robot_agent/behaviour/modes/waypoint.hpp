@@ -6,8 +6,8 @@ namespace adit::agent {
 /// The mode `waypoint`: navigation drives to the goal and stops there.
 class WaypointMode : public ModeModule {
  public:
-  static constexpr Duration kBlockedAfter =
-      5s;  ///< Time until the holder is notified that every path is blocked.
+  /// Time until the holder is notified that every path is blocked.
+  static constexpr Duration kBlockedAfter = 5s;
 
   explicit WaypointMode(ModeContext context) : context_(std::move(context)) {}
   static std::unique_ptr<ModeModule> make(const ModeContext& context) {
