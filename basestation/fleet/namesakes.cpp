@@ -25,8 +25,8 @@ bool gives_way(const RobotView& robot) {
 bool Fleet::replaces(const Namesake& namesake, const RobotView& shown, Time now) {
   const Duration since = now - shown.spoke;
   if (gives_way(namesake.view) != gives_way(shown)) return gives_way(shown) || since >= kForgotten;
-  if (namesake.displaced)
-    return now - *namesake.displaced >= kGrace;  // It is alive, so the new participant was no restart.
+  // A displaced participant that is heard again is alive, so the new one was no restart.
+  if (namesake.displaced) return now - *namesake.displaced >= kGrace;
   return since >= (namesake.rival ? kSilent : kQuiet);
 }
 

@@ -131,7 +131,8 @@ struct Notice {
   Reason reason{Reason::none};
   std::string text{};
   bool mine{};  ///< It concerns this operator.
-  /// Set while the robot's clock is unknown: `at` is then the time of reception, and is corrected later.
+  /// Set while the robot's clock is unknown: `at` is then the time of reception, and is moved back to the
+  /// event later.
   std::optional<std::uint64_t> undated{};  ///< Stamp of the robot's clock.
   wire::ParticipantId said_by{};
 };

@@ -10,10 +10,10 @@ namespace {
 /// process does. A sample stored over a restart is up to 1 s older than the end of the agent.
 constexpr Duration kUnwatched = Frames::kAlive + 250ms, kRestart = kUnwatched + 1250ms;
 
-// If the driver's clock was set back, all samples are older than the newest one; if samples were only
-// delayed, others are not.
-constexpr std::uint64_t kLongestDelay = 500'000'000;  // Delay of a sample that others overtook, ns.
-constexpr int kMostOvertaken = 3;                     // Consecutive samples.
+// A few consecutive samples that are slightly older than the newest one were overtaken on their path. More
+// samples, or older ones, show that the driver's clock was set back.
+constexpr std::uint64_t kLongestDelay = 500'000'000;  // Maximum delay of an overtaken sample, ns.
+constexpr int kMostOvertaken = 3;                     // Maximum number of consecutive overtaken samples.
 
 constexpr double kLevel = 0.02;  // Tilt, rad.
 

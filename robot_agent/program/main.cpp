@@ -139,7 +139,7 @@ void bound_memory(double limit) {
   if (!bounded) std::_Exit(fail(bounded.error(), 2));
 }
 
-/// Ends the process after a timeout, because a component that hangs must not delay its end.
+/// Ends the process after 3 s at the latest, so that a component that hangs does not delay its end.
 void end_soon() {
   (void)::signal(SIGALRM, [](int) { std::_Exit(0); });
   ::alarm(3);

@@ -48,7 +48,7 @@ class LinkLoss {
   LinkLossParams params_;
   bool lost_{}, acted_{};
   Way way_{Way::none};
-  Time since_{};                             ///< Start of the drive, or time of arrival.
+  Time since_{};                             ///< Start of the wait at the end of the drive.
   std::optional<Time> retry_{};              ///< Time of the next attempt after a refusal.
   std::optional<Eigen::Vector2d> linked_{};  ///< Last position where the holder was heard.
 };

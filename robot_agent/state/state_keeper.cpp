@@ -32,12 +32,12 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
 
   std::optional<Snapshot> state{};         ///< The last state passed.
   std::uint64_t needed{};                  ///< Generation that last changed the state: answers wait for it.
-  std::uint64_t accepted{};                // Commands accepted when `state` was passed.
+  std::uint64_t accepted{};                // Commands accepted when that state was queued.
   std::optional<store::Bytes> next{};      ///< Not being written yet.
   std::uint64_t asked{}, done{};           ///< Generations: passed, and written or failed.
   std::optional<std::uint64_t> writing{};  ///< Generation of the pending write.
   Time since{};                            ///< Start of the pending write, or of the last one.
-  std::optional<KeptPlace> placed{};       // Place in the last state passed.
+  std::optional<KeptPlace> placed{};       // Place in the last state queued for writing.
   Time placed_at{};
   bool marked{}, failed{}, stuck{};
   std::optional<Time> retry{};
