@@ -75,6 +75,8 @@ class Run {
     for (const Duration instant : instants()) {
       scheduler_.run_until(instant);
       observe(instant);
+      if (params_.ended && instant % Trail::kPeriod == 0ns && params_.ended({instant, simulation_, witness_}))
+        break;
     }
     RunOutcome out;
     if (auto healthy = health(); !healthy) return healthy.error();
@@ -192,7 +194,7 @@ class Run {
     out.scenario = scenario_.file.string();
     out.seed = params_.seed;
     out.digest = witness_.digest();
-    out.virtual_s = seconds(scenario_.duration);
+    out.virtual_s = seconds(observed_);
     out.wall_s = wall;
     out.topics = witness_.topics();
     out.commands = witness_.commands();

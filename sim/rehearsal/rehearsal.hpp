@@ -13,13 +13,22 @@
 
 namespace adit::sim {
 
+/// A run while it lasts.
+struct RunState {
+  Duration now{};
+  const Simulation& simulation;
+  const Witness& witness;
+};
+
 struct RunParams {
   std::uint64_t seed{1};
   int workers{2};  ///< Threads for the heavy work of one run, [1, 64].
   AgentFactory make_agent{};
   WireDecorator parent_wire{};  ///< Decorates the wire of each robot's parent process; empty: nothing does
   std::function<void(Duration)> progress{};  ///< Called with the virtual time, once per virtual second.
-  std::string record{};                      ///< MCAP file for all messages; empty: none.
+  /// Ends the run before its duration; asked every Trail::kPeriod. Empty: never.
+  std::function<bool(const RunState&)> ended{};
+  std::string record{};  ///< MCAP file for all messages; empty: none.
 };
 
 /// A robot's way, for the picture.

@@ -84,8 +84,10 @@ void Witness::sent(const wire::SampleEvent& frame) {
            status->authority.holder.empty() ? "released" : "held by " + status->authority.holder);
     said.authority = status->authority;
   }
-  if (const auto* told = std::get_if<NotificationSent>(&decoded->event); told && told->code == "unreachable")
-    note(robot, frame.at, "no way to its goal");
+  if (const auto* notice = std::get_if<NotificationSent>(&decoded->event)) {
+    if (notifications_.size() < kMaxEvents) notifications_.push_back({frame.at, robot, notice->code});
+    if (notice->code == "unreachable") note(robot, frame.at, "no way to its goal");
+  }
   if (const auto* ack = std::get_if<AckSent>(&decoded->event)) count(robot, *ack);
   checker_.observe(robot, frame.at, decoded->event);
 }

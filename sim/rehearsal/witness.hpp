@@ -61,6 +61,8 @@ class Witness {
   /// Goals that robots accepted, map frame.
   const std::vector<Goal>& goals() const { return goals_; }
   const std::vector<TimedEvent>& events() const { return events_; }
+  /// The robots' notifications by their codes, the first 2000.
+  const std::vector<TimedEvent>& notifications() const { return notifications_; }
   std::string digest() const { return digest_.text(); }
 
  private:
@@ -85,7 +87,7 @@ class Witness {
   std::map<std::tuple<std::string, StationId, std::uint64_t>, Asked> asked_{};
   CommandResult commands_{};
   std::vector<Goal> goals_{};
-  std::vector<TimedEvent> events_{};
+  std::vector<TimedEvent> events_{}, notifications_{};
   Digest digest_{};
 };
 

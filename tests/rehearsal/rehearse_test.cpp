@@ -39,6 +39,16 @@ TEST(Rehearse, SameSeedSameDigestWhateverTheWorkers) {
   EXPECT_EQ(run(scenario, 3, 1).report.digest, digest);
 }
 
+TEST(Rehearse, EndsWhenItsCallerSaysSo) {
+  const Scenario scenario = load_shipped("handover.yaml");
+  RunParams params;
+  params.make_agent = *make_agent_factory();
+  params.ended = [](const RunState& state) { return state.now >= 2s; };
+  const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().text;
+  EXPECT_EQ(outcome->report.virtual_s, 2.0);
+}
+
 struct Shortened {
   const char* file{};
   Duration duration{};  ///< Instead of the scenario's, unless ADIT_WHOLE_SCENARIOS is set.
