@@ -27,6 +27,17 @@ struct PlanOptions {
 };
 int plan(const PlanOptions& options);
 
+struct TerrainOptions {
+  std::string cloud{};   ///< A file, or a folder whose clouds are accumulated.
+  std::string poses{};   ///< Of base_link, one for each cloud, TUM; empty: the robot is stationary.
+  std::string sensor{};  ///< File with the `sensors:` part of a platform's; empty: the platform's own.
+  std::string platform{"wheeled"};
+  double range{20.0};  ///< m, (0, 100]
+  bool json{false};
+  std::string picture{};
+};
+int terrain(const TerrainOptions& options);
+
 struct TrackOptions {
   std::string path{};  ///< a file of x y pairs; empty: a wave with a corner
   std::string platform{"wheeled"};

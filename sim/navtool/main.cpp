@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  navtool route --map geb079.bt --from 0 0 0 --to 20 -0.4 0 --picture route.png\n"
       "  navtool plan --clouds clouds/ --goal 10 0.5 --platform tracked --json\n"
+      "  navtool terrain --cloud street/ --platform wheeled --json\n"
       "  navtool track --platform wheeled --picture track.png\n"
       "Exit status: 0 done, 1 there is no way or a controller did not arrive, 2 wrong usage or unreadable "
       "input.");
@@ -49,6 +50,31 @@ int main(int argc, char** argv) {
   plans->add_flag("--json", plan_options.json, "one JSON line a cycle");
   plans->add_option("--picture", plan_options.picture, "PNG of the last cycle to write");
 
+  TerrainOptions terrain_options;
+  CLI::App* terrains = app.add_subcommand("terrain", "what the ground is to a platform, from clouds");
+  terrains->footer(
+      "Clouds are .pcd files or KITTI's .bin, in the lidar's frame; those of a folder are accumulated in "
+      "name "
+      "order, 0.1 s\n"
+      "apart. A cell within the range of a pose of which nothing is known counts as unknown. With --json one "
+      "object:\n"
+      "{\"m2\":{\"ground\":..,\"step\":..,\"slope\":..,\"obstacle\":..,\"drop\":..,\"unknown\":..},\"cells\":"
+      "{..},..}\n"
+      "Example: navtool terrain --cloud street/ --poses street.tum --sensor hdl64.yaml --platform wheeled "
+      "--json");
+  terrains->add_option("--cloud", terrain_options.cloud, "file, or folder of files")->required();
+  terrains->add_option("--poses", terrain_options.poses,
+                       "of base_link, one for each cloud, TUM; without them the robot is stationary");
+  terrains->add_option("--sensor", terrain_options.sensor,
+                       "YAML file with the sensors: part of a platform's; without it the platform's own");
+  terrains->add_option("--platform", terrain_options.platform, "its name, or a YAML file")
+      ->capture_default_str();
+  terrains->add_option("--range", terrain_options.range, "of each cloud, m")
+      ->capture_default_str()
+      ->check(CLI::Range(0.5, 100.0));
+  terrains->add_flag("--json", terrain_options.json, "one JSON object");
+  terrains->add_option("--picture", terrain_options.picture, "PNG to write");
+
   TrackOptions track_options;
   CLI::App* tracks = app.add_subcommand("track", "every controller along a path: how far it strays");
   tracks->footer("Example: navtool track --path path.txt --platform legged --json");
@@ -71,5 +97,6 @@ int main(int argc, char** argv) {
     plan_options.goal = {goal[0], goal[1]};
     return plan(plan_options);
   }
+  if (*terrains) return terrain(terrain_options);
   return track(track_options);
 }

@@ -109,6 +109,46 @@ TEST_F(Clouds, ErrorsAreOneLine) {
   EXPECT_NE(broken.out.find("a.pcd:1:"), std::string::npos) << broken.out;
 }
 
+TEST_F(Clouds, TerrainCountsWhatIsKnownWithinRange) {
+  write(false, true);
+  const Ended one = run("terrain --cloud " + (folder_ / "cloud_0.pcd").string() + " --range 4 --json");
+  ASSERT_EQ(one.status, 0) << one.out;
+  const auto json = nlohmann::json::parse(one.out);
+  double all = 0;
+  for (const char* name : {"ground", "step", "slope", "obstacle", "drop", "unknown"}) {
+    EXPECT_NEAR(json["m2"][name].get<double>(), 0.01 * json["cells"][name].get<double>(), 1e-9) << name;
+    all += json["m2"][name].get<double>();
+  }
+  EXPECT_NEAR(all, M_PI * 16, 1.0);
+  EXPECT_GT(json["cells"]["ground"], 100);
+  EXPECT_EQ(json["cells"]["drop"], 0);
+  // A folder is accumulated: an obstacle counts from its second scan on.
+  const auto picture = folder_ / "terrain.png";
+  const Ended folder =
+      run("terrain --cloud " + folder_.string() + " --range 4 --json --picture " + picture.string());
+  ASSERT_EQ(folder.status, 0) << folder.out;
+  EXPECT_GT(nlohmann::json::parse(folder.out)["cells"]["obstacle"], 20);
+  EXPECT_GT(std::filesystem::file_size(picture), 1000u);
+}
+
+TEST_F(Clouds, TerrainTakesOnePoseForEachCloud) {
+  write(false, false);
+  const auto tum = folder_ / "poses.tum", sensor = folder_ / "sensor.yaml";
+  std::ofstream(sensor) << "lidar: {x: 0.1, y: 0, z: 0.5}\n";
+  std::ofstream(tum) << "0 0 0 0 0 0 0 1\n";
+  const std::string command = "terrain --json --range 4 --cloud " + folder_.string() + " --poses " +
+                              tum.string() + " --sensor " + sensor.string();
+  EXPECT_EQ(run(command).status, 2) << "six clouds, one pose";
+  std::ofstream(tum) << "0 0 0 0 0 0 0 1\n.1 1 0 0 0 0 0 1\n.2 2 0 0 0 0 0 1\n.3 3 0 0 0 0 0 1\n"
+                        ".4 4 0 0 0 0 0 1\n.5 5 0 0 0 0 0 1\n";
+  const Ended ended = run(command);
+  ASSERT_EQ(ended.status, 0) << ended.out;
+  double all = 0;
+  const auto json = nlohmann::json::parse(ended.out);
+  for (const auto& part : json["m2"]) all += part.get<double>();
+  EXPECT_GT(all, M_PI * 16 + 5 * 7) << "a disc that moves by five metres";
+}
+
 TEST(Navtool, RouteThroughTheBuilding) {
   const auto picture =
       std::filesystem::temp_directory_path() / ("adit_route_" + std::to_string(::getpid()) + ".png");
@@ -147,7 +187,7 @@ TEST(Navtool, TracksWithACarWhoseRearAxleFollows) {
 }
 
 TEST(Navtool, HelpHasExamples) {
-  for (const char* command : {"", "route", "plan", "track"}) {
+  for (const char* command : {"", "route", "plan", "terrain", "track"}) {
     const Ended ended = run(std::string(command) + " --help");
     EXPECT_EQ(ended.status, 0);
     EXPECT_NE(ended.out.find("Example"), std::string::npos) << command;

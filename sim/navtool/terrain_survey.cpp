@@ -1,0 +1,85 @@
+#include "sim/navtool/terrain_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::sim {
+namespace {
+
+nav::TerrainParams params_of(double range) {
+  nav::TerrainParams params;
+  params.range = std::min(range, TerrainSurvey::kMaxRange);
+  return params;
+}
+
+TerrainClass class_of(nav::Layer layer) {
+  switch (layer) {
+    case nav::Layer::obstacle:
+      return TerrainClass::obstacle;
+    case nav::Layer::drop:
+      return TerrainClass::drop;
+    case nav::Layer::slope:
+      return TerrainClass::slope;
+    case nav::Layer::step:
+      return TerrainClass::step;
+    case nav::Layer::roughness:
+      break;
+  }
+  return TerrainClass::ground;
+}
+
+}  // namespace
+
+TerrainSurvey::TerrainSurvey(const Platform& platform, double range)
+    : map_(platform, params_of(range)), range_(range) {}
+
+// The worst that is said of a cell counts.
+void TerrainSurvey::classify() {
+  const nav::GroundGrid& ground = map_.ground();
+  window_.assign(nav::GroundGrid::kSide * nav::GroundGrid::kSide, TerrainClass::unknown);
+  for (std::size_t index = 0; index < window_.size(); ++index)
+    if (ground.measured(static_cast<int>(index))) window_[index] = TerrainClass::ground;
+  for (const nav::TerrainCell& cell : map_.cells()) {
+    TerrainClass& kind = window_[static_cast<std::size_t>(ground.window(cell.x, cell.y))];
+    kind = std::max(kind, class_of(cell.layer));
+  }
+}
+
+void TerrainSurvey::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
+  map_.add_scan(points, body, stamp_s);
+  const auto cell = [](double v) { return static_cast<std::int32_t>(std::floor(v / kCell)); };
+  const Eigen::Vector2d at = body.position.head<2>();
+  const auto far = static_cast<std::int32_t>(range_ / kCell) + 1;
+  for (std::int32_t i = cell(at.x()) - far; i <= cell(at.x()) + far; ++i)
+    for (std::int32_t j = cell(at.y()) - far; j <= cell(at.y()) + far; ++j) {
+      const Eigen::Vector2d middle((i + 0.5) * kCell, (j + 0.5) * kCell);
+      if ((middle - at).norm() <= range_ && cells_.size() < kMaxCells)
+        cells_.try_emplace({i, j}, TerrainClass::unknown);
+    }
+  classify();
+  for (std::size_t index = 0; index < window_.size(); ++index) {
+    ++scan_counts_[static_cast<std::size_t>(window_[index])];
+    if (window_[index] == TerrainClass::unknown) continue;
+    const Eigen::Vector2f middle = map_.ground().middle(static_cast<int>(index));
+    const auto found = cells_.find({cell(middle.x()), cell(middle.y())});
+    if (found != cells_.end() && (middle.cast<double>() - at).norm() <= range_)
+      found->second = window_[index];
+  }
+}
+
+TerrainCounts TerrainSurvey::counts() const {
+  TerrainCounts out{};
+  for (const auto& [key, kind] : cells_) ++out[static_cast<std::size_t>(kind)];
+  return out;
+}
+
+double TerrainSurvey::drop_share(const TerrainCounts& counts) {
+  const auto at = [&](TerrainClass kind) {
+    return static_cast<double>(counts[static_cast<std::size_t>(kind)]);
+  };
+  const double drops = at(TerrainClass::drop);
+  const double all = at(TerrainClass::ground) + at(TerrainClass::step) + at(TerrainClass::slope) + drops;
+  return all > 0 ? drops / all : 0.0;
+}
+
+}  // namespace adit::sim
