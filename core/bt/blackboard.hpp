@@ -9,35 +9,34 @@
 
 namespace adit::bt {
 
-/// The named values that the nodes of one tree share. Every SubTree has its own, which sees of its
-/// parent's only what was remapped, or everything but names that start with '_' under `_autoremap`.
-/// A key that starts with '@' is looked up in the outermost blackboard.
+/// The named values that the nodes of one tree share. Each SubTree has its own blackboard, which sees only
+/// remapped entries of its parent's, or with `_autoremap` all entries whose names do not start with '_'. A
+/// key that starts with '@' is looked up in the outermost blackboard.
 class Blackboard {
  public:
   struct Entry {
     BlackboardValue value{};
-    PortType type{PortType::any};  ///< text written to a typed entry is converted, or refused
+    PortType type{PortType::any};  ///< Text written to a typed entry is converted, or refused.
   };
 
   explicit Blackboard(Blackboard* parent = nullptr) : parent_(parent) {}
   Blackboard(const Blackboard&) = delete;
   Blackboard& operator=(const Blackboard&) = delete;
 
-  /// Internal name `inside` stands for the parent's `outside`.
+  /// Maps the internal name `inside` to the parent's `outside`.
   void remap(const std::string& inside, const std::string& outside) { outside_.emplace(inside, outside); }
   void set_autoremap(bool on) { autoremap_ = on; }
 
-  /// The entry that the key stands for, or nullptr.
+  /// Returns the entry of the key, or nullptr.
   Entry* find(std::string_view key);
-  /// The entry that the key stands for, made empty where it belongs if there is none.
+  /// Returns the entry of the key; creates an empty one where it belongs if there is none.
   Entry& declare(std::string_view key, PortType type = PortType::any);
-  /// Removes the entry if it lives in this very blackboard.
+  /// Removes the entry if it is in this blackboard itself.
   void unset(std::string_view key);
-  /// Writes; throws NodeError when the entry's type refuses the text.
+  /// Writes an entry; throws NodeError when the entry's type refuses the text.
   void set(std::string_view key, BlackboardValue value);
 
-  /// Reads an entry as T; Reason::missing_key when there is none, Reason::wrong_type when it holds
-  /// something else.
+  /// Reads an entry as T. Errors: missing_key when there is none, wrong_type when it holds another type.
   template <class T>
   Result<T> get(std::string_view key) {
     const Entry* entry = find(key);
@@ -48,7 +47,7 @@ class Blackboard {
       return Error{Reason::wrong_type, "blackboard entry '" + std::string(key) + "': " + error.what()};
     }
   }
-  /// Writes any value; Reason::wrong_type as for set().
+  /// Writes a value of any type. Error wrong_type as for set().
   template <class T>
   Result<void> put(std::string_view key, T content) {
     try {

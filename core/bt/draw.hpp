@@ -5,9 +5,9 @@
 
 namespace adit::bt {
 
-/// The tree as indented text, one line a node: kind, name and ports.
+/// Draws the tree as indented text, one line per node: kind, name and ports.
 std::string draw_text(const Tree& tree);
-/// The tree for Graphviz: `tree draw FILE --dot | dot -Tpng -o tree.png`.
+/// Draws the tree for Graphviz: `tree draw FILE --dot | dot -Tpng -o tree.png`.
 std::string draw_dot(const Tree& tree);
 
 }  // namespace adit::bt

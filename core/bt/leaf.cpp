@@ -35,7 +35,8 @@ class StatefulNode : public Leaf {
       case NodeStatus::running:
         return code_->on_running(*this);
       default:
-        // Completed and not reset by its parent yet: the answer stands, the code is not asked again.
+        // The leaf has completed and its parent has not reset it: its status remains, and its code does not
+        // run again.
         return status();
     }
   }

@@ -40,7 +40,7 @@ NodeStatus TreeNode::execute_tick() {
   } catch (...) {
     next = fail("an exception of unknown type");
   }
-  // A skipped node keeps its status and tells only its parent.
+  // A skipped node keeps its status; only its parent sees that it was skipped.
   if (next != NodeStatus::skipped) set_status(next);
   const bool wraps = kind() == NodeKind::decorator || kind() == NodeKind::subtree;
   if (wraps && completed(child().status_)) child().reset_status();

@@ -16,9 +16,9 @@ namespace adit::bt {
 
 class TreeNode;
 
-/// What the nodes of one tree share.
+/// State that the nodes of one tree share.
 struct TickContext {
-  Time now{};  ///< of the current tick
+  Time now{};  ///< Time of the current tick.
   Timers timers{};
   Enums enums{};
   std::function<void(const TreeNode&, NodeStatus from, NodeStatus to)> on_status{};
@@ -26,7 +26,7 @@ struct TickContext {
 };
 
 enum class NodeKind : std::uint8_t { action, condition, control, decorator, subtree };
-/// "Action", "Condition", "Control", "Decorator", "SubTree".
+/// Returns "Action", "Condition", "Control", "Decorator" or "SubTree".
 std::string_view name(NodeKind kind);
 
 /// The attributes that hold scripts, in the order in which preconditions are checked.
@@ -43,22 +43,22 @@ enum class Hook : std::uint8_t {
 inline constexpr std::array<std::string_view, 8> kHookNames{"_failureIf", "_successIf", "_skipIf",   "_while",
                                                             "_onSuccess", "_onFailure", "_onHalted", "_post"};
 
-/// What a node is made from.
+/// Parameters from which a node is created.
 struct NodeConfig {
-  std::string id{};    ///< kind of node, e.g. "Sequence"; of a SubTree, the tree that it runs
-  std::string name{};  ///< name attribute, else the id
-  bool named{false};   ///< whether there is a name attribute
+  std::string id{};    ///< Kind of node, e.g. "Sequence"; for a SubTree, the tree that it runs.
+  std::string name{};  ///< The name attribute, else the id.
+  bool named{false};   ///< There is a name attribute.
   NodeKind kind{NodeKind::action};
-  std::string path{};  ///< "main/seq/leaf": unique within the tree
+  std::string path{};  ///< For example "main/seq/leaf": unique within the tree.
   std::string file{};
   int line{0};
-  std::map<std::string, std::string, std::less<>> ports{};  ///< text of each port, fallbacks included
+  std::map<std::string, std::string, std::less<>> ports{};  ///< Text of each port, default values included.
   std::array<std::shared_ptr<const Script>, kHookNames.size()> hooks{};
   Blackboard* board{nullptr};
   TickContext* context{nullptr};
 };
 
-/// One node of a running tree. Only its tree ticks it; everybody else may look.
+/// One node of a running tree. Only its tree ticks it; other code may only read it.
 class TreeNode {
  public:
   explicit TreeNode(NodeConfig config) : config_(std::move(config)) {}
@@ -78,15 +78,16 @@ class TreeNode {
   friend class Tree;
   friend class TreeBuilder;
 
-  /// Preconditions, tick(), postconditions, new status. Whatever is thrown becomes FAILURE and is reported.
+  /// Checks the preconditions, calls tick(), runs the postconditions and sets the new status. Any exception
+  /// becomes FAILURE and is reported.
   NodeStatus execute_tick();
-  /// halt() and the _onHalted script; exceptions are reported.
+  /// Calls halt() and runs the _onHalted script; exceptions are reported.
   void halt_node();
   void reset_status();
   void set_status(NodeStatus status);
 
   virtual NodeStatus tick() = 0;
-  /// Stops what is running; leaves the node idle. Control nodes and decorators halt their children.
+  /// Stops what is running and leaves the node idle. Control nodes and decorators halt their children.
   virtual void halt();
 
   TreeNode& child(std::size_t index = 0) { return *children_[index]; }
@@ -96,7 +97,7 @@ class TreeNode {
   void reset_child(std::size_t index = 0);
   void reset_children();
 
-  /// What the port holds. Throws NodeError when it is not given or its entry is missing or empty.
+  /// Reads the value of a port. Throws NodeError when the port is not given or its entry is missing or empty.
   BlackboardValue port_value(std::string_view port) const;
   template <class T>
   T port(std::string_view port_name) const;
@@ -110,7 +111,7 @@ class TreeNode {
  private:
   std::optional<NodeStatus> check_preconditions();
   void run_hook(Hook hook);
-  /// Reports and cleans up after an exception; the answer is FAILURE.
+  /// Reports an exception and cleans up; returns FAILURE.
   NodeStatus fail(std::string_view what);
   const Script* hook(Hook which) const { return config_.hooks[static_cast<std::size_t>(which)].get(); }
 

@@ -9,19 +9,19 @@ namespace adit::bt {
 
 enum class Direction : std::uint8_t { input, output, inout };
 
-/// A port that a kind of node has: an XML attribute that holds a value or, as "{key}", names a blackboard
-/// entry ("{=}": the entry named as the port).
+/// A port of a kind of node: an XML attribute that holds a value or, as "{key}", names a blackboard entry
+/// ("{=}": the entry with the port's name).
 struct Port {
   std::string name{};
   Direction direction{Direction::input};
   PortType type{PortType::any};
-  bool required{false};                   ///< the XML must give it
-  std::optional<std::string> fallback{};  ///< its text when the XML does not give it
+  bool required{false};                   ///< The XML must give it.
+  std::optional<std::string> fallback{};  ///< Default text when the XML does not give it.
 };
 using Ports = std::vector<Port>;
 
-/// One port of a manifest, by direction. An input may be left out in the XML, or then be its `fallback`; a
-/// required one may not.
+/// Creates a port of a manifest, by direction. The XML may omit an input, which is then missing or has the
+/// value `fallback`; it must give a required one.
 inline Port input(std::string name, PortType type = PortType::any) {
   return {std::move(name), Direction::input, type, false, std::nullopt};
 }
@@ -38,8 +38,8 @@ inline Port inout(std::string name, PortType type = PortType::any) {
   return {std::move(name), Direction::inout, type, false, std::nullopt};
 }
 
-/// The key in "{key}" (spaces around the braces are ignored), `port` itself for "{=}" or "=", else nothing:
-/// the text is a value.
+/// Returns the key in "{key}" (spaces around the braces are ignored), or `port` for "{=}" or "=". Returns
+/// nothing when the text is a value.
 std::optional<std::string> blackboard_key(std::string_view port, std::string_view text);
 
 }  // namespace adit::bt

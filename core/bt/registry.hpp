@@ -10,7 +10,7 @@ namespace adit::bt {
 
 using NodeFactory = std::function<std::unique_ptr<TreeNode>(NodeConfig)>;
 
-/// What the loader knows about a kind of node.
+/// Description of a kind of node for the loader.
 struct Manifest {
   std::string id{};
   NodeKind kind{NodeKind::action};
@@ -21,29 +21,29 @@ struct Manifest {
   bool builtin{false};
 };
 
-/// The kinds of node that a tree may be made of: the built-in ones of BehaviorTree.CPP, and leaves that
-/// are registered by name. Copyable; a tree keeps nothing of it but what the factories captured.
+/// The kinds of node that a tree can contain: the built-in ones of BehaviorTree.CPP, and leaves registered by
+/// name. Copyable; a tree refers to nothing of it except what the factories captured.
 class Registry {
  public:
-  /// With the built-in nodes.
+  /// Creates a registry with the built-in nodes.
   Registry();
 
-  /// Each answers Reason::in_use when the id is taken.
+  /// Registers a leaf. Error in_use when the id is taken.
   Result<void> add_action(std::string id, LeafFunction function, Ports ports = {});
   Result<void> add_condition(std::string id, LeafFunction function, Ports ports = {});
   Result<void> add_stateful(std::string id, StatefulFactory factory, Ports ports = {});
-  /// A number's name for scripts and Switch nodes.
+  /// Adds a name for a number, for scripts and Switch nodes.
   void add_enum(std::string name, std::int64_t value) { enums_[std::move(name)] = value; }
 
-  /// Leaves of unknown ids are made by this factory instead of being an error; any attribute is a port of
-  /// theirs. For dry runs.
+  /// Makes this factory create leaves of unknown ids, which are otherwise an error; each attribute is a port
+  /// of such a leaf. For dry runs.
   void accept_unknown_leaves(StatefulFactory factory) { unknown_ = std::move(factory); }
   const StatefulFactory& unknown_leaves() const { return unknown_; }
 
-  /// The manifest of that id, or nullptr.
+  /// Returns the manifest of that id, or nullptr.
   const Manifest* find(std::string_view id) const;
   const Enums& enums() const { return enums_; }
-  /// Used by the tables of built-in nodes.
+  /// Registers a manifest; the tables of built-in nodes use it.
   Result<void> add(Manifest manifest);
 
  private:

@@ -15,7 +15,7 @@ void Timers::cancel(Id id) {
 }
 
 void Timers::expire(Time now) {
-  // One at a time: halting a child from one timer may cancel others.
+  // Timers run one at a time, because halting a child from one timer may cancel others.
   while (!entries_.empty()) {
     const auto next = std::min_element(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
       return std::pair(a.deadline, a.id) < std::pair(b.deadline, b.id);

@@ -14,7 +14,7 @@ NodeStatus Tree::tick(Time now) {
 void Tree::halt() {
   if (!root_) return;
   root_->halt_node();
-  // The halt reaches what is running; this also makes idle what completed below a node that is idle already.
+  // halt() reaches running nodes only; this also resets nodes that completed below an idle one.
   const std::function<void(TreeNode&)> settle = [&](TreeNode& node) {
     for (const auto& child : node.children_) {
       if (child->status_ == NodeStatus::running) child->halt_node();

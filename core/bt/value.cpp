@@ -69,7 +69,7 @@ bool readable_as(std::string_view text, PortType type) {
 std::int64_t to_integer(const BlackboardValue& v) {
   if (const auto* integer = std::get_if<std::int64_t>(&v)) return *integer;
   if (const auto* real = std::get_if<double>(&v)) {
-    // Like the reference, a fraction is not cut off in silence.
+    // As in BehaviorTree.CPP, a fraction is an error and is not silently truncated.
     if (std::abs(*real) > 9.0e18 || *real != std::nearbyint(*real)) {
       throw NodeError("number " + std::to_string(*real) + " is not an integer");
     }

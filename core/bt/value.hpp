@@ -13,19 +13,19 @@
 
 namespace adit::bt {
 
-/// A C++ value that scripts and text know nothing about: only leaves write and read it.
+/// A C++ value that scripts and text cannot represent: only leaves write and read it.
 struct Opaque {
   std::any content{};
 };
 
-/// What a blackboard entry holds; monostate while it was declared but never written.
+/// Value of a blackboard entry; monostate while it is declared but not written.
 using BlackboardValue = std::variant<std::monostate, std::int64_t, double, std::string, Opaque>;
 
-/// How a port's text is read. `natural` is an integer that is not negative.
+/// How the text of a port is parsed. `natural` is a non-negative integer.
 enum class PortType : std::uint8_t { any, integer, natural, real, boolean, text, status };
-/// "an integer", "true or false", ... for error messages.
+/// Description for error messages: "an integer", "true or false", ...
 std::string_view describe(PortType type);
-/// Whether the text can be read as that type.
+/// Whether the text can be parsed as that type.
 bool readable_as(std::string_view text, PortType type);
 
 inline bool is_empty(const BlackboardValue& v) { return std::holds_alternative<std::monostate>(v); }
@@ -37,19 +37,19 @@ inline bool is_number(const BlackboardValue& v) {
 // The conversions of BehaviorTree.CPP's Any; each throws NodeError when the value does not fit.
 std::int64_t to_integer(const BlackboardValue& v);
 double to_real(const BlackboardValue& v);
-/// A port's bool: also "true", "false", "1", "0" as text.
+/// Reads a port as bool; accepts also the texts "true", "false", "1", "0".
 bool to_boolean(const BlackboardValue& v);
 std::string to_text(const BlackboardValue& v);
 NodeStatus to_status(const BlackboardValue& v);
-/// The truth of a script's result: numbers only, an integer must be 0 or 1.
+/// Truth value of a script's result: only numbers; an integer must be 0 or 1.
 bool to_condition(const BlackboardValue& v);
-/// Assigns to a value that exists already and keeps the destination's kind (an integer stays an integer).
+/// Assigns to an existing value and preserves the destination's kind (an integer stays an integer).
 void copy_into(const BlackboardValue& from, BlackboardValue& to);
-/// The parts of "1;2;3".
+/// Splits a text such as "1;2;3".
 std::vector<std::string> split(std::string_view text, char separator);
 
-/// Converts what a port or an entry holds to T (bool, integers, floating point, std::string, NodeStatus,
-/// std::vector<double>, or the very type that a leaf wrote). Throws NodeError.
+/// Converts the value of a port or entry to T (bool, integers, floating point, std::string, NodeStatus,
+/// std::vector<double>, or the exact type that a leaf wrote). Throws NodeError.
 template <class T>
 T value_as(const BlackboardValue& v) {
   if constexpr (std::is_same_v<T, BlackboardValue>) {
@@ -79,7 +79,7 @@ T value_as(const BlackboardValue& v) {
   }
 }
 
-/// The BlackboardValue that holds `content`.
+/// Wraps `content` as a BlackboardValue.
 template <class T>
 BlackboardValue make_value(T content) {
   if constexpr (std::is_same_v<T, BlackboardValue>) {

@@ -6,7 +6,7 @@
 namespace adit::config {
 namespace {
 
-/// Edit distance (Levenshtein 1966) with rows of the shorter word.
+/// Edit distance (Levenshtein 1966), computed with rows of the length of the shorter word.
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -47,7 +47,8 @@ void Document::find_unknown(const Value& value) {
   if (value.checked) return;
   value.checked = true;
   for (const auto& item : value.items) find_unknown(*item);
-  if (value.asked.empty()) return;  // not opened: its own key is what is unknown, or its type is wrong
+  // No reader accessed this mapping: its own key is unknown, or its type is wrong.
+  if (value.asked.empty()) return;
   for (const auto& entry : value.entries) {
     if (std::find(value.asked.begin(), value.asked.end(), entry.key) != value.asked.end()) {
       find_unknown(*entry.value);
@@ -70,7 +71,7 @@ void Document::find_unknown(const Value& value) {
 Result<void> Document::finish() {
   find_unknown(*root_);
   if (problems_.empty()) return {};
-  // A key that is missing because it is misspelt is told as misspelt.
+  // When a required key is missing because it is misspelt, the report is about the misspelling.
   const auto rank = [](const Problem& p) {
     return std::pair(p.reason == Reason::missing_key ? 1 : 0, p.line);
   };

@@ -1,5 +1,5 @@
 #pragma once
-// The tree behind config::Node. Private to core/config.
+// The document tree behind config::Node. Private to core/config.
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,13 +16,13 @@ struct Value {
     std::shared_ptr<Value> value;
   };
   Kind kind{Kind::null};
-  int line{0};  ///< from 1
+  int line{0};  ///< Line number, from 1.
   bool quoted{false};
   std::string scalar{};
   std::vector<std::shared_ptr<Value>> items{};
   std::vector<Entry> entries{};
-  mutable std::vector<std::string> asked{};  ///< keys that a reader looked for
-  mutable bool checked{false};               ///< by finish(); aliases make one value appear twice
+  mutable std::vector<std::string> asked{};  ///< Keys that a reader looked for.
+  mutable bool checked{false};  ///< Set by finish(); with aliases one value appears more than once.
 };
 
 class Document {
@@ -45,7 +45,7 @@ class Document {
   std::vector<Problem> problems_{};
 };
 
-/// A word of `words` that `text` is a misspelling of, or "".
+/// Returns the word of `words` that `text` is a misspelling of, or "".
 std::string nearest(const std::string& text, const std::vector<std::string>& words);
 
 }  // namespace adit::config

@@ -15,7 +15,7 @@ std::string plain(double v) {
   return std::string(buffer, end.ptr);
 }
 
-/// What is there, as a message shows it.
+/// Describes a value for a message.
 std::string got(const Value& value) {
   switch (value.kind) {
     case Value::Kind::null:

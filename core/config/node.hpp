@@ -12,13 +12,13 @@
 
 namespace adit::config {
 
-/// What a number may be. Written as in mathematics: (0, 10] leaves 0 out.
+/// Range of valid numbers in interval notation: (0, 10] excludes 0.
 struct Range {
   double min{-std::numeric_limits<double>::max()};
   double max{std::numeric_limits<double>::max()};
   bool min_excluded{false};
   bool contains(double v) const { return (min_excluded ? v > min : v >= min) && v <= max; }
-  std::string text() const;  ///< "in (0, 10]", "of at least 0", "" when anything will do
+  std::string text() const;  ///< "in (0, 10]", "of at least 0", or "" when any number is valid.
 };
 inline Range any_number() { return {}; }
 inline Range within(double min, double max) { return {min, max, false}; }  ///< [min, max]
@@ -27,20 +27,20 @@ inline Range above(double min, double max) { return {min, max, true}; }    ///< 
 class Document;
 struct Value;
 
-/// One place in a YAML file, while it is read. Every accessor notes what is wrong with file and line, and
-/// gives the fallback back, so that a reader is a list of assignments; finish() on the root then tells
-/// the first error, or that there is a key which nobody asked for. A Node of something that is missing or of
-/// the wrong type answers every question with fallbacks and notes nothing more.
+/// A node of a YAML file during reading. Every accessor records errors with file and line and returns the
+/// fallback, so that a reader is a list of assignments; finish() on the root then returns the first error, or
+/// reports a key that no accessor read. A Node that is missing or has the wrong type returns fallbacks for
+/// every access and records nothing more.
 class Node {
  public:
   Node() = default;
   Node(std::shared_ptr<Document> document, const Value* value)
       : document_(std::move(document)), value_(value) {}
 
-  // --- keys of a mapping: without a fallback they must be there ---
+  // --- Keys of a mapping: without a fallback they are required. ---
   bool has(std::string_view key) const;
-  /// The key is there and its value is null (`key: null`, `key: ~`, `key:`), which otherwise counts as
-  /// missing.
+  /// Whether the key is present and its value is null (`key: null`, `key: ~`, `key:`), which otherwise counts
+  /// as missing.
   bool has_null(std::string_view key) const;
   double number(std::string_view key, Range range = {}) const;
   double number(std::string_view key, Range range, double fallback) const;
@@ -50,27 +50,28 @@ class Node {
   bool flag(std::string_view key, bool fallback) const;
   std::string text(std::string_view key) const;
   std::string text(std::string_view key, std::string fallback) const;
-  /// The index of the word among `words`.
+  /// Returns the index of the word among `words`.
   std::size_t choice(std::string_view key, const std::vector<std::string>& words) const;
   std::size_t choice(std::string_view key, const std::vector<std::string>& words, std::size_t fallback) const;
-  /// A list of `min_count` to `max_count` numbers.
+  /// Reads a list of `min_count` to `max_count` numbers.
   std::vector<double> numbers(std::string_view key, std::size_t min_count, std::size_t max_count,
                               Range range = {}) const;
   std::vector<double> numbers(std::string_view key, std::size_t min_count, std::size_t max_count, Range range,
                               std::vector<double> fallback) const;
   std::vector<std::string> texts(std::string_view key) const;
   std::vector<std::string> texts(std::string_view key, std::vector<std::string> fallback) const;
-  /// Whatever is there; `child` must be there, `child_if` may be missing.
+  /// Returns the node of a key of any type; `child` requires the key, with `child_if` it may be missing.
   Node child(std::string_view key) const;
   Node child_if(std::string_view key) const;
-  /// The elements of a list; `list_if`: none when the key is missing.
+  /// Returns the elements of a list; `list_if`: none when the key is missing.
   std::vector<Node> list(std::string_view key) const;
   std::vector<Node> list_if(std::string_view key) const;
-  /// All keys of a mapping whose keys are free, in the order written; counts as having asked for each.
+  /// Returns all entries of a mapping with arbitrary keys, in the order of the file; all of them count as
+  /// read.
   std::vector<std::pair<std::string, Node>> entries() const;
 
-  // --- this node itself ---
-  /// False for what is missing (or null).
+  // --- This node itself. ---
+  /// False for a missing (or null) node.
   bool present() const { return value_ != nullptr; }
   bool is_mapping() const;
   bool is_list() const;
@@ -83,28 +84,28 @@ class Node {
   std::vector<double> as_numbers(std::size_t min_count, std::size_t max_count, Range range = {}) const;
   std::vector<Node> as_list() const;
 
-  /// "file:line".
+  /// Position in the form "file:line".
   std::string where() const;
   const std::string& file() const;
   int line() const;
-  /// Notes an error of meaning at this node: "file:line: text".
+  /// Records a semantic error at this node: "file:line: text".
   void fail(Reason reason, const std::string& text) const;
 
-  /// After everything was asked for: Ok, or the first error as one line. Unknown keys are looked for in
-  /// every mapping of which a key was asked for; a misspelt one is answered with what was probably meant.
+  /// Returns Ok, or the first error as one line; call it after everything was read. Unknown keys are reported
+  /// in every mapping of which a key was read; for a misspelt one the message contains the most similar key.
   Result<void> finish() const;
 
  private:
   const Value* find(std::string_view key, bool required) const;
   bool usable(const char* expected) const;
-  std::string name_{};  // the key this node was found under, for messages
+  std::string name_{};  // The key of this node, for messages.
   std::shared_ptr<Document> document_{};
   const Value* value_{nullptr};
 };
 
 /// Reads a YAML file of at most 1 MiB, 64 levels and 200 000 values. Errors: cannot_read, syntax.
 Result<Node> load(const std::string& path);
-/// The same from memory; `file` is the name that messages show.
+/// Parses a text; `file` is the name shown in messages.
 Result<Node> parse(const std::string& text, const std::string& file);
 
 }  // namespace adit::config

@@ -1,4 +1,4 @@
-// The accessors by key: each is "find it, then read it as".
+// The accessors by key: each finds the key's node and reads it as the requested type.
 #include "core/config/node.hpp"
 
 namespace adit::config {

@@ -18,9 +18,10 @@ namespace {
 constexpr std::size_t kMaxBytes = 1 << 20;
 constexpr std::size_t kMaxDepth = 64;
 constexpr std::size_t kMaxValues = 200'000;
-constexpr std::size_t kMaxKeys = 4096;  // of one mapping
+constexpr std::size_t kMaxKeys = 4096;  // Keys of one mapping.
 
-/// Builds the tree from the parser's events. An alias shares the value it names, so nothing multiplies.
+/// Builds the tree from the parser's events. An alias shares the value that it names, so aliases cannot
+/// multiply memory.
 class DocumentBuilder final : public YAML::EventHandler {
  public:
   std::shared_ptr<Value> take_root() { return std::move(root_); }
@@ -70,7 +71,7 @@ class DocumentBuilder final : public YAML::EventHandler {
             YAML::anchor_t anchor) {
     auto value = make(mark, kind);
     value->scalar = text;
-    value->quoted = tag == "!";  // how yaml-cpp marks a quoted scalar
+    value->quoted = tag == "!";  // This is how yaml-cpp marks a quoted scalar.
     if (kind == Value::Kind::scalar && !value->quoted && (text == "~" || text == "null"))
       value->kind = Value::Kind::null;
     if (anchor != YAML::NullAnchor) anchors_[anchor] = value;

@@ -26,14 +26,14 @@ void read_footprint(const Node& root, Platform& p) {
     const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
       return u.x() * v.y() - u.y() * v.x();
     };
-    good = cross(b - a, c - b) > 0 && cross(b - a, -a) > 0;  // turns left, and base_link lies to the left
+    good = cross(b - a, c - b) > 0 && cross(b - a, -a) > 0;  // Turns left, and base_link is on the left side.
   }
   if (!good)
     node.fail(Reason::out_of_range,
               "expected 3 to 16 corners [x, y], convex, counter-clockwise, around base_link");
 }
 
-/// What only some drives have; elsewhere such a key is an unknown one.
+/// Reads the keys of particular drives; for other drives such a key is unknown.
 void read_drive(const Node& root, Platform& p) {
   static const std::vector<std::string> names{"differential", "tracked", "car", "holonomic", "aerial"};
   p.drive = static_cast<Drive>(root.choice("drive", names));

@@ -6,10 +6,10 @@
 
 namespace adit::config {
 
-/// Reads a platform's file; every key of docs/configuration.md.
+/// Reads a platform's file, with every key of docs/configuration.md.
 Result<Platform> load_platform_file(const std::string& path);
-/// The platform of that name (config/platforms/NAME.yaml on the search path), or the file when `name`
-/// ends in .yaml. `beside`: the file that named it.
+/// Loads the platform of that name (config/platforms/NAME.yaml on the search path), or the file when `name`
+/// ends in .yaml. `beside`: the file that refers to it.
 Result<Platform> load_platform(const std::string& name, const std::string& beside = "");
 
 }  // namespace adit::config

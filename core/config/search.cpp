@@ -26,7 +26,7 @@ std::vector<std::string> search_path(const std::string& beside) {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error) return path;
-  // build/PRESET/bin/program lies three folders below the source tree's root.
+  // The path build/PRESET/bin/program is three folders below the root of the source tree.
   fs::path folder = program.parent_path();
   for (int up = 0; up < 4 && folder.has_relative_path(); ++up, folder = folder.parent_path()) {
     if (!fs::exists(folder / "config" / "platforms", error)) continue;
@@ -62,7 +62,7 @@ Result<std::string> find_named(const std::string& folder, const std::string& nam
   if (auto found = find_file(folder + "/" + name + ".yaml", beside)) return found;
   std::set<std::string> known;
   std::error_code error;
-  // Not a range-for: its step throws when a folder cannot be read to its end.
+  // A range-for would throw at a folder that cannot be read completely.
   for (const std::string& place : search_path(beside))
     for (fs::directory_iterator it(fs::path(place) / folder, error), end; !error && it != end;
          it.increment(error))

@@ -10,33 +10,33 @@
 
 namespace adit {
 
-/// Where a sensor is mounted: its frame in `base_link`. The angles are applied as R = Rz(yaw) Ry(pitch)
-/// Rx(roll), as URDF does.
+/// Mounting pose of a sensor: its frame in `base_link`. The angles are applied as R = Rz(yaw) Ry(pitch)
+/// Rx(roll), as in URDF.
 struct Mounting {
   double x{}, y{}, z{};           ///< m
   double roll{}, pitch{}, yaw{};  ///< rad
 
   Eigen::Vector3d position() const { return {x, y, z}; }
-  /// T_base_sensor.
+  /// Returns T_base_sensor.
   Pose3 pose() const {
     using Eigen::AngleAxisd, Eigen::Vector3d;
     return {position(), AngleAxisd(yaw, Vector3d::UnitZ()) * AngleAxisd(pitch, Vector3d::UnitY()) *
                             AngleAxisd(roll, Vector3d::UnitX())};
   }
-  /// The sensor's z axis points downwards.
+  /// Whether the sensor's z axis points downwards.
   bool upside_down() const { return std::cos(roll) * std::cos(pitch) < 0; }
 };
 
 struct LidarConfig {
   Mounting mounting{};
-  std::string topic{"points"};  ///< What its driver publishes, without the leading slash.
-  std::string frame{"lidar"};   ///< The frame_id that its driver sends.
-  int rings{16};                ///< Beams one above the other, [2, 128].
+  std::string topic{"points"};  ///< Topic of its driver, without the leading slash.
+  std::string frame{"lidar"};   ///< The frame_id in its driver's messages.
+  int rings{16};                ///< Number of rings (beams at different elevations), [2, 128].
   double lowest{-15};           ///< Elevation of the lowest beam, degrees, [-89, 0].
   double highest{15};           ///< Elevation of the highest beam, degrees, [0, 89].
-  double rate{10};              ///< Sweeps, 1/s, [1, 50].
-  double min_range{0.05};       ///< Shorter returns are not returns, m, [0, 5].
-  double max_range{200};        ///< Longer returns are not used, m, [1, 500].
+  double rate{10};              ///< Sweep rate, 1/s, [1, 50].
+  double min_range{0.05};       ///< Shorter returns are discarded, m, [0, 5].
+  double max_range{200};        ///< Longer returns are discarded, m, [1, 500].
   double noise{0.02};           ///< Standard deviation of a range, m, [0, 0.5].
 };
 
@@ -44,10 +44,10 @@ struct ImuConfig {
   Mounting mounting{};
   std::string topic{"imu/data"};
   std::string frame{"imu"};
-  double rate{100};  ///< Samples, 1/s, [10, 2000].
+  double rate{100};  ///< Sample rate, 1/s, [10, 2000].
 };
 
-/// The sensors of one robot that perception reads.
+/// The sensors of one robot that perception uses.
 struct Sensors {
   static constexpr std::size_t kMaxLidars = 4;
   std::vector<LidarConfig> lidars{};

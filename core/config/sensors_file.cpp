@@ -18,7 +18,7 @@ Mounting read_mounting(const Node& node, bool flies) {
   return m;
 }
 
-/// What its driver sends.
+/// Reads the topic and the frame of a driver.
 void read_source(const Node& node, std::string& topic, std::string& frame) {
   topic = node.text("topic", topic);
   frame = node.text("frame", frame);

@@ -6,17 +6,17 @@
 namespace adit {
 namespace {
 
-/// Of a range's deviation: the top of a kerb is the highest of several returns, so that a kerb of exactly the
-/// step is seen higher than that by less than one and a quarter.
+/// Margin in standard deviations of a range: the top of a kerb is the highest of several returns, which makes
+/// a kerb of exactly the allowed step appear higher by less than this.
 constexpr double kStepNoise = 1.25;
-/// The body bounces, and what hangs is seen from below as little as from above, m.
+/// The body bounces, and the lidar measures overhanging obstacles from below no better than from above, m.
 constexpr double kHeadroom = 0.15;
-/// A body goes down farther than up: half a step more, and never stops for what the noise of far ground
-/// shows, m.
-constexpr double kDropPerStep = 1.5, kLeastDrop = 0.15;
-/// On the steepest ground a body leans more by its suspension and by what one wheel stands on, rad.
+/// A body drives down higher steps than it climbs, by half a step. The minimum, m, keeps it from stopping for
+/// the noise of distant ground.
+constexpr double kDropPerStep = 1.5, kMinDrop = 0.15;
+/// Extra lean on the steepest ground, from the suspension and from an obstacle under one wheel, rad.
 constexpr double kLean = 0.25;
-constexpr double kFlyingTilt = 1.0;  ///< What flies leans to accelerate, rad.
+constexpr double kFlyingTilt = 1.0;  ///< An aerial robot leans to accelerate, rad.
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Traversability Traversability::of(const Platform& platform, double noise) {
   t.step = platform.step;
   t.obstacle = platform.step + kStepNoise * noise;
   t.slope = platform.steepest();
-  t.drop = std::max(kLeastDrop, kDropPerStep * platform.step);
+  t.drop = std::max(kMinDrop, kDropPerStep * platform.step);
   t.headroom = std::max(platform.height, platform.lidar_height) + kHeadroom;
   t.half_width = platform.width / 2;
   t.radius = std::hypot(platform.length, platform.width) / 2;

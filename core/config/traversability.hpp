@@ -3,21 +3,22 @@
 
 namespace adit {
 
-/// What a body can drive over, under and between: the one set of limits that all layers judge the world by.
+/// Limits of the terrain that a body can drive over, under and between; all layers use this one set.
 ///
-/// Derived once from the platform, so that no two layers disagree about what an obstacle is. Heights are
-/// above the ground beside the thing, in gravity's axes. Of what flies only `headroom`, `half_width` and
+/// It is derived once from the platform, so that all layers agree on what an obstacle is. Heights are above
+/// the ground next to the object, along gravity. For an aerial robot only `headroom`, `half_width` and
 /// `radius` count.
 struct Traversability {
-  double step{};        ///< Highest step that the body climbs, m.
-  double obstacle{};    ///< A higher step than this, as the lidar measures it, is an obstacle, m: `step` and
-                        ///< its noise.
-  double slope{};       ///< Steepest ground, rise per run; of a body that climbs stairs, that of the stairs.
-  double drop{};        ///< Ground that lies lower than the ground before it by more than this is a drop, m.
-  double headroom{};    ///< What hangs at least this high above the ground is passed under, m.
-  double half_width{};  ///< No gap narrower than twice this is passed, m.
-  double radius{};      ///< A place with this much room around it can be turned on, m: half of the diagonal.
-  double tilt{};        ///< Roll or pitch at which the body may tip over, rad.
+  double step{};  ///< Highest step that the body climbs, m.
+  /// A step higher than this, as the lidar measures it, is an obstacle, m: `step` plus noise.
+  double obstacle{};
+  double slope{};  ///< Steepest ground, rise per run; for a body that climbs stairs, that of the stairs.
+  double drop{};   ///< Ground that is lower than the ground before it by more than this is a drop, m.
+  /// The body passes under an obstacle that hangs at least this high above the ground, m.
+  double headroom{};
+  double half_width{};  ///< The body passes no gap narrower than twice this, m.
+  double radius{};  ///< The body can turn where there is this much room around it, m: half of the diagonal.
+  double tilt{};    ///< Roll or pitch at which the body may tip over, rad.
 
   /// @param noise  Standard deviation of a lidar's range, m.
   static Traversability of(const Platform& platform, double noise);

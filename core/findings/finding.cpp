@@ -58,7 +58,7 @@ std::string id_text(std::uint64_t id) {
 
 std::string file_name(const Key& key) { return kPrefix + key.robot + "-" + id_text(key.id); }
 
-// No robot's name holds a point: what has one was preserved under another name.
+// Robot names contain no point; a file name with one is a renamed file.
 bool is_finding_file(const std::string& name) {
   return name.starts_with(kPrefix) && name.find('.') == std::string::npos;
 }

@@ -8,7 +8,7 @@
 
 #include "core/store/state_file.hpp"
 
-/// What robots find, on robots and stations alike (rule 9): a set keyed by (robot, id).
+/// Findings of robots, on robots and stations alike (rule 9): a set keyed by (robot, id).
 namespace adit::findings {
 
 struct Key {
@@ -20,36 +20,36 @@ struct Key {
 struct Finding {
   static constexpr std::size_t kKind = 32, kText = 128, kData = 400;
 
-  Key key{};                         ///< never two different ones under one key
-  std::string kind{};                ///< e.g. artifact, person, gas; 1 to 32 bytes
-  std::uint8_t importance{};         ///< higher ones are sent first, and given up last
-  std::array<double, 3> position{};  ///< map frame, m
-  std::uint64_t stamp{};             ///< the robot's clock, ns
-  std::string text{};                ///< at most 128 bytes
-  store::Bytes data{};               ///< at most 400 bytes
+  Key key{};                         ///< Unique: two different findings never share a key.
+  std::string kind{};                ///< For example artifact, person, gas; 1 to 32 bytes.
+  std::uint8_t importance{};         ///< Findings of higher importance are sent first and dropped last.
+  std::array<double, 3> position{};  ///< Map frame, m.
+  std::uint64_t stamp{};             ///< The robot's clock, ns.
+  std::string text{};                ///< At most 128 bytes.
+  store::Bytes data{};               ///< At most 400 bytes.
   bool operator==(const Finding&) const = default;
 };
 
-/// Bounds, a robot's name, a finite place, an id that is not 0.
+/// Whether a finding is within its bounds and has a robot's name, a finite position, and an id other than 0.
 bool valid(const Finding& finding);
 
-/// What the bytes of a file gave.
+/// Result of decoding the bytes of a file.
 struct FindingFile {
-  store::LoadStatus found{store::LoadStatus::corrupt};  ///< good exactly when there is a finding
+  store::LoadStatus found{store::LoadStatus::corrupt};  ///< Equals `good` exactly when there is a finding.
   std::optional<Finding> finding{};
 };
 
-/// As a sealed file, at most `kMaxFindingFile` bytes.
+/// Encodes a finding as a file with header and checksum, at most `kMaxFindingFile` bytes.
 store::Bytes to_file(const Finding& finding);
 inline constexpr std::size_t kMaxFindingFile = 4096;
 FindingFile read_finding(std::span<const std::uint8_t> bytes);
-/// The finding alone; nothing when the bytes are none that was sealed.
+/// Decodes a finding; nothing when the bytes are no valid file.
 inline std::optional<Finding> from_file(std::span<const std::uint8_t> bytes) {
   return read_finding(bytes).finding;
 }
-/// Sixteen hexadecimal digits, as people and files see an id.
+/// Formats an id for users and file names, as sixteen hexadecimal digits.
 std::string id_text(std::uint64_t id);
-/// "finding-ROBOT-0123456789abcdef"
+/// Returns "finding-ROBOT-0123456789abcdef".
 std::string file_name(const Key& key);
 bool is_finding_file(const std::string& name);
 

@@ -24,18 +24,18 @@ std::string LoadReport::text() const {
   return out.empty() ? out : "findings on the disk: " + out + "; no file was deleted";
 }
 
-/// Is run on another strand; what came of each file is read on the home strand afterwards.
+/// A batch of writes that runs on another strand; the home strand reads the results afterwards.
 struct FindingStore::Batch {
   struct Save {
     Key key{};
     store::Bytes bytes{};
-    bool aside{};  ///< A file of another version has the name: it is renamed before.
+    bool aside{};  ///< A file of another version has this name: it is renamed first.
   };
   std::vector<Save> save{};
   std::vector<Key> remove{};
   bool ran{};
   std::set<Key> failed{};
-  std::string error{};  ///< The first one
+  std::string error{};  ///< The first error.
 
   void run(store::Disk& disk) {
     ran = true;
@@ -140,11 +140,12 @@ void FindingStore::drop(const Key& key) {
 
 void FindingStore::write() {
   if (unsaved_.empty() && dropped_.empty()) return;
-  // Also when the batch under way is lost, as by a strand whose queue is full.
+  // The retry timer also covers a batch that is lost, for example because its strand's queue is full.
   if (!retry_.active()) retry_ = home_.after(params_.retry, [this] { write(); });
   if (!writing_.expired()) return;
   auto batch = std::make_shared<Batch>();
-  // Those that failed last come last: a file that cannot be written holds up no other.
+  // Findings whose last attempt failed come last, so that a file that cannot be written does not delay
+  // others.
   const auto first = [](const Pending& pending) {
     std::vector<std::pair<std::uint64_t, Key>> keys;
     for (const auto& [key, tried] : pending) keys.emplace_back(tried, key);
@@ -197,7 +198,7 @@ void FindingStore::start(const std::shared_ptr<Batch>& batch) {
 
 void FindingStore::written(const Batch& batch) {
   writing_.reset();
-  if (!batch.ran) return;  // the retry timer goes on
+  if (!batch.ran) return;  // The batch was dropped; the retry timer still runs.
   ++tries_;
   std::vector<Key> saved;
   for (const Key& key : batch.remove) {
@@ -211,7 +212,7 @@ void FindingStore::written(const Batch& batch) {
   for (const Batch::Save& s : batch.save) {
     const auto entry = unsaved_.find(s.key);
     if (!batch.failed.contains(s.key)) foreign_.erase(file_name(s.key));
-    if (entry == unsaved_.end()) continue;  // dropped meanwhile
+    if (entry == unsaved_.end()) continue;  // Removed from the store meanwhile.
     if (batch.failed.contains(s.key)) {
       entry->second = tries_;
     } else {
@@ -228,7 +229,7 @@ void FindingStore::written(const Batch& batch) {
     outputs_.failing(failing, failing ? batch.error : "findings are stored again");
   }
   for (const Key& key : saved) outputs_.kept(key);
-  // After a batch of which nothing could be written, the retry timer goes on.
+  // When nothing of the batch could be written, the retry timer decides.
   if (batch.failed.size() < batch.save.size() + batch.remove.size()) write();
 }
 

@@ -12,57 +12,60 @@
 namespace adit::findings {
 
 struct FindingStoreParams {
-  std::size_t max_findings{512};  ///< findings, [1, 65536]
-  Duration write{3ms};            ///< what a batch takes in rehearsal
-  Duration retry{1s};             ///< after a batch of which nothing could be written
+  std::size_t max_findings{512};  ///< Largest number of findings, [1, 65536].
+  Duration write{3ms};            ///< Duration of a batch in rehearsal.
+  Duration retry{1s};             ///< Delay after a batch of which nothing could be written.
 };
 
-/// What load() could not use. No file is deleted: a damaged one is renamed to NAME.bad (at most 64 of them,
-/// the others stay), the rest stay as they are.
+/// Files that load() could not use. No file is deleted: a damaged one is renamed to NAME.bad (at most 64 of
+/// them; further ones are not renamed), the others stay unchanged.
 struct LoadReport {
-  std::size_t damaged{};     ///< torn, corrupt, or under the name of another finding
-  std::size_t newer{};       ///< of another version of this program
-  std::size_t unreadable{};  ///< refused by the disk: perhaps readable at the next start
-  std::size_t surplus{};     ///< beyond FindingStoreParams::max_findings; the most important ones are loaded
-  std::string error{};       ///< the folder cannot be listed; empty when it can
+  std::size_t damaged{};     ///< Truncated, corrupt, or under the name of another finding.
+  std::size_t newer{};       ///< Written by another version of this program.
+  std::size_t unreadable{};  ///< Refused by the disk: perhaps readable at the next start.
+  std::size_t surplus{};     ///< Beyond FindingStoreParams::max_findings; the most important ones are loaded.
+  std::string error{};       ///< Error when the folder cannot be listed; else empty.
   bool operator==(const LoadReport&) const = default;
-  /// For operators; empty when everything was loaded.
+  /// Text for operators; empty when everything was loaded.
   std::string text() const;
 };
 
-/// Findings in memory and on disk, a file each, written in batches beside the strand it lives on.
+/// Stores findings in memory and on disk, one file each, written in batches in parallel to the home strand.
 class FindingStore {
  public:
   struct Outputs {
-    std::function<void(const Key&)> kept{};  ///< it is on disk now
-    /// The disk began to fail (with the reason), or works again.
+    std::function<void(const Key&)> kept{};  ///< Called when the finding is on disk.
+    /// Called when the disk begins to fail (with the reason), or works again.
     std::function<void(bool failing, const std::string& text)> failing{};
   };
 
-  /// `disk` null: memory alone. `writer`: a strand for a disk that takes time; null: the executor's pool.
+  /// `disk` null: memory only. `writer`: a strand for a disk whose writes take time; null: the executor's
+  /// pool.
   FindingStore(FindingStoreParams params, std::shared_ptr<store::Disk> disk, Executor& home,
                std::shared_ptr<Executor> writer, Outputs outputs);
   ~FindingStore();
   FindingStore(const FindingStore&) = delete;
   FindingStore& operator=(const FindingStore&) = delete;
 
-  /// Reads what the disk has, before anything is put.
+  /// Loads the findings on the disk; call it before put().
   LoadReport load();
-  /// False when it is full, or not valid. One that is there already stays as it is.
+  /// Adds a finding. Returns false when the store is full, or the finding is not valid. An existing finding
+  /// of the same key stays unchanged.
   bool put(Finding finding);
   void drop(const Key& key);
-  /// At a clean end, after the home strand has ended: hands all that is not on disk yet to the writer's
-  /// strand, the most important first. Nothing without such a strand, so that in rehearsal an end is a crash.
+  /// Passes all findings that are not on disk yet to the writer's strand, the most important first. Called at
+  /// a clean end, after the home strand has ended. Without a writer's strand it does nothing, so that in
+  /// rehearsal every end is a crash.
   void flush();
 
   const std::map<Key, Finding>& all() const { return all_; }
   bool full() const { return all_.size() >= params_.max_findings; }
-  /// It is on disk, or there is none.
+  /// Whether the finding is on disk.
   bool kept(const Key& key) const { return all_.contains(key) && !unsaved_.contains(key); }
 
  private:
   struct Batch;
-  /// Keys whose file has to be written or removed, with the number of the last try that failed; 0: none yet.
+  /// Keys whose file must be written or removed, with the number of the last attempt that failed; 0: none.
   using Pending = std::map<Key, std::uint64_t>;
 
   void load_file(const std::string& name, LoadReport& report, std::vector<Finding>& found);
@@ -77,16 +80,17 @@ class FindingStore {
   std::shared_ptr<Executor> writer_;
   Outputs outputs_;
   std::map<Key, Finding> all_{};
-  Pending unsaved_{}, dropped_{};  ///< dropped_: their files are still there
-  std::set<std::string>
-      foreign_{};  ///< files that load() left: renamed to NAME.aside before a finding takes the name
+  Pending unsaved_{}, dropped_{};  ///< For `dropped_`, the files still exist.
+  /// Files that load() did not use: renamed to NAME.aside before a finding takes the name.
+  std::set<std::string> foreign_{};
   std::size_t bad_files_{};
   std::uint64_t tries_{};
-  /// The batch under way. It expires when it was written, and also when the strand or the pool dropped it.
+  /// The running batch. It expires when it is written, and also when the strand or the pool drops it.
   std::weak_ptr<Batch> writing_{};
   bool failing_{};
   Timer modelled_{}, retry_{};
-  std::shared_ptr<FindingStore*> self_;  ///< what writes under way find; null inside when it is gone
+  /// Running batches use it to find the store; null inside when the store is gone.
+  std::shared_ptr<FindingStore*> self_;
 };
 
 }  // namespace adit::findings

@@ -6,24 +6,24 @@
 
 namespace adit {
 
-/// An angle brought into (-pi, pi], radians.
+/// Wraps an angle to (-pi, pi], rad.
 inline double wrap_angle(double angle) {
   angle = std::remainder(angle, 2.0 * M_PI);
   return angle <= -M_PI ? angle + 2.0 * M_PI : angle;
 }
 
-/// A planar pose: metres, radians (REP-103). The transform from its own frame to the frame it is given in.
+/// A planar pose, m and rad (REP-103): the transform from its own frame to the frame in which it is given.
 struct Pose2 {
   double x{};
   double y{};
   double yaw{};
 
-  /// This pose followed by `b`, which is given in this pose's frame.
+  /// Composition: `b` is given in this pose's frame.
   Pose2 operator*(const Pose2& b) const {
     const double c = std::cos(yaw), s = std::sin(yaw);
     return {x + c * b.x - s * b.y, y + s * b.x + c * b.y, wrap_angle(yaw + b.yaw)};
   }
-  /// A point of this pose's frame, in the frame the pose is given in.
+  /// Transforms a point from this pose's frame to the frame in which the pose is given.
   Eigen::Vector2d operator*(const Eigen::Vector2d& p) const {
     const double c = std::cos(yaw), s = std::sin(yaw);
     return {x + c * p.x() - s * p.y(), y + s * p.x() + c * p.y()};
@@ -36,7 +36,7 @@ struct Pose2 {
   bool operator==(const Pose2&) const = default;
 };
 
-/// A pose in space: metres, unit quaternion.
+/// A pose in space: position in m, orientation as a unit quaternion.
 struct Pose3 {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};
   Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};
@@ -54,14 +54,14 @@ struct Pose3 {
     return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
   }
   Pose2 planar() const { return {position.x(), position.y(), yaw()}; }
-  /// A level pose of that planar pose at height z.
+  /// Returns the level pose that has the planar pose `p` and height z.
   static Pose3 level(const Pose2& p, double z) {
     return {{p.x, p.y, z}, Eigen::Quaterniond(Eigen::AngleAxisd(p.yaw, Eigen::Vector3d::UnitZ()))};
   }
 };
 
-/// A velocity in the body frame: m/s forward, m/s to the left, rad/s counter-clockwise; m/s up, of what
-/// flies.
+/// A velocity in the body frame: m/s forward, m/s to the left, rad/s counter-clockwise; for aerial robots
+/// also m/s up.
 struct Twist2 {
   double vx{};
   double vy{};
@@ -71,7 +71,7 @@ struct Twist2 {
   bool zero() const { return vx == 0.0 && vy == 0.0 && wz == 0.0 && vz == 0.0; }
 };
 
-/// Points in metres, in the frame the holder states.
+/// Points, m, in the frame that the owner documents.
 using PointCloud = std::vector<Eigen::Vector3f>;
 
 }  // namespace adit

@@ -33,7 +33,7 @@ class LiveLog final : public LogSink {
         pool_(std::make_shared<spdlog::details::thread_pool>(queue, 1)),
         logger_(std::make_shared<spdlog::async_logger>("adit", sinks.begin(), sinks.end(), pool_,
                                                        spdlog::async_overflow_policy::overrun_oldest)) {
-    logger_->set_level(spdlog::level::trace);  // Log has chosen already
+    logger_->set_level(spdlog::level::trace);  // Log has already filtered by level.
     logger_->set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %^%v%$", spdlog::pattern_time_type::utc);
     logger_->flush_on(spdlog::level::warn);
   }
@@ -42,7 +42,7 @@ class LiveLog final : public LogSink {
   void write(const LogLine& line) override { logger_->log(to_spdlog(line.level), "{}", format(line)); }
 
  private:
-  std::shared_ptr<spdlog::details::thread_pool> pool_;  // its destructor writes what waits
+  std::shared_ptr<spdlog::details::thread_pool> pool_;  // Its destructor writes the queued lines.
   std::shared_ptr<spdlog::async_logger> logger_;
 };
 

@@ -8,8 +8,8 @@ namespace adit {
 namespace {
 constexpr std::array<std::string_view, 6> kNames{"trace", "debug", "info", "warn", "error", "off"};
 
-/// Bytes of the UTF-8 character that begins `text`; 0 when there is none, or when it is overlong, a surrogate
-/// or a control character of C1, which terminals obey like those below 0x20.
+/// Returns the number of bytes of the UTF-8 character at the start of `text`; 0 when there is none, or when
+/// it is overlong, a surrogate, or a C1 control character, which terminals obey like those below 0x20.
 std::size_t printable(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   const unsigned first = byte(0);
@@ -18,9 +18,11 @@ std::size_t printable(std::string_view text) {
   if (first < 0xc2 || first > 0xf4) return 0;
   for (std::size_t i = 1; i < size; ++i)
     if ((byte(i) & 0xc0u) != 0x80) return 0;
-  if (first == 0xc2 && byte(1) < 0xa0) return 0;                                         // C1
-  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90)) return 0;  // overlong
-  if ((first == 0xed && byte(1) > 0x9f) || (first == 0xf4 && byte(1) > 0x8f)) return 0;  // no character
+  if (first == 0xc2 && byte(1) < 0xa0) return 0;  // A C1 control character.
+  // An overlong encoding.
+  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90)) return 0;
+  // A surrogate, or beyond the last code point.
+  if ((first == 0xed && byte(1) > 0x9f) || (first == 0xf4 && byte(1) > 0x8f)) return 0;
   return size;
 }
 
@@ -47,7 +49,7 @@ std::string format(const LogLine& line) {
   }
   std::string out = head;
   out.append(line.component).append(": ");
-  // Text may come from the radio: no line breaks, no terminal control.
+  // Text may come from the radio: line breaks and terminal control characters are removed.
   for (std::string_view text = line.text; !text.empty();) {
     const std::size_t size = printable(text);
     if (size > 0)

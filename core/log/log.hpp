@@ -14,21 +14,21 @@ namespace adit {
 
 enum class LogLevel { trace, debug, info, warn, error, off };
 std::string_view name(LogLevel level);
-/// The level of that name; false when there is none.
+/// Parses the name of a level; returns false when there is none of that name.
 bool level_from_name(std::string_view text, LogLevel& out);
 
 struct LogLine {
   LogLevel level{LogLevel::info};
   bool has_time{false};
-  Time time{};  ///< of the machine's clock, when has_time
+  Time time{};  ///< Time of the machine's clock, when `has_time`.
   std::string_view component{};
   std::string_view text{};
 };
 
-/// "[   12.345678] warn  r1/mux: text": one line whatever the text holds.
+/// Formats a line as "[   12.345678] warn  r1/mux: text"; the result is one line for any text.
 std::string format(const LogLine& line);
 
-/// Where lines go. May be called from any thread; must not block for long.
+/// Receiver of log lines. Safe to call from any thread; must not block for long.
 class LogSink {
  public:
   explicit LogSink(LogLevel level) : level_(level) {}
@@ -42,7 +42,7 @@ class LogSink {
   LogLevel level_;
 };
 
-/// Keeps the newest lines as text, for tests and rehearsals.
+/// Stores the newest lines as text, for tests and rehearsals.
 class MemoryLog final : public LogSink {
  public:
   explicit MemoryLog(LogLevel level = LogLevel::info, std::size_t capacity = 10'000)
@@ -58,28 +58,29 @@ class MemoryLog final : public LogSink {
 
 struct LiveLogParams {
   LogLevel level{LogLevel::info};
-  bool console{true};              ///< stderr
-  std::string file{};              ///< also into this file, "" for none
-  std::size_t file_size{5 << 20};  ///< bytes, then it is rotated; one former file is kept
-  std::size_t queue{8192};         ///< lines waiting to be written; older ones are lost when it is full
+  bool console{true};              ///< Writes to stderr.
+  std::string file{};              ///< Also writes to this file; "": none.
+  std::size_t file_size{5 << 20};  ///< Size at which the file is rotated, bytes; one previous file remains.
+  std::size_t queue{8192};  ///< Length of the queue, lines. The oldest lines are dropped when it is full.
 };
-/// spdlog behind a queue: a slow terminal or disk never holds a strand up. Each line begins with the wall
-/// clock (UTC), the machine's clock follows. Error cannot_write for the file.
+/// Creates a log based on spdlog with a queue: a slow terminal or disk never delays a strand. Each line
+/// begins with the wall clock (UTC), then the machine's clock. Error cannot_write for the file.
 Result<std::shared_ptr<LogSink>> make_live_log(const LiveLogParams& params);
 
-/// What a component logs with: a sink, its name, and its clock. Cheap to copy. A Log made by default is off.
+/// Logger of a component: a sink, the component's name, and its clock. Cheap to copy. A default-constructed
+/// Log is off.
 class Log {
  public:
   Log() = default;
   /// `clock` may be null; otherwise it must outlive the Log and its copies.
   Log(std::shared_ptr<LogSink> sink, std::string component, const Executor* clock = nullptr)
       : sink_(std::move(sink)), component_(std::move(component)), clock_(clock) {}
-  /// The same sink for another component.
+  /// Returns a Log with the same sink for another component.
   Log named(std::string component, const Executor* clock = nullptr) const {
     return Log(sink_, std::move(component), clock ? clock : clock_);
   }
 
-  /// Ask first when the text is costly to make.
+  /// Whether lines of this level are logged; check it first when the text is expensive to build.
   bool on(LogLevel level) const { return sink_ && level != LogLevel::off && level >= sink_->level(); }
   void write(LogLevel level, std::string_view text) const;
   void trace(std::string_view text) const { write(LogLevel::trace, text); }

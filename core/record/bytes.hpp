@@ -12,7 +12,7 @@ namespace adit::record {
 using ByteSpan = std::span<const std::uint8_t>;
 using Text = std::map<std::string, std::string>;
 
-/// Appends MCAP's basic types: little-endian integers, and strings and maps with their length in front.
+/// Appends MCAP's basic types: little-endian integers, and strings and maps with a length prefix.
 class McapPacker {
  public:
   explicit McapPacker(std::vector<std::uint8_t>& out) : out_(out) {}
@@ -43,7 +43,8 @@ class McapPacker {
   std::vector<std::uint8_t>& out_;
 };
 
-/// Reads them back. Whatever does not fit into the bytes reads as zero or empty, and ok() is false then.
+/// Reads MCAP's basic types. A value that exceeds the bytes left reads as zero or empty, and ok() is then
+/// false.
 class McapUnpacker {
  public:
   explicit McapUnpacker(ByteSpan data) : rest_(data) {}
@@ -87,7 +88,7 @@ class McapUnpacker {
   bool ok_{true};
 };
 
-/// CRC-32 as zlib and MCAP have it (IEEE 802.3, reflected). `before`: the CRC of what stands in front.
+/// CRC-32 as in zlib and MCAP (IEEE 802.3, reflected). `before`: the CRC of the preceding bytes.
 std::uint32_t crc32(ByteSpan data, std::uint32_t before = 0);
 
 }  // namespace adit::record

@@ -7,16 +7,16 @@
 
 namespace adit::record {
 
-/// Channels of one file, with the schemas they need, added when their first message comes.
+/// The channels of one file and their schemas, added with their first message.
 class Channels {
  public:
   explicit Channels(McapWriter& writer) : writer_(writer) {}
-  /// The id in the file of what is `id` to the caller; `info` is looked at when it is new.
+  /// Returns the id in the file of the caller's channel `id`; `info` is used when the channel is new.
   std::uint16_t get(ChannelId id, const ChannelInfo& info);
 
  private:
   McapWriter& writer_;
-  std::map<std::string, std::uint16_t> schemas_{};  ///< by DDS type; 0: none
+  std::map<std::string, std::uint16_t> schemas_{};  ///< By DDS type; 0: none.
   std::map<ChannelId, std::uint16_t> channels_{};
 };
 

@@ -19,7 +19,7 @@ bool compress(ByteSpan data, std::vector<std::uint8_t>& out) {
 }
 
 bool decompress(ByteSpan data, std::size_t size, std::vector<std::uint8_t>& out) {
-  // What the frame itself promises, before anything is allocated for it.
+  // The size in the frame header is checked before anything is allocated for it.
   if (ZSTD_getFrameContentSize(data.data(), data.size()) != size) return false;
   out.resize(size);
   return ZSTD_decompress(out.data(), out.size(), data.data(), data.size()) == size;

@@ -5,11 +5,12 @@
 
 namespace adit::record {
 
-/// True when this build has libzstd.
+/// Whether this build has libzstd.
 bool can_compress();
-/// Zstandard, level 1. False when it would not be shorter, or is not built in.
+/// Compresses with Zstandard, level 1. Returns false when the result would not be shorter, or libzstd is not
+/// built in.
 bool compress(ByteSpan data, std::vector<std::uint8_t>& out);
-/// False when `data` is not Zstandard of exactly `size` bytes, or it is not built in.
+/// Returns false when `data` is not Zstandard of exactly `size` bytes, or libzstd is not built in.
 bool decompress(ByteSpan data, std::size_t size, std::vector<std::uint8_t>& out);
 
 }  // namespace adit::record

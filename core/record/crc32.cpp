@@ -7,7 +7,7 @@ namespace {
 
 using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
 
-// Eight tables, so that eight bytes are taken at a time ("slicing by 8", Kounavis and Berry 2005).
+// Eight tables process eight bytes at a time ("slicing by 8", Kounavis and Berry 2005).
 constexpr Tables make_tables() {
   Tables t{};
   for (std::uint32_t i = 0; i < 256; ++i) {

@@ -10,23 +10,24 @@
 
 namespace adit::record {
 
-/// Where a program keeps the last minutes when nothing is said: $XDG_STATE_HOME/adit/recordings, for root
-/// /var/lib/adit/recordings, else ~/.local/state/adit/recordings.
+/// Default folder of recordings: $XDG_STATE_HOME/adit/recordings, for root /var/lib/adit/recordings, else
+/// ~/.local/state/adit/recordings.
 std::string default_folder();
 
 struct FlightRecorderParams {
-  std::string folder{};  ///< "none": nothing is kept; empty: default_folder()
-  std::string name{};    ///< of the agent or station
-  Text about{};          ///< metadata of every file
-  std::function<void(const std::string& text)> on_error{};  ///< once per trouble, on the writing thread
+  std::string folder{};  ///< "none": no recording; empty: default_folder().
+  std::string name{};    ///< Name of the agent or station.
+  Text about{};          ///< Metadata of every file.
+  /// Called once per problem, on the writing thread.
+  std::function<void(const std::string& text)> on_error{};
 };
 
-/// What a live program keeps of its last minutes: 8 files of 4 MB. Made after the wires and the log it taps,
-/// and gone before them.
+/// Records the last minutes of a live program in 8 files of 4 MB. Create it after the participants and the
+/// log that it records, and destroy it before them.
 class FlightRecorder {
  public:
   explicit FlightRecorder(FlightRecorderParams params);
-  /// The wire to be used instead of that one; the same when nothing is kept.
+  /// Returns the participant to use instead of `wire`; `wire` itself when recording is off.
   wire::Participant& tap(wire::Participant& wire, const std::string& net);
   std::shared_ptr<LogSink> tap(std::shared_ptr<LogSink> log);
 

@@ -10,23 +10,24 @@ namespace adit::record {
 
 struct FrameRecorderParams {
   std::string file{};
-  std::uint32_t radio_domain{77};  ///< all others are inner networks
-  Text about{};                    ///< metadata of the file: scenario, seed
-  std::size_t large{16 << 10};     ///< bytes; of longer samples (scans) only some are kept:
-  Duration large_period{1s};       ///< one of each channel in this time; 0: all
+  std::uint32_t radio_domain{77};  ///< All other domains are inner networks.
+  Text about{};                    ///< Metadata of the file: scenario, seed.
+  /// Size above which a sample (a scan) is large, bytes. Large samples are thinned.
+  std::size_t large{16 << 10};
+  Duration large_period{1s};  ///< One large sample of each channel is recorded in this time; 0: all.
 };
 
-/// A rehearsal's radio and inner networks in one MCAP file. What a machine sent stands under "MACHINE/TOPIC";
-/// what reached another under "MACHINE/TOPIC>RECEIVER", what was lost on the way under
-/// "MACHINE/TOPIC>RECEIVER/lost"; of inner networks what was sent alone. Times are the run's, from 0. Nothing
-/// of the run depends on it.
+/// Records a rehearsal's radio and inner networks in one MCAP file. Sent samples are in the channel
+/// "MACHINE/TOPIC"; samples that reached another machine in "MACHINE/TOPIC>RECEIVER", lost ones in
+/// "MACHINE/TOPIC>RECEIVER/lost"; for inner networks only sent samples are recorded. Times are those of the
+/// run, from 0. Recording does not affect the run.
 class FrameRecorder {
  public:
-  /// Error cannot_write.
+  /// Opens the file. Error cannot_write.
   static Result<std::unique_ptr<FrameRecorder>> open(FrameRecorderParams params);
-  /// To be called by the simulated network's tap.
+  /// Records one event; the simulated network's tap calls it.
   void see(const wire::SampleEvent& frame);
-  /// Ends the file. Error cannot_write: from then on, or from earlier on, something is missing.
+  /// Completes the file. Error cannot_write: some data is missing.
   Result<void> close();
 
  private:

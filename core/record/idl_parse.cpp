@@ -140,7 +140,7 @@ class Parser {
     return named(word);
   }
 
-  /// A name is looked up from the innermost module outwards.
+  /// Looks a name up, from the innermost module outwards.
   TypeRef named(const std::string& name) const {
     for (std::size_t depth = scope_.size() + 1; depth-- > 0;) {
       std::string full;

@@ -14,7 +14,7 @@ namespace {
 
 std::string uncommented(const std::string& line) { return line.substr(0, line.find("//")); }
 
-/// The name in `#include "name"`; empty for another line.
+/// Returns the name in `#include "name"`, or an empty text for another line.
 std::string included(const std::string& line) {
   if (!line.starts_with("#include")) return {};
   const std::size_t first = line.find('"'), last = line.rfind('"');
@@ -28,7 +28,7 @@ struct Index {
     for (const auto& [path, text] : files) add_types(path, text);
   }
 
-  /// Structs by scoped name. Our IDL opens modules and structs by `word NAME {`, and braces nest.
+  /// Adds the structs by scoped name. Our IDL opens modules and structs by `word NAME {`, and braces nest.
   void add_types(const std::string& path, const std::string& text) {
     std::istringstream lines(text);
     std::vector<std::string> scope;
@@ -72,13 +72,13 @@ struct Index {
     }
   }
 
-  std::map<std::string, std::string> files{};  ///< path -> text
-  std::map<std::string, std::string> types{};  ///< scoped name -> path
+  std::map<std::string, std::string> files{};  ///< Text by path.
+  std::map<std::string, std::string> types{};  ///< Path by scoped name.
 };
 
 std::string scoped_name(std::string_view dds_type) {
   std::string name(dds_type);
-  // The contract's version is part of the type's name on the wire, but no module of the IDL.
+  // The contract's version is part of the DDS type name, but no module of the IDL.
   constexpr std::string_view family = "adit::radio::v";
   if (name.starts_with(family)) {
     const std::size_t end = name.find_first_not_of("0123456789", family.size());
@@ -94,7 +94,7 @@ std::string scoped_name(std::string_view dds_type) {
 }  // namespace
 
 std::optional<IdlSchema> idl_schema(std::string_view dds_type) {
-  static const Index index;  // what the program was built from: constant
+  static const Index index;  // Constant: the texts are part of the program.
   IdlSchema schema{scoped_name(dds_type), {}};
   const auto type = index.types.find(schema.name);
   if (type == index.types.end()) return std::nullopt;

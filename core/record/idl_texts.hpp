@@ -3,9 +3,9 @@
 
 namespace adit::record {
 
-/// A file of idl/, generated into the program at build time.
+/// A file of idl/, compiled into the program.
 struct IdlText {
-  const char* path;  ///< from its root: "adit/command.idl", "std_msgs/msg/Header.idl"
+  const char* path;  ///< Path in idl/: "adit/command.idl", "std_msgs/msg/Header.idl".
   const char* text;
 };
 std::span<const IdlText> idl_texts();

@@ -12,7 +12,8 @@ using Kind = IdlType::Kind;
 
 constexpr std::uint32_t kShownElements = 24;
 
-/// XCDR version 1: everything aligned to its size, counted from behind the encapsulation header.
+/// Decoder of XCDR version 1: each value is aligned to its size, counted from the end of the encapsulation
+/// header.
 class Decoder {
  public:
   explicit Decoder(ByteSpan cdr) : body_(cdr.subspan(4)), little_((cdr[1] & 1) != 0) {}

@@ -5,7 +5,7 @@
 
 #include "core/record/bytes.hpp"
 
-/// The MCAP container format, version 0 (mcap.dev/spec), as far as recordings use it.
+/// The part of the MCAP container format, version 0 (mcap.dev/spec), that recordings use.
 namespace adit::record {
 
 inline constexpr std::array<std::uint8_t, 8> kMcapMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
@@ -28,29 +28,29 @@ enum class Opcode : std::uint8_t {
   data_end = 0x0F,
 };
 
-/// Opcode and length stand in front of every record.
+/// Opcode and length precede every record.
 inline constexpr std::size_t kRecordHead = 9;
 
 struct Schema {
-  std::uint16_t id{};      ///< never 0 in a file
-  std::string name{};      ///< of the message's type, "adit::radio::Command"
-  std::string encoding{};  ///< "omgidl"
-  std::string text{};      ///< the type and all that it needs
+  std::uint16_t id{};      ///< Never 0 in a file.
+  std::string name{};      ///< Name of the message's type, "adit::radio::Command".
+  std::string encoding{};  ///< Always "omgidl".
+  std::string text{};      ///< The type and all types that it needs.
 };
 
 struct Channel {
   std::uint16_t id{};
-  std::uint16_t schema{};  ///< 0: none
+  std::uint16_t schema{};  ///< 0: none.
   std::string topic{};
-  std::string encoding{};  ///< of the messages: "cdr"
+  std::string encoding{};  ///< Encoding of the messages: "cdr".
   Text metadata{};
 };
 
 struct Message {
   std::uint16_t channel{};
-  std::uint32_t sequence{};  ///< within the channel
-  std::uint64_t time{};      ///< ns, when it was recorded
-  ByteSpan data{};           ///< valid while the reader calls
+  std::uint32_t sequence{};  ///< Sequence number within the channel.
+  std::uint64_t time{};      ///< Time of recording, ns.
+  ByteSpan data{};           ///< Valid only during the reader's call.
 };
 
 }  // namespace adit::record

@@ -34,7 +34,7 @@ class Reading {
   }
 
  private:
-  /// One record of the file; false when there is nothing more to be read.
+  /// Reads one record of the file; returns false when there is nothing more to read.
   bool step() {
     const std::uint64_t start = at_;
     if (!fetch(kRecordHead, head_)) return wrong(start, "torn off");
@@ -88,7 +88,7 @@ class Reading {
       if (!unpack.ok()) return (void)wrong(start, "broken metadata");
       if (visitor_.metadata) visitor_.metadata(name, entries);
     }
-    // Indexes, statistics and what later versions add serve other ways of reading.
+    // Indexes, statistics and records of later versions are not needed for sequential reading.
   }
 
   void message(McapUnpacker& unpack, std::uint64_t start) {
@@ -96,7 +96,7 @@ class Reading {
     m.channel = unpack.get<std::uint16_t>();
     m.sequence = unpack.get<std::uint32_t>();
     m.time = unpack.get<std::uint64_t>();
-    unpack.get<std::uint64_t>();  // publish time
+    unpack.get<std::uint64_t>();  // Skips the publish time.
     if (!unpack.ok()) return (void)wrong(start, "broken message");
     m.data = unpack.take(unpack.left());
     const auto channel = channels_.find(m.channel);
@@ -124,7 +124,7 @@ class Reading {
 
   std::optional<ByteSpan> unpacked() {
     McapUnpacker unpack(record_);
-    unpack.take(16);  // times
+    unpack.take(16);  // Skips the times.
     const auto size = unpack.get<std::uint64_t>();
     const auto crc = unpack.get<std::uint32_t>();
     const std::string compression = unpack.text();
@@ -141,7 +141,7 @@ class Reading {
     return out;
   }
 
-  /// True when the bytes are records from end to end.
+  /// Whether the bytes consist of complete records.
   static bool whole(ByteSpan records) {
     return each(records, [](Opcode, ByteSpan) {});
   }

@@ -22,7 +22,7 @@ void put_channel(McapPacker& pack, const Channel& channel) {
   pack.map(channel.metadata);
 }
 
-/// A record made in place: opcode, then the length once it is known.
+/// Writes a record in place: opcode, then the length once it is known.
 template <class Content>
 void add_record(std::vector<std::uint8_t>& out, Opcode opcode, Content content) {
   McapPacker pack(out);
@@ -36,13 +36,13 @@ void add_record(std::vector<std::uint8_t>& out, Opcode opcode, Content content) 
 }  // namespace
 
 McapWriter::McapWriter(Output& out, McapWriterParams params) : out_(out), params_(std::move(params)) {
-  (void)emit(kMcapMagic);  // kept in state_
+  (void)emit(kMcapMagic);  // An error is stored in state_.
   scratch_.clear();
   add_record(scratch_, Opcode::header, [&](McapPacker& pack) {
-    pack.text("");  // no profile: the types say all
+    pack.text("");  // Empty profile: the schemas describe everything.
     pack.text(params_.library);
   });
-  (void)emit(scratch_);  // kept in state_
+  (void)emit(scratch_);  // An error is stored in state_.
 }
 
 Result<void> McapWriter::emit(ByteSpan data) {
@@ -60,7 +60,7 @@ std::uint16_t McapWriter::add_schema(const std::string& name, const std::string&
   schemas_.push_back({static_cast<std::uint16_t>(schemas_.size() + 1), name, encoding, text});
   scratch_.clear();
   add_record(scratch_, Opcode::schema, [&](McapPacker& pack) { put_schema(pack, schemas_.back()); });
-  (void)emit(scratch_);  // kept in state_
+  (void)emit(scratch_);  // An error is stored in state_.
   return schemas_.back().id;
 }
 
@@ -70,7 +70,7 @@ std::uint16_t McapWriter::add_channel(std::uint16_t schema, const std::string& t
       {static_cast<std::uint16_t>(channels_.size()), schema, topic, encoding, metadata}, 0, {}};
   scratch_.clear();
   add_record(scratch_, Opcode::channel, [&](McapPacker& pack) { put_channel(pack, channel.info); });
-  (void)emit(scratch_);  // kept in state_
+  (void)emit(scratch_);  // An error is stored in state_.
   channels_.push_back(std::move(channel));
   return channels_.back().info.id;
 }
@@ -90,8 +90,8 @@ Result<void> McapWriter::write(std::uint16_t channel, std::uint64_t time, ByteSp
   add_record(chunk_, Opcode::message, [&](McapPacker& pack) {
     pack.put(channel);
     pack.put(static_cast<std::uint32_t>(own.messages));
-    pack.put(time);  // log time
-    pack.put(time);  // publish time: ours, clocks of others are not comparable
+    pack.put(time);  // Log time.
+    pack.put(time);  // Publish time: ours, as clocks of other machines are not comparable.
     pack.bytes(data);
   });
   ++own.messages;
@@ -173,7 +173,7 @@ std::vector<std::uint8_t> McapWriter::summary_records(std::uint64_t start,
       pack.put(messages_);
       pack.put(static_cast<std::uint16_t>(schemas_.size()));
       pack.put(static_cast<std::uint32_t>(channels_.size()));
-      pack.put(std::uint32_t{0});  // attachments
+      pack.put(std::uint32_t{0});  // Number of attachments.
       pack.put(static_cast<std::uint32_t>(metadata_.size()));
       pack.put(static_cast<std::uint32_t>(chunks_.size()));
       pack.put(first_);
@@ -227,7 +227,7 @@ Result<void> McapWriter::close() {
   pack.put(std::uint64_t{8 + 8 + 4});
   pack.put(start);
   pack.put(offsets_start);
-  pack.put(crc32(tail));  // of the summary and the footer up to here
+  pack.put(crc32(tail));  // CRC of the summary and the footer up to here.
   pack.bytes(kMcapMagic);
   return emit(tail);
 }

@@ -9,14 +9,14 @@
 namespace adit::record {
 
 struct McapWriterParams {
-  std::size_t chunk_bytes{256 << 10};  ///< of messages, then the chunk is written, [1, 16 MB]
-  bool compress{true};                 ///< chunks by Zstandard, where the build has it
-  std::string library{"adit"};         ///< who wrote it
+  std::size_t chunk_bytes{256 << 10};  ///< Bytes of messages after which a chunk is written, [1, 16 MB].
+  bool compress{true};                 ///< Compress chunks with Zstandard, if it is built in.
+  std::string library{"adit"};         ///< Name of the writing program.
 };
 
 /// Writes one MCAP file: chunks with message indexes and CRCs, and at the end statistics, chunk indexes and
-/// all schemas and channels again. Schemas and channels stand in front of the chunk that needs them first, so
-/// a file that was torn off reads up to its last whole chunk. Ids are those of the file, from 1 for schemas
+/// all schemas and channels again. Schemas and channels precede the first chunk that needs them, so a
+/// truncated file is readable up to its last complete chunk. Ids are those of the file, from 1 for schemas
 /// and 0 for channels. After an error nothing more is written.
 class McapWriter {
  public:
@@ -27,14 +27,14 @@ class McapWriter {
   std::uint16_t add_schema(const std::string& name, const std::string& encoding, const std::string& text);
   std::uint16_t add_channel(std::uint16_t schema, const std::string& topic, const std::string& encoding,
                             const Text& metadata);
-  /// Errors: cannot_write of the output, out_of_range for a channel that there is not.
+  /// Writes a message. Errors: cannot_write of the output, out_of_range for a channel that does not exist.
   Result<void> write(std::uint16_t channel, std::uint64_t time, ByteSpan data);
   Result<void> add_metadata(const std::string& name, const Text& entries);
-  /// Ends the chunk that is open, so that what was written so far survives the process.
+  /// Ends the open chunk, so that everything written so far survives the process.
   Result<void> flush();
-  /// Summary and footer; nothing may follow.
+  /// Writes summary and footer; nothing may be written afterwards.
   Result<void> close();
-  /// Bytes in the file with the open chunk as it is.
+  /// Bytes in the file, including the open chunk uncompressed.
   std::uint64_t size() const { return written_ + chunk_.size(); }
   std::uint64_t messages() const { return messages_; }
 
@@ -48,7 +48,7 @@ class McapWriter {
   struct OwnChannel {
     Channel info{};
     std::uint64_t messages{};
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> index{};  ///< of the open chunk: time, offset
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> index{};  ///< Index of the open chunk: time, offset.
   };
   struct MetadataIndex {
     std::string name{};
@@ -60,9 +60,9 @@ class McapWriter {
 
   Output& out_;
   McapWriterParams params_;
-  Result<void> state_{};  ///< the first error
+  Result<void> state_{};  ///< The first error.
   std::uint64_t written_{};
-  std::uint32_t crc_{};  ///< of all that was written
+  std::uint32_t crc_{};  ///< CRC of all bytes written.
   std::vector<Schema> schemas_{};
   std::vector<OwnChannel> channels_{};
   std::vector<std::uint8_t> chunk_{}, scratch_{}, packed_{};

@@ -8,15 +8,15 @@
 
 namespace adit::record {
 
-/// Where the bytes of a recording go, one after the other.
+/// Destination of the bytes of a recording.
 class Output {
  public:
   virtual ~Output() = default;
-  /// Error cannot_write: the disk is full, or gone. What was appended before stays.
+  /// Appends bytes. Error cannot_write: the disk is full, or not available. Bytes appended before remain.
   virtual Result<void> append(ByteSpan data) = 0;
 };
 
-/// Into memory, for tests and short recordings.
+/// Writes to memory, for tests and short recordings.
 class MemoryOutput final : public Output {
  public:
   Result<void> append(ByteSpan data) override {
@@ -26,7 +26,7 @@ class MemoryOutput final : public Output {
   std::vector<std::uint8_t> bytes{};
 };
 
-/// A new file, mode 0600. Errors: cannot_write; in_use when `may_exist` is false and there is one.
+/// Creates a file of mode 0600. Errors: cannot_write; in_use when `may_exist` is false and there is one.
 Result<std::unique_ptr<Output>> open_file(const std::string& path, bool may_exist);
 
 }  // namespace adit::record

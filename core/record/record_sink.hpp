@@ -6,32 +6,33 @@
 
 namespace adit::record {
 
-/// One row of a recording: messages of one type, of one direction, with one peer.
+/// A channel of a recording: messages of one type, in one direction, with one peer.
 struct ChannelInfo {
-  std::string topic{};     ///< as people look for it: "out/adit/command"
-  std::string dds_type{};  ///< looked up in idl/; a type that is not there is kept without a schema
-  Text metadata{};         ///< who to whom
+  std::string topic{};     ///< Name for users: "out/adit/command".
+  std::string dds_type{};  ///< Looked up in idl/; an unknown type is recorded without a schema.
+  Text metadata{};         ///< Sender and receiver.
   auto operator<=>(const ChannelInfo&) const = default;
 };
 
 using ChannelId = std::uint32_t;
 
-/// Takes messages and never blocks: what does not fit is dropped and counted. From any thread.
+/// Receiver of messages to record; never blocks: messages that do not fit are dropped and counted. Safe to
+/// call from any thread.
 class RecordSink {
  public:
   virtual ~RecordSink() = default;
-  /// The same info gives the same id; each call wants its own release().
+  /// Returns the id of a channel. The same info gives the same id; each call needs its own release().
   virtual ChannelId channel(const ChannelInfo& info) = 0;
-  /// Nothing more comes for this one; what waits for it is written yet.
+  /// Ends the use of a channel; its queued messages are still written.
   virtual void release(ChannelId channel) = 0;
-  /// A serialised sample with its encapsulation header, as of now.
+  /// Records a serialised sample with its encapsulation header, at the current time.
   virtual void record(ChannelId channel, ByteSpan cdr) = 0;
 };
 
-/// DDS type of log lines: Foxglove's, so that its log panel shows them.
+/// DDS type of log lines: Foxglove's, which its log panel shows.
 inline constexpr const char* kLogType = "foxglove::Log";
 
-/// The message encoding for bytes that are no sample of their topic's type.
+/// Message encoding for bytes that are no valid sample of their topic's type.
 inline constexpr const char* kMalformedKey = "malformed";
 
 }  // namespace adit::record

@@ -10,8 +10,8 @@ namespace adit::record {
 namespace {
 
 constexpr std::size_t kMaxChannels = 4096;
-constexpr std::uint64_t kRetryAfter = 5'000'000'000;  // ns
-// Of an entry in the queue: channel, time, size.
+constexpr std::uint64_t kRetryAfter = 5'000'000'000;  // In ns.
+// Size of an entry's header in the queue: channel, time, size.
 constexpr std::size_t kEntryHead = 4 + 8 + 4;
 
 std::uint64_t system_time() {
@@ -35,7 +35,7 @@ RecorderParams checked(RecorderParams params) {
 
 }  // namespace
 
-/// One segment that is being written.
+/// One segment during writing.
 struct Recorder::File {
   File(std::unique_ptr<Output> opened, const RecorderParams& params)
       : output(std::move(opened)), writer(*output, {256 << 10, params.compress, params.library}) {}
@@ -112,7 +112,7 @@ RecorderCounters Recorder::counters() const {
 void Recorder::run() {
   ::pthread_setname_np(::pthread_self(), "recorder");
   std::vector<std::uint8_t> batch;
-  std::map<ChannelId, std::shared_ptr<Known>> last_of;  // released before this batch was taken
+  std::map<ChannelId, std::shared_ptr<Known>> last_of;  // Released before this batch was taken.
   batch.reserve(params_.queue_bytes);
   for (bool ending = false; !ending;) {
     {
@@ -135,17 +135,19 @@ void Recorder::run() {
     counters_.recorded += kept ? all : written_;
     counters_.dropped += kept ? 0 : all - written_;
   }
-  if (file_) (void)file_->writer.close();  // an error costs the summary: the file reads without it
+  // An error costs only the summary: the file is readable without it.
+  if (file_) (void)file_->writer.close();
 }
 
-/// Never changed, and kept until the batch is written.
+/// Returns the info of a channel. It never changes, and lives until the batch is written.
 const ChannelInfo& Recorder::info(ChannelId channel) {
   const std::lock_guard lock(mutex_);
   const auto known = known_.find(channel);
   return known != known_.end() ? known->second->info : released_.at(channel)->info;
 }
 
-/// False when the disk did not take it all; `written_` messages went before.
+/// Writes a batch. Returns false when the disk did not take all of it; the first `written_` messages are then
+/// in the file.
 bool Recorder::write(const std::vector<std::uint8_t>& batch) {
   McapUnpacker entries(batch);
   while (entries.left() > 0) {

@@ -17,32 +17,34 @@ namespace adit::record {
 
 struct RecorderParams {
   RingParams ring{};
-  std::size_t queue_bytes{4 << 20};  ///< messages waiting to be written; more are dropped and counted
-  Duration flush{1s};                ///< what is older than this survives a kill of the process
-  std::size_t large{16 << 10};       ///< bytes; of longer messages (scans, pictures) only some are kept:
-  Duration large_period{5s};         ///< one of each channel in this time; 0: all
-  bool compress{true};               ///< by Zstandard, where the build has it
-  std::string library{"adit"};       ///< who wrote it, and its version
-  Text about{};                      ///< metadata of every file
-  std::function<std::uint64_t()> clock{};   ///< ns since 1970; the system's when empty
-  std::function<std::uint64_t()> steady{};  ///< ns, never steps: for pauses; the system's when empty
-  std::function<void(const std::string& text)> on_error{};  ///< once per trouble, on the writing thread
+  std::size_t queue_bytes{4 << 20};  ///< Size of the queue, bytes; further messages are dropped and counted.
+  Duration flush{1s};                ///< Messages older than this survive a kill of the process.
+  /// Size above which a message (a scan, an image) is large, bytes. Large messages are thinned.
+  std::size_t large{16 << 10};
+  Duration large_period{5s};    ///< One large message of each channel is recorded in this time; 0: all.
+  bool compress{true};          ///< Compress with Zstandard, if it is built in.
+  std::string library{"adit"};  ///< Name and version of the writing program.
+  Text about{};                 ///< Metadata of every file.
+  std::function<std::uint64_t()> clock{};   ///< Nanoseconds since 1970; empty: the system's clock.
+  std::function<std::uint64_t()> steady{};  ///< Steady clock for pauses, ns; empty: the system's.
+  /// Called once per problem, on the writing thread.
+  std::function<void(const std::string& text)> on_error{};
 };
 
 struct RecorderCounters {
-  std::uint64_t recorded{}, dropped{};  ///< messages; dropped: queue or disk full
-  std::uint64_t thinned{};              ///< large ones left out on purpose
+  std::uint64_t recorded{}, dropped{};  ///< Numbers of messages; dropped: the queue or the disk was full.
+  std::uint64_t thinned{};              ///< Large messages left out on purpose.
   std::uint64_t files{}, failed_files{};
 };
 
-/// Keeps the last minutes in a ring of MCAP files. Written by a thread of its own, so that a slow disk holds
-/// nobody up; a full one is told once, tried again every 5 s, and costs recordings only. Its destructor
-/// writes what waits.
+/// Records the last minutes in a ring of MCAP files. A separate thread writes them, so that a slow disk
+/// delays no strand. A full disk is reported once, retried every 5 s, and affects only the recording. The
+/// destructor writes the queued messages.
 class Recorder final : public RecordSink {
  public:
   explicit Recorder(RecorderParams params);
   ~Recorder() override;
-  /// At most 4096 channels at a time; those beyond share one.
+  /// Adds a channel. At most 4096 exist at a time; those beyond share one.
   ChannelId channel(const ChannelInfo& info) override;
   void release(ChannelId channel) override;
   void record(ChannelId channel, ByteSpan cdr) override;
@@ -65,16 +67,17 @@ class Recorder final : public RecordSink {
 
   const RecorderParams params_;
   Ring ring_;
-  std::unique_ptr<File> file_{};          // on the writing thread
-  std::uint64_t retry_at_{}, written_{};  // the same
-  bool troubled_{};                       // the same
+  std::unique_ptr<File> file_{};          // Used on the writing thread.
+  std::uint64_t retry_at_{}, written_{};  // Used on the writing thread.
+  bool troubled_{};                       // Used on the writing thread.
 
   mutable std::mutex mutex_{};
   std::condition_variable wake_{};
   std::vector<std::uint8_t> queue_{};
   std::map<ChannelInfo, ChannelId> ids_{};
   std::map<ChannelId, std::shared_ptr<Known>> known_{};
-  std::map<ChannelId, std::shared_ptr<Known>> released_{};  ///< until what waits for them is written
+  /// Released channels whose queued messages are not written yet.
+  std::map<ChannelId, std::shared_ptr<Known>> released_{};
   ChannelId next_id_{};
   RecorderCounters counters_{};
   bool ending_{};

@@ -24,7 +24,8 @@ std::int32_t foxglove_level(LogLevel level) {
   return 0;
 }
 
-/// CDR: aligned to four behind the encapsulation header, which is what every member here needs.
+/// CDR encoder with alignment to four bytes after the encapsulation header, which suffices for every member
+/// here.
 class Cdr {
  public:
   Cdr() { McapPacker(out).bytes(std::array<std::uint8_t, 4>{0, 1, 0, 0}); }
@@ -36,7 +37,7 @@ class Cdr {
     McapPacker pack(out);
     pack.put(static_cast<std::uint32_t>(value.size() + 1));
     pack.bytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
-    do out.push_back(0);  // the end of the string, and up to the next member
+    do out.push_back(0);  // The terminator of the string, and padding up to the next member.
     while (out.size() % 4 != 0);
   }
   std::vector<std::uint8_t> out{};

@@ -6,8 +6,8 @@
 
 namespace adit::record {
 
-/// A log sink whose lines go on a record sink, too, as Foxglove's log messages. `sink` outlives it and
-/// whoever logs.
+/// A log sink that also records its lines on a record sink, as Foxglove's log messages. `sink` must outlive
+/// it and its users.
 class RecordingLog final : public LogSink {
  public:
   RecordingLog(std::shared_ptr<LogSink> inner, RecordSink& sink);

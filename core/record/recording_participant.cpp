@@ -7,11 +7,12 @@
 namespace adit::record {
 namespace {
 
-constexpr std::size_t kMaxSenders = 32;  // of one reader: then the one that was silent longest is given up
-// Samples of one reader that could not be decoded: a peer that sends nothing else must not push the last
-// minutes out of the ring. The wire's counters have the number of all of them.
+// Channels of one reader; beyond it the sender that was silent longest is removed.
+constexpr std::size_t kMaxSenders = 32;
+// Limits the recorded undecodable samples of one reader: a peer that sends nothing else must not displace the
+// last minutes from the ring. The wire's counters count all of them.
 constexpr double kMalformedBurst = 32.0;
-constexpr double kMalformedRate = 4.0;  // 1/s
+constexpr double kMalformedRate = 4.0;  // In 1/s.
 
 class RecordingWriter final : public wire::RawWriter {
  public:
@@ -30,7 +31,7 @@ class RecordingWriter final : public wire::RawWriter {
   ChannelId channel_;
 };
 
-/// What a reader received goes on the record sink; called on the reader's strand.
+/// Records the samples that a reader received; runs on the reader's strand.
 class RecordingReader {
  public:
   RecordingReader(RecordSink& sink, ChannelInfo info) : sink_(sink), info_(std::move(info)) {}
@@ -57,7 +58,7 @@ class RecordingReader {
  private:
   struct Own {
     ChannelId id{};
-    std::uint64_t last{};  ///< number of the sample heard last
+    std::uint64_t last{};  ///< Number of the last sample received.
   };
   using Senders = std::map<wire::ParticipantId, Own>;
 
@@ -84,7 +85,7 @@ class RecordingReader {
   Senders channels_{}, malformed_{};
   std::uint64_t count_{};
   double tokens_{kMalformedBurst};
-  Time refilled_{};  ///< receiver's clock
+  Time refilled_{};  ///< Time by the receiver's clock.
 };
 
 }  // namespace
@@ -113,19 +114,21 @@ Result<std::unique_ptr<wire::RawReader>> RecordingParticipant::make_reader(const
                    {{"net", net_}, {"to", wire::to_string(inner_.id())}, {"direction", "in"}}};
   if (!partition.empty()) info.metadata["partition"] = partition;
   const auto heard = std::make_shared<RecordingReader>(sink_, std::move(info));
-  return inner_.make_reader(
-      topic, partition, strand,
-      [heard, handler = std::move(handler)](std::span<const std::uint8_t> cdr,
-                                            const wire::SampleInfo& about) {
-        try {
-          const bool decoded = handler(cdr, about);
-          decoded ? heard->record(cdr, about.sender) : heard->record_malformed(cdr, about);
-          return decoded;
-        } catch (...) {
-          heard->record(cdr, about.sender);  // above all the one that broke its receiver
-          throw;
-        }
-      });
+  return inner_.make_reader(topic, partition, strand,
+                            [heard, handler = std::move(handler)](std::span<const std::uint8_t> cdr,
+                                                                  const wire::SampleInfo& about) {
+                              try {
+                                const bool decoded = handler(cdr, about);
+                                decoded ? heard->record(cdr, about.sender)
+                                        : heard->record_malformed(cdr, about);
+                                return decoded;
+                              } catch (...) {
+                                // Recorded before it is handled, so that a sample that crashes its receiver
+                                // is on record.
+                                heard->record(cdr, about.sender);
+                                throw;
+                              }
+                            });
 }
 
 }  // namespace adit::record

@@ -6,9 +6,10 @@
 
 namespace adit::record {
 
-/// Another wire with everything that passes it on a record sink, too. What was sent stands under "out/TOPIC";
-/// what was received under "in/TOPIC", one channel per sender; what its reader could not decode under
-/// "in/TOPIC/malformed". `net` ("radio", "robot") goes into the channels' metadata. Both outlive it.
+/// A participant that forwards to another one and also records its samples on a record sink. Sent samples are
+/// in the channel "out/TOPIC"; received ones in "in/TOPIC", one channel per sender; those that the reader
+/// could not decode in "in/TOPIC/malformed". `net` ("radio", "robot") is metadata of the channels. The inner
+/// participant and the sink must outlive it.
 class RecordingParticipant final : public wire::ForwardingParticipant {
  public:
   RecordingParticipant(wire::Participant& inner, RecordSink& sink, std::string net);

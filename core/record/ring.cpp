@@ -18,7 +18,7 @@ struct Segment {
   fs::path path{};
 };
 
-/// The number in NAME-000001.mcap; nullopt for the files of others.
+/// Returns the number in NAME-000001.mcap; nullopt for other files.
 std::optional<std::uint64_t> number_in(const std::string& file, const std::string& name) {
   const std::string_view end = ".mcap";
   if (!file.starts_with(name + "-") || !file.ends_with(end)) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<std::uint64_t> number_in(const std::string& file, const std::strin
 
 std::vector<Segment> segments_in(const std::string& folder, const std::string& name) {
   std::vector<Segment> out;
-  std::error_code failed;  // a folder that cannot be listed shows when the file is opened
+  std::error_code failed;  // A folder that cannot be listed causes an error when the file is opened.
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed))
     if (const auto number = number_in(it->path().filename().string(), name)) {
       std::error_code gone;
@@ -45,12 +45,13 @@ std::vector<Segment> segments_in(const std::string& folder, const std::string& n
 
 }  // namespace
 
-// Files stay small when a process lives short: so their number is bounded, too, at a multiple.
+// The number of files is bounded, too, as files of short runs are small.
 Result<std::uint64_t> Ring::make_room() {
   std::error_code failed;
   if (fs::create_directories(params_.folder, failed); failed)
     return Error{Reason::cannot_write, "cannot make the folder " + params_.folder + ": " + failed.message()};
-  fs::permissions(params_.folder, fs::perms::owner_all, failed);  // somebody else's shows when it is written
+  // When the folder belongs to another user, opening the file fails.
+  fs::permissions(params_.folder, fs::perms::owner_all, failed);
   const std::vector<Segment> found = segments_in(params_.folder, params_.name);
   const std::uint64_t limit = static_cast<std::uint64_t>(params_.segments) * params_.segment_bytes;
   const std::size_t max_entries = static_cast<std::size_t>(params_.segments) * 8;
@@ -70,7 +71,7 @@ Result<std::uint64_t> Ring::make_room() {
 Result<std::unique_ptr<Output>> Ring::next() {
   const auto number = make_room();
   if (!number) return number.error();
-  // Somebody else with our name and folder may be at it as well: then another number.
+  // Another process may use the same name and folder: then the next number is tried.
   for (std::uint64_t n = *number; n < *number + 100; ++n) {
     char digits[32];
     std::snprintf(digits, sizeof digits, "-%06llu.mcap", static_cast<unsigned long long>(n));

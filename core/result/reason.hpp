@@ -4,62 +4,63 @@
 
 namespace adit {
 
-/// Why something was refused or failed. The numbers travel on the wire and are shown to operators:
-/// a number is never reused. The names are what scenarios and scripts compare (`refused: locked`).
+/// Reason why something was refused or failed. The numbers travel on the wire and are shown to operators; a
+/// number is never reused. Scenarios and scripts compare the names (`refused: locked`).
 enum class Reason : std::uint16_t {
   none = 0,
 
   // Authority (rules 1 to 4)
-  not_holder = 101,         ///< the sender does not hold the robot
-  locked = 102,             ///< the robot is locked by its holder
-  stale_epoch = 103,        ///< the command was given under an earlier authority
-  stale_sequence = 104,     ///< the sequence number is older than one already seen
-  unknown_station = 105,    ///< the sender has not announced itself as a basestation
-  name_in_use = 106,        ///< another station with this name is being heard
-  identity_mismatch = 107,  ///< the name is the holder's, the participant or station id is not
-  nobody_holds = 108,       ///< the command needs a holder and there is none
-  unknown_operator = 109,   ///< the operator named in the command has not been heard
-  stop_of_another = 110,    ///< the stop was set by another station: reset --override clears it
-  wrong_robot = 111,        ///< the command is addressed to another robot
+  not_holder = 101,       ///< The sender has no authority over the robot.
+  locked = 102,           ///< The robot is locked by the station with authority.
+  stale_epoch = 103,      ///< The command was given under an earlier authority epoch.
+  stale_sequence = 104,   ///< The sequence number is older than one already received.
+  unknown_station = 105,  ///< The sender has not announced itself as a basestation.
+  name_in_use = 106,      ///< Another station with this name is present.
+  /// The name is that of the station with authority; the participant or station id is not.
+  identity_mismatch = 107,
+  nobody_holds = 108,      ///< The command needs a station with authority and there is none.
+  unknown_operator = 109,  ///< The operator named in the command has not been heard.
+  stop_of_another = 110,   ///< The stop was set by another station: reset --override clears it.
+  wrong_robot = 111,       ///< The command is addressed to another robot.
 
   // Conditions of the modes (rules 5 to 7)
-  stopped = 201,             ///< a software stop is set
-  joystick_stale = 202,      ///< no fresh joystick sample
-  stick_not_centred = 203,   ///< a manual mode starts from a centred stick
-  driver_silent = 204,       ///< the driver has not been heard
-  no_localisation = 205,     ///< localisation is not initialised
-  terrain_stale = 206,       ///< no fresh obstacle points
-  goal_missing = 207,        ///< the mode needs a goal and there is none
-  goal_unreachable = 208,    ///< the goal lies in an obstacle or outside what can be reached
-  mode_unknown = 209,        ///< no mode of that name
-  mode_not_installed = 210,  ///< this robot has no module for that mode
-  sample_stale = 211,        ///< the echoed stamp is too old
-  wrong_mode = 212,          ///< the current mode does not take this input
-  blocked = 213,             ///< every path is blocked
-  program_silent = 214,      ///< the program that steers from outside has not been heard
-  obstacle_close = 215,      ///< the collision monitor holds the robot back
-  just_restarted = 216,      ///< a stop may be under way to the agent that was started a moment ago
+  stopped = 201,             ///< A software stop is set.
+  joystick_stale = 202,      ///< There is no recent joystick sample.
+  stick_not_centred = 203,   ///< A manual mode starts only from a centred stick.
+  driver_silent = 204,       ///< The driver has not been heard.
+  no_localisation = 205,     ///< Localisation is not initialised.
+  terrain_stale = 206,       ///< There are no recent obstacle points.
+  goal_missing = 207,        ///< The mode needs a goal and there is none.
+  goal_unreachable = 208,    ///< The goal is in an obstacle or cannot be reached.
+  mode_unknown = 209,        ///< There is no mode of that name.
+  mode_not_installed = 210,  ///< This robot has no module for that mode.
+  sample_stale = 211,        ///< The echoed stamp is too old.
+  wrong_mode = 212,          ///< The current mode does not accept this input.
+  blocked = 213,             ///< Every path is blocked.
+  program_silent = 214,      ///< The external program that steers has not been heard.
+  obstacle_close = 215,      ///< The collision monitor stops the robot.
+  just_restarted = 216,      ///< A stop may be in transit to the agent, which has just started.
   tree_refused = 226,        ///< The behaviour tree contradicts the mode table; the robot runs in hold.
   odometry_jumped = 227,     ///< The driver's odometry moved farther than the body can.
-  name_taken = 228,          ///< Another robot with the same name was there first.
+  name_taken = 228,          ///< Another robot of the same name was present first.
 
-  // What was typed or sent
+  // Input that was typed or sent.
   bad_argument = 301,
   unknown_robot = 302,
   unknown_command = 303,
   out_of_range = 304,
-  malformed = 305,       ///< a message could not be decoded
-  wrong_protocol = 306,  ///< the other side speaks another protocol version
+  malformed = 305,       ///< A message could not be decoded.
+  wrong_protocol = 306,  ///< The other side uses another protocol version.
 
-  // Programs and wire
+  // Programs and wire.
   no_answer = 401,
   no_station = 402,
-  in_use = 403,  ///< a name, port or socket is taken
+  in_use = 403,  ///< A name, port or socket is taken.
   wire_failed = 404,
   queue_full = 405,
   cancelled = 406,
 
-  // Files
+  // Files.
   cannot_read = 501,
   cannot_write = 502,
   syntax = 503,
@@ -68,15 +69,14 @@ enum class Reason : std::uint16_t {
   missing_key = 506,
   not_supported = 507,
 
-  internal = 901,  ///< an exception was caught at a boundary; the text says which
+  internal = 901,  ///< An exception was caught at a boundary; the text says which.
 };
 
-/// The name of a reason, as scenarios and scripts write it; "reason_<number>" is never returned:
-/// an unknown number reads "unknown".
+/// Returns the name of a reason, as scenarios and scripts write it; "unknown" for an unknown number.
 std::string_view name(Reason reason);
-/// The sentence an operator reads when no better text came with the reason.
+/// Returns the sentence for the operator when the reason comes without a more specific text.
 std::string_view describe(Reason reason);
-/// The reason of that name; Reason::internal and false when there is none.
+/// Parses the name of a reason; sets Reason::internal and returns false when there is none of that name.
 bool reason_from_name(std::string_view text, Reason& out);
 
 }  // namespace adit

@@ -8,14 +8,14 @@
 
 namespace adit {
 
-/// A failure that crosses a boundary: its number, and a sentence that tells what to do.
+/// A failure that crosses a boundary: its reason, and a sentence that says what to do.
 struct Error {
   Reason reason{Reason::internal};
   std::string text{};
 };
 
-/// A value or an Error. Accessing the side that is not there is a programming error (it throws
-/// std::bad_variant_access, which no caller is meant to catch).
+/// A value or an Error. Accessing the absent alternative is a programming error (it throws
+/// std::bad_variant_access, which no caller should catch).
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -34,10 +34,10 @@ Result<void> Disk::replace(const std::string& name, std::span<const std::uint8_t
   if (auto good = check(name); !good) return good;
   const std::string fresh = temporary(name);
   Result<void> done = write_file(fresh, bytes, false);
-  // The data before the name: else a power cut could leave the new name with nothing in it.
+  // The data is synced before the rename; otherwise a power cut could leave the new name with an empty file.
   if (done) done = rename_file(fresh, name);
   if (!done) {
-    (void)remove_file(fresh);  // the first error is the one to tell
+    (void)remove_file(fresh);  // The first error is the one to report.
     return done;
   }
   return sync_folder();
@@ -46,7 +46,7 @@ Result<void> Disk::replace(const std::string& name, std::span<const std::uint8_t
 Result<void> Disk::append(const std::string& name, std::span<const std::uint8_t> bytes) {
   if (auto good = check(name); !good) return good;
   if (auto done = write_file(name, bytes, true); !done) return done;
-  return sync_folder();  // the file may be new
+  return sync_folder();  // The file may be new.
 }
 
 Result<void> Disk::rename(const std::string& from, const std::string& to) {

@@ -8,14 +8,15 @@
 
 #include "core/result/result.hpp"
 
-/// What has to survive the end of a process, and a power cut.
+/// Durable storage: data that must survive the end of a process, and a power cut.
 namespace adit::store {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// One folder of durable files. The order of steps that makes a write durable is written once, here;
-/// FileDisk and MemoryDisk only do the steps. Safe to call from any thread, a file from one thread at a time.
-/// Every error is cannot_read or cannot_write (bad_argument for a name) and leaves the old file as it was.
+/// One folder of durable files. This class defines the order of steps that makes a write durable; FileDisk
+/// and MemoryDisk implement only the steps. Safe to call from any thread, but each file from one thread at a
+/// time. Every error is cannot_read or cannot_write (bad_argument for a name) and leaves the old file
+/// unchanged.
 class Disk {
  public:
   virtual ~Disk() = default;
@@ -23,32 +24,33 @@ class Disk {
   Disk(const Disk&) = delete;
   Disk& operator=(const Disk&) = delete;
 
-  /// Whole content; nothing when there is no such file. Longer than `most` bytes: cannot_read.
+  /// Reads a complete file; nothing when there is no such file. More than `max_bytes` bytes: cannot_read.
   Result<std::optional<Bytes>> read(const std::string& name, std::size_t max_bytes = kMaxBytes) const;
-  /// Atomic and durable: temporary file, its data synced, renamed, the folder synced. After a power cut
-  /// anywhere in it the file is the old one or the new one.
+  /// Replaces a file atomically and durably: temporary file, sync of its data, rename, sync of the folder.
+  /// After a power cut at any step the file is the old one or the new one.
   Result<void> replace(const std::string& name, std::span<const std::uint8_t> bytes);
-  /// Durable when it returns. After a power cut in it, the end of the file may be missing or anything.
+  /// Appends to a file; durable on return. After a power cut during the call, the appended bytes may be
+  /// missing or contain anything.
   Result<void> append(const std::string& name, std::span<const std::uint8_t> bytes);
-  /// Durable when it returns. No such file: nothing happens.
+  /// Removes a file; durable on return. Without such a file it does nothing.
   Result<void> remove(const std::string& name);
-  /// Gives a file another name; a file of that name is replaced. Durable when it returns.
+  /// Renames a file; an existing file of the new name is replaced. Durable on return.
   Result<void> rename(const std::string& from, const std::string& to);
-  /// Names, sorted. Temporary files are not among them.
+  /// Returns the sorted file names, without temporary files.
   virtual Result<std::vector<std::string>> list() const = 0;
-  /// Bytes that still fit.
+  /// Free space, bytes.
   virtual std::uint64_t free() const = 0;
-  /// True: writes take no time and belong on the caller's strand, so that a rehearsal orders them.
+  /// True: writes take no time and must run on the caller's strand, so that a rehearsal orders them.
   virtual bool instant() const { return false; }
-  /// Where it is, for people.
+  /// Location of the folder, for users.
   virtual std::string where() const = 0;
 
   static constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
  protected:
   virtual Result<std::optional<Bytes>> read_file(const std::string& name, std::size_t max_bytes) const = 0;
-  /// Writes to a file, which is emptied before or (`append`) goes on, and syncs its data. Its name is not
-  /// durable yet.
+  /// Truncates a file, or (`append`) continues it, writes to it and syncs its data. Its name is not durable
+  /// yet.
   virtual Result<void> write_file(const std::string& name, std::span<const std::uint8_t> bytes,
                                   bool append) = 0;
   virtual Result<void> rename_file(const std::string& from, const std::string& to) = 0;
@@ -56,9 +58,9 @@ class Disk {
   virtual Result<void> sync_folder() = 0;
 };
 
-/// 1 to 64 of [A-Za-z0-9_.-], not beginning with a dot.
+/// Whether a name is valid: 1 to 64 of [A-Za-z0-9_.-], not beginning with a dot.
 bool valid_file_name(std::string_view name);
-/// A temporary file of ours: what a crash can leave behind.
+/// Whether a name is that of a temporary file of ours, which a crash can leave behind.
 bool is_temporary(std::string_view name);
 
 }  // namespace adit::store

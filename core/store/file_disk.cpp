@@ -14,7 +14,7 @@
 namespace adit::store {
 namespace {
 
-/// A file descriptor that is closed with its owner.
+/// File descriptor that its owner closes.
 class Fd {
  public:
   explicit Fd(int fd) : fd_(fd) {}
@@ -24,7 +24,7 @@ class Fd {
   Fd(const Fd&) = delete;
   Fd& operator=(const Fd&) = delete;
   int get() const { return fd_; }
-  /// False when the file system reports a late error. The descriptor is gone in any case.
+  /// Returns false when the file system reports a late error; the descriptor is closed in any case.
   bool close() { return ::close(std::exchange(fd_, -1)) == 0; }
   explicit operator bool() const { return fd_ >= 0; }
 
@@ -42,13 +42,13 @@ bool write_all(int fd, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// True also for a folder that we may write to but not read: it cannot be synced.
+/// Syncs a folder. Returns true also for a folder that we may write to but not read, which cannot be synced.
 bool sync_folder_at(const std::filesystem::path& folder) {
   const Fd fd(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   return fd ? ::fsync(fd.get()) == 0 : errno == EACCES;
 }
 
-/// Each folder that is made is durable before the next one is: its entry is in its parent.
+/// Creates the folders of a path. Each one is made durable before the next, as its entry is in its parent.
 bool make_folders(const std::filesystem::path& folder) {
   std::filesystem::path made;
   for (const auto& part : folder) {
@@ -79,7 +79,7 @@ Result<std::shared_ptr<FileDisk>> FileDisk::open(const std::string& folder) {
   if (fd < 0) return error("open");
   std::shared_ptr<FileDisk> disk(new FileDisk(folder, fd));
   if (::faccessat(fd, ".", W_OK | X_OK, AT_EACCESS) != 0) return error("write to");
-  std::error_code unread;  // a folder that cannot be listed here cannot be listed later: list() reports it
+  std::error_code unread;  // When the folder cannot be listed here, list() reports it later.
   for (std::filesystem::directory_iterator it(folder, unread), end; !unread && it != end;
        it.increment(unread))
     if (const std::string name = it->path().filename(); is_temporary(name)) (void)disk->remove_file(name);
@@ -106,7 +106,7 @@ std::uint64_t FileDisk::free() const {
 }
 
 Result<std::optional<Bytes>> FileDisk::read_file(const std::string& name, std::size_t max_bytes) const {
-  // Not blocking: a pipe of that name must not hold the caller.
+  // Non-blocking, so that a pipe of that name does not block the caller.
   const Fd file(::openat(fd_, name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (!file && errno == ENOENT) return std::optional<Bytes>{};
   if (!file) return failed(Reason::cannot_read, "open", name);
@@ -131,7 +131,7 @@ Result<void> FileDisk::write_file(const std::string& name, std::span<const std::
   const int how = O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | (append ? O_APPEND : O_TRUNC);
   Fd file(::openat(fd_, name.c_str(), how, 0600));
   if (!file || !write_all(file.get(), bytes)) return failed(Reason::cannot_write, "write", name);
-  // By the descriptor that wrote: another one may not be shown an error of writing back.
+  // Uses the descriptor that wrote: another one may not receive a write-back error.
   if (::fsync(file.get()) != 0) return failed(Reason::cannot_write, "sync", name);
   if (!file.close()) return failed(Reason::cannot_write, "close", name);
   return {};

@@ -5,11 +5,11 @@
 
 namespace adit::store {
 
-/// A folder of a real file system. Files are their owner's alone (0600), the folder is made (0700).
+/// A folder of a real file system. Only the owner can access the files (0600) and the folder (0700).
 class FileDisk final : public Disk {
  public:
-  /// Makes the folder with its parents, and removes what a crash left of unfinished writes. Errors:
-  /// cannot_write when it cannot be made or used.
+  /// Creates the folder with its parents, and removes temporary files that a crash left. Errors: cannot_write
+  /// when it cannot be created or used.
   static Result<std::shared_ptr<FileDisk>> open(const std::string& folder);
   ~FileDisk() override;
 
@@ -28,7 +28,7 @@ class FileDisk final : public Disk {
   FileDisk(std::string folder, int fd) : folder_(std::move(folder)), fd_(fd) {}
   Error failed(Reason reason, const std::string& doing, const std::string& name) const;
   std::string folder_;
-  int fd_;  ///< of the folder: everything is done relative to it, whatever becomes of its path
+  int fd_;  ///< Descriptor of the folder: all paths are relative to it, even when its path changes.
 };
 
 }  // namespace adit::store

@@ -24,7 +24,7 @@ void MemoryDisk::set_refused(const std::string& name, bool refused) {
     refused_.erase(name);
 }
 
-/// Of its temporary file, too: that is how it is written.
+/// Its temporary file is refused, too, because writes go through it.
 bool MemoryDisk::refuses(const std::string& name) const {
   return std::any_of(refused_.begin(), refused_.end(), [&](const std::string& r) {
     return name == r || (is_temporary(name) && name == "." + r + ".new");
@@ -42,7 +42,7 @@ void MemoryDisk::power_up() {
   fuse_.reset();
   if (powered_) return;
   powered_ = true;
-  // A journal keeps the order of changes to a folder: some first ones of them survive.
+  // A journal preserves the order of changes to a folder: a prefix of them survives.
   names_ = history_[random_.below(history_.size())];
   for (auto& [name, file] : names_) survive(*file);
   history_ = {names_};
@@ -50,8 +50,8 @@ void MemoryDisk::power_up() {
 
 void MemoryDisk::survive(File& file) {
   if (file.cached == file.durable) return;
-  // Blocks of the page cache reach the disk in any order, the length apart from them. What an append only
-  // added to is safe.
+  // Blocks of the page cache reach the disk in any order, independent of the length. Bytes before an append
+  // are safe.
   const auto differs =
       std::mismatch(file.cached.begin(), file.cached.end(), file.durable.begin(), file.durable.end());
   const auto safe = static_cast<std::size_t>(differs.first - file.cached.begin());
@@ -67,7 +67,7 @@ void MemoryDisk::survive(File& file) {
       std::fill(file.cached.begin() + static_cast<std::ptrdiff_t>(from), file.cached.end(), 0);
       break;
     default:
-      break;  // all of it had been written back
+      break;  // All of it was written back.
   }
   file.durable = file.cached;
 }
@@ -90,7 +90,7 @@ void MemoryDisk::plant(const std::string& name, Bytes bytes) {
   names_[name] = file;
 }
 
-/// False when the power is off, or fails before this step.
+/// Counts one step. Returns false when the power is off, or fails before this step.
 bool MemoryDisk::step() {
   if (!powered_) return false;
   if (fuse_ && (*fuse_)-- == 0) {

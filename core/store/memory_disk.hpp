@@ -9,29 +9,30 @@
 
 namespace adit::store {
 
-/// A disk of a rehearsal. It outlives the agent whose crash is played: what was written stays. A power cut
-/// takes from it what was not synced, as a real one may: whole, in part, or replaced by zeros, and names that
-/// were not synced with their folder from the last one backwards. Which of it is drawn from the seed.
+/// A simulated disk for rehearsals. It outlives an agent whose crash is simulated, and written data remains.
+/// A power cut removes data that was not synced, as on a real disk: completely, in part, or replaced by
+/// zeros, and names that were not synced with their folder from the last one backwards. The seed determines
+/// what is lost.
 class MemoryDisk final : public Disk {
  public:
   explicit MemoryDisk(std::uint64_t seed = 1, std::uint64_t capacity = std::uint64_t{16} << 20)
       : random_(seed), capacity_(capacity) {}
 
-  /// Nothing fits any more, as long as it is set; a write stops halfway.
+  /// Makes the disk full while set; a write then stops halfway.
   void set_full(bool full);
-  /// Every access to that file fails, as on a bad block or an immutable file, as long as it is set.
+  /// Makes every access to that file fail while set, as on a bad block or an immutable file.
   void set_refused(const std::string& name, bool refused);
-  /// Power fails within the writes to come: after `steps` more of them, where each byte written is one, and
-  /// so is each opening, sync, rename and removal. Every call fails from then on, until power_up().
+  /// Cuts the power after `steps` more write steps: each byte written is one step, and so is each opening,
+  /// sync, rename and removal. Every call fails from then on, until power_up().
   void cut_power_after(std::uint64_t steps);
-  /// Power fails now.
+  /// Cuts the power now.
   void cut_power() { cut_power_after(0); }
-  /// What survived is there again.
+  /// Restores the power; surviving data is readable again.
   void power_up();
   bool powered() const;
-  /// Steps done so far, as cut_power_after() counts them.
+  /// Number of steps so far, as cut_power_after() counts them.
   std::uint64_t steps() const;
-  /// Puts bytes there as they are, durable: what a failing device or another program left.
+  /// Stores bytes unchanged and durably, as a failing device or another program would leave them.
   void plant(const std::string& name, Bytes bytes);
 
   Result<std::vector<std::string>> list() const override;
@@ -48,8 +49,8 @@ class MemoryDisk final : public Disk {
 
  private:
   struct File {
-    Bytes cached{};   ///< what a program reads
-    Bytes durable{};  ///< what a power cut cannot take
+    Bytes cached{};   ///< Content that a program reads.
+    Bytes durable{};  ///< Content that survives a power cut.
   };
   using Folder = std::map<std::string, std::shared_ptr<File>>;
 
@@ -64,11 +65,11 @@ class MemoryDisk final : public Disk {
   std::uint64_t capacity_;
   bool full_{};
   std::set<std::string> refused_{};
-  std::optional<std::uint64_t> fuse_{};  ///< steps until the power fails
+  std::optional<std::uint64_t> fuse_{};  ///< Steps until the power fails.
   bool powered_{true};
   std::uint64_t steps_{};
-  Folder names_{};                   ///< what a program sees
-  std::vector<Folder> history_{{}};  ///< the durable folder, then one for each change not synced
+  Folder names_{};                   ///< Names that a program sees.
+  std::vector<Folder> history_{{}};  ///< The durable folder, then one state for each change not synced.
 };
 
 }  // namespace adit::store

@@ -11,7 +11,7 @@
 
 namespace adit::store {
 
-/// Puts values one behind the other, little endian, without padding.
+/// Serialises values in sequence, little endian, without padding.
 class Packer {
  public:
   template <std::unsigned_integral T>
@@ -20,10 +20,10 @@ class Packer {
       bytes_.push_back(static_cast<std::uint8_t>(std::uint64_t{value} >> (8 * i)));
     return *this;
   }
-  Packer& put(bool value) = delete;  // flag()
+  Packer& put(bool value) = delete;  // Use flag().
   Packer& flag(bool value) { return put(static_cast<std::uint8_t>(value ? 1 : 0)); }
   Packer& put(double value) { return put(std::bit_cast<std::uint64_t>(value)); }
-  /// At most 65535 bytes of it.
+  /// Writes at most 65535 bytes of the text.
   Packer& text(std::string_view value) {
     value = value.substr(0, 0xffff);
     put(static_cast<std::uint16_t>(value.size()));
@@ -45,7 +45,8 @@ class Packer {
   Bytes bytes_{};
 };
 
-/// Takes them out again. After the first thing that does not fit everything fails: ask good() at the end.
+/// Deserialises values. After the first value that does not fit, all further ones fail: check good() at the
+/// end.
 class Unpacker {
  public:
   explicit Unpacker(std::span<const std::uint8_t> bytes) : left_(bytes) {}
@@ -57,14 +58,14 @@ class Unpacker {
     for (std::size_t i = 0; i < part.size(); ++i) value |= std::uint64_t{part[i]} << (8 * i);
     return static_cast<T>(value);
   }
-  /// Neither 0 nor 1: fails.
+  /// Any value except 0 and 1 fails.
   bool flag() {
     const auto value = get<std::uint8_t>();
     if (value > 1) good_ = false;
     return value == 1;
   }
   double number() { return std::bit_cast<double>(get<std::uint64_t>()); }
-  /// Longer than `most`: fails.
+  /// A text longer than `max` fails.
   std::string text(std::size_t max) {
     const auto size = get<std::uint16_t>();
     if (size > max) good_ = false;
@@ -78,19 +79,19 @@ class Unpacker {
     for (std::size_t i = 0; i < part.size(); ++i) value[i] = part[i];
     return value;
   }
-  /// A number of things to come; more than `most`: fails, and 0.
+  /// Reads a number of elements; more than `max` fails and returns 0.
   std::size_t count(std::size_t max) {
     const auto value = get<std::uint16_t>();
     if (value > max) good_ = false;
     return good_ ? value : 0;
   }
   bool good() const { return good_; }
-  /// Good, and nothing is left.
+  /// Whether everything was good and no bytes are left.
   bool done() const { return good_ && left_.empty(); }
   std::span<const std::uint8_t> rest() const { return left_; }
 
  private:
-  /// Nothing when so much is not left.
+  /// Returns an empty span when fewer than `size` bytes are left.
   std::span<const std::uint8_t> take(std::size_t size) {
     if (!good_ || size > left_.size()) {
       good_ = false;

@@ -43,7 +43,7 @@ Bytes directory(std::span<const Section> sections) {
   return out.bytes();
 }
 
-/// Reads a directory of `count` entries at the front of `bytes`; nothing when it is damaged.
+/// Reads a directory of `count` entries at the front of `bytes`; returns nothing when it is damaged.
 std::optional<std::vector<Entry>> read_directory(std::span<const std::uint8_t> bytes, std::size_t count) {
   const std::size_t size = kDirectoryHeader + count * kEntry;
   if (bytes.size() < size + kSectionChecksum) return std::nullopt;
@@ -59,8 +59,8 @@ std::optional<std::vector<Entry>> read_directory(std::span<const std::uint8_t> b
   return entries;
 }
 
-/// The first directory, else the second. Each possible count is tried where the one that is written is wrong:
-/// the place of the second directory depends on it.
+/// Returns the first directory, else the second. When the stored count is wrong, each possible count is
+/// tried, as the position of the second directory depends on it.
 std::optional<std::vector<Entry>> find_directory(std::span<const std::uint8_t> bytes) {
   Unpacker in(bytes);
   (void)in.get<std::uint16_t>();

@@ -14,7 +14,7 @@ using SectionTag = std::array<char, 4>;
 
 struct Section {
   SectionTag tag{};
-  std::uint16_t version{1};  ///< Layout of the payload
+  std::uint16_t version{1};  ///< Version of the payload's layout.
   Bytes payload{};
   bool operator==(const Section&) const = default;
 };
@@ -22,7 +22,7 @@ struct Section {
 /// Result of reading a packed list of sections.
 struct SectionList {
   bool readable{};                 ///< False: both directories are damaged, nothing is known of the content.
-  std::vector<Section> good{};     ///< In the order in which they were packed
+  std::vector<Section> good{};     ///< In the order in which they were packed.
   std::vector<Section> damaged{};  ///< Listed in the directory, but their bytes do not match: payload empty
 };
 
@@ -36,10 +36,10 @@ inline constexpr std::size_t kMaxSections = 64;
 /// of a payload covers its position, tag and version, too. Sections beyond `kMaxSections` are left out.
 Bytes pack_sections(std::span<const Section> sections);
 
-/// Reads them again; never fails otherwise than by its result. Allocates at most the length of its input.
+/// Unpacks sections; errors appear only in the result. Allocates at most the length of its input.
 SectionList unpack_sections(std::span<const std::uint8_t> bytes);
 
-/// The tag as text, with '?' for what is not printable.
+/// Returns the tag as text, with '?' for characters that are not printable.
 std::string tag_text(const SectionTag& tag);
 
 }  // namespace adit::store

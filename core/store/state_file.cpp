@@ -26,7 +26,7 @@ State flawed(LoadStatus found, std::string text, std::span<const std::uint8_t> b
   return state;
 }
 
-/// Ours from the first byte on, as far as it goes; zeros behind are a write that did not get far.
+/// Whether the bytes are the beginning of our header; zeros after it come from an incomplete write.
 bool begun(std::span<const std::uint8_t> bytes, const std::array<std::uint8_t, 4>& kind) {
   Bytes start(kMagic.begin(), kMagic.end());
   start.insert(start.end(), kind.begin(), kind.end());

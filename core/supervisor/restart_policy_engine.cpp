@@ -20,7 +20,7 @@ Result<std::size_t> RestartPolicyEngine::find(const std::string& part) const {
 
 RestartPolicyEngine::Decision RestartPolicyEngine::poll(const std::vector<HealthSample>& samples, Time now) {
   Decision decision;
-  // A look that comes a little late is followed by one that comes early: on the whole each is worth a period.
+  // A late poll is followed by an early one: on average each is worth one period.
   allowance_ = std::min(allowance_ + params_.period, 2 * params_.period);
   const Duration lived = polled_ ? std::min(now - *polled_, allowance_) : Duration{};
   allowance_ -= lived;
@@ -122,7 +122,7 @@ Result<RestartPolicyEngine::Decision> RestartPolicyEngine::restart(const std::st
   histories_[*found].attempts.clear();
   histories_[*found].was_down = true;
   const bool hangs = status_[*found].state == PartState::hung;
-  // A part that does not return does not return sooner because it is restarted: its silence goes on counting.
+  // Restarting a component that hangs does not make it return sooner: its silence continues to count.
   const PartStatus before = status_[*found];
   add_action(*found, hangs ? RestartAction::Kind::replace : RestartAction::Kind::restart, decision);
   if (!hangs) {

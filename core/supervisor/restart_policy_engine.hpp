@@ -11,42 +11,45 @@
 
 namespace adit {
 
-/// Who starts a component that failed or hangs.
+/// The party that restarts a component that failed or hangs.
 enum class RestartPolicy : std::uint8_t { automatic, by_operator };
 
 enum class PartState : std::uint8_t {
-  starting,  ///< ordered, its loop did not report yet
+  starting,  ///< Ordered; its loop has not reported yet.
   up,
-  waiting,  ///< failed; started again after a pause
-  failed,   ///< failed; waits for the operator
-  hung      ///< does not return; waits for the operator
+  waiting,  ///< Failed; restarts after the backoff delay.
+  failed,   ///< Failed; waits for the operator.
+  hung      ///< Does not return; waits for the operator.
 };
 
 struct SupervisionParams {
-  Duration period{50ms};    ///< how often the hearts are looked at, [10 ms, 500 ms]
-  Duration silence{700ms};  ///< without a beat for longer, waits for a processor apart: hung, [200 ms, 60 s]
-  Duration start{5s};       ///< without a first beat for longer: hung, [silence, 60 s]
-  Duration first_pause{10ms};  ///< before the first restart in a window; four times as long at each next
+  Duration period{50ms};  ///< Period of the heartbeat checks, [10 ms, 500 ms].
+  /// A component without a heartbeat for longer, CPU wait excluded, counts as hung, [200 ms, 60 s].
+  Duration silence{700ms};
+  Duration start{5s};  ///< A component without a first heartbeat for longer counts as hung, [silence, 60 s].
+  /// Backoff delay before the first restart in a window; it quadruples with each further restart.
+  Duration first_pause{10ms};
   Duration longest_pause{2s};
-  int attempts{5};  ///< restarts of one component within the window, [1, 100]; then the agent is restarted
-  Duration window{30s};  ///< [1 s, 1 h]
-  int hangs{1};          ///< threads that may be left behind, [0, 16]; the next hang restarts the agent
+  /// Restarts of one component within the window, [1, 100]; beyond them the agent is restarted.
+  int attempts{5};
+  Duration window{30s};  ///< Length of the window, [1 s, 1 h].
+  int hangs{1};          ///< Threads that may be abandoned, [0, 16]; a further hang restarts the agent.
 };
 
 struct PartSpec {
   std::string name{};
   RestartPolicy policy{RestartPolicy::automatic};
-  bool replaceable{true};  ///< can be made anew on another strand while the old one hangs
-  bool always{false};      ///< its policy is automatic and stays it
+  bool replaceable{true};  ///< Can be replaced by an instance on another strand while the old one hangs.
+  bool always{false};      ///< The policy is automatic, and the operator cannot change it.
 };
 
-/// What is seen of a component.
+/// Observed state of a component.
 struct HealthSample {
-  bool running{};  ///< this instance of it started
-  bool failed{};   ///< this instance ended with an exception, or did not start
+  bool running{};  ///< This instance of it started.
+  bool failed{};   ///< This instance ended with an exception, or did not start.
   std::uint64_t heartbeats{};
-  std::string text{};  ///< why it failed
-  /// What its thread had of the processor; asked for in RestartPolicyEngine::doubts(). Nothing: all time
+  std::string text{};  ///< Reason of the failure.
+  /// Processor use of its thread; requested when RestartPolicyEngine::doubts() is true. Nothing: all time
   /// counts.
   std::optional<ProcessorUse> use{};
 };
@@ -54,27 +57,27 @@ struct HealthSample {
 struct PartStatus {
   PartSpec spec{};
   PartState state{PartState::starting};
-  std::uint32_t restarts{};  ///< that brought it back
-  std::uint32_t hangs{};     ///< threads that it left behind
-  Duration silent{};         ///< since its loop last beat, as far as the watcher lived
-  Duration stalled{};        ///< of that, what was no wait for a processor
-  std::string text{};        ///< the last failure, "" when there was none
+  std::uint32_t restarts{};  ///< Restarts that brought it up again.
+  std::uint32_t hangs{};     ///< Threads abandoned in hangs.
+  Duration silent{};         ///< Time since the last heartbeat of its loop, counted while the watcher ran.
+  Duration stalled{};        ///< The part of `silent` that was no wait for a processor.
+  std::string text{};        ///< The last failure, "" when there was none.
 };
 
-/// What is to be done.
+/// An order to the supervisor.
 struct RestartAction {
   enum class Kind : std::uint8_t {
-    restart,  ///< make the component anew on its strand
-    replace,  ///< leave its strand behind and make it anew on another
-    abandon,  ///< Leave its strand behind; the operator restarts it.
-    escalate  ///< restart the agent
+    restart,  ///< Restart the component on its strand.
+    replace,  ///< Abandon its strand and restart it on another one.
+    abandon,  ///< Abandon its strand; the operator restarts it.
+    escalate  ///< Restart the agent.
   };
   Kind kind{};
   std::size_t part{};
   bool operator==(const RestartAction&) const = default;
 };
 
-/// What is to be told.
+/// An event to report.
 struct PartEvent {
   enum class Kind : std::uint8_t { failed, hung, back, escalated };
   Kind kind{};
@@ -82,10 +85,11 @@ struct PartEvent {
   std::string text{};
 };
 
-/// Decides what becomes of components that fail or hang: policy, back-off, attempts in a window, then
-/// escalation to the agent (docs/supervision.md). Pure: it is shown samples and told the time. Silence counts
-/// only while the engine itself is in time, so that a machine that slept does not look hung, and only while
-/// the silent one was not waiting for a processor, so that a busy machine does not either.
+/// Decides how components that fail or hang are restarted: policy, backoff, attempts in a window, then
+/// escalation to the agent (docs/supervision.md). It has neither clock nor threads: the caller passes samples
+/// and the time. Silence counts only while the engine itself is polled in time, so that components do not
+/// seem hung after the machine slept, and only while the silent component was not waiting for a processor, so
+/// that they do not seem hung on a busy machine.
 class RestartPolicyEngine {
  public:
   struct Decision {
@@ -94,17 +98,17 @@ class RestartPolicyEngine {
   };
 
   explicit RestartPolicyEngine(SupervisionParams params = {}) : params_(params) {}
-  /// Before the first look. Its place is the index of samples, actions and status().
+  /// Adds a component before the first poll. Its position is the index of samples, actions and status().
   void add(PartSpec spec);
 
-  /// One sample per part. Every params.period, and at once when something failed.
+  /// Processes one sample per component. Call it every params.period, and at once when a component failed.
   Decision poll(const std::vector<HealthSample>& samples, Time now);
-  /// It is silent for so long that its next samples must tell what its thread had of the processor. No
-  /// sooner: it is asked of the system.
+  /// Whether a component is silent for so long that its next samples must contain the processor use of its
+  /// thread. Not requested earlier, because it needs system calls.
   bool doubts(std::size_t part) const { return status_[part].silent >= params_.silence / 4; }
-  /// The operator's word; a component that works is made anew, too. Errors: bad_argument.
+  /// Restarts a component on the operator's command, even one that works. Errors: bad_argument.
   Result<Decision> restart(const std::string& part, Time now);
-  /// Errors: bad_argument, not_supported (the component takes the operators' word itself).
+  /// Sets the policy of a component. Errors: bad_argument, not_supported (the operator cannot change it).
   Result<Decision> set_policy(const std::string& part, RestartPolicy policy, Time now);
 
   const std::vector<PartStatus>& status() const { return status_; }
@@ -113,9 +117,9 @@ class RestartPolicyEngine {
  private:
   struct History {
     std::uint64_t heartbeats{};
-    bool was_down{};                    ///< since it was last up
-    Time resume{};                      ///< end of the pause
-    std::optional<ProcessorUse> use{};  ///< at the last look
+    bool was_down{};                    ///< It was down since it was last up.
+    Time resume{};                      ///< End of the backoff delay.
+    std::optional<ProcessorUse> use{};  ///< Processor use at the last poll.
     std::deque<Time> attempts{};
   };
   Result<std::size_t> find(const std::string& part) const;

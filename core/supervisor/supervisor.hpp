@@ -8,24 +8,25 @@
 
 namespace adit {
 
-/// Watches units from a strand of its own: starts them, makes them anew, gives up for the agent when that
-/// does not help. What hangs elsewhere cannot stop it: it never waits for another strand.
+/// Watches units from its own strand: starts and restarts them, and requests a restart of the agent when that
+/// does not help. A component that hangs cannot block it, because it never waits for another strand.
 class Supervisor : public Component {
  public:
-  /// Called on the supervisor's strand.
+  /// Callbacks on the supervisor's strand.
   struct Outputs {
     std::function<void(const PartEvent&, const std::string& part)> notify{};
-    /// The agent must be restarted. Once; nothing is ordered after it.
+    /// Called when the agent must be restarted. Called once; no action follows.
     std::function<void(const std::string& why)> escalate{};
-    /// After each look, every SupervisionParams::period.
+    /// Called after each poll, every SupervisionParams::period.
     std::function<void(Time now)> looked{};
   };
 
   Supervisor(SupervisionParams params, Executor& strand, Log log, Outputs outputs);
-  /// Before start(), which starts the units in this order. `unit` must outlive this strand.
+  /// Adds a unit before start(), which starts the units in this order. `unit` must outlive this strand.
   void watch(Unit& unit, PartSpec spec);
 
-  /// The operator's word, on this strand. Errors of the RestartPolicyEngine.
+  /// Restarts a component on the operator's command; call it on this strand. Errors are those of
+  /// RestartPolicyEngine.
   Result<void> restart(const std::string& part);
   Result<void> set_policy(const std::string& part, RestartPolicy policy);
 

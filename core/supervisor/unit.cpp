@@ -37,20 +37,21 @@ void Unit::restart() {
     record_ = record;
     slot = slot_;
   }
-  // The slot outlives its strand's tasks.
+  // The slot outlives the tasks of its strand.
   slot->strand->post_control([this, slot = slot.get(), record] { begin(*slot, record); });
-  // Now: what is posted by who sees the new number runs after begin().
+  // Increased at once: a task posted by a thread that sees the new number runs after begin().
   instance_.fetch_add(1, std::memory_order_acq_rel);
 }
 
 void Unit::begin(ComponentSlot& slot, const std::shared_ptr<Record>& record) {
   if (slot.component) slot.component->stop();
   slot.component.reset();
-  if (!record->generation->valid()) return;  // ordered anew meanwhile
+  if (!record->generation->valid()) return;  // Restarted again meanwhile.
   Result<void> started;
   try {
     auto made = params_.make(*slot.strand);
-    if (!record->generation->valid()) return;  // it took so long that another instance replaced it
+    // The start took so long that another instance replaced this one.
+    if (!record->generation->valid()) return;
     started = made ? Result<void>{} : Result<void>{made.error()};
     if (made) {
       slot.component = std::move(*made);

@@ -12,20 +12,20 @@
 
 namespace adit {
 
-/// A strand and what lives on it.
+/// A strand with its component and its endpoints.
 struct ComponentSlot {
   ComponentSlot() = default;
   ComponentSlot(const ComponentSlot&) = delete;
   ComponentSlot& operator=(const ComponentSlot&) = delete;
   ~ComponentSlot();
   std::shared_ptr<Strand> strand{};
-  std::unique_ptr<Component> component{};  ///< touched on the strand only, or after its end
-  /// Of the strand: what writes from it or delivers to it counts while that is valid.
+  std::unique_ptr<Component> component{};  ///< Accessed only on the strand, or after its end.
+  /// Generation of the strand: writes from it and deliveries to it count only while this is valid.
   std::shared_ptr<Generation> generation{std::make_shared<Generation>()};
-  std::shared_ptr<void> io{};  ///< what delivers to the strand; dropped before it
+  std::shared_ptr<void> io{};  ///< Endpoints that deliver to the strand; destroyed before it.
 };
 
-/// Slots whose task hangs: kept, for it may still use them, until their unit goes.
+/// Slots whose task hangs. They live until their unit is destroyed, as the task may still use them.
 struct LeftBehind {
   LeftBehind() = default;
   LeftBehind(const LeftBehind&) = delete;
@@ -36,21 +36,21 @@ struct LeftBehind {
 
 struct UnitParams {
   std::string name{};
-  bool dedicated{false};  ///< lives on a Runtime::dedicated_strand
-  /// Makes an instance; on the strand.
+  bool dedicated{false};  ///< Runs on a Runtime::dedicated_strand.
+  /// Creates an instance, on the strand.
   std::function<Result<std::unique_ptr<Component>>(Executor& strand)> make{};
-  /// Made with each strand, before its first instance; nothing when null. Hold the slot weakly, and bind
-  /// writers and readers to its generation (wire::ComponentIo), which is revoked when the strand is left
-  /// behind.
+  /// Opens the endpoints of each strand before its first instance; may be null. The function must hold the
+  /// slot weakly, and bind writers and readers to its generation (wire::ComponentIo), which is revoked when
+  /// the strand is abandoned.
   std::function<Result<std::shared_ptr<void>>(const std::shared_ptr<ComponentSlot>& slot)> open_io{};
 };
 
-/// A component that can be made anew: on its strand when it failed, on another one when it hangs. What an
-/// instance hands to other strands counts only while its generation is valid. An exception that leaves a
-/// callback of the component ends that instance on the spot.
+/// A component that can be restarted: on its strand when it failed, on another one when it hangs. Whatever an
+/// instance passes to other strands counts only while its generation is valid. An exception thrown by a
+/// callback of the component ends that instance at once.
 ///
-/// restart(), replace(), revoke() and abandon() are the supervisor's, on its strand; the rest is for any
-/// thread.
+/// Only the supervisor calls restart(), replace(), revoke() and abandon(), on its strand; all other functions
+/// are safe to call from any thread.
 class Unit {
  public:
   Unit(Runtime& runtime, UnitParams params);
@@ -58,29 +58,30 @@ class Unit {
   Unit& operator=(const Unit&) = delete;
 
   const std::string& name() const { return params_.name; }
-  /// Makes the first strand. Errors of `open_io`.
+  /// Creates the first strand. Errors are those of `open_io`.
   Result<void> open();
-  /// Called from the strand when an instance came up or failed; set before the first restart().
+  /// Sets the function called from the strand when an instance started or failed. Call it before the first
+  /// restart().
   void on_change(std::function<void()> changed) { changed_ = std::move(changed); }
 
   void restart();
   void replace();
-  /// What the instance hands out no longer counts, nor does what its strand writes and reads.
+  /// Invalidates the instance and everything that its strand writes and reads.
   void revoke();
-  /// Revokes an instance that hangs and leaves its strand behind: queued tasks are dropped, posts refused.
+  /// Revokes an instance that hangs and abandons its strand: queued tasks are dropped, posts refused.
   void abandon();
-  /// Ends the strand: nothing of this component runs any more.
+  /// Ends the strand: no code of this component runs any more.
   void end();
 
   HealthSample health_sample() const;
-  /// The strand and what lives on it now; rises with each restart: instance().
+  /// The current strand with its component. instance() is a number that rises with each restart.
   std::shared_ptr<ComponentSlot> slot() const;
   std::uint64_t instance() const { return instance_.load(std::memory_order_acquire); }
-  /// Has the component throw, or hang, in a callback of its own.
+  /// Makes the component throw, or hang, in a callback of its own.
   void inject(ComponentFault fault);
 
  private:
-  /// What an instance reports to the supervisor.
+  /// Report of an instance to the supervisor.
   struct Record {
     std::mutex mutex{};
     std::shared_ptr<const HealthState> health_state{};
@@ -95,10 +96,10 @@ class Unit {
   UnitParams params_;
   std::function<void()> changed_{};
   std::atomic<std::uint64_t> instance_{0};
-  mutable std::mutex mutex_{};  // guards the two pointers
+  mutable std::mutex mutex_{};  // Guards the two pointers.
   std::shared_ptr<ComponentSlot> slot_{};
   std::shared_ptr<Record> record_{std::make_shared<Record>()};
-  LeftBehind left_behind_{};  // bounded by SupervisionParams::hangs
+  LeftBehind left_behind_{};  // Bounded by SupervisionParams::hangs.
 };
 
 }  // namespace adit

@@ -3,8 +3,8 @@
 
 namespace adit {
 
-/// A small seeded generator (splitmix64, Steele et al. 2014): the only source of randomness a component has.
-/// Same seed, same sequence, on every machine.
+/// A seeded generator (splitmix64, Steele et al. 2014), the only source of randomness of a component. The
+/// same seed gives the same sequence on every machine.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -21,7 +21,7 @@ class Random {
   /// Uniform in [0, n); n > 0.
   std::uint64_t below(std::uint64_t n) { return next() % n; }
   bool chance(double probability) { return uniform() < probability; }
-  /// An independent generator for a named part, so that one part's draws never shift another's.
+  /// Returns an independent generator for a named part, so that the draws of one part never affect another.
   Random fork(std::uint64_t salt) { return Random(next() ^ (salt * 0xd1342543de82ef95ULL)); }
 
  private:

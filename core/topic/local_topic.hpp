@@ -7,7 +7,7 @@
 
 namespace adit {
 
-/// Ends a subscription when dropped.
+/// Subscription to a LocalTopic; it ends when this object is destroyed.
 class [[nodiscard]] Subscription {
  public:
   Subscription() = default;
@@ -30,10 +30,10 @@ class [[nodiscard]] Subscription {
   std::shared_ptr<std::atomic<bool>> alive_{};
 };
 
-/// A typed topic inside one process. One writer strand, any number of subscribers; a published value is
-/// shared, never copied, and immutable. A subscriber on the writer's strand is called directly, any
-/// other through the inbox of its own strand; one whose strand has ended gets nothing. Subscribing and
-/// publishing happen on the owner's strand or at start-up, before the strands run.
+/// A typed topic inside one process, with one writer strand and any number of subscribers. A published value
+/// is shared, never copied, and immutable. Subscribers on the writer's strand are called directly, others
+/// through the inbox of their own strand; a subscriber whose strand has ended receives nothing. Subscribing
+/// and publishing happen on the owner's strand, or at start-up before the strands run.
 template <class T>
 class LocalTopic {
  public:
@@ -42,7 +42,7 @@ class LocalTopic {
 
   explicit LocalTopic(Executor& owner) : owner_(owner.inbox()) {}
 
-  /// Calls `handler` on `strand` for each value published from now on.
+  /// Calls `handler` on `strand` for each value published after this call.
   Subscription subscribe(Executor& strand, Handler handler) {
     auto alive = std::make_shared<std::atomic<bool>>(true);
     subscribers_.push_back({strand.inbox(), std::make_shared<Handler>(std::move(handler)), alive});
@@ -52,7 +52,7 @@ class LocalTopic {
   void publish(T value) { publish(std::make_shared<const T>(std::move(value))); }
   void publish(Value value) {
     std::erase_if(subscribers_, [](const Entry& e) { return !e.alive->load(std::memory_order_relaxed); });
-    // By index: a handler may subscribe.
+    // By index, because a handler may subscribe.
     for (std::size_t i = 0; i < subscribers_.size(); ++i) {
       const Entry entry = subscribers_[i];
       auto deliver = [handler = entry.handler, alive = entry.alive, value] {

@@ -14,14 +14,14 @@ class Always : public Leaf {
   NodeStatus tick() override { return answer; }
 };
 
-/// Writes a text, or a copy of another entry, to the entry whose name the port `output_key` holds.
+/// Writes a text, or a copy of another entry, to the entry whose name is the value of the port `output_key`.
 class SetBlackboard : public Leaf {
  public:
   using Leaf::Leaf;
 
  protected:
   NodeStatus tick() override {
-    // As in the reference, output_key="{k}" writes to the entry whose name entry k holds.
+    // As in BehaviorTree.CPP, output_key="{k}" writes to the entry whose name is in entry k.
     const std::string key = port<std::string>("output_key");
     const std::string& text = config().ports.find("value")->second;
     const auto source = blackboard_key("value", text);

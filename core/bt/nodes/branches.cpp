@@ -5,7 +5,7 @@ namespace adit::bt {
 
 namespace {
 
-/// Asks the condition until it completes, then runs one branch to its end.
+/// Ticks the condition until it completes, then runs one branch to its end.
 class IfThenElse : public TreeNode {
  public:
   using TreeNode::TreeNode;
@@ -22,7 +22,7 @@ class IfThenElse : public TreeNode {
       } else if (child_count() == 3) {
         branch_ = 2;
       } else {
-        return NodeStatus::failure;  // and, like the reference, the condition keeps its status
+        return NodeStatus::failure;  // As in BehaviorTree.CPP, the condition keeps its status.
       }
     }
     const NodeStatus answer = tick_child(child(branch_));
@@ -41,7 +41,7 @@ class IfThenElse : public TreeNode {
   std::size_t branch_{0};
 };
 
-/// Asks the condition in every tick; when it turns over, the branch that runs is halted.
+/// Ticks the condition in every tick; when its result changes, the running branch is halted.
 class WhileDoElse : public TreeNode {
  public:
   using TreeNode::TreeNode;

@@ -9,7 +9,7 @@ namespace adit::bt {
 
 inline constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
 
-/// The manifest of a control node class that is made from a NodeConfig.
+/// Manifest of a control node class that is constructed from a NodeConfig.
 template <class T>
 Manifest control(std::string id, Ports ports = {}, std::size_t min_children = 1,
                  std::size_t max_children = kAnyNumber) {
@@ -35,7 +35,7 @@ Manifest leaf(std::string id, NodeKind kind, Ports ports = {}) {
   return manifest;
 }
 
-// One function per file of this folder: registers its nodes.
+// Each file of this folder has one function that registers its nodes.
 void add_sequences(Registry& registry);
 void add_reactive(Registry& registry);
 void add_parallel(Registry& registry);
@@ -48,7 +48,7 @@ void add_timed(Registry& registry);
 void add_actions(Registry& registry);
 void add_scripted(Registry& registry);
 
-/// The node that stands for another tree; its child is that tree's root.
+/// Creates a SubTree node, which stands for another tree; its child is the root of that tree.
 std::unique_ptr<TreeNode> make_subtree(NodeConfig config);
 
 }  // namespace adit::bt

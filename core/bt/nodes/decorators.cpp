@@ -47,7 +47,7 @@ class KeepRunningUntilFailure : public TreeNode {
   }
 };
 
-/// Ticks the child until it has completed once, ever: not even a halt makes it start again.
+/// Ticks the child until it has completed once; even a halt does not start it again.
 class RunOnce : public TreeNode {
  public:
   using TreeNode::TreeNode;

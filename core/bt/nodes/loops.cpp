@@ -5,7 +5,7 @@ namespace adit::bt {
 
 namespace {
 
-/// Runs the child again while it answers `again`, at most as often as the port says (-1: for ever).
+/// Repeats the child while it returns `again`, at most as often as the port says (-1: without limit).
 class Loop : public TreeNode {
  public:
   Loop(NodeConfig config, NodeStatus again, std::string port_name)
@@ -21,16 +21,16 @@ class Loop : public TreeNode {
       const NodeStatus answer = tick_child(child());
       if (answer == NodeStatus::running) return answer;
       reset_child();
-      if (answer == NodeStatus::skipped) return answer;  // the count stays
+      if (answer == NodeStatus::skipped) return answer;  // A skipped child does not count.
       if (answer != again_) {
         count_ = 0;
         return answer;
       }
       ++count_;
-      // A retry reads its limit again: the child may have changed it.
+      // A retry reads its limit again, as the child may have changed it.
       if (again_ == NodeStatus::failure) limit = port<int>(port_);
       more = count_ < limit || limit == -1;
-      // A child that completed at once: hand the tick back, so that a reactive parent can interrupt.
+      // After a child that completed in one tick, the loop yields so that a reactive parent can interrupt.
       if (was_idle && more) return NodeStatus::running;
     }
     count_ = 0;

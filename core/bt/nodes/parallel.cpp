@@ -1,4 +1,4 @@
-// Parallel and ParallelAll: all children in every tick.
+// Parallel and ParallelAll: tick all children in every tick.
 #include <algorithm>
 #include <vector>
 
@@ -8,7 +8,7 @@ namespace adit::bt {
 
 namespace {
 
-/// A negative threshold counts from the number of children: -1 is all of them.
+/// Resolves a threshold. A negative one counts from the number of children: -1 means all.
 std::size_t resolve(int threshold, std::size_t children) {
   if (threshold >= 0) return static_cast<std::size_t>(threshold);
   return static_cast<std::size_t>(std::max(static_cast<int>(children) + threshold + 1, 0));
@@ -39,7 +39,7 @@ class Parallel : public TreeNode {
           ++(answer == NodeStatus::success ? successes_ : failures_);
         }
       }
-      // Decided after each child: those behind it are then not ticked any more.
+      // Checked after each child; the later children are then not ticked.
       if (successes_ >= to_succeed || (wanted < 0 && successes_ + skipped >= to_succeed)) {
         return finish(NodeStatus::success);
       }
@@ -69,7 +69,7 @@ class Parallel : public TreeNode {
   std::size_t failures_{0};
 };
 
-/// Waits until every child has completed.
+/// Ticks all children until every one has completed.
 class ParallelAll : public TreeNode {
  public:
   using TreeNode::TreeNode;

@@ -18,7 +18,8 @@ class Reactive : public TreeNode {
       const NodeStatus answer = tick_child(child(i));
       all_skipped = all_skipped && answer == NodeStatus::skipped;
       if (answer == NodeStatus::running) {
-        // Every other child is halted: at most one runs, and the others start anew next time.
+        // All other children are halted: at most one child runs, and the others start from the beginning next
+        // time.
         for (std::size_t other = 0; other < child_count(); ++other) {
           if (other != i) reset_child(other);
         }

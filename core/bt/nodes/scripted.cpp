@@ -5,7 +5,7 @@ namespace adit::bt {
 
 namespace {
 
-/// The script that a port holds, parsed again only when its text changes.
+/// The script of a port; it is parsed again only when its text changes.
 class ScriptPort {
  public:
   const Script& of(const std::string& text) {
@@ -51,7 +51,7 @@ class ScriptCondition : public Leaf {
   ScriptPort script_{};
 };
 
-/// Ticks the child if the script holds when it starts; once running, the child is run to its end.
+/// Ticks the child if the script is true at the start; once the child runs, it continues to its end.
 class Precondition : public TreeNode {
  public:
   using TreeNode::TreeNode;
@@ -72,7 +72,7 @@ class Precondition : public TreeNode {
 
  private:
   ScriptPort script_{};
-  bool running_{false};  // as in the reference, a halt does not clear it
+  bool running_{false};  // As in BehaviorTree.CPP, a halt does not clear it.
 };
 
 }  // namespace

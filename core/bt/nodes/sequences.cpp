@@ -1,11 +1,11 @@
-// Sequence, AsyncSequence, Fallback, AsyncFallback, SequenceWithMemory: children one after the other.
+// Sequence, AsyncSequence, Fallback, AsyncFallback, SequenceWithMemory: children run one after another.
 #include "core/bt/nodes/builtin.hpp"
 
 namespace adit::bt {
 
 namespace {
 
-/// Goes on to the next child while children answer `go_on`; the first other answer that completes ends it.
+/// Runs the next child while children return `go_on`; the first other result that completes ends the series.
 class Series : public TreeNode {
  public:
   Series(NodeConfig config, NodeStatus go_on, bool yields)
@@ -25,7 +25,7 @@ class Series : public TreeNode {
         ++skipped_;
       } else if (answer == go_on_) {
         ++index_;
-        // A child that completed at once: hand the tick back, so that a reactive parent can interrupt.
+        // After a child that completed in one tick, the node yields so that a reactive parent can interrupt.
         if (yields_ && was_idle && index_ < child_count()) return NodeStatus::running;
       } else {
         stop();
@@ -44,7 +44,7 @@ class Series : public TreeNode {
     TreeNode::halt();
   }
 
-  /// A child ended the series.
+  /// Called when a child ended the series.
   virtual void stop() {
     reset_children();
     index_ = 0;
@@ -67,7 +67,7 @@ struct Plain : Series {
   explicit Plain(NodeConfig config) : Series(std::move(config), go_on, yields) {}
 };
 
-/// Keeps its place after a FAILURE and when halted: children that succeeded are not ticked again.
+/// Resumes at the same child after a FAILURE or a halt: children that succeeded are not ticked again.
 struct SequenceWithMemory : Series {
   explicit SequenceWithMemory(NodeConfig config) : Series(std::move(config), NodeStatus::success, true) {}
   void stop() override {

@@ -1,4 +1,4 @@
-// Switch2 to Switch6: the child whose case equals a variable, else the last one.
+// Switch2 to Switch6: run the child whose case equals a variable, else the last one.
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@ std::optional<std::int64_t> integer(const std::string& text, const Enums& enums)
   return number ? std::optional<std::int64_t>(*number) : std::nullopt;
 }
 
-/// Equal as texts, else as integers or enums, else as numbers.
+/// Whether two texts are equal: as texts, else as integers or enums, else as numbers.
 bool same(const std::string& a, const std::string& b, const Enums& enums) {
   if (a == b) return true;
   const auto int_a = integer(a, enums), int_b = integer(b, enums);
@@ -57,12 +57,12 @@ class Switch : public TreeNode {
   }
 
  private:
-  /// A port's text; nothing when it is not given or its entry is not there yet.
+  /// Text of a port; nothing when the port is not given or its entry does not exist yet.
   std::optional<std::string> text_of(const std::string& port_name) const {
     try {
       return port<std::string>(port_name);
     } catch (const NodeError&) {
-      return std::nullopt;  // no variable, no case: the default child, by definition of the node
+      return std::nullopt;  // Without a variable no case matches: the node then runs the default child.
     }
   }
   std::size_t choose() const {

@@ -1,11 +1,11 @@
-// Delay, Timeout and Sleep: on the clock that is handed to each tick.
+// Delay, Timeout and Sleep: they use the time passed to each tick.
 #include "core/bt/nodes/builtin.hpp"
 
 namespace adit::bt {
 
 namespace {
 
-/// A decorator with a time that runs from its first tick until it completes or is halted.
+/// A decorator with a timer that runs from its first tick until it completes or is halted.
 class Timed : public TreeNode {
  public:
   using TreeNode::TreeNode;
@@ -21,7 +21,7 @@ class Timed : public TreeNode {
   Timers::Id timer_{0};
 };
 
-/// Answers RUNNING for a while, then ticks its child.
+/// Returns RUNNING for the given time, then ticks its child.
 class Delay : public Timed {
  public:
   using Timed::Timed;
@@ -48,7 +48,7 @@ class Delay : public Timed {
   bool over_{false};
 };
 
-/// Halts the child when its time is over; the next tick answers FAILURE. 0 means no limit.
+/// Halts the child at the end of the given time; the next tick returns FAILURE. 0: no limit.
 class Timeout : public Timed {
  public:
   using Timed::Timed;

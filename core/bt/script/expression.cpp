@@ -16,7 +16,8 @@ void require_written(const BlackboardValue& v, const char* side, const std::stri
   }
 }
 
-/// Texts count as numbers when they read as one, as true or false, or as an enum.
+/// Converts a value to a number. Texts count as numbers when they parse as a number, as true or false, or as
+/// an enum.
 double number_of(const BlackboardValue& v, const Enums& enums) {
   if (!is_text(v)) return to_real(v);
   const std::string& text = std::get<std::string>(v);

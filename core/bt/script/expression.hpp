@@ -6,20 +6,20 @@
 
 namespace adit::bt::script {
 
-// The nodes of a script's expression tree. They evaluate as BehaviorTree.CPP's do: both sides of && and
-// || are always evaluated, comparisons give 1.0 or 0.0 and may be chained, numbers compare with texts
-// that read as numbers.
+// The nodes of a script's expression tree. They evaluate like BehaviorTree.CPP's: both sides of && and ||
+// are always evaluated, comparisons give 1.0 or 0.0 and can be chained, and numbers compare with texts that
+// parse as numbers.
 
 ExpressionPtr literal(BlackboardValue value);
 ExpressionPtr variable(std::string name);
-/// `op`: - ~ !
+/// `op` is one of: - ~ !
 ExpressionPtr unary(std::string op, ExpressionPtr operand);
-/// `op`: + - * / .. & | ^ && ||
+/// `op` is one of: + - * / .. & | ^ && ||
 ExpressionPtr binary(std::string op, ExpressionPtr left, ExpressionPtr right);
-/// a < b <= c: operands.size() == ops.size() + 1.
+/// Chained comparison such as a < b <= c: operands.size() == ops.size() + 1.
 ExpressionPtr comparison(std::vector<std::string> ops, std::vector<ExpressionPtr> operands);
 ExpressionPtr conditional(ExpressionPtr condition, ExpressionPtr then, ExpressionPtr otherwise);
-/// `op`: := = += -= *= /=
+/// `op` is one of: := = += -= *= /=
 ExpressionPtr assignment(std::string op, std::string name, ExpressionPtr value);
 
 }  // namespace adit::bt::script

@@ -8,7 +8,7 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_hex(char c) { return is_digit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
-// Bytes of UTF-8 sequences count as letters, as in the reference's Unicode identifiers.
+// Bytes of UTF-8 sequences count as letters, as in the Unicode identifiers of BehaviorTree.CPP.
 bool starts_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '@' ||
          static_cast<unsigned char>(c) >= 0x80;

@@ -9,12 +9,12 @@ enum class TokenKind : std::uint8_t { end, integer, real, text, boolean, name, s
 
 struct Token {
   TokenKind kind{TokenKind::end};
-  std::string_view text{};  ///< without the quotes of a text
-  std::size_t position{0};  ///< of its first character, from 0
+  std::string_view text{};  ///< Without the quotes of a string.
+  std::size_t position{0};  ///< Position of its first character, from 0.
 };
 
-/// Cuts a script into tokens; the last one is `end`. What cannot be read becomes `bad`. The tokens point
-/// into `source`.
+/// Splits a script into tokens; the last one is `end`. Characters that cannot be read become `bad`. The
+/// tokens refer to `source`.
 std::vector<Token> tokenize(std::string_view source);
 
 }  // namespace adit::bt::script

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kMaxDepth = 64;
 
-/// Recursive descent, one function per level of precedence, from assignment (lowest) to atoms.
+/// Recursive-descent parser with one function per precedence level, from assignment (lowest) to atoms.
 class Parser {
  public:
   explicit Parser(std::string_view source) : tokens_(tokenize(source)) {}
@@ -41,7 +41,7 @@ class Parser {
   const Token& peek() const { return tokens_[at_]; }
   const Token& take() { return tokens_[at_].kind == TokenKind::end ? tokens_[at_] : tokens_[at_++]; }
 
-  /// The symbol, if the next token is one of these.
+  /// Consumes the next token if it is one of these symbols; returns it, else null.
   const Token* accept(std::initializer_list<std::string_view> symbols) {
     if (peek().kind != TokenKind::symbol) return nullptr;
     if (std::find(symbols.begin(), symbols.end(), peek().text) == symbols.end()) return nullptr;
@@ -75,7 +75,7 @@ class Parser {
     return conditional(std::move(condition), std::move(then), assign());
   }
 
-  // || and && bind equally, as in the reference's grammar.
+  // || and && have equal precedence, as in BehaviorTree.CPP's grammar.
   ExpressionPtr logic() { return chain({"||", "&&"}, &Parser::compare); }
 
   ExpressionPtr compare() {

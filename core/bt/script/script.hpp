@@ -10,11 +10,11 @@
 
 namespace adit::bt {
 
-/// Names that scripts and Switch nodes may use for numbers.
+/// Names of numbers in scripts and Switch nodes.
 using Enums = std::map<std::string, std::int64_t, std::less<>>;
 
 namespace script {
-/// What an expression sees while it runs.
+/// State that an expression can access while it is evaluated.
 struct Environment {
   Blackboard& board;
   const Enums& enums;
@@ -28,13 +28,13 @@ class Expression {
 using ExpressionPtr = std::unique_ptr<const Expression>;
 }  // namespace script
 
-/// The small language of BehaviorTree.CPP's Script node and of the pre- and postconditions:
-/// "n := 1; n += 2; ok = (n > 2) ? true : false". Statements are separated by ';'.
+/// A script in the language of BehaviorTree.CPP's Script node and of pre- and postconditions: "n := 1; n +=
+/// 2; ok = (n > 2) ? true : false". Statements are separated by ';'.
 class Script {
  public:
-  /// Reason::syntax with the position when the text is not a script.
+  /// Parses a script. Error syntax, with the position.
   static Result<std::shared_ptr<const Script>> parse(std::string_view text);
-  /// Runs every statement and answers with the last one's value. Throws NodeError.
+  /// Runs every statement and returns the value of the last one. Throws NodeError.
   BlackboardValue run(Blackboard& board, const Enums& enums) const;
 
  private:

@@ -9,14 +9,14 @@
 
 namespace adit::bt::tool {
 
-/// One leaf's answers: one is used per visit, the last one for ever.
+/// Scripted results of one leaf: each visit uses one, and the last one repeats for ever.
 struct Script {
   std::vector<NodeStatus> answers{};
   std::size_t next{0};
-  bool used{false};  ///< a leaf of the tree has this name
+  bool used{false};  ///< A leaf of the tree has this name.
 };
 
-/// What the leaves of a dry run share: their scripts, and what happened since the trace was last taken.
+/// State that the leaves of a dry run share: their scripts, and the events since the trace was last read.
 struct DryRun {
   std::map<std::string, Script, std::less<>> scripts{};
   std::vector<std::string> ticked{};
@@ -27,7 +27,7 @@ struct DryRun {
 /// text is "file:line: what was expected".
 Result<std::map<std::string, Script, std::less<>>> read_leaves(const std::string& path);
 
-/// A registry in which every unknown leaf plays its script, or succeeds.
+/// Creates a registry in which every unknown leaf plays its script, or succeeds.
 Registry dry_registry(std::shared_ptr<DryRun> run);
 
 }  // namespace adit::bt::tool

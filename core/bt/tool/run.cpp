@@ -23,7 +23,7 @@ void print(const RunOptions& options, const Tree& tree, const DryRun& dry, int t
   tree.for_each([&](const TreeNode& node, std::size_t) {
     if (node.named() && node.status() != NodeStatus::idle) nodes[node.name()] = name(node.status());
   });
-  // Bytes that are not UTF-8 in a name are replaced rather than thrown at the user.
+  // Bytes of a name that are not UTF-8 are replaced; otherwise the JSON library would throw.
   const auto text_of = [](const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
   };

@@ -5,14 +5,14 @@ namespace adit::bt::tool {
 
 struct RunOptions {
   std::string file{};
-  std::string leaves{};  ///< LEAVES.yaml; none: every leaf succeeds
-  std::string tree{};    ///< ID of the tree; none: the file's main tree
-  int ticks{10};         ///< 1 to 1 000 000
-  int tick_ms{10};       ///< virtual time between ticks [ms], 0 to 3 600 000
+  std::string leaves{};  ///< Path of LEAVES.yaml; empty: every leaf succeeds.
+  std::string tree{};    ///< ID of the tree; empty: the file's main tree.
+  int ticks{10};         ///< Number of ticks, 1 to 1 000 000.
+  int tick_ms{10};       ///< Virtual time between ticks, ms, 0 to 3 600 000.
   bool json{false};
 };
 
-/// A dry run, printed one line a tick. The program's exit status.
+/// Does a dry run and prints one line per tick. Returns the program's exit status.
 int run(const RunOptions& options);
 
 }  // namespace adit::bt::tool

@@ -77,7 +77,7 @@ void TreeBuilder::fill_ports(NodeConfig& config, const Element& element, const M
   for (const auto& port : manifest->ports) {
     const auto it = config.ports.find(port.name);
     if (it != config.ports.end()) {
-      // Entries that ports name exist from the start, empty and typed: scripts may assign to them.
+      // Entries that ports name exist from the start, empty and typed, so that scripts can assign to them.
       if (const auto key = blackboard_key(port.name, it->second)) config.board->declare(*key, port.type);
     } else if (port.fallback) {
       config.ports.emplace(port.name, *port.fallback);
@@ -127,7 +127,8 @@ void TreeBuilder::connect(Blackboard& inner, const Element& element, const std::
     } else if (const auto key = blackboard_key(port.name, port.value); key && port.value != "=") {
       inner.remap(port.name, *key);
     } else {
-      inner.set(port.name, BlackboardValue(port.value));  // before autoremapping: a constant stays inside
+      // Before autoremapping, so that a constant stays inside.
+      inner.set(port.name, BlackboardValue(port.value));
     }
   }
   inner.set_autoremap(autoremap);

@@ -5,12 +5,12 @@
 
 namespace adit::bt {
 
-/// Makes the nodes and blackboards of one tree of a verified forest.
+/// Creates the nodes and blackboards of one tree of a verified forest.
 class TreeBuilder {
  public:
   TreeBuilder(const xml::Forest& forest, const Registry& registry) : forest_(forest), registry_(registry) {}
-  /// Throws xml::LoadError: a SubTree that is not there or contains itself, a port of a SubTree's model that
-  /// is not given, or a tree that grows beyond 20 000 nodes or 500 levels.
+  /// Builds the tree. Throws xml::LoadError: a SubTree that does not exist or contains itself, a port of a
+  /// SubTree's model that is not given, or a tree of more than 20 000 nodes or 500 levels.
   Tree build(const std::string& tree_id);
 
  private:
@@ -23,7 +23,7 @@ class TreeBuilder {
   const xml::Forest& forest_;
   const Registry& registry_;
   Tree tree_{};
-  std::vector<std::string> open_{};  ///< trees that are being built, outermost first
+  std::vector<std::string> open_{};  ///< Trees that are being built, outermost first.
   std::size_t count_{0};
   std::size_t depth_{0};
 };

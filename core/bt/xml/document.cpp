@@ -23,7 +23,7 @@ Element convert(const tinyxml2::XMLElement& source, const std::shared_ptr<const 
       fail(element, "attribute [" + std::string(a->Name()) + "] is given twice");
     element.attributes.push_back({a->Name(), a->Value()});
   }
-  // Depth is bounded: tinyxml2 refuses more than 100 levels.
+  // The depth is bounded: tinyxml2 refuses more than 100 levels.
   for (const auto* child = source.FirstChildElement(); child; child = child->NextSiblingElement()) {
     element.children.push_back(convert(*child, file));
   }

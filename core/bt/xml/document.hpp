@@ -14,7 +14,7 @@ struct Attribute {
   std::string value{};
 };
 
-/// One XML element, with where it stands.
+/// One XML element with its position in the file.
 struct Element {
   std::string tag{};
   std::vector<Attribute> attributes{};
@@ -22,19 +22,19 @@ struct Element {
   std::shared_ptr<const std::string> file{};
   int line{0};
 
-  /// The attribute's value, or nullptr.
+  /// Returns the attribute's value, or nullptr.
   const std::string* attribute(std::string_view name) const;
 };
 
-/// Thrown inside the loader; its text names file and line.
+/// Exception inside the loader; its text names file and line.
 struct LoadError : std::runtime_error {
   LoadError(Reason why, const std::string& text) : std::runtime_error(text), reason(why) {}
   Reason reason;
 };
-/// "file:12: text", thrown.
+/// Throws LoadError with the text "file:12: text".
 [[noreturn]] void fail(const Element& at, const std::string& text, Reason reason = Reason::syntax);
 
-/// Parses a document; comments and texts between elements are left out. Throws LoadError.
+/// Parses a document; comments and texts between elements are ignored. Throws LoadError.
 Element parse(std::string_view text, const std::string& file);
 /// Reads a file of at most 4 MB. Throws LoadError.
 std::string read_file(const std::string& path);

@@ -19,7 +19,7 @@ class Collector {
     if (const auto* format = root.attribute("BTCPP_format"); format && *format != "4") {
       fail(root, "BTCPP_format is \"" + *format + "\", only \"4\" can be read", Reason::not_supported);
     }
-    // As in the reference, what is included comes first.
+    // As in BehaviorTree.CPP, included files come first.
     for (const auto& element : root.children) {
       if (element.tag == "include") include(element, folder);
     }
@@ -53,7 +53,7 @@ class Collector {
     if (std::find(open_.begin(), open_.end(), identity) != open_.end()) {
       fail(element, "'" + *path + "' includes itself");
     }
-    if (!seen_.insert(identity).second) return;  // reached on two ways: its trees are there already
+    if (!seen_.insert(identity).second) return;  // Another include has already read this file.
     if (seen_.size() > kMaxFiles)
       fail(element, "more than " + std::to_string(kMaxFiles) + " files are included");
     Element root;

@@ -8,7 +8,7 @@ namespace adit::bt {
 
 namespace {
 
-/// Runs a loader step; whatever it throws becomes the Error.
+/// Runs a loader step; any exception becomes the Error.
 template <class Step>
 auto guarded(const std::string& source, Step step) -> Result<decltype(step())> {
   try {

@@ -11,10 +11,10 @@ namespace adit::bt::xml {
 
 namespace {
 
-/// Nodes of BehaviorTree.CPP 4.10 that are not built here.
-constexpr std::array<std::string_view, 9> kNotHere{"LoopInt",         "LoopBool",        "LoopDouble",
-                                                   "LoopString",      "WasEntryUpdated", "SkipUnlessUpdated",
-                                                   "WaitValueUpdate", "ManualSelector",  "SubTreePlus"};
+/// Nodes of BehaviorTree.CPP 4.10 that are not implemented here.
+constexpr std::array<std::string_view, 9> kNotImplemented{
+    "LoopInt",           "LoopBool",        "LoopDouble",     "LoopString", "WasEntryUpdated",
+    "SkipUnlessUpdated", "WaitValueUpdate", "ManualSelector", "SubTreePlus"};
 
 NodeKind kind_from_tag(std::string_view tag, bool& explicit_form) {
   explicit_form = true;
@@ -177,7 +177,7 @@ Kind kind_of(const Element& element, const Registry& registry) {
     kind.kind = kind.manifest->kind;
     return kind;
   }
-  if (std::find(kNotHere.begin(), kNotHere.end(), kind.id) != kNotHere.end()) {
+  if (std::find(kNotImplemented.begin(), kNotImplemented.end(), kind.id) != kNotImplemented.end()) {
     fail(element, "node '" + kind.id + "' of BehaviorTree.CPP is not supported", Reason::not_supported);
   }
   const bool is_leaf = kind.kind == NodeKind::action || kind.kind == NodeKind::condition;

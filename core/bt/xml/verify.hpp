@@ -4,21 +4,22 @@
 
 namespace adit::bt::xml {
 
-/// What an element stands for: the id of the node, and its manifest (nullptr: an unknown leaf that the
-/// registry accepts, or a SubTree).
+/// The kind of an element: the id of the node, and its manifest (nullptr: an unknown leaf that the registry
+/// accepts, or a SubTree).
 struct Kind {
   std::string id{};
   NodeKind kind{NodeKind::action};
   const Manifest* manifest{nullptr};
 };
-/// Throws LoadError when the element is no known node.
+/// Returns the kind of an element. Throws LoadError when it is no known node.
 Kind kind_of(const Element& element, const Registry& registry);
 
-/// Names that are never ports: ID, name, _autoremap, the hooks, and all else that starts with '_'.
+/// Whether the attribute can be a port. ID, name, _autoremap, the hooks, and all other names that start with
+/// '_' are never ports.
 bool is_port_name(std::string_view attribute);
 
-/// Checks the shape of every tree: known nodes, numbers of children, ports that exist, ports that are
-/// required, values that can be read, scripts that can be parsed. Throws LoadError.
+/// Checks the structure of every tree: known nodes, numbers of children, ports that exist, required ports,
+/// values that can be parsed, scripts that can be parsed. Throws LoadError.
 void verify(const Forest& forest, const Registry& registry);
 
 }  // namespace adit::bt::xml

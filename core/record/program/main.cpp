@@ -1,4 +1,4 @@
-// recording: looks into MCAP recordings and saves what a torn one holds.
+// Program `recording`: inspects MCAP recordings and recovers the content of truncated ones.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -81,13 +81,13 @@ int info(const std::string& file) {
   return judged(file, *report);
 }
 
-/// Contents of messages by the schemas in the file.
+/// Decodes messages by the schemas in the file.
 class Contents {
  public:
   void add(const Schema& schema) {
     if (schema.encoding != "omgidl") return;
     const auto types = parse_idl(schema.text);
-    if (!types) return;  // shown by its size alone
+    if (!types) return;  // Only its size is shown.
     if (const auto it = types->find(schema.name); it != types->end()) types_[schema.id] = it->second;
   }
   std::string text(const Channel& channel, ByteSpan data) const {
@@ -116,7 +116,7 @@ int cat(const std::string& file, const std::string& topic, bool who) {
   return report ? judged(file, *report) : report_error(report.error().text);
 }
 
-/// Copies what can be read of one file; channels and schemas are numbered anew.
+/// Copies the readable content of one file; channels and schemas get new numbers.
 class Copy {
  public:
   explicit Copy(McapWriter& writer) : writer_(writer) {}
