@@ -52,9 +52,8 @@ struct Platform {
   /// Key `sensors:`; empty: one level lidar at lidar_height. See all_lidars().
   std::vector<LidarConfig> lidars{};
   std::optional<ImuConfig> imu{};  ///< Key `sensors:`; none: roll and pitch come from the odometry.
-  double max_tilt{
-      /// Roll or pitch at which it may tip over, rad, (0, 1.5]; 0: from max_slope, see Traversability.
-      0.0};
+  /// Roll or pitch at which it may tip over, rad, (0, 1.5]; 0: from max_slope, see Traversability.
+  double max_tilt{0.0};
   bool stairs{false};
   std::string router{"none"};  ///< Router around obstacles beyond the local planner's view: none or graph.
   std::string planner{"trajectories"};  ///< Planner of paths to a goal: nav/make_planner.hpp.
