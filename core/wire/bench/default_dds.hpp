@@ -16,8 +16,7 @@ class DefaultDds {
   DefaultDds(const DefaultDds&) = delete;
   DefaultDds& operator=(const DefaultDds&) = delete;
 
-  /// Opens a writer and writes one sample of `bytes` serialised bytes with one key (the topic's first
-  /// string).
+  /// Opens a writer and writes one serialised sample; its key is the topic's first string.
   void write(const wire::TopicInfo& topic, const std::string& partition,
              std::span<const std::uint8_t> sample);
   void read(const wire::TopicInfo& topic, const std::string& partition);

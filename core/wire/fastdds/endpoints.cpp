@@ -41,8 +41,8 @@ Result<std::unique_ptr<RawWriter>> FastDdsWriter::make(dds::Publisher& publisher
   const Qos qos = writer_qos(topic);
   const auto& id = writer->writer_->guid().entityId.value;
   writer->entity_ = static_cast<std::uint32_t>(id[0]) << 24 | id[1] << 16 | id[2] << 8 | id[3];
-  // A reliable reader of ours must acknowledge samples not meant for it; otherwise the writer requests
-  // acknowledgement from all other readers, too.
+  // Samples between a reliable writer and a reliable reader of ours go to that reader, too. It must
+  // acknowledge them; otherwise the writer keeps requesting acknowledgements from all other readers, too.
   if (!qos.reliable || !reader_qos(topic).reliable) context->to_others.add(writer->entity_);
   if (context->link)
     context->link->add_writer(writer->entity_, qos.priority, qos.newest_wins && !qos.reliable, topic.keyed);
