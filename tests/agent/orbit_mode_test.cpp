@@ -1,5 +1,5 @@
 // A mode that costs one module, one subtree and one row: `orbit`, the example of docs/adding_a_mode.md.
-#include "tests/agent/orbit_mode.hpp"
+#include "examples/02_mode_orbit.hpp"
 
 #include <gmock/gmock.h>
 
@@ -17,23 +17,14 @@ namespace {
 using namespace radio;  // the command kinds
 using testing::Contains;
 
-std::shared_ptr<const ModeTable> table() {
-  std::vector<ModeRow> rows = ModeTable::shipped().rows();
-  rows.push_back(OrbitMode::row());
-  return std::make_shared<const ModeTable>(std::move(rows));
-}
-
 /// The shipped tree and one subtree.
 std::string write_tree() {
   std::ifstream shipped(source_folder() + "/config/trees/robot.xml");
   std::stringstream text;
   text << shipped.rdbuf();
-  std::string xml = text.str();
-  xml.insert(xml.find("<Run name=\"hold\""), "<SubTree ID=\"Orbit\"/>\n      ");
-  xml.insert(xml.find("  <TreeNodesModel>"), kOrbitSubtree);
   const std::string file = testing::TempDir() + "/adit_orbit_" +
                            testing::UnitTest::GetInstance()->current_test_info()->name() + ".xml";
-  std::ofstream(file) << xml;
+  std::ofstream(file) << with_orbit(text.str());
   return file;
 }
 
@@ -65,7 +56,7 @@ class Orbit : public testing::Test {
   std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
   AgentBench bench{[this] {
                      AgentParams params{};
-                     params.modes = table();
+                     params.modes = modes_with_orbit();
                      params.disk = disk;
                      return params;
                    }(),
@@ -114,7 +105,7 @@ TEST_F(Orbit, ATreeThatSkipsItsConditionsIsRefused) {
   text << file.rdbuf();
   std::string xml = text.str();
   xml.erase(xml.rfind("<TerrainFresh/>", xml.find("<Run mode=\"orbit\"/>")), 15);
-  const auto modes = table();
+  const auto modes = modes_with_orbit();
   const auto decider = Decider::load_text(xml, *modes);
   ASSERT_FALSE(decider);
   EXPECT_THAT(decider.error().text,

@@ -1,6 +1,9 @@
+// Example 2: a mode. This file is the complete mode `orbit`: its module, its row in the mode table and its
+// subtree. docs/adding_a_mode.md explains it line by line; 02_mode_orbit.cpp rehearses it.
 #pragma once
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "core/store/pack.hpp"
 #include "robot_agent/behaviour/mode_module.hpp"
@@ -8,12 +11,12 @@
 
 namespace adit::agent {
 
-/// The mode `orbit`, the example of docs/adding_a_mode.md: drives around the point that lay 3 m to the left
-/// of the robot when the mode was entered, counter-clockwise, through eight places on the circle.
+/// The mode `orbit`: drives counter-clockwise around a centre, through eight places on the circle. The centre
+/// is the point 3 m to the left of the robot when the mode is entered.
 class OrbitMode : public ModeModule {
  public:
-  static constexpr double kRadius = 3.0;  ///< m
-  static constexpr double kStep = std::numbers::pi / 4;
+  static constexpr double kRadius = 3.0;                 ///< m
+  static constexpr double kStep = std::numbers::pi / 4;  ///< From one place to the next, rad.
   static constexpr double kNear = 1.0;  ///< The next place follows when the robot is nearer than this, m.
 
   explicit OrbitMode(const ModeContext& context) : context_(context) {}
@@ -87,7 +90,7 @@ inline ModeRow OrbitMode::row() {
           .source_age = 500ms};
 }
 
-/// Goes into config/trees/robot.xml, with `<SubTree ID="Orbit"/>` above `<Run mode="hold"/>`.
+/// Belongs into config/trees/robot.xml, with `<SubTree ID="Orbit"/>` above `<Run name="hold" mode="hold"/>`.
 inline constexpr const char* kOrbitSubtree = R"(
   <BehaviorTree ID="Orbit">
     <ReactiveSequence>
@@ -105,5 +108,19 @@ inline constexpr const char* kOrbitSubtree = R"(
     </ReactiveSequence>
   </BehaviorTree>
 )";
+
+/// The shipped tree with the subtree of `orbit`.
+inline std::string with_orbit(std::string tree) {
+  tree.insert(tree.find("<Run name=\"hold\""), "<SubTree ID=\"Orbit\"/>\n      ");
+  tree.insert(tree.find("  <TreeNodesModel>"), kOrbitSubtree);
+  return tree;
+}
+
+/// The shipped modes and `orbit`.
+inline std::shared_ptr<const ModeTable> modes_with_orbit() {
+  std::vector<ModeRow> rows = ModeTable::shipped().rows();
+  rows.push_back(OrbitMode::row());
+  return std::make_shared<const ModeTable>(std::move(rows));
+}
 
 }  // namespace adit::agent
