@@ -24,9 +24,10 @@ Footprint::Footprint(double half_length, double half_width) {
   build();
 }
 
-Footprint Footprint::grown(double along, double across) const {
+Footprint Footprint::grown(double ahead, double behind, double across) const {
   Footprint more = *this;
-  more.along_ += along;
+  more.ahead_ += ahead;
+  more.behind_ += behind;
   more.across_ += across;
   more.build();
   return more;
@@ -55,7 +56,7 @@ double Footprint::reach(double nx, double ny) const {
   double most = 0;
   for (std::size_t i = 0; i < corner_count_; ++i)
     most = std::max(most, nx * corners_[i].x() + ny * corners_[i].y());
-  return most + along_ * std::fabs(nx) + across_ * std::fabs(ny);
+  return most + (nx > 0 ? ahead_ * nx : -behind_ * nx) + across_ * std::fabs(ny);
 }
 
 void Footprint::build() {
@@ -71,8 +72,8 @@ void Footprint::build() {
     const Eigen::Vector2d side = corners_[(i + 1) % corner_count_] - corners_[i];
     const double length = side.norm();
     if (length > 1e-9) add(side.y() / length, -side.x() / length);
-    radius_ = std::max(radius_,
-                       std::hypot(std::fabs(corners_[i].x()) + along_, std::fabs(corners_[i].y()) + across_));
+    const double x = std::max(corners_[i].x() + ahead_, behind_ - corners_[i].x());
+    radius_ = std::max(radius_, std::hypot(x, std::fabs(corners_[i].y()) + across_));
   }
   for (const auto& [nx, ny] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}}) add(nx, ny);
 }

@@ -9,8 +9,9 @@
 
 namespace adit::nav {
 
-/// A robot seen from above: a convex polygon around base_link, grown by a margin that may differ along and
-/// across the robot. As half planes, so that "how deep inside is this point" is a handful of multiplications.
+/// A robot seen from above: a convex polygon around base_link, grown by margins that may differ ahead, behind
+/// and across the robot. As half planes, so that "how deep inside is this point" is a handful of
+/// multiplications.
 class Footprint {
  public:
   /// Inside is where nx * x + ny * y <= offset, for every edge; (nx, ny) has length one.
@@ -25,8 +26,11 @@ class Footprint {
   Footprint(double half_length, double half_width);
 
   /// Grown by `along` to the front and back and by `across` to both sides, m (on top of earlier margins).
-  Footprint grown(double along, double across) const;
-  /// The same body facing the other way.
+  Footprint grown(double along, double across) const { return grown(along, along, across); }
+  /// Grown by `ahead` to the front, `behind` to the back and `across` to both sides, m (on top of earlier
+  /// margins).
+  Footprint grown(double ahead, double behind, double across) const;
+  /// The same body facing the other way, with the same margins: `ahead` is then kept free before its rear.
   Footprint turned() const;
 
   std::span<const Edge> edges() const { return {edges_.data(), count_}; }
@@ -54,7 +58,7 @@ class Footprint {
   static constexpr std::size_t kMaxEdges = Platform::kMaxCorners + 4;
   std::array<Eigen::Vector2d, Platform::kMaxCorners> corners_{};  ///< counter-clockwise, without the margin
   std::size_t corner_count_{0};
-  double along_{0}, across_{0};
+  double ahead_{0}, behind_{0}, across_{0};
   std::array<Edge, kMaxEdges> edges_{};
   std::size_t count_{0};
   double radius_{0};

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr int kAngles = CorrespondenceGrid::kAngles;
-constexpr double kHeadingStep = 10.0;  ///< degrees
+constexpr int kHeadingStep = 10;       ///< degrees
 constexpr double kNoTurn = 12.0;       ///< degrees: the follower steers that much out while driving
 constexpr double kEitherSide = 140.0;  ///< degrees: beyond, the side of a turn is kept once chosen
 constexpr double kTurnSlack = 0.06;    ///< m kept free before the body beyond what a turn needs
@@ -27,6 +27,9 @@ int whole_degrees(float radians) {
   d %= kAngles;
   return d < 0 ? d + kAngles : d;
 }
+
+/// An angle rounded to whole degrees, rad.
+double whole(double radians) { return std::round(radians / kDegree) * kDegree; }
 
 /// Falco's weight of a heading: what asks for little turning is preferred, steeply.
 float heading_weight(double degrees) {
@@ -53,7 +56,8 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
   const PathTree long_tree(large), short_tree(small);
   auto library = std::make_shared<PlannerLibrary>();
   const auto add = [&](const PathTree& tree, double front, double side, double speed, int least_stage) {
-    const Footprint grown = body.grown(front, side);
+    // The front's margin is for what the path leads to; the rear only swings past what stands beside it.
+    const Footprint grown = body.grown(front, std::min(front, side), side);
     library->options.push_back(
         {tree, CorrespondenceGrid(tree, grown),
          body.symmetric() ? CorrespondenceGrid() : CorrespondenceGrid(tree, grown.turned()),
@@ -130,6 +134,7 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
     plan.arrived = true;
     return plan;
   }
+  list_headings(goal);
   judge_headings(goal);
   Choice choice;
   // What it would choose is what it is held from; on the way back it is let go.
@@ -152,7 +157,9 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
 
 void LocalPlanner::watch_progress(const Target& target, double distance) {
   constexpr double kSameGoal = 0.1, kProgress = 0.5;  // m
-  const bool other = target.kind != Target::Kind::goal || (target.goal - goal_).norm() > kSameGoal;
+  // The point of a route that is the target stays as far ahead of the robot, so it moves back with it.
+  const double same = retreating_ ? params_.retreat + kProgress : kSameGoal;
+  const bool other = target.kind != Target::Kind::goal || (target.goal - goal_).norm() > same;
   if (other) {
     goal_ = target.goal;
     retreating_ = false;
@@ -186,7 +193,9 @@ bool LocalPlanner::given_up(bool drives, double stamp_s) {
 LocalPlanner::Goal LocalPlanner::retreat_goal(const Pose2& pose, double stamp_s) {
   const Eigen::Vector2d to = pose.inverse() * retreat_to_;
   constexpr double kSpread = 45.0;
-  Goal goal{to.norm(), std::atan2(to.y(), to.x()), kSpread, static_cast<int>(kSpread / kHeadingStep), false};
+  Goal goal{to.norm(), whole(std::atan2(to.y(), to.x())),
+            kSpread,   static_cast<int>(kSpread / kHeadingStep),
+            true,      false};
   goal.backwards = std::fabs(goal.bearing) > M_PI / 2;
   if (goal.distance <= params_.tolerance || stamp_s > retreat_until_) retreating_ = false;
   return goal;
@@ -209,12 +218,16 @@ void LocalPlanner::consider_retreat(const Pose2& pose, double stamp_s, bool at_o
 }
 
 LocalPlanner::Goal LocalPlanner::goal_of(const Target& target, const Pose2& pose) {
-  Goal goal{std::numeric_limits<double>::infinity(), wrap_angle(target.direction), params_.stick_spread, 0,
+  Goal goal{std::numeric_limits<double>::infinity(),
+            wrap_angle(target.direction),
+            params_.stick_spread,
+            0,
+            target.kind == Target::Kind::goal,
             false};
   if (target.kind == Target::Kind::goal) {
     const Eigen::Vector2d to = pose.inverse() * target.goal;
     goal.distance = to.norm();
-    goal.bearing = goal.distance > 1e-6 ? std::atan2(to.y(), to.x()) : 0.0;
+    goal.bearing = goal.distance > 1e-6 ? whole(std::atan2(to.y(), to.x())) : 0.0;
     goal.spread = params_.goal_spread;
   }
   goal.headings = static_cast<int>(goal.spread / kHeadingStep);
@@ -255,6 +268,16 @@ void LocalPlanner::project(const Goal& goal, std::span<const ObstaclePoint> obst
   for (Cells& cells : rough_) cells.to_list();
 }
 
+void LocalPlanner::list_headings(const Goal& goal) {
+  heading_count_ = 0;
+  for (int k = -goal.headings; k <= goal.headings; ++k) offset_[heading_count_++] = k * kHeadingStep;
+  if (!goal.own_headings) return;
+  const auto bearing = static_cast<int>(std::lround(goal.bearing / kDegree));
+  for (const int own : {-bearing, bearing > 0 ? 180 - bearing : -180 - bearing})
+    if (std::abs(own) > goal.headings * kHeadingStep || own % kHeadingStep != 0)
+      offset_[heading_count_++] = own;
+}
+
 void LocalPlanner::judge_headings(const Goal& goal) {
   // The side to which a turn by `degrees` is free: 1, -1, or 0 when it needs none; 2 when there is no room.
   const auto side = [this](double degrees) {
@@ -267,9 +290,9 @@ void LocalPlanner::judge_headings(const Goal& goal) {
     if (can) return shorter;
     return can_long ? -shorter : 2;
   };
-  for (int k = -goal.headings; k <= goal.headings; ++k) {
-    Approach& way = approach_[k + goal.headings];
-    const double ahead = wrap_angle(goal.bearing + k * kHeadingStep * kDegree) / kDegree;
+  for (int h = 0; h < heading_count_; ++h) {
+    Approach& way = approach_[h];
+    const double ahead = wrap_angle(goal.bearing + offset_[h] * kDegree) / kDegree;
     const double behind = wrap_angle((ahead - 180.0) * kDegree) / kDegree;
     const int forward = side(ahead), reverse = side(behind);
     way = {};
@@ -283,17 +306,16 @@ void LocalPlanner::judge_headings(const Goal& goal) {
   }
 }
 
-void LocalPlanner::block_paths(const Option& option, const Goal& goal) {
-  cover(option, goal, occupied_, true, blocked_);
-  for (std::size_t i = 0; i < rough_.size(); ++i) cover(option, goal, rough_[i], false, rough_paths_[i]);
+void LocalPlanner::block_paths(const Option& option) {
+  cover(option, occupied_, true, blocked_);
+  for (std::size_t i = 0; i < rough_.size(); ++i) cover(option, rough_[i], false, rough_paths_[i]);
 }
 
-void LocalPlanner::cover(const Option& option, const Goal& goal, const Cells& cells, bool drop_dead,
+void LocalPlanner::cover(const Option& option, const Cells& cells, bool drop_dead,
                          std::array<PathMask, kHeadings>& masks) {
-  const int count = 2 * goal.headings + 1;
   std::array<int, kHeadings> alive{};
   int living = 0;
-  for (int h = 0; h < count; ++h) {
+  for (int h = 0; h < heading_count_; ++h) {
     masks[h] = {};
     if (approach_[h].possible && (drop_dead || !blocked_[h].dead())) alive[living++] = h;
   }
@@ -315,7 +337,7 @@ void LocalPlanner::cover(const Option& option, const Goal& goal, const Cells& ce
       const CorrespondenceGrid& grid =
           approach_[h].reverse && option.back.rings() > 0 ? option.back : option.grid;
       if (ring >= grid.rings()) continue;
-      int angle = cell.angle - (h - goal.headings) * static_cast<int>(kHeadingStep);
+      int angle = cell.angle - offset_[h];
       if (angle < 0) angle += kAngles;
       if (angle >= kAngles) angle -= kAngles;
       if ((angle < kAngles / 2 ? angle : kAngles - 1 - angle) > grid.half_angle(ring)) continue;
@@ -335,20 +357,20 @@ float LocalPlanner::ease(int heading, int stage, int node) const {
   return 1.0f;
 }
 
-bool LocalPlanner::vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best) {
+bool LocalPlanner::vote(const Option& option, int stage, double spread, Choice& best) {
   for (int d = 0; d <= 360; ++d) {
     const int off = d > 180 ? 360 - d : d;
     agreement_[d] = off >= spread ? 0.0f : static_cast<float>(1.0 - std::sqrt(std::sqrt(off / spread)));
   }
   constexpr auto& kBit = PathTree::kFirstBit;
   float best_score = 0.0f;
-  for (int h = 0; h <= 2 * goal.headings; ++h) {
+  for (int h = 0; h < heading_count_; ++h) {
     const Approach& way = approach_[h];
     const PathMask& mask = blocked_[h];
     if (!way.possible || mask.dead()) continue;
     std::uint64_t groups = 0;
     for (int s = 0; s <= std::min(stage, 3); ++s) groups |= mask.words[0] >> kBit[s];
-    const float turned = static_cast<float>((h - goal.headings) * kHeadingStep);
+    const auto turned = static_cast<float>(offset_[h]);
     const int per_group = PathTree::kNodes[stage] / PathTree::kGroups;
     for (int g = 0; g < PathTree::kGroups; ++g) {
       if ((groups >> g) & 1u) continue;
@@ -387,13 +409,13 @@ bool LocalPlanner::choose(const Goal& goal, Choice& best) {
   Choice other;
   bool any = false;
   for (const Option& option : library_->options) {
-    block_paths(option, goal);
+    block_paths(option);
     const int need = option.tree.stage_for(goal.distance);
-    if (vote(option, goal, need, direct, best) && best.ease >= 1.0f) return true;
+    if (vote(option, need, direct, best) && best.ease >= 1.0f) return true;
     if (any || option.roomy) continue;
-    any = vote(option, goal, need, goal.spread, other);
+    any = vote(option, need, goal.spread, other);
     for (int stage = need - 1; !any && stage >= option.least_stage; --stage)
-      any = vote(option, goal, stage, detour, other);
+      any = vote(option, stage, detour, other);
   }
   best = other;
   return any;
@@ -402,7 +424,7 @@ bool LocalPlanner::choose(const Goal& goal, Choice& best) {
 void LocalPlanner::write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const {
   const PathTree& tree = choice.option->tree;
   const Approach& way = approach_[choice.heading];
-  const double turned = wrap_angle(goal.bearing + (choice.heading - goal.headings) * kHeadingStep * kDegree);
+  const double turned = wrap_angle(goal.bearing + offset_[choice.heading] * kDegree);
   plan.reverse = way.reverse;
   plan.turn = way.turn;
   plan.heading = static_cast<int>(std::lround(turned / kDegree));

@@ -64,7 +64,9 @@ struct PlannerLibrary {
 /// can go on towards its target. After Falco (see PathTree and CorrespondenceGrid): 36 headings, a vote of
 /// the free paths for their group, weighted by how well they lead to the target and how little the robot has
 /// to turn. Different from it:
-/// - headings are counted from the target's bearing, so that the straight way to it is one of them;
+/// - headings are counted from the target's bearing, so that the straight way to it is one of them; towards a
+///   goal the robot's own heading and the opposite one are two more, so that a robot that has no room to turn
+///   can drive straight ahead or back;
 /// - one pass over the obstacles yields the free length of all paths; Falco repeats it for each range;
 /// - a path is swept by the footprint, and a heading counts only when the turn towards it on the spot is free
 ///   (or, failing that, when the robot can get into it backwards);
@@ -95,11 +97,12 @@ class LocalPlanner final : public Planner {
   using Option = PlannerLibrary::Option;
 
   struct Goal {
-    double distance;  ///< m, or infinite
-    double bearing;   ///< in the body frame, rad
-    double spread;    ///< degrees
-    int headings;     ///< to each side of the bearing
-    bool backwards;   ///< driving backwards is what was asked for
+    double distance;    ///< m, or infinite
+    double bearing;     ///< in the body frame, rad
+    double spread;      ///< degrees
+    int headings;       ///< to each side of the bearing
+    bool own_headings;  ///< Straight ahead and straight back are candidates, too; `bearing` is whole degrees.
+    bool backwards;     ///< driving backwards is what was asked for
   };
   /// A heading's way of being taken.
   struct Approach {
@@ -131,12 +134,13 @@ class LocalPlanner final : public Planner {
 
   Goal goal_of(const Target& target, const Pose2& pose);
   void project(const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan);
+  void list_headings(const Goal& goal);
   void judge_headings(const Goal& goal);
-  void block_paths(const Option& option, const Goal& goal);
-  void cover(const Option& option, const Goal& goal, const Cells& cells, bool drop_dead,
+  void block_paths(const Option& option);
+  void cover(const Option& option, const Cells& cells, bool drop_dead,
              std::array<PathMask, kHeadings>& masks);
   float ease(int heading, int stage, int node) const;
-  bool vote(const Option& option, const Goal& goal, int stage, double spread, Choice& best);
+  bool vote(const Option& option, int stage, double spread, Choice& best);
   bool choose(const Goal& goal, Choice& best);
   Goal retreat_goal(const Pose2& pose, double stamp_s);
   void consider_retreat(const Pose2& pose, double stamp_s, bool at_once);
@@ -169,6 +173,8 @@ class LocalPlanner final : public Planner {
   Cells occupied_{};              ///< cannot be passed
   std::array<Cells, 2> rough_{};  ///< costs something; costs much
   TurnRoom room_{};
+  std::array<int, kHeadings> offset_{};  ///< of each heading from the goal's bearing, degrees
+  int heading_count_{0};
   std::array<Approach, kHeadings> approach_{};
   std::array<PathMask, kHeadings> blocked_{};
   std::array<std::array<PathMask, kHeadings>, 2> rough_paths_{};
