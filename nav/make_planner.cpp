@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "nav/lattice/lattice_planner.hpp"
+#include "nav/planners/combined_planner.hpp"
 #include "nav/vfh_planner.hpp"
 
 namespace adit::nav {
@@ -31,6 +31,8 @@ Result<void> fits(const Platform& platform) {
 Result<std::unique_ptr<Planner>> make_planner(const Platform& platform, const LocalPlannerParams& params,
                                               std::shared_ptr<const PlannerLibrary> library) {
   if (const auto checked = fits(platform); !checked) return checked.error();
+  if (platform.planner == "trajectories" && platform.router != "none")
+    return std::unique_ptr<Planner>(std::make_unique<CombinedPlanner>(platform, params, std::move(library)));
   if (platform.planner == "trajectories")
     return std::unique_ptr<Planner>(std::make_unique<LocalPlanner>(platform, params, std::move(library)));
   if (platform.planner == "vfh") return std::unique_ptr<Planner>(std::make_unique<VfhPlanner>(platform));

@@ -21,6 +21,7 @@ struct Target {
   double direction{0};          ///< in the body frame, rad, counter-clockwise from ahead
   double speed{0};              ///< not faster than this, m/s; 0 of a goal: the platform's speed
   double tolerance{0};          ///< of a goal, m; 0: the planner's own
+  bool on_route{false};         ///< A goal on a route, which leads there in about a straight line.
   std::optional<Pose2> gate{};  ///< a gap that leads to a goal: its middle, heading through; odometry frame
   bool held{false};             ///< the collision monitor keeps the robot from driving what was planned
 

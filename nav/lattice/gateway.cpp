@@ -7,13 +7,12 @@
 namespace adit::nav {
 namespace {
 
+constexpr int kFits = 3;                        ///< Each starts from the strip that the one before found.
 constexpr int kTurns = 15;                      ///< to each side of the guess
 constexpr double kTurn = M_PI / 180.0;          ///< rad
 constexpr float kAlong = 0.5f, kAcross = 1.2f;  ///< m from the guess: what stands there is looked at
 
-}  // namespace
-
-std::optional<Gateway> fit_gateway(const Pose2& guess, std::span<const ObstaclePoint> obstacles) {
+std::optional<Gateway> fit_once(const Pose2& guess, std::span<const ObstaclePoint> obstacles) {
   struct Strip {
     float c, s, left{kAcross}, right{-kAcross};
   };
@@ -47,6 +46,18 @@ std::optional<Gateway> fit_gateway(const Pose2& guess, std::span<const ObstacleP
   if (strip.left >= kAcross || strip.right <= -kAcross || width(strip) <= 0) return std::nullopt;
   const Pose2 turned = guess * Pose2{0, 0, (static_cast<int>(best) - kTurns) * kTurn};
   return Gateway{turned * Pose2{0, double{strip.left + strip.right} / 2, 0}, double{width(strip)}};
+}
+
+}  // namespace
+
+std::optional<Gateway> fit_gateway(const Pose2& guess, std::span<const ObstaclePoint> obstacles) {
+  auto best = fit_once(guess, obstacles);
+  for (int fit = 1; best && fit < kFits; ++fit) {
+    const auto again = fit_once(best->line, obstacles);
+    if (!again || again->room <= best->room + 1e-3) break;
+    best = again;
+  }
+  return best;
 }
 
 }  // namespace adit::nav

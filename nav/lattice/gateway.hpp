@@ -13,8 +13,9 @@ struct Gateway {
   double room{0};  ///< width of the strip, m
 };
 
-/// `guess`: about the gap's middle, within 0.1 m and 15 degrees, in the frame of the obstacles. Of these the
-/// solid ones count that are no more than 0.5 m before or behind it. Nothing when one side is open.
+/// `guess`: about the gap's middle, between its sides and within 30 degrees, in the frame of the obstacles.
+/// Of these the solid ones count that are no more than 0.5 m before or behind it. Nothing when one side is
+/// open.
 std::optional<Gateway> fit_gateway(const Pose2& guess, std::span<const ObstaclePoint> obstacles);
 
 }  // namespace adit::nav

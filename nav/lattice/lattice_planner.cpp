@@ -249,6 +249,13 @@ void LatticePlanner::next_part() {
   end_ = i;
 }
 
+bool LatticePlanner::drives_ahead() const {
+  if (retreat_) return false;
+  for (std::size_t i = at_ + 1; i < kept_.count; ++i)
+    if (kept_.spots[i].direction < 0) return false;
+  return true;
+}
+
 bool LatticePlanner::changes_ahead() const { return end_ + 1 < kept_.count; }
 
 bool LatticePlanner::follows_on(const Pose2& rear) {

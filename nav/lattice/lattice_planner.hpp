@@ -38,6 +38,13 @@ class LatticePlanner final : public Planner {
 
   Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
             double stamp_s) override;
+  /// Measures speed and curvature from one cycle to the next; plan() does so itself. For cycles in which
+  /// another planner plans.
+  void watch(const Pose2& pose, double stamp_s) { watch_motion(pose * Pose2{-rear_, 0, 0}, stamp_s); }
+  /// As measured, m/s, negative backwards.
+  double speed() const { return speed_; }
+  /// Neither a part of the path that it keeps to nor a retreat leads backwards.
+  bool drives_ahead() const;
 
  private:
   void watch_motion(const Pose2& rear, double stamp_s);

@@ -1,6 +1,7 @@
 #include "nav/route/gate.hpp"
 
 #include <cmath>
+#include <vector>
 
 namespace adit::nav {
 namespace {
@@ -8,6 +9,8 @@ namespace {
 constexpr double kOpposite = 0.5;   // the sides are this much, as a cosine, on opposite sides of the way
 constexpr int kLongestMouth = 6;    // samples: of a passage its mouth counts
 constexpr double kNarrower = 0.15;  // m: than the passage that a route begins in a door at its end is
+constexpr double kFitReach = 1.4;   // m around the middle: fit_gateway looks at no more
+constexpr double kLoose = 0.15;  // m: sides that are not opposite each other are farther apart than the strip
 
 // What stands on both sides of a place.
 struct Sides {
@@ -15,6 +18,16 @@ struct Sides {
   double width{0};  // from side to side by way of the place, m
   bool both{false};
 };
+
+// Where what stands in a cell is, m; nothing where nothing does.
+std::optional<Eigen::Vector2d> obstacle_in(const SurfaceMap& map, int ix, int iy, double z) {
+  const int index = map.at_cell(ix, iy, z);
+  if (index < 0) return std::nullopt;
+  const GroundCell& cell = map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  if (!cell.blocked) return std::nullopt;
+  return Eigen::Vector2d((ix + 0.5) * kRouteCell + cell.aside_x * double{kAsideUnit},
+                         (iy + 0.5) * kRouteCell + cell.aside_y * double{kAsideUnit});
+}
 
 // `along`: of length one. Both, when together they are no farther than `width`: a route need not be in the
 // middle.
@@ -28,19 +41,15 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
   bool left = false, right = false;
   for (int iy = cy - reach; iy <= cy + reach; ++iy)
     for (int ix = cx - reach; ix <= cx + reach; ++ix) {
-      const int index = map.at_cell(ix, iy, at.z());
-      if (index < 0) continue;
-      const GroundCell& cell = map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-      if (!cell.blocked) continue;
-      const Eigen::Vector2d place((ix + 0.5) * kRouteCell + cell.aside_x * double{kAsideUnit},
-                                  (iy + 0.5) * kRouteCell + cell.aside_y * double{kAsideUnit});
-      const Eigen::Vector2d away = place - at.head<2>();
+      const auto place = obstacle_in(map, ix, iy, at.z());
+      if (!place) continue;
+      const Eigen::Vector2d away = *place - at.head<2>();
       const double d2 = away.squaredNorm();
       const double across = along.x() * away.y() - along.y() * away.x();
       if (d2 >= (across > 0 ? least_left : least_right) || across * across < kOpposite * kOpposite * d2)
         continue;
       (across > 0 ? least_left : least_right) = d2;
-      (across > 0 ? sides.left : sides.right) = place;
+      (across > 0 ? sides.left : sides.right) = *place;
       (across > 0 ? left : right) = true;
     }
   sides.width = std::sqrt(least_left) + std::sqrt(least_right);
@@ -48,20 +57,44 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
   return sides;
 }
 
+// What stands around a place, relative to it.
+std::vector<ObstaclePoint> obstacles_near(const SurfaceMap& map, const Eigen::Vector3d& at) {
+  std::vector<ObstaclePoint> points;
+  const int reach = static_cast<int>(kFitReach / kRouteCell) + 1;
+  const int cx = route_cell(at.x()), cy = route_cell(at.y());
+  for (int iy = cy - reach; iy <= cy + reach; ++iy)
+    for (int ix = cx - reach; ix <= cx + reach; ++ix)
+      if (const auto place = obstacle_in(map, ix, iy, at.z())) {
+        const Eigen::Vector2f off = (*place - at.head<2>()).cast<float>();
+        points.push_back({off.x(), off.y(), 1.0f});
+      }
+  return points;
+}
+
 }  // namespace
 
-std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vector3d> points, double ahead,
-                              double width, double beside) {
+std::optional<NarrowPassage> find_gate(const SurfaceMap& map, std::span<const Eigen::Vector3d> points,
+                                       double ahead, double width, double beside) {
   Eigen::Vector2d left(0, 0), right(0, 0), along(0, 0);
   double z = 0;
   int samples = 0;
+  const double loose = width + kLoose;
   double most = -1;  // a place is a gate up to this width; negative: the route has not begun
-  const auto gate = [&]() -> std::optional<Gate> {
-    const Eigen::Vector2d across = (left - right) / samples, middle = (left + right) / (2.0 * samples);
-    Eigen::Vector2d axis(across.y(), -across.x());
-    if (axis.norm() < kRouteCell) return std::nullopt;
-    axis.normalize();
-    return Gate{{middle.x(), middle.y(), z}, axis.dot(along) < 0 ? Eigen::Vector2d(-axis) : axis};
+  // Ends a run of samples; nothing when it is wider than it seemed.
+  const auto gate = [&]() -> std::optional<NarrowPassage> {
+    const Eigen::Vector2d middle = (left + right) / (2.0 * samples), across = left - right;
+    const Eigen::Vector3d at(middle.x(), middle.y(), z);
+    const auto obstacles = obstacles_near(map, at);
+    auto fitted = fit_passage({at, along, 0.0}, obstacles);
+    // A route that crosses a wall at an angle is a worse guess than what is normal to the line between its
+    // sides.
+    const Eigen::Vector2d normal = Eigen::Vector2d(across.y(), -across.x()).normalized();
+    const auto other =
+        fit_passage({at, normal.dot(along) < 0 ? Eigen::Vector2d(-normal) : normal, 0.0}, obstacles);
+    if (other && (!fitted || other->clear_width > fitted->clear_width)) fitted = other;
+    left = right = {0, 0};
+    samples = 0;
+    return fitted && fitted->clear_width <= width ? fitted : std::nullopt;
   };
   double passed = 0;
   for (std::size_t i = 0; i + 1 < points.size() && passed < ahead; ++i) {
@@ -71,19 +104,21 @@ std::optional<Gate> find_gate(const SurfaceMap& map, std::span<const Eigen::Vect
     const Eigen::Vector2d direction = way.head<2>() / length;
     for (double s = 0; s < length && passed + s < ahead; s += kRouteCell) {
       const Eigen::Vector3d at = points[i] + way * (s / length);
-      const Sides sides = sides_of(map, at, direction, width, beside);
+      const Sides sides = sides_of(map, at, direction, loose, beside);
       // Where it begins is none; what is clearly narrower, or comes after a wide place, may be one.
       if (most < 0) most = sides.width - kNarrower;
-      if (!sides.both) most = width;
+      if (!sides.both) most = loose;
       if (!sides.both || sides.width > most) {
-        if (samples > 0) return gate();
+        if (samples > 0)
+          if (const auto found = gate()) return found;
         continue;
       }
       left += sides.left;
       right += sides.right;
       along = direction;
       z = at.z();
-      if (++samples == kLongestMouth) return gate();
+      if (++samples == kLongestMouth)
+        if (const auto found = gate()) return found;
     }
     passed += length;
   }

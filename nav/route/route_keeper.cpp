@@ -11,19 +11,14 @@ constexpr double kSameGoal = 0.05;   // m
 constexpr double kReachAhead = 0.9;  // m: a route that is blocked is so this far ahead
 constexpr double kSampling = 0.5;    // m
 constexpr double kNextCorner = 5.0;  // m
-constexpr double kInGate = 0.3;      // m before its middle
-constexpr double kBeforeGate = 1.1;  // m: there the robot lines up
-constexpr double kBack = 0.3;        // m: so much nearer it does not go back there unless it is well off
 constexpr double kSameGate = 0.5;    // m: its middle wanders with what was seen of it
-constexpr double kAtGate = 1.5;      // m: from farther off no path of the local planner leads through
-constexpr double kBeyondGate = 0.9;  // m: so far it goes straight on
-constexpr double kEnters = 0.6;      // m before its middle a robot that is lined up is in it
-constexpr double kLeft = 0.6;        // m behind its middle it has left it
-constexpr double kThere = 0.1;       // m from where it lines up: nearer no planner comes
-constexpr double kAside = 0.25;      // m: farther off its axis a robot is not in it
-constexpr double kLinedUp = 0.10;    // tangent of the angle off the gate's axis
-constexpr double kStaysLinedUp = 0.25;
-constexpr double kTold = 3.0;     // m before it a gap is told to who finds its own way
+constexpr double kAtGate = 1.5;      // m before it a robot that is blocked is blocked by the passage
+constexpr double kBeyondGate = 0.9;  // m behind its middle the robot has left it
+constexpr double kLeft = 0.6;        // m behind its middle the route goes on as it likes
+constexpr double kReported = 3.0;    // m before it the planner is given a passage
+constexpr double kNear = 2.5;        // m: from nearer it is not measured anew for less than the following
+constexpr double kShifted = 0.10;    // m
+constexpr double kTurned = 5.0 * M_PI / 180.0;
 constexpr double kDetour = 1.03;  // a straight line that costs more than this much of the route is none
 
 // The point of a way at a length from its beginning, and whether that is its end.
@@ -45,8 +40,8 @@ bool same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return level && (a - b).head<2>().norm() <= kSameGoal;
 }
 
-// A place on the axis of a gate, so far behind its middle.
-Eigen::Vector3d on_axis(const Gate& gate, double behind) {
+// A place on the axis of a passage, so far behind its middle.
+Eigen::Vector3d on_axis(const NarrowPassage& gate, double behind) {
   return {gate.middle.x() + behind * gate.axis.x(), gate.middle.y() + behind * gate.axis.y(),
           gate.middle.z()};
 }
@@ -95,9 +90,9 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
   if (stamp_s - *blocked_since_ < params_.blocked || stamp_s < retry_until_) return;
   blocked_since_.reset();
   if (lines_up_for_ && !is_waived(*lines_up_for_)) {
-    // It goes on from where it is. Who finds its own way has the time to back off and try again.
+    // The robot has the time to back off and try again.
     waived_ = lines_up_for_;
-    if (params_.gates == GateUse::tell) retry_until_ = stamp_s + params_.retry;
+    retry_until_ = stamp_s + params_.retry;
     return;
   }
   waived_.reset();  // whoever comes again may line up
@@ -125,68 +120,45 @@ bool RouteKeeper::is_waived(const Eigen::Vector3d& gate) const {
   return waived_ && (*waived_ - gate).norm() < kSameGate;
 }
 
-// In a gate there is no room to turn: until the robot has left it, it goes straight on, as long as the route
-// still leads that way.
-std::optional<Eigen::Vector3d> RouteKeeper::straight_on(const Eigen::Vector3d& place) {
-  if (!inside_) return std::nullopt;
-  const Eigen::Vector2d past = place.head<2>() - inside_->middle.head<2>();
-  const double along = past.dot(inside_->axis);
-  const double aside = std::abs(inside_->axis.x() * past.y() - inside_->axis.y() * past.x());
-  bool end = false;
-  const Eigen::Vector2d next = point_at(route_.points, kBeyondGate, end).head<2>() - place.head<2>();
-  if (along < -kBeforeGate || along > kLeft || aside > kAside || next.dot(inside_->axis) <= 0) {
-    inside_.reset();
-    lined_up_ = false;
-    if (along > kLeft) waived_.reset();
-    return std::nullopt;
+// Whether the robot has not left the passage that it was given, and the route still leads through it.
+bool RouteKeeper::leads_through(const NarrowPassage& gate, const Eigen::Vector3d& place) const {
+  if ((place - gate.middle).head<2>().dot(gate.axis) > kLeft) return false;
+  double passed = 0;
+  for (std::size_t i = 0; i + 1 < route_.points.size() && passed < kReported + kSameGate; ++i) {
+    const Eigen::Vector2d way = (route_.points[i + 1] - route_.points[i]).head<2>();
+    const Eigen::Vector2d to = (gate.middle - route_.points[i]).head<2>();
+    const double length2 = way.squaredNorm();
+    const double t = length2 > 0 ? std::clamp(to.dot(way) / length2, 0.0, 1.0) : 0.0;
+    if ((to - t * way).norm() < kSameGate && way.dot(gate.axis) > 0) return true;
+    passed += way.norm();
   }
-  return on_axis(*inside_, kBeyondGate);
+  return false;
 }
 
-// The gate that it is in; else the next one.
-bool RouteKeeper::tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place) {
-  if (straight_on(place)) return true;
-  inside_ = planner.gate(route_.points, kTold);
-  if (inside_ && !planner.line(inside_->middle, on_axis(*inside_, kBeyondGate), {.let_out = true}).passable)
-    inside_.reset();
-  if (inside_ && waived_ && !is_waived(inside_->middle)) {
+// The passage that the robot is in or comes to next. Seen from near it is kept as it is, unless it turns out
+// to be clearly elsewhere: a target that moves with each scan would keep the robot turning before it.
+void RouteKeeper::watch_gate(RoutePlanner& planner, const Eigen::Vector3d& place) {
+  if (gate_ && !leads_through(*gate_, place)) {
+    if (is_waived(gate_->middle)) waived_.reset();
+    gate_.reset();
+  }
+  const auto seen = planner.gate(route_.points, kReported);
+  if (!seen || !planner.line(seen->middle, on_axis(*seen, kBeyondGate), {.let_out = true}).passable) return;
+  const bool same = gate_ && (gate_->middle - seen->middle).head<2>().norm() < kSameGate;
+  // The one that it is in has to be left before the next one.
+  if (gate_ && !same && (gate_->middle - place).head<2>().norm() < (seen->middle - place).head<2>().norm())
+    return;
+  if (same && frozen_) {
+    const Eigen::Vector2d off = (seen->middle - gate_->middle).head<2>();
+    const double aside = std::abs(gate_->axis.x() * off.y() - gate_->axis.y() * off.x());
+    if (aside < kShifted && gate_->axis.dot(seen->axis) > std::cos(kTurned)) return;
+  }
+  if (!same && waived_ && !is_waived(seen->middle)) {
     waived_.reset();
     retry_until_ = -std::numeric_limits<double>::infinity();
   }
-  return inside_.has_value();
-}
-
-// A robot that is to go through a gate lines up before it, and goes straight on behind it.
-std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, const Eigen::Vector3d& place) {
-  if (const auto on = straight_on(place)) return on;
-  const auto gate = planner.gate(route_.points, params_.ahead);
-  const Eigen::Vector2d rest =
-      gate ? Eigen::Vector2d(gate->middle.head<2>() - place.head<2>()) : Eigen::Vector2d(0, 0);
-  const double before = gate ? rest.dot(gate->axis) : 0.0;
-  if (before < kInGate) {
-    lined_up_ = false;
-    return std::nullopt;
-  }
-  const double off = std::abs(gate->axis.x() * rest.y() - gate->axis.y() * rest.x()) / before;
-  double s = kBeforeGate;
-  while (s > kInGate && !planner.line(on_axis(*gate, -s), gate->middle, {.let_in = true}).passable)
-    s -= kRouteCell;
-  // Nobody goes back for a little.
-  const bool past = lined_up_ || before < s - kBack, at_gate = rest.norm() < kAtGate;
-  lined_up_ = before < kAtGate && off < (past ? kStaysLinedUp : kLinedUp);
-  if (!lined_up_ && !(at_gate && is_waived(gate->middle))) {
-    if (s <= kInGate) return std::nullopt;
-    const Eigen::Vector3d here = on_axis(*gate, -s);
-    if ((here - place).head<2>().norm() > kThere) {
-      if (at_gate) lines_up_for_ = gate->middle;
-      return here;
-    }
-    lined_up_ = true;
-  }
-  const Eigen::Vector3d beyond = on_axis(*gate, kBeyondGate);
-  if (!planner.line(gate->middle, beyond, {.let_out = true}).passable) return std::nullopt;
-  if (before < kEnters) inside_ = gate;
-  return beyond;
+  gate_ = seen;
+  frozen_ = (seen->middle - place).head<2>().norm() < kNear;
 }
 
 // The farthest point of the route, up to `ahead`, that is in a straight line from here: one that keeps as far
@@ -194,16 +166,12 @@ std::optional<Eigen::Vector3d> RouteKeeper::gate_step(RoutePlanner& planner, con
 RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
   lines_up_for_.reset();
   RouteStep step{RouteStep::State::along, {}, false};
-  if (const auto target =
-          params_.gates == GateUse::line_up ? gate_step(planner, place) : std::optional<Eigen::Vector3d>{}) {
-    step.target = *target;
-    return step;
-  }
-  if (params_.gates == GateUse::tell && tell_gate(planner, place)) {
-    const Eigen::Vector2d rest = (inside_->middle - place).head<2>();
-    if (rest.norm() < kAtGate && rest.dot(inside_->axis) > 0) lines_up_for_ = inside_->middle;
-    step.target = on_axis(*inside_, kBeyondGate);
-    step.gate = inside_;
+  if (params_.gates) watch_gate(planner, place);
+  if (gate_) {
+    const Eigen::Vector2d rest = (gate_->middle - place).head<2>();
+    if (rest.norm() < kAtGate && rest.dot(gate_->axis) > 0) lines_up_for_ = gate_->middle;
+    step.target = on_axis(*gate_, kBeyondGate);
+    step.gate = gate_;
     return step;
   }
   const Eigen::Vector3d from{place.x(), place.y(), route_.points.front().z()};

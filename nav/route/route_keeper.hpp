@@ -6,13 +6,6 @@
 
 namespace adit::nav {
 
-/// What is done about gaps that are hardly wider than the robot.
-enum class GateUse : std::uint8_t {
-  none,
-  line_up,  ///< leads to a place before it, then straight on: for planners that come as near as is asked
-  tell,     ///< says where it is: for planners that find their own way onto its axis
-};
-
 struct RouteKeeperParams {
   double momentum{
       0.85};          ///< another route is taken when it costs less than this part of the one kept, (0, 1]
@@ -20,11 +13,11 @@ struct RouteKeeperParams {
   double gain{0.5};   ///< and so much less, m, [0, 10]
   double ahead{4.0};  ///< the local planner is given the point of the route this far ahead, m, [1, 10]
   double least_ahead{1.2};  ///< and never a nearer one but the goal, m, [0.3, 5]
-  GateUse gates{GateUse::line_up};
-  double proof{2.0};    ///< a goal is unreachable when that was so all this time, s, [0, 10]
-  double blocked{1.0};  ///< a route is blocked when the local planner says so for this long, s, [0, 30]
-  double retry{3.0};    ///< before a gap that it was told of it then has so long to back off and come again
-                        ///< before that counts, once, s, [0, 30]
+  bool gates{true};         ///< Reports narrow passages: for planners that drive onto their axis before them.
+  double proof{2.0};        ///< a goal is unreachable when that was so all this time, s, [0, 10]
+  double blocked{1.0};      ///< a route is blocked when the local planner says so for this long, s, [0, 30]
+  double retry{3.0};  ///< After the first failure at a passage, time for one more attempt before the passage
+                      ///< counts as blocked, s, [0, 30]
 };
 
 /// Where to drive next.
@@ -39,9 +32,9 @@ struct RouteStep {
   static constexpr double kTolerance = 0.08;
 
   State state{State::straight};
-  Eigen::Vector3d target{0, 0, 0};  ///< m
-  bool last{true};                  ///< `target` is the goal
-  std::optional<Gate> gate{};       ///< that `target` lies behind, with GateUse::tell
+  Eigen::Vector3d target{0, 0, 0};      ///< m
+  bool last{true};                      ///< `target` is the goal
+  std::optional<NarrowPassage> gate{};  ///< Passage that `target` lies behind.
 };
 
 /// Keeps to a route: another one is taken when it is clearly better or the old one is blocked, so that it
@@ -50,11 +43,7 @@ class RouteKeeper {
  public:
   explicit RouteKeeper(const RouteKeeperParams& params = {}) : params_(params) {}
   /// With what suits the platform.
-  explicit RouteKeeper(const Platform& platform) {
-    params_.gates = platform.planner == "trajectories" ? GateUse::line_up
-                    : platform.planner == "lattice"    ? GateUse::tell
-                                                       : GateUse::none;
-  }
+  explicit RouteKeeper(const Platform& platform) { params_.gates = platform.planner != "vfh"; }
 
   /// After a scan: the next step from `place` to `goal` (z NaN: the floor of `place`). `blocked`: the local
   /// planner found no way along the step before.
@@ -69,10 +58,9 @@ class RouteKeeper {
   void watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& place, bool blocked, double stamp_s);
   double cost_to(RoutePlanner& planner, double length) const;
   RouteStep along(RoutePlanner& planner, const Eigen::Vector3d& place);
-  std::optional<Eigen::Vector3d> straight_on(const Eigen::Vector3d& place);
-  bool tell_gate(RoutePlanner& planner, const Eigen::Vector3d& place);
+  bool leads_through(const NarrowPassage& gate, const Eigen::Vector3d& place) const;
+  void watch_gate(RoutePlanner& planner, const Eigen::Vector3d& place);
   bool is_waived(const Eigen::Vector3d& gate) const;
-  std::optional<Eigen::Vector3d> gate_step(RoutePlanner& planner, const Eigen::Vector3d& place);
 
   RouteKeeperParams params_{};
   Route route_{};
@@ -80,11 +68,11 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
-  bool lined_up_{false};                                          // with the gate ahead
   std::optional<Eigen::Vector3d> lines_up_for_{};                 // the gate it is near and not yet in
   std::optional<Eigen::Vector3d> waived_{};                       // the one where it could not get there
   double retry_until_{-std::numeric_limits<double>::infinity()};  // s: so long being blocked does not count
-  std::optional<Gate> inside_{};                                  // the gate that it goes through
+  std::optional<NarrowPassage> gate_{};                           // that it comes to or goes through
+  bool frozen_{false};                                            // gate_ was seen from near
 };
 
 }  // namespace adit::nav

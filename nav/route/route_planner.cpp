@@ -6,18 +6,14 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kGateMargin = 0.3;  // m more than the robot's diagonal
-// m more than its width, for who plans its headings: a little more than what it treats as a gap, since the
-// map is not as exact as what it sees.
-constexpr double kTightGate = 0.40;
+constexpr double kApproach = 2.5;  // m: from so far on a passage is not measured anew
 
 }  // namespace
 
 RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
     : platform_(platform),
       params_(params),
-      gate_width_(platform.planner == "lattice" ? platform.width + kTightGate
-                                                : std::hypot(platform.length, platform.width) + kGateMargin),
+      gate_width_(narrow_width(platform, kApproach)),
       map_(params, ScanProfile::most_wrong(platform)),
       profile_(platform, params),
       graph_(map_, platform, params) {}

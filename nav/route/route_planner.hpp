@@ -39,8 +39,8 @@ class RoutePlanner {
   /// That place was found blocked, whatever the scans say; it counts for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;
-  /// The first gate over a route's first `ahead` metres: hardly wider than the robot is long across.
-  std::optional<Gate> gate(std::span<const Eigen::Vector3d> points, double ahead) const {
+  /// The first passage over a route's first `ahead` metres that is narrower than narrow_width().
+  std::optional<NarrowPassage> gate(std::span<const Eigen::Vector3d> points, double ahead) const {
     return find_gate(map_, points, ahead, gate_width_, platform_.width / 2);
   }
 

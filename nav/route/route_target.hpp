@@ -10,6 +10,7 @@ namespace adit::nav {
 inline Target target_of(const RouteStep& step) {
   if (step.state == RouteStep::State::unreachable) return {};
   Target target = Target::to(step.target.head<2>());
+  target.on_route = step.state == RouteStep::State::along;
   if (!step.last) target.tolerance = RouteStep::kTolerance;
   if (step.gate)
     target.gate = {step.gate->middle.x(), step.gate->middle.y(),

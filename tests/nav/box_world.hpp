@@ -96,7 +96,8 @@ inline Platform wheeled() {
           .max_turn = 1.5,
           .max_acceleration = 1.5,
           .step = 0.08,
-          .lidar_height = 0.50};
+          .lidar_height = 0.50,
+          .router = "graph"};
 }
 inline Platform tracked() {
   return {.name = "tracked",
@@ -109,7 +110,8 @@ inline Platform tracked() {
           .turn_slip = 0.15,
           .step = 0.15,
           .max_slope = 0.5,
-          .lidar_height = 0.55};
+          .lidar_height = 0.55,
+          .router = "graph"};
 }
 inline Platform legged() {
   return {.name = "legged",
@@ -122,7 +124,8 @@ inline Platform legged() {
           .step = 0.22,
           .max_slope = 0.6,
           .lidar_height = 0.65,
-          .stairs = true};
+          .stairs = true,
+          .router = "graph"};
 }
 
 inline Platform car() {

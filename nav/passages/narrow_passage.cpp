@@ -1,0 +1,30 @@
+#include "nav/passages/narrow_passage.hpp"
+
+#include <cmath>
+
+#include "nav/lattice/gateway.hpp"
+
+namespace adit::nav {
+namespace {
+
+constexpr double kTrackingError = 0.10;  // m: control and the map's cells together
+constexpr double kDrift = 0.005;         // of odometry sideways, per metre, one standard deviation
+
+}  // namespace
+
+double narrow_width(const Platform& platform, double approach) {
+  return platform.width + 2 * (kTrackingError + 3 * kDrift * approach);
+}
+
+std::optional<NarrowPassage> fit_passage(const NarrowPassage& guess,
+                                         std::span<const ObstaclePoint> obstacles) {
+  const auto strip = fit_gateway({0, 0, std::atan2(guess.axis.y(), guess.axis.x())}, obstacles);
+  if (!strip) return std::nullopt;
+  NarrowPassage passage;
+  passage.middle = {guess.middle.x() + strip->line.x, guess.middle.y() + strip->line.y, guess.middle.z()};
+  passage.axis = {std::cos(strip->line.yaw), std::sin(strip->line.yaw)};
+  passage.clear_width = strip->room;
+  return passage;
+}
+
+}  // namespace adit::nav

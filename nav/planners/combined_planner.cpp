@@ -1,0 +1,67 @@
+#include "nav/planners/combined_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+
+CombinedPlanner::CombinedPlanner(const Platform& platform, const LocalPlannerParams& open,
+                                 std::shared_ptr<const PlannerLibrary> library,
+                                 const CombinedPlannerParams& params)
+    : platform_(platform), params_(params), open_(platform, open, std::move(library)), lattice_(platform) {}
+
+// By the straight line to the target, which the router keeps as far from obstacles as the route.
+bool CombinedPlanner::is_tight(const Target& target, const Pose2& pose,
+                               std::span<const ObstaclePoint> obstacles) const {
+  if (target.gate) return true;
+  const Eigen::Vector2d to = pose.inverse() * target.goal;
+  const double distance = to.norm();
+  const double speed = lattice_.speed();
+  const double braking = speed * speed / (2.0 * platform_.max_acceleration);
+  const auto length = static_cast<float>(std::min(distance, params_.ahead + braking));
+  const auto c = static_cast<float>(distance > 1e-6 ? to.x() / distance : 1.0);
+  const auto s = static_cast<float>(distance > 1e-6 ? to.y() / distance : 0.0);
+  const auto near = static_cast<float>(platform_.width / 2 + params_.clearance);
+  for (const ObstaclePoint& o : obstacles) {
+    if (o.cost < 1.0f) continue;
+    const float along = c * o.x + s * o.y, across = c * o.y - s * o.x;
+    const float beyond = along - std::clamp(along, 0.0f, length);
+    if (beyond * beyond + across * across < near * near) return true;
+  }
+  return false;
+}
+
+void CombinedPlanner::choose(const Target& target, const Pose2& pose,
+                             std::span<const ObstaclePoint> obstacles) {
+  if (target.kind != Target::Kind::goal || !target.on_route) {
+    tight_ = instead_ = false;
+    return;
+  }
+  const bool gone = (pose.position() - switched_at_).norm() > params_.hysteresis;
+  if (instead_ && !gone) return;
+  instead_ = false;
+  const bool tight = is_tight(target, pose, obstacles);
+  if (tight) switched_at_ = pose.position();
+  // A manoeuvre that has been begun is finished.
+  if (tight || (gone && lattice_.drives_ahead())) tight_ = tight;
+}
+
+Plan CombinedPlanner::plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+                           double stamp_s) {
+  lattice_.watch(pose, stamp_s);
+  choose(target, pose, obstacles);
+  const auto with = [&](bool tight) -> Plan {
+    return tight ? lattice_.plan(target, pose, obstacles, stamp_s)
+                 : open_.plan(target, pose, obstacles, stamp_s);
+  };
+  Plan plan = with(tight_);
+  if (!plan.blocked || target.kind != Target::Kind::goal || !target.on_route || target.held) return plan;
+  const Plan other = with(!tight_);
+  if (other.blocked || other.arrived) return plan;
+  tight_ = !tight_;
+  instead_ = true;
+  switched_at_ = pose.position();
+  return other;
+}
+
+}  // namespace adit::nav
