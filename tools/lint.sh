@@ -103,7 +103,6 @@ check_words() {
 # findings there are. When a rule's count is 0, delete the rule here. nav/ joins when it is rebuilt.
 language_open() {
   cat <<'TEXT'
-sim          words comments columns
 nav          words comments constants columns
 TEXT
 }

@@ -14,8 +14,8 @@ namespace adit::sim {
 struct DriverParams {
   Duration odom_period{20ms};   ///< (0, 1 s]
   Duration battery_period{1s};  ///< (0, 60 s]
-  Duration scan_delay{20ms};    ///< from the instant a scan shows to its sample, in rehearsal; (0, 100 ms]
-  Duration first_scan{100ms};   ///< lets the robots' scans be spread over the period, > 0
+  Duration scan_delay{20ms};    ///< Delay of a scan's sample in rehearsal, (0, 100 ms].
+  Duration first_scan{100ms};   ///< Time of the first scan, which spreads the robots' scans, > 0.
   double charge{1.0};           ///< Charge of the battery at the start, [0, 1].
   double drain{1.0 / 14400.0};  ///< Charge that the battery loses a second, 1/s, [0, 1].
   agent::VelocityType velocity{agent::VelocityType::twist};  ///< Type of the /cmd_vel that it obeys.

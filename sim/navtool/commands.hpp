@@ -9,7 +9,7 @@
 namespace adit::sim::navtool {
 
 struct RouteOptions {
-  std::string map{};  ///< an OctoMap file, or its name on the search path
+  std::string map{};  ///< An OctoMap file, or its name on the search path.
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
   std::string platform{"wheeled"};
   bool json{false};
@@ -21,7 +21,7 @@ struct PlanOptions {
   std::string clouds{};
   Eigen::Vector2d goal{0, 0};
   std::string platform{"wheeled"};
-  std::string frame{"auto"};  ///< of the points: sensor, map, or auto
+  std::string frame{"auto"};  ///< Frame of the points: `sensor`, `map` or `auto`.
   bool json{false};
   std::string picture{};
 };
@@ -39,7 +39,7 @@ struct TerrainOptions {
 int terrain(const TerrainOptions& options);
 
 struct TrackOptions {
-  std::string path{};  ///< a file of x y pairs; empty: a wave with a corner
+  std::string path{};  ///< File of x y pairs; empty: a wave with a corner.
   std::string platform{"wheeled"};
   bool json{false};
   std::string picture{};

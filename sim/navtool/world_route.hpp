@@ -4,8 +4,8 @@
 
 namespace adit::sim {
 
-/// Tells the global planner all of a world: the floors of each column that have headroom for the platform,
-/// and as obstacles what stands beside them.
+/// Gives the global planner the complete world: the floors of each column that have headroom for the
+/// platform, and as obstacles what stands beside them.
 void tell_world(const World& world, const Platform& platform, nav::RoutePlanner& planner);
 
 }  // namespace adit::sim

@@ -32,12 +32,12 @@ class Body {
  private:
   Platform platform_;
   Pose2 pose_;
-  Twist2 twist_{};  ///< of the drive
+  Twist2 twist_{};  ///< Velocity of the drive.
   Twist2 wanted_{};
-  double wheels_{0.0}, wheels_wanted_{0.0};  ///< of a car: the angle of its front wheels, rad
-  double above_{0.0};                        ///< what flies: height above the ground to be kept, m
+  double wheels_{0.0}, wheels_wanted_{0.0};  ///< Car: steering angle, rad.
+  double above_{0.0};                        ///< Aerial: target height above the ground, m.
   double watchdog_;
-  double silence_{0.0};  ///< since the last command, s
+  double silence_{0.0};  ///< Time since the last command, s.
 };
 
 }  // namespace adit::sim

@@ -12,8 +12,8 @@ namespace adit::sim {
 /// free ground around `start`. Metres.
 struct GeneratedWorld {
   std::vector<Box> boxes{};
-  Eigen::Vector2d start{0.0, 0.0};  ///< free for 1 m around
-  Eigen::Vector2d size{0.0, 0.0};   ///< of the inside, from (0, 0)
+  Eigen::Vector2d start{0.0, 0.0};  ///< Free for 1 m around.
+  Eigen::Vector2d size{0.0, 0.0};   ///< Inner size, from (0, 0), m.
 };
 
 /// Every kind, in the order of the documentation (docs/rehearsal.md).

@@ -11,11 +11,11 @@ namespace {
 
 /// A box in its own frame, with the sensor's position there.
 struct Target {
-  Eigen::Vector2d axis;     ///< cos, sin of its yaw in the world
-  Eigen::Vector3d start;    ///< of the beams, box frame
-  Eigen::Vector3d half;     ///< half its edges, m
-  Eigen::Vector2d towards;  ///< unit vector from the sensor, world
-  double cos_spread;        ///< cosine of the half angle that the box fills, seen from above
+  Eigen::Vector2d axis;     ///< Cosine and sine of its yaw in the world.
+  Eigen::Vector3d start;    ///< Origin of the beams, box frame, m.
+  Eigen::Vector3d half;     ///< Half of its edges, m.
+  Eigen::Vector2d towards;  ///< Unit vector from the sensor, world.
+  double cos_spread;        ///< Cosine of half the angle that the box fills from above.
 };
 
 Target make_target(const BodyBox& body, const Eigen::Vector3d& sensor) {
@@ -53,9 +53,9 @@ Eigen::Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; 
 
 /// What one beam of a column met.
 struct Beam {
-  Eigen::Vector2d elevation;  ///< cos, sin
-  double range;               ///< m, true; no_hit beyond the lidar's
-  double measured;            ///< with noise
+  Eigen::Vector2d elevation;  ///< Cosine and sine.
+  double range;               ///< True range, m; no_hit beyond the lidar's.
+  double measured;            ///< Range with noise, m.
 };
 
 }  // namespace
@@ -128,12 +128,12 @@ class LidarPattern::Column {
     lowest_ = beam.elevation;
   }
 
-  static constexpr double kBend = 0.12;         ///< change of slope from beam to beam, rise per run
-  static constexpr double kSteepest = 0.5;      ///< of what is taken for ground, rise per run
-  static constexpr double kSpan = 3.0;          ///< m: ground is not expected to bend for longer
-  static constexpr double kFace = 0.1;          ///< m: beams that meet a face do so within this
-  static constexpr double kApart = 0.05;        ///< m: nearer returns say nothing of a slope
-  static constexpr double kSurelyGround = 5.0;  ///< m: nearer, a beam without return went down a pit
+  static constexpr double kBend = 0.12;         ///< Change of slope from beam to beam, rise per run.
+  static constexpr double kSteepest = 0.5;      ///< Steepest ground, rise per run.
+  static constexpr double kSpan = 3.0;          ///< Longest span over which ground bends, m.
+  static constexpr double kFace = 0.1;          ///< Depth within which beams meet one face, m.
+  static constexpr double kApart = 0.05;        ///< Closer returns give no slope, m.
+  static constexpr double kSurelyGround = 5.0;  ///< Within this, a beam without return means a pit, m.
 
   void offer(double true_distance, double measured) {
     if (true_distance >= nearest_) return;
@@ -199,8 +199,8 @@ class LidarPattern::Column {
 
   const LidarParams& params_;
   double height_;
-  double reach_{0.0}, ground_{0.0}, rise_{0.0};         ///< the last ground: distance, height, slope
-  Eigen::Vector2d lowest_{unit(-80.0 * M_PI / 180.0)};  ///< the beam that met it
+  double reach_{0.0}, ground_{0.0}, rise_{0.0};         ///< Last ground: distance, height, slope.
+  Eigen::Vector2d lowest_{unit(-80.0 * M_PI / 180.0)};  ///< Beam that met it.
   double nearest_{VoxelGrid::kNoHit}, measured_{VoxelGrid::kNoHit};
 };
 

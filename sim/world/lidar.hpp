@@ -10,14 +10,14 @@ namespace adit::sim {
 
 /// A spinning lidar.
 struct LidarParams {
-  int rings{16};             ///< beams one above the other, [1, 128]
-  int columns{900};          ///< directions a turn, [4, 4096]
-  double lowest{-15.0};      ///< elevation of the lowest ring, degrees, [-89, 89]; a single ring is level
-  double highest{15.0};      ///< of the highest, degrees, [lowest, 89]
-  double rate{10.0};         ///< turns a second, Hz, (0, 100]
-  double min_range{0.3};     ///< nearer hits are lost, m, [0, max_range)
-  double max_range{30.0};    ///< farther hits are lost, m, (0, 1000]
-  double range_noise{0.02};  ///< standard deviation of a range, m, [0, 1]
+  int rings{16};             ///< Beams one above the other, [1, 128].
+  int columns{900};          ///< Directions per turn, [4, 4096].
+  double lowest{-15.0};      ///< Elevation of the lowest ring, degrees, [-89, 89]; a single ring is level.
+  double highest{15.0};      ///< Elevation of the highest ring, degrees, [lowest, 89].
+  double rate{10.0};         ///< Turns per second, Hz, (0, 100].
+  double min_range{0.3};     ///< Closer hits are lost, m, [0, max_range).
+  double max_range{30.0};    ///< Farther hits are lost, m, (0, 1000].
+  double range_noise{0.02};  ///< Standard deviation of a range, m, [0, 1].
 
   /// Elevations of the rings, degrees, rising; empty: evenly from lowest to highest.
   std::vector<double> elevations{};
@@ -33,7 +33,7 @@ struct LidarParams {
 
 /// Another robot as a lidar sees it: a box that stands on the ground.
 struct BodyBox {
-  Pose2 pose{};     ///< of its centre, world
+  Pose2 pose{};     ///< Pose of its centre, world.
   double ground{};  ///< z of its underside, m
   double length{}, width{}, height{};
 };
@@ -58,8 +58,8 @@ class LidarPattern {
  private:
   class Column;
   LidarParams params_;
-  std::vector<Eigen::Vector2d> azimuth_;    ///< cos, sin
-  std::vector<Eigen::Vector2d> elevation_;  ///< cos, sin
+  std::vector<Eigen::Vector2d> azimuth_;    ///< Cosine and sine.
+  std::vector<Eigen::Vector2d> elevation_;  ///< Cosine and sine.
 };
 
 }  // namespace adit::sim

@@ -9,13 +9,13 @@ namespace adit::sim {
 
 /// A cube of an octree that is known to be free or occupied.
 struct OctreeLeaf {
-  int x, y, z;  ///< its corner with the smallest coordinates, in cells; cell 0 begins at 0 m
-  int size;     ///< edge in cells, a power of two
+  int x, y, z;  ///< Corner with the smallest coordinates, cells; cell 0 begins at 0 m.
+  int size;     ///< Edge in cells, a power of two.
   bool occupied;
 };
 
 struct OctomapFile {
-  double resolution{};  ///< edge of a cell, m
+  double resolution{};  ///< Edge of a cell, m.
   std::vector<OctreeLeaf> leaves{};
 };
 

@@ -8,10 +8,10 @@ namespace adit::sim {
 
 /// How wrong a robot's odometry is.
 struct OdometryParams {
-  double scale{0.01};       ///< deviation of the error of the driven distance, fraction of it, [0, 0.5]
-  double drift{0.2};        ///< deviation of the error of the heading, degrees a metre, [0, 45]
-  double correlation{1.0};  ///< way over which the heading's error rate keeps its value, m, (0, 1000]
-  double turn{0.0};         ///< deviation of the error of a turn, fraction of it, [0, 0.5]
+  double scale{0.01};       ///< Standard deviation of the distance scale, fraction, [0, 0.5].
+  double drift{0.2};        ///< Standard deviation of the heading error, degrees per metre, [0, 45].
+  double correlation{1.0};  ///< Correlation length of the heading's error rate, m, (0, 1000].
+  double turn{0.0};         ///< Standard deviation of the turn scale, fraction, [0, 0.5].
 };
 
 /// Dead reckoning with errors. A constant factor, drawn once, multiplies every distance (wheels worn, feet
@@ -27,7 +27,7 @@ class Odometry {
   void move(const Pose2& from, const Pose2& to, double dt);
   /// The ground under the robot rose by so much, m: measured by how the body leaned on the way.
   void rise(double by) { height_ += scale_ * by; }
-  /// Begins anew at zero: the driver was started again. Its errors stay as they are.
+  /// Starts at zero again, as after a restart of the driver. Its errors stay as they are.
   void reset() {
     pose_ = {};
     height_ = 0.0;
@@ -43,8 +43,8 @@ class Odometry {
   OdometryParams params_;
   Random random_;
   double scale_;
-  double rate_;       ///< rad a metre
-  double turn_{1.0};  ///< measured of each radian turned
+  double rate_;       ///< Rate of the heading error, rad/m.
+  double turn_{1.0};  ///< Measured share of each turn.
   Pose2 pose_{};
   double height_{};
   Twist2 twist_{};

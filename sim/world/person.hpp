@@ -8,9 +8,9 @@ namespace adit::sim {
 
 /// Somebody who walks: along a path to its end and back again, for ever.
 struct PersonSpec {
-  std::vector<Eigen::Vector2d> path{};  ///< world, m; 2 to 100 places
+  std::vector<Eigen::Vector2d> path{};  ///< World frame, m; 2 to 100 places.
   double speed{1.5};                    ///< m/s, (0, 3]
-  bool yields{true};                    ///< waits rather than come near a robot
+  bool yields{true};                    ///< Waits instead of approaching a robot.
 };
 
 /// A person in the true world: a box of 0.45 m that lidars see and robots can hit. Those who yield look where
@@ -19,8 +19,8 @@ class Person {
  public:
   static constexpr double kSize{0.45};     ///< m
   static constexpr double kHeight{1.75};   ///< m
-  static constexpr double kRespect{0.4};   ///< those who yield come no nearer to a robot, m
-  static constexpr double kPatience{2.0};  ///< the others lean so long, s
+  static constexpr double kRespect{0.4};   ///< Smallest distance to a robot of those who yield, m.
+  static constexpr double kPatience{2.0};  ///< The others lean against a robot this long, s.
 
   explicit Person(PersonSpec spec);
   /// Where the body would be after `dt` seconds; the person stays until take().
@@ -39,9 +39,9 @@ class Person {
   Rectangle at(double way) const;
 
   PersonSpec spec_;
-  double length_{};  ///< of the path, m
-  double way_{};     ///< walked, of there and back, m
-  double before_{};  ///< the same a step ago
+  double length_{};  ///< Length of the path, m.
+  double way_{};     ///< Distance walked, of there and back, m.
+  double before_{};  ///< The same one step earlier.
   double leant_{};   ///< s
 };
 

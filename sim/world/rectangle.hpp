@@ -7,9 +7,9 @@ namespace adit::sim {
 
 /// A rectangle on the ground: a footprint, or a cell. Metres.
 struct Rectangle {
-  Pose2 pose{};     ///< of its centre
-  double length{};  ///< along its x
-  double width{};   ///< along its y
+  Pose2 pose{};     ///< Pose of its centre.
+  double length{};  ///< Extent along its x, m.
+  double width{};   ///< Extent along its y, m.
 
   std::array<Eigen::Vector2d, 4> corners() const;
   /// Distance from its centre to a corner.

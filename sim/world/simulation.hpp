@@ -17,44 +17,44 @@
 namespace adit::sim {
 
 struct SimulationParams {
-  Duration step{10ms};   ///< of the true motion, (0, 100 ms]
-  double watchdog{0.5};  ///< a driver stops without a command for this long, s, (0, 10]
-  LidarParams lidar{};   ///< rings and their elevations: of each robot's platform, unless it is planar
+  Duration step{10ms};   ///< Step of the true motion, (0, 100 ms].
+  double watchdog{0.5};  ///< A driver without a command for longer stops, s, (0, 10].
+  LidarParams lidar{};   ///< Rings come from each platform, unless it is planar.
   OdometryParams odometry{};
   std::uint64_t seed{1};
-  std::vector<PersonSpec> people{};  ///< at most 100
+  std::vector<PersonSpec> people{};  ///< At most 100.
 };
 
 /// A robot to be put into the world.
 struct RobotStart {
   std::string id{};
   Platform platform{};
-  Pose2 pose{};  ///< world
+  Pose2 pose{};  ///< World frame.
 };
 
 /// A contact; it lasts until the robot has moved 0.05 m or 0.1 rad away from where it was held, or the person
 /// who walked into it 0.05 m.
 ///
-/// Whoever comes nearer to the other by his own motion, at more than 0.05 m/s where they touch, caused it:
+/// The body that approaches the other by its own motion, at more than 0.05 m/s where they touch, caused it:
 /// both of them, perhaps; when neither is that fast, the faster one. What stands still causes nothing.
 struct Collision {
   Duration at{};
-  std::string robot{};    ///< the one that moved, or that a person walked into
-  std::string partner{};  ///< another robot's id, "world", or "a person"
-  Pose2 pose{};           ///< of `robot`, where it was held, world
-  bool caused{};          ///< by `robot`
-  bool by_partner{};      ///< by `partner`
+  std::string robot{};    ///< The one that moved, or that a person walked into.
+  std::string partner{};  ///< Another robot's id, "world", or "a person".
+  Pose2 pose{};           ///< Pose of `robot` where it was held, world.
+  bool caused{};          ///< Caused by `robot`.
+  bool by_partner{};      ///< Caused by `partner`.
 };
 
 /// What is true of a robot, whatever it believes.
 struct Truth {
   Pose3 pose{};               ///< base_link, on the ground or where it flies, world
-  Twist2 twist{};             ///< body frame
-  double distance{0.0};       ///< driven, m
-  Duration moving{};          ///< time with more than 0.05 m/s or 0.1 rad/s
-  std::size_t collisions{0};  ///< contacts it was part of
-  std::size_t caused{0};      ///< those that it caused, see Collision
-  double min_clearance{0.0};  ///< smallest distance ever to the world or a robot, m; infinite: nothing there
+  Twist2 twist{};             ///< Body frame.
+  double distance{0.0};       ///< Distance driven, m.
+  Duration moving{};          ///< Time with more than 0.05 m/s or 0.1 rad/s.
+  std::size_t collisions{0};  ///< Contacts it was part of.
+  std::size_t caused{0};      ///< Contacts that it caused, see Collision.
+  double min_clearance{0.0};  ///< Smallest distance to the world or a robot, m; infinite: none there.
 };
 
 /// The true world: bodies that drive, touch and see. Moves only when step() is called; the same seed and the
@@ -81,9 +81,9 @@ class Simulation {
 
   /// What a driver does with a cmd_vel.
   void command(std::size_t robot, const Twist2& wanted) { robots_[robot].body.command(wanted); }
-  /// The drive stands whatever it is told, as long as it was jammed more often than freed.
+  /// The drive ignores commands while it was jammed more often than freed.
   void jam(std::size_t robot, bool jammed) { robots_[robot].jams += jammed ? 1 : -1; }
-  /// Its odometry begins anew at zero, as after a restart of its driver.
+  /// Its odometry starts at zero again, as after a restart of its driver.
   void reset_odometry(std::size_t robot) { robots_[robot].odometry.reset(); }
   const Truth& truth(std::size_t robot) const { return robots_[robot].truth; }
   /// Pose in `odom` (which begins at the start pose) and measured velocity.
@@ -117,10 +117,10 @@ class Simulation {
     std::shared_ptr<const StandingMap> ground;
     std::shared_ptr<const LidarPattern> lidar;
     Truth truth{};
-    std::optional<std::size_t> partner{};  ///< of the contact that lasts, see contact()
-    Pose2 contact{};                       ///< where it began
-    int jams{};                            ///< of its drive, that last
-    double start_ground{};                 ///< m, world
+    std::optional<std::size_t> partner{};  ///< Partner of the present contact, see contact().
+    Pose2 contact{};                       ///< Place where it began.
+    int jams{};                            ///< Active jams of its drive.
+    double start_ground{};                 ///< World frame, m.
   };
   Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
 
@@ -152,7 +152,7 @@ class Simulation {
   std::vector<Robot> robots_{};
   std::vector<Collision> collisions_{};
   std::vector<Person> people_{};
-  std::vector<std::optional<std::size_t>> touching_{};  ///< by person: the robot that he walked into
+  std::vector<std::optional<std::size_t>> touching_{};  ///< By person: the robot walked into.
 };
 
 }  // namespace adit::sim

@@ -49,12 +49,12 @@ class StandingMap {
   double resolution_;
   int nx_, ny_;
   bool open_sides_;
-  double outside_floor_;         ///< ground beside an open world, m
-  std::vector<float> floor_{};   ///< m, NaN: none
-  std::vector<float> ground_{};  ///< averaged, m, NaN: none near
+  double outside_floor_;         ///< Ground beside an open world, m.
+  std::vector<float> floor_{};   ///< In m, NaN: none.
+  std::vector<float> ground_{};  ///< Averaged, m, NaN: none near.
   std::vector<std::uint8_t> blocked_{};
-  Eigen::AlignedBox2d bounds_{};   ///< of the middles of all blocked columns
-  std::vector<float> distance_{};  ///< from a column's middle to that of the nearest blocked one, m
+  Eigen::AlignedBox2d bounds_{};   ///< Bounds of the middles of all blocked columns.
+  std::vector<float> distance_{};  ///< Distance between middles to the nearest blocked column, m.
 };
 
 }  // namespace adit::sim

@@ -101,13 +101,13 @@ bool VoxelGrid::enter(Start& start, const Eigen::Vector3d& direction, double& t)
 
 /// A ray under way, in a grid mirrored so that it heads towards +x and +y.
 struct VoxelGrid::Ray {
-  const std::uint8_t* strides;  ///< of that mirrored grid
-  double gx, gy;                ///< where it starts, in columns
-  double sx, sy;                ///< columns a metre, >= 0
-  double ax, ay, az;            ///< metres a column, metres a metre of height
+  const std::uint8_t* strides;  ///< Strides of that mirrored grid.
+  double gx, gy;                ///< Start, in columns.
+  double sx, sy;                ///< Columns per metre, >= 0.
+  double ax, ay, az;            ///< Metres per column, metres per metre of height.
   double t;                     ///< m
   int i, j, k;
-  int up, dk;  ///< upwards: 1 and 1, downwards: 0 and -1
+  int up, dk;  ///< Upwards: 1 and 1; downwards: 0 and -1.
 };
 
 bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,

@@ -53,8 +53,8 @@ class VoxelGrid {
   /// Where rays start; located once for all rays of a scan.
   struct Start {
     Eigen::Vector3d position;  ///< m
-    double gx, gy;             ///< position in columns
-    int i, j, k;               ///< its cell; k = -1: below or above the grid
+    double gx, gy;             ///< Position in columns.
+    int i, j, k;               ///< Its cell; k = -1: below or above the grid.
   };
   Start locate(const Eigen::Vector3d& position) const;
 
