@@ -43,7 +43,8 @@ TEST_F(Programs, MalformedSamplesOnEveryTopicAreSurvivedAndCounted) {
   for (const auto& example : wire::examples()) {
     SCOPED_TRACE(example.topic.name);
     const std::string topic = example.topic.name;
-    if (topic == "rt/cmd_vel") continue;  // a driver reads it, neither of the two
+    if (topic == "rt/cmd_vel") continue;   // a driver reads it, neither of the two
+    if (topic == "rt/imu/data") continue;  // no component reads it yet
     const bool addressed = topic == "adit/command" || topic == "adit/joystick";
     const bool inside = topic.starts_with("rt/");
     const int before = inside ? counted("r1") : 0;
