@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What every target is compiled and linked with.
 
 set(CMAKE_CXX_STANDARD 20)

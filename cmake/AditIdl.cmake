@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A folder of IDL becomes a library of plain types with their CDR serialisation (Fast CDR alone, no
 # Fast DDS at run time). Nothing generated is kept in the source tree. All files of a library are translated
 # together, as most of the time of a fastddsgen run is the start of its Java machine; generated files that come

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Translates IDL files: cmake -DFASTDDSGEN= -DROOT= "-DFILES=a.idl;b.idl" -DROS2= -DSCRATCH= -DOUT= -P AditIdlGenerate.cmake
 # fastddsgen writes all its output into one folder: it gets a scratch folder, and two files of each IDL file are copied to
 # their place from there.

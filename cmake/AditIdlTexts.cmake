@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes the files of idl/ into a C++ source: cmake -DIDL=folder -DOUT=file.cpp -P AditIdlTexts.cmake
 file(GLOB_RECURSE files RELATIVE ${IDL} ${IDL}/*.idl)
 list(SORT files)

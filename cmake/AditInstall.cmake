@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # `cmake --install`: programs in bin/, libraries and headers with a CMake package, configuration and maps in
 # share/adit/, where programs look for them (core/config/search.hpp).
 include(CMakePackageConfigHelpers)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # One way to declare each kind of target. Includes are written from the root of the source tree:
 #   #include "core/exec/executor.hpp"
 

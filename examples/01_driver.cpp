@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Example 1: the driver of a robot.
 //
 //   example_driver DOMAIN          until Ctrl-C

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Example 2: a robot with a mode of its own, in a rehearsal.
 //
 //   example_mode_orbit [FILE.mcap]

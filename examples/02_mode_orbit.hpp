@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Example 2: a mode. This file is the complete mode `orbit`: its module, its row in the mode table and its
 // subtree. docs/adding_a_mode.md explains it line by line; 02_mode_orbit.cpp rehearses it.
 #pragma once

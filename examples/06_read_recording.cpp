@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Example 6: reading a recording.
 //
 //   example_read_recording FILE.mcap [PATH.csv]

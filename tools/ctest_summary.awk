@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # What is worth reading of a ctest run: a line every hundred tests, every test that did not pass, one that passed only
 # when it was run again, and ctest's own summary. All of it is in build/PRESET/Testing/Temporary/LastTest.log.
 function shortened(line) {

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # The demo: a real building, three robots, two operators, each in a process of its own, over Fast DDS on loopback.
 # Called by ./run demo; see --help there. Exit status 0 only if every goal was reached, no robot collided and each
 # drove at least 15 m.

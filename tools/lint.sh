@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # The rules of the source tree, checked. usage: tools/lint.sh [--root DIR] [CHECK...]
 #                                               tools/lint.sh [--root DIR] --count language
 # Each finding is one line "file[:line]: what"; exit status 1 when there is one.
@@ -186,7 +187,7 @@ if [ "${1:-}" = --count ]; then
   exit
 fi
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation sleeps format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

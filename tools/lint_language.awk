@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The language of comments, docs and constants, for `tools/lint.sh language`. Reads source files and prints
 # "RULE FILE:LINE: what" for each finding; RULE is words, comments, constants or columns.
 # Run with LC_ALL=C: columns are counted in UTF-8 by hand, as mawk knows bytes only.

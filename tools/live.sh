@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # A scenario live: simulate, an agent a robot, a station an operator, each a process of its own, over Fast DDS on loopback.
 # The script is played, places and contacts are judged by what was true. Exit status 0 when all of them hold.
 set -euo pipefail

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # The soak with a network and a /dev/shm of its own, so that nothing of others is counted: tools/soak.sh [--for 600] [--every 10]
 # Needs root; without it the soak runs where it is. Exit status 0: flat.
 set -euo pipefail

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Out of ctest's LastTest.log: each test that failed, and the last lines that it printed (at most `lines` of each, `most`
 # in all).
 /^[0-9]+\/[0-9]+ Testing: / { name = $0; sub(/^.*Testing: /, "", name); count = 0; reading = 0 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program basestation: parses the options, then runs one command, the prompt or the dashboard.
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Conversions between the radio contract's findings and the station's. Included by .cpp files only.
 #include "adit/findings.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "basestation/fleet/links.hpp"
 
 #include "basestation/fleet/fleet.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects which of several robots with one name is shown and commanded. The robots decide who gives way
 // (robot_agent/discovery/namesakes.hpp); a station follows them.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "basestation/report/json.hpp"
 
 #include "basestation/report/text.hpp"

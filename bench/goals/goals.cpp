@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // goals: random goals in closed loop over generated worlds and platforms, as a table.
 #include <fmt/format.h>
 

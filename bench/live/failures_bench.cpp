@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a robot fails and comes back, live: the agent's process killed in each mode, its components crashing
 // and hanging, so many times each; a table of median and worst in ms. Its radio and inner network are on
 // loopback.

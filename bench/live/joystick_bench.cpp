@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long a stick's movement takes from the operator's station to the robot's wheels: three processes
 // (station, agent, driver) over Fast DDS on loopback, beside one and two hops of bare Fast DDS with a payload
 // of the same size between the same processes in the same run. Each twice, in turns: with cores that fall

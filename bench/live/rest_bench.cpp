@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an agent costs at rest, in processes of their own on loopback: CPU and memory without and with a lidar
 // running, and the radio's bytes with four agents and one station, as `basestation net` prints them.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Controllers: a solve of iterative LQR (horizon 50) per motion model beside the same problem in Ceres, and a
 // whole step of each controller; then how far each strays from the same paths. Goals: below 300 us a solve,
 // less than half of pure pursuit's error.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The planner cycle: a lidar scan into the terrain map, and a plan. Thread-CPU time, median and 99th
 // percentile, in ms and in units of the calibration loop of the same run; allocations a cycle. Goals: a fifth
 // of what Falco and its terrain analysis take, 5, 8 and 11 units with 16, 32 and 64 beams; and 2 units with

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The global planner in a world that it does not know: 3 x 3 blocks of 8 m, corridors of 3.2 m, from one
 // corner to the opposite one at 2 m/s. Time and way of the whole drive; thread-CPU time of what the map takes
 // from a scan (16 x 900 points) with the graph, of a search, and what both hold. FAR planner in the same

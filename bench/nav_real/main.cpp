@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // bench_nav_real: navigation on a real building's map, on tilted ground and on real scans, as a table.
 #include <fmt/format.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/nav_real/true_map.hpp"
 
 #include <algorithm>

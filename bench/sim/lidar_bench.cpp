@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ray casting and lidar scans in the map of a real building (geb079.bt), and its loading.
 #include <benchmark/benchmark.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // soak: four supervised agents, a station and the simulated world; an agent is killed (SIGKILL) again and
 // again. The memory of the surviving processes must not grow, and none may restart by itself. Run it
 // by tools/soak.sh, which gives it a network and a /dev/shm of its own.

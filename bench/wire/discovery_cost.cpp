@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Radio bytes a second per robot, discovery apart, at rest and while driven, for a growing fleet; beside it
 // participants with Fast DDS's own defaults and the same topics, at the same time: discovery_cost [SECONDS
 // [AGENTS]].

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a link leaves of commands, joystick and state while bulk and video fill it: delivered share and
 // latency.
 //   loss_grid [--live] [--commands N] [--loss L --kbit B --latency MS]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/wire/watched_net.hpp"
 
 #include "core/wire/cdr_key.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other process of bench_wire_latency and of the live tests: echoes until its input closes or it is
 // killed.
 #include <poll.h>

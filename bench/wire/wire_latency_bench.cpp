@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Round trips over our wire beside bare Fast DDS, in one process and in two: bench_wire_latency [ROUNDS
 // [PACE]]. One is under way at a time; the next starts at once, or PACE milliseconds later, as commands do.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One robot or station of a fleet at rest, without its program: for the live tests of discovery. It prints
 // the peers that it has heard until it is killed.
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Radio traffic of an idle fleet, live on loopback beside the simulated network, and the
 // bytes of a start-up: bench_wire_traffic [SECONDS].
 #include <cstdio>

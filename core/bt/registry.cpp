@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/bt/registry.hpp"
 
 #include "core/bt/nodes/builtin.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // The document tree behind config::Node. Private to core/config.
 #include <memory>

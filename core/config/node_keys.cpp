@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The accessors by key: each finds the key's node and reads it as the requested type.
 #include "core/config/node.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Queue of jobs for the threads of a pool. Private to core/exec.
 #include <deque>

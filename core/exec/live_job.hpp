@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // One job of a live strand. Private to core/exec.
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // State that the strands of one LiveRuntime share. Private to core/exec.
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/record/frame_recorder.hpp"
 
 namespace adit::record {

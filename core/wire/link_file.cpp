@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/link_file.hpp"
 
 #include "core/config/node.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "nav/passages/narrow_passage.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/geometry/pose.hpp"
 #include "core/time/time.hpp"

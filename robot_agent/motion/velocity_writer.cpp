@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/motion/velocity_writer.hpp"
 
 #include "core/wire/topics.hpp"

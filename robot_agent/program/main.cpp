@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // robot_agent: one agent on one robot. See robot_agent/README.md.
 #include <fcntl.h>
 #include <signal.h>

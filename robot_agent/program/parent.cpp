@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/program/parent.hpp"
 
 #include <poll.h>

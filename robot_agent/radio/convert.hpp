@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Conversions between the radio contract's generated types and the agent's. Included by .cpp files only.
 #include "adit/authority.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/state/snapshot.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/store/pack.hpp"
 #include "robot_agent/state/snapshot.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/supervisor/health_message.hpp"
 
 #include "robot_agent/common/clipped.hpp"

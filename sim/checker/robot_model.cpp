@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/checker/robot_model.hpp"
 
 #include <algorithm>

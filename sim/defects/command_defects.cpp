@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defects of commands and of who may give them.
 #include <algorithm>
 #include <set>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defects of what survives a restart, made of the disk and of the seed of the epoch.
 #include "core/findings/finding.hpp"
 #include "core/store/sections.hpp"

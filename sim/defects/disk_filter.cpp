@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/defects/disk_filter.hpp"
 
 namespace adit::sim {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defects of the sensor input of the agent.
 #include <cmath>
 #include <optional>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defects of what moves the robot, made of the velocities that leave for its driver.
 #include "sim/defects/decorations.hpp"
 #include "sim/defects/radio_interceptor.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defects of a robot's parent process, which sends zero when the agent is dead.
 #include <string_view>
 

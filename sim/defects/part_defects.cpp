@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Defects of a part of the agent that a double replaces, and of what its sensors see.
 #include <cmath>
 #include <cstring>

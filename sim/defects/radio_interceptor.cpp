@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/defects/radio_interceptor.hpp"
 
 #include <string_view>

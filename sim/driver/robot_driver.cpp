@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/driver/robot_driver.hpp"
 
 #include <algorithm>

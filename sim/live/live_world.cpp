@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/live/live_world.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // simulate: a scenario's world in real time, on the robots' DDS domains.
 #include <csignal>
 

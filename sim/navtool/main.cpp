@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // navtool: routes over maps, local plans over recorded clouds, controllers along a path.
 #include <CLI/CLI.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "nav/route/route_planner.hpp"
 #include "sim/world/world.hpp"

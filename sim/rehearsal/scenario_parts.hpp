@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Parts of the scenario reader, private to sim/rehearsal. Each notes what is wrong at the node.
 #include <string>

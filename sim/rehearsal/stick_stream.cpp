@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/rehearsal/stick_stream.hpp"
 
 #include "adit/authority.h"

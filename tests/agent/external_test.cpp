@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mode `external`, and a second writer of the driver's velocities.
 #include "robot_agent/behaviour/modes/external.hpp"
 

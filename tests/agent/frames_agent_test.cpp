@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What operators see of the frames: poses and goals of the map, whatever the odometry frame is.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trees that contradict the mode table break no rule, even unchecked.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The agent's periodic messages follow what its link gives.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The agent as a process over Fast DDS, on loopback.
 #include <fcntl.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The collision monitor in a whole agent: what manual mode may do near things and with a dead lidar.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What counts as a jump of the odometry, and what does not.
 #include "robot_agent/motion/motion_bound.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two robots with one name: one stays in service, the other gives way, and every station hears of both.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver whose odometry begins again elsewhere: while the agent runs, and while it does not (rule 7).
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mode that costs one module, one subtree and one row: `orbit`, the example of docs/adding_a_mode.md.
 #include "examples/02_mode_orbit.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The platform's file decides which components a robot starts and which capabilities it announces.
 #include <gmock/gmock.h>
 

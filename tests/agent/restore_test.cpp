@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An agent that dies and comes back on the same disk (rules 1, 2, 4 and 7).
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an agent does by itself when its holder is silent or its battery empties, and what it found (rule 9).
 #include <gmock/gmock.h>
 

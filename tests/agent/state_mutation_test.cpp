@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files of state and findings whose bytes were changed: reading them never crashes and never allocates
 // without bound, and what it gives could have been written. ADIT_MUTATIONS sets the number of files per test.
 #include <gmock/gmock.h>

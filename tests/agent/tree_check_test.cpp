@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a user reads when a tree contradicts the mode table.
 #include "robot_agent/behaviour/tree_check.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pre- and postconditions: _failureIf, _successIf, _skipIf, _while, _onSuccess, _onFailure, _onHalted, _post.
 #include "tests/bt/dry.hpp"
 

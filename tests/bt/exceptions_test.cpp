@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An exception in a leaf is a FAILURE of that leaf, reported, never the end of the process.
 #include "tests/bt/dry.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Broken files of every kind: an error or a tree that can be ticked, never a crash.
 #include "core/time/random.hpp"
 #include "tests/bt/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command table against what else names commands: the contract, and the page for operators.
 #include <gmock/gmock.h>
 

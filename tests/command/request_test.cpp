@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What travels to a robot, and rows of every shape.
 #include "core/command/request.hpp"
 

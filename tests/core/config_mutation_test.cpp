@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Seeded damage to good files: the reader answers, with a value or with a line, and never dies.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tasks that another thread runs for a strand.
 #include <gtest/gtest.h>
 

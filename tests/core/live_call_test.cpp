@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calls between threads: instances come and go while others call them.
 #include <gmock/gmock.h>
 

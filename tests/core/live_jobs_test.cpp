@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Jobs of live strands: exactly one completion, priorities, replacement, watchdog, a pool for disk I/O.
 #include <gmock/gmock.h>
 

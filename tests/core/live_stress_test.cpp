@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Meant for the thread sanitizer: many threads, strands that come and go, timers, work.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/exec/processor_use.hpp"
 
 #include <gmock/gmock.h>

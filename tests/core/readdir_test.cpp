@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A folder that cannot be read to its end: the error is a value, never an exception.
 #include <dirent.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/supervisor/restart_policy_engine.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live: a component that gets no processor is not hung, one that is blocked beside it is.
 #include <gtest/gtest.h>
 #include <sched.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lanes, replacement, deadlines and cancellation of jobs in rehearsal: all in modelled time.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An agent among programs of another vendor's DDS that use ROS 2 types alone.
 #include <signal.h>
 

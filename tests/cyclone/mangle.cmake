@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes all of our ROS 2 IDL into one file under the names that ROS 2's own tools give its types on the wire
 # (pkg::msg::dds_::Type_), for another vendor's compiler: cmake -DROOT=idl/ros2 -DFILES=a;b -DOUT=file.idl -P mangle.cmake
 # FILES in the order of their dependence.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Example 1, the driver, with an agent and a station as in docs/tutorial.md.
 #include <signal.h>
 

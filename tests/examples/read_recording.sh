@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # usage: read_recording.sh PROGRAM RECORDING CSV: what example 6 prints and writes of example 2's recording
 set -euo pipefail
 printed="$("$1" "$2" "$3")"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot's set and two stations' desks, over a link that may be away.
 #include "robot_agent/findings/sync.hpp"
 

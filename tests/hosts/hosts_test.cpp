@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots and operators on machines of their own: addresses, thin links, cables pulled.
 #include "tests/hosts/hosts.hpp"
 

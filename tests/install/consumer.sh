@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # usage: consumer.sh CMAKE BUILD_FOLDER CONSUMER_FOLDER
 set -euo pipefail
 cmake="$1" build="$2" source="$3"

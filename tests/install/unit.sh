@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # usage: unit.sh BUILD_FOLDER. Has systemd read the unit that is installed; 77 where there is no systemd.
 set -euo pipefail
 command -v systemd-analyze > /dev/null || { echo "no systemd-analyze here: the unit is not verified"; exit 77; }

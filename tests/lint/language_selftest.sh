@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # The check `language` finds what each of its rules is there for, and leaves plain text alone.
 set -uo pipefail
 # shellcheck source=tests/lint/tree.sh

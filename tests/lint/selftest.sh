@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Every check of tools/lint.sh finds what it is there for, and leaves a clean tree alone.
 set -uo pipefail
 # shellcheck source=tests/lint/tree.sh

@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # shellcheck disable=SC2034  # failed is read where this is sourced
 # What the tests of tools/lint.sh share: a tree of their own, and what the lint says of it. Sourced.
 lint="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/tools/lint.sh"

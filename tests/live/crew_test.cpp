@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One agent and one station, live in one process, so that a thread sanitizer sees all of both: commands, a
 // stick, a goal, planning, a stop.
 #include <gmock/gmock.h>

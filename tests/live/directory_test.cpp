@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who is there, as an agent itself knows it: every change is in its published list within 3 s.
 #include <gmock/gmock.h>
 

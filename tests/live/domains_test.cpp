@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live tests that run at the same time do not hear each other.
 #include <gtest/gtest.h>
 

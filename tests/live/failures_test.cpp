@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An agent that is killed, and components that crash and hang, in the programs as they are shipped. How long
 // it takes, fifty times each: bench_failures.
 #include <gmock/gmock.h>

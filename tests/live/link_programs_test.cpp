@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Both programs with --link: a profile that is none is one line; over one that is, commands pass.
 #include <algorithm>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples that are none, on every topic, to a robot_agent and a basestation that run.
 #include "tests/live/programs.hpp"
 #include "tests/wire/samples.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The programs as an operator meets them: separate processes over Fast DDS.
 #include "tests/live/programs.hpp"
 

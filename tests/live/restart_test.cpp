@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot's agent is killed under its holder's hands, and comes back with what its disk kept.
 #include <signal.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same scenario live and in rehearsal: same deliveries, like latencies.
 #include <gmock/gmock.h>
 

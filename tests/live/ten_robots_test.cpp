@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ten robots, two operators: the standing scenario, in rehearsal and live. The whole of it live, by hand:
 // tools/live.sh.
 #include <gmock/gmock.h>

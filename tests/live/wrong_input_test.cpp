@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wrong input to every program: one line that says what to do, and a non-zero exit.
 #include <gmock/gmock.h>
 

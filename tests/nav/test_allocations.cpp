@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cycle of terrain and plan, a controller's step and the collision monitor allocate nothing once they are
 // made.
 #include <gtest/gtest.h>

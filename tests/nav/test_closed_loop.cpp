@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole drives: scan, plan and follow in worlds of boxes, for the three standard platforms.
 #include <gtest/gtest.h>
 

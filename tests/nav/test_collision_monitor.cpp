@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
 

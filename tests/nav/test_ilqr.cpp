@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "nav/control/ilqr.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The planner of what cannot turn on the spot, by its parts.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots among people and other robots in the simulated world, and in worlds where nothing moves.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "nav/path_tree.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every planner behind its face: named in a platform's file, driven in a closed loop with each controller.
 #include "nav/make_planner.hpp"
 

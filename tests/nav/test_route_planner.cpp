@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The global planner over given maps.
 #include <gtest/gtest.h>
 

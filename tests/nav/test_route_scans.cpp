@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The global planner over scans, and the robot that follows it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is a step to the global planner, and what is a ramp, stairs or a wall's foot: from near, from afar,
 // leaning.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The terrain map's layers, over ground that is not flat.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program navtool: what it prints, and how it ends.
 #include <gtest/gtest.h>
 #include <sys/wait.h>

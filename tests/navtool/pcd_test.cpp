@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PCD files, whole and broken.
 #include "sim/navtool/pcd.hpp"
 

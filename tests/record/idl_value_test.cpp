@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples as text, by the IDL alone: what `recording cat` shows.
 #include "core/record/idl_value.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The MCAP writer and reader against each other; tests/record/reader has somebody else's.
 #include "core/record/compress.hpp"
 #include "core/time/random.hpp"

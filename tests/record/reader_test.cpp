@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Recordings of a live run and of a rehearsal, read by somebody else's code (tests/record/reader): every
 // message decodes.
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ring of files that an agent keeps.
 #include "core/record/recorder.hpp"
 

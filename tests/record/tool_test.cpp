@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tool `recording`, as it is typed.
 #include <fstream>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What passes a wire, on a record sink; and a rehearsal's simulated network, in a file.
 #include "adit/command.h"
 #include "adit/discovery.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults and commands drawn from seeds; and that a seed that fails is shrunk to a scenario that fails by
 // itself.
 #include <gtest/gtest.h>

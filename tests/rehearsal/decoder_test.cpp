@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the checker makes of the bytes on the radio and on the robot's domain.
 #include "sim/checker/radio_decoder.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each defect of sim/defects is found by a rehearsal of 10 s: a rule is reported as broken, or an expectation
 // fails. The same scenario and seed pass without the defect.
 #include <algorithm>

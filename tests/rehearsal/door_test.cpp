@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Through the doors of a real building's map, whose jambs are neither straight nor opposite each other.
 #include "tests/rehearsal/run_text.hpp"
 

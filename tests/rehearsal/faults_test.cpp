@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults of the scenario file as they happen in a run: what each does, and that each ends only itself.
 #include "tests/rehearsal/run_text.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trees that contradict the mode table, in rehearsal with the check at load switched off: no rule is broken,
 // because the guard in front of the mux enforces the table. ADIT_HOSTILE_SEEDS: seeds for each tree, 2 unless
 // given.

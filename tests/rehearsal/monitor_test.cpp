@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The collision monitor against a planner that drives into a wall on purpose, and a manual drive without a
 // lidar, in the simulated world.
 #include "tests/rehearsal/run_text.hpp"

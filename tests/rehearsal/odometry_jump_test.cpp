@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver whose odometry begins again at zero, in rehearsal (rule 7).
 #include "tests/rehearsal/run_text.hpp"
 

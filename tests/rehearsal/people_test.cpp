@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole agents among people who walk and robots that come towards them: there is no contact, and the goals
 // are reached.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Walls between the machines of a rehearsal: what they take from the radio, and a robot that is lost behind
 // one.
 #include "sim/rehearsal/radio_walls.hpp"

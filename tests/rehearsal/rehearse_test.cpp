@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rehearsals as tests: that a run repeats itself, and what it reports.
 #include "sim/rehearsal/rehearsal.hpp"
 

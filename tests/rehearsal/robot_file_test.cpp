@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots of a scenario that come from robots' files, and the keys of such files written in a scenario.
 #include <gtest/gtest.h>
 

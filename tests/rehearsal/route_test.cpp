@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The global planner in the agent: out of dead ends, round places that turn out blocked, and with a report of
 // goals that cannot be reached.
 #include "tests/rehearsal/run_text.hpp"

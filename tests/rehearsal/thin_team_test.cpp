@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many on a thin link: rates follow it, and commands keep their latency.
 #include <gtest/gtest.h>
 

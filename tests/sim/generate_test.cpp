@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Worlds to try navigation in.
 #include "sim/world/generate.hpp"
 

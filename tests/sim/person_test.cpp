@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // People who walk in the true world.
 #include "sim/world/person.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // goto --wait: when it ends, and how.
 #include "tests/station/fake_robot.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real program, where no robot is present.
 #include <gmock/gmock.h>
 #include <sys/socket.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Driving: what the robot hears of the stick, and how it ends.
 #include <algorithm>
 

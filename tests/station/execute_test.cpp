@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command lines at a station: exit codes, texts, several robots.
 #include <algorithm>
 #include <cmath>

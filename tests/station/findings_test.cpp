@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What robots find, at a station: on its disk, acknowledged, listed.
 #include "adit/findings.h"
 #include "core/store/memory_disk.hpp"

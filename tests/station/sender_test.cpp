@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How commands go out: numbers, repeats, giving up, order.
 #include "tests/station/fake_robot.hpp"
 

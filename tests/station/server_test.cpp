@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The station's socket: what its clients get, whether they read or not.
 #include "basestation/cli/process/server.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What FileDisk syncs and closes, seen between it and the C library.
 #include <gmock/gmock.h>
 #include <sys/syscall.h>

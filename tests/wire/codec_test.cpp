@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a peer can send instead of a sample: nothing of it throws, allocates without bound or passes as whole.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same small body over the in-memory wire and over Fast DDS: what a rehearsal shows is what happens live.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two participants that meet over a bad link know each other soon.
 #include "core/wire/fastdds/discovery_assist.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults of the rehearsal's radio: each kind, and several at once.
 #include <gtest/gtest.h>
 

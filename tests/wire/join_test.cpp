@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Members that come, die and come back elsewhere, each a process over Fast DDS: heard by all within 3 s.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The same link under both mounts: the rehearsal's radio and the live transport under Fast DDS.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/fastdds/link_shaper.hpp"
 
 #include <arpa/inet.h>

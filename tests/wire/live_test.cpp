@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What only the real wire has: other processes, sockets, foreign writers.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keys of topics over a long mission: peers come under new names for days, and the newest is heard.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A real radio without a link profile: what the sockets refuse is counted, and waits by priority.
 #include <gtest/gtest.h>
 #include <sched.h>

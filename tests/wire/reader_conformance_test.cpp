@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a reader gets whose strand is slow, over both wires: the newest samples, with the time at which each
 // came.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a participant accepts as its topics, and how parties of different releases meet, over both wires.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "basestation/cli/terminal/terminal.hpp"
 
 #include <poll.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // AlwaysSuccess, AlwaysFailure, SetBlackboard, UnsetBlackboard.
 #include "core/bt/nodes/builtin.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // IfThenElse and WhileDoElse: a condition and one or two branches.
 #include "core/bt/nodes/builtin.hpp"
 

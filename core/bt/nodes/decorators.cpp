@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inverter, ForceSuccess, ForceFailure, KeepRunningUntilFailure, RunOnce, SubTree.
 #include "core/bt/nodes/builtin.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Repeat and RetryUntilSuccessful.
 #include "core/bt/nodes/builtin.hpp"
 

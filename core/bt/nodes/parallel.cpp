@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parallel and ParallelAll: tick all children in every tick.
 #include <algorithm>
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ReactiveSequence and ReactiveFallback: every tick starts from the first child.
 #include "core/bt/nodes/builtin.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sequence, AsyncSequence, Fallback, AsyncFallback, SequenceWithMemory: children run one after another.
 #include "core/bt/nodes/builtin.hpp"
 

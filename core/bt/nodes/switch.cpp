@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Switch2 to Switch6: run the child whose case equals a variable, else the last one.
 #include <charconv>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Delay, Timeout and Sleep: they use the time passed to each tick.
 #include "core/bt/nodes/builtin.hpp"
 

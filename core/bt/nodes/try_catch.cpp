@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TryCatch: a sequence whose last child cleans up when another one fails.
 #include "core/bt/nodes/builtin.hpp"
 

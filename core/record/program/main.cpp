@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Program `recording`: inspects MCAP recordings and recovers the content of truncated ones.
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/bench/bare_dds.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/bench/default_dds.hpp"
 
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/fastdds/endpoint_qos.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/fastdds/filtering_transport.hpp"
 
 #include <fastrtps/utils/IPLocator.h>

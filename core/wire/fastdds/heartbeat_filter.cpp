@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/fastdds/heartbeat_filter.hpp"
 
 #include "core/wire/fastdds/rtps_peek.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "core/wire/fastdds/participant_qos.hpp"
 
 #include <arpa/inet.h>

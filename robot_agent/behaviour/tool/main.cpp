@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // tree: checks, draws and dry-runs behaviour trees.
 #include <CLI/CLI.hpp>
 #include <algorithm>

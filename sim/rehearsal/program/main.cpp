@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // rehearse: runs a scenario on virtual time and judges it.
 #include <unistd.h>
 

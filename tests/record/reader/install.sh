@@ -1,4 +1,5 @@
 #!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
 # Fetches the independent reader into a build folder, once. usage: install.sh FOLDER
 # Exit status 77: it cannot be had here (no npm, no registry); tests that need it are skipped then.
 set -uo pipefail
