@@ -93,14 +93,16 @@ UnitParams Agent::Impl::sensors_unit() {
   UnitParams unit{};
   unit.name = "sensors";
   unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
-    return std::unique_ptr<Component>(std::make_unique<Scans>(strand, Log(params.log, params.name),
-                                                              params.platform.lidar_height, context->scans));
+    return std::unique_ptr<Component>(std::make_unique<Scans>(
+        strand, Log(params.log, params.name), params.name, params.platform, context->scans,
+        [notifier = context->notifier.get()](const Notice& notice) { notifier->send(notice); }));
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
-    auto readers = Scans::read(io_of(*slot, *robot_wire), [slot = std::weak_ptr<ComponentSlot>(slot)] {
-      const auto taken = slot.lock();
-      return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
-    });
+    auto readers =
+        Scans::read(io_of(*slot, *robot_wire), params.platform, [slot = std::weak_ptr<ComponentSlot>(slot)] {
+          const auto taken = slot.lock();
+          return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
+        });
     if (!readers) return readers.error();
     return std::shared_ptr<void>(std::make_shared<Scans::Readers>(std::move(*readers)));
   };

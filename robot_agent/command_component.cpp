@@ -86,12 +86,12 @@ Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
   return {};
 }
 
-void Agent::CommandComponent::scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received) {
+void Agent::CommandComponent::scan(LidarScan lidar) {
   protect([&] {
     if (!frames_.initialised()) return;
     if (waiting_scan_) add_waiting_scan();
-    waiting_scan_ = {std::move(points), stamp, received};
-    if (!is_ahead(stamp)) add_waiting_scan();
+    waiting_scan_ = std::move(lidar);
+    if (!is_ahead(waiting_scan_->stamp)) add_waiting_scan();
   });
 }
 
@@ -102,12 +102,14 @@ bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
 }
 
 void Agent::CommandComponent::add_waiting_scan() {
-  const WaitingScan waiting = *std::exchange(waiting_scan_, std::nullopt);
+  const LidarScan waiting = *std::exchange(waiting_scan_, std::nullopt);
   auto scan = std::make_shared<Scan>();
   scan->points = std::move(*waiting.points);
   const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
   // Without a common clock the newest pose is the best guess.
   scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
+  // The yaw is the odometry's; how the body leans the IMU knows better.
+  if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
   navigation_.add_scan(std::move(scan), waiting.received, now());
 }
 
@@ -185,7 +187,7 @@ Result<void> Agent::CommandComponent::on_start() {
   navigation_.adopt(generation());
   if (const auto started = navigation_.start(); !started) return started;
   offer(context_.scans, [this](LidarScan lidar, const Reply<void>& reply) {
-    scan(std::move(lidar.points), lidar.stamp, lidar.received);
+    scan(std::move(lidar));
     reply({});
   });
   offer(context_.frames.find,

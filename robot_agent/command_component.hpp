@@ -66,7 +66,7 @@ class Agent::CommandComponent : public Component {
                    Context& context);
 
   void odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp, Time received);
-  void scan(std::shared_ptr<PointCloud> points, std::uint64_t stamp, Time received);
+  void scan(LidarScan lidar);
   void battery(float charge);
   void external(const Twist2& velocity, Time received);
   /// Reports another participant that writes velocities to this robot's driver.
@@ -120,12 +120,7 @@ class Agent::CommandComponent : public Component {
   Notices notices_;
   Safeguards safeguards_;
   Telemetry telemetry_;
-  struct WaitingScan {
-    std::shared_ptr<PointCloud> points{};
-    std::uint64_t stamp{};
-    Time received{};
-  };
-  std::optional<WaitingScan> waiting_scan_{};  ///< Waits for odometry as new as its stamp.
+  std::optional<LidarScan> waiting_scan_{};  ///< Waits for odometry as new as its stamp.
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
   std::optional<Time> jump_told_{};

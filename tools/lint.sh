@@ -48,7 +48,7 @@ check_includes() {
       if (file ~ /^\.\.?\//) printf "%s:%d: includes are written from the root\n", FILENAME, FNR
       if ((to == "fastdds" || to == "fastrtps" || to == "fastcdr") && !in_wire && from != "tests")
         printf "%s:%d: Fast DDS headers belong into core/wire/\n", FILENAME, FNR
-      if ((to == "adit" || file ~ /^(builtin_interfaces|std_msgs|geometry_msgs|nav_msgs|sensor_msgs)\//) && !in_wire &&
+      if ((to == "adit" || file ~ /^(builtin_interfaces|std_msgs|geometry_msgs|nav_msgs|sensor_msgs|tf2_msgs)\//) && !in_wire &&
           from !~ /^(robot_agent|basestation|sim|tests|bench|examples)$/)
         printf "%s:%d: generated types belong into core/wire, robot_agent, basestation and sim\n", FILENAME, FNR
     }'

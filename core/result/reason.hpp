@@ -44,6 +44,11 @@ enum class Reason : std::uint16_t {
   tree_refused = 226,        ///< The behaviour tree contradicts the mode table; the robot runs in hold.
   odometry_jumped = 227,     ///< The driver's odometry moved farther than the body can.
   name_taken = 228,          ///< Another robot of the same name was present first.
+  frame_unknown = 242,       ///< Neither the platform's file nor tf_static knows the frame of a message.
+  sensor_times = 243,        ///< The times of a sensor's message cannot be understood.
+  imu_mounting = 244,        ///< The IMU does not measure gravity where its mounting says.
+  tilted = 245,              ///< The body leans so far that it may tip over.
+  scan_empty = 246,          ///< A scan without any return.
 
   // Input that was typed or sent.
   bad_argument = 301,

@@ -31,6 +31,9 @@ class LaserScan;
 class Imu;
 class BatteryState;
 }  // namespace sensor_msgs::msg
+namespace tf2_msgs::msg {
+class TFMessage;
+}
 
 namespace adit::wire::topics {
 
@@ -91,6 +94,9 @@ inline constexpr Topic<sensor_msgs::msg::LaserScan> kScan{
 /// ms, as a reader integrates every sample.
 inline constexpr Topic<sensor_msgs::msg::Imu> kImu{
     {"rt/imu/data", "sensor_msgs::msg::dds_::Imu_", QosClass::sensor, 40, kUnkeyed, 2048}};
+/// The fixed frames of the robot.
+inline constexpr Topic<tf2_msgs::msg::TFMessage> kTfStatic{
+    {"rt/tf_static", "tf2_msgs::msg::dds_::TFMessage_", QosClass::status, 16, kUnkeyed, 1 << 16}};
 inline constexpr Topic<sensor_msgs::msg::BatteryState> kBattery{
     {"rt/battery_state", "sensor_msgs::msg::dds_::BatteryState_", QosClass::state, 1, kUnkeyed, 2048}};
 

@@ -26,20 +26,7 @@ double reach_of(const Platform& p, const CollisionMonitorParams& m) {
          p.max_speed * p.max_speed / (2 * m.braking_share * p.max_acceleration) + 0.1;
 }
 
-/// Below and above what flies there is air, not ground: all in the band that the body needs is an obstacle.
-Platform without_ground(Platform platform) {
-  if (platform.flies()) platform.step = 0.0;
-  return platform;
-}
-
-NearPointsParams without_ground(const Platform& platform, NearPointsParams points) {
-  constexpr double kBelow = 0.1;  // m
-  if (platform.flies()) {
-    points.slope = 0.0;
-    points.rise = -kBelow;
-  }
-  return points;
-}
+constexpr double kUpright = 0.9;  ///< Of the limit, below which a body that leaned too far may drive again.
 
 }  // namespace
 
@@ -48,18 +35,24 @@ CollisionMonitor::CollisionMonitor(const Platform& platform, const CollisionMoni
       params_(params),
       body_(Footprint(platform).grown(params.margin, params.margin)),
       wide_(Footprint(platform).grown(params.mover_margin, params.mover_margin)),
-      near_(without_ground(platform), reach_of(platform, params), without_ground(platform, params.points)),
-      tracker_(platform, params.tracker) {}
+      near_(platform, reach_of(platform, params), params.points),
+      tracker_(platform, params.tracker),
+      tilt_(Traversability::of(platform).tilt) {}
 
 void CollisionMonitor::look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   tracker_.look(points, body, stamp_s);
   near_.take(points, body, stamp_s, tracker_.newest());
   stamp_s_ = stamp_s;
+  const Eigen::Vector3d up = body.orientation.conjugate() * Eigen::Vector3d::UnitZ();
+  const double roll = std::fabs(std::atan2(up.y(), up.z()));
+  const double pitch = std::fabs(std::asin(std::clamp(up.x(), -1.0, 1.0)));
+  tilted_ = std::max(roll, pitch) > tilt_ * (tilted_ ? kUpright : 1.0);
 }
 
 void CollisionMonitor::clear() {
   tracker_.clear();
   near_.clear();
+  tilted_ = false;
   stamp_s_ = -std::numeric_limits<double>::infinity();
 }
 
@@ -91,6 +84,8 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
                                                   Policy policy, const Driven& drives) const {
   if (wanted.zero()) return {wanted, Cause::none};
   if (!fresh(now_s)) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::stale};
+  // An operator may have to drive it down by hand.
+  if (tilted_) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::tilted};
   const double k = share(wanted, odom, now_s);
   if (k >= 1) return {wanted, Cause::none};
   const bool stands = k * rim(wanted) < kCreep;

@@ -46,7 +46,8 @@ class CollisionMonitor {
     limit,      ///< manual: both limit the speed, neither ever stops
     stop_seen,  ///< manual, as the platform's file may ask for: what is seen stops, an old scan limits
   };
-  enum class Cause : std::uint8_t { none, slowed, stopped, stale };
+  /// `tilted`: the body leans so far that it may tip over.
+  enum class Cause : std::uint8_t { none, slowed, stopped, stale, tilted };
   struct Verdict {
     Twist2 velocity{};
     Cause cause{Cause::none};  ///< `stopped`: nothing of it may be driven; under Policy::limit it is, slowly
@@ -82,6 +83,8 @@ class CollisionMonitor {
   Footprint body_, wide_;  ///< with the margins towards what stands and what moves
   NearPoints near_;
   Tracker tracker_;
+  double tilt_;         ///< Roll or pitch at which the body may tip over, rad.
+  bool tilted_{false};  ///< At the newest scan.
   double stamp_s_{-std::numeric_limits<double>::infinity()};
 };
 

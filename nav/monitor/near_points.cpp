@@ -17,14 +17,28 @@ constexpr std::array kBefore{0.1f, 0.15f, 0.2f,
                              0.25f};  ///< m: so far before a riser the tread is seen that leads to it
 constexpr float kFlat = 0.14f;        ///< m: what is higher within a cell is a face, and no tread
 constexpr float kSpread =
-    0.04f;                  ///< m: the lowest and the highest of many returns lie so much apart by noise
-constexpr int kFewest = 2;  ///< returns in a cell and those around it; one alone is noise
+    0.04f;                      ///< m: the lowest and the highest of many returns lie so much apart by noise
+constexpr int kFewest = 2;      ///< returns in a cell and those around it; one alone is noise
+constexpr double kKink = 0.35;  ///< Level ground may begin to rise so much, unless it is too steep to climb.
+constexpr double kSteeper = 0.05;  ///< A ramp goes on so much steeper than where the body stands.
+constexpr double kBelow = 0.1;     ///< What flies: what is less below it than this is in its way, m.
+
+/// Below and above what flies there is air, not ground: all in the band that the body needs is an obstacle.
+Traversability near_limits(const Platform& platform) {
+  Traversability limits = Traversability::of(platform);
+  if (platform.flies()) {
+    limits.obstacle = -kBelow;
+    limits.slope = 0;
+  }
+  return limits;
+}
 
 }  // namespace
 
 NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsParams& params)
     : platform_(platform),
       params_(params),
+      limits_(near_limits(platform)),
       body_(platform),
       reach_(static_cast<float>(std::min(reach, kCell * kSide / 2.0 - 2 * kCell))),
       lowest_(kCoarse * kCoarse),
@@ -50,7 +64,7 @@ std::size_t NearPoints::fine(float x, float y) {
 
 bool NearPoints::seen_again(const Eigen::Vector2f& local) const {
   if (std::fabs(local.x()) >= reach_ || std::fabs(local.y()) >= reach_) return false;
-  const auto step = static_cast<float>(platform_.step + params_.rise);
+  const auto step = static_cast<float>(limits_.obstacle);
   const std::size_t middle = fine(local.x(), local.y());
   int obstacle = 0;
   bool raised = false;
@@ -74,16 +88,38 @@ bool NearPoints::tread_leads_to(const Eigen::Vector3f& p, float range, float hig
   return false;
 }
 
-NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
-  const auto top = static_cast<float>(std::max(platform_.height, platform_.lidar_height) + params_.overhang);
-  const auto lidar = static_cast<float>(platform_.lidar_height);
+NearPoints::Lean NearPoints::lean_of(const Pose3& body) const {
+  Lean lean;
+  const Eigen::Quaterniond heading(Eigen::AngleAxisd(body.yaw(), Eigen::Vector3d::UnitZ()));
+  lean.R_level_base = (heading.conjugate() * body.orientation).toRotationMatrix().cast<float>();
+  const Eigen::Vector3f up = lean.R_level_base.col(2);
+  const auto steepest = static_cast<float>(limits_.slope);
+  if (!platform_.flies() && up.z() > 0.2f) {
+    lean.rise = -up.head<2>() / up.z();
+    // A body that leans more stands on no such ground.
+    if (lean.rise.norm() > steepest) lean.rise *= steepest / lean.rise.norm();
+  }
+  lean.slope = std::min(steepest,
+                        std::max(static_cast<float>(kKink), lean.rise.norm() + static_cast<float>(kSteeper)));
+  return lean;
+}
+
+NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, const Lean& lean) {
+  const auto top = static_cast<float>(limits_.headroom);
+  const auto height = static_cast<float>(platform_.lidar_height);
+  const Eigen::Matrix3f& R = lean.R_level_base;
+  const float lidar = R(2, 2) * height;
   const auto own = static_cast<float>(-params_.body_margin);
-  const auto step = static_cast<float>(platform_.step + params_.rise);
-  const auto slope = static_cast<float>(params_.slope);
-  const auto stairs = static_cast<float>(std::max(params_.slope, platform_.steepest()));
+  const auto step = static_cast<float>(limits_.obstacle);
+  const float slope = lean.slope;
+  const auto stairs = static_cast<float>(limits_.slope);
   // Stairs rise by one step within a cell, and a face that is higher is a wall. What is too high by less than
   // noise is left to the planner.
   const float within = platform_.stairs ? kSpread : slope * kWithinCell;
+  /// How high the plane that the body stands on is there, over the level one.
+  const auto leaning = [&lean](const Eigen::Vector3f& p) {
+    return lean.rise.x() * p.x() + lean.rise.y() * p.y();
+  };
   const auto inside = [this](const Eigen::Vector3f& p) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
   };
@@ -91,13 +127,15 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   std::fill(upper_.begin(), upper_.end(), -kNotSeen);
   std::fill(highest_.begin(), highest_.end(), -1e9f);
   Fan fan{};
-  for (const Eigen::Vector3f& p : points) {
-    const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
+  for (const Eigen::Vector3f& raw : points) {
+    // The rays are the lidar's, which leans with the body.
+    const float range = std::sqrt(raw.x() * raw.x() + raw.y() * raw.y());
     if (range > 0.1f) {  // compares false when it is not a number
-      const float rise = (p.z() - lidar) / range;
+      const float rise = (raw.z() - height) / range;
       fan.lowest = std::min(fan.lowest, rise);
       fan.highest = std::max(fan.highest, rise);
     }
+    const Eigen::Vector3f p = R * raw;
     if (!inside(p)) continue;
     const std::size_t cell = coarse(p.x(), p.y());
     lowest_[cell] = std::min(lowest_[cell], p.z());
@@ -105,19 +143,23 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points) {
   }
   for (const std::uint32_t i : used_) cells_[i] = {};
   used_.clear();
-  for (const Eigen::Vector3f& p : points) {
-    if (!inside(p) || p.z() > top || p.z() <= step) continue;
+  for (const Eigen::Vector3f& raw : points) {
+    const Eigen::Vector3f p = R * raw;
+    const float below = std::min(0.0f, leaning(p));
+    if (!inside(p) || p.z() > top || p.z() - below <= step) continue;
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const bool led_to = platform_.stairs && tread_leads_to(p, range, step + stairs * range, step + within);
     // What was a wall from below is a riser when the tread before it is seen.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
-    if (!led_to) highest_[index] = std::max(highest_[index], p.z());
+    if (!led_to) highest_[index] = std::max(highest_[index], p.z() - below);
+    if (body_.depth(raw.x(), raw.y()) > own) continue;
     const float depth = body_.depth(p.x(), p.y());
-    if (depth > own) continue;
     // Who climbs stairs stands on them with its middle: they rise from there. What is as high as the lidar is
     // seen by a level ray: nothing lower need be there, unless the tread before it is seen.
     const bool riser = platform_.stairs && (p.z() < lidar - kLevelRay || led_to);
-    const float ground = riser ? step + stairs * range : step - slope * depth;
+    // On a ramp the ground is as high as the body's plane where its footprint ends, and goes on from there.
+    const float edge = std::max(0.0f, leaning(p) * (1 + std::min(0.0f, depth) / std::max(range, 0.1f)));
+    const float ground = edge + (riser ? step + stairs * range : step - slope * depth);
     if (p.z() <= ground && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
     Cell& cell = cells_[index];
     if (cell.count == 0) used_.push_back(index);
@@ -145,7 +187,8 @@ bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body, cons
   return seen.saw_past(Ray::to(d.x(), d.y(), d.z()), kPast);
 }
 
-void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s, const Panorama& seen) {
+void NearPoints::remember(const Pose3& body, const Lean& lean, const Fan& fan, double stamp_s,
+                          const Panorama& seen) {
   kept_.clear();
   const Pose2 back = body.planar().inverse();
   for (Place& place : places_) {
@@ -153,7 +196,8 @@ void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s, con
     const Eigen::Vector2d at = back * Eigen::Vector2d(place.x, place.y);
     const bool again = seen_again(at.cast<float>());
     if (again) place.seen = stamp_s;
-    const Eigen::Vector3d local(at.x(), at.y(), place.z);
+    const Eigen::Vector3d level(at.x(), at.y(), place.z - body.position.z());
+    const Eigen::Vector3d local = lean.R_level_base.cast<double>().transpose() * level;
     // What is nearer than the lidar sees would be in the way of the rays that went on.
     if (again || (hidden(local, fan) && !seen_past(local, body, seen))) kept_.push_back(place);
   }
@@ -161,8 +205,9 @@ void NearPoints::remember(const Pose3& body, const Fan& fan, double stamp_s, con
 
 void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
                       const Panorama& seen) {
-  const Fan fan = sort_in(points);
-  remember(body, fan, stamp_s, seen);
+  const Lean lean = lean_of(body);
+  const Fan fan = sort_in(points, lean);
+  remember(body, lean, fan, stamp_s, seen);
   std::swap(places_, kept_);
   // Nearest first, should there be more than are kept.
   const auto rank = [this](std::uint32_t i) {
@@ -186,11 +231,12 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
           around += cells_[static_cast<std::size_t>(beside)].count;
       }
     if (around < kFewest) continue;
-    const Eigen::Vector3d at = body * Eigen::Vector3d(cells_[i].x, cells_[i].y, cells_[i].z);
+    const Eigen::Vector2d at = body.planar() * Eigen::Vector2d(cells_[i].x, cells_[i].y);
     const double doubt =
         std::min(params_.most_doubt, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
-    places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()), cells_[i].z,
-                       static_cast<float>(doubt), stamp_s});
+    places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()),
+                       cells_[i].z + static_cast<float>(body.position.z()), static_cast<float>(doubt),
+                       stamp_s});
   }
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/config/traversability.hpp"
 #include "core/geometry/pose.hpp"
 #include "nav/dynamic/panorama.hpp"
 #include "nav/footprint.hpp"
@@ -12,10 +13,6 @@
 namespace adit::nav {
 
 struct NearPointsParams {
-  double slope{0.35};        ///< ground may rise so much per metre from the footprint on, [0, 1]; for who
-                             ///< climbs stairs as much as those, from its middle on
-  double rise{0.025};        ///< and be higher than the platform's step by this, m, [0, 0.2]
-  double overhang{0.15};     ///< what hangs so much above body and lidar is passed under, m, [0, 1]
   double body_margin{0.02};  ///< returns this close around the footprint are the own body, m, [0, 0.5]
   double shortest{0.35};     ///< nearer to the lidar nothing may be seen, m, [0, 1]
   double memory{10.0};       ///< what no newer scan can show is kept so long, s, [0, 60]
@@ -28,13 +25,17 @@ struct NearPointsParams {
 /// directly below it, or where such a one was seen before. What the newest scan cannot show, below its lowest
 /// ray or nearer than its shortest, is taken from those before. Fixed sizes; nothing is allocated after
 /// construction.
+///
+/// Heights are in gravity's axes, so that a body that leans over a stone sees the same obstacles as a level
+/// one. The ground may lie as the body does (on a ramp) or level (a body that leans by itself): something is
+/// an obstacle only if it is too high for the higher of both, and looked at from the lower one on.
 class NearPoints {
  public:
   static constexpr std::size_t kMost = 4096;  ///< places; the nearest ones when there are more
   /// Where something stands, m, odometry frame: the mean of the returns of one 5 cm cell.
   struct Place {
     float x{}, y{};
-    float z{};      ///< of the highest one, above base_link
+    float z{};      ///< Of the highest one, m.
     float doubt{};  ///< it may be so much nearer than it was seen: three standard deviations of the mean
     double seen{};
   };
@@ -54,7 +55,7 @@ class NearPoints {
   static constexpr int kCoarse = 80;
   static constexpr float kCell = 0.05f;
   struct Cell {
-    float x, y, z;  ///< sums of x and y, base_link; the highest z
+    float x, y, z;  ///< Sums of x and y, the highest z: level axes at base_link, m.
     std::uint16_t count;
   };
   /// The rays of the newest scan, as rise per metre.
@@ -64,16 +65,24 @@ class NearPoints {
 
   static std::size_t coarse(float x, float y);
   static std::size_t fine(float x, float y);
-  Fan sort_in(std::span<const Eigen::Vector3f> points);
+  /// How the body leans: level axes are base_link's, turned upright, with its yaw.
+  struct Lean {
+    Eigen::Matrix3f R_level_base{Eigen::Matrix3f::Identity()};
+    Eigen::Vector2f rise{0, 0};  ///< Of the plane that the body stands on, per metre along the level x and y.
+    float slope{};               ///< The ground may rise so much per metre from the footprint on.
+  };
+  Lean lean_of(const Pose3& body) const;
+  Fan sort_in(std::span<const Eigen::Vector3f> points, const Lean& lean);
   /// Whether one step before `p` the ground was seen: flat, at most `highest`, and no more than `rise` lower.
   bool tread_leads_to(const Eigen::Vector3f& p, float range, float highest, float rise) const;
   bool seen_again(const Eigen::Vector2f& local) const;
-  void remember(const Pose3& body, const Fan& fan, double stamp_s, const Panorama& seen);
+  void remember(const Pose3& body, const Lean& lean, const Fan& fan, double stamp_s, const Panorama& seen);
   bool hidden(const Eigen::Vector3d& local, const Fan& fan) const;
   bool seen_past(const Eigen::Vector3d& local, const Pose3& body, const Panorama& seen) const;
 
   Platform platform_;
   NearPointsParams params_;
+  Traversability limits_;
   Footprint body_;
   float reach_;
   std::vector<float> lowest_;   ///< return in each 10 cm cell, m

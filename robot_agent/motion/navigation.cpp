@@ -95,7 +95,9 @@ void Navigation::pass_on(const Velocity& wanted) {
 void Navigation::watch_warning(nav::CollisionMonitor::Cause cause, Time now) {
   using Cause = nav::CollisionMonitor::Cause;
   if (cause == Cause::none) return;
-  const Warning warning = cause == Cause::stale ? Warning::lidar_silent : Warning::obstacle_near;
+  const Warning warning = cause == Cause::stale    ? Warning::lidar_silent
+                          : cause == Cause::tilted ? Warning::tilted
+                                                   : Warning::obstacle_near;
   std::optional<Time>& last = warned_[static_cast<std::size_t>(warning)];
   if ((!last || now - *last > params_.warned_for) && outputs_.warn) outputs_.warn(warning);
   last = now;
@@ -109,6 +111,7 @@ Twist2 Navigation::along_plan(Time now) {
   const Twist2 wanted = controller_->follow(frames_.T_odom_base().planar(), seconds(params_.period));
   const auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
   if (verdict.cause != nav::CollisionMonitor::Cause::none) controller_->sent(verdict.velocity);
+  if (verdict.cause == nav::CollisionMonitor::Cause::tilted) watch_warning(verdict.cause, now);
   held_.look(verdict.cause == nav::CollisionMonitor::Cause::stopped,
              frames_.T_odom_base().planar().position(), seconds(now.time_since_epoch()));
   Twist2 velocity = verdict.velocity;

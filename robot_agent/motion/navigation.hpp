@@ -28,7 +28,7 @@ struct NavigationParams {
 };
 
 /// Why the operator of a manual mode is warned.
-enum class Warning { obstacle_near, lidar_silent };
+enum class Warning { obstacle_near, lidar_silent, tilted };
 
 /// Converts the motions that the mux passes into velocities within the platform's limits: directly, or along
 /// the local planner's paths.
@@ -97,7 +97,7 @@ class Navigation : public Component, public NavigationInput {
   std::uint64_t goal_generation_{};  // Rises with every new goal, so that late plans report no progress.
   bool has_plan_{};
   Time plan_made_{};
-  std::array<std::optional<Time>, 2> warned_{};  // Indexed by Warning: last time of its cause.
+  std::array<std::optional<Time>, 3> warned_{};  // Indexed by Warning: last time of its cause.
   nav::HeldWatch held_{};
   double sent_speed_{0};  // Maximum speed of the robot according to the velocities sent, m/s.
   Time sent_at_{};

@@ -1,105 +1,208 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/motion/scans.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <numbers>
+#include <utility>
 
 #include "core/wire/component_io.hpp"
 #include "core/wire/topics.hpp"
+#include "nav_msgs/msg/Odometry.h"
+#include "perception/input/point_layout.hpp"
+#include "sensor_msgs/msg/Imu.h"
 #include "sensor_msgs/msg/LaserScan.h"
 #include "sensor_msgs/msg/PointCloud2.h"
+#include "tf2_msgs/msg/TFMessage.h"
 
 namespace adit::agent {
 namespace {
 
-constexpr Duration kScanDeadline = 500ms;  // An older scan is outdated.
-constexpr std::uint8_t kFloat32 = 7;       // sensor_msgs/msg/PointField.FLOAT32
+constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
+constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
+constexpr double kJump = 1.0;                        // m between two samples: another odometry frame
+
+std::uint64_t nanoseconds_of(const std_msgs::msg::Header& header) {
+  return static_cast<std::uint64_t>(header.stamp().sec()) * 1'000'000'000u + header.stamp().nanosec();
+}
+
+Eigen::Vector3d vector_of(const geometry_msgs::msg::Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+Eigen::Quaterniond quaternion_of(const geometry_msgs::msg::Quaternion& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
 
 }  // namespace
 
-Scans::Scans(Executor& strand, Log log, double lidar_height, const ScanService& output)
+Scans::Scans(Executor& strand, Log log, std::string robot, const Platform& platform,
+             const ScanService& output, Notify notify)
     : Component("sensors", strand, std::move(log), {.beat = 100ms}),
-      lidar_height_(lidar_height),
-      output_(output) {}
+      robot_(std::move(robot)),
+      lidars_(platform.all_lidars()),
+      output_(output),
+      notify_(std::move(notify)),
+      input_(platform),
+      waiting_(lidars_.size()) {}
 
-void Scans::give(const std::function<Result<PointCloud>()>& unpack, const std_msgs::msg::Header& header,
-                 Time received) {
+void Scans::take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received) {
   protect([&] {
-    auto points = unpack();
-    if (!points) return;  // The operator then sees terrain_stale.
-    const auto& stamp = header.stamp();
-    const auto nanoseconds = static_cast<std::uint64_t>(stamp.sec()) * 1'000'000'000u + stamp.nanosec();
-    call(output_, {std::make_shared<PointCloud>(std::move(*points)), nanoseconds, received},
-         {.deadline = kScanDeadline}, [](const Result<void>&) {});
+    if (lidar < lidars_.size())
+      take(to_sweep(cloud, 1.0 / lidars_[lidar].rate), lidar, cloud.header().frame_id(), received);
   });
 }
 
-void Scans::take(const sensor_msgs::msg::PointCloud2& cloud, Time received) {
-  give([&] { return to_points(cloud); }, cloud.header(), received);
-}
-
 void Scans::take(const sensor_msgs::msg::LaserScan& scan, Time received) {
-  give([&] { return to_points(scan, lidar_height_); }, scan.header(), received);
+  protect([&] {
+    const std::string frame = perception::frame_name(scan.header().frame_id());
+    // A scan in base_link is of a lidar above it.
+    const bool above = frame.empty() || frame == "base_link";
+    take(to_sweep(scan, above ? lidars_[0].mounting.z : 0.0), 0, frame, received);
+  });
 }
 
-Result<Scans::Readers> Scans::read(const wire::ComponentIo& io, std::function<Scans*()> taker) {
-  const auto give = [taker = std::move(taker)](const auto& sample, const wire::SampleInfo& info) {
-    if (Scans* scans = taker()) scans->take(sample, info.received);
-  };
-  Readers readers{};
-  for (const auto& opened : {io.open(readers.points, wire::topics::kPoints, give),
-                             io.open(readers.scan, wire::topics::kScan, give)})
-    if (!opened) return opened.error();
-  return readers;
+void Scans::take(const sensor_msgs::msg::Imu& imu) {
+  protect([&] {
+    const auto added =
+        input_.add(perception::ImuSample{nanoseconds_of(imu.header()), vector_of(imu.angular_velocity()),
+                                         vector_of(imu.linear_acceleration())},
+                   imu.header().frame_id());
+    if (!added) refuse(added.error());
+    if (!input_.imu_in_g() || std::exchange(in_g_reported_, true)) return;
+    notice(Severity::warning, "imu_in_g", Reason::none,
+           "the IMU measures in g instead of m/s2; its values are scaled");
+  });
 }
 
-Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud) {
-  std::array<std::uint32_t, 3> offset{};
-  const std::array names{"x", "y", "z"};
-  for (std::size_t axis = 0; axis < names.size(); ++axis) {
-    bool found = false;
-    for (const auto& field : cloud.fields()) {
-      if (field.name() != names[axis] || field.datatype() != kFloat32) continue;
-      offset[axis] = field.offset();
-      found = true;
+void Scans::take(const nav_msgs::msg::Odometry& odometry) {
+  protect([&] {
+    const auto& p = odometry.pose().pose().position();
+    const Eigen::Quaterniond q = quaternion_of(odometry.pose().pose().orientation());
+    const Eigen::Vector3d at(p.x(), p.y(), p.z());
+    if (!at.allFinite() || !(q.norm() > 1e-6 && q.norm() < 1e6)) return;  // The command component says so.
+    const std::uint64_t stamp = nanoseconds_of(odometry.header());
+    const auto last = history_.at(history_.newest());
+    const bool set_back = stamp < history_.newest() && history_.newest() - stamp > 500'000'000;
+    if (set_back || (last && (last->position - at).norm() > kJump)) history_.clear();
+    history_.add(stamp, {at, q.normalized()});
+    input_.add_velocity(stamp, vector_of(odometry.twist().twist().linear()));
+    for (std::size_t n = 0; n < waiting_.size(); ++n)
+      if (waiting_[n] && !is_ahead(waiting_[n]->sweep)) pass_on(n);
+  });
+}
+
+void Scans::take(const tf2_msgs::msg::TFMessage& transforms) {
+  protect([&] {
+    for (const auto& each : transforms.transforms()) {
+      const auto set = input_.add_transform(
+          each.header().frame_id(), each.child_frame_id(),
+          {vector_of(each.transform().translation()), quaternion_of(each.transform().rotation())});
+      if (!set) refuse(set.error());
     }
-    if (!found) return Error{Reason::malformed, std::string("the cloud has no float32 ") + names[axis]};
-  }
-  const std::uint64_t step = cloud.point_step();
-  const std::uint64_t count = std::uint64_t{cloud.width()} * cloud.height();
-  for (const std::uint32_t o : offset)
-    if (step < 4 || o > step - 4) return Error{Reason::malformed, "a field lies outside its point"};
-  if (cloud.is_bigendian()) return Error{Reason::malformed, "the cloud is big endian"};
-  if (count > cloud.data().size() / step)
-    return Error{Reason::malformed, "the cloud has less data than points"};
-  PointCloud points;
-  points.reserve(count);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    Eigen::Vector3f p;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      std::memcpy(&p[static_cast<Eigen::Index>(axis)], cloud.data().data() + i * step + offset[axis], 4);
-    if (p.allFinite()) points.push_back(p);
-  }
-  return points;
+  });
 }
 
-Result<PointCloud> to_points(const sensor_msgs::msg::LaserScan& scan, double height) {
+void Scans::take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame,
+                 Time received) {
+  if (!sweep) return refuse(sweep.error());
+  if (waiting_[lidar]) pass_on(lidar);
+  waiting_[lidar] = {std::move(*sweep), frame, received};
+  if (!is_ahead(waiting_[lidar]->sweep)) pass_on(lidar);
+}
+
+bool Scans::is_ahead(const perception::Sweep& sweep) const {
+  if (!sweep.timed || history_.newest() == 0) return false;
+  const std::uint64_t end = perception::ScanInput::end_of(sweep);
+  return end > history_.newest() && end - history_.newest() <= kLongestWait;
+}
+
+void Scans::pass_on(std::size_t lidar) {
+  const Waiting waiting = *std::exchange(waiting_[lidar], std::nullopt);
+  auto scan = input_.add(waiting.sweep, lidar, waiting.frame,
+                         [this](std::uint64_t stamp) { return history_.at(stamp); });
+  if (!scan) return refuse(scan.error());
+  if (!*scan) return;  // A scan is made when the first lidar's sweep comes.
+  perception::Scan& whole = **scan;
+  if (waiting.sweep.timed && !whole.deskewed && history_.size() > 0)
+    notice(Severity::warning, "not_deskewed", Reason::sensor_times,
+           "the odometry has no poses for the times of the scans, which are not corrected for motion; do "
+           "lidar and "
+           "odometry use one clock?");
+  call(output_,
+       {std::make_shared<PointCloud>(std::move(whole.points)), whole.stamp, whole.attitude, waiting.received},
+       {.deadline = kScanDeadline}, [](const Result<void>&) {});
+}
+
+void Scans::refuse(const Error& error) {
+  // A message that came late is normal; only the newest counts.
+  if (error.reason == Reason::sample_stale) return;
+  notice(Severity::error, "sensor_refused", error.reason, error.text);
+}
+
+void Scans::notice(Severity severity, const char* code, Reason reason, const std::string& text) {
+  if (!reported_.pass(code + std::string(adit::name(reason)), now())) return;
+  log().warn(text);
+  if (notify_) notify_({{}, severity, code, reason, robot_ + ": " + text});
+}
+
+Result<Scans::Readers> Scans::read(const wire::ComponentIo& io, const Platform& platform,
+                                   std::function<Scans*()> taker) {
+  Readers all{};
+  const auto open = [&](auto topic, const std::string& named, auto take) -> Result<void> {
+    if (!named.empty()) topic.name = all.names.emplace_back("rt/" + named).c_str();
+    return io.open(all.readers.emplace_back(), topic,
+                   [taker, take](const auto& sample, const wire::SampleInfo& info) {
+                     if (Scans* scans = taker()) take(*scans, sample, info.received);
+                   });
+  };
+  namespace topics = wire::topics;
+  const std::vector<LidarConfig> lidars = platform.all_lidars();
+  for (std::size_t n = 0; n < lidars.size(); ++n)
+    if (auto opened = open(topics::kPoints, lidars[n].topic,
+                           [n](Scans& s, const auto& cloud, Time received) { s.take(cloud, n, received); });
+        !opened)
+      return opened.error();
+  const auto plain = [](Scans& s, const auto& sample, Time) { s.take(sample); };
+  if (auto opened =
+          open(topics::kScan, "", [](Scans& s, const auto& scan, Time received) { s.take(scan, received); });
+      !opened)
+    return opened.error();
+  if (auto opened = open(topics::kOdom, "", plain); !opened) return opened.error();
+  if (auto opened = open(topics::kTfStatic, "", plain); !opened) return opened.error();
+  if (platform.imu)
+    if (auto opened = open(topics::kImu, platform.imu->topic, plain); !opened) return opened.error();
+  return all;
+}
+
+Result<perception::Sweep> to_sweep(const sensor_msgs::msg::PointCloud2& cloud, double duration) {
+  if (cloud.is_bigendian()) return Error{Reason::malformed, "the cloud is big endian"};
+  std::vector<perception::PointField> fields;
+  for (const auto& field : cloud.fields()) fields.push_back({field.name(), field.offset(), field.datatype()});
+  const auto layout = perception::PointLayout::of(fields, cloud.point_step());
+  if (!layout) return layout.error();
+  return layout->unpack(cloud.data(), std::uint64_t{cloud.width()} * cloud.height(),
+                        nanoseconds_of(cloud.header()), duration);
+}
+
+Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, double height) {
   const double first = scan.angle_min(), step = scan.angle_increment();
   const std::size_t count = scan.ranges().size();
   if (!std::isfinite(first) || !std::isfinite(step) || std::abs(first) > 10.0 ||
       std::abs(step) * static_cast<double>(count) > 2.2 * std::numbers::pi)
     return Error{Reason::malformed, "the scan's angles are none of one turn"};
-  PointCloud points;
-  points.reserve(count);
+  perception::Sweep sweep;
+  sweep.stamp = nanoseconds_of(scan.header());
+  sweep.points.reserve(count);
+  const float each = scan.time_increment();
+  sweep.timed = each > 0 && each * static_cast<float>(count) < 1.0f;
   for (std::size_t i = 0; i < count; ++i) {
     const float range = scan.ranges()[i];
     if (!std::isfinite(range) || range < scan.range_min() || range > scan.range_max()) continue;
     const double angle = first + step * static_cast<double>(i);
-    points.push_back(Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), height).cast<float>());
+    sweep.points.push_back(
+        {Eigen::Vector3d(range * std::cos(angle), range * std::sin(angle), height).cast<float>(),
+         sweep.timed ? each * static_cast<float>(i) : 0.0f, 0.0f, 0});
   }
-  return points;
+  sweep.timed = sweep.timed && !sweep.points.empty();
+  return sweep;
 }
 
 }  // namespace adit::agent

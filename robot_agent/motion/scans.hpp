@@ -1,19 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
+#include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/wire/participant.hpp"
+#include "perception/input/scan_input.hpp"
+#include "robot_agent/common/notice.hpp"
+#include "robot_agent/common/rate_limit.hpp"
+#include "robot_agent/motion/pose_history.hpp"
 
 namespace sensor_msgs::msg {
-class PointCloud2;
+class Imu;
 class LaserScan;
+class PointCloud2;
 }  // namespace sensor_msgs::msg
-namespace std_msgs::msg {
-class Header;
+namespace nav_msgs::msg {
+class Odometry;
+}
+namespace tf2_msgs::msg {
+class TFMessage;
 }
 
 namespace adit::wire {
@@ -22,45 +35,75 @@ struct ComponentIo;
 
 namespace adit::agent {
 
-/// A lidar's scan.
+/// One scan of all lidars.
 struct LidarScan {
-  std::shared_ptr<PointCloud> points{};  ///< In the frame of base_link, m.
-  std::uint64_t stamp{};                 ///< Of the driver's clock, ns.
-  Time received{};                       ///< Time of reception, by the agent's clock.
+  std::shared_ptr<PointCloud> points{};  ///< In the frame of base_link at `stamp`, m.
+  std::uint64_t stamp{};                 ///< The instant of all points, driver's clock, ns.
+  /// R_level_base: roll and pitch by the IMU. Nothing: they are the odometry's.
+  std::optional<Eigen::Quaterniond> attitude{};
+  Time received{};  ///< When the sample arrived, by our clock.
 };
-/// The service that accepts scans; the component that uses them offers it.
+/// Takes scans; offered by the component that uses them.
 using ScanService = Service<LidarScan, void>;
 
-/// The component that unpacks the lidar's point clouds, or the scans of a planar lidar, on a strand of its
-/// own, so that they never delay the command strand.
+/// Turns what the sensors send into scans (perception/input), on a strand of its own, so that they never
+/// delay the command strand.
+///
+/// A message that cannot be used is refused with a reason that all operators are sent, at most every 5 s.
+/// Nothing of it is passed on, so the terrain is no longer fresh after half a second and autonomous modes
+/// stand.
 class Scans : public Component {
  public:
-  /// `lidar_height`: height of a planar lidar above the ground, m.
-  Scans(Executor& strand, Log log, double lidar_height, const ScanService& output);
-  /// Processes a message. Call it on the component's strand; it does nothing if the component is not running.
-  void take(const sensor_msgs::msg::PointCloud2& cloud, Time received);
+  using Notify = std::function<void(const Notice&)>;
+
+  Scans(Executor& strand, Log log, std::string robot, const Platform& platform, const ScanService& output,
+        Notify notify);
+
+  /// On its strand; nothing when it does not run. `lidar`: index of Platform::all_lidars().
+  void take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received);
   void take(const sensor_msgs::msg::LaserScan& scan, Time received);
+  void take(const sensor_msgs::msg::Imu& imu);
+  void take(const nav_msgs::msg::Odometry& odometry);
+  void take(const tf2_msgs::msg::TFMessage& transforms);
 
   struct Readers {
-    std::unique_ptr<wire::RawReader> points{}, scan{};
+    std::deque<std::string> names{};  ///< Of topics that the platform's file names.
+    std::vector<std::unique_ptr<wire::RawReader>> readers{};
   };
-  /// Makes the readers of /points and /scan. `taker` returns the component that processes them, or null; it
-  /// is called on the strand of `io`. Errors: those of the participant.
-  static Result<Readers> read(const wire::ComponentIo& io, std::function<Scans*()> taker);
+  /// Readers of the sensors of `platform`, of /scan, /odom and /tf_static; `taker` gives the component that
+  /// takes them now, on the strand of `io`, or null. Errors of the wire.
+  static Result<Readers> read(const wire::ComponentIo& io, const Platform& platform,
+                              std::function<Scans*()> taker);
 
  private:
-  void give(const std::function<Result<PointCloud>()>& points, const std_msgs::msg::Header& header,
-            Time received);
+  struct Waiting {
+    perception::Sweep sweep{};
+    std::string frame{};
+    Time received{};
+  };
+  void take(Result<perception::Sweep> sweep, std::size_t lidar, const std::string& frame, Time received);
+  /// Whether the next odometry brings the poses of the sweep's end.
+  bool is_ahead(const perception::Sweep& sweep) const;
+  void pass_on(std::size_t lidar);
+  void refuse(const Error& error);
+  void notice(Severity severity, const char* code, Reason reason, const std::string& text);
 
-  double lidar_height_;
+  std::string robot_;
+  std::vector<LidarConfig> lidars_;
   const ScanService& output_;
+  Notify notify_;
+  perception::ScanInput input_;
+  PoseHistory history_{};
+  std::vector<std::optional<Waiting>> waiting_;  ///< For odometry as new as the sweep, by lidar.
+  RateLimit<std::string> reported_{5s};
+  bool in_g_reported_{false};
 };
 
-/// Converts a cloud with float32 x, y and z; points that are not finite are omitted. Errors: malformed if the
-/// layout does not fit the data.
-Result<PointCloud> to_points(const sensor_msgs::msg::PointCloud2& cloud);
-/// Converts a planar scan, `height` m above the ground, to points; beams without a return or out of the
-/// scanner's range are omitted. Errors: malformed if its angles are not finite or span more than one turn.
-Result<PointCloud> to_points(const sensor_msgs::msg::LaserScan& scan, double height);
+/// The points of a cloud that has float32 x, y and z, in its frame. `duration`: of a sweep, s.
+/// Errors: malformed when the layout does not fit the data; sensor_times.
+Result<perception::Sweep> to_sweep(const sensor_msgs::msg::PointCloud2& cloud, double duration);
+/// The points of a planar scan, at `height` (m) in its frame; what met nothing, or is out of the scanner's
+/// range, is left out. Reason::malformed when its angles are no numbers or turn more than once.
+Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, double height);
 
 }  // namespace adit::agent

@@ -90,6 +90,13 @@ void Notices::warning(Warning warning, bool stops) const {
                     "lidar_silent",
                     Reason::terrain_stale,
                     "the lidar of " + robot_ + " is silent: it drives blindly, at most 0.3 m/s"});
+  else if (warning == Warning::tilted)
+    send_to_holder(
+        {{},
+         Severity::error,
+         "tilted",
+         Reason::tilted,
+         robot_ + " leans so far that it may tip over: it stands, and in manual it drives at most 0.3 m/s"});
   else
     send_to_holder(
         {{},

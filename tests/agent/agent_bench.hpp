@@ -168,6 +168,7 @@ class AgentBench {
   Duration command_at{};
   Pose2 pose{};  ///< Pose by the driver, odometry frame.
   bool driver_alive{true}, lidar_alive{true};
+  std::string lidar_frame{"base_link"};
   PointCloud obstacles{};  ///< Odometry frame; added to the plain.
   radio::Command last_command{};
   wire::SimulatedNetwork& network() { return network_; }
@@ -248,6 +249,7 @@ class AgentBench {
     }
     sensor_msgs::msg::PointCloud2 c = cloud_of({cloud.data()->data(), 3 * cloud.size()});
     stamp(c.header());
+    c.header().frame_id(lidar_frame);
     (void)points_.write(c);
   }
   void stamp(std_msgs::msg::Header& h) {

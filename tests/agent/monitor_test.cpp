@@ -75,6 +75,25 @@ TEST_P(MonitorTest, SmartJoystickWithADeadLidarStops) {
   EXPECT_THAT(op1.told(), Not(Contains("lidar_silent"))) << "the mode says why itself";
 }
 
+TEST_P(MonitorTest, ScansOfAnUnknownFrameAreRefusedByName) {
+  bench.lidar_frame = "velodyne";
+  bench.run(2s);
+  EXPECT_THAT(op1.told(), Contains("sensor_refused"));
+  const auto& heard = op1.notices;
+  const auto refused =
+      std::find_if(heard.begin(), heard.end(), [](const auto& n) { return n.code() == "sensor_refused"; });
+  ASSERT_NE(refused, heard.end());
+  EXPECT_EQ(refused->reason(), static_cast<std::uint16_t>(Reason::frame_unknown));
+  EXPECT_THAT(refused->text(), testing::HasSubstr("'velodyne'"));
+  bench.stream(op1, 0.0, 300ms);
+  EXPECT_EQ(bench.ask(op1, radio::CMD_MODE, "smart_joystick"), Reason::terrain_stale)
+      << "nothing may drive by them";
+  bench.lidar_frame = "lidar";
+  bench.run(500ms);
+  bench.stream(op1, 0.0, 300ms);
+  EXPECT_EQ(bench.ask(op1, radio::CMD_MODE, "smart_joystick"), Reason::none);
+}
+
 INSTANTIATE_TEST_SUITE_P(ManualStops, MonitorTest, testing::Bool(),
                          [](const auto& each) { return each.param ? "asked_for" : "by_default"; });
 

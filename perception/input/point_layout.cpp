@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/input/point_layout.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string>
+
+namespace adit::perception {
+namespace {
+
+constexpr std::uint8_t kFloat32 = 7, kFloat64 = 8;
+constexpr std::array<std::uint32_t, 9> kSizes{0, 1, 1, 2, 2, 4, 4, 4, 8};
+constexpr std::array kTimeNames{"t", "time", "timestamp", "offset_time", "time_stamp"};
+constexpr std::array kRingNames{"ring", "line", "channel"};
+constexpr std::array kIntensityNames{"intensity", "reflectivity"};
+constexpr std::array kUnits{1.0, 1e-3, 1e-6, 1e-9};
+/// Of a sweep's duration, that the times of one must span at least; and at most, for a lidar that turns
+/// slower than the file says.
+constexpr double kShortest = 1.0 / 40, kLongest = 1.6;
+constexpr std::size_t kFewPoints = 200;  ///< Fewer may all be seen within an instant.
+constexpr double kSinceEpoch = 1e14;     ///< A larger float64 counts ns since 1970.
+constexpr double kSameClock = 1.0;       ///< Absolute times this near to the stamp are of its clock, s.
+constexpr double kMostWrong = 0.01;      ///< Of the points, that may have no usable time.
+
+template <class T>
+double as(const std::uint8_t* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return static_cast<double>(value);
+}
+
+double read(const std::uint8_t* at, std::uint8_t datatype) {
+  switch (datatype) {
+    case 1:
+      return as<std::int8_t>(at);
+    case 2:
+      return as<std::uint8_t>(at);
+    case 3:
+      return as<std::int16_t>(at);
+    case 4:
+      return as<std::uint16_t>(at);
+    case 5:
+      return as<std::int32_t>(at);
+    case 6:
+      return as<std::uint32_t>(at);
+    case kFloat32:
+      return as<float>(at);
+    default:
+      return as<double>(at);
+  }
+}
+
+}  // namespace
+
+Result<PointLayout> PointLayout::of(std::span<const PointField> fields, std::uint32_t point_step) {
+  PointLayout layout;
+  layout.step_ = point_step;
+  for (const PointField& field : fields) {
+    if (field.datatype == 0 || field.datatype > kFloat64)
+      return Error{Reason::malformed,
+                   "the field " + std::string(field.name) + " of the cloud has no known type"};
+    const std::uint32_t size = kSizes[field.datatype];
+    if (point_step < size || field.offset > point_step - size)
+      return Error{Reason::malformed,
+                   "the field " + std::string(field.name) + " of the cloud lies outside its point"};
+  }
+  const auto find = [&](const auto& names) -> std::optional<Place> {
+    for (const char* name : names)
+      for (const PointField& field : fields)
+        if (field.name == name) return Place{field.offset, field.datatype};
+    return std::nullopt;
+  };
+  for (const auto& [name, offset] : {std::pair{"x", &layout.x_}, {"y", &layout.y_}, {"z", &layout.z_}}) {
+    const auto place = find(std::array{name});
+    if (!place || place->datatype != kFloat32)
+      return Error{Reason::malformed, std::string("the cloud has no float32 ") + name};
+    *offset = place->offset;
+  }
+  layout.time_ = find(kTimeNames);
+  layout.ring_ = find(kRingNames);
+  layout.intensity_ = find(kIntensityNames);
+  return layout;
+}
+
+Result<Sweep> PointLayout::unpack(std::span<const std::uint8_t> data, std::uint64_t count,
+                                  std::uint64_t stamp, double duration) const {
+  if (count > data.size() / std::max<std::uint32_t>(step_, 1))
+    return Error{Reason::malformed, "the cloud has less data than points"};
+  Sweep sweep;
+  sweep.stamp = stamp;
+  sweep.timed = time_ && count > 0;
+  sweep.points.resize(count);
+  const double first = sweep.timed ? read(data.data() + time_->offset, time_->datatype) : 0.0;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  const std::uint8_t* at = data.data();
+  for (TimedPoint& point : sweep.points) {
+    std::memcpy(&point.position.x(), at + x_, 4);
+    std::memcpy(&point.position.y(), at + y_, 4);
+    std::memcpy(&point.position.z(), at + z_, 4);
+    point.time = 0;
+    if (time_) {
+      const double time = read(at + time_->offset, time_->datatype) - first;
+      point.time = static_cast<float>(time);
+      if (time < least) least = time;  // False for what is not a number.
+      if (time > most) most = time;
+    }
+    point.ring =
+        ring_ ? static_cast<std::uint16_t>(read(at + ring_->offset, ring_->datatype)) : std::uint16_t{0};
+    point.intensity =
+        intensity_ ? static_cast<float>(read(at + intensity_->offset, intensity_->datatype)) : 0.0f;
+    at += step_;
+  }
+  if (sweep.timed)
+    if (const auto scaled = scale_times(sweep, first, least, most, duration); !scaled) return scaled.error();
+  return sweep;
+}
+
+std::optional<double> PointLayout::unit(double first, double span, std::size_t count, double duration) const {
+  const double usual = time_->datatype == kFloat32                                    ? 1.0
+                       : time_->datatype == kFloat64 && std::abs(first) < kSinceEpoch ? 1.0
+                                                                                      : 1e-9;
+  if (count < kFewPoints) return span * usual <= kLongest * duration ? std::optional(usual) : std::nullopt;
+  // The bounds lie less than a factor of 1000 apart, so at most one unit fits.
+  for (const double each : kUnits)
+    if (span * each >= kShortest * duration && span * each <= kLongest * duration) return each;
+  return std::nullopt;
+}
+
+Result<void> PointLayout::scale_times(Sweep& sweep, double first, double least, double most,
+                                      double duration) const {
+  if (most <= least && std::isfinite(first)) {
+    // All points of one instant, as a simulator or a flash lidar takes them.
+    sweep.timed = false;
+    for (TimedPoint& point : sweep.points) point.time = 0;
+    return {};
+  }
+  const auto seconds =
+      std::isfinite(first) ? unit(first, most - least, sweep.points.size(), duration) : std::nullopt;
+  if (!seconds)
+    return {Reason::sensor_times, "the times of the cloud's points span " + std::to_string(most - least) +
+                                      ", which in no unit is a sweep of " + std::to_string(duration) + " s"};
+  // Times since 1970 count from the stamp; where that is of another clock, the stamp is the first point's.
+  double offset = first * *seconds;
+  if (std::abs(offset) > kLongest * duration) {
+    const double since_stamp = offset - static_cast<double>(sweep.stamp) * 1e-9;
+    offset = std::abs(since_stamp) < kSameClock ? since_stamp : -least * *seconds;
+  }
+  const auto scale = static_cast<float>(*seconds), after = static_cast<float>(offset);
+  const auto farthest = static_cast<float>(kSameClock + kLongest * duration);
+  std::size_t wrong = 0;
+  for (TimedPoint& point : sweep.points) {
+    point.time = point.time * scale + after;
+    // Negated, so that what is not a number is wrong, too.
+    if (!(std::abs(point.time) <= farthest)) {
+      ++wrong;
+      point.position.x() = std::numeric_limits<float>::quiet_NaN();
+      point.time = after;
+    }
+  }
+  if (static_cast<double>(wrong) > kMostWrong * static_cast<double>(sweep.points.size()))
+    return {Reason::sensor_times, "the times of " + std::to_string(wrong) + " of the cloud's " +
+                                      std::to_string(sweep.points.size()) + " points are none of its sweep"};
+  return {};
+}
+
+}  // namespace adit::perception

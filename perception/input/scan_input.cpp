@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/input/scan_input.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace adit::perception {
+namespace {
+
+constexpr std::uint64_t kClockSetBack =
+    1'000'000'000;                  ///< An older sweep is of a clock that was set back, ns.
+constexpr double kOldSweeps = 1.5;  ///< Of its period, that another lidar's sweep is merged.
+constexpr double kReach =
+    30;  ///< A lowest beam that meets level ground within so far must return something, m.
+
+double after(std::uint64_t stamp, std::uint64_t than) {
+  return static_cast<double>(static_cast<std::int64_t>(stamp - than)) * 1e-9;
+}
+
+}  // namespace
+
+ScanInput::ScanInput(const Platform& platform) : platform_(platform), body_(platform) {
+  for (const LidarConfig& lidar : platform.all_lidars()) {
+    const double down = std::tan(-lidar.lowest * M_PI / 180);
+    const bool sees_ground = !platform.flies() && !platform.lidars.empty() && lidar.rings > 1 &&
+                             down * kReach > lidar.mounting.z && lidar.max_range >= kReach;
+    sources_.push_back({lidar, 0, 0, {}, sees_ground});
+  }
+  if (platform.imu) tilt_.emplace(platform.imu->mounting);
+}
+
+Result<Pose3> ScanInput::find(const std::string& frame) const {
+  const std::string name = frame_name(frame);
+  if (name == "base_link" || name.empty()) return Pose3{};
+  for (const Source& source : sources_)
+    if (source.lidar.frame == name) return source.lidar.mounting.pose();
+  if (platform_.imu && platform_.imu->frame == name) return platform_.imu->mounting.pose();
+  if (auto T_base_frame = tree_.find("base_link", name)) return T_base_frame;
+  return Error{Reason::frame_unknown,
+               "the frame '" + frame + "' is neither in `sensors` of the platform's file nor in tf_static"};
+}
+
+Result<void> ScanInput::add(const ImuSample& sample, const std::string& frame) {
+  if (!tilt_) return {};
+  if (frame_name(frame) != imu_frame_ || imu_frame_.empty()) {
+    // The file's place counts for its own frame; what the driver calls otherwise is looked up.
+    const bool own = frame.empty() || frame_name(frame) == platform_.imu->frame;
+    const auto T_base_imu = own ? Result<Pose3>(platform_.imu->mounting.pose()) : find(frame);
+    if (!T_base_imu) return T_base_imu.error();
+    const Eigen::Vector3d angles = T_base_imu->orientation.toRotationMatrix().eulerAngles(2, 1, 0);
+    tilt_.emplace(Mounting{T_base_imu->position.x(), T_base_imu->position.y(), T_base_imu->position.z(),
+                           angles[2], angles[1], angles[0]});
+    imu_frame_ = own ? platform_.imu->frame : frame_name(frame);
+  }
+  return tilt_->add(sample);
+}
+
+void ScanInput::add_velocity(std::uint64_t stamp, const Eigen::Vector3d& velocity) {
+  if (tilt_) tilt_->set_velocity(stamp, velocity);
+}
+
+std::uint64_t ScanInput::end_of(const Sweep& sweep) {
+  if (!sweep.timed || sweep.stamp == 0) return sweep.stamp;
+  float last = sweep.points.front().time;
+  for (const TimedPoint& point : sweep.points) last = std::max(last, point.time);
+  return sweep.stamp +
+         static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(double{last} * 1e9)));
+}
+
+Result<std::optional<Eigen::Quaterniond>> ScanInput::attitude_at(std::uint64_t stamp) const {
+  using Attitude = std::optional<Eigen::Quaterniond>;
+  if (!tilt_ || tilt_->newest() == 0 || stamp == 0) return Attitude{};
+  const auto attitude = tilt_->at(stamp);
+  if (attitude) return Attitude{*attitude};
+  // An IMU that is silent leaves the attitude to the odometry; one that is mounted otherwise knows that
+  // nothing fits.
+  if (attitude.reason() == Reason::imu_mounting) return attitude.error();
+  return Attitude{};
+}
+
+Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index, const std::string& frame,
+                                           const PoseFunction& pose) {
+  if (index >= sources_.size()) return Error{Reason::bad_argument, "the platform has no such lidar"};
+  Source& source = sources_[index];
+  const auto T_base_sensor = find(frame);
+  if (!T_base_sensor) return T_base_sensor.error();
+  if (sweep.stamp != 0 && sweep.stamp < source.newest && source.newest - sweep.stamp < kClockSetBack)
+    return Error{Reason::sample_stale, "a scan came after a newer one"};
+  source.newest = sweep.stamp;
+
+  Scan scan;
+  scan.stamp = end_of(sweep);
+  auto attitude = attitude_at(scan.stamp);
+  if (!attitude) return attitude.error();
+  scan.attitude = *attitude;
+  scan.origin = source.lidar.mounting.position().cast<float>();
+
+  std::uint64_t from = scan.stamp;
+  float before = 0;  // From the sweep's stamp to the first pose, s.
+  if (sweep.timed && sweep.stamp != 0) {
+    float first = sweep.points.front().time;
+    for (const TimedPoint& point : sweep.points) first = std::min(first, point.time);
+    before = first;
+    from = sweep.stamp +
+           static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(double{first} * 1e9)));
+  }
+  Deskew deskew = Deskew::none(*T_base_sensor);
+  if (from != scan.stamp) {
+    // Roll and pitch of the IMU turn the sweep, too.
+    const PoseFunction leaning = [&](std::uint64_t stamp) -> Result<Pose3> {
+      auto T_odom_base = pose(stamp);
+      if (!T_odom_base || !scan.attitude) return T_odom_base;
+      const auto R_level_base = attitude_at(stamp);
+      if (R_level_base && *R_level_base)
+        T_odom_base->orientation = with_attitude(*T_odom_base, **R_level_base).orientation;
+      return T_odom_base;
+    };
+    if (auto made = Deskew::over(from, scan.stamp, leaning, *T_base_sensor)) {
+      deskew = std::move(*made);
+      scan.deskewed = true;
+    }
+  }
+
+  const auto least2 = static_cast<float>(source.lidar.min_range * source.lidar.min_range);
+  const auto most2 = static_cast<float>(source.lidar.max_range * source.lidar.max_range);
+  // What arrives in base_link was measured from the lidar, all the same.
+  const bool moved = frame_name(frame) == "base_link" || frame.empty();
+  const Eigen::Vector3f origin = moved ? scan.origin : Eigen::Vector3f(0, 0, 0);
+  scan.points.reserve(sweep.points.size());
+  for (const TimedPoint& point : sweep.points) {
+    const float range2 = (point.position - origin).squaredNorm();
+    if (!std::isfinite(range2)) {
+      ++scan.counts.not_finite;
+      continue;
+    }
+    if (range2 < least2 || range2 > most2) {
+      ++scan.counts.out_of_range;
+      continue;
+    }
+    const Eigen::Vector3f at = deskew(point.position, point.time - before);
+    if (body_.contains(at)) {
+      ++scan.counts.own_body;
+      continue;
+    }
+    scan.points.push_back(at);
+  }
+  scan.counts.used = scan.points.size();
+  if (source.must_return && scan.counts.used == 0)
+    return Error{Reason::scan_empty, "none of the scan's " + std::to_string(sweep.points.size()) +
+                                         " points is a return; is the lidar covered?"};
+  if (sources_.size() == 1) return std::optional<Scan>(std::move(scan));
+  if (index > 0) {
+    source.stamp = scan.stamp;
+    source.points = std::move(scan.points);
+    return std::optional<Scan>{};
+  }
+  for (std::size_t n = 1; n < sources_.size(); ++n) merge(sources_[n], pose, scan);
+  return std::optional<Scan>(std::move(scan));
+}
+
+void ScanInput::merge(const Source& other, const PoseFunction& pose, Scan& scan) const {
+  if (other.points.empty() || std::fabs(after(scan.stamp, other.stamp)) > kOldSweeps / other.lidar.rate)
+    return;
+  Eigen::Isometry3f T = Eigen::Isometry3f::Identity();
+  const auto now = pose(scan.stamp), then = pose(other.stamp);
+  if (now && then) {
+    const Pose3 T_now_then = now->inverse() * *then;
+    T.linear() = T_now_then.orientation.toRotationMatrix().cast<float>();
+    T.translation() = T_now_then.position.cast<float>();
+  }
+  for (const Eigen::Vector3f& p : other.points) scan.points.push_back(T * p);
+  scan.counts.used = scan.points.size();
+}
+
+Pose3 with_attitude(const Pose3& T_odom_base, const Eigen::Quaterniond& R_level_base) {
+  return {T_odom_base.position,
+          Eigen::Quaterniond(Eigen::AngleAxisd(T_odom_base.yaw(), Eigen::Vector3d::UnitZ())) * R_level_base};
+}
+
+PointCloud levelled(const Scan& scan) {
+  if (!scan.attitude) return scan.points;
+  const Eigen::Matrix3f R = scan.attitude->toRotationMatrix().cast<float>();
+  PointCloud out;
+  out.reserve(scan.points.size());
+  for (const Eigen::Vector3f& p : scan.points) out.push_back(R * p);
+  return out;
+}
+
+}  // namespace adit::perception

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "perception/input/body_filter.hpp"
+#include "perception/input/deskew.hpp"
+#include "perception/input/frame_tree.hpp"
+#include "perception/input/tilt_filter.hpp"
+#include "perception/types/sweep.hpp"
+
+namespace adit::perception {
+
+/// What became of the points of a scan.
+struct ScanCounts {
+  std::size_t used{};
+  std::size_t not_finite{};    ///< No return.
+  std::size_t out_of_range{};  ///< Nearer or farther than the lidar measures.
+  std::size_t own_body{};
+};
+
+/// One scan of all lidars, and how the body leans. Every layer gets the same.
+struct Scan {
+  std::uint64_t stamp{};  ///< The instant of all points, driver's clock, ns; 0: the driver sends none.
+  PointCloud points{};    ///< In base_link at `stamp`, m.
+  Eigen::Vector3f origin{0, 0, 0};  ///< Of the rays: the first lidar in base_link, m.
+  /// R_level_base: roll and pitch of the body by its IMU. Nothing: the attitude is the odometry's.
+  std::optional<Eigen::Quaterniond> attitude{};
+  ScanCounts counts{};
+  bool deskewed{false};
+};
+
+/// A pose with the yaw of `T_odom_base` and this roll and pitch.
+Pose3 with_attitude(const Pose3& T_odom_base, const Eigen::Quaterniond& R_level_base);
+/// The points of a scan in gravity's axes: x is forward, level; as base_link's where the attitude is not
+/// known.
+PointCloud levelled(const Scan& scan);
+
+/// Prepares scans: extrinsics, deskewing, attitude, and what is no return.
+///
+/// Several lidars are merged: the sweeps of the first one set the time, and the newest sweep of each other
+/// one is moved there. Pure: poses and stamps come in as values, and no clock is read.
+class ScanInput {
+ public:
+  explicit ScanInput(const Platform& platform);
+
+  /// One fixed transform, as tf_static has it. Errors: those of FrameTree::set.
+  Result<void> add_transform(const std::string& parent, const std::string& child,
+                             const Pose3& T_parent_child) {
+    return tree_.set(parent, child, T_parent_child);
+  }
+  /// One sample of the IMU. Errors: frame_unknown; those of TiltFilter::add.
+  Result<void> add(const ImuSample& sample, const std::string& frame);
+  /// What the body drives by its odometry, body frame, m/s.
+  void add_velocity(std::uint64_t stamp, const Eigen::Vector3d& velocity);
+
+  /// The last instant of a sweep, to which its points are moved, ns. Poses up to it are needed for deskewing.
+  static std::uint64_t end_of(const Sweep& sweep);
+
+  /// One sweep of lidar `index` of Platform::all_lidars(). Nothing when it waits for a sweep of the first
+  /// lidar.
+  ///
+  /// @param frame  The frame_id of the message; base_link: points are there already.
+  /// @param pose   T_odom_base over the time of the sweep.
+  /// Errors: frame_unknown; sample_stale for a sweep that is older than the last one; scan_empty without any
+  /// return, where the lidar must see the ground; imu_mounting.
+  Result<std::optional<Scan>> add(const Sweep& sweep, std::size_t index, const std::string& frame,
+                                  const PoseFunction& pose);
+
+  /// The samples of the IMU are in g and are scaled.
+  bool imu_in_g() const { return tilt_ && tilt_->in_g(); }
+  /// The newest sample of the IMU, ns; 0: none.
+  std::uint64_t newest_imu() const { return tilt_ ? tilt_->newest() : 0; }
+  /// T_base_frame: by the platform's file, then by tf_static. Error: frame_unknown.
+  Result<Pose3> find(const std::string& frame) const;
+
+ private:
+  struct Source {
+    LidarConfig lidar{};
+    std::uint64_t newest{};  ///< Stamp of the newest sweep.
+    std::uint64_t stamp{};   ///< Of `points`.
+    PointCloud points{};     ///< Of the newest sweep, base_link at `stamp`.
+    bool must_return{};      ///< Its beams reach the ground.
+  };
+  Result<std::optional<Eigen::Quaterniond>> attitude_at(std::uint64_t stamp) const;
+  void merge(const Source& other, const PoseFunction& pose, Scan& scan) const;
+
+  Platform platform_;
+  BodyFilter body_;
+  FrameTree tree_{};
+  std::vector<Source> sources_{};
+  std::optional<TiltFilter> tilt_{};
+  std::string imu_frame_{};
+};
+
+}  // namespace adit::perception
