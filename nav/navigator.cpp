@@ -24,7 +24,7 @@ Navigator::Navigator(const Platform& platform, const TerrainParams& terrain, Pla
       tracker_(platform),
       planner_(make_planner_()) {
   if (platform.flies()) air_.emplace(platform);
-  obstacles_.reserve(std::max<std::size_t>(TerrainMap::kMaxCells, AirMap::kMost) + kMostPredicted);
+  obstacles_.reserve(std::max<std::size_t>(terrain_.max_cells(), AirMap::kMost) + kMostPredicted);
 }
 
 void Navigator::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {

@@ -1,47 +1,97 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "nav/terrain/drops.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace adit::nav {
 namespace {
 
-constexpr int kBelieved = 3;                       ///< rays; fewer are reflections
-constexpr float kFarthest = 4.0f;                  ///< m: beyond, rays are too far apart
-constexpr float kNearest = 0.3f;                   ///< m
-constexpr int kEdgeCells = 4;                      ///< between a ray's place and the last ground seen
+constexpr float kRay =
+    0.75f;  ///< log-odds that a ray below the ground adds: of three one may be a reflection
+constexpr float kBelieved = 2.2f;      ///< the log-odds of Drops::kBlocks
+constexpr float kSlows = 1.7f;         ///< silence without a second cue says no more
+constexpr float kTold = 1.4f;          ///< less, a single ray, is noise
+constexpr float kMost = 6.0f;          ///< more adds nothing
+constexpr float kLeast = -2.2f;        ///< and of ground that was seen often
+constexpr float kGround = 0.75f;       ///< that a measurement of the ground takes away
+constexpr float kNearest = 0.3f;       ///< m
+constexpr float kSilenceTells = 2.0f;  ///< m: up to here silence alone makes a drop
+constexpr float kGrazing =
+    0.125f;  ///< a ray that meets the ground flatter may not come back from wet asphalt
 constexpr int kRing = RayImage::kColumns * 3 / 8;  ///< directions in which a ring gives returns
-constexpr std::uint8_t kUnknown = 255;
+
+std::size_t at(int row, int column) { return static_cast<std::size_t>(row * RayImage::kColumns + column); }
 
 }  // namespace
 
-Drops::Drops(const TerrainParams& params)
+Drops::Drops(const TerrainParams& params, const Geometry& geometry, const GroundGrid& ground)
     : params_(params),
-      votes_(GroundGrid::kTorus * GroundGrid::kTorus, 0),
-      stamp_(GroundGrid::kTorus * GroundGrid::kTorus, 0.0f),
-      quiet_(RayImage::kRows * RayImage::kColumns, kUnknown) {
-  cells_.reserve(GroundGrid::kSide * GroundGrid::kSide);
+      geometry_(geometry),
+      edge_cells_(static_cast<int>(std::ceil(geometry.half_body / GroundGrid::kCell)) + 1),
+      odds_(ground.places(), 0.0f),
+      rays_below_(ground.places(), 0),
+      stamp_(ground.places(), 0.0f),
+      quiet_(RayImage::kRows * RayImage::kColumns, 0),
+      returned_(RayImage::kRows * RayImage::kColumns, 0) {
+  cells_.reserve(ground.cells());
 }
 
 void Drops::clear() {
-  std::fill(votes_.begin(), votes_.end(), std::uint8_t{0});
+  std::fill(odds_.begin(), odds_.end(), 0.0f);
+  std::fill(rays_below_.begin(), rays_below_.end(), std::uint8_t{0});
+  std::fill(quiet_.begin(), quiet_.end(), std::uint8_t{0});
   cells_.clear();
 }
 
-void Drops::begin_scan(const GroundGrid& ground, float now) {
+void Drops::begin_scan(const GroundGrid& ground, float now, float farthest) {
   now_ = now;
-  ground.entered([this](std::size_t place) { votes_[place] = 0; });
+  farthest_ = farthest;
+  ground.entered([this](std::size_t place) { odds_[place] = 0, rays_below_[place] = 0; });
 }
 
-void Drops::vote(int index, int votes, const GroundGrid& ground) {
+bool Drops::has_cue(int index, const GroundGrid& ground) const {
+  const int side = ground.side(), i = index / side, j = index % side;
+  for (int a = std::max(i - 1, 0); a <= std::min(i + 1, side - 1); ++a)
+    for (int b = std::max(j - 1, 0); b <= std::min(j + 1, side - 1); ++b) {
+      if (rays_below_[ground.place(a * side + b)] > 0) return true;
+    }
+  return false;
+}
+
+void Drops::vote(int index, float range, Cue cue, const GroundGrid& ground) {
   const std::size_t place = ground.place(index);
-  votes_[place] = static_cast<std::uint8_t>(std::min(votes_[place] + votes, 100));
+  float& odds = odds_[place];
+  if (cue == Cue::ray) {
+    odds = std::min(odds + kRay, kMost);
+    rays_below_[place] = static_cast<std::uint8_t>(std::min(rays_below_[place] + 1, 255));
+  } else if (range <= kSilenceTells || has_cue(index, ground)) {
+    odds = std::min(odds + 3 * kRay, kMost);
+  } else {
+    odds = std::max(odds, std::min(odds + kRay, kSlows));
+  }
   stamp_[place] = now_;
   any_ = true;
 }
 
-void Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, int votes,
-                 const GroundGrid& ground) {
+bool Drops::under_ground(const View& view, const Eigen::Vector3f& ray, float range, float end,
+                         const GroundGrid& ground) const {
+  const float length = ray.head<2>().norm();
+  const Eigen::Vector3f way = ray / length;
+  float under = 0;
+  for (float r = range + GroundGrid::kCell; r < end; r += GroundGrid::kCell) {
+    const Eigen::Vector3f p = view.sensor + r * way;
+    if (!ground.inside(p.x(), p.y())) break;
+    const int index = ground.window(p.x(), p.y());
+    if (ground.measured(index) && p.z() < ground.height(index) - geometry_.depth / 2)
+      under += GroundGrid::kCell;
+  }
+  // One cell may be that of an edge itself.
+  return under > 1.5f * GroundGrid::kCell;
+}
+
+Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, Cue cue,
+                       const GroundGrid& ground) {
   // Where the ray went below the ground, as far as that is level or bends little.
   float t = (ground.at(view.sensor.x() + end * ray.x(), view.sensor.y() + end * ray.y()) - view.sensor.z()) /
             ray.z();
@@ -49,74 +99,112 @@ void Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, int vo
     t = (ground.at(view.sensor.x() + t * ray.x(), view.sensor.y() + t * ray.y()) - view.sensor.z()) / ray.z();
   const float length = std::sqrt(ray.x() * ray.x() + ray.y() * ray.y());
   const float range = t * length;
-  if (!(t < end && range < kFarthest && range > kNearest)) return;
+  if (!(t < end && range < farthest_ && range > kNearest)) return Cue::none;
   const float ux = ray.x() / length, uy = ray.y() / length;
-  int last = -1;
-  for (int back = 0; back <= kEdgeCells; ++back) {
+  const auto index_at = [&](float r) {
+    return ground.window(view.sensor.x() + r * ux, view.sensor.y() + r * uy);
+  };
+  // How far back the ground ends that was seen; where rings lie far apart it must have been seen.
+  int back = 0;
+  for (bool met = false; back <= edge_cells_ && !met; ++back) {
     const float r = range - static_cast<float>(back) * GroundGrid::kCell;
-    if (r < kNearest) return;
-    const int index = ground.window(view.sensor.x() + r * ux, view.sensor.y() + r * uy);
-    if (index == last) continue;
-    if (back > 0 && ground.measured(index)) return;
-    vote(index, votes, ground);
+    met = r < kNearest || (back > 0 && ground.measured(index_at(r)));
+    if (met) break;
+  }
+  if (back > edge_cells_ && range > geometry_.sure) return Cue::none;
+  if (range > geometry_.sure || (cue == Cue::ray && under_ground(view, ray, range, end * length, ground)))
+    cue = Cue::doubtful;
+  int last = -1;
+  for (int n = 0; n < back; ++n) {
+    const int index = index_at(range - static_cast<float>(n) * GroundGrid::kCell);
+    if (index != last) vote(index, range, cue, ground);
     last = index;
   }
+  return cue;
 }
 
 void Drops::below(const View& view, const Eigen::Vector3f& point, const GroundGrid& ground) {
   const Eigen::Vector3f ray = point - view.sensor;
-  if (ray.head<2>().norm() < kFarthest) vote(ground.window(point.x(), point.y()), 1, ground);
-  if (ray.z() < -0.01f) pass(view, ray, 1.0f, 1, ground);
+  const float range = ray.head<2>().norm();
+  // What is not lower than the ground around the robot lies behind something that is higher.
+  const Cue cue = ground.below_plane(point) > geometry_.depth ? Cue::ray : Cue::doubtful;
+  if (ray.z() > -0.01f) return;
+  const Cue passed = pass(view, ray, 1.0f, cue, ground);
+  // Where it lies there is no ground, either.
+  if (passed != Cue::none && range < farthest_ && ground.inside(point.x(), point.y()))
+    vote(ground.window(point.x(), point.y()), range, passed, ground);
+}
+
+void Drops::turn_columns(const View& view) {
+  Eigen::Vector2f ahead = view.turn.col(0).head<2>();
+  const float length = ahead.norm();
+  if (length < 1e-3f) return;
+  ahead /= length;
+  for (int c = 0; c < RayImage::kColumns; ++c) {
+    const Eigen::Vector2f way = RayImage::direction_of(c);
+    column_[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(
+        RayImage::column_of({ahead.dot(way), ahead.x() * way.y() - ahead.y() * way.x()}));
+  }
 }
 
 void Drops::silent(const View& view, const RayImage& rays, const GroundGrid& ground) {
   constexpr int kLevel = 48;  // rows from here on look up, or so far ahead that nothing is expected
+  turn_columns(view);
   for (int row = 1; row < kLevel; ++row) {
     int count = 0;
-    for (int c = 0; c < RayImage::kColumns; ++c) count += !rays.empty_at(row, c);
-    std::uint8_t* quiet = &quiet_[static_cast<std::size_t>(row * RayImage::kColumns)];
-    for (int c = 0; c < RayImage::kColumns && count > 0; ++c) {
-      if (!rays.empty_at(row, c)) {
-        quiet[c] = 0;
+    for (int c = 0; c < RayImage::kColumns; ++c) {
+      const bool hit = !rays.empty_at(row, c);
+      count += hit;
+      returned_[at(row, c)] |= static_cast<std::uint8_t>(hit);
+    }
+    if (count == 0) continue;
+    for (int c = 0; c < RayImage::kColumns; ++c) {
+      const int own = column_[static_cast<std::size_t>(c)];
+      std::uint8_t& quiet = quiet_[at(row, c)];
+      if (!rays.empty_at(row, own)) {
+        quiet = 0;
         continue;
       }
-      if (quiet[c] == kUnknown) continue;
+      if (!returned_[at(row, own)]) continue;
       bool lonely = count < kRing;  // a ring on the border of two rows flickers; a single ray may fail
       for (int r = row - 1; r <= row + 1; ++r)
-        for (int k = c - 1; k <= c + 1; ++k) lonely |= !rays.empty_at(r, k);
+        for (int k = own - 1; k <= own + 1; ++k) lonely |= !rays.empty_at(r, k);
       if (lonely) {
-        quiet[c] = 0;
+        quiet = 0;
         continue;
       }
-      if (quiet[c] < params_.silent) ++quiet[c];
-      if (quiet[c] < params_.silent) continue;
-      const Eigen::Vector2f way = RayImage::direction_of(c);
+      if (quiet < params_.silent) ++quiet;
+      if (quiet < params_.silent) continue;
+      const Eigen::Vector2f way = RayImage::direction_of(own);
       const Eigen::Vector3f ray = view.turn * Eigen::Vector3f(way.x(), way.y(), RayImage::tangent_of(row));
-      if (ray.z() < -0.05f) pass(view, ray, kFarthest, kBelieved, ground);
+      if (ray.z() < -kGrazing * ray.head<2>().norm()) pass(view, ray, farthest_, Cue::doubtful, ground);
     }
   }
 }
 
 void Drops::finish(const View& view, const RayImage& rays, const GroundGrid& ground) {
   cells_.clear();
+  const auto window = static_cast<int>(ground.cells());
   if (!any_) return;
   any_ = false;
-  for (int index = 0; index < GroundGrid::kSide * GroundGrid::kSide; ++index) {
+  for (int index = 0; index < window; ++index) {
     const std::size_t place = ground.place(index);
-    if (votes_[place] == 0) continue;
+    float& odds = odds_[place];
+    if (odds == 0) continue;
+    any_ = true;
     if (ground.fresh(index)) {
-      votes_[place] = 0;
+      odds = std::max(std::min(odds, 0.0f) - kGround, kLeast);
+      rays_below_[place] = 0;
       continue;
     }
-    any_ = true;
-    if (votes_[place] < kBelieved) continue;
-    const Eigen::Vector2f at = ground.middle(index);
-    const Eigen::Vector3f seen = view.seen(at.x(), at.y(), ground.height(index));
+    if (odds <= 0) continue;
+    const Eigen::Vector2f middle = ground.middle(index);
+    const Eigen::Vector3f seen = view.seen(middle.x(), middle.y(), ground.height(index));
     if (seen.z() < rays.lowest() * seen.head<2>().norm())
       stamp_[place] = now_;  // in the blind spot
     else if (now_ - stamp_[place] > params_.drop_memory)
-      votes_[place] = 0;
-    if (votes_[place] > 0) cells_.push_back(static_cast<std::uint16_t>(index));
+      odds = 0, rays_below_[place] = 0;
+    if (odds >= kTold) cells_.push_back({static_cast<std::uint32_t>(index), 1 / (1 + std::exp(-odds))});
   }
 }
 

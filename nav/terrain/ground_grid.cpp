@@ -9,37 +9,73 @@ namespace {
 
 constexpr float kLongAgo = -1e9f;
 constexpr float kFlat = 0.02f;       ///< m: unevenness that is no slope
+constexpr float kBend = 0.05f;       ///< by so much the ground's gradient differs from that of the plane that
+                                     ///< fits it: a road's crown, 2.5 % to each side
 constexpr int kBlindCells = 5;       ///< over more cells nobody knows how the ground goes on
 constexpr int kFallCells = 3;        ///< the same where it falls: rays pass over what is lower
 constexpr float kNewest = 0.5f;      ///< weight of a scan in a cell's height
 constexpr float kSame = 0.05f;       ///< m: what differs more is another thing
 constexpr std::size_t kEnough = 40;  ///< cells that tell how scan and map lie to each other
 constexpr float kRecent = 5.0f;      ///< s: and are younger than this
-constexpr float kUnsure = 0.003f;    ///< m: such a disagreement is noise
+constexpr float kUnsure = 0.003f;    ///< m: such a disagreement is noise, also of a tilt at kArm
+constexpr float kArm = 2.0f;         ///< m
 constexpr float kMostLift = 0.25f;   ///< m a scan
+constexpr float kMostTilt = 0.0524f;        ///< 3 degrees a scan
+constexpr std::size_t kMostSamples = 1024;  ///< of a fit: more add nothing
+constexpr float kSampleNoise = 0.02f;       ///< m: of the lowest return of a cell
+constexpr float kSigmaHeight = 0.03f;       ///< m: of the lidar above the ground
+constexpr float kExplained = 0.6f;          ///< of the samples must lie near a plane that is believed
+constexpr float kNearGround = 1.0f;         ///< m: the plane is that of the blind ring and so much around it
+constexpr float kSeenFrom = 1.0f, kSeenTo = 6.0f;  ///< m: a first scan tells the plane in this ring
 
 /// The gap of a cell beside one of this gap.
 constexpr std::uint8_t after(std::uint8_t gap) {
-  return gap == GroundGrid::kNever ? gap : static_cast<std::uint8_t>(gap + 1);
+  return gap >= GroundGrid::kNever - 1 ? gap : static_cast<std::uint8_t>(gap + 1);
+}
+
+int half_of(float range) { return static_cast<int>(std::ceil((range + 0.25f) / GroundGrid::kCell)); }
+
+/// The torus that holds a window of so many cells around the robot.
+int bits_of(int half) {
+  int bits = 7;
+  while ((1 << bits) < 2 * half + 1 + 8) ++bits;
+  return bits;
+}
+
+/// Every n-th, so that kMostSamples are left.
+void thin_out(std::vector<Eigen::Vector3f>& samples) {
+  const std::size_t every = (samples.size() + kMostSamples - 1) / kMostSamples;
+  if (every < 2) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < samples.size(); i += every) samples[kept++] = samples[i];
+  samples.resize(kept);
 }
 
 }  // namespace
 
 GroundGrid::GroundGrid(const GroundParams& params)
     : params_(params),
-      low_(kTorus * kTorus, kNothing),
-      height_(kTorus * kTorus, 0.0f),
-      stamp_(kTorus * kTorus, kLongAgo),
-      is_ground_(kTorus * kTorus, 0),
-      ground_(kSide * kSide, 0.0f),
-      floor_(kSide * kSide, 0.0f),
-      gap_(kSide * kSide, kNever),
-      fresh_(kSide * kSide, 0) {
-  steps_.reserve(kSide * kSide);
-  differences_.reserve(kSide * kSide);
-  entered_.reserve(kTorus * kTorus);
-  for (int dx = -kHalf; dx <= kHalf; ++dx)
-    for (int dy = -kHalf; dy <= kHalf; ++dy) {
+      half_(half_of(params.range)),
+      side_(2 * half_ + 1),
+      bits_(bits_of(half_)),
+      mask_((1 << bits_) - 1),
+      kept_((1 << bits_) / 2 - 1) {
+  const std::size_t places = std::size_t{1} << (2 * bits_);
+  const auto cells = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
+  low_.assign(places, kNothing);
+  high_.assign(places, -kNothing);
+  height_.assign(places, 0.0f);
+  stamp_.assign(places, kLongAgo);
+  is_ground_.assign(places, 0);
+  ground_.assign(cells, 0.0f);
+  floor_.assign(cells, 0.0f);
+  gap_.assign(cells, kNever);
+  fresh_.assign(cells, 0);
+  samples_.reserve(cells);
+  entered_.reserve(places);
+  steps_.reserve(cells);
+  for (int dx = -half_; dx <= half_; ++dx)
+    for (int dy = -half_; dy <= half_; ++dy) {
       if (dx == 0 && dy == 0) continue;
       // One step towards the middle along the longer axis, and diagonally where there is a diagonal.
       const int sx = (dx > 0) - (dx < 0), sy = (dy > 0) - (dy < 0);
@@ -51,12 +87,13 @@ GroundGrid::GroundGrid(const GroundParams& params)
       if (diagonal) ax = bx, ay = by;
       if (dy == 0 && std::abs(dx) > 1) by = 1;
       if (dx == 0 && std::abs(dy) > 1) bx = 1;
-      const auto index = [](int i, int j) {
-        return static_cast<std::uint16_t>((i + kHalf) * kSide + j + kHalf);
+      const auto index = [this](int i, int j) {
+        return static_cast<std::uint32_t>((i + half_) * side_ + j + half_);
       };
       const auto byte = [](int v) { return static_cast<std::int8_t>(v); };
-      steps_.push_back({index(dx, dy), index(ax, ay), index(bx, by), byte(dx), byte(dy), byte(dx - ax),
-                        byte(dy - ay), byte(dx - bx), byte(dy - by)});
+      steps_.push_back({index(dx, dy), index(ax, ay), index(bx, by), static_cast<std::int16_t>(dx),
+                        static_cast<std::int16_t>(dy), byte(dx - ax), byte(dy - ay), byte(dx - bx),
+                        byte(dy - by)});
     }
   const auto ring = [](const Step& s) { return std::max(std::abs(s.dx), std::abs(s.dy)); };
   const auto off_axis = [](const Step& s) { return std::min(std::abs(s.dx), std::abs(s.dy)); };
@@ -64,20 +101,25 @@ GroundGrid::GroundGrid(const GroundParams& params)
     return ring(a) != ring(b) ? ring(a) < ring(b) : off_axis(a) < off_axis(b);
   });
   for (std::size_t gap = 0; gap < rise_.size(); ++gap) {
-    // Under the robot and around it, where nothing was seen yet, the ground lies as the body does.
-    const int cells = gap >= kNever ? 0 : static_cast<int>(gap);
+    const int cells_away = gap >= kNever ? 0 : static_cast<int>(gap);
+    // As steep as the platform can, over so many cells; beyond, the ground bends as it usually does.
     const auto by_slope = [&](int most) {
-      return params_.slope * kCell * static_cast<float>(std::min(cells, most));
+      const int steep = std::min(cells_away, most);
+      return kCell *
+             (params_.slope * static_cast<float>(steep) + kBend * static_cast<float>(cells_away - steep));
     };
     rise_[gap] = std::min(std::max(params_.rise, kFlat + by_slope(kBlindCells)), params_.most);
-    fall_[gap] = std::min(std::max(params_.rise, kFlat + by_slope(kFallCells)), params_.drop);
+    fall_[gap] = std::max(std::min(std::max(params_.rise, kFlat + by_slope(kFallCells)), params_.drop),
+                          kFlat + kBend * kCell * static_cast<float>(cells_away));
     climb_[gap] = std::max(by_slope(kBlindCells), params_.slope * kCell);
+    limit_[gap] = std::max(params_.drop, fall_[gap]);
   }
 }
 
 void GroundGrid::clear() {
   std::fill(stamp_.begin(), stamp_.end(), kLongAgo);
   placed_ = false;
+  grown_ = false;
 }
 
 void GroundGrid::roll(int x, int y) {
@@ -86,7 +128,7 @@ void GroundGrid::roll(int x, int y) {
   centre_x_ = x;
   centre_y_ = y;
   if (placed_ && x == old_x && y == old_y) return;
-  const bool all = !placed_ || std::abs(x - old_x) > kSide || std::abs(y - old_y) > kSide;
+  const bool all = !placed_ || std::abs(x - old_x) > side_ || std::abs(y - old_y) > side_;
   placed_ = true;
   // Calls `each` for the cells of a square around the robot that were not in it before.
   const auto entering = [&](int half, const auto& each) {
@@ -98,43 +140,125 @@ void GroundGrid::roll(int x, int y) {
     }
   };
   // Who turns round on a landing has to know the stairs that he came up, which cannot be seen from there.
-  entering(kKept, [&](std::size_t s) { stamp_[s] = kLongAgo; });
-  entering(kHalf, [&](std::size_t s) { entered_.push_back(s); });
+  entering(kept_, [&](std::size_t s) { stamp_[s] = kLongAgo; });
+  entering(half_, [&](std::size_t s) { entered_.push_back(s); });
 }
 
 void GroundGrid::begin_scan(float x, float y, float now) {
   now_ = now;
   roll(cell(x), cell(y));
   std::fill(low_.begin(), low_.end(), kNothing);
+  std::fill(high_.begin(), high_.end(), -kNothing);
 }
 
-float GroundGrid::disagreement() {
-  differences_.clear();
-  for (int i = -kHalf; i <= kHalf; ++i)
-    for (int j = -kHalf; j <= kHalf; ++j) {
+GroundGrid::Offset GroundGrid::disagreement() {
+  samples_.clear();
+  for (int i = -half_; i <= half_; ++i)
+    for (int j = -half_; j <= half_; ++j) {
       const std::size_t s = slot(centre_x_ + i, centre_y_ + j);
-      if (low_[s] < kNothing && is_ground_[s] && now_ - stamp_[s] <= kRecent)
-        differences_.push_back(height_[s] - low_[s]);
+      // A cell with returns above each other is one of a wall: where its lowest lies changes with the way.
+      if (low_[s] < kNothing && high_[s] - low_[s] < kSame && is_ground_[s] && now_ - stamp_[s] <= kRecent)
+        samples_.emplace_back(kCell * static_cast<float>(i), kCell * static_cast<float>(j),
+                              height_[s] - low_[s]);
     }
-  if (differences_.size() < kEnough) return 0.0f;
-  const auto middle = differences_.begin() + static_cast<std::ptrdiff_t>(differences_.size() / 2);
-  std::nth_element(differences_.begin(), middle, differences_.end());
-  const float sure = std::max(0.0f, std::fabs(*middle) - kUnsure);
-  return std::copysign(std::min(sure, kMostLift), *middle);
+  if (samples_.size() < kEnough) return {};
+  thin_out(samples_);
+  // From the median on, which the few cells with other things in them do not move.
+  const auto middle = samples_.begin() + static_cast<std::ptrdiff_t>(samples_.size() / 2);
+  std::nth_element(samples_.begin(), middle, samples_.end(),
+                   [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a.z() < b.z(); });
+  const float median = middle->z();
+  for (Eigen::Vector3f& sample : samples_) sample.z() -= median;
+  const PlanePrior prior{0.0f, {0, 0}, kMostLift, kMostTilt / 3};
+  PlaneFit fit = fit_plane(samples_, prior, prior.gradient, kSampleNoise, 2 * kSame, kSame / 2);
+  if (fit.inliers < kExplained) return {};
+  fit.height += median;
+  Offset offset;
+  offset.sigma_gradient = fit.sigma_gradient;
+  if (const float sure = std::fabs(fit.height) - kUnsure; sure > 0)
+    offset.height = std::copysign(std::min(sure, kMostLift), fit.height);
+  const float tilt = fit.gradient.norm();
+  if (const float sure = tilt - kUnsure / kArm; sure > 0)
+    offset.gradient = std::min(sure, kMostTilt) / tilt * fit.gradient;
+  return offset;
 }
 
-void GroundGrid::grow(float lift, float z, const Eigen::Vector2f& tilt) {
-  const float steep = tilt.norm() / params_.slope;
-  const Eigen::Vector2f lean = kCell / std::max(1.0f, steep) * tilt;
-  constexpr int kMiddle = kHalf * kSide + kHalf;
-  ground_[kMiddle] = z;
-  floor_[kMiddle] = z;
-  gap_[kMiddle] = kNever;
+void GroundGrid::fit_ground(const Offset& offset, float z, const Eigen::Vector2f& tilt, float blind) {
+  samples_.clear();
+  const auto around = [this](float metres) { return std::min(half_, static_cast<int>(metres / kCell)); };
+  const auto collect = [&](int reach, int stride, const auto& height_of) {
+    for (int i = -reach; i <= reach; i += stride)
+      for (int j = -reach; j <= reach; j += stride) {
+        const std::size_t s = slot(centre_x_ + i, centre_y_ + j);
+        const float dx = kCell * static_cast<float>(i), dy = kCell * static_cast<float>(j);
+        if (float height; height_of(s, dx, dy, height)) samples_.emplace_back(dx, dy, height);
+      }
+  };
+  // The robot stands on the ground, as exactly as the height of its lidar is known.
+  const PlanePrior prior{z, tilt, kSigmaHeight, params_.sigma_tilt + kBend};
+  // Between walls, whose feet a lidar sees before it sees the floor, no plane explains most of what was seen:
+  // then the body's attitude is the best that is known.
+  const auto take = [&](const Eigen::Vector2f& start) {
+    plane_ = fit_plane(samples_, prior, start, kSampleNoise, 2 * kSame, kSame / 2);
+    if (plane_.inliers < kExplained) plane_ = {z, tilt, prior.sigma_height, params_.sigma_tilt, 0};
+  };
+  reach_ = std::max(blind + kNearGround, 2 * kNearGround);
+  collect(around(reach_), 2, [&](std::size_t s, float, float, float& height) {
+    height = height_[s];
+    return is_ground_[s] && now_ - stamp_[s] <= params_.memory;
+  });
+  if (grown_ && samples_.size() >= kEnough / 4) {
+    take(plane_.gradient);
+    return;
+  }
+  const float bend2 = 9 * prior.sigma_gradient * prior.sigma_gradient;
+  samples_.clear();
+  collect(around(std::max(kSeenTo, blind + kNearGround)), 1,
+          [&](std::size_t s, float dx, float dy, float& height) {
+            // What lies higher than ground may rise from the body's attitude on stands there.
+            height = low_[s] + offset.height + offset.gradient.dot(Eigen::Vector2f(dx, dy));
+            const float off = std::fabs(height - z - tilt.x() * dx - tilt.y() * dy), far2 = dx * dx + dy * dy;
+            return low_[s] < kNothing && far2 > kSeenFrom * kSeenFrom && off < params_.most &&
+                   off * off < bend2 * far2;
+          });
+  plane_ = {z, tilt, prior.sigma_height, params_.sigma_tilt, 0};
+  if (samples_.size() < kEnough) return;
+  thin_out(samples_);
+  take(search_gradient(samples_, prior, kFlat, 3 * prior.sigma_gradient));
+}
+
+float GroundGrid::below_plane(const Eigen::Vector3f& p) const {
+  const Eigen::Vector2f way = p.head<2>() - at_;
+  return plane_.height + plane_.gradient.dot(way) - p.z() - kBend * std::max(0.0f, way.norm() - reach_);
+}
+
+bool GroundGrid::falls_by_slope(const Step& s, float rise, std::uint8_t gap, float lidar) const {
+  const float range = kCell * std::sqrt(static_cast<float>(s.dx * s.dx + s.dy * s.dy));
+  if (range * lidar < params_.sure * (lidar - rise))
+    return false;  // where the ray passed the ground's height
+  const float spacing = (range * range + lidar * lidar) / lidar * params_.rings;
+  const float run = std::min(2 * spacing, kCell * static_cast<float>(gap));
+  return rise >= -(kFlat + params_.slope * run);
+}
+
+void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt, float lidar, float blind) {
+  at_ = kCell * Eigen::Vector2f(static_cast<float>(centre_x_), static_cast<float>(centre_y_));
+  fit_ground(offset, z, tilt, blind);
+  const float steep = plane_.gradient.norm() / params_.slope;
+  const Eigen::Vector2f lean = kCell / std::max(1.0f, steep) * plane_.gradient;
+  const float doubt = kBend + plane_.sigma_gradient;
+  limit_[kNever] = std::max(params_.drop, kFlat + doubt * blind);
+  const auto middle = static_cast<std::size_t>(half_ * side_ + half_);
+  ground_[middle] = z;
+  floor_[middle] = z;
+  gap_[middle] = kNever;
   for (const Step& s : steps_) {
     const std::size_t at = slot(centre_x_ + s.dx, centre_y_ + s.dy);
     const bool seen = low_[at] < kNothing;
     if (seen) {
-      const float low = low_[at] + lift;
+      const float low = low_[at] + offset.height +
+                        kCell * (offset.gradient.x() * static_cast<float>(s.dx) +
+                                 offset.gradient.y() * static_cast<float>(s.dy));
       const bool same = now_ - stamp_[at] <= params_.memory && std::fabs(low - height_[at]) < kSame;
       height_[at] = same ? height_[at] + kNewest * (low - height_[at]) : low;
       stamp_[at] = now_;
@@ -147,14 +271,24 @@ void GroundGrid::grow(float lift, float z, const Eigen::Vector2f& tilt) {
     const bool by_a = std::fabs(height_[at] - a) <= std::fabs(height_[at] - b);
     const std::uint8_t gap = after(gap_[by_a ? s.inner_a : s.inner_b]);
     const float rise = height_[at] - (by_a ? a : b);
-    const bool ground = now_ - stamp_[at] <= params_.memory && rise <= rise_[gap] && rise >= -fall_[gap];
+    float most = rise_[gap], least = -fall_[gap], climb = climb_[gap];
+    if (gap >= kNever) {
+      // Over the blind ring the tolerance grows, until a first cell is accepted.
+      const float grown =
+          kFlat + doubt * kCell * static_cast<float>(std::max(std::abs(s.dx), std::abs(s.dy)));
+      most = std::min(std::max(most, grown), params_.most);
+      least = std::min(least, -grown);
+      climb = std::max(climb, grown);
+    }
+    bool ground = now_ - stamp_[at] <= params_.memory && rise <= most;
+    if (ground && rise < least) ground = lidar > 0 && falls_by_slope(s, rise, gap, lidar);
     ground_[s.index] = ground ? height_[at] : 0.5f * (a + b);
-    floor_[s.index] =
-        std::min(ground_[s.index], (ground ? height_[at] - rise : std::min(a, b)) + climb_[gap]);
+    floor_[s.index] = std::min(ground_[s.index], (ground ? height_[at] - rise : std::min(a, b)) + climb);
     gap_[s.index] = ground ? std::uint8_t{0} : after(std::min(gap_[s.inner_a], gap_[s.inner_b]));
     fresh_[s.index] = ground && seen;
     is_ground_[at] = ground;
   }
+  grown_ = true;
 }
 
 }  // namespace adit::nav

@@ -16,19 +16,24 @@ constexpr float kInside = 0.05f;       ///< m within the body's outline
 }  // namespace
 
 ObstacleCells::ObstacleCells(const Footprint& body, const TerrainParams& params)
-    : body_(body), params_(params), slots_(kTorus * kTorus, 0) {
-  entries_.reserve(kMaxCells);
+    : body_(body), params_(params), bits_(8) {
+  const double reach = (params.range + kForgetBeyond) / double{kCell};
+  while ((1 << bits_) < 2 * reach) ++bits_;
+  mask_ = (1 << bits_) - 1;
+  max_cells_ = std::min(kMaxCells, static_cast<std::size_t>(4 * reach * reach));
+  slots_.assign(std::size_t{1} << (2 * bits_), 0);
+  entries_.reserve(max_cells_);
 }
 
 void ObstacleCells::clear() {
   entries_.clear();
-  std::fill(slots_.begin(), slots_.end(), std::uint16_t{0});
+  std::fill(slots_.begin(), slots_.end(), std::uint32_t{0});
 }
 
 void ObstacleCells::mark(float x, float y, float z, float climb) {
   const int ix = cell(x), iy = cell(y);
   const Entry fresh{ix, iy, z, z, scan_, 1, 0, false, false, now_, now_, x, y, 1, 0, climb};
-  std::uint16_t& index = slots_[slot(ix, iy)];
+  std::uint32_t& index = slots_[slot(ix, iy)];
   if (index != 0) {
     Entry& e = entries_[index - 1u];
     if (e.ix == ix && e.iy == iy) {
@@ -48,14 +53,14 @@ void ObstacleCells::mark(float x, float y, float z, float climb) {
     e = fresh;
     return;
   }
-  if (entries_.size() >= kMaxCells) return;
+  if (entries_.size() >= max_cells_) return;
   entries_.push_back(fresh);
-  index = static_cast<std::uint16_t>(entries_.size());
+  index = static_cast<std::uint32_t>(entries_.size());
 }
 
 void ObstacleCells::mark_under(float x, float y) {
   const int ix = cell(x), iy = cell(y);
-  const std::uint16_t index = slots_[slot(ix, iy)];
+  const std::uint32_t index = slots_[slot(ix, iy)];
   if (index == 0) return;
   Entry& e = entries_[index - 1u];
   if (e.ix == ix && e.iy == iy && e.scan == scan_) ++e.under;
@@ -71,7 +76,7 @@ void ObstacleCells::keep(const View& view, const RayImage& rays, const GroundGri
       continue;
     }
     entries_[kept] = entry;
-    slots_[slot(entry.ix, entry.iy)] = static_cast<std::uint16_t>(++kept);
+    slots_[slot(entry.ix, entry.iy)] = static_cast<std::uint32_t>(++kept);
   }
   entries_.resize(kept);
 }
@@ -81,7 +86,7 @@ bool ObstacleCells::stray(const Entry& entry, float dx, float dy, float range) c
   for (int further = 1; further <= 2; ++further) {
     const float along = static_cast<float>(further) / range;
     const int ix = entry.ix + floor_int(along * dx + 0.5f), iy = entry.iy + floor_int(along * dy + 0.5f);
-    const std::uint16_t index = slots_[slot(ix, iy)];
+    const std::uint32_t index = slots_[slot(ix, iy)];
     if (index == 0) continue;
     const Entry& behind = entries_[index - 1u];
     if (behind.ix == ix && behind.iy == iy && behind.scan == scan_ && behind.hits >= kMany * entry.hits)

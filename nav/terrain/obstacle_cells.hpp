@@ -17,8 +17,8 @@ namespace adit::nav {
 /// lidar) is remembered as long as it is near.
 class ObstacleCells {
  public:
-  static constexpr float kCell = 0.05f;             ///< m
-  static constexpr std::size_t kMaxCells = 50'000;  ///< every cell within the largest range fits
+  static constexpr float kCell = 0.05f;              ///< m
+  static constexpr std::size_t kMaxCells = 200'000;  ///< in all
   struct Entry {
     int ix, iy;
     float z_low, z_high;
@@ -52,20 +52,21 @@ class ObstacleCells {
   void keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step);
 
   std::span<const Entry> entries() const { return entries_; }
+  std::size_t max_cells() const { return max_cells_; }
 
  private:
-  static constexpr int kTorus = 256;  ///< 12.8 m: more than twice the range
-
   static int cell(float v) { return floor_int(v * (1.0f / kCell)); }
-  static std::size_t slot(int ix, int iy) {
-    return static_cast<std::size_t>((ix & (kTorus - 1)) * kTorus + (iy & (kTorus - 1)));
+  std::size_t slot(int ix, int iy) const {
+    return static_cast<std::size_t>(((ix & mask_) << bits_) | (iy & mask_));
   }
   bool stays(Entry& entry, const View& view, const RayImage& rays, float step, bool passable) const;
   bool stray(const Entry& entry, float dx, float dy, float range) const;
 
   Footprint body_;
   TerrainParams params_;
-  std::vector<std::uint16_t> slots_;  ///< index into entries_ plus one, or 0
+  int bits_, mask_;                   ///< of a torus that is more than twice as wide as the range
+  std::size_t max_cells_;             ///< every cell within range fits, up to kMaxCells
+  std::vector<std::uint32_t> slots_;  ///< index into entries_ plus one, or 0
   std::vector<Entry> entries_{};
   std::uint32_t scan_{0};
   float now_{0};

@@ -50,6 +50,9 @@ class RayImage {
   static float tangent_of(int row) { return (static_cast<float>(row) - 50.0f) * 0.02f; }
   /// A direction in the middle of a column, of length one.
   static Eigen::Vector2f direction_of(int column);
+  static int column_of(const Eigen::Vector2f& direction) {
+    return column_of(diamond_angle(direction.x(), direction.y()));
+  }
 
  private:
   static constexpr std::uint16_t kEmpty = 0xffff;

@@ -18,9 +18,12 @@ constexpr float kMostCost = 0.9f;    ///< of what can be passed
 
 }  // namespace
 
-Surface::Surface(const SurfaceParams& params)
-    : params_(params), weight_(kSide * kSide, 0.0f), followed_(kSide * kSide, 0) {
-  places_.reserve(kSide * kSide * 5 / 4);
+Surface::Surface(const SurfaceParams& params, int side) : params_(params), side_(side) {
+  const auto along = static_cast<std::size_t>(side), cells = along * along;
+  weight_.assign(cells, 0.0f);
+  followed_.assign(cells, 0);
+  places_.reserve(cells * 5 / 4);
+  for (auto* sum : {&sums_.n, &sums_.x, &sums_.xx, &sums_.z, &sums_.xz, &sums_.zz}) sum->assign(along, 0.0f);
 }
 
 float Surface::cost(float share) const {
@@ -34,28 +37,31 @@ void Surface::work_out(const GroundGrid& ground, std::span<const std::uint8_t> s
   std::fill(followed_.begin(), followed_.end(), 0);
   const std::uint8_t* gaps = ground.gaps();
   for (std::size_t k = 0; k < weight_.size(); ++k) weight_[k] = gaps[k] == 0 && solid[k] == 0 ? 1.0f : 0.0f;
-  for (int i = kReach; i < kSide - kReach; i += 2) {
+  for (int i = kReach; i < side_ - kReach; i += 2) {
     add_rows(ground, i);
-    for (int j = kReach; j < kSide - kReach; j += 2) judge(ground, i, j);
+    for (int j = kReach; j < side_ - kReach; j += 2) judge(ground, i, j);
   }
 }
 
 void Surface::add_rows(const GroundGrid& ground, int i) {
-  sums_ = {};
+  for (auto* sum : {&sums_.n, &sums_.x, &sums_.xx, &sums_.z, &sums_.xz, &sums_.zz})
+    std::fill(sum->begin(), sum->end(), 0.0f);
+  float *n = sums_.n.data(), *sx = sums_.x.data(), *sxx = sums_.xx.data(), *sz = sums_.z.data(),
+        *sxz = sums_.xz.data(), *szz = sums_.zz.data();
   // Heights from that under the robot, so that squares stay small.
-  const float level = ground.height(GroundGrid::kHalf * kSide + GroundGrid::kHalf);
+  const float level = ground.height(static_cast<int>(ground.cells() / 2));
   for (int di = -kReach; di <= kReach; ++di) {
     const float x = static_cast<float>(di) * kCell;
-    const float* w = &weight_[static_cast<std::size_t>((i + di) * kSide)];
-    const float* h = ground.heights() + (i + di) * kSide;
-    for (std::size_t j = 0; j < kSide; ++j) {
+    const float* w = &weight_[static_cast<std::size_t>((i + di) * side_)];
+    const float* h = ground.heights() + (i + di) * side_;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(side_); ++j) {
       const float wx = w[j] * x, z = h[j] - level, wz = w[j] * z;
-      sums_.n[j] += w[j];
-      sums_.x[j] += wx;
-      sums_.xx[j] += wx * x;
-      sums_.z[j] += wz;
-      sums_.xz[j] += wx * z;
-      sums_.zz[j] += wz * z;
+      n[j] += w[j];
+      sx[j] += wx;
+      sxx[j] += wx * x;
+      sz[j] += wz;
+      sxz[j] += wx * z;
+      szz[j] += wz * z;
     }
   }
 }
@@ -70,7 +76,7 @@ Surface::Step Surface::step_at(const GroundGrid& ground, int middle, float gx, f
     const float height = std::min(std::fabs(rise - kRun * gradient) / kShare, std::fabs(rise));
     if (height > step.height) step = {height, rise > 0 ? after : before};
   };
-  edge(middle - kSide, middle + kSide, gx);
+  edge(middle - side_, middle + side_, gx);
   edge(middle - 1, middle + 1, gy);
   return step;
 }
@@ -78,12 +84,12 @@ Surface::Step Surface::step_at(const GroundGrid& ground, int middle, float gx, f
 void Surface::follow_step(const GroundGrid& ground, int i, int j, float gx, float gy) {
   const auto add = [&](int cell) {
     std::uint8_t& followed = followed_[static_cast<std::size_t>(cell)];
-    if (!followed) places_.push_back({static_cast<std::uint16_t>(cell), Layer::step, 1.0f});
+    if (!followed) places_.push_back({static_cast<std::uint32_t>(cell), Layer::step, 1.0f});
     followed = 1;
   };
   for (int a = i - 1; a <= i + 1; ++a)
     for (int b = j - 1; b <= j + 1; ++b) {
-      const int cell = a * kSide + b;
+      const int cell = a * side_ + b;
       const Step step = step_at(ground, cell, gx, gy);
       if (step.height <= params_.blocking_step) continue;
       add(cell);
@@ -119,11 +125,11 @@ void Surface::judge(const GroundGrid& ground, int i, int j) {
   const float slope = std::sqrt(gx * gx + gy * gy) / params_.slope;
   const float rms = std::sqrt(std::max(0.0f, szz - gx * sxz - gy * syz) / n);
 
-  const int middle = i * kSide + j;
+  const int middle = i * side_ + j;
   const float step = step_at(ground, middle, gx, gy).height;
   if (step > params_.blocking_step) follow_step(ground, i, j, gx, gy);
   const bool certain = n >= kCertain && det > kCertainSpread * n * (sxx + syy);
-  Place place{static_cast<std::uint16_t>(middle), Layer::slope,
+  Place place{static_cast<std::uint32_t>(middle), Layer::slope,
               certain && slope > kOverSlope ? 1.0f : cost(slope)};
   const float step_cost = step > params_.blocking_step ? 0.0f : cost(step / params_.step);  // followed
   if (step_cost > place.cost) place = {place.index, Layer::step, step_cost};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -25,7 +24,8 @@ struct SurfaceParams {
 /// tilts that plane by 1.5 H / 0.7 m). Cost by the share of what the platform can.
 class Surface {
  public:
-  explicit Surface(const SurfaceParams& params);
+  /// `side`: cells of the ground's window along each axis.
+  Surface(const SurfaceParams& params, int side);
 
   /// `solid`: cells of the ground's window that hold an obstacle, and so tell nothing of the ground.
   void work_out(const GroundGrid& ground, std::span<const std::uint8_t> solid);
@@ -33,7 +33,7 @@ class Surface {
   /// A place that costs something: every second cell of the ground, and each that a step crosses which is too
   /// high.
   struct Place {
-    std::uint16_t index;  ///< in the ground's window
+    std::uint32_t index;  ///< in the ground's window
     Layer layer;
     float cost;  ///< (0, 1]
   };
@@ -41,10 +41,9 @@ class Surface {
 
  private:
   static constexpr int kReach = 3;  ///< cells to each side
-  static constexpr int kSide = GroundGrid::kSide;
   /// Sums over the measured cells of a piece of a column; x counts from its middle, m.
   struct Sums {
-    std::array<float, kSide> n, x, xx, z, xz, zz;
+    std::vector<float> n, x, xx, z, xz, zz;
   };
   void add_rows(const GroundGrid& ground, int i);
   void judge(const GroundGrid& ground, int i, int j);
@@ -60,6 +59,7 @@ class Surface {
   float cost(float share) const;
 
   SurfaceParams params_;
+  int side_;
   std::vector<float> weight_;           ///< of each cell of the window: 1 measured, 0 not
   std::vector<std::uint8_t> followed_;  ///< the same: it is among the places, as a step that is too high
   Sums sums_{};

@@ -13,8 +13,25 @@ namespace {
 constexpr std::size_t kUsualReturns = 32768;  ///< within range
 constexpr std::size_t kMostDeep = 32768;
 constexpr std::size_t kMostUnder = 16384;
-constexpr double kStood = 0.005;     ///< m: a robot that moved less stands
-constexpr double kLidarShare = 0.7;  ///< of the lidar's height: a first return as high as this may be ground
+constexpr double kStood = 0.005;      ///< m: a robot that moved less stands
+constexpr double kSteady = 0.002;     ///< rad: and turned or leaned less
+constexpr float kSigmaTilt = 0.035f;  ///< rad: of a body's attitude, with its suspension, lidar mount and IMU
+constexpr double kBuiltRamp = 0.2;    ///< rise per run of the steepest ramps that are built for vehicles
+constexpr double kLidarShare = 0.7;   ///< of the lidar's height: a first return as high as this may be ground
+
+/// Between two rings of the lidar, rad.
+double ring_angle(const Platform& platform) {
+  const LidarConfig lidar = platform.lidar();
+  return std::max(1e-4, (lidar.highest - lidar.lowest) * M_PI / 180 / std::max(1, lidar.rings - 1));
+}
+
+/// To where a ray that passes the ground's height tells a drop from a ramp, m: rings lie denser than half a
+/// body on the ground (r2 + h2) / h apart for each radian between them, and rays are steeper than ramps that
+/// are built.
+double sure_range(const Platform& platform) {
+  const double h = platform.lidar_height, gap = platform.length / 2 + double{GroundGrid::kCell};
+  return std::min(std::sqrt(std::max(0.0, gap * h / ring_angle(platform) - h * h)), h / kBuiltRamp);
+}
 
 GroundParams ground_params(const Platform& platform, const TerrainParams& params) {
   const auto limits = Traversability::of(platform);
@@ -24,6 +41,10 @@ GroundParams ground_params(const Platform& platform, const TerrainParams& params
   ground.rise = static_cast<float>(std::max(rise, limits.slope * double{GroundGrid::kCell} + 0.02));
   ground.drop = static_cast<float>(limits.drop);
   ground.most = static_cast<float>(kLidarShare * platform.lidar_height);
+  ground.sigma_tilt = kSigmaTilt;
+  ground.rings = static_cast<float>(ring_angle(platform));
+  ground.sure = static_cast<float>(sure_range(platform));
+  ground.range = static_cast<float>(params.range);
   ground.memory = static_cast<float>(params.ground_memory);
   return ground;
 }
@@ -49,14 +70,17 @@ TerrainMap::TerrainMap(const Platform& platform, const TerrainParams& params)
       body_(platform),
       ground_(ground_params(platform, params)),
       obstacles_(body_, params),
-      drops_(params),
-      surface_(surface_params(platform)),
-      solid_(GroundGrid::kSide * GroundGrid::kSide, 0),
-      drop_(GroundGrid::kSide * GroundGrid::kSide, 0) {
+      drops_(params,
+             {static_cast<float>(limits_.drop), static_cast<float>(sure_range(platform)),
+              static_cast<float>(platform.length / 2)},
+             ground_),
+      surface_(surface_params(platform), ground_.side()),
+      solid_(ground_.cells(), 0),
+      drop_(ground_.cells(), 0) {
   near_.reserve(kUsualReturns);
   under_.reserve(platform.stairs ? kMostUnder : 0);
   deep_.reserve(kMostDeep);
-  cells_.reserve(kMaxCells);
+  cells_.reserve(max_cells());
 }
 
 void TerrainMap::clear() {
@@ -65,6 +89,7 @@ void TerrainMap::clear() {
   drops_.clear();
   cells_.clear();
   lift_ = 0;
+  tilt_error_.setZero();
   begun_ = false;
 }
 
@@ -77,22 +102,23 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   now_ = static_cast<float>(stamp_s - epoch_);
   View view(body, platform_.lidar_height);
   view.raise(lift_);
+  view.lean(tilt_error_);
   ground_.begin_scan(view.base.x(), view.base.y(), now_);
   obstacles_.begin_scan(now_);
-  drops_.begin_scan(ground_, now_);
   rays_.clear();
   sort_in(points, view);
 
-  float lift = 0;
-  if ((body.position - last_body_.position).norm() > kStood) {
-    lift = ground_.disagreement();
-    last_body_ = body;
-    lift_ += lift;
-    view.raise(lift);
-    for (auto* returns : {&near_, &deep_})
-      for (Eigen::Vector3f& p : *returns) p.z() += lift;
-  }
-  ground_.grow(lift, view.base.z(), view.tilt());
+  GroundGrid::Offset offset;
+  register_scan(body, view, offset);
+  const float blind =
+      rays_.lowest() < 0 ? static_cast<float>(platform_.lidar_height) / -rays_.lowest() : 0.0f;
+  ground_.grow(offset, view.base.z(), view.tilt(), view.sensor.z() - view.base.z(), blind);
+  // The ground's height at a range of r is known to r times the deviation of its gradient, and a return's to
+  // its noise.
+  const float known = ground_.plane().sigma_gradient;
+  const auto depth = static_cast<float>(limits_.drop) / 3,
+             noise = static_cast<float>(platform_.lidar().noise);
+  drops_.begin_scan(ground_, now_, std::sqrt(std::max(0.0f, depth * depth - noise * noise)) / known);
   classify(view);
   drops_.silent(view, rays_, ground_);
   drops_.finish(view, rays_, ground_);
@@ -104,6 +130,30 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   write_cells();
 }
 
+void TerrainMap::register_scan(const Pose3& body, View& view, GroundGrid::Offset& offset) {
+  if ((body.position - last_body_.position).norm() < kStood &&
+      body.orientation.angularDistance(last_body_.orientation) < kSteady)
+    return;
+  last_body_ = body;
+  offset = ground_.disagreement();
+  if (offset.sigma_gradient > 0) {
+    // The attitude is a measurement, too: it pulls the map back as far as the registration is uncertain.
+    const float share = offset.sigma_gradient / kSigmaTilt;
+    const Eigen::Vector2f back = std::min(1.0f, share * share) * tilt_error_;
+    offset.gradient -= back;
+  }
+  if (offset.none()) return;
+  lift_ += offset.height;
+  tilt_error_ += offset.gradient;
+  const Eigen::Matrix3f before = view.turn;
+  view.lean(offset.gradient);
+  const Eigen::Matrix3f rotation = view.turn * before.transpose();
+  const Eigen::Vector3f base = view.base;
+  view.raise(offset.height);
+  for (auto* returns : {&near_, &deep_})
+    for (Eigen::Vector3f& p : *returns) p = view.base + rotation * (p - base);
+}
+
 void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& view) {
   near_.clear();
   deep_.clear();
@@ -112,7 +162,11 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
   const auto min2 = static_cast<float>(params_.min_range * params_.min_range);
   const auto reach2 = static_cast<float>(std::pow(body_.radius() + params_.body_margin, 2));
   const auto own = static_cast<float>(-params_.body_margin);
-  const auto deep = -lidar / static_cast<float>(params_.range);
+  // A ray that passes the plane of the ground within range, and ends below it.
+  const Eigen::Vector2f rise = ground_.grown() ? ground_.plane().gradient : view.tilt();
+  const Eigen::Vector3f up = view.turn.transpose() * Eigen::Vector3f(-rise.x(), -rise.y(), 1.0f);
+  const float above = up.z() * lidar;  // of the lidar over that plane
+  const auto range = static_cast<float>(params_.range);
   const Eigen::Vector3f sensor(0.0f, 0.0f, lidar);
   const Eigen::Matrix3f straight = Eigen::Matrix3f::Identity();
   for (std::size_t first = 0; first < points.size(); first += block_.count()) {
@@ -130,7 +184,8 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
         const Eigen::Vector3f world = view.base + view.turn * p;
         ground_.add(world.x(), world.y(), world.z());
         near_.push_back(world);
-      } else if (dz < deep * ray.range && deep_.size() < kMostDeep) {
+      } else if (const float end = up.dot(p);
+                 end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMostDeep) {
         deep_.push_back(view.base + view.turn * p);
       }
     }
@@ -140,38 +195,67 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
 void TerrainMap::classify(const View& view) {
   const auto step = static_cast<float>(limits_.obstacle);
   const auto top = static_cast<float>(limits_.headroom);
-  const auto drop = static_cast<float>(-limits_.drop);
   under_.clear();
   for (const Eigen::Vector3f& p : near_) {
-    const float climb = p.z() - ground_.before(p.x(), p.y());
+    const int index = ground_.window(p.x(), p.y());
+    const float climb = p.z() - ground_.before(index);
     if (climb > step) {
       if (climb < top) obstacles_.mark(p.x(), p.y(), p.z(), climb);
     } else if (climb > step / 2) {
       if (under_.size() < under_.capacity()) under_.emplace_back(p.x(), p.y());
-    } else if (climb < drop && p.z() - ground_.at(p.x(), p.y()) < drop) {
+    } else if (climb < 0 && p.z() - ground_.height(index) < -ground_.drop_limit(index)) {
       drops_.below(view, p, ground_);
     }
   }
   for (const Eigen::Vector2f& p : under_) obstacles_.mark_under(p.x(), p.y());
-  for (const Eigen::Vector3f& p : deep_)
-    if (p.z() - ground_.at(p.x(), p.y()) < drop) drops_.below(view, p, ground_);
+  for (const Eigen::Vector3f& p : deep_) {
+    const int index = ground_.window(p.x(), p.y());
+    if (p.z() - ground_.height(index) < -ground_.drop_limit(index)) drops_.below(view, p, ground_);
+  }
 }
 
 // With the last cell of the ground before each: where in its cell a drop begins nobody knows.
 void TerrainMap::write_drops() {
-  constexpr int kSide = GroundGrid::kSide;
+  const int side = ground_.side();
   std::fill(drop_.begin(), drop_.end(), std::uint8_t{0});
   const auto write = [this](int index) {
     if (std::exchange(drop_[static_cast<std::size_t>(index)], std::uint8_t{1})) return;
     const Eigen::Vector2f at = ground_.middle(index);
     cells_.push_back({at.x(), at.y(), 1.0f, 0.0f, Layer::drop});
   };
-  for (const int index : drops_.cells()) {
+  for (const Drops::Cell& cell : drops_.cells()) {
+    const int index = static_cast<int>(cell.index);
+    if (cell.probability < Drops::kBlocks) {
+      const Eigen::Vector2f at = ground_.middle(index);
+      cells_.push_back({at.x(), at.y(), cell.probability, 0.0f, Layer::drop});
+      continue;
+    }
     write(index);
-    const int i = index / kSide, j = index % kSide;
-    if (i == 0 || j == 0 || i == kSide - 1 || j == kSide - 1) continue;
-    for (const int beside : {index - kSide, index - 1, index + 1, index + kSide})
+    const int i = index / side, j = index % side;
+    if (i == 0 || j == 0 || i == side - 1 || j == side - 1) continue;
+    for (const int beside : {index - side, index - 1, index + 1, index + side})
       if (ground_.measured(beside)) write(beside);
+  }
+}
+
+void TerrainMap::classify_cells(std::vector<Kind>& kinds) const {
+  const auto side = static_cast<std::size_t>(ground_.side());
+  kinds.assign(ground_.cells(), Kind::unknown);
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    if (ground_.measured(static_cast<int>(k))) kinds[k] = Kind::ground;
+  for (const Surface::Place& place : surface_.places()) {
+    // A step that is too high has a place for each of its cells, all else one for every second cell.
+    const bool edge = place.layer == Layer::step && place.cost >= 1;
+    const Kind kind = place.layer == Layer::slope ? Kind::slope : Kind::step;
+    const std::size_t first = place.index;
+    for (const std::size_t k : {first, first + 1, first + side, first + side + 1}) {
+      if (k < kinds.size() && (kinds[k] == Kind::ground || edge)) kinds[k] = kind;
+      if (edge) break;
+    }
+  }
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    if (solid_[k]) kinds[k] = Kind::obstacle;
+    if (drop_[k]) kinds[k] = Kind::drop;
   }
 }
 

@@ -19,9 +19,8 @@ namespace adit::nav {
 /// its lidar's size.
 class TerrainMap {
  public:
-  /// As many cells as there can be.
-  static constexpr std::size_t kMaxCells =
-      ObstacleCells::kMaxCells + std::size_t{GroundGrid::kSide * GroundGrid::kSide} * 9 / 4;
+  /// What a cell of the ground is to the platform.
+  enum class Kind : std::uint8_t { unknown, ground, step, slope, obstacle, drop };
 
   explicit TerrainMap(const Platform& platform, const TerrainParams& params = {});
 
@@ -32,14 +31,24 @@ class TerrainMap {
 
   /// All that costs something; valid until the next scan. Where several layers have a place each has a cell.
   std::span<const TerrainCell> cells() const { return cells_; }
+  /// As many cells as there can be.
+  std::size_t max_cells() const { return obstacles_.max_cells() + ground_.cells() * 9 / 4; }
   const GroundGrid& ground() const { return ground_; }
+  /// What each cell of the ground's window is, by index; the layers that block before those that cost.
+  void classify_cells(std::vector<Kind>& kinds) const;
   /// Height of the map's ground above that of the odometry frame, m: see GroundGrid.
   double lift() const { return static_cast<double>(lift_); }
+  /// How much more the map's ground rises per metre along x and y than the body's attitude says: see
+  /// GroundGrid.
+  const Eigen::Vector2f& tilt_error() const { return tilt_error_; }
+  /// How the ground around the robot rises, per metre along x and y, whatever the body does.
+  const Eigen::Vector2f& ground_gradient() const { return ground_.plane().gradient; }
   /// Forgets everything, as after a jump of the odometry.
   void clear();
 
  private:
   void sort_in(std::span<const Eigen::Vector3f> points, const View& view);
+  void register_scan(const Pose3& body, View& view, GroundGrid::Offset& offset);
   void classify(const View& view);
   void write_drops();
   void write_cells();
@@ -56,14 +65,15 @@ class TerrainMap {
   RayImage rays_{};
   std::vector<Eigen::Vector3f> near_{};   ///< returns within range, in the map
   std::vector<Eigen::Vector2f> under_{};  ///< of those within range: nearly as high as an obstacle
-  std::vector<Eigen::Vector3f> deep_{};   ///< those farther away that lie lower than level ground would
+  std::vector<Eigen::Vector3f> deep_{};   ///< those farther away whose ray went below the ground within range
   std::vector<std::uint8_t> solid_;       ///< cells of the ground's window with an obstacle in them
-  std::vector<std::uint8_t> drop_;        ///< and those that are written as a drop
+  std::vector<std::uint8_t> drop_;        ///< and those that are written as a drop that blocks
   std::vector<TerrainCell> cells_{};
   Pose3 last_body_{};
   double epoch_{0};
   float now_{0};
   float lift_{0};
+  Eigen::Vector2f tilt_error_{0, 0};
   bool begun_{false};
 };
 

@@ -4,7 +4,7 @@
 namespace adit::nav {
 
 struct TerrainParams {
-  double range{4.5};           ///< the terrain is known this far around the robot, m, [1, 4.7]
+  double range{4.5};           ///< the terrain is known this far around the robot, m, [1, 20]
   double memory{4.0};          ///< an obstacle that is hidden is forgotten after, s, (0, 60]
   double ground_memory{60.0};  ///< the same for the height of the ground, s, (0, 600]
   double drop_memory{20.0};    ///< and for a drop that could be seen and is not, s, (0, 600]

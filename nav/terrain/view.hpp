@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
 
 #include "core/geometry/pose.hpp"
 
@@ -20,6 +22,15 @@ struct View {
   void raise(float by) {
     sensor.z() += by;
     base.z() += by;
+  }
+  /// Leans the body about base_link, so that the map rises by `gradient` more per metre.
+  void lean(const Eigen::Vector2f& gradient) {
+    const Eigen::Vector3f axis(gradient.y(), -gradient.x(), 0);
+    const float angle = axis.norm();
+    if (angle < 1e-6f) return;
+    const Eigen::Matrix3f rotation = Eigen::AngleAxisf(std::atan(angle), axis / angle).toRotationMatrix();
+    turn = rotation * turn;
+    sensor = base + rotation * (sensor - base);
   }
   /// A place of the map, in the lidar's frame.
   Eigen::Vector3f seen(float x, float y, float z) const {

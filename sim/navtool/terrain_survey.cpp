@@ -13,38 +13,10 @@ nav::TerrainParams params_of(double range) {
   return params;
 }
 
-TerrainClass class_of(nav::Layer layer) {
-  switch (layer) {
-    case nav::Layer::obstacle:
-      return TerrainClass::obstacle;
-    case nav::Layer::drop:
-      return TerrainClass::drop;
-    case nav::Layer::slope:
-      return TerrainClass::slope;
-    case nav::Layer::step:
-      return TerrainClass::step;
-    case nav::Layer::roughness:
-      break;
-  }
-  return TerrainClass::ground;
-}
-
 }  // namespace
 
 TerrainSurvey::TerrainSurvey(const Platform& platform, double range)
     : map_(platform, params_of(range)), range_(range) {}
-
-// The worst that is said of a cell counts.
-void TerrainSurvey::classify() {
-  const nav::GroundGrid& ground = map_.ground();
-  window_.assign(nav::GroundGrid::kSide * nav::GroundGrid::kSide, TerrainClass::unknown);
-  for (std::size_t index = 0; index < window_.size(); ++index)
-    if (ground.measured(static_cast<int>(index))) window_[index] = TerrainClass::ground;
-  for (const nav::TerrainCell& cell : map_.cells()) {
-    TerrainClass& kind = window_[static_cast<std::size_t>(ground.window(cell.x, cell.y))];
-    kind = std::max(kind, class_of(cell.layer));
-  }
-}
 
 void TerrainSurvey::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s) {
   map_.add_scan(points, body, stamp_s);
@@ -57,7 +29,7 @@ void TerrainSurvey::add_scan(std::span<const Eigen::Vector3f> points, const Pose
       if ((middle - at).norm() <= range_ && cells_.size() < kMaxCells)
         cells_.try_emplace({i, j}, TerrainClass::unknown);
     }
-  classify();
+  map_.classify_cells(window_);
   for (std::size_t index = 0; index < window_.size(); ++index) {
     ++scan_counts_[static_cast<std::size_t>(window_[index])];
     if (window_[index] == TerrainClass::unknown) continue;

@@ -10,7 +10,7 @@
 namespace adit::sim {
 
 /// What a terrain map says of a cell of 0.1 m.
-enum class TerrainClass : std::uint8_t { unknown, ground, step, slope, obstacle, drop };
+using TerrainClass = nav::TerrainMap::Kind;
 inline constexpr std::array<const char*, 6> kTerrainClassNames{"unknown", "ground",   "step",
                                                                "slope",   "obstacle", "drop"};
 using TerrainCounts = std::array<std::size_t, kTerrainClassNames.size()>;
@@ -19,7 +19,7 @@ using TerrainCounts = std::array<std::size_t, kTerrainClassNames.size()>;
 class TerrainSurvey {
  public:
   static constexpr double kCell = 0.1;                 ///< As nav::GroundGrid's, m.
-  static constexpr double kMaxRange = 4.7;             ///< Of a terrain map, m.
+  static constexpr double kMaxRange = 20.0;            ///< Of a terrain map, m.
   static constexpr std::size_t kMaxCells = 8'000'000;  ///< Further cells are left out.
 
   /// `range`: of the survey around the body, m, (0, 100]; the terrain map's own range is at most kMaxRange.
@@ -53,8 +53,6 @@ class TerrainSurvey {
       return static_cast<std::size_t>(word * 0x9e3779b97f4a7c15ULL >> 16);
     }
   };
-  void classify();
-
   nav::TerrainMap map_;
   double range_;
   TerrainCounts scan_counts_{};

@@ -25,7 +25,7 @@ void see(GroundGrid& grid, const Height& height, float x, float y, float now, fl
 GroundGrid grid_of(const Height& height, const GroundParams& params = {}) {
   GroundGrid grid(params);
   see(grid, height, 0, 0, 0);
-  grid.grow(0, height(0, 0), {0, 0});
+  grid.grow({}, height(0, 0), {0, 0}, 0.5f, 1.0f);
   return grid;
 }
 
@@ -36,15 +36,15 @@ TEST(GroundGrid, FollowsASlope) {
 
 TEST(GroundGrid, AWallIsNotGround) {
   const GroundGrid grid = grid_of([](float x, float) { return x > 2 ? 1.0f : 0.0f; });
-  EXPECT_NEAR(grid.at(1.5f, 0), 0.0f, 1e-6f);
-  EXPECT_NEAR(grid.at(3.0f, 0), 0.0f, 1e-6f);
+  EXPECT_NEAR(grid.at(1.5f, 0), 0.0f, 1e-4f);
+  EXPECT_NEAR(grid.at(3.0f, 0), 0.0f, 1e-4f);
   EXPECT_TRUE(grid.measured(1.5f, 0));
   EXPECT_FALSE(grid.measured(3.0f, 0));
 }
 
 TEST(GroundGrid, ACliffIsNotGround) {
   const GroundGrid grid = grid_of([](float x, float) { return x > 2 ? -1.0f : 0.0f; });
-  EXPECT_NEAR(grid.at(3.0f, 0), 0.0f, 1e-6f);
+  EXPECT_NEAR(grid.at(3.0f, 0), 0.0f, 1e-4f);
 }
 
 TEST(GroundGrid, SmallRisesAddUp) {
@@ -66,7 +66,7 @@ TEST(GroundGrid, ARampSeenByFarRingsIsGround) {
   grid.begin_scan(0, 0, 0);
   for (float x = 0.45f; x < 4; x += 0.5f)
     for (float y = -2; y < 2; y += 0.05f) grid.add(x, y, 0.25f * (x - 0.45f));
-  grid.grow(0, 0, {0, 0});
+  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(3.45f, 0), 0.75f, 0.01f);
 }
 
@@ -74,14 +74,14 @@ TEST(GroundGrid, WhatALevelRingSeesIsNoGround) {
   GroundGrid grid({.slope = 0.6f, .rise = 0.245f, .most = 0.45f});
   grid.begin_scan(0, 0, 0);
   for (float y = -2; y < 2; y += 0.05f) grid.add(2.0f, y, 0.65f);
-  grid.grow(0, 0, {0, 0});
+  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(2.0f, 0), 0.0f, 1e-6f);
 }
 
 TEST(GroundGrid, WhereNothingWasSeenTheGroundLiesAsTheBodyDoes) {
   GroundGrid grid;
   grid.begin_scan(0, 0, 0);
-  grid.grow(0, 0.7f, {0.1f, 0});
+  grid.grow({}, 0.7f, {0.1f, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(3.05f, -2.0f), 0.7f + 0.3f, 0.01f);
 }
 
@@ -89,12 +89,12 @@ TEST(GroundGrid, RollsAndForgetsWhatItWrapsOver) {
   GroundGrid grid;
   grid.begin_scan(0, 0, 0);
   for (float j = -1; j < 1; j += 0.05f) grid.add(0.95f, j, 0.05f);
-  grid.grow(0, 0, {0, 0});
+  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(0.95f, 0), 0.05f, 1e-6f);
   // One torus further the same memory holds other places.
   for (float x = 0; x < 12.85f; x += 0.4f) grid.begin_scan(x, 0, 1);
   grid.begin_scan(12.8f, 0, 1);
-  grid.grow(0, 0, {0, 0});
+  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(13.75f, 0), 0.0f, 1e-6f);
 }
 
@@ -102,10 +102,10 @@ TEST(GroundGrid, ForgetsOldHeights) {
   GroundGrid grid({.memory = 5.0f});
   grid.begin_scan(0, 0, 0);
   grid.add(0.5f, 0.1f, 0.05f);
-  grid.grow(0, 0, {0, 0});
+  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(0.5f, 0.1f), 0.05f, 1e-6f);
   grid.begin_scan(0, 0, 6);
-  grid.grow(0, 0, {0, 0});
+  grid.grow({}, 0, {0, 0}, 0.5f, 1.0f);
   EXPECT_NEAR(grid.at(0.5f, 0.1f), 0.0f, 1e-6f);
 }
 
@@ -113,9 +113,9 @@ TEST(GroundGrid, TellsByHowMuchAScanLiesBesideTheMap) {
   const Height waves = [](float x, float y) { return 0.05f * std::sin(x) * std::cos(y); };
   GroundGrid grid = grid_of(waves);
   see(grid, waves, 0.1f, 0, 0.1f, -0.04f);  // an odometry that does not know of its robot's climb of 4 cm
-  EXPECT_NEAR(grid.disagreement(), 0.04f, 0.006f);
+  EXPECT_NEAR(grid.disagreement().height, 0.04f, 0.006f);
   see(grid, waves, 0.1f, 0, 0.2f, 0.002f);
-  EXPECT_EQ(grid.disagreement(), 0.0f);
+  EXPECT_EQ(grid.disagreement().height, 0.0f);
 }
 
 TEST(FloorInt, RoundsDownOnBothSides) {
@@ -131,13 +131,14 @@ TEST(Surface, WhereAStepGetsTooHighIsKnownToTheCell) {
       [](float x, float y) { return x < 0 || y > 0.9f ? 0.0f
                                     : x < 0.5f        ? 0.06f
                                                       : 0.14f; }, {.rise = 0.2f});
-  const std::vector<std::uint8_t> solid(GroundGrid::kSide * GroundGrid::kSide, 0);
-  Surface surface({.step = 0.08f, .blocking_step = 0.105f});
+  const std::vector<std::uint8_t> solid(grid.cells(), 0);
+  Surface surface({.step = 0.08f, .blocking_step = 0.105f}, grid.side());
   surface.work_out(grid, solid);
   const auto blocked = [&](float x, float y) {
     const auto places = surface.places();
     return std::count_if(places.begin(), places.end(), [&](const Surface::Place& place) {
-      return place.index == grid.window(x, y) && place.layer == Layer::step && place.cost >= 1;
+      return static_cast<int>(place.index) == grid.window(x, y) && place.layer == Layer::step &&
+             place.cost >= 1;
     });
   };
   for (float x = 0.55f; x < 2; x += 0.1f) {

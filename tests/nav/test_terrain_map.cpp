@@ -215,7 +215,7 @@ TEST(TerrainMap, TakesScansLargerThanAnyLidars) {
   for (int i = 0; i < 500'000; ++i) points.emplace_back(at(random), at(random), z(random));
   for (int i = 0; i < 3; ++i) map.add_scan(points, Pose3{}, 0.1 * i);
   EXPECT_GT(map.cells().size(), 10'000u);
-  EXPECT_LE(map.cells().size(), TerrainMap::kMaxCells);
+  EXPECT_LE(map.cells().size(), map.max_cells());
 }
 
 TEST(TerrainMap, KeepsToItsRangeAndForgetsWhatIsLeftBehind) {
