@@ -6,8 +6,10 @@
 #include <cmath>
 #include <filesystem>
 
+#include "sim/world/chassis.hpp"
 #include "sim/world/lidar.hpp"
 #include "sim/world/noise.hpp"
+#include "sim/world/sweep.hpp"
 #include "tests/folders/folders.hpp"
 
 namespace {
@@ -65,6 +67,29 @@ void scan(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(lidar.size()));
 }
 BENCHMARK(scan)->ArgName("planar")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+
+// The same with each column from a pose of its own: of a body that drives, turns and sways.
+void sweep(benchmark::State& state) {
+  auto world = load_octomap(map_file());
+  if (!world) return state.SkipWithError(world.error().text.c_str());
+  SweepJob job;
+  job.world = std::make_shared<const World>(std::move(*world));
+  job.lidar = std::make_shared<const LidarPattern>(LidarParams{});
+  job.duration = 0.1;
+  job.errors.noise = static_cast<double>(state.range(0));
+  job.T_world_lidar.resize(11);
+  job.others.assign(
+      10, {BodyBox{{12.5, 0.0, 0.0}, 0.0, 0.8, 0.6, 0.5}, BodyBox{{4.0, -0.2, 1.0}, 0.0, 0.9, 0.45, 0.6}});
+  for (auto _ : state) {
+    const double x = 6.0 + 0.01 * static_cast<double>(job.seed++ % 400);
+    for (int n = 0; n <= 10; ++n)
+      job.T_world_lidar[n] = {{x + 0.01 * n, -0.2, 0.5},
+                              Attitude{0, 0.02, 0.001 * n}.orientation(0.3 + 0.01 * n)};
+    benchmark::DoNotOptimize(job.trace());
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(job.lidar->size()));
+}
+BENCHMARK(sweep)->ArgName("noise")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 

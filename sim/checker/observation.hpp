@@ -136,6 +136,7 @@ struct BehaviourSent {
 };
 struct StateSent {
   std::uint64_t stamp{};  ///< Robot's clock, ns.
+  Pose3 pose{};           ///< Its own estimate, map frame, level.
 };
 struct NotificationSent {
   std::string code{};

@@ -167,7 +167,7 @@ Decoded decode_sent(std::string_view topic, std::string_view type, std::span<con
   if (is(topic, topics::kRobotState)) {
     const auto s = read<radio::RobotState>(cdr);
     if (!s) return std::nullopt;
-    return DecodedSample{s->robot(), StateSent{s->stamp()}};
+    return DecodedSample{s->robot(), StateSent{s->stamp(), Pose3::level({s->x(), s->y(), s->yaw()}, s->z())}};
   }
   if (is(topic, topics::kAcknowledgement)) return acknowledgement(cdr);
   if (is(topic, topics::kAuthority)) return authority(cdr);

@@ -2,8 +2,7 @@
 #include "sim/driver/robot_driver.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
+#include <vector>
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
@@ -12,52 +11,23 @@
 #include "nav_msgs/msg/Odometry.h"
 #include "sensor_msgs/msg/BatteryState.h"
 #include "sensor_msgs/msg/PointCloud2.h"
+#include "sim/driver/messages.hpp"
 
 namespace adit::sim {
 namespace {
 
-constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/msg/PointField.FLOAT32
-constexpr std::uint32_t kPointBytes = 12;
-static_assert(sizeof(Eigen::Vector3f) == kPointBytes);
-
-std_msgs::msg::Header header(Time now, const char* frame) {
-  const std::int64_t ns = now.time_since_epoch().count();
-  std_msgs::msg::Header out;
-  out.stamp().sec(static_cast<std::int32_t>(ns / 1'000'000'000));
-  out.stamp().nanosec(static_cast<std::uint32_t>(ns % 1'000'000'000));
-  out.frame_id(frame);
-  return out;
-}
-
-// The serialised sample: made beside everything else, for it is large.
-std::vector<std::uint8_t> cloud_bytes(const PointCloud& points, const std_msgs::msg::Header& stamp) {
-  sensor_msgs::msg::PointCloud2 cloud;
-  cloud.header(stamp);
-  cloud.height(1);
-  cloud.width(static_cast<std::uint32_t>(points.size()));
-  const std::array names{"x", "y", "z"};
-  for (std::uint32_t i = 0; i < names.size(); ++i) {
-    sensor_msgs::msg::PointField field;
-    field.name(names[i]);
-    field.offset(4 * i);
-    field.datatype(kFloat32);
-    field.count(1);
-    cloud.fields().push_back(field);
-  }
-  cloud.point_step(kPointBytes);
-  cloud.row_step(kPointBytes * cloud.width());
-  cloud.data().resize(points.size() * kPointBytes);
-  if (!points.empty()) std::memcpy(cloud.data().data(), points.data(), cloud.data().size());
-  cloud.is_dense(true);
-  std::vector<std::uint8_t> out;
-  wire::encode(cloud, out);
-  return out;
-}
+constexpr double kLateOdometry = 0.02;    // share of the samples that others overtake
+constexpr double kLateImu = 0.005;        // share of the samples that wait and come together
+constexpr Duration kLongestDelay = 45ms;  // of such samples
+constexpr double kUsualScanDelay = 0.02;  // s: of a sweep, beyond DriverParams::scan_delay
+constexpr double kLateScan = 0.02;        // share of the sweeps that come kLongestDelay later still
+constexpr double kClockOffset = 0.005;    // s: of a sensor's clock to the driver's
 
 }  // namespace
 
 struct RobotDriver::Endpoints {
   wire::Writer<nav_msgs::msg::Odometry> odom{};
+  wire::Writer<sensor_msgs::msg::Imu> imu{};
   wire::Writer<sensor_msgs::msg::BatteryState> battery{};
   std::unique_ptr<wire::RawWriter> points{};
   std::unique_ptr<wire::RawReader> cmd_vel{};
@@ -65,7 +35,17 @@ struct RobotDriver::Endpoints {
 
 RobotDriver::RobotDriver(Simulation& simulation, std::size_t robot, Executor& strand, wire::Participant& wire,
                          const DriverParams& params)
-    : simulation_(simulation), robot_(robot), strand_(strand), wire_(wire), params_(params) {}
+    : simulation_(simulation),
+      robot_(robot),
+      strand_(strand),
+      wire_(wire),
+      params_(params),
+      noise_(simulation.params().noise),
+      random_(simulation.sensor_seed(robot)) {
+  const auto offset = [this] { return from_seconds(random_.uniform(-kClockOffset, kClockOffset) * noise_); };
+  lidar_clock_ = offset();
+  imu_clock_ = offset();
+}
 
 RobotDriver::~RobotDriver() = default;
 
@@ -81,8 +61,13 @@ Result<void> RobotDriver::start() {
   endpoints_->battery = std::move(*battery);
   endpoints_->points = std::move(*points);
   if (auto listening = listen(); !listening) return listening;
-
   started_ = strand_.now();
+  if (simulation_.params().realistic) {
+    auto imu = wire::Writer<sensor_msgs::msg::Imu>::make(wire_, wire::topics::kImu);
+    if (!imu) return imu.error();
+    endpoints_->imu = std::move(*imu);
+    imu_ = strand_.every(simulation_.params().step, [this] { send_imu(); });
+  }
   odom_ = strand_.every(params_.odom_period, [this] { send_odom(); });
   battery_ = strand_.every(params_.battery_period, [this] { send_battery(); });
   first_points_ = strand_.after(params_.first_scan, [this] {
@@ -113,31 +98,66 @@ void RobotDriver::silence(Sensor sensor, bool silent) {
   (sensor == Sensor::lidar ? lidar_silent_ : odometry_silent_) += silent ? 1 : -1;
 }
 
+Time RobotDriver::simulated(Duration at) {
+  const Time now = strand_.now();
+  const Duration age = now - (origin_ + simulation_.now());
+  // The clock was set, or the world goes slow.
+  if (age < 0ns || age > simulation_.params().step) origin_ = now - simulation_.now();
+  return origin_ + at;
+}
+
 // A failed write is counted by the wire and shown with its counters; the next sample replaces it.
 void RobotDriver::send_odom() {
   if (odometry_silent_ > 0) return;
   const Odometry& measured = simulation_.odometry(robot_);
+  const bool realistic = simulation_.params().realistic;
   nav_msgs::msg::Odometry odom;
-  odom.header(header(strand_.now(), "odom"));
+  odom.header(message_header(realistic ? simulated(simulation_.now()) : strand_.now(), "odom"));
   odom.child_frame_id("base_link");
   auto& pose = odom.pose().pose();
   pose.position().x(measured.pose().x);
   pose.position().y(measured.pose().y);
   pose.position().z(simulation_.altitude(robot_));
-  pose.orientation().z(std::sin(measured.pose().yaw / 2.0));
-  pose.orientation().w(std::cos(measured.pose().yaw / 2.0));
+  const Eigen::Quaterniond q = measured.orientation();
+  pose.orientation().x(q.x());
+  pose.orientation().y(q.y());
+  pose.orientation().z(q.z());
+  pose.orientation().w(q.w());
   auto& twist = odom.twist().twist();
   twist.linear().x(measured.twist().vx);
   twist.linear().y(measured.twist().vy);
   twist.angular().z(measured.twist().wz);
+  if (realistic) {
+    set_covariance(odom, measured.sigma());
+    if (random_.chance(noise_ * kLateOdometry)) {
+      std::erase_if(late_, [](const Timer& timer) { return !timer.active(); });
+      const Duration delay = from_seconds(random_.uniform() * seconds(kLongestDelay));
+      late_.push_back(strand_.after(delay, [this, odom] { (void)endpoints_->odom.write(odom); }));
+      return;
+    }
+  }
   (void)endpoints_->odom.write(odom);
+}
+
+void RobotDriver::send_imu() {
+  // A bus that is busy hands several samples over at once.
+  if (strand_.now() < imu_waits_until_) return;
+  if (random_.chance(noise_ * kLateImu)) {
+    imu_waits_until_ = strand_.now() + from_seconds(random_.uniform() * seconds(kLongestDelay));
+    return;
+  }
+  const std::optional<ImuConfig>& config = simulation_.platform(robot_).imu;
+  const std::string frame = config.value_or(ImuConfig{}).frame;
+  for (const ImuSample& sample : simulation_.take_imu(robot_))
+    (void)endpoints_->imu.write(imu_message(sample, simulation_.imu_params(robot_),
+                                            message_header(simulated(sample.at) + imu_clock_, frame)));
 }
 
 void RobotDriver::send_battery() {
   const double charge =
       std::clamp(params_.charge - params_.drain * seconds(strand_.now() - started_), 0.0, 1.0);
   sensor_msgs::msg::BatteryState battery;
-  battery.header(header(strand_.now(), "base_link"));
+  battery.header(message_header(strand_.now(), "base_link"));
   battery.percentage(static_cast<float>(charge));
   battery.voltage(static_cast<float>(21.0 + 4.2 * charge));
   battery.present(true);
@@ -146,16 +166,31 @@ void RobotDriver::send_battery() {
 
 void RobotDriver::send_points() {
   if (lidar_silent_ > 0) return;
-  auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
-  auto stamp = header(strand_.now(), "base_link");
   std::weak_ptr<Endpoints> alive = endpoints_;
+  const auto send = [alive](const Result<std::vector<std::uint8_t>>& bytes) {
+    const auto endpoints = alive.lock();
+    if (endpoints && bytes) (void)endpoints->points->write(*bytes);
+  };
+  if (!simulation_.params().realistic) {
+    auto job = std::make_shared<Simulation::ScanJob>(simulation_.scan(robot_));
+    strand_.compute(
+        {.name = "scan", .modelled = params_.scan_delay},
+        [job, header = message_header(strand_.now(), "base_link")] {
+          return cloud_message(job->compute(), header);
+        },
+        send);
+    return;
+  }
+  auto job = std::make_shared<SweepJob>(simulation_.sweep(robot_));
+  const Time begin = simulated(simulation_.now() - simulation_.sweep_duration()) + lidar_clock_;
+  Duration delay = params_.scan_delay + from_seconds(noise_ * kUsualScanDelay * random_.uniform());
+  if (random_.chance(noise_ * kLateScan)) delay += kLongestDelay;
   strand_.compute(
-      {.name = "scan", .modelled = params_.scan_delay},
-      [job, stamp] { return cloud_bytes(job->compute(), stamp); },
-      [alive](const Result<std::vector<std::uint8_t>>& bytes) {
-        const auto endpoints = alive.lock();
-        if (endpoints && bytes) (void)endpoints->points->write(*bytes);
-      });
+      {.name = "scan", .modelled = delay},
+      [job, header = message_header(begin, simulation_.platform(robot_).lidar().frame)] {
+        return cloud_message(job->trace(), header);
+      },
+      send);
 }
 
 }  // namespace adit::sim

@@ -22,9 +22,10 @@ struct DriverParams {
   agent::VelocityType velocity{agent::VelocityType::twist};  ///< Type of the /cmd_vel that it obeys.
 };
 
-/// A simulated robot's driver: obeys rt/cmd_vel and gives rt/odom, rt/points and rt/battery_state, as a ROS 2
-/// driver does. The same code on the in-memory wire and on Fast DDS. All drivers of one simulation
-/// live on strands of one thread.
+/// A simulated robot's driver: obeys rt/cmd_vel and gives rt/odom, rt/points and rt/battery_state, in a
+/// realistic simulation also rt/imu/data, as a ROS 2 driver does. There its sensors' clocks differ by up to
+/// 5 ms, and some samples come late or overtake others. The same code on the in-memory wire and on Fast DDS.
+/// All drivers of one simulation live on strands of one thread.
 class RobotDriver {
  public:
   /// `strand`, `wire` (the robot domain) and `simulation` outlive the driver.
@@ -39,7 +40,10 @@ class RobotDriver {
  private:
   struct Endpoints;
   Result<void> listen();
+  /// The driver's clock when the simulation was at `at`.
+  Time simulated(Duration at);
   void send_odom();
+  void send_imu();
   void send_battery();
   void send_points();
 
@@ -51,7 +55,13 @@ class RobotDriver {
   std::shared_ptr<Endpoints> endpoints_;  // shared with scans under way
   Time started_{};
   int lidar_silent_{}, odometry_silent_{};
-  Timer odom_{}, battery_{}, first_points_{}, points_{};
+  double noise_;
+  Random random_;                         ///< Of the timing.
+  Time origin_{};                         ///< The driver's clock at the simulation's begin.
+  Duration lidar_clock_{}, imu_clock_{};  ///< How far the sensors' clocks are ahead of the driver's.
+  Time imu_waits_until_{};
+  std::vector<Timer> late_{};  ///< Odometry that others overtake.
+  Timer odom_{}, imu_{}, battery_{}, first_points_{}, points_{};
 };
 
 }  // namespace adit::sim

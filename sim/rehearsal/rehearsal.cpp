@@ -10,6 +10,7 @@
 #include "sim/rehearsal/radio_walls.hpp"
 #include "sim/rehearsal/random_faults.hpp"
 #include "sim/rehearsal/random_script.hpp"
+#include "sim/rehearsal/trajectories.hpp"
 
 namespace adit::sim {
 namespace {
@@ -83,6 +84,11 @@ class Run {
     if (auto healthy = health(); !healthy) return healthy.error();
     if (recorder_)
       if (auto recorded = recorder_->close(); !recorded) return recorded.error();
+    if (trajectories_) {
+      auto files = trajectories_->close();
+      if (!files) return files.error();
+      trajectory_files_ = std::move(*files);
+    }
     out.report = report(seconds(std::chrono::steady_clock::now() - begin));
     out.trails = std::move(trails_);
     out.goals = witness_.goals();
@@ -99,6 +105,11 @@ class Run {
            .about = {{"scenario", scenario_.name}, {"seed", std::to_string(params_.seed)}}});
       if (!recorder) return recorder.error();
       recorder_ = std::move(*recorder);
+    }
+    if (!params_.trajectories.empty()) {
+      auto opened = Trajectories::open(params_.trajectories, ids_of(scenario_.robots));
+      if (!opened) return opened.error();
+      trajectories_ = std::move(*opened);
     }
     network_.set_tap([this](const wire::SampleEvent& frame) {
       witness_.see(frame);
@@ -160,6 +171,7 @@ class Run {
       mode_seconds_[id][mode.empty() ? "none" : mode] += seconds(now - observed_);
     }
     checker_.advance(now);
+    if (trajectories_ && now % kTruthPeriod == 0ns) trajectories_->add(simulation_, witness_, now);
     expectations_.judge(now, evidence());
     observed_ = now;
     if (params_.progress && now % 1s == 0ns) params_.progress(now);
@@ -217,6 +229,7 @@ class Run {
           is.distance,      static_cast<int>(is.collisions),    static_cast<int>(is.caused),
           is.min_clearance, seconds(is.moving) / out.virtual_s, mode_seconds_[robot.id]};
     }
+    out.trajectories = trajectory_files_;
     out.expectations = expectations_.finish(evidence(), out);
     return out;
   }
@@ -238,6 +251,8 @@ class Run {
   RobotMachines robots_{};
   StationMachines stations_{};
   FaultPlayer faults_{stage_, robots_, stations_};
+  std::unique_ptr<Trajectories> trajectories_{};
+  std::map<std::string, TrajectoryFiles> trajectory_files_{};
   std::map<std::string, Trail> trails_{};
   std::map<std::string, std::map<std::string, double>> mode_seconds_{};
   Duration observed_{};
@@ -279,6 +294,10 @@ DriverParams make_driver_params(const RobotSpec& spec) {
 SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t seed) {
   SimulationParams out;
   if (scenario.lidar == LidarKind::planar) out.lidar = LidarParams::planar();
+  out.realistic = scenario.realistic && scenario.lidar == LidarKind::full;
+  out.noise = scenario.noise;
+  out.odometry = (out.realistic ? OdometryParams::realistic() : OdometryParams{}).scaled(scenario.noise);
+  if (!out.realistic) out.lidar.range_noise *= scenario.noise;  // A sweep scales its noise itself.
   out.seed = seed;
   out.people = scenario.people;
   return out;

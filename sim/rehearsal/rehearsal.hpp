@@ -26,6 +26,7 @@ struct RunParams {
   int workers{2};  ///< Threads for the heavy work of one run, [1, 64].
   AgentFactory make_agent{};
   WireDecorator parent_wire{};  ///< Decorates the wire of each robot's parent process; empty: nothing does
+  std::string trajectories{};   ///< Folder for the robots' trajectories (TUM files); empty: none.
   std::function<void(Duration)> progress{};  ///< Called with the virtual time, once per virtual second.
   /// Ends the run before its duration; asked every Trail::kPeriod. Empty: never.
   std::function<bool(const RunState&)> ended{};

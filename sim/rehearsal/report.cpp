@@ -91,6 +91,9 @@ std::string to_json(const RunReport& report) {
   ordered_json events = ordered_json::array();
   for (const TimedEvent& e : report.events)
     events.push_back({{"at", seconds(e.at)}, {"robot", e.robot}, {"text", e.text}});
+  ordered_json trajectories = ordered_json::object();
+  for (const auto& [id, files] : report.trajectories)
+    trajectories[id] = {{"truth", files.truth}, {"odometry", files.odometry}, {"map", files.map}};
   const ordered_json out{
       {"scenario", report.scenario},
       {"digest", report.digest},
@@ -102,6 +105,7 @@ std::string to_json(const RunReport& report) {
       {"expectations", expectations},
       {"rules", rules_json(report)},
       {"robots", robots_json(report)},
+      {"trajectories", trajectories},
       {"topics", topics},
       {"commands",
        {{"sent", report.commands.sent},

@@ -55,6 +55,13 @@ struct TimedEvent {
   std::string text{};
 };
 
+/// Files with a robot's poses, one "time x y z qx qy qz qw" a line (TUM format), s and m.
+struct TrajectoryFiles {
+  std::string truth{};     ///< World frame.
+  std::string odometry{};  ///< Frame `odom`, which begins at the start pose.
+  std::string map{};       ///< The robot's own estimate, map frame, as it states it.
+};
+
 /// What one run gave.
 struct RunReport {
   std::string scenario{};
@@ -64,6 +71,7 @@ struct RunReport {
   std::vector<ExpectationResult> expectations{};
   std::vector<RuleResult> rules{};
   std::map<std::string, RobotResult> robots{};
+  std::map<std::string, TrajectoryFiles> trajectories{};  ///< By robot; empty unless they were asked for.
   std::map<std::string, TopicResult, std::less<>> topics{};
   CommandResult commands{};
   std::map<std::string, std::uint64_t> faults{};  ///< Executed faults by kind.

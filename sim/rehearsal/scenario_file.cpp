@@ -142,6 +142,10 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);
   out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;
+  if (root.has("odometry")) {
+    const Node odometry = root.child("odometry");
+    out.noise = odometry.number("noise", config::within(0.0, 10.0), 1.0);
+  }
   read_machines(root, out);
   read_people(root, out);
   out.script = read_script(root, out);

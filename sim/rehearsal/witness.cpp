@@ -79,6 +79,10 @@ void Witness::sent(const wire::SampleEvent& frame) {
     said.stopped = behaviour->stopped;
     said.heard = true;
   }
+  if (const auto* state = std::get_if<StateSent>(&decoded->event)) {
+    said.pose = state->pose;
+    said.pose_sent = frame.at;
+  }
   if (const auto* status = std::get_if<AuthoritySent>(&decoded->event)) {
     if (said.authority.holder != status->authority.holder)
       note(robot, frame.at,

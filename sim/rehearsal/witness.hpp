@@ -26,6 +26,8 @@ struct RobotWord {
   Authority authority{};
   bool stopped{};
   bool heard{};
+  std::optional<Pose3> pose{};  ///< Its own estimate, map frame.
+  Duration pose_sent{};         ///< When it sent that, virtual time.
 };
 
 /// Sees every frame of a rehearsal: feeds the checker, the digest and the counters, and keeps each robot's

@@ -5,50 +5,11 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/world/box_target.hpp"
 #include "sim/world/noise.hpp"
 
 namespace adit::sim {
 namespace {
-
-/// A box in its own frame, with the sensor's position there.
-struct Target {
-  Eigen::Vector2d axis;     ///< Cosine and sine of its yaw in the world.
-  Eigen::Vector3d start;    ///< Origin of the beams, box frame, m.
-  Eigen::Vector3d half;     ///< Half of its edges, m.
-  Eigen::Vector2d towards;  ///< Unit vector from the sensor, world.
-  double cos_spread;        ///< Cosine of half the angle that the box fills from above.
-};
-
-Target make_target(const BodyBox& body, const Eigen::Vector3d& sensor) {
-  Target target{};
-  target.axis = {std::cos(body.pose.yaw), std::sin(body.pose.yaw)};
-  const Eigen::Vector2d away(sensor.x() - body.pose.x, sensor.y() - body.pose.y);
-  target.half = 0.5 * Eigen::Vector3d(body.length, body.width, body.height);
-  target.start = {target.axis.dot(away), target.axis.x() * away.y() - target.axis.y() * away.x(),
-                  sensor.z() - body.ground - target.half.z()};
-  const double distance = away.norm(), radius = target.half.head<2>().norm();
-  target.cos_spread = distance > radius ? std::sqrt(1.0 - radius * radius / (distance * distance)) : -1.0;
-  target.towards = distance > 0.0 ? Eigen::Vector2d(-away / distance) : Eigen::Vector2d(1.0, 0.0);
-  return target;
-}
-
-/// Distance to the box by slabs (Kay and Kajiya, 1986); no_hit when missed or when the beam starts inside.
-double cast_box(const Target& target, const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d d(target.axis.x() * direction.x() + target.axis.y() * direction.y(),
-                          target.axis.x() * direction.y() - target.axis.y() * direction.x(), direction.z());
-  double enter = 0.0, leave = VoxelGrid::kNoHit;
-  for (int n = 0; n < 3; ++n) {
-    if (d[n] == 0.0) {
-      if (std::abs(target.start[n]) > target.half[n]) return VoxelGrid::kNoHit;
-      continue;
-    }
-    const double a = (-target.half[n] - target.start[n]) / d[n],
-                 b = (target.half[n] - target.start[n]) / d[n];
-    enter = std::max(enter, std::min(a, b));
-    leave = std::min(leave, std::max(a, b));
-  }
-  return enter > 0.0 && enter <= leave ? enter : VoxelGrid::kNoHit;
-}
 
 Eigen::Vector2d unit(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
@@ -209,7 +170,7 @@ PointCloud LidarPattern::scan(const World& world, std::span<const BodyBox> other
                               double height, std::uint64_t seed) const {
   const Eigen::Matrix3d rotation = base.orientation.toRotationMatrix();
   const VoxelGrid::Start start = world.grid().locate(base.position + height * rotation.col(2));
-  std::vector<Target> targets;
+  std::vector<BoxTarget> targets;
   for (const BodyBox& body : others) targets.push_back(make_target(body, start.position));
   const bool level = rotation.col(2) == Eigen::Vector3d::UnitZ();
   Random random(seed);
@@ -227,12 +188,12 @@ PointCloud LidarPattern::scan(const World& world, std::span<const BodyBox> other
     const auto direction = [&](const Eigen::Vector2d& elevation) -> Eigen::Vector3d {
       return ahead * elevation.x() + rotation.col(2) * elevation.y();
     };
-    const auto in_the_way = [&](const Target& target) {
+    const auto in_the_way = [&](const BoxTarget& target) {
       return !level || ahead.head<2>().dot(target.towards) >= target.cos_spread;
     };
     for (std::size_t n = 0; n < elevation_.size(); ++n) directions[n] = direction(elevation_[n]);
     world.grid().cast(start, directions, params_.max_range, ranges);
-    for (const Target& target : targets)
+    for (const BoxTarget& target : targets)
       if (in_the_way(target))
         for (std::size_t n = 0; n < elevation_.size(); ++n)
           ranges[n] = std::min(ranges[n], cast_box(target, directions[n]));
@@ -242,7 +203,7 @@ PointCloud LidarPattern::scan(const World& world, std::span<const BodyBox> other
       const auto cast = [&](const Eigen::Vector2d& elevation) {
         const Eigen::Vector3d way = direction(elevation);
         double range = world.grid().cast(start, way, params_.max_range);
-        for (const Target& target : targets)
+        for (const BoxTarget& target : targets)
           if (in_the_way(target)) range = std::min(range, cast_box(target, way));
         return range;
       };

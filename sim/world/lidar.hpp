@@ -47,6 +47,10 @@ class LidarPattern {
   /// Returns of one turn at most.
   std::size_t size() const { return azimuth_.size() * (params_.folded ? 1 : elevation_.size()); }
 
+  /// Directions of a column, cosine and sine; those of its beams above the sensor's plane, rising.
+  const std::vector<Eigen::Vector2d>& azimuths() const { return azimuth_; }
+  const std::vector<Eigen::Vector2d>& elevations() const { return elevation_; }
+
   /// One turn, taken at one instant, of a sensor at `height` above the ground point `base` (world).
   /// Points are in base_link: origin on the ground under the robot's centre, x forward, z up, as level as
   /// `base` is; at most size() of them, column by column, in each from the lowest ring up; beams that hit

@@ -31,6 +31,9 @@ Result<Simulation> Simulation::create(std::shared_ptr<const World> world, std::v
     simulation.people_.emplace_back(person);
   }
   simulation.touching_.resize(simulation.people_.size());
+  if (params.realistic)
+    for (const Person& person : simulation.people_)
+      simulation.walked_.emplace_back(simulation.sweep_steps() + 1, person.body().pose);
   for (std::size_t n = 0; n < simulation.size(); ++n) {
     simulation.robots_[n].truth.min_clearance = std::numeric_limits<double>::infinity();
     simulation.measure(n);
@@ -73,12 +76,13 @@ Result<void> Simulation::add(const RobotStart& start) {
       return {Reason::bad_argument, where() + " overlaps " + robot.id};
   const std::uint64_t seed = derive_seed(params_.seed, 2 * robots_.size() + 1);
   OdometryParams odometry = params_.odometry;
-  odometry.turn = std::max(odometry.turn, platform.turn_error);
+  odometry.turn = std::max(odometry.turn, params_.noise * platform.turn_error);
   robots_.push_back({start.id, Body(platform, start.pose, params_.watchdog), Odometry(odometry, seed),
                      std::move(ground), lidar_of(platform)});
   Robot& robot = robots_.back();
   robot.truth.pose = Pose3::level(start.pose, z);
   robot.start_ground = floor;
+  equip(start);
   return {};
 }
 
@@ -90,7 +94,8 @@ std::optional<std::size_t> Simulation::find(const std::string& id) const {
 
 double Simulation::altitude(std::size_t robot) const {
   const Robot& r = robots_[robot];
-  return r.body.platform().flies() ? r.truth.pose.position.z() - r.start_ground : r.odometry.height();
+  return r.body.platform().flies() ? r.truth.pose.position.z() - r.start_ground + r.odometry.altimeter_error()
+                                   : r.odometry.height();
 }
 
 bool Simulation::level(std::size_t a, std::size_t b) const {
@@ -108,10 +113,19 @@ bool Simulation::level(std::size_t robot, const Person& person) const {
   return std::isnan(floor) || r.truth.pose.position.z() < floor + Person::kHeight;
 }
 
-bool Simulation::touches_world(const Robot& robot, const Rectangle& body) const {
+std::pair<double, double> Simulation::extent(const Robot& robot) {
   const Platform& platform = robot.body.platform();
   const double z = robot.truth.pose.position.z();
-  return platform.flies() ? space_.touches(body, z, z + platform.height) : robot.ground->touches(body);
+  const Eigen::Quaterniond& q = robot.truth.pose.orientation;
+  const double ahead = 2.0 * (q.x() * q.z() - q.w() * q.y()), left = 2.0 * (q.y() * q.z() + q.w() * q.x());
+  const double lean = 0.5 * (platform.length * std::abs(ahead) + platform.width * std::abs(left));
+  return {z - lean, z + platform.height + lean};
+}
+
+bool Simulation::touches_world(const Robot& robot, const Rectangle& body) const {
+  if (!robot.body.platform().flies()) return robot.ground->touches(body);
+  const auto [low, high] = extent(robot);
+  return space_.touches(body, low, high);
 }
 
 void Simulation::lift(Robot& robot) {
@@ -218,6 +232,14 @@ void Simulation::walk(std::size_t index) {
 
 void Simulation::move(std::size_t index) {
   Robot& robot = robots_[index];
+  const Twist2 twist = robot.truth.twist;
+  const Pose2 before = robot.body.pose();
+  drive(index);
+  if (robot.real) settle(robot, twist, robot.body.pose() != before);
+}
+
+void Simulation::drive(std::size_t index) {
+  Robot& robot = robots_[index];
   const double dt = seconds(params_.step);
   if (robot.body.platform().flies()) lift(robot);
   const Pose2 before = robot.body.pose();
@@ -247,6 +269,7 @@ void Simulation::move(std::size_t index) {
   truth.distance += (now.position() - before.position()).norm();
   if (std::hypot(truth.twist.vx, truth.twist.vy) > 0.05 || std::abs(truth.twist.wz) > 0.1)
     truth.moving += params_.step;
+  if (robot.real) return;
   const double ground = robot.ground->ground(now.x, now.y), height = truth.pose.position.z();
   const bool stays = robot.body.platform().flies() || std::isnan(ground);
   if (!stays) robot.odometry.rise(ground - height);
@@ -258,8 +281,9 @@ void Simulation::measure(std::size_t index) {
   const Rectangle body = footprint(robot.body.platform(), robot.body.pose());
   constexpr double far = 2.0;  // m: what is farther from a flying body is not looked for
   const Platform& platform = robot.body.platform();
-  const double z = robot.truth.pose.position.z(), least = robot.truth.min_clearance;
-  double clearance = platform.flies() ? space_.clearance(body, z, z + platform.height, std::min(least, far))
+  const double least = robot.truth.min_clearance;
+  const auto [low, high] = extent(robot);
+  double clearance = platform.flies() ? space_.clearance(body, low, high, std::min(least, far))
                                       : robot.ground->clearance(body);
   clearance = platform.flies() && clearance >= far ? least : std::min(least, clearance);
   for (std::size_t n = 0; n < robots_.size(); ++n)
@@ -302,6 +326,7 @@ void Simulation::step() {
   for (std::size_t n = 0; n < people_.size(); ++n) walk(n);
   for (std::size_t n = 0; n < robots_.size(); ++n) move(n);
   for (std::size_t n = 0; n < robots_.size(); ++n) measure(n);
+  sense();
 }
 
 Simulation::ScanJob Simulation::scan(std::size_t index) const {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "sim/world/lidar.hpp"
 #include "sim/world/odometry.hpp"
 #include "sim/world/person.hpp"
+#include "sim/world/realism.hpp"
 #include "sim/world/standing_map.hpp"
 #include "sim/world/world.hpp"
 
@@ -24,6 +26,12 @@ struct SimulationParams {
   OdometryParams odometry{};
   std::uint64_t seed{1};
   std::vector<PersonSpec> people{};  ///< At most 100.
+  /// Bodies tilt with ground, suspension and gait; lidars sweep, see sweep(); there are inertial sensors.
+  bool realistic{false};
+  /// Scale of the errors of tracks, swept lidars, inertial sensors, mounts and clocks, [0, 10]; 0: the truth.
+  /// `odometry` and the noise of `lidar` are scaled by the caller.
+  double noise{1.0};
+  ImuParams imu{};  ///< Realistic.
 };
 
 /// A robot to be put into the world.
@@ -110,6 +118,16 @@ class Simulation {
   /// The lidar of a robot as the world is now.
   ScanJob scan(std::size_t robot) const;
 
+  /// Realistic: the sweep of a robot's lidar that ends now, in the lidar's own frame.
+  SweepJob sweep(std::size_t robot) const;
+  /// Realistic: how long a sweep lasts.
+  Duration sweep_duration() const;
+  /// Realistic: what the inertial sensor measured since the last call.
+  std::vector<ImuSample> take_imu(std::size_t robot);
+  const ImuParams& imu_params(std::size_t robot) const { return robots_[robot].real->imu.params(); }
+  /// Seed for the timing of a robot's sensors.
+  std::uint64_t sensor_seed(std::size_t robot) const;
+
  private:
   struct Robot {
     std::string id;
@@ -122,6 +140,7 @@ class Simulation {
     Pose2 contact{};                       ///< Place where it began.
     int jams{};                            ///< Active jams of its drive.
     double start_ground{};                 ///< World frame, m.
+    std::optional<Realism> real{};
   };
   Simulation(std::shared_ptr<const World> world, const SimulationParams& params);
 
@@ -129,6 +148,11 @@ class Simulation {
   Result<void> add(const RobotStart& start);
   std::shared_ptr<const LidarPattern> lidar_of(const Platform& platform) const;
   void move(std::size_t robot);
+  void drive(std::size_t robot);
+  void equip(const RobotStart& start);
+  void settle(Robot& robot, const Twist2& before, bool moved);
+  void sense();
+  std::size_t sweep_steps() const;
   void walk(std::size_t person);
   std::string partner_name(std::size_t partner) const;
   /// What the footprint would touch: a robot's index, size() for the world, from size() + 1 on a person, or
@@ -138,6 +162,8 @@ class Simulation {
   bool level(std::size_t a, std::size_t b) const;
   bool level(std::size_t robot, const Person& person) const;
   bool touches_world(const Robot& robot, const Rectangle& footprint) const;
+  /// Heights that a flying body takes up, m, world: leaning it takes up more.
+  static std::pair<double, double> extent(const Robot& robot);
   void lift(Robot& robot);
   void record(std::size_t robot, std::size_t partner);
   /// How fast a robot and a person come nearer to `body` by their own motion, m/s.
@@ -153,6 +179,7 @@ class Simulation {
   std::vector<Robot> robots_{};
   std::vector<Collision> collisions_{};
   std::vector<Person> people_{};
+  std::vector<std::deque<Pose2>> walked_{};             ///< Realistic, by person: as Realism::history.
   std::vector<std::optional<std::size_t>> touching_{};  ///< By person: the robot walked into.
 };
 

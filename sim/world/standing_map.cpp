@@ -11,8 +11,6 @@ namespace adit::sim {
 namespace {
 
 constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
-/// Floors within this distance carry the body, m.
-constexpr double kSupport = 0.25;
 
 }  // namespace
 
@@ -114,6 +112,25 @@ double StandingMap::ground(double x, double y) const {
     weight += w;
   }
   return weight > 1e-9 ? sum / weight : std::numeric_limits<double>::quiet_NaN();
+}
+
+double StandingMap::contact(double x, double y, double expected, double reach) const {
+  const double radius = std::max(kSupport, resolution_);
+  double sum = 0.0, weight = 0.0;
+  for (int j = column(y - radius, 1); j <= column(y + radius, 1); ++j) {
+    const double wy = radius - std::abs(origin_.y() + resolution_ * (j + 0.5) - y);
+    if (wy <= 0.0) continue;
+    for (int i = column(x - radius, 0); i <= column(x + radius, 0); ++i) {
+      const double wx = radius - std::abs(origin_.x() + resolution_ * (i + 0.5) - x);
+      if (wx <= 0.0 || blocked_at(i, j)) continue;
+      const bool inside = i >= 0 && j >= 0 && i < nx_ && j < ny_;
+      const double floor = inside ? double{floor_[index(i, j)]} : outside_floor_;
+      if (!(std::abs(floor - expected) <= reach)) continue;
+      sum += wx * wy * floor;
+      weight += wx * wy;
+    }
+  }
+  return weight > 0.0 ? sum / weight : expected;
 }
 
 double StandingMap::distance(double x, double y) const {

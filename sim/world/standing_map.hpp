@@ -22,6 +22,9 @@ class StandingMap {
   /// Height of the ground under a body at (x, y), m: the floors around, averaged, so that it rides over the
   /// steps of a voxel map smoothly. NaN where there is none.
   double ground(double x, double y) const;
+  /// Height of the ground under a wheel or foot at (x, y), m: floors that carry within `kSupport` m, the
+  /// nearer the more, and no farther from `expected` (m) than `reach`. `expected` where there are none.
+  double contact(double x, double y, double expected, double reach) const;
   /// Whether a footprint touches a blocked column.
   bool touches(const Rectangle& footprint) const;
   /// Distance from the footprint's border to the nearest blocked column, m, within half a column; 0 when it
@@ -34,6 +37,9 @@ class StandingMap {
   double distance(double x, double y) const;
 
  private:
+  /// Floors within this distance carry the body, m.
+  static constexpr double kSupport = 0.25;
+
   int column(double v, int axis) const {
     return static_cast<int>(std::floor((v - origin_[axis]) / resolution_));
   }

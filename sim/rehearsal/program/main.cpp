@@ -130,11 +130,18 @@ int main(int argc, char** argv) {
       app.add_option("--seeds", seeds_text, "A..B: one run for each, in parallel, and a table");
   auto* report_option = app.add_option("--report", report_file, "write the report as JSON");
   auto* picture_option = app.add_option("--picture", picture_file, "write a picture (PNG)");
+  auto* trajectories_option =
+      app.add_option("--trajectories", params.trajectories,
+                     "write truth, odometry and the robots' own poses into this folder (TUM files)");
+  bool realistic = false;
+  app.add_flag("--realistic", realistic,
+               "with a full lidar: bodies tilt, lidars sweep in their own frame, IMUs");
   auto* record_option =
       app.add_option("--record", params.record, "write an MCAP recording of everything said");
   seeds_option->excludes(seed_option)
       ->excludes(report_option)
       ->excludes(picture_option)
+      ->excludes(trajectories_option)
       ->excludes(record_option);
   auto* threads_option = app.add_option("--threads", params.workers,
                                         "for the heavy work of the run, 1 to 64 (2 if left out); the run is "
@@ -147,6 +154,7 @@ int main(int argc, char** argv) {
                    "fewest faults, and written as a scenario that fails by itself");
   chaos_option->excludes(report_option)
       ->excludes(picture_option)
+      ->excludes(trajectories_option)
       ->excludes(record_option)
       ->excludes(threads_option);
   app.add_option("--shrink-to", shrink_to, "the file it is written to (default NAME-seedN-ruleM.yaml)")
@@ -167,6 +175,7 @@ int main(int argc, char** argv) {
   }
   auto scenario = load_scenario(file);
   if (!scenario) return report_error("rehearse", scenario.error());
+  scenario->realistic = realistic;
   auto world = make_world(scenario->world);
   if (!world) return report_error("rehearse", world.error());
   auto factory = make_agent_factory(defect);

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sim/world/lidar.hpp"
+
+namespace adit::sim {
+
+/// One return of a sweep, in the lidar's own frame, laid out as drivers send it.
+struct SweepPoint {
+  float x{}, y{}, z{};     ///< m
+  float intensity{};       ///< Reflectivity, [0, 255].
+  float t{};               ///< Time since the sweep's begin, s.
+  std::uint16_t ring{};    ///< Beam, 0 is the lowest.
+  std::uint16_t unused{};  ///< Keeps the layout free of holes.
+  Eigen::Vector3f position() const { return {x, y, z}; }
+};
+static_assert(sizeof(SweepPoint) == 24);
+
+/// How wrong a lidar is, beyond its range noise.
+struct LidarErrors {
+  double noise{1.0};       ///< Scale of all errors, also of the range noise; 0 is the truth.
+  double bias{0.0};        ///< Of every range, m.
+  double mixed{0.05};      ///< Share of the beams on an edge that see both sides at once, [0, 1].
+  double dropouts{0.003};  ///< Share of the beams without return on bright ground, [0, 1].
+  /// Ranges deviate up to this many times more on surfaces far away or seen at a grazing angle.
+  double grazing{2.5};
+};
+
+/// All that one sweep of a lidar depends on, by value: trace() may run on another thread, later.
+struct SweepJob {
+  std::shared_ptr<const World> world{};
+  std::shared_ptr<const LidarPattern> lidar{};
+  LidarErrors errors{};
+  /// True poses of the lidar, at least two, at equal intervals from the sweep's begin to its end.
+  std::vector<Pose3> T_world_lidar{};
+  std::vector<std::vector<BodyBox>> others{};  ///< In each interval.
+  double duration{};                           ///< Of the sweep, s.
+  std::uint64_t seed{};
+
+  /// Traces each column from the pose at its own time; it begins behind and turns counter-clockwise. At most
+  /// lidar->size() points, column by column, in each from the lowest ring up; beams without return are left
+  /// out.
+  std::vector<SweepPoint> trace() const;
+};
+
+}  // namespace adit::sim
