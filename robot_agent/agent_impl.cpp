@@ -174,21 +174,24 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   if (routes_it) watch->watch(router, {.name = "router"});
   watch->watch(sensors, {.name = "sensors"});
   if (params.disk) watch->note({.name = "store"});
-  return e.radio->listen({e.directory, e.namesakes,
-                          [with_command](const std::function<void(CommandInterface&)>& use) {
-                            with_command([&](CommandComponent& component) { component.commands(use); });
-                          },
-                          [&e](Task task) {
-                            if (e.command_component) e.command_component->keep();
-                            e.keeper->when_safe(std::move(task));
-                          },
-                          [with_command](const Eigen::Vector3d& goal, const auto& done) {
-                            with_command(
-                                [&](CommandComponent& component) { component.find_route(goal, done); });
-                          },
-                          [&e, &strand](const Id& station, std::span<const std::uint64_t> ids) {
-                            e.findings->acknowledged(station, ids, strand.now());
-                          }});
+  return e.radio->listen(
+      {e.directory, e.namesakes,
+       [with_command](const std::function<void(CommandInterface&)>& use) {
+         with_command([&](CommandComponent& component) { component.commands(use); });
+       },
+       [&e](Task task) {
+         if (e.command_component) e.command_component->keep();
+         e.keeper->when_safe(std::move(task));
+       },
+       [with_command](const Eigen::Vector3d& goal, const auto& done) {
+         with_command([&](CommandComponent& component) { component.find_route(goal, done); });
+       },
+       [with_command](const Eigen::Vector3d& goal, bool replace, const auto& done) {
+         with_command([&](CommandComponent& component) { component.check_goal(goal, replace, done); });
+       },
+       [&e, &strand](const Id& station, std::span<const std::uint64_t> ids) {
+         e.findings->acknowledged(station, ids, strand.now());
+       }});
 }
 
 std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {

@@ -155,6 +155,28 @@ void Agent::CommandComponent::find_route(const Eigen::Vector3d& goal,
   });
 }
 
+void Agent::CommandComponent::check_goal(const Eigen::Vector3d& goal, bool replace,
+                                         std::function<void(const Result<GoalReport>&)> done) {
+  protect([&] {
+    if (!context_.router || !frames_.initialised() || params_.platform.flies() ||
+        !(goal.head<2>().norm() <= kFarthestPlace) || std::isinf(goal.z()))
+      return done({Reason::not_supported, "the goal is not judged"});
+    GoalQuery query{};
+    query.odom_epoch = frames_.odom_epoch();
+    query.from = frames_.T_odom_base().position;
+    query.to = frames_.to_odom(goal);
+    query.replace = replace;
+    call(context_.router->check, query, {.deadline = 500ms},
+         [this, goal, epoch = query.odom_epoch,
+          done = std::move(done)](const Result<nav::GoalFinding>& found) {
+           if (!found) return done(found.error());
+           if (epoch != frames_.odom_epoch())
+             return done({Reason::odometry_jumped, "the odometry jumped meanwhile"});
+           done(goal_report(*found, goal, frames_));
+         });
+  });
+}
+
 bool Agent::CommandComponent::same_boot() const {
   const auto& snapshot = context_.restored.snapshot;
   return snapshot && snapshot->boot == params_.boot;

@@ -75,6 +75,10 @@ class Agent::CommandComponent : public Component {
   /// Asks the robot's global planner for a route to `goal` (map frame, m) and calls `done` exactly once,
   /// within 0.5 s.
   void find_route(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done);
+  /// Judges a goal (map frame, m) by the router's map and calls `done` exactly once, within 0.5 s. `replace`:
+  /// the report may name the nearest valid place instead. Error: the goal could not be judged.
+  void check_goal(const Eigen::Vector3d& goal, bool replace,
+                  std::function<void(const Result<GoalReport>&)> done);
   std::string at_console(const std::string& line);
   /// Stores the state that must survive a restart.
   void keep();

@@ -54,8 +54,11 @@ void Arrival::poll() {
   if (robot_now->stopped) return end(Reason::stopped, "");
   if (robot_now->mode != "waypoint")
     return end(Reason::cancelled, "the robot left waypoint for " + robot_now->mode);
-  if (robot_now->goal_phase == GoalPhase::blocked && robot_now->reason == Reason::goal_unreachable)
+  const bool blocked = robot_now->goal_phase == GoalPhase::blocked;
+  if (blocked && robot_now->reason == Reason::goal_unreachable)
     return end(Reason::goal_unreachable, "no way leads to the goal");
+  if (blocked && robot_now->reason != Reason::none && robot_now->reason != Reason::blocked)
+    return end(robot_now->reason, std::string(describe(robot_now->reason)));
   if (robot_now->goal_phase != GoalPhase::blocked) {
     blocked_ = false;
   } else if (!blocked_) {

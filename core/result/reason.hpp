@@ -41,6 +41,13 @@ enum class Reason : std::uint16_t {
   program_silent = 214,      ///< The external program that steers has not been heard.
   obstacle_close = 215,      ///< The collision monitor stops the robot.
   just_restarted = 216,      ///< A stop may be in transit to the agent, which has just started.
+  goal_occupied = 217,       ///< Something stands where the robot is to stand.
+  goal_no_floor = 218,       ///< The ground is missing there.
+  goal_too_steep = 219,      ///< The ground there is too steep, or a step.
+  goal_too_narrow = 220,     ///< The robot does not fit there at any heading.
+  goal_unseen = 221,         ///< The ground there was not seen yet: accepted, driven within a budget.
+  goal_not_connected = 222,  ///< No route leads there, not even through unknown space.
+  unknown_budget = 223,      ///< The budget of metres towards a goal that was not seen is used up.
   tree_refused = 226,        ///< The behaviour tree contradicts the mode table; the robot runs in hold.
   odometry_jumped = 227,     ///< The driver's odometry moved farther than the body can.
   name_taken = 228,          ///< Another robot of the same name was present first.

@@ -14,6 +14,21 @@ enum class RouteStatus : std::uint8_t {
   too_far,        ///< the search would need more than its memory
 };
 
+/// Whether a body can stand at a place.
+enum class Standing : std::uint8_t {
+  standable,      ///< The footprint fits on known ground at one heading or more.
+  occupied,       ///< Something stands there.
+  no_floor,       ///< The ground is missing.
+  too_steep,      ///< The ground is too steep, or a step.
+  too_narrow,     ///< Obstacles beside the place leave no heading.
+  unseen,         ///< Not known: part of the ground was not seen.
+  not_connected,  ///< No route leads there.
+};
+/// Whether it is known that the body cannot stand there.
+constexpr bool is_refused(Standing standing) {
+  return standing != Standing::standable && standing != Standing::unseen;
+}
+
 /// A way on the ground from one place to another. Frame: that of the map, m.
 struct Route {
   RouteStatus status{RouteStatus::unreachable};
@@ -23,6 +38,8 @@ struct Route {
   double length{0};          ///< m
   double unknown_length{0};  ///< of it through unknown space, m
   double cost{0};            ///< m, with what narrow and unknown places cost more
+
+  Standing goal{Standing::standable};  ///< Of the goal, where that was asked for.
 
   bool found() const { return status == RouteStatus::found; }
   bool attempt() const { return unknown_length > 0.0; }

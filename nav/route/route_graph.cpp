@@ -56,7 +56,7 @@ bool RouteGraph::stands_between(const Eigen::Vector3d& place, int ix, int iy) co
 // is.
 std::optional<RouteEnd> RouteGraph::find_end(const Eigen::Vector3d& place, double reach) {
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
-  if (map_.at_cell(cx, cy, place.z()) < 0) return RouteEnd{place, -1, 0};
+  if (params_.through_unknown && map_.at_cell(cx, cy, place.z()) < 0) return RouteEnd{place, -1, 0};
   const int cells = static_cast<int>(reach / kRouteCell);
   std::optional<RouteEnd> best;
   double least = reach + kRouteCell;
@@ -108,7 +108,8 @@ Route RouteGraph::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   auto goal = find_end(goal_place, params_.snap);
   // Nobody knows the ground there nor said how high it is: it may as well be on a deck whose side is seen.
   const bool any_floor = !std::isfinite(to.z()) && !ground(to.x(), to.y(), from.z());
-  if (any_floor && (!goal || goal->tile < 0)) goal = RouteEnd{goal_place, -1, 0, true};
+  if (params_.through_unknown && any_floor && (!goal || goal->tile < 0))
+    goal = RouteEnd{goal_place, -1, 0, true};
   if (!start)
     route.status = RouteStatus::start_blocked;
   else if (!goal)

@@ -35,6 +35,7 @@ struct RouteStep {
   State state{State::straight};
   Eigen::Vector3d target{0, 0, 0};      ///< m
   bool last{true};                      ///< `target` is the goal
+  Standing goal{Standing::standable};   ///< Of the goal itself: `unseen` while its ground is not known.
   std::optional<NarrowPassage> gate{};  ///< Passage that `target` lies behind.
 };
 

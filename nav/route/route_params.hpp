@@ -10,7 +10,8 @@ struct RouteParams {
   double unknown_cost{1.2};  ///< a metre of unknown space costs this many known ones, [1, 3]
   double level_cost{8.0};    ///< of 1.5 m up or down through unknown space, towards a goal there, m, [0, 100]
   double snap{0.5};          ///< a start or goal is moved to a passable place this near, m, [0, 1.5]
-  double margin{13.0};       ///< unknown space is used this far around what is known, m, [2, 100]
+  bool through_unknown{true};  ///< unknown space may be tried; false: the map is complete
+  double margin{13.0};         ///< unknown space is used this far around what is known, m, [2, 100]
   int rebuilds{64};   ///< tiles of the graph made anew with a scan before a search, at most, [0, 100000]
                       ///< them, [0, 100000]
   int tiles{12'288};  ///< of 1.6 x 1.6 m and 4.7 kB, at most; then the farthest go, [64, 20000]

@@ -125,6 +125,7 @@ bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
 }
 
 void RouteSearch::reach(Id id, float cost, Id from) {
+  if (!params_.through_unknown && id < start_id_ && is_ghost(id)) return;
   State& s = states_[id];
   if (s.search == search_ && (s.closed || s.cost <= cost)) return;
   s = {cost, from, search_, false};

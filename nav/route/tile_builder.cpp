@@ -40,7 +40,8 @@ TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, co
       step_(limits.obstacle),
       slope_(limits.slope),
       climbs_stairs_(platform.stairs),
-      doubting_(doubting) {
+      doubting_(doubting),
+      through_unknown_(params.through_unknown) {
   for (std::size_t d2 = 0; d2 < cost_of_.size(); ++d2)
     cost_of_[d2] = cost_at(std::sqrt(static_cast<double>(d2)) * kRouteCell);
 }
@@ -206,7 +207,7 @@ void TileBuilder::measure(Tile& tile) {
       float cost = std::abs(about - hard_) < kRouteCell
                        ? cost_at(exact_clearance(x + kTileHalo, y + kTileHalo))
                        : cost_of_[static_cast<std::size_t>(least)];
-      if (!tile.cells[c].known) cost = std::min(255.0f, cost * unknown_cost_);
+      if (!tile.cells[c].known) cost = through_unknown_ ? std::min(255.0f, cost * unknown_cost_) : 0.0f;
       tile.cost[c] = static_cast<std::uint8_t>(cost);
     }
 }

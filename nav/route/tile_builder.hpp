@@ -72,7 +72,7 @@ class TileBuilder {
   double hard_, comfort_, narrow_cost_;  // clearance that is needed and that is liked, m
   float rise_, doubtful_rise_, unknown_cost_;
   double step_, slope_;
-  bool climbs_stairs_, doubting_;
+  bool climbs_stairs_, doubting_, through_unknown_;
   std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
   std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
   std::array<bool, kWindow * kWindow> known_{}, sure_{}, stands_{}, solid_{};

@@ -76,6 +76,10 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Commander by, 
   return enter(*row, now);
 }
 
+void Behaviour::limit_unknown(double metres) {
+  if (ModeModule* current = module(*decision_.mode)) current->limit_unknown(metres);
+}
+
 Result<void> Behaviour::set_pose(const Pose2& pose, Time now) {
   const ModeRow* hold = &table().hold();
   if (&guard_.admitted() != hold || decision_.mode != hold)

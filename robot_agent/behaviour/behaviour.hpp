@@ -64,6 +64,7 @@ class Behaviour : public Requests {
     return request_goal(goal, Commander::holder, now);
   }
   Result<void> request_goal(const Eigen::Vector3d& goal, Commander by, Time now);
+  void limit_unknown(double metres) override;
   /// Number of accepted mode and goal requests of holders since the start.
   std::uint64_t holder_requests() const { return holder_requests_; }
   Result<void> set_pose(const Pose2& pose, Time now) override;

@@ -69,6 +69,8 @@ class ModeModule {
   virtual Result<void> check_goal(const Eigen::Vector3d&, Facts&) const;
   /// Stores a goal that was checked and admitted; enter() follows.
   virtual void set_goal(const Eigen::Vector3d&) {}
+  /// See Requests::limit_unknown.
+  virtual void limit_unknown(double /*metres*/) {}
   /// Receives navigation's progress towards the place that the module wrote last.
   virtual void navigated(const Progress&) {}
 

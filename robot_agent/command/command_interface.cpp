@@ -140,7 +140,7 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
     case verb("mode"):
       return asked(c, requests_.request_mode(c.request.word("MODE"), now));
     case verb("goto"):
-      return asked(c, requests_.request_goal(place_of(c.request), now));
+      return go_to(c, now);
     case verb("home"):
       return asked(c, requests_.request_goal(params_.home, now));
     case verb("pose"):
@@ -165,6 +165,19 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
     default:
       return {Reason::unknown_command};
   }
+}
+
+CommandInterface::Outcome CommandInterface::go_to(const Command& c, Time now) {
+  if (c.goal && c.goal->reason != Reason::none && c.goal->reason != Reason::goal_unseen)
+    return asked(c, Error{c.goal->reason, c.goal->text});
+  const Outcome outcome = asked(c, requests_.request_goal(c.goal ? c.goal->place : place_of(c.request), now));
+  if (outcome.reason != Reason::none) return outcome;
+  requests_.limit_unknown(c.request.number("--budget"));
+  if (!c.goal || c.goal->text.empty()) return {};
+  const bool unseen = c.goal->reason == Reason::goal_unseen;
+  notify(c.from.name, unseen ? Severity::warning : Severity::info, unseen ? "goal_unseen" : "goal_moved",
+         c.goal->reason, c.goal->text);
+  return {Reason::none, c.goal->text};
 }
 
 CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {

@@ -18,6 +18,9 @@ class Requests {
   virtual Result<void> request_mode(const std::string& mode, Time now) = 0;
   /// Requests a goal, map frame, m.
   virtual Result<void> request_goal(const Eigen::Vector3d& goal, Time now) = 0;
+  /// Limits the metres that the robot may drive while the ground at the goal, which was just accepted, is not
+  /// seen; infinite: no limit; NaN: the larger of 20 m and 1.5 times the straight line.
+  virtual void limit_unknown(double metres) = 0;
   /// Sets the robot's pose, map frame; moves nothing. Errors: wrong_mode outside hold, out_of_range,
   /// no_localisation.
   virtual Result<void> set_pose(const Pose2& pose, Time now) = 0;

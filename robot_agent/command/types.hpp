@@ -9,6 +9,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
 #include "core/wire/participant.hpp"
+#include "robot_agent/common/goal_report.hpp"
 #include "robot_agent/common/identity.hpp"
 #include "robot_agent/common/notice.hpp"
 #include "robot_agent/common/planned_route.hpp"
@@ -30,7 +31,8 @@ struct Command {
   Epoch epoch{};
   std::uint64_t seq{};
   command::Request request{command::verb("query")};
-  std::optional<Error> invalid{};  ///< Why the arguments are refused; `request` then has only its row.
+  std::optional<GoalReport> goal{};  ///< Of a goto; nothing: the goal could not be judged.
+  std::optional<Error> invalid{};    ///< Why the arguments are refused; `request` then has only its row.
 };
 
 /// The answer to a command: exactly one for each command and repeat.

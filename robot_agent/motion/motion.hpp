@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/geometry/pose.hpp"
+#include "core/result/reason.hpp"
 #include "core/time/time.hpp"
 
 namespace adit::agent {
@@ -42,6 +43,9 @@ struct Progress {
   bool blocked{};  ///< Every path is blocked.
   /// No path leads there, not even through unobserved space; `blocked` is then also set.
   bool unreachable{};
+  bool goal_seen{true};  ///< The ground at the goal is known.
+  /// Why it is unreachable, where that is known.
+  Reason reason{Reason::none};
   bool operator==(const Progress&) const = default;
 };
 

@@ -143,6 +143,8 @@ bool Navigation::is_goal(const Eigen::Vector2d& goal) const {
 nav::Target Navigation::target() const {
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     const auto* step = step_on(now());
+    // With a router, the robot waits for its route.
+    if (!step && router_) return {};
     if (!step) return nav::Target::to(frames_.to_odom(Eigen::Vector2d(go->goal.head<2>())));
     return nav::target_of(*step);
   }
@@ -221,7 +223,10 @@ void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step)
   step_made_ = job.made;
   if (!unreachable) return;
   has_plan_ = false;  // The robot stops: no direction leads to the goal.
-  outputs_.progress({.blocked = true, .unreachable = true});
+  outputs_.progress({.blocked = true,
+                     .unreachable = true,
+                     .goal_seen = step->goal != nav::Standing::unseen,
+                     .reason = nav::is_refused(step->goal) ? reason_of(step->goal) : Reason::none});
 }
 
 void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
@@ -263,7 +268,8 @@ void Navigation::take(const PlanJob& job, const PlanAnswer& answer) {
     if (for_goal) {
       blocked_ = answer.plan.blocked || held;
       outputs_.progress({.arrived = answer.plan.arrived && job.last && is_goal(job.goal) && at_height(),
-                         .blocked = blocked_});
+                         .blocked = blocked_,
+                         .goal_seen = !step_ || step_->goal != nav::Standing::unseen});
     }
   }
 }

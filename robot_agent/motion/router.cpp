@@ -7,19 +7,38 @@
 namespace adit::agent {
 namespace {
 
-constexpr double kMoved = 0.1;  // m
+constexpr double kMoved = 0.1;       // m
+constexpr double kJudged = 3.0;      // m: a goal this near is in sight
+constexpr double kRefusedFor = 3.0;  // s: the body cannot stand at a goal for so long before the robot stops
 
 }  // namespace
 
 struct Router::Maps {
   explicit Maps(const RouterParams& params)
-      : planner(params.platform, params.route), keeper(params.platform) {}
+      : planner(params.platform, params.route), keeper(params.platform), goals(params.platform) {}
   nav::RoutePlanner planner;
   nav::RouteKeeper keeper;
-  std::uint32_t odom_epoch{};  ///< Odometry epoch of the points.
+  nav::GoalCheck goals;
+  std::optional<double> refused_since{};  ///< The body cannot stand at the goal, which it is near, s.
+  std::uint32_t odom_epoch{};             ///< Odometry epoch of the points.
+
+  nav::RouteStep step(const RouteJob& job, double stamp) {
+    nav::RouteStep step = keeper.step(planner, job.place, *job.goal, job.blocked, stamp);
+    step.goal = goals.stand(planner, *job.goal, job.place.z());
+    // From afar the map may show what was there a while ago, and a person who passes is no reason to stop.
+    const bool near = (*job.goal - job.place).head<2>().norm() < kJudged;
+    if (!near || !nav::is_refused(step.goal)) {
+      refused_since.reset();
+    } else {
+      if (!refused_since) refused_since = stamp;
+      if (stamp - *refused_since >= kRefusedFor) step.state = nav::RouteStep::State::unreachable;
+    }
+    return step;
+  }
 
   void enter(std::uint32_t epoch) {
     if (std::exchange(odom_epoch, epoch) == epoch) return;
+    refused_since.reset();
     planner.clear();
     keeper.clear();
   }
@@ -33,6 +52,7 @@ Router::Router(RouterParams params, Executor& strand, Log log, RouteServices& se
 
 Result<void> Router::on_start() {
   offer(services_.step, [this](const auto& job, const auto& reply) { step(job, reply); });
+  offer(services_.check, [this](const auto& query, const auto& reply) { check(query, reply); });
   offer(services_.find, [this](const auto& query, const auto& reply) { find(query, reply); });
   return {};
 }
@@ -52,8 +72,9 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
         maps->enter(job->odom_epoch);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
-        if (job->goal) return maps->keeper.step(maps->planner, job->place, *job->goal, job->blocked, stamp);
+        if (job->goal) return maps->step(*job, stamp);
         maps->keeper.clear();
+        maps->refused_since.reset();
         return {};
       },
       [reply](Result<nav::RouteStep> stepped) { reply(std::move(stepped)); });
@@ -64,12 +85,66 @@ void Router::find(const RouteQuery& query, const Reply<nav::Route>& reply) {
       {.name = "route query", .modelled = params_.modelled, .lane = "maps"},
       [query, maps = maps_] {
         maps->enter(query.odom_epoch);
-        return maps->planner.plan(query.from, query.to);
+        nav::Route route = maps->planner.plan(query.from, query.to);
+        route.goal = maps->goals.stand(maps->planner, query.to, query.from.z());
+        return route;
       },
       [reply](Result<nav::Route> found) { reply(std::move(found)); });
 }
 
+void Router::check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply) {
+  compute(
+      {.name = "goal check", .modelled = params_.modelled, .lane = "maps"},
+      [query, maps = maps_] {
+        maps->enter(query.odom_epoch);
+        return maps->goals.check(maps->planner, query.from, query.to, query.replace);
+      },
+      [reply](Result<nav::GoalFinding> found) { reply(std::move(found)); });
+}
+
+Reason reason_of(nav::Standing standing) {
+  switch (standing) {
+    case nav::Standing::standable:
+      break;
+    case nav::Standing::occupied:
+      return Reason::goal_occupied;
+    case nav::Standing::no_floor:
+      return Reason::goal_no_floor;
+    case nav::Standing::too_steep:
+      return Reason::goal_too_steep;
+    case nav::Standing::too_narrow:
+      return Reason::goal_too_narrow;
+    case nav::Standing::unseen:
+      return Reason::goal_unseen;
+    case nav::Standing::not_connected:
+      return Reason::goal_not_connected;
+  }
+  return Reason::none;
+}
+
+GoalReport goal_report(const nav::GoalFinding& found, const Eigen::Vector3d& goal, const Frames& frames) {
+  GoalReport report{reason_of(found.standing), {}, goal};
+  char text[160] = "";
+  if (nav::is_refused(found.standing)) {
+    report.text = std::string(describe(report.reason));
+    return report;
+  }
+  if (found.moved) {
+    report.place.head<2>() = frames.to_map(found.place).head<2>();
+    std::snprintf(text, sizeof text, "stops %.2f m beside the goal, at %.2f %.2f", *found.moved,
+                  report.place.x(), report.place.y());
+  } else if (found.standing == nav::Standing::unseen) {
+    std::snprintf(text, sizeof text,
+                  "the goal was not seen yet: %.1f m of a route of %.1f m lead through the unknown",
+                  found.unknown_length, found.length);
+  }
+  report.text = text;
+  return report;
+}
+
 Result<PlannedRoute> planned_route(const nav::Route& route, const Frames& frames) {
+  if (nav::is_refused(route.goal))
+    return {reason_of(route.goal), std::string(describe(reason_of(route.goal)))};
   switch (route.status) {
     case nav::RouteStatus::found:
       break;

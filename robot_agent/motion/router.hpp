@@ -5,7 +5,9 @@
 
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
+#include "nav/goals/goal_check.hpp"
 #include "nav/route/route_keeper.hpp"
+#include "robot_agent/common/goal_report.hpp"
 #include "robot_agent/common/planned_route.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/planner.hpp"
@@ -30,11 +32,19 @@ struct RouteQuery {
   std::uint32_t odom_epoch{};  ///< As in RouteJob.
 };
 
+/// A goal to be judged before it is accepted. Odometry frame, m.
+struct GoalQuery {
+  Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
+  bool replace{};              ///< Replaces a goal where the body cannot stand by the nearest place.
+  std::uint32_t odom_epoch{};  ///< As in RouteJob.
+};
+
 /// The services of the router: the next step of the followed route, and a query for a route that is not
 /// stored.
 struct RouteServices {
   Service<std::shared_ptr<const RouteJob>, nav::RouteStep> step{"route step", 2};
   Service<RouteQuery, nav::Route> find{"route query", 4};
+  Service<GoalQuery, nav::GoalFinding> check{"goal check", 4};
 };
 
 struct RouterParams {
@@ -58,6 +68,7 @@ class Router : public Component {
   struct Maps;
   void step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply);
   void find(const RouteQuery& query, const Reply<nav::Route>& reply);
+  void check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply);
 
   RouterParams params_;
   RouteServices& services_;
@@ -65,6 +76,12 @@ class Router : public Component {
   std::optional<Time> taken_{};  ///< Time when the last scan entered the map.
   Eigen::Vector3d taken_at_{0, 0, 0};
 };
+
+/// Returns the reason to refuse a goal for, or goal_unseen; none where the body can stand.
+Reason reason_of(nav::Standing standing);
+
+/// Describes what was found about a goal (map frame, m) to its operator.
+GoalReport goal_report(const nav::GoalFinding& found, const Eigen::Vector3d& goal, const Frames& frames);
 
 /// Converts `route`, in the odometry frame of `frames`, to the map frame, and stores its first corners.
 /// Errors: goal_unreachable, with the reason, if there is no route.

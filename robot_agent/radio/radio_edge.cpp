@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/radio/radio_edge.hpp"
 
+#include <map>
+
 #include "core/wire/component_io.hpp"
 #include "core/wire/link/peer_meter.hpp"
 #include "core/wire/topics.hpp"
@@ -12,6 +14,7 @@ namespace adit::agent {
 namespace topics = wire::topics;
 
 constexpr Duration kPresencePeriod = 1s;
+constexpr Duration kMaxJudgement = 1s;
 
 struct RadioEdge::Endpoints {
   wire::ComponentIo io;
@@ -35,6 +38,8 @@ struct RadioEdge::Endpoints {
   Timer presence_timer{};
   radio::RobotState state_sample{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
+  // Commands whose goal is being judged, and since when.
+  std::map<std::pair<wire::ParticipantId, std::uint64_t>, Time> judged{};
 
   template <class T, class Handler>
   Result<void> read(const wire::Topic<T>& topic, Handler handler, const std::string& partition = {}) {
@@ -52,6 +57,40 @@ struct RadioEdge::Endpoints {
     (void)writer.write(sample);
   }
 };
+
+namespace {
+
+/// Whether the command is a goto with valid arguments.
+bool asks_for_goal(const Command& command) {
+  return command.request.verb == command::verb("goto") && !command.invalid;
+}
+
+/// Has the goal of a goto judged before the command interface handles it. A repeat that arrives meanwhile is
+/// dropped: the answer is on its way. Other commands may overtake it; the command interface compares numbers.
+template <class Edge, class Commands, class Answers, class Check>
+void judge_goal(Edge& e, const Command& asked, const Commands& commands, const Answers& answer,
+                const Check& check) {
+  constexpr std::size_t kMaxJudged = 16;
+  const auto handle = [&e, commands, answer](const Command& command) {
+    commands([&](CommandInterface& interface) { answer(interface.handle(command, e.strand.now())); });
+  };
+  const std::pair key{asked.from.participant, asked.seq};
+  const Time now = e.strand.now();
+  // A judgement ends within its deadline, unless its component was restarted.
+  std::erase_if(e.judged, [now](const auto& entry) { return now - entry.second > kMaxJudgement; });
+  if (e.judged.contains(key)) return;
+  if (!check || e.judged.size() >= kMaxJudged) return handle(asked);
+  e.judged.emplace(key, now);
+  check(place_of(asked.request), asked.request.has("--nearest"),
+        [&e, key, asked, handle](const Result<GoalReport>& report) {
+          e.judged.erase(key);
+          Command command = asked;
+          if (report) command.goal = *report;
+          handle(command);
+        });
+}
+
+}  // namespace
 
 RadioEdge::RadioEdge(std::unique_ptr<Endpoints> endpoints) : endpoints_(std::move(endpoints)) {}
 RadioEdge::~RadioEdge() = default;
@@ -123,10 +162,12 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                   }),
            e.read(
                topics::kCommand,
-               [&e, commands, answer, find_route = dependencies.find_route](const radio::Command&c,
-                                                                            const wire::SampleInfo&info) {
+               [&e, commands, answer,
+                find_route = dependencies.find_route,
+                check_goal = dependencies.check_goal](const radio::Command&c, const wire::SampleInfo&info) {
+                 const Command command = from_radio(c, info.sender);
+                 if (asks_for_goal(command)) return judge_goal(e, command, commands, answer, check_goal);
                  commands([&](CommandInterface& interface) {
-                   const Command command = from_radio(c, info.sender);
                    const auto given = interface.handle(command, e.strand.now());
                    if (!given || !given->accepted() || command.request.verb != command::verb("plan"))
                      return answer(given);

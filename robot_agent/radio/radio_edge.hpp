@@ -41,6 +41,11 @@ class RadioEdge {
     /// within 0.5 s.
     std::function<void(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done)>
         find_route{};
+    /// Judges a goal (map frame, m) by the robot's map and calls `done` exactly once, within 0.5 s.
+    /// `replace`: the report may name the nearest valid place instead. Error: the goal could not be judged.
+    std::function<void(const Eigen::Vector3d& goal, bool replace,
+                       std::function<void(const Result<GoalReport>&)> done)>
+        check_goal{};
     /// Reports that a station has these findings of this robot on its disk.
     std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};
   };

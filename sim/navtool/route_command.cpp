@@ -68,7 +68,10 @@ int route(const RouteOptions& options) {
   const auto world = load_octomap(*file);
   if (!world) return report_error("navtool", world.error());
 
-  nav::RoutePlanner planner(*platform);
+  // The map is complete: what is unknown in it is no ground.
+  nav::RouteParams params;
+  params.through_unknown = false;
+  nav::RoutePlanner planner(*platform, params);
   const double begin = cpu_ms();
   tell_world(*world, *platform, planner);
   const double told = cpu_ms();

@@ -19,6 +19,7 @@ struct FakeRequests : Requests {
     calls.push_back("goal");
     return {};
   }
+  void limit_unknown(double metres) override { budget = metres; }
   Result<void> set_pose(const Pose2& at, Time) override {
     if (!holds) return {Reason::wrong_mode, "only in hold"};
     pose = at;
@@ -40,6 +41,7 @@ struct FakeRequests : Requests {
 
   bool stopped{};
   Eigen::Vector3d goal{0.0, 0.0, 0.0};  ///< The last one requested.
+  double budget{-1.0};                  ///< The last one set, m.
   bool takes_stick{true};
   bool holds{true};
   Pose2 pose{};  ///< The last one set.

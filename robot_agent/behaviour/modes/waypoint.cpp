@@ -11,6 +11,9 @@ void WaypointMode::note(Facts& facts, Time) const {
 }
 
 void WaypointMode::enter(Time now) {
+  driven_ = 0.0;
+  last_.reset();
+  used_up_ = false;
   free_since_ = now;
   blocked_told_ = false;
 }
@@ -25,7 +28,8 @@ void WaypointMode::tick(bool passes, Time now) {
     goal_.reached = true;
     context_.tell_holder({{}, Severity::info, "arrived", Reason::none, "goal reached"});
   }
-  if (goal_.reached)
+  count(passes);
+  if (goal_.reached || used_up_)
     context_.output.write(Stand{}, now);
   else
     context_.output.write(
@@ -33,13 +37,43 @@ void WaypointMode::tick(bool passes, Time now) {
   watch(progress(passes).state, now);
 }
 
+void WaypointMode::count(bool passes) {
+  const auto pose = context_.pose ? context_.pose() : std::nullopt;
+  if (!pose || !passes || goal_.reached || navigated_.goal_seen || used_up_) return last_.reset();
+  // Noise of a stationary robot's odometry counts no metres.
+  constexpr double kStep = 0.1;  // m
+  if (!last_) last_ = pose->position();
+  const double step = (pose->position() - *last_).norm();
+  if (step < kStep) return;
+  last_ = pose->position();
+  driven_ += step;
+  if (driven_ <= budget_) return;
+  used_up_ = true;
+  context_.tell_holder({{},
+                        Severity::warning,
+                        "unknown_budget",
+                        Reason::unknown_budget,
+                        std::string(describe(Reason::unknown_budget))});
+}
+
+void WaypointMode::limit_unknown(double metres) {
+  constexpr double kLeast = 20.0, kDetour = 1.5;  // m, times the straight line
+  const auto pose = context_.pose ? context_.pose() : std::nullopt;
+  const double straight = pose ? (goal_.place.head<2>() - pose->position()).norm() : 0.0;
+  budget_ = std::isnan(metres) ? std::max(kLeast, kDetour * straight) : metres;
+}
+
 void WaypointMode::watch(GoalState state, Time now) {
-  const bool unreachable = state == GoalState::blocked && navigated_.unreachable;
+  const bool unreachable = state == GoalState::blocked && navigated_.unreachable && !used_up_;
   if (unreachable && !unreachable_told_)
-    context_.tell_holder(
-        {{}, Severity::warning, "unreachable", Reason::goal_unreachable, "no way leads to the goal"});
+    context_.tell_holder({{},
+                          Severity::warning,
+                          "unreachable",
+                          unreachable_because(),
+                          navigated_.reason == Reason::none ? "no way leads to the goal"
+                                                            : std::string(describe(navigated_.reason))});
   unreachable_told_ = unreachable;
-  if (state != GoalState::blocked || unreachable) {
+  if (state != GoalState::blocked || unreachable || used_up_) {
     free_since_ = now;
     blocked_told_ = false;
   } else if (!blocked_told_ && now - free_since_ >= kBlockedAfter) {
@@ -63,6 +97,7 @@ void WaypointMode::set_goal(const Eigen::Vector3d& goal) {
   const double height = given ? goal.z() : on_floor ? 0.0 : context_.height();
   goal_ = {true, false, goal_.id + 1, {goal.x(), goal.y(), height}, on_floor};
   navigated_ = {};
+  budget_ = std::numeric_limits<double>::infinity();
 }
 
 ModeProgress WaypointMode::progress(bool passes) const {
@@ -70,10 +105,13 @@ ModeProgress WaypointMode::progress(bool passes) const {
   if (!goal_.known) return p;
   p.state = goal_.reached        ? GoalState::reached
             : !passes            ? GoalState::kept
+            : used_up_           ? GoalState::blocked
             : navigated_.blocked ? GoalState::blocked
                                  : GoalState::active;
   if (p.state == GoalState::blocked)
-    p.reason = navigated_.unreachable ? Reason::goal_unreachable : Reason::blocked;
+    p.reason = used_up_                 ? Reason::unknown_budget
+               : navigated_.unreachable ? unreachable_because()
+                                        : Reason::blocked;
   return p;
 }
 

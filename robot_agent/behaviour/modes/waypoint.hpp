@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <limits>
+#include <optional>
+
 #include "robot_agent/behaviour/mode_module.hpp"
 
 namespace adit::agent {
@@ -22,6 +25,7 @@ class WaypointMode : public ModeModule {
   void tick(bool passes, Time now) override;
   Result<void> check_goal(const Eigen::Vector3d& goal, Facts& facts) const override;
   void set_goal(const Eigen::Vector3d& goal) override;
+  void limit_unknown(double metres) override;
   void navigated(const Progress& progress) override { navigated_ = progress; }
   ModeProgress progress(bool passes) const override;
   void store(KeptBehaviour& kept) const override;
@@ -29,6 +33,12 @@ class WaypointMode : public ModeModule {
 
  private:
   void watch(GoalState state, Time now);
+  /// Counts the metres towards a goal that was not seen.
+  void count(bool passes);
+  /// Returns the reason why the goal cannot be reached.
+  Reason unreachable_because() const {
+    return navigated_.reason == Reason::none ? Reason::goal_unreachable : navigated_.reason;
+  }
 
   struct Goal {
     bool known{};
@@ -43,6 +53,10 @@ class WaypointMode : public ModeModule {
   Progress navigated_{};
   Time free_since_{};
   bool blocked_told_{}, unreachable_told_{};
+  double budget_{std::numeric_limits<double>::infinity()};  ///< Metres while the goal is unseen.
+  double driven_{};                        ///< Metres of the budget since it was given or renewed.
+  std::optional<Eigen::Vector2d> last_{};  ///< Where metres were counted last, map frame, m.
+  bool used_up_{};                         ///< The mode waits until it is requested again.
 };
 
 }  // namespace adit::agent

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/goals/goal_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kMapError = kRouteCell / 2;  // m
+/// The top of what ScanProfile writes at the edge of missing ground, kTopUnit.
+constexpr std::uint8_t kHoleTop = 1;
+
+}  // namespace
+
+struct GoalCheck::Ground {
+  bool solid{}, hole{}, unknown{}, steep{};
+  double nearest{1e9};  ///< From the place to the nearest obstacle under the footprint, m.
+};
+
+GoalCheck::GoalCheck(const Platform& platform)
+    : body_(Footprint(platform).grown(-kMapError, -kMapError)),
+      limits_(Traversability::of(platform)),
+      inscribed_(std::min(platform.length, platform.width) / 2 - kMapError),
+      flies_(platform.flies()) {}
+
+GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d& place, double yaw) const {
+  Ground found;
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  const int reach = static_cast<int>(body_.radius() / kRouteCell) + 1;
+  const int cx = route_cell(place.x()), cy = route_cell(place.y());
+  // The plane that fits the ground under the body best.
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d sums = Eigen::Vector3d::Zero();
+  const GroundCell* before = nullptr;
+  for (int iy = cy - reach; iy <= cy + reach; ++iy) {
+    before = nullptr;
+    for (int ix = cx - reach; ix <= cx + reach; ++ix) {
+      const int index = map.at_cell(ix, iy, place.z());
+      const GroundCell* cell =
+          index < 0 ? nullptr : &map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+      Eigen::Vector2d at((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell);
+      if (cell && cell->blocked) at += kAsideUnit * Eigen::Vector2d(cell->aside_x, cell->aside_y);
+      const Eigen::Vector2d off = at - place.head<2>();
+      const bool inside = body_.depth(static_cast<float>(c * off.x() + s * off.y()),
+                                      static_cast<float>(c * off.y() - s * off.x())) >= 0.0f;
+      if (!inside) {
+        before = nullptr;
+        continue;
+      }
+      if (!cell || (!cell->known && !cell->blocked)) {
+        found.unknown = true;
+        before = nullptr;
+        continue;
+      }
+      if (cell->blocked) {
+        found.solid = true;
+        if (off.norm() < found.nearest) {
+          found.nearest = off.norm();
+          found.hole = cell->top <= kHoleTop;
+        }
+        before = nullptr;
+        continue;
+      }
+      const double rise = before ? std::abs(cell->z - before->z) : 0.0;
+      found.steep = found.steep || rise > limits_.obstacle + limits_.slope * kRouteCell;
+      before = cell;
+      const Eigen::Vector3d row(off.x(), off.y(), 1.0);
+      squares += row * row.transpose();
+      sums += row * static_cast<double>(cell->z);
+    }
+  }
+  if (!found.solid && !found.unknown && !found.steep) {
+    const Eigen::Vector3d plane = squares.ldlt().solve(sums);
+    found.steep = plane.head<2>().norm() > limits_.slope + limits_.obstacle - limits_.step;
+  }
+  return found;
+}
+
+Standing GoalCheck::stand(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor) const {
+  if (flies_) return Standing::unseen;
+  Eigen::Vector3d at = place;
+  if (!std::isfinite(at.z())) at.z() = planner.ground(place.x(), place.y(), floor).value_or(floor);
+  bool open = false, steep = false, hole = false;
+  double nearest = 1e9;
+  const int headings = body_.symmetric() ? kHeadings / 2 : kHeadings;
+  for (int k = 0; k < headings; ++k) {
+    const Ground ground = under(planner.map(), at, 2.0 * M_PI * k / kHeadings);
+    if (ground.solid) {
+      if (ground.nearest < nearest) hole = ground.hole;
+      nearest = std::min(nearest, ground.nearest);
+      continue;
+    }
+    if (ground.steep) {
+      steep = true;
+      continue;
+    }
+    if (!ground.unknown) return Standing::standable;
+    open = true;
+  }
+  if (open) return Standing::unseen;
+  if (steep) return Standing::too_steep;
+  if (nearest > inscribed_) return Standing::too_narrow;
+  return hole ? Standing::no_floor : Standing::occupied;
+}
+
+std::optional<Eigen::Vector3d> GoalCheck::nearest(const RoutePlanner& planner, const Eigen::Vector3d& place,
+                                                  double floor) const {
+  struct Candidate {
+    double range;
+    int dx, dy;
+  };
+  std::vector<Candidate> candidates;
+  constexpr int kReach = static_cast<int>(kNearest / kRouteCell);
+  for (int dy = -kReach; dy <= kReach; ++dy)
+    for (int dx = -kReach; dx <= kReach; ++dx)
+      if (const double range = std::hypot(dx, dy) * kRouteCell; range <= kNearest)
+        candidates.push_back({range, dx, dy});
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.range < b.range; });
+  for (const Candidate& candidate : candidates) {
+    const Eigen::Vector3d at = place + kRouteCell * Eigen::Vector3d(candidate.dx, candidate.dy, 0.0);
+    if (stand(planner, at, floor) == Standing::standable) return at;
+  }
+  return std::nullopt;
+}
+
+GoalFinding GoalCheck::check(RoutePlanner& planner, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                             bool replace) const {
+  GoalFinding found{.standing = stand(planner, to, from.z()), .place = to};
+  if (replace && is_refused(found.standing)) {
+    if (const auto other = nearest(planner, to, from.z())) {
+      found.moved = (*other - to).head<2>().norm();
+      found.place = *other;
+      found.standing = Standing::standable;
+    }
+  }
+  if (is_refused(found.standing)) return found;
+  const Route route = planner.plan(from, found.place);
+  found.length = route.length;
+  found.unknown_length = route.unknown_length;
+  if (route.status == RouteStatus::unreachable && !planner.has_blocked_places())
+    found.standing = Standing::not_connected;
+  return found;
+}
+
+}  // namespace adit::nav
