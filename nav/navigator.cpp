@@ -22,7 +22,8 @@ Navigator::Navigator(const Platform& platform, const TerrainParams& terrain, Pla
       make_planner_(std::move(planner)),
       terrain_(platform, terrain),
       tracker_(platform),
-      planner_(make_planner_()) {
+      planner_(make_planner_()),
+      escape_(platform) {
   if (platform.flies()) air_.emplace(platform);
   obstacles_.reserve(std::max<std::size_t>(terrain_.max_cells(), AirMap::kMost) + kMostPredicted);
 }
@@ -55,10 +56,24 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
     for (const Eigen::Vector2f& cell : air_->cells()) add(cell.x(), cell.y(), 1.0f);
   else
     for (const TerrainCell& cell : terrain_.cells()) add(cell.x, cell.y, cell.cost);
+  const std::size_t standing = obstacles_.size();
   const double moves = speed(pose, stamp_s);
   const double age = std::max(0.0, stamp_s - tracker_.stamp_s());
   predict(tracker_.movers(), age, pose, moves, platform_, obstacles_);
   Plan plan = planner_->plan(target, pose, obstacles_, stamp_s);
+  if (plan.blocked && target.kind == Target::Kind::goal) {
+    // Where something moves the robot waits.
+    const auto out = escape_.plan(pose, std::span(obstacles_).first(standing));
+    if (out) {
+      const double clearance = plan.clearance;
+      plan = *out;
+      plan.stamp_s = stamp_s;
+      plan.clearance = clearance;
+    } else if (escape_.side() != Side::none) {
+      plan.reason = Reason::start_in_collision;
+      plan.side = escape_.side();
+    }
+  }
   plan.max_speed = std::min(plan.max_speed, speed_beside(tracker_.movers(), age, plan, platform_));
   return plan;
 }

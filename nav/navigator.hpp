@@ -7,6 +7,7 @@
 #include "nav/air_map.hpp"
 #include "nav/dynamic/prediction.hpp"
 #include "nav/make_planner.hpp"
+#include "nav/recovery/escape.hpp"
 #include "nav/terrain/terrain_map.hpp"
 
 namespace adit::nav {
@@ -29,8 +30,10 @@ class Navigator {
 
   /// See TerrainMap::add_scan.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
-  /// See Planner::plan; over what the scans showed. Before the first scan nothing is known to be free:
-  /// the plan is blocked with Reason::terrain_stale.
+  /// See Planner::plan; over what the scans showed. Where that finds no path to a goal and less than
+  /// Escape::kClear is free beside the body, the plan leads out of there at Escape::kSpeed; where nothing
+  /// does, its reason is start_in_collision. Before the first scan nothing is known to be free: the plan is
+  /// blocked with Reason::terrain_stale.
   Plan plan(const Target& target, const Pose2& pose, double stamp_s);
 
   const TerrainMap& terrain() const { return terrain_; }
@@ -51,6 +54,7 @@ class Navigator {
   std::optional<AirMap> air_{};  ///< of what flies, in place of the former
   Tracker tracker_;
   std::unique_ptr<Planner> planner_;
+  Escape escape_;
   std::vector<ObstaclePoint> obstacles_{};  ///< of one plan
   bool has_scan_{false};
   Pose2 last_pose_{};

@@ -34,23 +34,28 @@ struct Target {
   }
 };
 
+/// A side of the body.
+enum class Side : std::uint8_t { none, ahead, left, behind, right };
+
 /// What the local planner found. Of bounded size, without pointers: copied at no more than a memcpy.
 struct Plan {
   static constexpr std::size_t kMaxPath = 72;
 
   double stamp_s{0};            ///< of the pose that it was made for
   bool blocked{false};          ///< every way is blocked: `path` is empty
-  Reason reason{Reason::none};  ///< Reason::blocked, Reason::goal_missing (no target) or none
+  Reason reason{Reason::none};  ///< Reason::blocked, start_in_collision, goal_missing (no target) or none
+  Side side{Side::none};        ///< With Reason::start_in_collision: where the obstacle is.
   bool arrived{false};          ///< within the tolerance of the goal: `path` is empty
   bool ends_at_goal{false};
-  bool reverse{false};  ///< the path is driven backwards; its poses are those of the body
-  int turn{0};          ///< the side to turn to, should the path start behind: 1 left, -1 right, 0 either
-  double max_speed{0};  ///< m/s
-  double length{0};     ///< of the path, m
-  double clearance{0};  ///< from the footprint to the nearest obstacle, m, at most 2
-  int heading{0};       ///< which of the 36 headings, degrees from the body's x
-  int group{-1};        ///< which group of the library
-  int option{-1};       ///< which of the planner's libraries: 0 long and wide ... last short and a squeeze
+  bool reverse{false};     ///< the path is driven backwards; its poses are those of the body
+  bool turn_first{false};  ///< The path begins with a turn on the spot, however small it is.
+  int turn{0};             ///< the side to turn to, should the path start behind: 1 left, -1 right, 0 either
+  double max_speed{0};     ///< m/s
+  double length{0};        ///< of the path, m
+  double clearance{0};     ///< from the footprint to the nearest obstacle, m, at most 2
+  int heading{0};          ///< which of the 36 headings, degrees from the body's x
+  int group{-1};           ///< which group of the library
+  int option{-1};          ///< which of the planner's libraries: 0 long and wide ... last short and a squeeze
 
   std::array<Pose2, kMaxPath> poses{};  ///< odometry frame, from the robot on
   std::uint32_t pose_count{0};

@@ -48,6 +48,8 @@ enum class Reason : std::uint16_t {
   goal_unseen = 221,         ///< The ground there was not seen yet: accepted, driven within a budget.
   goal_not_connected = 222,  ///< No route leads there, not even through unknown space.
   unknown_budget = 223,      ///< The budget of metres towards a goal that was not seen is used up.
+  stuck = 224,               ///< No progress along the route to the goal for a long time.
+  start_in_collision = 225,  ///< An obstacle touches the body, or nearly, and no motion leads away from it.
   tree_refused = 226,        ///< The behaviour tree contradicts the mode table; the robot runs in hold.
   odometry_jumped = 227,     ///< The driver's odometry moved farther than the body can.
   name_taken = 228,          ///< Another robot of the same name was present first.

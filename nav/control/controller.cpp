@@ -96,7 +96,8 @@ Twist2 Controller::desired(const Pose2& odom, double dt) {
 
   double error = wrap_angle(path[place.nearest].yaw - odom.yaw);
   const double off = std::fabs(error);
-  turning_ = platform_.turns_on_spot() && off > (turning_ ? params_.turn_until : params_.turn_from);
+  const bool turns = turning_ || plan_.turn_first;
+  turning_ = platform_.turns_on_spot() && off > (turns ? params_.turn_until : params_.turn_from);
   if (turning_) {
     rest();
     // The planner may have found that only the long way round is free.

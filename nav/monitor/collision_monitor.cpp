@@ -11,6 +11,7 @@ constexpr int kMostStrides = 160;  ///< of one sweep
 constexpr float kDeeper = 0.002f;  ///< m: less is not "deeper": sliding along a wall is allowed
 constexpr double kCreep = 0.02;    ///< m/s: less than this is standing
 constexpr int kShares = 10;        ///< of a velocity that are tried against what moves
+constexpr double kInstead = 0.1;   ///< m/s of the body's fastest part where the motion asked for is stopped
 constexpr double kSlow = 0.2;      ///< m/s: who is slower stands within a hand; odometry may be noise
 constexpr double kFastest = 1.5;   ///< of the platform's speed: more is no velocity
 constexpr double kNext = 0.05;     ///< s from one check to the next
@@ -64,6 +65,19 @@ Twist2 CollisionMonitor::limited(const Twist2& wanted) const {
 // The speed of the body's fastest part, m/s.
 double CollisionMonitor::rim(const Twist2& velocity) const {
   return std::max(speed_of(velocity), std::fabs(velocity.wz) * body_.radius());
+}
+
+Twist2 CollisionMonitor::instead_of(const Twist2& stopped, const Pose2& odom, double now_s) const {
+  if (!fresh(now_s)) return {};
+  const bool both = speed_of(stopped) > 0 && stopped.wz != 0;
+  if (!both) return {};
+  for (Twist2 part : {Twist2{stopped.vx, stopped.vy, 0}, Twist2{0, 0, stopped.wz},
+                      Twist2{stopped.vx, stopped.vy, stopped.wz / 2}}) {
+    if (speed_of(part) == 0 && !platform_.turns_on_spot()) continue;
+    if (const double fastest = rim(part); fastest > kInstead) part = scaled(part, kInstead / fastest);
+    if (share(part, odom, now_s) >= 1) return part;
+  }
+  return {};
 }
 
 double CollisionMonitor::share(const Twist2& wanted, const Pose2& odom, double now_s) const {

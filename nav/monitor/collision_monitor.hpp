@@ -63,6 +63,10 @@ class CollisionMonitor {
   /// `wanted`, slower than it `drives` and, whatever its odometry says, than it was told.
   Verdict check(const Twist2& wanted, const Pose2& odom, double now_s, Policy policy,
                 const Driven& drives = {}) const;
+  /// What may be driven instead of a motion that check() stopped, no part of the body faster than 0.1 m/s:
+  /// its translation alone, its turn alone, or with half the turn, the first of them that nothing limits;
+  /// else zero. So a robot beside a wall that may not swing its rear drives straight ahead first.
+  Twist2 instead_of(const Twist2& stopped, const Pose2& odom, double now_s) const;
   /// Forgets what was seen, as after a jump of the odometry: every scan is too old until the next one.
   void clear();
   bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }

@@ -192,7 +192,7 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
     goal_ = goal;
   }
   if (planner.map().used() == 0) return {RouteStep::State::straight, goal, true};
-  bool kept = route_.found();
+  bool kept = route_.found(), longer = false;
   if (kept) advance(planner, place);
   watch_blocked(planner, place, blocked, stamp_s);
   // A doubtful route is none to the map as it is: it is driven along until the next look.
@@ -203,11 +203,19 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
     Route other = planner.plan(place, goal);
     const bool better =
         other.cost < route_.cost * params_.momentum && other.cost < route_.cost - params_.gain;
-    if (!kept || (other.found() && better)) route_ = std::move(other);
+    if (!kept || (other.found() && better)) {
+      longer = other.found() && other.length > route_.length + params_.gain;
+      route_ = std::move(other);
+    }
   }
   if (route_.found()) {
     lost_since_.reset();
-    return along(planner, place);
+    RouteStep step = along(planner, place);
+    double left = 0;
+    for (std::size_t i = 0; i + 1 < route_.points.size(); ++i)
+      left += (route_.points[i + 1] - route_.points[i]).norm();
+    step.stuck = progress_.stuck(left, longer, stamp_s);
+    return step;
   }
   if (route_.status != RouteStatus::unreachable) return {RouteStep::State::straight, goal, true};
   if (planner.has_blocked_places()) return {RouteStep::State::blocked, goal, true};

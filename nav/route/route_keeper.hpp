@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "nav/recovery/progress_checker.hpp"
 #include "nav/route/route_planner.hpp"
 
 namespace adit::nav {
@@ -34,6 +35,7 @@ struct RouteStep {
 
   State state{State::straight};
   Eigen::Vector3d target{0, 0, 0};      ///< m
+  bool stuck{false};                    ///< No progress along the route for a long time: see ProgressChecker.
   bool last{true};                      ///< `target` is the goal
   Standing goal{Standing::standable};   ///< Of the goal itself: `unseen` while its ground is not known.
   std::optional<NarrowPassage> gate{};  ///< Passage that `target` lies behind.
@@ -66,6 +68,7 @@ class RouteKeeper {
 
   RouteKeeperParams params_{};
   Route route_{};
+  ProgressChecker progress_{};
   std::optional<Eigen::Vector3d> goal_{};
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};

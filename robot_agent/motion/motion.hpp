@@ -8,6 +8,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
+#include "nav/plan.hpp"
 
 namespace adit::agent {
 
@@ -46,6 +47,9 @@ struct Progress {
   bool goal_seen{true};  ///< The ground at the goal is known.
   /// Why it is unreachable, where that is known.
   Reason reason{Reason::none};
+  bool stuck{};  ///< No progress along the route for a long time.
+  nav::Side
+      in_collision{};  ///< With `blocked`: what keeps the robot there touches it, or nearly, on this side.
   bool operator==(const Progress&) const = default;
 };
 

@@ -109,7 +109,10 @@ Twist2 Navigation::along_plan(Time now) {
   if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !frames_.alive(now))
     return controller_->stop_now();
   const Twist2 wanted = controller_->follow(frames_.T_odom_base().planar(), seconds(params_.period));
-  const auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
+  auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
+  if (verdict.cause == nav::CollisionMonitor::Cause::stopped && !guidance)
+    verdict.velocity =
+        monitor_.instead_of(wanted, frames_.T_odom_base().planar(), seconds(now.time_since_epoch()));
   if (verdict.cause != nav::CollisionMonitor::Cause::none) controller_->sent(verdict.velocity);
   if (verdict.cause == nav::CollisionMonitor::Cause::tilted) watch_warning(verdict.cause, now);
   held_.look(verdict.cause == nav::CollisionMonitor::Cause::stopped,
@@ -267,9 +270,12 @@ void Navigation::take(const PlanJob& job, const PlanAnswer& answer) {
     const bool held = held_.held(seconds(now().time_since_epoch()), seconds(params_.held_after));
     if (for_goal) {
       blocked_ = answer.plan.blocked || held;
+      const auto* route = step_on(now());
       outputs_.progress({.arrived = answer.plan.arrived && job.last && is_goal(job.goal) && at_height(),
                          .blocked = blocked_,
-                         .goal_seen = !step_ || step_->goal != nav::Standing::unseen});
+                          .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
+                          .stuck = route && route->stuck,
+                          .in_collision = answer.plan.side});
     }
   }
 }

@@ -4,6 +4,25 @@
 #include <cmath>
 
 namespace adit::agent {
+namespace {
+
+std::string text_of(nav::Side side) {
+  switch (side) {
+    case nav::Side::none:
+      return "every path to the goal is blocked";
+    case nav::Side::ahead:
+      return "an obstacle touches the robot, or nearly, ahead, and no motion leads away from it";
+    case nav::Side::behind:
+      return "an obstacle touches the robot, or nearly, behind it, and no motion leads away from it";
+    case nav::Side::left:
+      return "an obstacle touches the robot, or nearly, on its left, and no motion leads away from it";
+    case nav::Side::right:
+      return "an obstacle touches the robot, or nearly, on its right, and no motion leads away from it";
+  }
+  return {};
+}
+
+}  // namespace
 
 void WaypointMode::note(Facts& facts, Time) const {
   facts.goal_known = goal_.known;
@@ -18,7 +37,7 @@ void WaypointMode::enter(Time now) {
   blocked_told_ = false;
 }
 
-void WaypointMode::leave(Time) { unreachable_told_ = blocked_told_ = false; }
+void WaypointMode::leave(Time) { unreachable_told_ = blocked_told_ = stuck_told_ = false; }
 
 void WaypointMode::clear() { goal_ = {.id = goal_.id}; }
 
@@ -78,9 +97,16 @@ void WaypointMode::watch(GoalState state, Time now) {
     blocked_told_ = false;
   } else if (!blocked_told_ && now - free_since_ >= kBlockedAfter) {
     blocked_told_ = true;
-    context_.tell_holder(
-        {{}, Severity::warning, "blocked", Reason::blocked, "every path to the goal is blocked"});
+    context_.tell_holder({{},
+                          Severity::warning,
+                          std::string(name(why_blocked())),
+                          why_blocked(),
+                          text_of(navigated_.in_collision)});
   }
+  if (navigated_.stuck && !stuck_told_)
+    context_.tell_holder(
+        {{}, Severity::warning, "stuck", Reason::stuck, "no progress towards the goal for 45 s"});
+  stuck_told_ = navigated_.stuck;
 }
 
 Result<void> WaypointMode::check_goal(const Eigen::Vector3d& goal, Facts& facts) const {
@@ -111,8 +137,14 @@ ModeProgress WaypointMode::progress(bool passes) const {
   if (p.state == GoalState::blocked)
     p.reason = used_up_                 ? Reason::unknown_budget
                : navigated_.unreachable ? unreachable_because()
-                                        : Reason::blocked;
+                                        : why_blocked();
+  else if (p.state == GoalState::active && navigated_.stuck)
+    p.reason = Reason::stuck;
   return p;
+}
+
+Reason WaypointMode::why_blocked() const {
+  return navigated_.in_collision == nav::Side::none ? Reason::blocked : Reason::start_in_collision;
 }
 
 void WaypointMode::store(KeptBehaviour& kept) const {

@@ -39,6 +39,7 @@ class WaypointMode : public ModeModule {
   Reason unreachable_because() const {
     return navigated_.reason == Reason::none ? Reason::goal_unreachable : navigated_.reason;
   }
+  Reason why_blocked() const;
 
   struct Goal {
     bool known{};
@@ -52,7 +53,7 @@ class WaypointMode : public ModeModule {
   Goal goal_{};
   Progress navigated_{};
   Time free_since_{};
-  bool blocked_told_{}, unreachable_told_{};
+  bool blocked_told_{}, unreachable_told_{}, stuck_told_{};
   double budget_{std::numeric_limits<double>::infinity()};  ///< Metres while the goal is unseen.
   double driven_{};                        ///< Metres of the budget since it was given or renewed.
   std::optional<Eigen::Vector2d> last_{};  ///< Where metres were counted last, map frame, m.

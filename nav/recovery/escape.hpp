@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "core/geometry/pose.hpp"
+#include "nav/footprint.hpp"
+#include "nav/lattice/solid_points.hpp"
+#include "nav/plan.hpp"
+
+namespace adit::nav {
+
+/// Plans out of a place where the robot stands closer to obstacles than any planner accepts, or in contact. A
+/// search (Dijkstra's) over short motions, straight, bent and on the spot, finds the nearest pose that has
+/// `kClear` beside the whole body. On the way there the body may be as close to obstacles as it is where it
+/// starts, and no closer. Fixed size; nothing is allocated after construction.
+class Escape {
+ public:
+  static constexpr double kClear = 0.10;  ///< m
+  static constexpr double kSpeed = 0.1;   ///< m/s
+
+  explicit Escape(const Platform& platform);
+
+  /// The way out's first part that is driven in one direction; nothing when there is none within 1.2 m, or
+  /// `kClear` is free already. `pose`: odometry frame; `obstacles`: in the robot's frame at `pose`.
+  std::optional<Plan> plan(const Pose2& pose, std::span<const ObstaclePoint> obstacles);
+  /// Where the obstacle is that was nearest at the last plan(); none: at least `kClear` was free.
+  Side side() const { return side_; }
+
+ private:
+  struct Node {
+    Pose2 pose{};
+    float cost{};
+    float depth{},
+        least{};  ///< Of the deepest obstacle in the body, m, negative outside; least on the way there.
+    std::int32_t parent{-1};
+    std::int8_t direction{};  ///< In which it was driven to, 1 or -1; 0: turned to on the spot.
+  };
+  struct Open {
+    float cost;
+    std::int32_t node;
+    bool operator<(const Open& other) const {
+      return cost != other.cost ? cost > other.cost : node > other.node;
+    }
+  };
+  static constexpr int kSide = 48, kTurns = 72;
+  static constexpr std::size_t kMaxNodes = 12'000;
+
+  void expand(std::int32_t index);
+  void offer(std::int32_t from, const Pose2& motion, int direction, float cost);
+  void find_side(std::span<const ObstaclePoint> obstacles);
+  Plan write(std::int32_t index, const Pose2& pose) const;
+
+  Platform platform_;
+  Footprint body_;
+  double bend_;  ///< Largest curvature, rad/m.
+  SolidPoints points_{};
+  Side side_{Side::none};
+  std::vector<Node> nodes_{};
+  std::vector<Open> open_{};
+  std::vector<std::uint32_t> closed_;
+  std::uint32_t round_{0};
+};
+
+}  // namespace adit::nav
