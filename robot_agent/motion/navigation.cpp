@@ -273,9 +273,9 @@ void Navigation::take(const PlanJob& job, const PlanAnswer& answer) {
       const auto* route = step_on(now());
       outputs_.progress({.arrived = answer.plan.arrived && job.last && is_goal(job.goal) && at_height(),
                          .blocked = blocked_,
-                          .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
-                          .stuck = route && route->stuck,
-                          .in_collision = answer.plan.side});
+                         .goal_seen = !step_ || step_->goal != nav::Standing::unseen,
+                         .stuck = route && route->stuck,
+                         .in_collision = answer.plan.side});
     }
   }
 }
