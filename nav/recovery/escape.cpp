@@ -11,7 +11,7 @@ constexpr double kStep = 0.10;                // m, of a motion
 constexpr double kTurn = 5.0 * M_PI / 180.0;  // rad, of one on the spot
 constexpr double kCell = 0.05;                // m: states in one cell and within one turn are the same
 constexpr float kKept = 0.02f;                // m: an obstacle farther off may come as near as this
-constexpr float kDeeper = 0.002f;             // m: less is not "closer"
+constexpr float kCloser = 0.002f;             // m: less is not "closer"
 constexpr float kChange = 0.1f;               // m that a change of direction costs
 
 }  // namespace
@@ -77,7 +77,7 @@ void Escape::offer(std::int32_t from, const Pose2& motion, int direction, float 
   auto& closed = closed_[static_cast<std::size_t>((turn * kSide + y) * kSide + x)];
   if (closed == round_) return;
   const float depth = points_.depth(body_, pose);
-  if (depth > std::max(before.least, -kKept) + kDeeper) return;
+  if (depth > std::max(before.least, -kKept) + kCloser) return;
   closed = round_;
   if (before.direction != direction && from != 0) cost += kChange;
   const float total = before.cost + cost;
