@@ -36,7 +36,10 @@ int malformed_of(const nlohmann::json& net, const std::string& agent) {
 
 TEST_F(Programs, MalformedSamplesOnEveryTopicAreSurvivedAndCounted) {
   PlainDriver driver(*net_);
-  Process robot = agent();
+  folder_.write("body.yaml",
+                "name: body\ndrive: differential\nlength: 0.6\nwidth: 0.5\nheight: 0.5\nmax_speed: 2\nmax_turn: 1.5\n"
+                "max_acceleration: 1.5\nstep: 0.08\nlidar_height: 0.5\nsensors: {imu: {x: 0, y: 0, z: 0.2}}\n");
+  Process robot = agent({}, folder_.write("r1.yaml", "name: r1\nplatform: body.yaml\n"));
   ASSERT_EQ(op("op1", {"take", "r1"}).exit_code, 0);
   const auto radio = net_->join_radio("vandal"), inner = net_->join_robot("vandal");
   int topics = 0;
@@ -44,8 +47,7 @@ TEST_F(Programs, MalformedSamplesOnEveryTopicAreSurvivedAndCounted) {
   for (const auto& example : wire::examples()) {
     SCOPED_TRACE(example.topic.name);
     const std::string topic = example.topic.name;
-    if (topic == "rt/cmd_vel") continue;   // a driver reads it, neither of the two
-    if (topic == "rt/imu/data") continue;  // no component reads it yet
+    if (topic == "rt/cmd_vel") continue;  // a driver reads it, neither of the two
     const bool addressed = topic == "adit/command" || topic == "adit/joystick";
     const bool inside = topic.starts_with("rt/");
     const int before = inside ? counted("r1") : 0;
@@ -62,7 +64,7 @@ TEST_F(Programs, MalformedSamplesOnEveryTopicAreSurvivedAndCounted) {
       EXPECT_TRUE(eventually([&] { return counted("r1") > before; }, Seconds(6)));
     }
   }
-  EXPECT_EQ(topics, 14);
+  EXPECT_EQ(topics, 16);
   EXPECT_TRUE(robot.running()) << robot.err();
   EXPECT_EQ(op("op1", {"goto", "r1", "1", "0"}).exit_code, 0);
   EXPECT_EQ(op("op1", {"stop", "r1"}).exit_code, 0);

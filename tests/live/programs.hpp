@@ -16,10 +16,10 @@ class Programs : public testing::Test {
   ~Programs() override {
     for (const auto& name : used_) cli({"--name", name, "down"});
   }
-  Process agent(std::vector<std::string> more = {}) {
+  Process agent(std::vector<std::string> more = {}, const std::string& config = "robots/r1.yaml") {
     std::vector<std::string> words{"robot_agent",
                                    "--config",
-                                   "robots/r1.yaml",
+                                   config,
                                    "--domain",
                                    std::to_string(domain()),
                                    "--robot-domain",

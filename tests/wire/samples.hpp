@@ -16,6 +16,7 @@
 #include "sensor_msgs/msg/BatteryState.h"
 #include "sensor_msgs/msg/Imu.h"
 #include "sensor_msgs/msg/PointCloud2.h"
+#include "tf2_msgs/msg/TFMessage.h"
 
 namespace adit::wire {
 
@@ -103,6 +104,11 @@ inline std::vector<Example> examples() {
   sensor_msgs::msg::Imu imu;
   imu.orientation_covariance()[0] = -1.0;
   all.push_back(example(topics::kImu, imu));
+  tf2_msgs::msg::TFMessage frames;
+  frames.transforms().resize(2);
+  frames.transforms()[0].header().frame_id("base_link");
+  frames.transforms()[0].child_frame_id("lidar");
+  all.push_back(example(topics::kTfStatic, frames));
   sensor_msgs::msg::BatteryState battery;
   battery.cell_voltage().resize(4);
   all.push_back(example(topics::kBattery, battery));
