@@ -35,10 +35,10 @@ struct RouteStep {
 
   State state{State::straight};
   Eigen::Vector3d target{0, 0, 0};      ///< m
-  bool stuck{false};                    ///< No progress along the route for a long time: see ProgressChecker.
   bool last{true};                      ///< `target` is the goal
   Standing goal{Standing::standable};   ///< Of the goal itself: `unseen` while its ground is not known.
   std::optional<NarrowPassage> gate{};  ///< Passage that `target` lies behind.
+  bool stuck{false};                    ///< No progress along the route for a long time: see ProgressChecker.
 };
 
 /// Keeps to a route: another one is taken when it is clearly better or the old one is blocked, so that it

@@ -21,7 +21,7 @@ struct NavigationParams {
   Platform platform{};
   Duration period{50ms};        ///< Of step(), as the driver's period, [20 ms, 50 ms].
   Duration plan_age{500ms};     ///< An older plan is not followed.
-  Duration step_age{2s};        ///< With an older step of the route, the robot heads for the goal itself.
+  Duration step_age{2s};        ///< With an older step of the route, the robot waits for the next one.
   Duration scan_age{500ms};     ///< With older points the terrain is unknown.
   Duration held_after{1500ms};  ///< A robot that its collision monitor stops for this long is blocked.
   Duration warned_for{2s};      ///< A warning is repeated if its cause was absent for longer.
@@ -34,10 +34,10 @@ enum class Warning { obstacle_near, lidar_silent, tilted };
 /// the local planner's paths.
 ///
 /// The planner plans once per scan on another strand, and this class follows the plan on its own. The router,
-/// which also receives every scan, gives the steps of the route to a goal; without a router (`router` null,
-/// or not running) the robot heads for the goal directly. The collision monitor limits each velocity: in
-/// autonomous modes and smart joystick it stops the robot, in manual mode it slows the robot down and the
-/// operator is warned.
+/// which also receives every scan, gives the steps of the route to a goal; the robot waits while there
+/// is none. Where the platform has no router (`router` null) it heads for the goal directly. The collision
+/// monitor limits each velocity: in autonomous modes and smart joystick it stops the robot, in manual mode it
+/// slows the robot down and the operator is warned.
 class Navigation : public Component, public NavigationInput {
  public:
   struct Outputs {

@@ -39,7 +39,7 @@ TEST(Complete, OptionsOnceTheArgumentsAreThere) {
               ElementsAre("--wait", "--nearest", "--budget"));
   EXPECT_THAT(complete({"goto", "r1", "1", "2", "--wait", ""}, kRobots),
               ElementsAre("--nearest", "--budget"));
-  EXPECT_THAT(complete({"goto", "r1", "1", "2", "--budget", ""}, kRobots), IsEmpty());
+  EXPECT_THAT(complete({"goto", "r1", "1", "2", "--budget", ""}, kRobots), ElementsAre("none"));
   EXPECT_THAT(complete({"reset", "r1", ""}, kRobots), Contains("--override"));
   EXPECT_THAT(complete({"reset", ""}, kRobots), Not(Contains("--override")));
   EXPECT_THAT(complete({"drive", "r1", "1", "0", "0", "--for", ""}, kRobots), IsEmpty());
