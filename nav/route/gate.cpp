@@ -7,10 +7,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kOppositeCosine = 0.5;   // the sides are this much, as a cosine, on opposite sides of the way
-constexpr int kLongestMouth = 6;    // samples: of a passage its mouth counts
-constexpr double kNarrower = 0.15;  // m: than the passage that a route begins in a door at its end is
-constexpr double kFitReach = 1.4;   // m around the middle: fit_gateway looks at no more
+constexpr double kOppositeCosine = 0.5;  // the sides are this much, as a cosine, on opposite sides of the way
+constexpr int kLongestMouth = 6;         // samples: of a passage its mouth counts
+constexpr double kNarrower = 0.15;       // m: than the passage that a route begins in a door at its end is
+constexpr double kFitReach = 1.4;        // m around the middle: fit_gateway looks at no more
 constexpr double kLoose = 0.15;  // m: sides that are not opposite each other are farther apart than the strip
 
 // What stands on both sides of a place.
@@ -47,7 +47,8 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
       const Eigen::Vector2d away = *place - at.head<2>();
       const double d2 = away.squaredNorm();
       const double across = along.x() * away.y() - along.y() * away.x();
-      if (d2 >= (across > 0 ? least_left : least_right) || across * across < kOppositeCosine * kOppositeCosine * d2)
+      if (d2 >= (across > 0 ? least_left : least_right) ||
+          across * across < kOppositeCosine * kOppositeCosine * d2)
         continue;
       (across > 0 ? least_left : least_right) = d2;
       (across > 0 ? sides.left : sides.right) = *place;

@@ -123,4 +123,25 @@ Route RouteGraph::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return route;
 }
 
+std::vector<float> RouteGraph::costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) {
+  std::vector<float> costs(goals.size(), kUnreached);
+  const auto start = find_end(from, kStartReach);
+  if (!start || start->tile < 0) return costs;
+  std::vector<RouteEnd> ends;
+  std::vector<std::size_t> indices;
+  for (std::size_t k = 0; k < goals.size(); ++k) {
+    const auto end = find_end({goals[k].x(), goals[k].y(), goal_height(from, goals[k])}, params_.snap);
+    if (!end || end->tile < 0) continue;
+    ends.push_back(*end);
+    indices.push_back(k);
+  }
+  std::vector<float> found(ends.size(), kUnreached);
+  if (!search_.costs(*start, ends, found)) return costs;
+  const auto start_leg = static_cast<float>((start->place - from).head<2>().norm());
+  for (std::size_t i = 0; i < ends.size(); ++i)
+    costs[indices[i]] =
+        found[i] + start_leg + static_cast<float>((ends[i].place - goals[indices[i]]).head<2>().norm());
+  return costs;
+}
+
 }  // namespace adit::nav

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "nav/route/route_line.hpp"
 #include "nav/route/route_search.hpp"
@@ -17,6 +19,7 @@ class RouteGraph {
 
   /// See RoutePlanner.
   Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals);
   std::optional<double> ground(double x, double y, double z) const;
   TileBuilder& builder() { return builder_; }
   RouteLine& line() { return line_; }

@@ -125,11 +125,11 @@ bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
 }
 
 void RouteSearch::reach(Id id, float cost, Id from) {
-  if (!params_.through_unknown && id < start_id_ && is_ghost(id)) return;
+  if ((to_many_ || !params_.through_unknown) && id < start_id_ && is_ghost(id)) return;
   State& s = states_[id];
   if (s.search == search_ && (s.closed || s.cost <= cost)) return;
   s = {cost, from, search_, false};
-  const float rest = static_cast<float>((place(id) - goal_.place).norm());
+  const float rest = to_many_ ? 0.0f : static_cast<float>((place(id) - goal_.place).norm());
   open_.push_back({cost + rest, id});
   std::push_heap(open_.begin(), open_.end());
 }
@@ -160,6 +160,7 @@ void RouteSearch::begin(const RouteEnd& start) {
 RouteStatus RouteSearch::search(const RouteEnd& start, const RouteEnd& goal,
                                 std::vector<Eigen::Vector3d>& points) {
   points.clear();
+  to_many_ = false;
   if (!prepare(start, goal)) return RouteStatus::too_far;
   to_goal_.fill(kUnreached);
   if (goal.tile >= 0) {
@@ -184,6 +185,57 @@ RouteStatus RouteSearch::search(const RouteEnd& start, const RouteEnd& goal,
     expand(id, s.cost);
   }
   return RouteStatus::unreachable;
+}
+
+std::vector<RouteSearch::ManyGoal> RouteSearch::goals_by_tile(std::span<const RouteEnd> goals) {
+  std::vector<ManyGoal> sorted;
+  sorted.reserve(goals.size());
+  for (std::size_t k = 0; k < goals.size(); ++k) {
+    const Tile& tile = builder_.current(map_, goals[k].tile);
+    ManyGoal& goal = sorted.emplace_back(ManyGoal{goals[k].tile, k, {}});
+    goal.from_node.fill(kUnreached);
+    builder_.spread(tile, goals[k].cell);
+    for (std::size_t n = 0; n < static_cast<std::size_t>(tile.node_count); ++n)
+      goal.from_node[n] = builder_.distance(tile.nodes[n].cell);
+  }
+  std::sort(sorted.begin(), sorted.end(),
+            [](const ManyGoal& a, const ManyGoal& b) { return a.tile < b.tile; });
+  return sorted;
+}
+
+bool RouteSearch::costs(const RouteEnd& start, std::span<const RouteEnd> goals, std::span<float> costs) {
+  std::fill(costs.begin(), costs.end(), kUnreached);
+  if (goals.empty()) return true;
+  if (!prepare(start, {start.place, -1, 0})) return false;
+  to_many_ = true;
+  const std::vector<ManyGoal> sorted = goals_by_tile(goals);
+  begin(start);  // Spreads last over the start's tile.
+  for (const ManyGoal& goal : sorted)
+    if (goal.tile == start.tile) costs[goal.index] = builder_.distance(goals[goal.index].cell);
+  const auto dearest = [&costs] { return *std::max_element(costs.begin(), costs.end()); };
+  for (float certain = dearest(); !open_.empty();) {
+    std::pop_heap(open_.begin(), open_.end());
+    const Id id = open_.back().id;
+    open_.pop_back();
+    State& s = states_[id];
+    if (s.closed) continue;
+    if (s.cost >= certain) break;
+    s.closed = true;
+    ++expanded_;
+    const int tile = static_cast<int>(id / kTileNodes);
+    const auto first = std::lower_bound(sorted.begin(), sorted.end(), tile,
+                                        [](const ManyGoal& g, int index) { return g.tile < index; });
+    bool cheaper = false;
+    for (auto goal = first; goal != sorted.end() && goal->tile == tile; ++goal) {
+      const float cost = s.cost + goal->from_node[id % kTileNodes];
+      if (cost >= costs[goal->index]) continue;
+      costs[goal->index] = cost;
+      cheaper = true;
+    }
+    if (cheaper) certain = dearest();
+    expand(id, s.cost);
+  }
+  return true;
 }
 
 void RouteSearch::expand(Id id, float cost) {

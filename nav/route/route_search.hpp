@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "nav/route/route.hpp"
@@ -27,6 +28,10 @@ class RouteSearch {
 
   /// The way as points of the ground, each leg passable. Tiles that it comes to are brought up to date.
   RouteStatus search(const RouteEnd& start, const RouteEnd& goal, std::vector<Eigen::Vector3d>& points);
+  /// Costs from one place to many through known space, m; infinite where no route leads. One search from the
+  /// start (Dijkstra), which ends when every goal's cost is certain. `start` and `goals` lie on tiles;
+  /// `costs`: one for each goal. Returns false when the map is too large for the search's memory.
+  bool costs(const RouteEnd& start, std::span<const RouteEnd> goals, std::span<float> costs);
   /// Nodes that the last search looked at.
   std::size_t expanded() const { return expanded_; }
   /// Of its buffers, bytes.
@@ -52,7 +57,15 @@ class RouteSearch {
     int tx, ty, level, side;
   };
 
+  /// One of many goals: its tile, its place in the list, and the costs from the tile's nodes, m.
+  struct ManyGoal {
+    int tile;
+    std::size_t index;
+    std::array<float, kTileNodes> from_node;
+  };
+
   bool prepare(const RouteEnd& start, const RouteEnd& goal);
+  std::vector<ManyGoal> goals_by_tile(std::span<const RouteEnd> goals);
   bool is_ghost(Id id) const { return id >= ghosts_from_; }
   Id ghost_id(const Ghost& g) const;
   Ghost ghost_of(Id id) const;
@@ -86,6 +99,7 @@ class RouteSearch {
   std::vector<State> states_{};
   std::vector<Open> open_{};
   std::uint32_t search_{0};
+  bool to_many_{false};  ///< No single goal: costs are not estimated, and unknown space is not used.
   std::array<float, kTileNodes> to_goal_{};  // from the nodes of the goal's tile
   std::size_t expanded_{0};
 };
