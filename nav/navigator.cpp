@@ -61,18 +61,19 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
   const double age = std::max(0.0, stamp_s - tracker_.stamp_s());
   predict(tracker_.movers(), age, pose, moves, platform_, obstacles_);
   Plan plan = planner_->plan(target, pose, obstacles_, stamp_s);
-  if (plan.blocked && target.kind == Target::Kind::goal) {
+  if ((plan.blocked || target.held) && target.kind == Target::Kind::goal) {
     // Where something moves the robot waits.
     const auto out = escape_.plan(pose, std::span(obstacles_).first(standing));
-    if (out) {
+    if (plan.blocked && out) {
       const double clearance = plan.clearance;
       plan = *out;
       plan.stamp_s = stamp_s;
       plan.clearance = clearance;
-    } else if (escape_.side() != Side::none) {
+    } else if (plan.blocked && escape_.side() != Side::none) {
       plan.reason = Reason::start_in_collision;
-      plan.side = escape_.side();
     }
+    // The collision monitor may hold what the planners let through.
+    if (target.held || plan.blocked) plan.side = escape_.side();
   }
   plan.max_speed = std::min(plan.max_speed, speed_beside(tracker_.movers(), age, plan, platform_));
   return plan;

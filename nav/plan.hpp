@@ -44,7 +44,7 @@ struct Plan {
   double stamp_s{0};            ///< of the pose that it was made for
   bool blocked{false};          ///< every way is blocked: `path` is empty
   Reason reason{Reason::none};  ///< Reason::blocked, start_in_collision, goal_missing (no target) or none
-  Side side{Side::none};        ///< With Reason::start_in_collision: where the obstacle is.
+  Side side{Side::none};        ///< Where the obstacle is that keeps the robot from starting.
   bool arrived{false};          ///< within the tolerance of the goal: `path` is empty
   bool ends_at_goal{false};
   bool reverse{false};     ///< the path is driven backwards; its poses are those of the body

@@ -338,6 +338,10 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
     if (!frames_.initialised()) return std::nullopt;
     return frames_.T_map_base();
   };
+  inputs.stopping = [this] {
+    const double speed = std::hypot(frames_.twist().vx, frames_.twist().vy);
+    return speed * (seconds(kBeat) + speed / (2 * params_.platform.max_acceleration));
+  };
   return inputs;
 }
 

@@ -20,9 +20,9 @@ constexpr double kStill = 0.02;    // m/s and rad/s
 
 /// Notifications that end a goal; others, as of a blocked path, do not.
 bool ends_goal(const std::string& code) {
-  static const std::set<std::string> codes{"unreachable",     "unknown_budget",     "stuck",
-                                           "goal_occupied",   "goal_no_floor",      "goal_too_steep",
-                                           "goal_too_narrow", "goal_not_connected", "start_in_collision"};
+  static const std::set<std::string> codes{"unreachable",     "unknown_budget",    "stuck",
+                                           "goal_occupied",   "goal_no_floor",     "goal_too_steep",
+                                           "goal_too_narrow", "goal_not_connected"};
   return codes.contains(code);
 }
 

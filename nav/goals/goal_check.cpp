@@ -22,7 +22,6 @@ struct GoalCheck::Ground {
 GoalCheck::GoalCheck(const Platform& platform)
     : body_(Footprint(platform).grown(-kMapError, -kMapError)),
       limits_(Traversability::of(platform)),
-      inscribed_(std::min(platform.length, platform.width) / 2 - kMapError),
       flies_(platform.flies()) {}
 
 GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d& place, double yaw) const {
@@ -101,8 +100,34 @@ Standing GoalCheck::stand(const RoutePlanner& planner, const Eigen::Vector3d& pl
   }
   if (open) return Standing::unseen;
   if (steep) return Standing::too_steep;
-  if (nearest > inscribed_) return Standing::too_narrow;
+  if (!hole && is_between(planner.map(), at)) return Standing::too_narrow;
   return hole ? Standing::no_floor : Standing::occupied;
+}
+
+bool GoalCheck::is_between(const SurfaceMap& map, const Eigen::Vector3d& place) const {
+  const int reach = static_cast<int>(body_.radius() / kRouteCell) + 1;
+  const int cx = route_cell(place.x()), cy = route_cell(place.y());
+  const auto cell_at = [&](int ix, int iy) -> const GroundCell* {
+    const int index = map.at_cell(ix, iy, place.z());
+    return index < 0 ? nullptr : &map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  };
+  const GroundCell* own = cell_at(cx, cy);
+  if (!own || !own->known || own->blocked) return false;
+  std::vector<Eigen::Vector2d> obstacles;
+  for (int iy = cy - reach; iy <= cy + reach; ++iy)
+    for (int ix = cx - reach; ix <= cx + reach; ++ix) {
+      const GroundCell* cell = cell_at(ix, iy);
+      if (!cell || !cell->blocked) continue;
+      const Eigen::Vector2d off = Eigen::Vector2d((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell) +
+                                  kAsideUnit * Eigen::Vector2d(cell->aside_x, cell->aside_y) -
+                                  place.head<2>();
+      if (off.norm() <= body_.radius()) obstacles.push_back(off);
+    }
+  const auto nearest = std::min_element(
+      obstacles.begin(), obstacles.end(),
+      [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.squaredNorm() < b.squaredNorm(); });
+  return std::any_of(obstacles.begin(), obstacles.end(),
+                     [&](const Eigen::Vector2d& off) { return off.dot(*nearest) < 0.0; });
 }
 
 std::optional<Eigen::Vector3d> GoalCheck::nearest(const RoutePlanner& planner, const Eigen::Vector3d& place,

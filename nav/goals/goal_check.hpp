@@ -40,10 +40,11 @@ class GoalCheck {
   /// What is found under the footprint at one heading.
   struct Ground;
   Ground under(const SurfaceMap& map, const Eigen::Vector3d& place, double yaw) const;
+  /// Whether a place is free itself, and obstacles lie on two opposite sides of it within the body's reach.
+  bool is_between(const SurfaceMap& map, const Eigen::Vector3d& place) const;
 
   Footprint body_;
   Traversability limits_;
-  double inscribed_;  // m
   bool flies_;
 };
 

@@ -17,10 +17,10 @@ enum class RouteStatus : std::uint8_t {
 /// Whether a body can stand at a place.
 enum class Standing : std::uint8_t {
   standable,      ///< The footprint fits on known ground at one heading or more.
-  occupied,       ///< Something stands there.
+  occupied,       ///< An obstacle stands there, or on one side too near.
   no_floor,       ///< The ground is missing.
   too_steep,      ///< The ground is too steep, or a step.
-  too_narrow,     ///< Obstacles beside the place leave no heading.
+  too_narrow,     ///< Obstacles on opposite sides of the place leave no heading.
   unseen,         ///< Not known: part of the ground was not seen.
   not_connected,  ///< No route leads there.
 };

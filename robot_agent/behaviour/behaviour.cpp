@@ -17,11 +17,12 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
       running_(decision_.mode) {
   // Modules may ask for the pose at any time.
   if (!inputs_.pose) inputs_.pose = [] { return std::optional<Pose2>{}; };
+  if (!inputs_.stopping) inputs_.stopping = [] { return 0.0; };
   for (const ModeRow& row : table().rows()) {
     Mode& mode = modes_.emplace_back(Mode{row});
     if (row.moves())
       mode.module = row.make({mux_.connect(std::string(row.name), row.source_age), outputs_.tell_holder,
-                              inputs_.goal_free, inputs_.height, inputs_.pose});
+                              inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping});
   }
 }
 

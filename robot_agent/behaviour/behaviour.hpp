@@ -49,6 +49,7 @@ class Behaviour : public Requests {
     std::function<std::optional<Pose2>()> pose{};
     /// Sets the robot's pose in the map. Errors: no_localisation.
     std::function<Result<void>(const Pose2&)> set_pose{};
+    std::function<double()> stopping{};  ///< Metres that the robot needs to stop. Empty: always 0.
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.

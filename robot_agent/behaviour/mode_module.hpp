@@ -34,6 +34,8 @@ struct ModeContext {
   std::function<double()> height{};
   /// Pose of the robot (map frame); unset while localisation is not initialised.
   std::function<std::optional<Pose2>()> pose{};
+  /// Metres that the robot needs to stop.
+  std::function<double()> stopping{};
 };
 
 /// One mode of the mode table: turns its input into motions for the mux.

@@ -47,6 +47,8 @@ class BehaviourTest : public testing::Test {
   Mux mux{nav};
   std::vector<Notice> told{};
   std::vector<Pose2> set{};
+  Pose2 at{};
+  double stopping{};
   int changes{};
   Behaviour behaviour{{},
                       Decider::load(source_folder() + "/config/trees/robot.xml").value(),
@@ -54,11 +56,12 @@ class BehaviourTest : public testing::Test {
                       {[this](Time) { return facts; },
                        [this](const Eigen::Vector2d&) { return goal_free; },
                        {},
-                       {},
+                       [this] { return std::optional(at); },
                        [this](const Pose2& pose) -> Result<void> {
                          set.push_back(pose);
                          return {};
-                       }},
+                       },
+                       [this] { return stopping; }},
                       {[this](const Notice& n) { told.push_back(n); }, [this] { ++changes; }}};
   Time now{Duration{1h}};
   bool streaming{};
@@ -86,6 +89,32 @@ TEST_F(BehaviourTest, ThePoseAnswersAJumpOfTheOdometry) {
   EXPECT_TRUE(behaviour.set_pose({3, 4, 1}, now));
   EXPECT_EQ(behaviour.view().reason, Reason::none);
   EXPECT_EQ(nav.last, Motion{Stand{}});
+}
+
+TEST_F(BehaviourTest, StopsBeforeItsBudgetForAnUnseenGoalIsUsedUp) {
+  ASSERT_TRUE(behaviour.request_goal({20, 0, 0}, now));
+  behaviour.limit_unknown(2.0);
+  stopping = 0.5;
+  const auto drive_to = [this](double x) {
+    for (; at.x < x - 1e-6; at.x += 0.25) {
+      behaviour.set_progress({.goal_seen = false});
+      run(50ms);
+    }
+    run(50ms);
+  };
+  drive_to(1.25);
+  EXPECT_EQ(nav.last, (Motion{GoTo{{20, 0, 0}}}));
+  drive_to(1.5);
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  EXPECT_EQ(behaviour.view().goal_state, GoalState::blocked);
+  EXPECT_EQ(behaviour.view().reason, Reason::unknown_budget);
+  EXPECT_THAT(codes(), testing::ElementsAre("unknown_budget"));
+  ASSERT_TRUE(behaviour.request_mode("waypoint", now)) << "the goal is stored";
+  run(100ms);
+  EXPECT_EQ(nav.last, (Motion{GoTo{{20, 0, 0}}}));
+  behaviour.set_progress({.goal_seen = true});
+  for (; at.x < 10; at.x += 0.25) run(50ms);
+  EXPECT_EQ(nav.last, (Motion{GoTo{{20, 0, 0}}})) << "metres towards a goal that was seen are free";
 }
 
 TEST_F(BehaviourTest, StartsInHoldWithZero) {

@@ -50,6 +50,13 @@ TEST_F(GoalCheckTest, APocketSmallerThanTheBodyIsTooNarrow) {
   EXPECT_EQ(at(5, 3), Standing::too_narrow);
 }
 
+TEST_F(GoalCheckTest, AGapNarrowerThanTheBodyIsTooNarrowAndAWallBesideThePlaceIsNot) {
+  world.fill(30, 60, 1, 28);
+  world.fill(30, 60, 31, 59);
+  EXPECT_EQ(at(4.5, 2.95), Standing::too_narrow) << "between walls 0.3 m apart";
+  EXPECT_EQ(at(2.0, 0.25), Standing::occupied) << "0.15 m beside one wall";
+}
+
 TEST_F(GoalCheckTest, BeyondTheWallsNothingWasSeen) {
   EXPECT_EQ(at(15, 3), Standing::unseen);
   EXPECT_EQ(judge(15, 3, false).standing, Standing::not_connected) << "the room is closed";

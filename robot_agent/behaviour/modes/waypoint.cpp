@@ -63,10 +63,12 @@ void WaypointMode::count(bool passes) {
   constexpr double kStep = 0.1;  // m
   if (!last_) last_ = pose->position();
   const double step = (pose->position() - *last_).norm();
-  if (step < kStep) return;
-  last_ = pose->position();
-  driven_ += step;
-  if (driven_ <= budget_) return;
+  if (step >= kStep) {
+    last_ = pose->position();
+    driven_ += step;
+  }
+  const double stopping = context_.stopping ? context_.stopping() : 0.0;
+  if (driven_ + stopping < budget_) return;
   used_up_ = true;
   context_.tell_holder({{},
                         Severity::warning,
