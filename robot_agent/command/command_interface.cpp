@@ -103,7 +103,7 @@ CommandInterface::Outcome CommandInterface::judge(const Command& c, Time now) {
 CommandInterface::Outcome CommandInterface::identify(const Sender& from, StationTable::Sign sign, Time now) {
   const bool holds = authority_.held_by(from.name, from.id);
   const auto verdict = stations_.hear(from, sign, authority_.holder(), now);
-  if (verdict.found_out) report_intruder(from.name, *verdict.found_out, now);
+  if (verdict.rejected) report_intruder(from.name, *verdict.rejected, now);
   // A claim to be restarted suffices: a manual mode must not continue meanwhile.
   if (holds && verdict.restarted) requests_.holder_restarted(now);
   if (verdict.reason == Reason::none) {

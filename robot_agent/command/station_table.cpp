@@ -21,15 +21,16 @@ StationTable::Verdict StationTable::hear(const Sender& from, Sign sign, const st
   // A command suffices as a claim for other stations, but a claim to be the holder needs a presence.
   if (holds && !station.holds) station.binding.forget_claim();
   station.holds = holds;
-  const auto verdict = station.binding.hear(from.participant, sign == Sign::presence || !holds, now);
+  const auto may_claim = sign == Sign::presence || !holds ? Binding::MayClaim::yes : Binding::MayClaim::no;
+  const auto verdict = station.binding.on_heartbeat(from.participant, may_claim, now);
   return {verdict.bound ? Reason::none : Reason::identity_mismatch, verdict.pending, verdict.restarted,
-          verdict.found_out};
+          verdict.rejected};
 }
 
 Station* StationTable::add(const Sender& from, const std::optional<Party>& holder, Time now) {
   if (stations_.size() >= kCapacity) {
     const auto rank = [&](const Station& s) {
-      return std::pair(holder == Party{s.name, s.id}, s.binding.heard());
+      return std::pair(holder == Party{s.name, s.id}, s.binding.last_seen());
     };
     const auto oldest =
         std::min_element(stations_.begin(), stations_.end(),
@@ -53,7 +54,7 @@ void StationTable::announce(const std::string& name, std::uint16_t protocol) {
 }
 
 void StationTable::leave(const wire::ParticipantId& participant) {
-  for (Station& s : stations_) s.binding.leave(participant);
+  for (Station& s : stations_) s.binding.on_leave(participant);
 }
 
 const Station* StationTable::find(const std::string& name) const {

@@ -11,7 +11,7 @@
 namespace adit::agent {
 
 /// A station counts as heard for this long after its last heartbeat.
-inline constexpr Duration kHeardFor = Binding::kSilent;
+inline constexpr Duration kHeardFor = Binding::kBindingTimeout;
 
 struct Station {
   std::string name{};
@@ -37,7 +37,7 @@ class StationTable {
         Reason::none};  ///< `name_in_use`, `identity_mismatch` or `unknown_station` (the table is full).
     bool pending{};     ///< With `identity_mismatch`: it may be the station after a restart.
     bool restarted{};   ///< A new participant sends for the station, or claims to.
-    std::optional<wire::ParticipantId> found_out{};  ///< A participant that claimed another one's identity.
+    std::optional<wire::ParticipantId> rejected{};  ///< A participant that claimed another one's identity.
   };
 
   /// Judges a heartbeat and records it if it is genuine. `holder`: the robot's holder.

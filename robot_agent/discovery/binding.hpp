@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <optional>
 
 #include "core/time/time.hpp"
@@ -22,11 +23,11 @@ namespace adit::agent {
 /// A forger is therefore bound only while the original is not heard, e.g. because of radio loss.
 class Binding {
  public:
-  /// Heartbeats are due every second; one that is later than this counts as missing.
-  static constexpr Duration kQuiet = 1250ms;
+  /// Time without a heartbeat after which a claimant is bound. Heartbeats are due every second.
+  static constexpr Duration kHeartbeatTimeout = 1250ms;
   /// After this silence of the bound participant, any participant with the name and id is bound without an
   /// announcement.
-  static constexpr Duration kSilent = 3s;
+  static constexpr Duration kBindingTimeout = 3s;
   /// Samples that arrive later than this after a participant left do not count as heartbeats.
   static constexpr Duration kGrace = 1s;
 
@@ -34,50 +35,57 @@ class Binding {
     bool bound{};      ///< The participant is bound to the name and id.
     bool pending{};    ///< It claims the binding, and nothing contradicts the claim yet.
     bool restarted{};  ///< It claimed the binding just now, or got it without a claim.
-    /// The new participant that turned out to be no restart.
-    std::optional<wire::ParticipantId> found_out{};
+    /// The participant that claimed the binding although the original one still sends: it is no restart.
+    std::optional<wire::ParticipantId> rejected{};
   };
 
   /// The bound participant, the previous one, which may regain the binding, and the one that was rejected.
   /// This state must survive a restart, or the first participant heard afterwards would be bound.
   struct Kept {
     wire::ParticipantId participant{};
-    std::optional<wire::ParticipantId> former{}, rival{};
+    std::optional<wire::ParticipantId> previous{}, rejected{};
     bool operator==(const Kept&) const = default;
   };
 
-  Binding(const wire::ParticipantId& participant, Time now) : participant_(participant), heard_(now) {}
+  Binding(const wire::ParticipantId& participant, Time now) : participant_(participant), last_seen_(now) {}
   /// Restores a binding, as if its participant had been heard just now.
   Binding(const Kept& kept, Time now)
-      : participant_(kept.participant), heard_(now), former_(kept.former), moved_(now), rival_(kept.rival) {}
+      : participant_(kept.participant),
+        last_seen_(now),
+        previous_(kept.previous),
+        rebound_at_(now),
+        rejected_(kept.rejected) {}
 
-  /// Processes a heartbeat. `announces`: it may claim the binding; otherwise it counts only for the bound
-  /// participant.
-  Verdict hear(const wire::ParticipantId& from, bool announces, Time now);
+  /// Whether a message of a participant that is not bound counts as a claim to the binding.
+  enum class MayClaim : std::uint8_t { no, yes };
+
+  /// Processes a heartbeat of a participant with this name and id.
+  Verdict on_heartbeat(const wire::ParticipantId& from, MayClaim may_claim, Time now);
   /// Discards the claim: the claimant must announce itself again.
   void forget_claim() { claimant_.reset(); }
   /// Records that a participant left, or that its lease expired.
-  void leave(const wire::ParticipantId& participant) { left_ = left_ || participant == participant_; }
+  void on_leave(const wire::ParticipantId& participant) { left_ = left_ || participant == participant_; }
 
   const wire::ParticipantId& participant() const { return participant_; }
-  Time heard() const { return heard_; }
-  Kept kept() const { return {participant_, former_, rival_}; }
-  bool alive(Time now, Duration span) const { return !left_ && now - heard_ < span; }
+  Time last_seen() const { return last_seen_; }
+  Kept kept() const { return {participant_, previous_, rejected_}; }
+  /// Whether the bound participant did not leave and was heard within the last `timeout`.
+  bool alive(Time now, Duration timeout) const { return !left_ && now - last_seen_ < timeout; }
   bool claimed_by(const wire::ParticipantId& participant) const { return claimant_ == participant; }
 
  private:
-  void speak(Time now);
-  void move(const wire::ParticipantId& to, Time now);
+  Verdict on_bound_heartbeat(Time now);
+  void mark_seen(Time now);
+  void rebind(const wire::ParticipantId& to, Time now);
 
   wire::ParticipantId participant_;
-  Time heard_;
+  Time last_seen_;
   bool left_{};
   std::optional<wire::ParticipantId> claimant_{};
-  Time claimed_{};
-  /// The participant that was bound before, the time of the change, and a rejected participant.
-  std::optional<wire::ParticipantId> former_{};
-  Time moved_{};
-  std::optional<wire::ParticipantId> rival_{};
+  Time claimed_at_{};
+  std::optional<wire::ParticipantId> previous_{};  ///< The participant that was bound before.
+  Time rebound_at_{};                              ///< Time when the present participant was bound.
+  std::optional<wire::ParticipantId> rejected_{};  ///< The last claimant that was no restart.
 };
 
 }  // namespace adit::agent

@@ -10,8 +10,9 @@ namespace {
 
 /// All fields except the ages.
 auto content(const Peer& p) {
-  return std::tie(p.name, p.id, p.station, p.participant, p.described, p.protocol, p.software, p.platform,
-                  p.length, p.width, p.height, p.max_speed, p.modes, p.place, p.namesake, p.present);
+  return std::tie(p.name, p.id, p.station, p.participant, p.has_capabilities, p.protocol, p.software,
+                  p.platform, p.length, p.width, p.height, p.max_speed, p.modes, p.place, p.namesake,
+                  p.present);
 }
 
 bool before(const Peer& a, const Peer& b) {
@@ -48,20 +49,20 @@ Peer* PeerTable::add(Peer peer, Time now) {
     for (auto at = peers_.begin(); at != peers_.end(); ++at) {
       if (is_holder(*at) || (at->present && !is_holder(peer))) continue;
       if (oldest == peers_.end() ||
-          std::tie(at->present, at->heard) < std::tie(oldest->present, oldest->heard))
+          std::tie(at->present, at->last_seen) < std::tie(oldest->present, oldest->last_seen))
         oldest = at;
     }
     if (oldest == peers_.end()) return nullptr;
     peers_.erase(oldest);
   }
-  peer.first_heard = peer.heard = now;
+  peer.first_seen = peer.last_seen = now;
   peer.present = true;
   const auto place = std::lower_bound(peers_.begin(), peers_.end(), peer, before);
   return &*peers_.insert(place, std::move(peer));
 }
 
 void PeerTable::touch(Peer& peer, Time now) {
-  peer.heard = now;
+  peer.last_seen = now;
   if (std::exchange(peer.present, true)) return;
   publish();
 }
@@ -74,8 +75,8 @@ bool PeerTable::put(Peer peer, Time now) {
     publish();
     return true;
   }
-  peer.first_heard = known->id == peer.id ? known->first_heard : now;
-  peer.heard = now;
+  peer.first_seen = known->id == peer.id ? known->first_seen : now;
+  peer.last_seen = now;
   const bool changed = content(*known) != content(peer);
   *known = std::move(peer);
   if (changed) publish();
@@ -131,7 +132,7 @@ void PeerTable::leave(const wire::ParticipantId& participant) {
 void PeerTable::tick(Time now) {
   bool changed = false;
   for (Peer& peer : peers_) {
-    if (!peer.present || peer.age(now) < kSilence) continue;
+    if (!peer.present || peer.age(now) < kPresenceTimeout) continue;
     peer.present = false;
     changed = true;
   }

@@ -16,7 +16,7 @@ struct Peer {
   Id id{};
   bool station{};
   wire::ParticipantId participant{};  ///< The participant that is bound to name and id.
-  bool described{};                   ///< The capabilities below were received.
+  bool has_capabilities{};            ///< The capabilities below were received.
   std::uint16_t protocol{};
   std::string software{};
   std::string platform{};  ///< Name of the platform: wheeled, tracked, legged, ...; empty for a station.
@@ -25,11 +25,11 @@ struct Peer {
   std::vector<std::string> modes{};
   std::optional<Eigen::Vector3d> place{};  ///< Position of a station, map frame, m; unset: not announced.
 
-  bool namesake{};              ///< Another robot with this robot's name.
-  bool present{};               ///< It was heard within PeerTable::kSilence, and did not leave.
-  Time first_heard{}, heard{};  ///< First and last heartbeat, by this robot's clock.
+  bool namesake{};                 ///< Another robot with this robot's name.
+  bool present{};                  ///< It was heard within PeerTable::kPresenceTimeout, and did not leave.
+  Time first_seen{}, last_seen{};  ///< First and last heartbeat, by this robot's clock.
 
-  Duration age(Time now) const { return now - heard; }
+  Duration age(Time now) const { return now - last_seen; }
 };
 using PeerList = std::vector<Peer>;  ///< Sorted by name.
 
@@ -46,7 +46,7 @@ class PeerTable {
   static constexpr std::size_t kCapacity = 128;
   static constexpr std::size_t kNamesakes = 8;  ///< Included in the capacity.
   /// Tolerates two lost heartbeats; silence is detected within 3 s.
-  static constexpr Duration kSilence = 2500ms;
+  static constexpr Duration kPresenceTimeout = 2500ms;
 
   explicit PeerTable(Executor& owner) : list_(owner) {}
 

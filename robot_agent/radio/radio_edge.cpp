@@ -121,7 +121,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                         [&e, commands, &directory, &namesakes](const wire::ParticipantEvent& event) {
                           if (!e.io.valid()) return;
                           if (!event.incompatible.empty()) return;  // Stations notify their operators.
-                          directory.participant(event);
+                          directory.on_participant(event);
                           if (!event.present) namesakes.left(event.id);
                           if (event.present)
                             e.say_present();  // Sends a heartbeat at once, not at the next second.
@@ -138,13 +138,13 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                  if (p.kind() == radio::AGENT_STATION) namesakes.station(now);
                  if (p.kind() == radio::AGENT_ROBOT && p.name() == e.robot && info.sender != e.wire.id()) {
                    namesakes.heard(info.sender, now);
-                   directory.namesake(p.name(), p.id(), info.sender, now);
+                   directory.on_namesake(p.name(), p.id(), info.sender, now);
                  }
                  if (p.kind() == radio::AGENT_STATION)
                    commands([&](CommandInterface& interface) {
                      interface.hear({p.name(), p.id(), info.sender}, p.protocol(), now);
                    });
-                 if (p.name() != e.robot) directory.presence(p.name(), p.id(), info.sender, now);
+                 if (p.name() != e.robot) directory.on_presence(p.name(), p.id(), info.sender, now);
                }),
            e.read(topics::kCapabilities,
                   [&e, commands, &directory, &namesakes](const radio::Capabilities&c,
@@ -158,7 +158,7 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                       });
                     if (c.kind() == radio::AGENT_STATION && c.placed())
                       e.wire.set_place(info.sender, {c.place()[0], c.place()[1], c.place()[2]});
-                    if (c.name() != e.robot) directory.capabilities(from_radio(c, info.sender), now);
+                    if (c.name() != e.robot) directory.on_capabilities(from_radio(c, info.sender), now);
                   }),
            e.read(
                topics::kCommand,

@@ -54,7 +54,7 @@ void Safeguards::watch_link(Time now) {
   in.held = authority.holder().has_value();
   // A restart of the command component starts the lease again, but it is no heartbeat of the holder.
   const Peer* peer = dependencies_.peers.holder();
-  in.heard = peer ? peer->heard : authority.heard();
+  in.heard = peer ? peer->last_seen : authority.heard();
   in.autonomous = dependencies_.behaviour.mode().autonomous();
   in.arrived = dependencies_.behaviour.view().goal_state == GoalState::reached;
   if (at.initialised()) in.place = Eigen::Vector2d(at.T_map_base().x, at.T_map_base().y);

@@ -25,7 +25,7 @@ void put(Packer& out, const std::optional<Binding::Kept>& speaker) {
   out.flag(speaker.has_value());
   if (!speaker) return;
   out.put(speaker->participant);
-  for (const auto& other : {speaker->former, speaker->rival}) {
+  for (const auto& other : {speaker->previous, speaker->rejected}) {
     out.flag(other.has_value());
     if (other) out.put(*other);
   }
@@ -35,8 +35,8 @@ std::optional<Binding::Kept> speaker(Unpacker& in) {
   if (!in.flag()) return std::nullopt;
   Binding::Kept kept{};
   kept.participant = in.array<12>();
-  if (in.flag()) kept.former = in.array<12>();
-  if (in.flag()) kept.rival = in.array<12>();
+  if (in.flag()) kept.previous = in.array<12>();
+  if (in.flag()) kept.rejected = in.array<12>();
   return kept;
 }
 

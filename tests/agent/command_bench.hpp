@@ -31,7 +31,7 @@ class CommandBench {
   /// A station starts: same id as ever, a new participant, presence first. The former process has been
   /// silent for a moment.
   void start(const std::string& op) {
-    if (stations_.contains(op)) now += Binding::kQuiet;
+    if (stations_.contains(op)) now += Binding::kHeartbeatTimeout;
     Station& s = stations_[op];
     s = {{op, id_of(op), next_participant()}, 0, true};
     interface_->hear(s.sender, 1, now);

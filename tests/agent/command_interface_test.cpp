@@ -236,7 +236,7 @@ TEST(CommandInterface, AfterARestartTheHoldersPlaceIsNotForTheFirstToSpeak) {
 TEST(CommandInterface, ARestartWhileAForgerHasThePlaceDoesNotLeaveItToHim) {
   CommandBench bench;
   bench.say("op1", "take");
-  bench.now += Binding::kQuiet;  // the holder's words are lost for a moment
+  bench.now += Binding::kHeartbeatTimeout;  // the holder's words are lost for a moment
   const Sender forger = bench.station("forger:op1").sender;
   bench.interface().hear(forger, 1, bench.now);
   bench.restart();
@@ -254,7 +254,7 @@ TEST(CommandInterface, WhoWasFoundOutIsStillShutOutAfterARestart) {
   bench.now += Binding::kGrace;
   bench.interface().hear(bench.station("op1").sender, 1, bench.now);  // both live: he is found out
   bench.restart();
-  bench.now += Binding::kQuiet;  // a presence of the real one is lost
+  bench.now += Binding::kHeartbeatTimeout;  // a presence of the real one is lost
   bench.interface().hear(forger, 1, bench.now);
   EXPECT_EQ(bench.say("forger:op1", "grant op2").reason, Reason::identity_mismatch);
 }
@@ -267,7 +267,7 @@ TEST(CommandInterface, AStationRestartedTogetherWithTheRobotIsBackByItsPresence)
   const Sender again = bench.station("forger:op1").sender;
   bench.interface().hear(again, 1, bench.now);
   EXPECT_EQ(bench.say("forger:op1", "mode hold").reason, Reason::identity_mismatch);
-  bench.now += Binding::kQuiet;
+  bench.now += Binding::kHeartbeatTimeout;
   EXPECT_TRUE(bench.say("forger:op1", "mode hold").accepted());
 }
 

@@ -41,10 +41,10 @@ class PeerTableTest : public testing::Test {
 };
 
 TEST_F(PeerTableTest, AgesCountFromTheLastSignOfLife) {
-  directory.capabilities(peer("r2", 1), now);
-  directory.presence("r2", id_of("r2"), participant(1), now + 2s);
+  directory.on_capabilities(peer("r2", 1), now);
+  directory.on_presence("r2", id_of("r2"), participant(1), now + 2s);
   EXPECT_EQ(find("r2")->age(now + 3s), 1s);
-  EXPECT_EQ(find("r2")->first_heard, now);
+  EXPECT_EQ(find("r2")->first_seen, now);
   directory.tick(now + 4400ms);
   EXPECT_TRUE(find("r2")->present);
   directory.tick(now + 4500ms);
@@ -53,41 +53,41 @@ TEST_F(PeerTableTest, AgesCountFromTheLastSignOfLife) {
 }
 
 TEST_F(PeerTableTest, APeerThatReturnsUnderAnotherAddressIsTheSameOne) {
-  directory.capabilities(peer("r2", 1), now);
-  directory.participant({participant(1), false});
+  directory.on_capabilities(peer("r2", 1), now);
+  directory.on_participant({participant(1), false});
   EXPECT_FALSE(find("r2")->present);
-  directory.capabilities(peer("r2", 7), now + 20s);
+  directory.on_capabilities(peer("r2", 7), now + 20s);
   ASSERT_EQ(peers.all().size(), 1U);
   EXPECT_TRUE(find("r2")->present);
-  EXPECT_EQ(find("r2")->first_heard, now);
+  EXPECT_EQ(find("r2")->first_seen, now);
   EXPECT_EQ(peers.by_participant(participant(7)), find("r2"));
   EXPECT_EQ(peers.by_participant(participant(1)), nullptr);
 }
 
 TEST_F(PeerTableTest, AFullTableEvictsTheAbsentPeerHeardLongestAgo) {
   for (int i = 0; i < static_cast<int>(PeerTable::kCapacity); ++i)
-    directory.capabilities(peer("r" + std::to_string(i), i), now + i * 1ms);
-  directory.capabilities(peer("late", 500), now + 200ms);
+    directory.on_capabilities(peer("r" + std::to_string(i), i), now + i * 1ms);
+  directory.on_capabilities(peer("late", 500), now + 200ms);
   EXPECT_EQ(find("late"), nullptr) << "all the others are there";
-  directory.participant({participant(9), false});
-  directory.participant({participant(4), false});
-  directory.capabilities(peer("late", 500), now + 300ms);
+  directory.on_participant({participant(9), false});
+  directory.on_participant({participant(4), false});
+  directory.on_capabilities(peer("late", 500), now + 300ms);
   EXPECT_NE(find("late"), nullptr);
   EXPECT_EQ(find("r4"), nullptr);
   EXPECT_NE(find("r9"), nullptr);
   EXPECT_EQ(peers.all().size(), PeerTable::kCapacity);
   // The one that had to go comes back like any other.
-  directory.capabilities(peer("r4", 4), now + 400ms);
+  directory.on_capabilities(peer("r4", 4), now + 400ms);
   EXPECT_NE(find("r4"), nullptr);
   EXPECT_EQ(find("r9"), nullptr);
 }
 
 TEST_F(PeerTableTest, TheHolderIsNeverEvicted) {
-  directory.capabilities(peer("op1", 1000, true), now);
+  directory.on_capabilities(peer("op1", 1000, true), now);
   peers.set_holder("op1", id_of("op1"));
-  directory.participant({participant(1000), false});
+  directory.on_participant({participant(1000), false});
   for (int i = 0; i < 300; ++i) {
-    directory.capabilities(peer("r" + std::to_string(i), i), now + i * 1s);
+    directory.on_capabilities(peer("r" + std::to_string(i), i), now + i * 1s);
     directory.tick(now + i * 1s);
   }
   EXPECT_EQ(peers.all().size(), PeerTable::kCapacity);
@@ -98,7 +98,7 @@ TEST_F(PeerTableTest, TheHolderIsNeverEvicted) {
 
 TEST_F(PeerTableTest, TheHolderFindsRoomWhereAllOthersArePresent) {
   for (int i = 0; i < static_cast<int>(PeerTable::kCapacity); ++i)
-    directory.capabilities(peer("r" + std::to_string(i), i), now + i * 1ms);
+    directory.on_capabilities(peer("r" + std::to_string(i), i), now + i * 1ms);
   peers.set_holder("op1", id_of("op1"));
   EXPECT_EQ(peers.holder(), nullptr) << "not heard yet";
   peers.accept_station(sender("op1", 500), now + 1s);
@@ -108,7 +108,7 @@ TEST_F(PeerTableTest, TheHolderFindsRoomWhereAllOthersArePresent) {
 }
 
 TEST_F(PeerTableTest, TheHolderIsNameAndId) {
-  directory.capabilities(peer("op1", 1, true), now);
+  directory.on_capabilities(peer("op1", 1, true), now);
   peers.set_holder("op1", id_of("another"));
   EXPECT_EQ(peers.holder(), nullptr);
   peers.set_holder("", {});
@@ -119,26 +119,26 @@ TEST_F(PeerTableTest, AStationIsKnownByItsCommandsAloneUntilItDescribesItself) {
   peers.accept_station(sender("op1", 1), now);
   ASSERT_NE(find("op1"), nullptr);
   EXPECT_TRUE(find("op1")->station);
-  EXPECT_FALSE(find("op1")->described);
+  EXPECT_FALSE(find("op1")->has_capabilities);
   Peer said = peer("op1", 1, true);
   said.place = Eigen::Vector3d(1.0, 2.0, 0.0);
-  directory.capabilities(said, now + 1s);
-  EXPECT_TRUE(find("op1")->described);
+  directory.on_capabilities(said, now + 1s);
+  EXPECT_TRUE(find("op1")->has_capabilities);
   EXPECT_EQ(find("op1")->place, said.place);
-  EXPECT_EQ(find("op1")->first_heard, now);
+  EXPECT_EQ(find("op1")->first_seen, now);
   peers.accept_station(sender("op1", 1), now + 2s);
-  EXPECT_EQ(find("op1")->heard, now + 2s);
+  EXPECT_EQ(find("op1")->last_seen, now + 2s);
   EXPECT_EQ(find("op1")->place, said.place);
 }
 
 TEST_F(PeerTableTest, ADescriptionByAnotherParticipantDoesNotTakeAStationThatCommands) {
   peers.accept_station(sender("op1", 1), now);
-  directory.capabilities(peer("op1", 2, true), now + 100ms);
+  directory.on_capabilities(peer("op1", 2, true), now + 100ms);
   EXPECT_EQ(find("op1")->participant, participant(1));
-  EXPECT_FALSE(find("op1")->described);
+  EXPECT_FALSE(find("op1")->has_capabilities);
   Peer other = peer("op1", 3, true);
   other.id = id_of("other");
-  directory.capabilities(other, now + 200ms);
+  directory.on_capabilities(other, now + 200ms);
   EXPECT_EQ(find("op1")->id, id_of("op1"));
 }
 
@@ -146,27 +146,28 @@ TEST_F(PeerTableTest, WhoHadTheHoldersNameWhileItWasAwayDoesNotKeepIt) {
   peers.set_holder("op1", id_of("op1"));
   Peer other = peer("op1", 2, true);
   other.id = id_of("other");
-  directory.capabilities(other, now);
+  directory.on_capabilities(other, now);
   peers.accept_station(sender("op1", 1), now + 1s);
   ASSERT_NE(peers.holder(), nullptr);
   EXPECT_EQ(peers.holder()->participant, participant(1));
   for (int i = 2; i < 20; ++i) {
     peers.accept_station(sender("op1", 1), now + i * 1s);
-    directory.capabilities(other, now + i * 1s);
+    directory.on_capabilities(other, now + i * 1s);
     directory.tick(now + i * 1s);
     ASSERT_NE(peers.holder(), nullptr) << i;
   }
 }
 
 TEST_F(PeerTableTest, NamesakesAreEntriesOfTheirOwnAndBounded) {
-  for (int i = 0; i < 20; ++i) directory.namesake("r1", id_of(std::to_string(i)), participant(i), now + 1s);
+  for (int i = 0; i < 20; ++i)
+    directory.on_namesake("r1", id_of(std::to_string(i)), participant(i), now + 1s);
   EXPECT_EQ(peers.all().size(), PeerTable::kNamesakes);
   EXPECT_EQ(find("r1"), nullptr) << "the name is this robot's own";
   ASSERT_NE(peers.by_participant(participant(3)), nullptr);
   EXPECT_TRUE(peers.by_participant(participant(3))->namesake);
   EXPECT_EQ(peers.by_participant(participant(3))->age(now + 4s), 3s);
-  directory.participant({participant(3), false});
-  directory.namesake("r1", id_of("x"), participant(99), now + 2s);
+  directory.on_participant({participant(3), false});
+  directory.on_namesake("r1", id_of("x"), participant(99), now + 2s);
   EXPECT_EQ(peers.by_participant(participant(3)), nullptr) << "one that left makes room";
   EXPECT_NE(peers.by_participant(participant(99)), nullptr);
   EXPECT_EQ(peers.all().size(), PeerTable::kNamesakes);
@@ -176,11 +177,11 @@ TEST_F(PeerTableTest, IsShownToPeopleWithAgesAndPlaces) {
   EXPECT_EQ(describe(peers, now), "no peers\n");
   Peer station = peer("op1", 1, true);
   station.place = Eigen::Vector3d(1.0, 2.0, 0.5);
-  directory.capabilities(station, now);
+  directory.on_capabilities(station, now);
   peers.set_holder("op1", id_of("op1"));
   Peer robot = peer("r2", 2);
   robot.platform = "whe\x1b[2Jeled";
-  directory.capabilities(robot, now);
+  directory.on_capabilities(robot, now);
   directory.tick(now + 1s);
   const std::string text = describe(peers, now + 1s);
   EXPECT_THAT(text, testing::HasSubstr("heard 1.0 s ago, at 1.0 2.0 0.5, the holder\n"));
