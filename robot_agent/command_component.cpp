@@ -271,7 +271,7 @@ void Agent::CommandComponent::listen_first(Time at) {
 
 void Agent::CommandComponent::keep() {
   context_.keeper->save(
-      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), frames_.kept(), {}},
+      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), frames_.stored(), {}},
       [this] { return commands_.kept_answers(); }, commands_.accepted());
 }
 

@@ -7,47 +7,58 @@
 namespace adit::agent {
 namespace {
 
-/// Maximum time that a body drives after an odometry sample: until the agent sends zero, or its parent
-/// process does. A sample stored over a restart is up to 1 s older than the end of the agent.
-constexpr Duration kUnwatched = Frames::kAlive + 250ms, kRestart = kUnwatched + 1250ms;
+/// Maximum time that a body keeps driving after an odometry sample: the agent detects after kAlive that
+/// there is no other one, and the driver receives zero within 250 ms of that.
+constexpr Duration kMaxDriveWithoutOdometry = Frames::kAlive + 250ms;
+/// The same for a sample that was stored before a restart of the agent. It is stored once a second, and the
+/// parent process sends zero within 250 ms of the agent's end.
+constexpr Duration kMaxDriveOverRestart = kMaxDriveWithoutOdometry + 1250ms;
 
-// A few consecutive samples that are slightly older than the newest one were overtaken on their path. More
-// samples, or older ones, show that the driver's clock was set back.
-constexpr std::uint64_t kLongestDelay = 500'000'000;  // Maximum delay of an overtaken sample, ns.
-constexpr int kMostOvertaken = 3;                     // Maximum number of consecutive overtaken samples.
+// A few consecutive samples with stamps slightly before the newest one arrived out of order. More of them, or
+// older ones, show that the driver's clock was set back.
+constexpr std::uint64_t kMaxReorderingDelay = 500'000'000;  ///< ns
+constexpr int kMaxConsecutiveLate = 3;
 
-constexpr double kLevel = 0.02;  // Tilt, rad.
+constexpr double kMaxTilt = 0.02;  ///< Tilt up to which a correction counts as level, rad.
 
 }  // namespace
 
-bool Frames::overtaken(std::uint64_t stamp) {
+bool Frames::is_late(std::uint64_t stamp) const {
   const std::uint64_t newest = history_.newest();
-  const bool late = stamp != 0 && stamp < newest && newest - stamp <= kLongestDelay;
-  overtaken_ = late ? overtaken_ + 1 : 0;
-  return late && overtaken_ <= kMostOvertaken;
+  return stamp != 0 && stamp < newest && newest - stamp <= kMaxReorderingDelay;
+}
+
+bool Frames::is_reachable(const OdometrySample& sample, bool late) const {
+  if (!newest_) return true;
+  const Duration max_drive = received_at_ ? kMaxDriveWithoutOdometry : kMaxDriveOverRestart;
+  // A late sample was measured before the newest one.
+  if (late) return bound_.reachable(sample, *newest_, max_drive);
+  return bound_.reachable(*newest_, sample, max_drive);
 }
 
 bool Frames::update(const Pose3& T_odom_base, const Twist2& twist, std::uint64_t stamp, Time now) {
   const OdometrySample sample{T_odom_base, stamp, now};
-  const Duration unwatched = heard_ ? kUnwatched : kRestart;
-  const bool late = overtaken(stamp);
-  const bool continuous = !newest_ || (late ? bound_.reachable(sample, *newest_, unwatched)
-                                            : bound_.reachable(*newest_, sample, unwatched));
-  heard_ = now;
+  consecutive_late_ = is_late(stamp) ? consecutive_late_ + 1 : 0;
+  const bool late = consecutive_late_ > 0 && consecutive_late_ <= kMaxConsecutiveLate;
+  const bool continuous = is_reachable(sample, late);
+  received_at_ = now;
   if (late && continuous) {
     history_.add(stamp, T_odom_base);
     return true;
   }
-  if (!continuous) jump(sample);
+  if (!continuous) begin_odometry_frame(sample);
   if (stamp < history_.newest()) history_.clear();  // The driver's clock was set back.
   history_.add(stamp, T_odom_base);
   newest_ = sample;
   twist_ = twist;
-  overtaken_ = 0;
+  consecutive_late_ = 0;
   return continuous;
 }
 
-void Frames::jump(const OdometrySample& sample) {
+// The odometry began again elsewhere, for example at a restart of the driver. The robot is still where it
+// was: its pose in the map, T_map_base, is preserved, and T_map_odom is computed for the new odometry frame.
+// All stored coordinates in `odom` become invalid.
+void Frames::begin_odometry_frame(const OdometrySample& sample) {
   T_map_odom_ = T_map_base() * sample.T_odom_base.planar().inverse();
   height_ = height() - sample.T_odom_base.position.z();
   ++odom_epoch_;
@@ -57,15 +68,16 @@ void Frames::jump(const OdometrySample& sample) {
 
 Result<void> Frames::correct(const MapFrame& corrected) {
   if (corrected.odom_epoch != odom_epoch_)
-    return {Reason::odometry_jumped, "the correction is of an odometry frame that ended"};
+    return {Reason::odometry_jumped, "the correction is for a previous odometry frame"};
   if (corrected.map_epoch != map_epoch_)
-    return {Reason::sample_stale, "the correction was computed from a place of the map that has changed"};
+    return {Reason::sample_stale, "the correction was computed from an outdated T_map_odom"};
   const Pose3& T_map_odom = corrected.T_map_odom;
   const Eigen::Quaterniond& q = T_map_odom.orientation;
   const bool is_pose = T_map_odom.position.allFinite() && std::fabs(q.norm() - 1.0) < 1e-3;
-  // Negated, so that NaN is rejected.
-  if (!is_pose || !((q * Eigen::Vector3d::UnitZ()).head<2>().norm() <= std::sin(kLevel)))
-    return {Reason::out_of_range, "map and odom are level, and a correction is finite"};
+  // The comparison is negated, so that a tilt of NaN is refused.
+  if (!is_pose || !((q * Eigen::Vector3d::UnitZ()).head<2>().norm() <= std::sin(kMaxTilt)))
+    return {Reason::out_of_range,
+            "the correction is not finite, not a rotation, or tilted by more than 0.02 rad"};
   T_map_odom_ = T_map_odom.planar();
   height_ = T_map_odom.position.z();
   ++map_epoch_;
@@ -77,12 +89,12 @@ void Frames::set_pose(const Pose2& T_map_base) {
   ++map_epoch_;
 }
 
-void Frames::restore(const KeptPlace& kept) {
-  T_map_odom_ = kept.T_map_odom;
-  height_ = kept.height.value_or(height_);
-  odom_epoch_ = kept.odom_epoch;
-  newest_ = kept.newest;
-  map_epoch_ = kept.map_epoch + 1;
+void Frames::restore(const StoredFrames& stored) {
+  T_map_odom_ = stored.T_map_odom;
+  height_ = stored.height.value_or(height_);
+  odom_epoch_ = stored.odom_epoch;
+  newest_ = stored.newest;
+  map_epoch_ = stored.map_epoch + 1;
 }
 
 const Pose3& Frames::T_odom_base() const {

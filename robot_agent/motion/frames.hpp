@@ -30,7 +30,7 @@ class Frames {
 
   /// Processes an odometry sample. Returns false if the body cannot have driven there from the previous
   /// sample: then the odometry frame is a new one, odom_epoch() rises, and the robot is assumed to be at its
-  /// previous pose in the map. A sample that newer ones overtook only enters the history.
+  /// previous pose in the map. A sample that arrives after a newer one only enters the history.
   [[nodiscard]] bool update(const Pose3& T_odom_base, const Twist2& twist, std::uint64_t stamp, Time now);
 
   /// Corrects the pose of the odometry frame in the map, as SLAM does. Moves no robot: the odometry, and maps
@@ -44,15 +44,16 @@ class Frames {
   /// Sets the robot's pose in the map to `T_map_base`, on an operator's request. The height stays unchanged.
   void set_pose(const Pose2& T_map_base);
 
-  KeptPlace kept() const { return {T_map_odom_, odom_epoch_, newest_, height_, map_epoch_}; }
-  /// Restores the stored place after a restart, before the first sample, which is then compared with the
+  /// The state to store for restore() after a restart.
+  StoredFrames stored() const { return {T_map_odom_, odom_epoch_, newest_, height_, map_epoch_}; }
+  /// Restores the stored state after a restart, before the first sample, which is then compared with the
   /// stored one.
-  void restore(const KeptPlace& kept);
+  void restore(const StoredFrames& stored);
 
-  bool initialised() const { return heard_.has_value(); }
-  bool alive(Time now) const { return heard_ && now - *heard_ < kAlive; }
+  bool initialised() const { return received_at_.has_value(); }
+  bool alive(Time now) const { return received_at_ && now - *received_at_ < kAlive; }
   /// Time since the last odometry, or since `start` if there was none.
-  Duration silence(Time now, Time start) const { return now - heard_.value_or(start); }
+  Duration silence(Time now, Time start) const { return now - received_at_.value_or(start); }
   std::uint32_t odom_epoch() const { return odom_epoch_; }
   std::uint32_t map_epoch() const { return map_epoch_; }
   /// The frame from which a correction is computed.
@@ -84,8 +85,11 @@ class Frames {
   const Pose2& T_map_start() const { return T_map_start_; }
 
  private:
-  bool overtaken(std::uint64_t stamp);
-  void jump(const OdometrySample& sample);
+  /// Whether a sample with this stamp is slightly older than the newest one.
+  bool is_late(std::uint64_t stamp) const;
+  /// Whether the body can have driven between the newest sample and this one.
+  bool is_reachable(const OdometrySample& sample, bool late) const;
+  void begin_odometry_frame(const OdometrySample& sample);
 
   MotionBound bound_;
   Pose2 T_map_start_;
@@ -94,9 +98,9 @@ class Frames {
   std::uint32_t odom_epoch_{}, map_epoch_{};
   std::optional<OdometrySample> newest_{};
   Twist2 twist_{};
-  std::optional<Time> heard_{};
+  std::optional<Time> received_at_{};  ///< Time of the last sample since the start of the agent.
   PoseHistory history_{};
-  int overtaken_{};  ///< Consecutive samples that were older than the newest one.
+  int consecutive_late_{};  ///< Samples in succession that were slightly older than the newest one.
 };
 
 }  // namespace adit::agent

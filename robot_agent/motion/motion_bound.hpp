@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include "core/config/platform.hpp"
-#include "robot_agent/motion/kept_place.hpp"
+#include "robot_agent/motion/stored_frames.hpp"
 
 namespace adit::agent {
 

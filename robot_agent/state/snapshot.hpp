@@ -8,7 +8,7 @@
 
 #include "core/store/state_file.hpp"
 #include "robot_agent/command/kept.hpp"
-#include "robot_agent/motion/kept_place.hpp"
+#include "robot_agent/motion/stored_frames.hpp"
 
 namespace adit::agent {
 
@@ -44,7 +44,7 @@ struct Snapshot {
   /// Threshold of the charge that was passed last: 0 none, 1 warning, 2 low, 3 last; 4: last, and the return
   /// to the start is still pending.
   std::uint8_t battery{};
-  std::optional<KeptPlace> place{};  ///< Unset: it could not be read.
+  std::optional<StoredFrames> place{};  ///< Unset: it could not be read.
   std::vector<KeptAnswers> answers{};
   /// Compares all but the answers and the odometry, i.e. the state that must survive a restart.
   bool same_state(const Snapshot& other) const {

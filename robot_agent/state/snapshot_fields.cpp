@@ -127,7 +127,7 @@ KeptBehaviour sanitized(KeptBehaviour b) {
   return b;
 }
 
-void put(Packer& out, const KeptPlace& place) {
+void put(Packer& out, const StoredFrames& place) {
   for (const double value : {place.T_map_odom.x, place.T_map_odom.y, place.T_map_odom.yaw}) out.put(value);
   out.put(place.odom_epoch).flag(place.newest.has_value());
   if (place.newest) {
@@ -141,8 +141,8 @@ void put(Packer& out, const KeptPlace& place) {
   out.put(place.map_epoch);
 }
 
-KeptPlace place(Unpacker& in) {
-  KeptPlace kept{};
+StoredFrames place(Unpacker& in) {
+  StoredFrames kept{};
   for (double* value : {&kept.T_map_odom.x, &kept.T_map_odom.y, &kept.T_map_odom.yaw}) *value = in.number();
   kept.odom_epoch = in.get<std::uint32_t>();
   if (in.flag()) {
@@ -161,7 +161,7 @@ KeptPlace place(Unpacker& in) {
 }
 
 // An invalid place counts as missing odometry: no mode resumes by itself.
-KeptPlace sanitized(KeptPlace place) {
+StoredFrames sanitized(StoredFrames place) {
   const Pose2& frame = place.T_map_odom;
   if (!std::isfinite(frame.x) || !std::isfinite(frame.y) || !std::isfinite(frame.yaw)) return {};
   if (place.height && !std::isfinite(*place.height)) return {};

@@ -12,14 +12,14 @@ inline constexpr std::size_t kName = 32;
 void put(store::Packer& out, const KeptAuthority& authority);
 void put(store::Packer& out, const std::vector<Party>& stops);
 void put(store::Packer& out, const KeptBehaviour& behaviour);
-void put(store::Packer& out, const KeptPlace& place);
+void put(store::Packer& out, const StoredFrames& place);
 void put(store::Packer& out, const KeptAnswers& from);
 
 /// Unpack one field each; check `in.good()` afterwards. The authority has no stops.
 KeptAuthority authority(store::Unpacker& in);
 std::vector<Party> stops(store::Unpacker& in);
 KeptBehaviour behaviour(store::Unpacker& in);
-KeptPlace place(store::Unpacker& in);
+StoredFrames place(store::Unpacker& in);
 KeptAnswers answers(store::Unpacker& in);
 
 // Each returns its argument in the form in which it is written: bounded, and without invalid values. A value
@@ -27,7 +27,7 @@ KeptAnswers answers(store::Unpacker& in);
 KeptAuthority sanitized(KeptAuthority authority);  ///< Without its stops.
 std::vector<Party> sanitized(std::vector<Party> stops);
 KeptBehaviour sanitized(KeptBehaviour behaviour);
-KeptPlace sanitized(KeptPlace place);
+StoredFrames sanitized(StoredFrames place);
 
 void put(store::Packer& out, const KeptMode& mode);
 KeptMode mode(store::Unpacker& in);

@@ -38,7 +38,7 @@ struct StateKeeper::Writer : std::enable_shared_from_this<StateKeeper::Writer> {
   std::uint64_t asked{}, done{};           ///< Generations: passed, and written or failed.
   std::optional<std::uint64_t> writing{};  ///< Generation of the pending write.
   Time since{};                            ///< Start of the pending write, or of the last one.
-  std::optional<KeptPlace> placed{};       // Place in the last state queued for writing.
+  std::optional<StoredFrames> placed{};    // Place in the last state queued for writing.
   Time placed_at{};
   bool marked{}, failed{}, stuck{};
   std::optional<Time> retry{};

@@ -161,7 +161,7 @@ TEST_F(FramesTest, ARestartLetsNoOlderCorrectionPass) {
   const MapFrame first = frames.map_frame();
   frames.set_pose({0, 0, 0});
   const MapFrame last = frames.map_frame();
-  const KeptPlace kept = frames.kept();
+  const StoredFrames kept = frames.stored();
   frames = Frames(Pose2{10, 20, 0}, wheeled(), 3.0);
   frames.restore(kept);
   EXPECT_EQ(correct({11, 20, 0}, first), Reason::sample_stale);
@@ -189,7 +189,7 @@ TEST_F(FramesTest, ARestartRestoresTheCorrection) {
   drive(0, 2);
   ASSERT_EQ(correct({10, 20.5, 0.3}), Reason::none);
   Frames again(Pose2{10, 20, 0}, wheeled(), 3.0);
-  again.restore(frames.kept());
+  again.restore(frames.stored());
   EXPECT_EQ(again.T_map_odom(), (frames.T_map_odom()));
   EXPECT_EQ(again.height(), frames.height());
   EXPECT_EQ(again.odom_epoch(), frames.odom_epoch());
@@ -202,7 +202,7 @@ TEST_F(FramesTest, ARestartRestoresTheCorrection) {
 }
 
 TEST_F(FramesTest, AHeightThatWasNotStoredIsTheStartsHeight) {
-  KeptPlace kept = frames.kept();
+  StoredFrames kept = frames.stored();
   kept.height.reset();
   frames.restore(kept);
   EXPECT_EQ(frames.height(), 3.0);

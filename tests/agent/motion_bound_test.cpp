@@ -138,7 +138,7 @@ TEST_F(OdometryJump, ThePoseThatIsSetIsInTheMapAlone) {
 
 TEST_F(OdometryJump, ARestartComparesWithThePlaceThatWasKept) {
   ASSERT_EQ(drive(1.0, 0.0, 5s, 20ms), 0);
-  const KeptPlace kept = where.kept();
+  const StoredFrames kept = where.stored();
   const auto back_at = [&](const Pose2& odom, Duration later) {
     Frames again(Pose2{}, wheeled());
     again.restore(kept);

@@ -34,11 +34,11 @@ Snapshot full() {
   s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}, true};
   s.boot = 0x1122334455667788;
   s.battery = 2;
-  s.place = KeptPlace{{4, -3, 1.5},
-                      2,
-                      OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
-                      3.5,
-                      41};
+  s.place = StoredFrames{{4, -3, 1.5},
+                         2,
+                         OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
+                         3.5,
+                         41};
   KeptAnswers a;
   a.participant[3] = 4;
   a.station = "op1";
@@ -200,7 +200,7 @@ TEST(Snapshot, of_a_place_that_is_none_has_no_odometry) {
   EXPECT_FALSE(sanitized(s).place->newest);
   s = full();
   s.place->T_map_odom.x = std::nan("");
-  EXPECT_EQ(sanitized(s).place, KeptPlace{});
+  EXPECT_EQ(sanitized(s).place, StoredFrames{});
 }
 
 TEST(Snapshot, of_older_places_is_read) {

@@ -20,8 +20,8 @@ struct OdometrySample {
   }
 };
 
-/// The localisation state that survives a restart of the agent.
-struct KeptPlace {
+/// The state of Frames that survives a restart of the agent.
+struct StoredFrames {
   Pose2 T_map_odom{};
   std::uint32_t odom_epoch{};              ///< Rises when the odometry begins again elsewhere.
   std::optional<OdometrySample> newest{};  ///< The last pose in the odometry frame; unset: there was none.
@@ -29,11 +29,11 @@ struct KeptPlace {
   std::optional<double> height{};
   /// Rises with each change of T_map_odom; also 0 if written by a version without this field.
   std::uint32_t map_epoch{};
-  bool same_frame(const KeptPlace& other) const {
+  bool same_frame(const StoredFrames& other) const {
     return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch &&
            map_epoch == other.map_epoch;
   }
-  bool operator==(const KeptPlace&) const = default;
+  bool operator==(const StoredFrames&) const = default;
 };
 
 }  // namespace adit::agent
