@@ -394,7 +394,7 @@ std::uint64_t Station::Impl::teleop(const std::string& robot, Done done) {
   return execute(Request(verb("teleop"), {robot}), std::move(done));
 }
 
-void Station::Impl::stick(std::uint64_t handle, const std::array<double, 3>& velocity) {
+void Station::Impl::stick(std::uint64_t handle, const StickVelocity& velocity) {
   const auto [first, last] = flows_.equal_range(handle);
   for (const auto& [same, flow] : std::multimap(first, last))
     if (auto* steer = dynamic_cast<Steer*>(flow.get())) steer->set_velocity(velocity);

@@ -253,9 +253,7 @@ void Station::cancel(std::uint64_t handle) { impl_->cancel(handle); }
 std::uint64_t Station::teleop(const std::string& robot, Done done) {
   return impl_->teleop(robot, std::move(done));
 }
-void Station::stick(std::uint64_t handle, const std::array<double, 3>& velocity) {
-  impl_->stick(handle, velocity);
-}
+void Station::stick(std::uint64_t handle, const StickVelocity& velocity) { impl_->stick(handle, velocity); }
 const Fleet& Station::fleet() const { return impl_->fleet_; }
 const StationParams& Station::params() const { return impl_->params_; }
 Time Station::now() const { return impl_->now(); }

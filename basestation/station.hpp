@@ -10,6 +10,7 @@
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/outcome.hpp"
 #include "basestation/send/answer.hpp"
+#include "basestation/send/stick_velocity.hpp"
 #include "core/command/request.hpp"
 #include "core/exec/executor.hpp"
 #include "core/store/disk.hpp"
@@ -59,9 +60,8 @@ class Station {
 
   /// Starts manual control of one robot by a live stick until cancelled; `done` reports how it ended.
   std::uint64_t teleop(const std::string& robot, Done done);
-  /// Sets the stick of a running teleop: vx, vy in m/s, wz in rad/s. Zero is sent if it is not renewed for
-  /// 0.25 s.
-  void stick(std::uint64_t handle, const std::array<double, 3>& velocity);
+  /// Sets the stick of a running teleop. Zero is sent if it is not renewed for 0.25 s.
+  void stick(std::uint64_t handle, const StickVelocity& velocity);
 
   const Fleet& fleet() const;
   const StationParams& params() const;

@@ -32,7 +32,7 @@ class Station::Impl {
   std::uint64_t refuse(const Error& error, const Done& done);
   void cancel(std::uint64_t handle);
   std::uint64_t teleop(const std::string& robot, Done done);
-  void stick(std::uint64_t handle, const std::array<double, 3>& velocity);
+  void stick(std::uint64_t handle, const StickVelocity& velocity);
   Time now() const { return strand_.now(); }
   std::size_t findings() const { return desk_.all().size(); }
 

@@ -2,6 +2,7 @@
 #include "basestation/send/stick.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "adit/command.h"
 #include "core/wire/typed.hpp"
@@ -26,7 +27,7 @@ Stick::Stick(Id id, Executor& strand, wire::Participant& radio, Fleet& fleet)
 
 Stick::~Stick() = default;
 
-Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>& velocity, Source source) {
+Result<void> Stick::stream(const std::string& robot, const StickVelocity& velocity, Source source) {
   auto& stream = streams_[robot];
   if (!stream) {
     auto writer = wire::Writer<radio::Joystick>::make(radio_, wire::topics::kJoystick, robot);
@@ -43,9 +44,9 @@ Result<void> Stick::stream(const std::string& robot, const std::array<double, 3>
   }
   radio::Joystick& sample = stream->sample;
   const std::array<float, 3> before{sample.vx(), sample.vy(), sample.wz()};
-  sample.vx(static_cast<float>(velocity[0]));
-  sample.vy(static_cast<float>(velocity[1]));
-  sample.wz(static_cast<float>(velocity[2]));
+  sample.vx(static_cast<float>(velocity.vx));
+  sample.vy(static_cast<float>(velocity.vy));
+  sample.wz(static_cast<float>(velocity.wz));
   const bool changed = before != std::array{sample.vx(), sample.vy(), sample.wz()};
   const bool repeat_suffices = stream->active && !changed && source == Source::held;
   const bool slower = stream->source == Source::live && source == Source::held;

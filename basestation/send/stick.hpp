@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <map>
 #include <memory>
 #include <string>
 
 #include "basestation/fleet/fleet.hpp"
+#include "basestation/send/stick_velocity.hpp"
 #include "core/exec/executor.hpp"
 
 namespace adit::station {
@@ -30,9 +30,8 @@ class Stick {
   Stick(Id id, Executor& strand, wire::Participant& radio, Fleet& fleet);
   ~Stick();
 
-  /// Streams this velocity (m/s, m/s, rad/s, body frame) from now on. Error: wire_failed.
-  Result<void> stream(const std::string& robot, const std::array<double, 3>& velocity,
-                      Source source = Source::held);
+  /// Streams this velocity from now on. Error: wire_failed.
+  Result<void> stream(const std::string& robot, const StickVelocity& velocity, Source source = Source::held);
   /// Ends the stream: nothing more is sent to the robot.
   void end(const std::string& robot);
   bool streaming(const std::string& robot) const;

@@ -229,12 +229,12 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
   const std::int64_t id = integer("id");
   if (id <= 0) return wrong("an id above 0 was expected");
   if (const auto stick = request.find("stick"); stick != request.end()) {
-    std::array<double, 3> velocity{};
     const bool numbers =
         stick->is_array() && stick->size() == 3 &&
         std::all_of(stick->begin(), stick->end(), [](const json& v) { return v.is_number(); });
     if (!numbers) return wrong("a stick has three numbers");
-    for (std::size_t i = 0; i < 3; ++i) velocity[i] = std::clamp((*stick)[i].get<double>(), -20.0, 20.0);
+    const auto axis = [&](std::size_t i) { return std::clamp((*stick)[i].get<double>(), -20.0, 20.0); };
+    const StickVelocity velocity{axis(0), axis(1), axis(2)};
     const auto found = client.open.find(id);
     if (found != client.open.end())
       strand_->post([station = station_, h = found->second, velocity] { station->stick(*h, velocity); });
