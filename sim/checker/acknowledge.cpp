@@ -13,31 +13,33 @@ constexpr Duration kStreamAnswerPeriod{1s};
 /// once a second.
 class Acknowledge : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
     if (std::get_if<AgentStarted>(&event)) {
       streams_.clear();
       told_.clear();
     }
-    if (const auto* sample = std::get_if<JoystickHeard>(&event)) see_sample(robot, *sample);
+    if (const auto* sample = std::get_if<JoystickHeard>(&event)) on_sample(robot, *sample);
     const auto* ack = std::get_if<AckSent>(&event);
     if (!ack) return;
-    if (ack->accepted && ack->reason != Reason::none) broken("accepted with a reason to refuse");
+    if (ack->accepted && ack->reason != Reason::none) report_violation("accepted with a reason to refuse");
     if (!ack->accepted && (ack->reason == Reason::none || name(ack->reason) == "unknown"))
-      broken("refused without a numbered reason");
-    if (!ack->accepted && ack->text.empty()) broken("refused without a text");
-    if (ack->seq == 0) see_stream_answer(robot, *ack, broken);
+      report_violation("refused without a numbered reason");
+    if (!ack->accepted && ack->text.empty()) report_violation("refused without a text");
+    if (ack->seq == 0) on_stream_answer(robot, *ack, report_violation);
   }
 
-  void settle(const RobotModel& robot, const Report& broken) override {
+  void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
     if (!robot.alive() || robot.disturbed()) return;
     for (const RobotModel::Pending& p : robot.pending()) {
       if (robot.now() - p.at <= kAnswerTime || p.at <= told_[p.command.from]) continue;
       told_[p.command.from] = p.at;
-      broken("did not answer command " + std::to_string(p.command.seq) + " of " + p.command.station);
+      report_violation("did not answer command " + std::to_string(p.command.seq) + " of " +
+                       p.command.station);
     }
     for (auto& [id, stream] : streams_) {
       if (!stream.refused_since || robot.now() - *stream.refused_since <= kAnswerTime) continue;
-      broken("refused a joystick in silence");
+      report_violation("refused a joystick in silence");
       stream.refused_since.reset();
     }
   }
@@ -49,7 +51,7 @@ class Acknowledge : public Rule {
     std::map<wire::ParticipantId, Duration> senders{};  ///< Time of each participant's last sample.
   };
 
-  void see_sample(const RobotModel& robot, const JoystickHeard& sample) {
+  void on_sample(const RobotModel& robot, const JoystickHeard& sample) {
     Stream& stream = streams_[sample.id];
     stream.senders[sample.from] = robot.now();
     // Only what is certain to be refused: the sender does not hold the robot.
@@ -59,13 +61,14 @@ class Acknowledge : public Rule {
     if (!stream.refused_since && !answered) stream.refused_since = robot.now();
   }
 
-  void see_stream_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+  void on_stream_answer(const RobotModel& robot, const AckSent& ack,
+                        const ReportViolation& report_violation) {
     Stream& stream = streams_[ack.id];
     // An answer names no participant: of several that stream under one id, each gets one a second.
     std::erase_if(stream.senders, [&](const auto& s) { return robot.now() - s.second > 2s; });
     const bool one = stream.senders.size() <= 1;
     if (one && stream.answered && robot.age(*stream.answered) < kStreamAnswerPeriod - 10ms)
-      broken("answered a stream of " + ack.station + " more than once a second");
+      report_violation("answered a stream of " + ack.station + " more than once a second");
     stream.answered = robot.now();
     stream.refused_since.reset();
   }

@@ -99,16 +99,16 @@ void Checker::dispatch(WatchedRobot& watch) {
   }
   watch.waiting.clear();
   for (std::size_t i = 0; i < kNumbers.size(); ++i)
-    watch.rules[i]->settle(watch.model, report_of(watch, kNumbers[i]));
+    watch.rules[i]->on_time(watch.model, violation_reporter(watch, kNumbers[i]));
 }
 
 void Checker::judge(WatchedRobot& watch, const Event& event) {
   for (std::size_t i = 0; i < kNumbers.size(); ++i)
-    watch.rules[i]->see(watch.model, event, report_of(watch, kNumbers[i]));
+    watch.rules[i]->on_event(watch.model, event, violation_reporter(watch, kNumbers[i]));
   watch.model.take_in(event);
 }
 
-Report Checker::report_of(WatchedRobot& watch, int rule) {
+ReportViolation Checker::violation_reporter(WatchedRobot& watch, int rule) {
   return [this, rule, &watch](std::string text) {
     if (++counts_[static_cast<std::size_t>(rule)] > kMaxPerRule) return;
     violations_.push_back({rule, watch.instant, watch.model.facts().name, std::move(text)});

@@ -19,9 +19,9 @@ struct Violation {
 /// robot sent, and what the world did, and never looks into an agent.
 class Checker {
  public:
-  /// Those that are watched; the eighth, of other robots' words, has nothing to watch yet.
+  /// The rules that are checked. Rule 8 is not: no mode acts on other robots' messages yet.
   static constexpr std::array kNumbers{1, 2, 3, 4, 5, 6, 7, 9};
-  /// What rule `number` is called.
+  /// Title of rule `number` in docs/architecture.md.
   static const char* title(int number);
 
   explicit Checker(std::vector<RobotFacts> robots);
@@ -41,7 +41,7 @@ class Checker {
   struct WatchedRobot;
   void dispatch(WatchedRobot& robot);
   void judge(WatchedRobot& robot, const Event& event);
-  Report report_of(WatchedRobot& robot, int rule);
+  ReportViolation violation_reporter(WatchedRobot& robot, int rule);
 
   std::map<std::string, std::unique_ptr<WatchedRobot>> robots_;
   std::vector<Violation> violations_{};

@@ -12,10 +12,11 @@ namespace {
 /// holder was silent.
 class Lock : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
-    if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
+    if (const auto* ack = std::get_if<AckSent>(&event)) on_answer(robot, *ack, report_violation);
     if (const auto* status = std::get_if<AuthoritySent>(&event); status && !robot.ahead_of_answer(*status))
-      see_status(robot, *status, broken);
+      on_status(robot, *status, report_violation);
     if (const auto* note = std::get_if<NotificationSent>(&event))
       if (std::erase(owed_codes_, Owed{note->code, note->to, {}}) == 0) {
         told_.push_back({note->code, note->to, robot.now()});
@@ -24,9 +25,9 @@ class Lock : public Rule {
     if (std::get_if<AgentStarted>(&event) || std::get_if<AgentDied>(&event)) owed_codes_.clear();
   }
 
-  void settle(const RobotModel& robot, const Report& broken) override {
+  void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
     while (!owed_codes_.empty() && robot.now() - owed_codes_.front().since > 200ms) {
-      broken("did not tell " + owed_codes_.front().to + ": " + owed_codes_.front().code);
+      report_violation("did not tell " + owed_codes_.front().to + ": " + owed_codes_.front().code);
       owed_codes_.pop_front();
     }
   }
@@ -49,7 +50,7 @@ class Lock : public Rule {
       told_.erase(told);
   }
 
-  void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+  void on_answer(const RobotModel& robot, const AckSent& ack, const ReportViolation& report_violation) {
     const RobotModel::Pending* pending = robot.answered_by(ack);
     if (!pending || pending->repeat || pending->command.verb != Verb::take) return;
     const CommandHeard& take = pending->command;
@@ -58,26 +59,28 @@ class Lock : public Rule {
     const bool held_by_other = !before.holder.empty() && !by_holder;
     if (held_by_other && before.locked) {
       if (ack.accepted && !robot.lock_lapsed())
-        return broken(take.station + " took it although " + before.holder + " had locked it");
+        return report_violation(take.station + " took it although " + before.holder + " had locked it");
       if (ack.accepted) return owe(robot, *pending, "taken");
       if (ack.reason != Reason::locked) return;
-      if (ack.holder != before.holder) broken("refused a take without the holder's name");
+      if (ack.holder != before.holder) report_violation("refused a take without the holder's name");
       owe(robot, *pending, "asked");
     } else if (!ack.accepted && ack.reason == Reason::locked) {
-      broken("refused a take as locked while it was not");
+      report_violation("refused a take as locked while it was not");
     } else if (ack.accepted && held_by_other) {
       owe(robot, *pending, "taken");
     }
   }
 
-  void see_status(const RobotModel& robot, const AuthoritySent& status, const Report& broken) {
+  void on_status(const RobotModel& robot, const AuthoritySent& status,
+                 const ReportViolation& report_violation) {
     const Authority& known = robot.authority();
     if (known.start == 0 || known.holder != status.authority.holder ||
         known.locked == status.authority.locked)
       return;
-    if (!known.locked) return broken("published a lock that nobody set");
+    if (!known.locked) return report_violation("published a lock that nobody set");
     if (!robot.lock_lapsed())
-      broken("a lock ended after " + std::to_string(robot.holder_silence()) + " s of its holder's silence");
+      report_violation("a lock ended after " + std::to_string(robot.holder_silence()) +
+                       " s of its holder's silence");
   }
 
   std::deque<Owed> owed_codes_{}, told_{};

@@ -11,31 +11,35 @@ constexpr double kFastest = 5.0;            // m/s: no body of ours is faster
 constexpr double kFastestTurn = 6.0;        // rad/s
 constexpr double kOdometryNoise = 0.5;      // m, rad: between two samples
 
-/// Rule 7: nothing moves by surprise. Motion needs a request that was accepted since the last start, stop,
+/// Rule 7: no unexpected motion. Motion needs a request that was accepted since the last start, stop,
 /// fall to hold, jump of the odometry, or change of holder in a manual mode; a manual mode is entered with a
 /// fresh, centred stick, external with a fresh program.
 class NoSurprise : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
-    if (std::get_if<AgentStarted>(&event)) see_start(robot);
-    if (const auto* odometry = std::get_if<OdometryHeard>(&event)) see_odometry(robot, odometry->pose);
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
+    if (std::get_if<AgentStarted>(&event)) on_start(robot);
+    if (const auto* odometry = std::get_if<OdometryHeard>(&event)) on_odometry(robot, odometry->pose);
     // A late repeat of a stop that was answered, and reset since, has no second effect.
     if (const auto* command = std::get_if<CommandHeard>(&event);
         command && command->verb == Verb::stop && !robot.first_answer(RobotModel::key(*command)))
       revoke("a stop");
-    if (const auto* presence = std::get_if<PresenceHeard>(&event)) see_presence(robot, *presence);
-    if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
-    if (const auto* behaviour = std::get_if<BehaviourSent>(&event)) see_mode(robot, behaviour->mode, broken);
+    if (const auto* presence = std::get_if<PresenceHeard>(&event)) on_presence(robot, *presence);
+    if (const auto* ack = std::get_if<AckSent>(&event)) on_answer(robot, *ack, report_violation);
+    if (const auto* behaviour = std::get_if<BehaviourSent>(&event))
+      on_mode(robot, behaviour->mode, report_violation);
     if (const auto* behaviour = std::get_if<BehaviourSent>(&event))
       if (behaviour->mode == "hold" && granted_at_ != robot.now()) revoke("a fall to hold");
-    if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
+    if (const auto* sent = std::get_if<VelocitySent>(&event))
+      on_velocity(robot, sent->velocity, report_violation);
   }
 
-  void settle(const RobotModel& robot, const Report& broken) override {
+  void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
     // The holder changed, or his station came back: a manual mode that was on falls to hold.
     const bool overdue =
         manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > kReaction;
-    if (overdue) broken("stayed in " + robot.mode() + " when its holder changed or was started again");
+    if (overdue)
+      report_violation("stayed in " + robot.mode() + " when its holder changed or was started again");
     if (overdue || !robot.in_manual_mode()) manual_must_end_.reset();
   }
 
@@ -46,7 +50,7 @@ class NoSurprise : public Rule {
   }
 
   // An autonomous mode goes on when it was on, or was asked for when the agent ended; a manual one does not.
-  void see_start(const RobotModel& robot) {
+  void on_start(const RobotModel& robot) {
     first_velocity_ = true;
     odometry_.reset();
     bool goes_on = allowed_ && robot.mode() == "waypoint";
@@ -56,7 +60,7 @@ class NoSurprise : public Rule {
     if (!goes_on) revoke("a start of its agent");
   }
 
-  void see_odometry(const RobotModel& robot, const Pose2& pose) {
+  void on_odometry(const RobotModel& robot, const Pose2& pose) {
     const auto before = std::exchange(odometry_, std::pair{pose, robot.now()});
     if (!before) return;
     const double time = seconds(robot.now() - before->second);
@@ -69,7 +73,7 @@ class NoSurprise : public Rule {
 
   // The holder speaks as a participant that was never heard before: his station was started again, and a
   // stick that is still pushed must not go on.
-  void see_presence(const RobotModel& robot, const PresenceHeard& presence) {
+  void on_presence(const RobotModel& robot, const PresenceHeard& presence) {
     const Authority& held = robot.authority();
     const bool holder = presence.station == held.holder && presence.id == held.holder_id;
     const RobotModel::Heard* before = robot.heard(presence.station);
@@ -81,7 +85,7 @@ class NoSurprise : public Rule {
     revoke("a restart of its holder's station");
   }
 
-  void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+  void on_answer(const RobotModel& robot, const AckSent& ack, const ReportViolation& report_violation) {
     const RobotModel::Pending* pending = robot.answered_by(ack);
     if (!pending || !ack.accepted || robot.first_answer(RobotModel::key(pending->command))) return;
     const CommandHeard& command = pending->command;
@@ -93,7 +97,7 @@ class NoSurprise : public Rule {
     } else if (command.verb == Verb::mode) {
       revoke("a request to hold");
     }
-    if (command.verb == Verb::mode) see_entry(robot, command, broken);
+    if (command.verb == Verb::mode) on_entry(robot, command, report_violation);
     const bool holder_changes = (command.verb == Verb::take &&
                                  (command.station != before.holder || command.id != before.holder_id)) ||
                                 command.verb == Verb::release ||
@@ -105,28 +109,30 @@ class NoSurprise : public Rule {
   }
 
   // A mode may show before its answer, which waits for the disk.
-  void see_mode(const RobotModel& robot, const std::string& mode, const Report& broken) {
+  void on_mode(const RobotModel& robot, const std::string& mode, const ReportViolation& report_violation) {
     if (mode == robot.mode()) return;
     for (const RobotModel::Pending& p : robot.pending())
-      if (p.command.verb == Verb::mode && p.command.text == mode) return see_entry(robot, p.command, broken);
+      if (p.command.verb == Verb::mode && p.command.text == mode)
+        return on_entry(robot, p.command, report_violation);
   }
 
-  static void see_entry(const RobotModel& robot, const CommandHeard& command, const Report& broken) {
+  static void on_entry(const RobotModel& robot, const CommandHeard& command,
+                       const ReportViolation& report_violation) {
     if (robot.mode() == command.text) return;
     const auto& program = robot.programmed();
     if (command.text == "external" && (!program || robot.now() - *program > kProgramSilence + 20ms))
-      broken("entered external without a program that steers");
+      report_violation("entered external without a program that steers");
     if (command.text != "manual" && command.text != "smart_joystick") return;
     const auto& stick = robot.stick();
     if (!stick || robot.now() - stick->at > kJoystickSilence + 20ms)
-      broken("entered " + command.text + " without a fresh joystick");
+      report_violation("entered " + command.text + " without a fresh joystick");
     else if (!stick->stick.zero())
-      broken("entered " + command.text + " with a stick that was not centred");
+      report_violation("entered " + command.text + " with a stick that was not centred");
   }
 
-  void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
+  void on_velocity(const RobotModel& robot, const Twist2& velocity, const ReportViolation& report_violation) {
     if (robot.alive() && std::exchange(first_velocity_, false) && !velocity.zero())
-      broken("its first velocity after a start was not zero");
+      report_violation("its first velocity after a start was not zero");
     if (velocity.zero() || !robot.alive()) {
       told_ = false;
       return;
@@ -137,7 +143,7 @@ class NoSurprise : public Rule {
     if (RobotModel::asked(robot.pending(), {Verb::go_to, Verb::mode}))
       return;  // its answer waits for the disk
     told_ = true;
-    broken("moved without a new request after " + why_not_);
+    report_violation("moved without a new request after " + why_not_);
   }
 
   bool allowed_{}, told_{}, first_velocity_{};

@@ -11,14 +11,15 @@ namespace {
 /// took nothing the state may be lost as a whole: then the robot has no holder and is in `hold`.
 class NothingLost : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
     if (std::get_if<AgentStarted>(&event)) behaviour_due_ = true;
     if (!robot.before()) return;
     if (const auto* status = std::get_if<AuthoritySent>(&event); status && robot.authority().start == 0)
-      see_status(*robot.before(), *status, broken);
+      on_status(*robot.before(), *status, report_violation);
     if (const auto* behaviour = std::get_if<BehaviourSent>(&event);
         behaviour && std::exchange(behaviour_due_, false))
-      see_behaviour(*robot.before(), *behaviour, broken);
+      on_behaviour(*robot.before(), *behaviour, report_violation);
   }
 
  private:
@@ -28,51 +29,55 @@ class NothingLost : public Rule {
     return RobotModel::asked(before.unanswered, verbs);
   }
 
-  void see_status(const Before& before, const AuthoritySent& now, const Report& broken) {
+  void on_status(const Before& before, const AuthoritySent& now, const ReportViolation& report_violation) {
     const Authority& was = before.authority;
     lost_ = before.disk_failed && now.authority.holder.empty() && !was.holder.empty();
     if (before.disk_failed && now.authority.holder.empty()) return;  // lost, or there was none
     if (!RobotModel::may_hold(was, before.unanswered, now.authority.holder))
-      return broken("'" + was.holder + "' held it before a restart, '" + now.authority.holder + "' after it");
+      return report_violation("'" + was.holder + "' held it before a restart, '" + now.authority.holder +
+                              "' after it");
     const bool same = now.authority.holder == was.holder;
     const bool told = asked(before, {Verb::lock, Verb::unlock, Verb::take, Verb::release, Verb::grant});
     if (same && now.authority.locked != was.locked && !told && !before.lock_lapsed)
-      broken(was.locked ? "its lock was lost in a restart" : "a restart locked it");
-    if (now.authority.counter <= was.counter) broken("the counter of its epoch did not go on in a restart");
-    see_stops(before, now.stops, broken);
+      report_violation(was.locked ? "its lock was lost in a restart" : "a restart locked it");
+    if (now.authority.counter <= was.counter)
+      report_violation("the counter of its epoch did not go on in a restart");
+    on_stops(before, now.stops, report_violation);
   }
 
-  static void see_stops(const Before& before, const std::vector<Latch>& now, const Report& broken) {
+  static void on_stops(const Before& before, const std::vector<Latch>& now,
+                       const ReportViolation& report_violation) {
     const auto has = [](const std::vector<Latch>& all, const Latch& one) {
       return std::find(all.begin(), all.end(), one) != all.end();
     };
     for (const Latch& latch : before.latches)
       if (!has(now, latch) && !asked(before, {Verb::reset}))
-        broken("the stop of " + latch.station + " was lost in a restart");
+        report_violation("the stop of " + latch.station + " was lost in a restart");
     for (const Latch& latch : now)
       if (!has(before.latches, latch) && !asked(before, {Verb::stop}))
-        broken("a stop of " + latch.station + " came up in a restart");
+        report_violation("a stop of " + latch.station + " came up in a restart");
   }
 
-  void see_behaviour(const Before& before, const BehaviourSent& now, const Report& broken) const {
+  void on_behaviour(const Before& before, const BehaviourSent& now,
+                    const ReportViolation& report_violation) const {
     // A mode whose source is somebody's hand or a program does not come back by itself.
     const auto steered = [](const std::string& mode) {
       return mode == "manual" || mode == "smart_joystick" || mode == "external";
     };
     const bool manual = steered(before.behaviour.mode);
     if (steered(now.mode))
-      broken("came back in " + now.mode);
+      report_violation("came back in " + now.mode);
     else if (now.mode != "hold" && (manual || before.behaviour.mode == "hold") &&
              !asked(before, {Verb::go_to, Verb::mode}))
-      broken("came back in " + now.mode + " where it was in " + before.behaviour.mode);
+      report_violation("came back in " + now.mode + " where it was in " + before.behaviour.mode);
     if (lost_) {
-      if (now.mode != "hold") broken("lost its state and came back in " + now.mode);
+      if (now.mode != "hold") report_violation("lost its state and came back in " + now.mode);
       return;
     }
     if (before.disk_failed) return;
     const bool told = asked(before, {Verb::go_to, Verb::mode});
     if (before.behaviour.has_goal && !told && (!now.has_goal || now.goal_id != before.behaviour.goal_id))
-      broken("its goal was lost in a restart");
+      report_violation("its goal was lost in a restart");
   }
 
   bool behaviour_due_{}, lost_{};

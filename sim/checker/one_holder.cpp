@@ -17,47 +17,49 @@ bool needs_holder(Verb verb) {
 /// one obeys.
 class OneHolder : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
-    if (const auto* command = std::get_if<CommandHeard>(&event)) see_command(*command);
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
+    if (const auto* command = std::get_if<CommandHeard>(&event)) on_command(*command);
     if (const auto* other = std::get_if<NamesakeAnswered>(&event); other && other->accepted)
-      obey(other->id, other->seq, Obeyed::other, broken);
+      obey(other->id, other->seq, Obeyed::other, report_violation);
     if (const auto* ack = std::get_if<AckSent>(&event); ack && ack->accepted)
-      obey(ack->id, ack->seq, Obeyed::own, broken);
-    if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
+      obey(ack->id, ack->seq, Obeyed::own, report_violation);
+    if (const auto* ack = std::get_if<AckSent>(&event)) on_answer(robot, *ack, report_violation);
     if (const auto* status = std::get_if<AuthoritySent>(&event); status && !robot.ahead_of_answer(*status))
-      see_status(robot, status->authority, broken);
-    if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
+      on_status(robot, status->authority, report_violation);
+    if (const auto* sent = std::get_if<VelocitySent>(&event))
+      on_velocity(robot, sent->velocity, report_violation);
   }
 
  private:
   enum class Obeyed { nobody, own, other, both };
 
   // A restarted station counts from 1 again.
-  void see_command(const CommandHeard& command) {
+  void on_command(const CommandHeard& command) {
     if (!needs_holder(command.verb) && command.verb != Verb::take) return;
     auto& [from, by] = obeyed_[{command.id, command.seq}];
     if (from != command.from) by = Obeyed::nobody;
     from = command.from;
   }
 
-  void obey(const StationId& station, std::uint64_t seq, Obeyed by, const Report& broken) {
+  void obey(const StationId& station, std::uint64_t seq, Obeyed by, const ReportViolation& report_violation) {
     const auto command = obeyed_.find({station, seq});
     if (command == obeyed_.end()) return;
     Obeyed& before = command->second.second;
     if (before == by || before == Obeyed::both) return;
     if (before != Obeyed::nobody) {
-      broken("command " + std::to_string(seq) + " was obeyed by another robot of its name, too");
+      report_violation("command " + std::to_string(seq) + " was obeyed by another robot of its name, too");
       by = Obeyed::both;
     }
     before = by;
   }
 
-  void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+  void on_answer(const RobotModel& robot, const AckSent& ack, const ReportViolation& report_violation) {
     if (ack.seq == 0) return;
     const RobotModel::Pending* pending = robot.answered_by(ack);
     if (!pending)
-      return broken("answered command " + std::to_string(ack.seq) + " of " + ack.station +
-                    " that it never received");
+      return report_violation("answered command " + std::to_string(ack.seq) + " of " + ack.station +
+                              " that it never received");
     const CommandHeard& command = pending->command;
     if (const AckSent* first = robot.first_answer(RobotModel::key(command))) {
       // What was accepted is answered so after a restart, too, or refused as too old. A refusal had no
@@ -65,27 +67,28 @@ class OneHolder : public Rule {
       const bool other_refusal =
           robot.before() && !ack.accepted && (!first->accepted || ack.reason == Reason::stale_sequence);
       if (!other_refusal && (first->accepted != ack.accepted || first->reason != ack.reason))
-        broken("a repeat of command " + std::to_string(ack.seq) + " of " + ack.station +
-               " got another answer: " + said(*first) + ", then " + said(ack));
+        report_violation("a repeat of command " + std::to_string(ack.seq) + " of " + ack.station +
+                         " got another answer: " + said(*first) + ", then " + said(ack));
       return;
     }
     if (!ack.accepted) return;
     if (needs_holder(command.verb)) {
       if (!robot.is_holder(command))
-        broken("obeyed a command of " + command.station + ", who does not hold it, but '" +
-               robot.authority().holder + "'");
+        report_violation("obeyed a command of " + command.station + ", who does not hold it, but '" +
+                         robot.authority().holder + "'");
       else if (!robot.current_epoch(command.start, command.counter))
-        broken("obeyed a command of " + describe_epoch(command.counter) + " in " +
-               describe_epoch(robot.authority().counter));
+        report_violation("obeyed a command of " + describe_epoch(command.counter) + " in " +
+                         describe_epoch(robot.authority().counter));
     }
     const RobotModel::Heard* known = robot.heard(command.station);
     if (command.verb == Verb::take && known && known->id != command.id && robot.age(known->last) < kHearing)
-      broken("was taken under the name " + command.station + " by another station than the one heard");
-    see_transition(robot, command, ack, broken);
+      report_violation("was taken under the name " + command.station +
+                       " by another station than the one heard");
+    on_transition(robot, command, ack, report_violation);
   }
 
-  void see_transition(const RobotModel& robot, const CommandHeard& command, const AckSent& ack,
-                      const Report& broken) {
+  void on_transition(const RobotModel& robot, const CommandHeard& command, const AckSent& ack,
+                     const ReportViolation& report_violation) {
     const Authority& before = robot.authority();
     const bool first_of_start = before.start == 0;
     bool changes = command.verb == Verb::release;
@@ -100,39 +103,40 @@ class OneHolder : public Rule {
       holder = command.text;
     }
     if (first_of_start) return;
-    if (ack.holder != holder) broken("says that '" + ack.holder + "' holds it where '" + holder + "' should");
+    if (ack.holder != holder)
+      report_violation("says that '" + ack.holder + "' holds it where '" + holder + "' should");
     if (ack.start != before.start)
-      broken("changed the start of its epoch while running");
+      report_violation("changed the start of its epoch while running");
     else if (changes && ack.counter == before.counter)
-      broken("changed its holder without raising the epoch");
+      report_violation("changed its holder without raising the epoch");
     else if (ack.counter < before.counter)
-      broken("its epoch went back");
+      report_violation("its epoch went back");
     else if (!changes && command.verb != Verb::grant && ack.counter != before.counter)
-      broken("raised the epoch without a change of holder");
+      report_violation("raised the epoch without a change of holder");
   }
 
-  void see_status(const RobotModel& robot, const Authority& now, const Report& broken) {
+  void on_status(const RobotModel& robot, const Authority& now, const ReportViolation& report_violation) {
     const Authority& known = robot.authority();
     if (known.start == 0) {  // the first word of this start
       if (const auto& before = robot.before(); before && now.start == before->authority.start)
-        broken("kept its epoch through a restart");
+        report_violation("kept its epoch through a restart");
       return;
     }
     if (now.holder != known.holder || now.holder_id != known.holder_id)
-      broken("published holder '" + now.holder + "' where its answers gave '" + known.holder + "'");
+      report_violation("published holder '" + now.holder + "' where its answers gave '" + known.holder + "'");
     else if (now.start != known.start || now.counter != known.counter)
-      broken("published " + describe_epoch(now.counter) + " where its answers gave " +
-             describe_epoch(known.counter));
+      report_violation("published " + describe_epoch(now.counter) + " where its answers gave " +
+                       describe_epoch(known.counter));
   }
 
   // Motion in a manual mode that no sample of the holder explains, but one of somebody else does.
-  void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
+  void on_velocity(const RobotModel& robot, const Twist2& velocity, const ReportViolation& report_violation) {
     const auto& forbidden = robot.forbidden_stick();
     if (velocity.zero() || !forbidden || robot.now() - forbidden->second > kJoystickSilence) return;
     const auto& pushed = robot.pushed_stick();
     if (pushed && robot.now() - pushed->at < 2s) return;
     if (!robot.in_mode("manual") && !robot.in_mode("smart_joystick")) return;
-    broken("moved by a joystick sample it must not obey: " + forbidden->first);
+    report_violation("moved by a joystick sample it must not obey: " + forbidden->first);
   }
 
   std::map<std::pair<StationId, std::uint64_t>, std::pair<wire::ParticipantId, Obeyed>> obeyed_{};

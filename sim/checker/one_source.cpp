@@ -8,7 +8,8 @@ namespace {
 /// through zero.
 class OneSource : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
     if (std::get_if<AgentStarted>(&event)) moving_in_.clear();
     const auto* sent = std::get_if<VelocitySent>(&event);
     if (!sent) return;
@@ -19,9 +20,9 @@ class OneSource : public Rule {
     if (robot.in_mode(moving_in_) && !moving_in_.empty()) return;  // goes on as before
     const std::string& mode = robot.mode();
     if (mode.empty() || (mode == "hold" && robot.mode_changed() != robot.now())) {
-      broken("sent a velocity in mode hold");
+      report_violation("sent a velocity in mode hold");
     } else if (!moving_in_.empty() && moving_in_ != mode) {
-      broken("went from " + moving_in_ + " to " + mode + " without passing zero");
+      report_violation("went from " + moving_in_ + " to " + mode + " without passing zero");
     }
     moving_in_ = mode;
   }

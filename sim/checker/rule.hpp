@@ -8,17 +8,20 @@
 
 namespace adit::sim {
 
-/// Says that the rule was broken, in one sentence.
-using Report = std::function<void(std::string text)>;
+/// Records a violation of the rule, described in one sentence without its subject, the robot.
+using ReportViolation = std::function<void(std::string text)>;
 
-/// One rule of docs/architecture.md watched on one robot.
+/// One rule of docs/architecture.md, checked on one robot.
 class Rule {
  public:
   virtual ~Rule() = default;
-  /// Called for every event before `robot` takes it in. `robot.now()` is the event's time.
-  virtual void see(const RobotModel& robot, const Event& event, const Report& broken) = 0;
-  /// Called when time went on: everything that happened until `robot.now()` was seen and taken in.
-  virtual void settle(const RobotModel& robot, const Report& broken) { (void)robot, (void)broken; }
+  /// Called for every event before `robot` processes it. `robot.now()` is the time of the event.
+  virtual void on_event(const RobotModel& robot, const Event& event,
+                        const ReportViolation& report_violation) = 0;
+  /// Called when time advances, after all events up to `robot.now()` were processed.
+  virtual void on_time(const RobotModel& robot, const ReportViolation& report_violation) {
+    (void)robot, (void)report_violation;
+  }
 };
 
 std::unique_ptr<Rule> make_one_holder_rule();     ///< Rule 1.

@@ -20,55 +20,57 @@ constexpr Duration kCentredRest{2500ms};          // a robot brakes in less from
 /// sends zero.
 class StaleIsZero : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
     if (std::get_if<AgentStarted>(&event)) told_gap_ = told_mode_ = false;
     if (std::get_if<AgentDied>(&event)) zero_after_death_ = told_death_ = false;
-    if (const auto* sent = std::get_if<VelocitySent>(&event)) see_velocity(robot, sent->velocity, broken);
+    if (const auto* sent = std::get_if<VelocitySent>(&event))
+      on_velocity(robot, sent->velocity, report_violation);
   }
 
-  void settle(const RobotModel& robot, const Report& broken) override {
+  void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
     if (robot.alive()) {
       const Duration last = std::max(robot.velocity_at(), robot.started() + kStartUp);
       const bool gap = robot.now() - last > (robot.disturbed() ? kLongestGapOfAFailure : kLongestGap);
-      if (gap && !told_gap_) broken("left its driver without a command for 120 ms");
+      if (gap && !told_gap_) report_violation("left its driver without a command for 120 ms");
       told_gap_ = gap;
-      if (!robot.disturbed()) watch_mode(robot, broken);
+      if (!robot.disturbed()) watch_mode(robot, report_violation);
     } else if (robot.died() != Duration{} && !zero_after_death_ && !told_death_ &&
                robot.now() - robot.died() > kParentReaction) {
       told_death_ = true;
-      broken("no zero was sent when the agent died");
+      report_violation("no zero was sent when the agent died");
     }
   }
 
  private:
-  void see_velocity(const RobotModel& robot, const Twist2& velocity, const Report& broken) {
+  void on_velocity(const RobotModel& robot, const Twist2& velocity, const ReportViolation& report_violation) {
     if (!robot.alive()) {
       if (robot.now() == robot.died()) return;  // the agent's own last word
       if (velocity.zero())
         zero_after_death_ = true;
       else
-        broken("a velocity was sent for a dead agent");
+        report_violation("a velocity was sent for a dead agent");
       return;
     }
     if (velocity.zero() || robot.mode_changed() == robot.now()) return;
     const bool external = robot.mode() == "external";
     const bool planned = external || robot.mode() == "waypoint" || robot.mode() == "smart_joystick";
     if (planned && (!robot.scanned() || robot.now() - *robot.scanned() > kPlanSilence + kReaction))
-      broken("sent a velocity in " + robot.mode() + " without a scan for more than 500 ms");
+      report_violation("sent a velocity in " + robot.mode() + " without a scan for more than 500 ms");
     const auto& program = robot.programmed();
     if (external && (!program || robot.now() - *program > kProgramSilence + kReaction))
-      broken("sent a velocity in external with a program silent for more than 500 ms");
+      report_violation("sent a velocity in external with a program silent for more than 500 ms");
     if (!robot.in_manual_mode()) return;
     const auto& stick = robot.stick();
     if (!stick || robot.now() - stick->at > kJoystickSilence + kReaction) {
-      broken("sent a velocity in " + robot.mode() + " with a joystick silent for more than 300 ms");
+      report_violation("sent a velocity in " + robot.mode() + " with a joystick silent for more than 300 ms");
     } else if (const auto& pushed = robot.pushed_stick();
                !pushed || robot.now() - pushed->at > kCentredRest) {
-      broken("sent a velocity in " + robot.mode() + " with a centred stick");
+      report_violation("sent a velocity in " + robot.mode() + " with a centred stick");
     }
   }
 
-  void watch_mode(const RobotModel& robot, const Report& broken) {
+  void watch_mode(const RobotModel& robot, const ReportViolation& report_violation) {
     const bool manual = robot.in_manual_mode(), external = robot.mode() == "external";
     const Duration source = external        ? robot.programmed().value_or(Duration{})
                             : robot.stick() ? robot.stick()->at
@@ -77,7 +79,7 @@ class StaleIsZero : public Rule {
     const bool overdue = (manual && silence > kStickRelease + 2 * kReaction) ||
                          (external && silence > kProgramSilence + 2 * kReaction);
     if (overdue && !told_mode_)
-      broken("stays in " + robot.mode() + " without " + (external ? "its program" : "a joystick"));
+      report_violation("stays in " + robot.mode() + " without " + (external ? "its program" : "a joystick"));
     told_mode_ = overdue;
   }
 

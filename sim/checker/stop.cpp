@@ -8,115 +8,150 @@
 namespace adit::sim {
 namespace {
 
-constexpr double kRestingSpeed = 0.02;   // m/s
-constexpr double kRestingTurn = 0.02;    // rad/s
-constexpr std::size_t kMaxLatches = 16;  // of AuthorityStatus
+constexpr double kRestingSpeed = 0.02;   ///< A slower body is at rest, m/s.
+constexpr double kRestingTurn = 0.02;    ///< A body that turns slower is at rest, rad/s.
+constexpr std::size_t kMaxLatches = 16;  ///< Number of stops that an AuthorityStatus has room for.
+/// The operators must be notified within this time of a reset by override.
+constexpr Duration kNotificationTimeout = 200ms;
+/// Margin on the time that the body needs to brake with its full acceleration: a tenth of it, and the time
+/// until the driver has received zero and the body begins to brake, s.
+constexpr double kBrakingFactor = 1.1, kReactionTime = 0.25;
 
-/// Rule 4: a stop needs no authority and is a latch: while one is set the driver gets zero, and the robot
-/// comes to rest in the time its brakes need.
+/// Checks rule 4. A stop needs no authority. A stop is a latch: while one is set, the driver receives zero,
+/// and the robot comes to rest in the time that its brakes need.
 class Stop : public Rule {
  public:
-  void see(const RobotModel& robot, const Event& event, const Report& broken) override {
-    if (std::get_if<AgentStarted>(&event)) owed_.clear();
-    if (const auto* note = std::get_if<NotificationSent>(&event); note && note->code == "reset") {
-      std::erase_if(owed_, [&](const auto& owed) { return owed.first == note->to; });
-      told_[note->to] = robot.now();
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
+    if (std::holds_alternative<AgentStarted>(event)) {
+      due_notifications_.clear();
+    } else if (const auto* notification = std::get_if<NotificationSent>(&event)) {
+      on_notification(robot, *notification);
+    } else if (const auto* command = std::get_if<CommandHeard>(&event)) {
+      on_command(robot, *command);
+    } else if (const auto* ack = std::get_if<AckSent>(&event)) {
+      on_answer(robot, *ack, report_violation);
+    } else if (const auto* status = std::get_if<AuthoritySent>(&event)) {
+      on_status(robot, *status, report_violation);
+    } else if (const auto* sent = std::get_if<VelocitySent>(&event)) {
+      if (!sent->velocity.zero() && stopped_since_ && robot.now() > *stopped_since_)
+        report_violation("sent a velocity while stopped");
+    } else if (const auto* truth = std::get_if<Motion>(&event)) {
+      on_truth(robot, *truth, report_violation);
     }
-    if (const auto* command = std::get_if<CommandHeard>(&event); command && command->verb == Verb::stop) {
-      // A late repeat of a stop that was answered, and reset since, has no second effect.
-      const bool repeat = robot.first_answer(RobotModel::key(*command)) != nullptr;
-      if (robot.alive() && !stopped_since_ && !repeat) begin(robot);
-    }
-    if (const auto* ack = std::get_if<AckSent>(&event)) see_answer(robot, *ack, broken);
-    if (const auto* status = std::get_if<AuthoritySent>(&event)) see_status(robot, *status, broken);
-    if (const auto* sent = std::get_if<VelocitySent>(&event); sent && !sent->velocity.zero()) {
-      if (stopped_since_ && robot.now() > *stopped_since_) broken("sent a velocity while stopped");
-    }
-    if (const auto* truth = std::get_if<Motion>(&event)) see_truth(robot, *truth, broken);
   }
 
-  void settle(const RobotModel& robot, const Report& broken) override {
-    while (!owed_.empty() && robot.now() - owed_.front().second > 200ms) {
-      broken("did not tell " + owed_.front().first + " that a stop was reset by override");
-      owed_.erase(owed_.begin());
+  void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
+    while (!due_notifications_.empty() &&
+           robot.now() - due_notifications_.front().since > kNotificationTimeout) {
+      report_violation("did not tell " + due_notifications_.front().station +
+                       " that a stop was reset by override");
+      due_notifications_.erase(due_notifications_.begin());
     }
-    // A refused stop (reported by see_answer), the last latch cleared, or a stop without effect before
-    // the agent ended.
+    // The stop ended: its last latch was cleared, it was refused (on_answer() reports that), or the agent
+    // ended before the stop had an effect.
     if (stopped_since_ && robot.authority().start != 0 && robot.latches().empty() &&
         robot.pending().empty() && robot.now() > *stopped_since_)
       stopped_since_.reset();
   }
 
  private:
-  void begin(const RobotModel& robot) {
-    stopped_since_ = robot.now();
-    const Twist2& v = robot.truth().velocity;
-    const double brake = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
-    const double unwind = std::abs(v.wz) / robot.facts().max_turn_acceleration;
-    at_rest_by_ = robot.now() + from_seconds(std::max(brake, unwind) * 1.1 + 0.25);
-    if (robot.disturbed()) at_rest_by_ += kRecovery;
-    told_moving_ = false;
+  /// A notification that must be sent.
+  struct DueNotification {
+    std::string station{};
+    Duration since{};  ///< Time of the reset.
+  };
+
+  void on_notification(const RobotModel& robot, const NotificationSent& notification) {
+    if (notification.code != "reset") return;
+    std::erase_if(due_notifications_, [&](const auto& due) { return due.station == notification.to; });
+    last_notified_[notification.to] = robot.now();
   }
 
-  void see_answer(const RobotModel& robot, const AckSent& ack, const Report& broken) {
+  void on_command(const RobotModel& robot, const CommandHeard& command) {
+    if (command.verb != Verb::stop || !robot.alive() || stopped_since_) return;
+    // A late repetition of an answered stop has no effect, even if that stop was reset since.
+    if (!robot.first_answer(RobotModel::key(command))) begin_stop(robot);
+  }
+
+  void begin_stop(const RobotModel& robot) {
+    stopped_since_ = robot.now();
+    const Twist2& v = robot.truth().velocity;
+    const double braking_time = std::hypot(v.vx, v.vy) / robot.facts().max_acceleration;
+    const double turn_braking_time = std::abs(v.wz) / robot.facts().max_turn_acceleration;
+    rest_deadline_ = robot.now() +
+                     from_seconds(std::max(braking_time, turn_braking_time) * kBrakingFactor + kReactionTime);
+    if (robot.disturbed()) rest_deadline_ += kRecovery;
+    motion_reported_ = false;
+  }
+
+  void on_answer(const RobotModel& robot, const AckSent& ack, const ReportViolation& report_violation) {
     const RobotModel::Pending* pending = robot.answered_by(ack);
     if (!pending || pending->repeat) return;
     const CommandHeard& command = pending->command;
-    const RobotModel::Heard* known = robot.heard(command.station);
-    const bool name_taken = known && known->id != command.id;
-    if (command.verb == Verb::stop && !ack.accepted && !name_taken)
-      broken("refused a stop of " + command.station);
-    if (command.verb == Verb::reset && ack.accepted && command.flag) owe(robot, *pending);
-    if (command.verb == Verb::reset && ack.accepted && !command.flag) {
-      const auto& latches = robot.latches();
-      const bool own =
-          std::find(latches.begin(), latches.end(), Latch{command.station, command.id}) != latches.end();
-      if (!latches.empty() && !own) broken("a reset without override was accepted for a stop of another");
+    if (command.verb == Verb::stop && !ack.accepted) {
+      const RobotModel::Heard* known = robot.heard(command.station);
+      const bool name_taken = known && known->id != command.id;
+      if (!name_taken) report_violation("refused a stop of " + command.station);
     }
+    if (command.verb != Verb::reset || !ack.accepted) return;
+    const bool by_override = command.flag;
+    if (by_override) return require_notifications(robot, *pending);
+    const auto& latches = robot.latches();
+    const Latch own{command.station, command.id};
+    if (!latches.empty() && std::find(latches.begin(), latches.end(), own) == latches.end())
+      report_violation("a reset without override was accepted for a stop of another");
   }
 
-  // Both stations are notified: the one that stopped it and the one that clears it.
-  void owe(const RobotModel& robot, const RobotModel::Pending& reset) {
+  /// After a reset by override, the stations whose latches it cleared and the station that sent it must be
+  /// notified.
+  void require_notifications(const RobotModel& robot, const RobotModel::Pending& reset) {
     const Latch own{reset.command.station, reset.command.id};
-    const auto owe_to = [&](const std::string& station) {
-      // Notified already: the answer may have waited for the disk.
-      const auto told = told_.find(station);
-      if (told == told_.end() || told->second < reset.at) owed_.emplace_back(station, robot.now());
-    };
-    bool others = false;
+    bool clears_others = false;
     for (const Latch& latch : robot.latches()) {
       if (latch == own) continue;
-      others = true;
-      owe_to(latch.station);
+      clears_others = true;
+      require_notification(robot, latch.station, reset.at);
     }
-    if (others) owe_to(own.station);
+    if (clears_others) require_notification(robot, own.station, reset.at);
   }
 
-  void see_status(const RobotModel& robot, const AuthoritySent& status, const Report& broken) {
-    // The first word of this start, or one before the answer that explains it.
+  void require_notification(const RobotModel& robot, const std::string& station, Duration reset_at) {
+    // The robot sends its answer only once the new state is on the disk, so the notification may precede it.
+    const auto notified = last_notified_.find(station);
+    if (notified == last_notified_.end() || notified->second < reset_at)
+      due_notifications_.push_back({station, robot.now()});
+  }
+
+  void on_status(const RobotModel& robot, const AuthoritySent& status,
+                 const ReportViolation& report_violation) {
+    // Nothing is known yet of an agent that just started. A status that precedes the answer to its command
+    // is compared once that answer was sent.
     if (robot.authority().start == 0 || robot.ahead_of_answer(status)) return;
-    const auto& set = robot.latches();
-    if (set.empty() != status.stops.empty())
-      return broken(set.empty() ? "published a stop that nobody set" : "published no stop while one was set");
-    // Beyond the room for latches the last one stands for several stoppers.
-    if (set.size() >= kMaxLatches) return;
-    if (!std::is_permutation(set.begin(), set.end(), status.stops.begin(), status.stops.end()))
-      broken("published other stoppers than those who stopped it");
+    const auto& latches = robot.latches();
+    if (latches.empty() != status.stops.empty())
+      return report_violation(latches.empty() ? "published a stop that nobody set"
+                                              : "published no stop while one was set");
+    // A full status has one entry for all stations that it has no room for.
+    if (latches.size() >= kMaxLatches) return;
+    if (!std::is_permutation(latches.begin(), latches.end(), status.stops.begin(), status.stops.end()))
+      report_violation("the published stops are not those of the stations that stopped it");
   }
 
-  void see_truth(const RobotModel& robot, const Motion& truth, const Report& broken) {
-    if (!stopped_since_ || told_moving_ || robot.now() < at_rest_by_) return;
+  void on_truth(const RobotModel& robot, const Motion& truth, const ReportViolation& report_violation) {
+    if (!stopped_since_ || motion_reported_ || robot.now() < rest_deadline_) return;
     const Twist2& v = truth.velocity;
     if (std::hypot(v.vx, v.vy) < kRestingSpeed && std::abs(v.wz) < kRestingTurn) return;
-    told_moving_ = true;
-    broken("still moves after its stop");
+    motion_reported_ = true;
+    report_violation("still moves after its stop");
   }
 
+  // Times are virtual times of the run.
   std::optional<Duration> stopped_since_{};
-  Duration at_rest_by_{};
-  bool told_moving_{};
-  std::map<std::string, Duration> told_{};                ///< Last notification of a reset, by operator.
-  std::vector<std::pair<std::string, Duration>> owed_{};  ///< Operators to be notified, since when.
+  Duration rest_deadline_{};  ///< Time by which the robot must be at rest.
+  bool motion_reported_{};
+  std::map<std::string, Duration> last_notified_{};  ///< Time of the last reset notification, by station.
+  std::vector<DueNotification> due_notifications_{};
 };
 
 }  // namespace
