@@ -81,14 +81,14 @@ inline ModeRow OrbitMode::row() {
   using namespace conditions;
   static constexpr Condition centre_free{"OrbitCentreFree", Reason::goal_unreachable,
                                          [](const Facts& f) { return f.has("orbit_centre_free"); },
-                                         Scope::entry};
+                                         Scope::on_entry};
   return {.name = "orbit",
           .commanded_by = {.holder = true},
           .goal = GoalOnLeaving::cleared,
           .on_failure = OnFailure::pauses,
           .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, centre_free},
           .make = OrbitMode::make,
-          .source_age = 500ms};
+          .output_lifetime = 500ms};
 }
 
 /// Belongs into config/trees/robot.xml, with `<SubTree ID="Orbit"/>` above `<Run name="hold" mode="hold"/>`.

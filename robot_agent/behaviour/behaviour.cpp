@@ -21,7 +21,7 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
   for (const ModeRow& row : table().rows()) {
     Mode& mode = modes_.emplace_back(Mode{row});
     if (row.moves())
-      mode.module = row.make({mux_.connect(std::string(row.name), row.source_age), outputs_.tell_holder,
+      mode.module = row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
                               inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping});
   }
 }
@@ -55,8 +55,7 @@ Reason Behaviour::not_run(const ModeRow& row) const {
 
 Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   const ModeRow* row = table().find(mode);
-  if (!row)
-    return refuse(known_but_not_installed(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
+  if (!row) return refuse(is_planned_mode(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, mode);
   if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
     return refuse(reason, mode);
@@ -65,7 +64,7 @@ Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
 }
 
 Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Commander by, Time now) {
-  const ModeRow* row = table().accepting(Accepts::goal);
+  const ModeRow* row = table().find_by_input(Accepts::goal);
   ModeModule* driver = row ? module(*row) : nullptr;
   if (!driver) return refuse(Reason::mode_not_installed, "goto");
   Facts f = facts(now);

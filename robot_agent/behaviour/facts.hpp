@@ -6,15 +6,15 @@
 
 namespace adit::agent {
 
-/// The inputs of the conditions of the modes.
+/// What the robot knows about itself when the conditions of its modes are evaluated.
 struct Facts {
-  bool stopped{};
+  bool stopped{};        ///< A software stop is set.
   bool driver_alive{};   ///< Odometry arrived within the last 0.5 s.
   bool localised{};      ///< The start pose is known, and odometry was received.
   bool terrain_fresh{};  ///< Lidar points arrived within the last 0.5 s.
   bool stick_fresh{};    ///< A stick sample arrived within the last 0.3 s.
-  bool stick_kept{};     ///< A stick sample arrived within the last 1 s.
-  bool stick_centred{};
+  bool stick_kept{};     ///< A stick sample arrived within the last 1 s: the manual mode may continue.
+  bool stick_centred{};  ///< The last stick sample requests zero velocity.
   bool goal_known{};
   bool goal_free{};      ///< No known obstacle covers the goal.
   bool program_fresh{};  ///< The program that steers in `external` sent a velocity within the last 0.5 s.

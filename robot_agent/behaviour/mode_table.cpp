@@ -13,87 +13,93 @@ namespace adit::agent {
 
 namespace conditions {
 constinit const Condition kNotStopped{"NotStopped", Reason::stopped,
-                                      [](const Facts& f) { return !f.stopped; }, Scope::ending};
+                                      [](const Facts& f) { return !f.stopped; }, Scope::terminal};
 constinit const Condition kDriverAlive{"DriverAlive", Reason::driver_silent,
-                                       [](const Facts& f) { return f.driver_alive; }, Scope::lasting};
+                                       [](const Facts& f) { return f.driver_alive; }, Scope::continuous};
 constinit const Condition kLocalised{"Localised", Reason::no_localisation,
-                                     [](const Facts& f) { return f.localised; }, Scope::lasting};
+                                     [](const Facts& f) { return f.localised; }, Scope::continuous};
 constinit const Condition kTerrainFresh{"TerrainFresh", Reason::terrain_stale,
-                                        [](const Facts& f) { return f.terrain_fresh; }, Scope::lasting};
+                                        [](const Facts& f) { return f.terrain_fresh; }, Scope::continuous};
 constinit const Condition kStickFresh{"StickFresh", Reason::joystick_stale,
-                                      [](const Facts& f) { return f.stick_fresh; }, Scope::entry};
+                                      [](const Facts& f) { return f.stick_fresh; }, Scope::on_entry};
 constinit const Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
-                                        [](const Facts& f) { return f.stick_centred; }, Scope::entry};
+                                        [](const Facts& f) { return f.stick_centred; }, Scope::on_entry};
 constinit const Condition kStickKept{"StickKept", Reason::joystick_stale,
-                                     [](const Facts& f) { return f.stick_kept; }, Scope::ending};
+                                     [](const Facts& f) { return f.stick_kept; }, Scope::terminal};
 constinit const Condition kGoalKnown{"GoalKnown", Reason::goal_missing,
-                                     [](const Facts& f) { return f.goal_known; }, Scope::ending};
+                                     [](const Facts& f) { return f.goal_known; }, Scope::terminal};
 constinit const Condition kGoalFree{"GoalFree", Reason::goal_unreachable,
-                                    [](const Facts& f) { return f.goal_free; }, Scope::entry};
+                                    [](const Facts& f) { return f.goal_free; }, Scope::on_entry};
 constinit const Condition kProgramFresh{"ProgramFresh", Reason::program_silent,
-                                        [](const Facts& f) { return f.program_fresh; }, Scope::lasting};
+                                        [](const Facts& f) { return f.program_fresh; }, Scope::continuous};
 }  // namespace conditions
 
 namespace {
 
 using namespace conditions;
 
-constexpr Duration kPlannerAge = 500ms;
-constexpr CommandedBy kHolder{true, false}, kHolderOrAgent{true, true};
+/// Maximum age of a velocity that the local planner or an external program computed (rule 6).
+constexpr Duration kMaxVelocityAge = 500ms;
+constexpr CommandedBy kByHolder{.holder = true, .agent = false};
+constexpr CommandedBy kByHolderOrAgent{.holder = true, .agent = true};
 
-std::vector<ModeRow> shipped_rows() {
+std::vector<ModeRow> standard_modes() {
   return {
-      {.name = "hold", .commanded_by = kHolderOrAgent},
+      {.name = "hold", .commanded_by = kByHolderOrAgent},
       {.name = "manual",
-       .commanded_by = kHolder,
+       .commanded_by = kByHolder,
        .accepts = Accepts::stick,
        .on_handover = OnHandover::falls_to_hold,
-       // StickKept comes last: StickFresh reports first.
+       // When the mode is requested without a stick, the first condition that fails is reported: StickFresh.
+       // StickKept holds longer, so that the mode survives a short loss of the stick, with zero velocity.
        .conditions = {kNotStopped, kDriverAlive, kStickFresh, kStickCentred, kStickKept},
        .make = ManualMode::make,
-       .source_age = Stick::kFresh},
+       .output_lifetime = Stick::kFresh},
       {.name = "smart_joystick",
-       .commanded_by = kHolder,
+       .commanded_by = kByHolder,
        .accepts = Accepts::stick,
        .on_handover = OnHandover::falls_to_hold,
        .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kStickFresh, kStickCentred,
                       kStickKept},
        .make = SmartJoystickMode::make,
-       .source_age = Stick::kFresh},
+       .output_lifetime = Stick::kFresh},
       {.name = "waypoint",
-       .commanded_by = kHolderOrAgent,
+       .commanded_by = kByHolderOrAgent,
        .accepts = Accepts::goal,
        .goal = GoalOnLeaving::cleared,
        .on_failure = OnFailure::pauses,
        .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kGoalKnown, kGoalFree},
        .make = WaypointMode::make,
-       .source_age = kPlannerAge},
-      // Falls to hold when its program is silent, so that a program which resumes sending does not move the
-      // robot by that alone.
+       .output_lifetime = kMaxVelocityAge},
+      // Changes to hold when its program falls silent. When the program sends again, the robot does not move
+      // until the operator requests the mode again (rule 7).
       {.name = "external",
-       .commanded_by = kHolder,
+       .commanded_by = kByHolder,
        .accepts = Accepts::program,
        .conditions = {kNotStopped, kDriverAlive, kProgramFresh},
        .make = ExternalMode::make,
-       .source_age = kPlannerAge,
+       .output_lifetime = kMaxVelocityAge,
        .optional = true},
   };
 }
 
-constexpr std::array<std::string_view, 3> kNotInstalled{"explore", "convoy_follow", "get_out"};
+/// Modes of the design that have no module yet.
+constexpr std::array<std::string_view, 3> kPlannedModes{"explore", "convoy_follow", "get_out"};
 
 }  // namespace
 
 ModeTable::ModeTable(std::vector<ModeRow> rows) : rows_(std::move(rows)) {
   for (const ModeRow& row : rows_)
-    for (const Condition& c : row.conditions)
-      if (std::none_of(conditions_.begin(), conditions_.end(),
-                       [&](const Condition& known) { return known.leaf == c.leaf; }))
-        conditions_.push_back(c);
+    for (const Condition& condition : row.conditions) {
+      // Rows share conditions: two conditions with the same leaf in the behaviour tree are the same.
+      const bool is_known = std::any_of(conditions_.begin(), conditions_.end(),
+                                        [&](const Condition& known) { return known.leaf == condition.leaf; });
+      if (!is_known) conditions_.push_back(condition);
+    }
 }
 
 const ModeTable& ModeTable::shipped() {
-  static const ModeTable table(shipped_rows());
+  static const ModeTable table(standard_modes());
   return table;
 }
 
@@ -102,14 +108,14 @@ const ModeRow* ModeTable::find(std::string_view name) const {
   return row == rows_.end() ? nullptr : &*row;
 }
 
-const ModeRow* ModeTable::accepting(Accepts what) const {
+const ModeRow* ModeTable::find_by_input(Accepts input) const {
   const auto row =
-      std::find_if(rows_.begin(), rows_.end(), [&](const ModeRow& r) { return r.accepts == what; });
+      std::find_if(rows_.begin(), rows_.end(), [&](const ModeRow& r) { return r.accepts == input; });
   return row == rows_.end() ? nullptr : &*row;
 }
 
-bool known_but_not_installed(std::string_view name) {
-  return std::find(kNotInstalled.begin(), kNotInstalled.end(), name) != kNotInstalled.end();
+bool is_planned_mode(std::string_view name) {
+  return std::find(kPlannedModes.begin(), kPlannedModes.end(), name) != kPlannedModes.end();
 }
 
 Reason entry_refusal(const ModeRow& row, const Facts& facts) {

@@ -15,21 +15,21 @@ namespace adit::agent {
 struct ModeContext;
 class ModeModule;
 
-/// When a condition is evaluated.
+/// When a condition is evaluated, and what its failure does.
 enum class Scope {
-  entry,    ///< Only when the mode is entered.
-  lasting,  ///< On entry and while the mode lasts; the row's `on_failure` says what its failure does.
-  ending,   ///< As `lasting`, and its failure ends every mode, even one that pauses.
+  on_entry,    ///< Evaluated only when the mode is entered; its failure refuses the mode.
+  continuous,  ///< Evaluated on entry and while the mode lasts; then the row's `on_failure` is done.
+  terminal,    ///< As `continuous`, but its failure ends the mode whatever the row's `on_failure` is.
 };
 
-/// A condition: the leaf of that name in the behaviour tree, and what the operator reads when it fails.
+/// A condition of a mode.
 struct Condition {
-  std::string_view leaf{};
-  Reason reason{};
-  bool (*holds)(const Facts&){};
+  std::string_view leaf{};        ///< Name of its leaf in the behaviour tree; identifies the condition.
+  Reason reason{};                ///< Reported to the operator when the condition fails.
+  bool (*holds)(const Facts&){};  ///< Whether the condition is met.
   Scope scope{};
 
-  bool entry_only() const { return scope == Scope::entry; }
+  bool entry_only() const { return scope == Scope::on_entry; }
 };
 
 /// The conditions of the shipped modes, for rows of further ones.
@@ -60,7 +60,7 @@ enum class Accepts {
 /// What happens to the mode's goal when another mode is requested. On stop and restart the goal is always
 /// stored.
 enum class GoalOnLeaving { none, cleared };
-/// What the failure of a lasting condition does.
+/// What the failure of a continuous condition does.
 enum class OnFailure { falls_to_hold, pauses };
 /// What a change of holder does.
 enum class OnHandover { continues, falls_to_hold };
@@ -77,8 +77,8 @@ struct ModeRow {
   std::vector<Condition> conditions{};
   /// Makes the mode's module; null: nothing moves the robot in this mode.
   std::unique_ptr<ModeModule> (*make)(const ModeContext&){};
-  Duration source_age{};  ///< Period for which the module's last output is valid (rule 6).
-  bool optional{};        ///< The tree may have no `Run` for this mode; the mode is then not installed.
+  Duration output_lifetime{};  ///< Period for which the module's last output is valid (rule 6).
+  bool optional{};             ///< The tree may have no `Run` for this mode; the mode is then not installed.
 
   bool manual() const { return accepts == Accepts::stick; }
   bool moves() const { return make != nullptr; }
@@ -102,9 +102,9 @@ class ModeTable {
   const ModeRow& hold() const { return rows_.front(); }
   /// The row with that name; null if the table has none.
   const ModeRow* find(std::string_view name) const;
-  /// The first row that accepts that input; null if there is none.
-  const ModeRow* accepting(Accepts what) const;
-  /// Every distinct condition.
+  /// The first row whose mode accepts that input; null if there is none.
+  const ModeRow* find_by_input(Accepts input) const;
+  /// The conditions of all rows, each once.
   const std::vector<Condition>& conditions() const { return conditions_; }
 
  private:
@@ -112,8 +112,8 @@ class ModeTable {
   std::vector<Condition> conditions_{};
 };
 
-/// Whether the mode is part of the design, but no shipped module provides it.
-bool known_but_not_installed(std::string_view name);
+/// Whether the mode is part of the design, but this version has no module for it.
+bool is_planned_mode(std::string_view name);
 /// Why the mode cannot be entered now; `none` if it can.
 Reason entry_refusal(const ModeRow& row, const Facts& facts);
 

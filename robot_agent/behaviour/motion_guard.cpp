@@ -28,12 +28,12 @@ Decision MotionGuard::judge(const Decision& wanted, const Facts& facts) {
   if (admitted_ == hold_) return {hold_, wanted.mode == hold_ && wanted.runs, wanted.reason};
   const bool pauses = admitted_->on_failure == OnFailure::pauses;
   for (const Condition& c : admitted_->conditions)
-    if ((c.scope == Scope::ending || (c.scope == Scope::lasting && !pauses)) && !c.holds(facts))
+    if ((c.scope == Scope::terminal || (c.scope == Scope::continuous && !pauses)) && !c.holds(facts))
       return fall(c.reason);
   if (wanted.mode != admitted_ || (!wanted.runs && !pauses))
     return fall(wanted.mode == hold_ && wanted.reason != Reason::none ? wanted.reason : Reason::tree_refused);
   for (const Condition& c : admitted_->conditions)
-    if (c.scope == Scope::lasting && !c.holds(facts)) return {admitted_, false, c.reason};
+    if (c.scope == Scope::continuous && !c.holds(facts)) return {admitted_, false, c.reason};
   return {admitted_, wanted.runs, wanted.reason};
 }
 

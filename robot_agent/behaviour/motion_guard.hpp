@@ -7,7 +7,7 @@ namespace adit::agent {
 /// Enforces the mode table in front of the mux, whatever the behaviour tree decides (rules 4, 6 and 7).
 ///
 /// A request admits a mode if its commander may request it and all its conditions hold. From then on the
-/// tree's decision can only restrict: the admitted mode passes or nothing does, and only while all lasting
+/// tree's decision can only restrict: the admitted mode passes or nothing does, and only while all continuous
 /// conditions of its row hold in the same tick. The admission ends when a condition fails that ends the mode,
 /// when the tree decides for another mode, or when the row does not survive a change of holder; only another
 /// request admits a mode again. The guard reads neither tree nor configuration.

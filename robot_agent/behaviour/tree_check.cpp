@@ -112,7 +112,7 @@ class Checker {
       return refuse(leaf, std::string(row->name) + " cannot pause: it falls to hold");
     require(leaf, requested(row->name), asked);
     for (const Condition& c : row->conditions)
-      if (runs ? !c.entry_only() : c.scope == Scope::ending) require(leaf, std::string(c.leaf), asked);
+      if (runs ? !c.entry_only() : c.scope == Scope::terminal) require(leaf, std::string(c.leaf), asked);
   }
 
   const ModeRow* row_of(const TreeNode& leaf) {

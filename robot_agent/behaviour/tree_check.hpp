@@ -9,9 +9,9 @@ namespace adit::agent {
 
 /// Checks that a robot's behaviour tree agrees with the mode table.
 ///
-/// Each `Run` of a mode needs `Requested` with that mode and every lasting condition of its row, each `Pause`
-/// needs `Requested` and the conditions that end the mode. A condition counts if it is evaluated in every
-/// tick that reaches the leaf: it precedes the leaf in a ReactiveSequence, under ReactiveSequence,
+/// Each `Run` of a mode needs `Requested` with that mode and every continuous condition of its row, each
+/// `Pause` needs `Requested` and the conditions that end the mode. A condition counts if it is evaluated in
+/// every tick that reaches the leaf: it precedes the leaf in a ReactiveSequence, under ReactiveSequence,
 /// ReactiveFallback and SubTree only, and no `_skipIf`, `_successIf` or `_while` passes over it. Conditions
 /// under a node that remembers (Sequence), inverts, forces or runs its children in parallel do not count. A
 /// mode of the table that is not optional needs a `Run`.

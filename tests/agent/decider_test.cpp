@@ -54,7 +54,7 @@ TEST(Decider, FollowsTheTableWhenAConditionFails) {
         continue;
       }
       EXPECT_EQ(name(d.reason), name(condition.reason)) << row.name;
-      const bool pauses = row.on_failure == OnFailure::pauses && condition.scope != Scope::ending;
+      const bool pauses = row.on_failure == OnFailure::pauses && condition.scope != Scope::terminal;
       EXPECT_EQ(d.mode->name, pauses ? row.name : "hold") << condition.leaf;
       EXPECT_TRUE(!d.runs || d.mode->name == "hold");
     }

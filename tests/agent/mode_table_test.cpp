@@ -77,9 +77,9 @@ TEST(ModeTable, HoldIsFirstAndUnconditional) {
 TEST(ModeTable, ModesOfTheDesignThatHaveNoModuleAreKnown) {
   for (const char* mode : {"explore", "convoy_follow", "get_out"}) {
     EXPECT_EQ(ModeTable::shipped().find(mode), nullptr);
-    EXPECT_TRUE(known_but_not_installed(mode));
+    EXPECT_TRUE(is_planned_mode(mode));
   }
-  EXPECT_FALSE(known_but_not_installed("fly"));
+  EXPECT_FALSE(is_planned_mode("fly"));
 }
 
 TEST(ModeTable, EveryConditionOfARowIsALeaf) {

@@ -70,7 +70,7 @@ TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
       const Decision d = guard.judge(runs(each.name), fails(c));
       EXPECT_FALSE(d.runs) << each.name << " " << c.leaf;
       EXPECT_EQ(d.reason, c.reason);
-      const bool ends = c.scope == Scope::ending || each.on_failure == OnFailure::falls_to_hold;
+      const bool ends = c.scope == Scope::terminal || each.on_failure == OnFailure::falls_to_hold;
       EXPECT_EQ(d.mode->name, ends ? "hold" : each.name) << c.leaf;
       // What ended needs a request; what paused goes on.
       EXPECT_EQ(guard.judge(runs(each.name), kAllConditions).mode->name, ends ? "hold" : each.name);
