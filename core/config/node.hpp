@@ -23,7 +23,7 @@ struct Range {
 };
 inline Range any_number() { return {}; }
 inline Range within(double min, double max) { return {min, max, false}; }  ///< [min, max]
-inline Range above(double min, double max) { return {min, max, true}; }    ///< (min, max]
+inline Range positive_up_to(double max) { return {0, max, true}; }         ///< (0, max]
 
 class Document;
 struct Value;

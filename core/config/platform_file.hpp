@@ -10,7 +10,7 @@ namespace adit::config {
 /// Reads a platform's file, with every key of docs/configuration.md.
 Result<Platform> load_platform_file(const std::string& path);
 /// Loads the platform of that name (config/platforms/NAME.yaml on the search path), or the file when `name`
-/// ends in .yaml. `beside`: the file that refers to it.
-Result<Platform> load_platform(const std::string& name, const std::string& beside = "");
+/// ends in .yaml. `referring_file`: the file that names it; its folder is searched first.
+Result<Platform> load_platform(const std::string& name, const std::string& referring_file = "");
 
 }  // namespace adit::config

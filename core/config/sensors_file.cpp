@@ -12,7 +12,7 @@ Mounting read_mounting(const Node& node, bool flies) {
   Mounting m;
   m.x = node.number("x", within(-5, 5));
   m.y = node.number("y", within(-5, 5));
-  m.z = node.number("z", flies ? within(-5, 5) : above(0, 5));
+  m.z = node.number("z", flies ? within(-5, 5) : positive_up_to(5));
   m.roll = node.number("roll", within(-kTurn, kTurn), 0.0);
   m.pitch = node.number("pitch", within(-kTurn, kTurn), 0.0);
   m.yaw = node.number("yaw", within(-kTurn, kTurn), 0.0);

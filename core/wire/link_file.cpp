@@ -7,11 +7,11 @@
 namespace adit::wire {
 
 void read_link_keys(const config::Node& node, LinkProfile& link) {
-  link.bandwidth = node.number("bandwidth", config::above(0, 1e10), link.bandwidth);
+  link.bandwidth = node.number("bandwidth", config::positive_up_to(1e10), link.bandwidth);
   link.latency = node.number("latency", config::within(0, 10), link.latency);
   link.loss = node.number("loss", config::within(0, 1), link.loss);
   link.range = node.number("range", config::within(0, 1e6), link.range);
-  link.queue = node.number("queue", config::above(0, 10), link.queue);
+  link.queue = node.number("queue", config::positive_up_to(10), link.queue);
   link.jitter = node.number("jitter", config::within(0, 10), link.jitter);
   link.burst = node.number("burst", config::within(1, 1000), link.burst);
   link.window = node.number("window", config::within(0, 10), link.window);

@@ -31,7 +31,7 @@ std::pair<std::string, std::string> read_pair(const Node& fault, const char* key
 }
 
 Duration read_length(const Node& fault) {
-  return from_seconds(fault.number("for", config::above(0.0, kLongest)));
+  return from_seconds(fault.number("for", config::positive_up_to(kLongest)));
 }
 
 // ROBOT/COMPONENT, or the name alone.
@@ -86,7 +86,7 @@ ClockJump read_jump(const Node& fault, const Scenario& scenario) {
   for (const auto& [who, by] : node.entries()) {
     check_agent(by, who, scenario);
     // Computers judge time by a clock that never goes back, but that a suspend lets jump.
-    out.by[who] = from_seconds(by.as_number(config::above(0.0, kLongest)));
+    out.by[who] = from_seconds(by.as_number(config::positive_up_to(kLongest)));
   }
   if (out.by.empty()) node.fail(Reason::wrong_type, "expected {NAME: SECONDS} for clock_jump");
   return out;
@@ -143,7 +143,7 @@ void read_link_fault(const Node& fault, const std::string& kind, const Scenario&
     out.what = DegradeLink{a, b, chance("loss"), fault.number("delay", config::within(0.0, 10.0), 0.0),
                            read_length(fault)};
   if (kind == "reorder")
-    out.what = Reorder{a, b, chance("chance"), fault.number("by", config::above(0.0, 10.0), 0.2),
+    out.what = Reorder{a, b, chance("chance"), fault.number("by", config::positive_up_to(10.0), 0.2),
                        read_length(fault)};
   if (kind == "duplicate") out.what = Duplicate{a, b, chance("chance"), read_length(fault)};
 }

@@ -43,7 +43,7 @@ WorldSpec read_world(const Node& world, const std::string& file) {
   if (world.has("map")) out.map = find_map(world, "map", file);
   if (world.has("floorplan")) {
     out.floor_plan = find_map(world, "floorplan", file);
-    out.ceiling = world.number("ceiling", config::above(0.0, 100.0), 3.0);
+    out.ceiling = world.number("ceiling", config::positive_up_to(100.0), 3.0);
   }
   if (world.has("generate")) {
     const std::vector<std::string> words(world_kinds().begin(), world_kinds().end());
@@ -77,7 +77,7 @@ void read_people(const Node& root, Scenario& out) {
     }
     if (spec.path.size() < 2 || spec.path.size() > 100)
       person.fail(Reason::bad_argument, "expected a path of 2 to 100 places [x, y]");
-    spec.speed = person.number("speed", config::above(0.0, 3.0), spec.speed);
+    spec.speed = person.number("speed", config::positive_up_to(3.0), spec.speed);
     spec.yields = person.flag("yields", spec.yields);
     out.people.push_back(std::move(spec));
   }
@@ -135,9 +135,9 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.text = text;
   out.name = std::filesystem::path(file).stem().string();
   // A missing key is reported itself, not its effect on every time in the file.
-  out.duration =
-      from_seconds(root.has("duration") ? root.number("duration", config::above(0.0, kLongest)) : kLongest);
-  if (!root.has("duration")) root.number("duration", config::above(0.0, kLongest));
+  out.duration = from_seconds(root.has("duration") ? root.number("duration", config::positive_up_to(kLongest))
+                                                   : kLongest);
+  if (!root.has("duration")) root.number("duration", config::positive_up_to(kLongest));
   out.seed = static_cast<std::uint64_t>(root.integer("seed", 0, kMaxSeed, 1));
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);

@@ -75,7 +75,7 @@ RandomScript read_random(const Node& node, const Scenario& scenario) {
           Reason::unknown_command,
           "expected take, release, lock, unlock, grant, goto, drive, stop, reset or mode, not " + verb);
   if (out.verbs.empty()) node.fail(Reason::bad_argument, "expected at least one verb");
-  out.reach = node.number("reach", config::above(0.0, 1000.0), out.reach);
+  out.reach = node.number("reach", config::positive_up_to(1000.0), out.reach);
   return out;
 }
 

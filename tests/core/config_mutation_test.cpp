@@ -50,7 +50,7 @@ std::string damaged(std::string text, Random& random) {
 void read(const Node& n) {
   n.text("name");
   n.choice("drive", {"differential", "holonomic"});
-  for (const char* key : {"length", "width", "max_speed"}) n.number(key, above(0, 5));
+  for (const char* key : {"length", "width", "max_speed"}) n.number(key, positive_up_to(5));
   n.numbers("pose", 3, 3, any_number(), {});
   n.flag("stairs", false);
   for (const auto& item : n.list_if("script")) item.text("do"), item.number("at");

@@ -27,7 +27,7 @@ TEST(ConfigNode, reads_what_is_there_and_fallbacks) {
       "words_of_yaml: {a: yes, b: no}\nnested: {kind: b}\nlist:\n  - {x: 1}\n  - {x: 2}\n",
       "f.yaml");
   ASSERT_TRUE(root);
-  EXPECT_EQ(root->number("speed", above(0, 10)), 2.5);
+  EXPECT_EQ(root->number("speed", positive_up_to(10)), 2.5);
   EXPECT_EQ(root->integer("count", -5, 5), -3);
   EXPECT_TRUE(root->flag("on"));
   EXPECT_TRUE(root->child("words_of_yaml").flag("a"));
@@ -92,7 +92,7 @@ TEST_P(ConfigWrong, tells_file_line_key_and_what_was_expected) {
   const std::string error = error_of(
       GetParam().yaml,
       [](const Node& n) {
-        n.number("number", above(0, 10), 1);
+        n.number("number", positive_up_to(10), 1);
         n.number("big", Range{1, std::numeric_limits<double>::max(), false}, 1);
         n.integer("whole", 1, 9, 1);
         n.flag("flag", false);
