@@ -56,28 +56,28 @@ bool LinkShaper::put_in_socket(std::span<const std::uint8_t> message, in_addr_t 
 LinkShaper::Waiting LinkShaper::classify(std::span<const std::uint8_t> message, in_addr_t address,
                                          std::uint16_t port) const {
   const RtpsPeek seen = peek(message);
-  Class what{WireCost::kDiscoveryPriority, false, false};
+  WriterSettings settings{WireCost::kDiscoveryPriority, false, false};
   if (seen.writer) {
     const auto known = writers_.find(*seen.writer);
-    if (known != writers_.end()) what = known->second;
+    if (known != writers_.end()) settings = known->second;
   }
   // A new sample of a stream replaces a queued one of the same key, and a repair or heartbeat replaces a
   // queued equal one. Otherwise a repair that is requested again while it is queued is sent once per request.
-  const std::optional<std::uint64_t> key = what.keyed ? sample_key(message) : 0;
-  const bool newest = what.newest_wins && seen.whole && key;
+  const std::optional<std::uint64_t> key = settings.keyed ? sample_key(message) : 0;
+  const bool newest = settings.newest_wins && seen.whole && key;
   std::uint64_t number = newest ? *seen.writer ^ *key : seen.dedup_key;
   if (number != 0) {
     number = (number ^ (static_cast<std::uint64_t>(address) << 16 | port)) * 0x9e3779b97f4a7c15ULL;
     number |= 1;
   }
-  Packet packet{{message.begin(), message.end()}, address, port, what.priority};
+  Packet packet{{message.begin(), message.end()}, address, port, settings.priority};
   const Duration cost = airtime(packet);
   return {.item = std::move(packet),
-          .priority = what.priority,
+          .priority = settings.priority,
           .supersedes = number,
           .again = !newest,
           .since = now(),
-          .max_queue_age = max_queue_age(link_.value_or(LinkProfile{}), what.priority),
+          .max_queue_age = max_queue_age(link_.value_or(LinkProfile{}), settings.priority),
           .airtime = cost};
 }
 
@@ -94,11 +94,6 @@ void LinkShaper::send(std::span<const std::uint8_t> message, in_addr_t address, 
     (void)queue_.push(std::move(waiting));
   }
   wake_.notify_one();
-}
-
-Duration LinkShaper::waiting() const {
-  const std::lock_guard lock(mutex_);
-  return queue_.oldest(now());
 }
 
 SenderState LinkShaper::sender() const {

@@ -23,8 +23,9 @@ namespace adit::wire {
 /// The transmit queue between a participant and its sockets. With a link profile it is the link model:
 /// datagrams leave by priority, within their budget, at the link's bandwidth, and arrive late or are lost.
 /// Without one, datagrams go straight to the sockets; those that a socket has no room for, as when a real
-/// radio is full, are queued by priority and retried. It runs one thread and has its own sockets, so that
-/// queued datagrams do not depend on the library's lifetime.
+/// radio is full, are queued by priority and retried. It runs one thread and has its own sockets, so that it
+/// can still send queued datagrams while Fast DDS destroys the participant. All times are those of
+/// std::chrono::steady_clock, since its epoch.
 class LinkShaper {
  public:
   /// Functions that the shaper calls from any thread; each may be empty.
@@ -38,9 +39,12 @@ class LinkShaper {
   using Socket =
       std::function<bool(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port)>;
 
-  /// `seed`: of losses and jitter. `interfaces`: addresses on which multicast is sent.
+  /// @param link        The link model's profile; unset: datagrams go straight to the sockets.
+  /// @param seed        Seed of the random losses and the jitter.
+  /// @param interfaces  IPv4 addresses of the interfaces on which multicast datagrams are sent.
   LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, const std::vector<std::string>& interfaces,
              Outputs outputs);
+  /// Sends through `socket` instead of the shaper's own sockets; for tests.
   LinkShaper(std::optional<LinkProfile> link, std::uint64_t seed, Socket socket, Outputs outputs);
   ~LinkShaper();
   LinkShaper(const LinkShaper&) = delete;
@@ -54,13 +58,15 @@ class LinkShaper {
   /// Queues a datagram to an IPv4 address (network order) and port. Never blocks.
   void send(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port);
 
-  /// Null: there is no profile.
+  /// The link model's profile; null if there is none.
   const LinkProfile* profile() const { return link_ ? &*link_ : nullptr; }
-  /// Number of datagrams dropped before transmission, since the start.
-  std::uint64_t dropped() const { return sender().lost(kPriorities - 1); }
+  /// Number of datagrams of all priorities that were dropped before transmission, since the start.
+  std::uint64_t dropped() const {
+    constexpr std::size_t last_priority = kPriorities - 1;
+    return sender().lost(last_priority);
+  }
+  /// The state of the queue, by priority.
   SenderState sender() const;
-  /// Queueing time of the oldest datagram.
-  Duration waiting() const;
   /// Sends the queued datagrams at the link's rate, for at most a second, and stops.
   void close();
 
@@ -72,7 +78,8 @@ class LinkShaper {
     int priority{};
   };
   using Waiting = TransmitQueue<Packet>::Waiting;
-  struct Class {
+  /// How the samples of a writer are sent; see add_writer().
+  struct WriterSettings {
     int priority{};
     bool newest_wins{};
     bool keyed{};
@@ -80,12 +87,15 @@ class LinkShaper {
 
   static Duration now();
   void run();
-  /// Transmits what is due; returns when to call it next.
+  /// With a profile: transmits the datagrams that are due at time `at`. Returns the time of the next call.
   Duration step(Duration at);
-  /// The same without a profile: fills the sockets.
+  /// Without a profile: sends queued datagrams until a socket is full. Returns the time of the next call.
   Duration refill(Duration at);
+  /// Looks up the priority of a datagram, and the queued datagram that it replaces, if any.
   Waiting classify(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
+  /// Returns false if the socket has no room.
   bool put_in_socket(std::span<const std::uint8_t> message, in_addr_t address, std::uint16_t port) const;
+  /// Time that the datagram occupies the channel.
   Duration airtime(const Packet& packet) const;
   void put_on_air(Packet packet, Duration at, Duration airtime);
   std::uint64_t peer_of(const Packet& packet) const;
@@ -99,11 +109,11 @@ class LinkShaper {
   TransmitQueue<Packet> queue_{};
   Window window_{};
   std::map<std::uint64_t, LossModel> loss_models_{};
-  std::multimap<Duration, Packet> in_air_{};
-  std::optional<Waiting> refused_{};  // Refused by a socket; it goes before all others.
-  std::map<std::uint32_t, Class> writers_{};
-  Duration free_at_{};  // When the channel is free again.
-  Duration close_at_{Duration::max()};
+  std::multimap<Duration, Packet> in_air_{};  ///< Transmitted datagrams by the time of their arrival.
+  std::optional<Waiting> refused_{};  ///< The datagram that a socket refused; it is sent before all others.
+  std::map<std::uint32_t, WriterSettings> writers_{};  ///< By entity id.
+  Duration free_at_{};                                 ///< Time when the channel is free again.
+  Duration close_at_{Duration::max()};  ///< Time when the thread ends even if datagrams are queued.
   std::thread thread_{};
 };
 
