@@ -206,7 +206,7 @@ Result<void> Agent::CommandComponent::on_start() {
   started_ = now();
   restore();
   navigation_.on_failure([this](const ComponentFailure& f) { fail(f.component + ": " + f.text); });
-  navigation_.adopt(generation());
+  navigation_.set_generation(generation());
   if (const auto started = navigation_.start(); !started) return started;
   offer(context_.scans, [this](LidarScan lidar, const Reply<void>& reply) {
     scan(std::move(lidar));

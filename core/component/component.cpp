@@ -15,13 +15,13 @@ Component::Component(std::string name, Executor& executor, Log log, HealthParams
 Component::~Component() {
   // on_stop() of a derived class can no longer be called, because that part is already destroyed. Components
   // that need it call stop().
-  if (life_) life_->owner = nullptr;
+  if (lifetime_) lifetime_->owner = nullptr;
   health_state_->stopped();
 }
 
 Result<void> Component::start() {
-  if (life_) return Error{Reason::in_use, name() + " is already running"};
-  life_ = std::make_shared<Life>(Life{this});
+  if (lifetime_) return Error{Reason::in_use, name() + " is already running"};
+  lifetime_ = std::make_shared<Lifetime>(Lifetime{this});
   health_state_->started(now());
   heartbeat_ = executor_.every(health_state_->params().beat, guard([this] { health_state_->beat(now()); }));
   const std::uint64_t failures_before = failures_;
@@ -39,8 +39,8 @@ Result<void> Component::start() {
     return Error{Reason::internal, name() + " did not start: " + health_state_->health(now()).last_failure};
   }
   if (!result) {
-    life_->owner = nullptr;
-    life_.reset();
+    lifetime_->owner = nullptr;
+    lifetime_.reset();
     offers_.clear();
     heartbeat_.cancel();
     health_state_->stopped();
@@ -49,9 +49,9 @@ Result<void> Component::start() {
 }
 
 void Component::stop() {
-  if (!life_) return;
-  life_->owner = nullptr;
-  life_.reset();
+  if (!lifetime_) return;
+  lifetime_->owner = nullptr;
+  lifetime_.reset();
   offers_.clear();
   heartbeat_.cancel();
   health_state_->stopped();

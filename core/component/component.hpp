@@ -17,7 +17,8 @@
 
 namespace adit {
 
-/// A failure of a component as a value: an exception thrown by one of its callbacks.
+/// A failure of a component: an exception that one of its callbacks or jobs threw, or one that it reported by
+/// fail().
 struct ComponentFailure {
   std::string component{};
   std::string text{};
@@ -44,18 +45,19 @@ class Component {
   Result<void> start();
   /// Ends the heartbeat and calls on_stop(). Callbacks are dropped from then on.
   void stop();
-  bool running() const { return life_ != nullptr; }
+  bool running() const { return lifetime_ != nullptr; }
 
   const std::string& name() const { return health_state_->name(); }
   /// State for watchers on other strands; it outlives the component.
   std::shared_ptr<const HealthState> health_state() const { return health_state_; }
   ComponentHealth health() const { return health_state_->health(executor_.now()); }
-  /// Makes a callback of this component throw or never return. For tests and rehearsals of failures.
+  /// Injects a fault: makes a callback of this component throw or never return.
   void inject(ComponentFault fault);
-  /// Identifies this instance. Whatever it passes to other strands counts only while the generation is valid.
+  /// The token of this instance. What the instance passes to other strands is ignored once the supervisor has
+  /// revoked the token.
   const std::shared_ptr<const Generation>& generation() const { return generation_; }
   /// Sets the generation that the supervisor revokes. Call it before start().
-  void adopt(std::shared_ptr<const Generation> generation) { generation_ = std::move(generation); }
+  void set_generation(std::shared_ptr<const Generation> generation) { generation_ = std::move(generation); }
   /// Sets the handler that receives each failure, on the strand.
   void on_failure(std::function<void(const ComponentFailure&)> handler) {
     failure_handler_ = std::move(handler);
@@ -68,15 +70,16 @@ class Component {
   Executor& executor() const { return executor_; }
   Time now() const { return executor_.now(); }
   const Log& log() const { return log_; }
-  /// Reports a failure that is not an exception.
+  /// Reports a failure that the component itself detected.
   void fail(const std::string& text);
 
   /// Wraps a callback that returns nothing; it works between start() and stop() and must be called on the
   /// strand.
   template <class F>
   auto guard(F callback) {
-    return [life = std::weak_ptr<Life>(life_), callback = std::move(callback)](auto&&... args) mutable {
-      const auto alive = life.lock();
+    return [lifetime = std::weak_ptr<Lifetime>(lifetime_),
+            callback = std::move(callback)](auto&&... args) mutable {
+      const auto alive = lifetime.lock();
       if (!alive || !alive->owner) return;
       try {
         callback(std::forward<decltype(args)>(args)...);
@@ -86,7 +89,7 @@ class Component {
       }
     };
   }
-  /// Calls `f` now, on the strand; an exception becomes a failure.
+  /// Calls the callback now, on the strand; an exception becomes a failure.
   template <class F>
   void protect(F callback) {
     guard(std::move(callback))();
@@ -124,9 +127,23 @@ class Component {
   /// receives the Error, too.
   template <class Work, class Done>
   JobHandle compute(JobSpec spec, Work work, Done done) {
+    auto failure = std::make_shared<std::string>();  // Shared by the two wrappers.
+    auto completed = reporting<job_value_t<Work>>(std::move(done), failure);
+    return executor_.compute(std::move(spec), catching(std::move(work), failure),
+                             guard(std::move(completed)));
+  }
+
+ private:
+  /// Exists from start() to stop(). Guarded callbacks hold it weakly and then do nothing.
+  struct Lifetime {
+    Component* owner;  ///< Null once the component has stopped, for callbacks that run at that moment.
+  };
+
+  /// Wraps `work` so that an exception becomes an Error, and stores the text of the exception in `failure`.
+  template <class Work>
+  static auto catching(Work work, std::shared_ptr<std::string> failure) {
     using Value = job_value_t<Work>;
-    auto failure = std::make_shared<std::string>();
-    auto checked = [failure, work = std::move(work)](std::stop_token stop) mutable -> Result<Value> {
+    return [failure, work = std::move(work)](std::stop_token stop) mutable -> Result<Value> {
       try {
         if constexpr (std::is_same_v<decltype(run_work(work, stop)), void>) {
           run_work(work, std::move(stop));
@@ -139,24 +156,23 @@ class Component {
         return Error{Reason::internal, *failure};
       }
     };
-    auto completed = [this, life = std::weak_ptr<Life>(life_), failure,
-                      done = std::move(done)](Result<Value> result) mutable {
-      // The failure text is valid only once the work has returned; an Error of the executor has another
-      // reason.
+  }
+  /// Wraps `done` so that a failure of the work is reported first, which may stop the component.
+  template <class Value, class Done>
+  auto reporting(Done done, std::shared_ptr<std::string> failure) {
+    return [this, lifetime = std::weak_ptr<Lifetime>(lifetime_), failure,
+            done = std::move(done)](Result<Value> result) mutable {
+      // The text may be read only after the work has returned: an Error of the executor, which can arrive
+      // earlier, has another reason.
       if (result.reason() == Reason::internal && !failure->empty()) fail(*failure);
-      if (const auto alive = life.lock(); alive && alive->owner) done(std::move(result));
+      if (const auto alive = lifetime.lock(); alive && alive->owner) done(std::move(result));
     };
-    return executor_.compute(std::move(spec), std::move(checked), guard(std::move(completed)));
   }
 
- private:
-  struct Life {
-    Component* owner;
-  };
   Executor& executor_;
   Log log_;
   std::shared_ptr<HealthState> health_state_;
-  std::shared_ptr<Life> life_{};
+  std::shared_ptr<Lifetime> lifetime_{};
   std::shared_ptr<const Generation> generation_{std::make_shared<Generation>()};
   std::vector<Offer> offers_{};
   std::function<void(const ComponentFailure&)> failure_handler_{};

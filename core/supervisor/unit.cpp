@@ -56,7 +56,7 @@ void Unit::begin(ComponentSlot& slot, const std::shared_ptr<Record>& record) {
     started = made ? Result<void>{} : Result<void>{made.error()};
     if (made) {
       slot.component = std::move(*made);
-      slot.component->adopt(record->generation);
+      slot.component->set_generation(record->generation);
       started = slot.component->start();
     }
   } catch (const HangReleased&) {

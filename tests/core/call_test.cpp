@@ -206,7 +206,7 @@ TEST_F(CallTest, ToAReplacedInstanceIsCancelledAndItsLateAnswerIsIgnored) {
 TEST_F(CallTest, AnAnswerOfARevokedInstanceNeverArrives) {
   const auto generation = std::make_shared<Generation>();
   Mathematician callee(*server, service, Mood::stores);
-  callee.adopt(generation);
+  callee.set_generation(generation);
   ASSERT_TRUE(callee.start());
   asker->ask(service, 3);
   run(1ms);
@@ -221,7 +221,7 @@ TEST_F(CallTest, ARevokedInstanceDoesNotReplaceTheOneThatOffers) {
   const auto good = offering(Mood::answers);
   const auto generation = std::make_shared<Generation>();
   Mathematician late(*server, service, Mood::answers);  // its construction took longer than it may
-  late.adopt(generation);
+  late.set_generation(generation);
   generation->revoke();
   ASSERT_TRUE(late.start());
   asker->ask(service, 4);
@@ -234,7 +234,7 @@ TEST_F(CallTest, ARequestOfARevokedCallerHasNoEffect) {
   const auto callee = offering(Mood::answers);
   const auto generation = std::make_shared<Generation>();
   Asker replaced("replaced", *caller);
-  replaced.adopt(generation);
+  replaced.set_generation(generation);
   ASSERT_TRUE(replaced.start());
   replaced.ask(service, 3);
   generation->revoke();
