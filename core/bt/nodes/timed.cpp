@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Delay, Timeout and Sleep: they use the time passed to each tick.
+// The nodes with a timer: Delay, Timeout and Sleep. Their clock is the time that is passed to each tick.
 #include "core/bt/nodes/builtin.hpp"
 
 namespace adit::bt {
@@ -22,7 +22,7 @@ class Timed : public TreeNode {
   Timers::Id timer_{0};
 };
 
-/// Returns RUNNING for the given time, then ticks its child.
+/// Returns RUNNING for the given time after its first tick, then ticks its child and returns its status.
 class Delay : public Timed {
  public:
   using Timed::Timed;
@@ -32,24 +32,25 @@ class Delay : public Timed {
     const auto wait = std::chrono::milliseconds(port<std::uint32_t>("delay_msec"));
     if (!started_) {
       started_ = true;
-      over_ = false;
-      set_status(NodeStatus::running);
-      timer_ = context().timers.add(context().now + wait, [this] { over_ = true; });
+      delay_elapsed_ = false;
+      set_status(NodeStatus::running);  // Observers see RUNNING before the child is ticked.
+      timer_ = context().timers.add(context().now + wait, [this] { delay_elapsed_ = true; });
     }
-    if (!over_) return NodeStatus::running;
-    const NodeStatus answer = tick_child(child());
-    if (completed(answer)) {
+    if (!delay_elapsed_) return NodeStatus::running;
+    const NodeStatus child_status = tick_child(child());
+    if (completed(child_status)) {
       started_ = false;
       reset_child();
     }
-    return answer;
+    return child_status;
   }
 
  private:
-  bool over_{false};
+  bool delay_elapsed_{false};
 };
 
-/// Halts the child at the end of the given time; the next tick returns FAILURE. 0: no limit.
+/// Ticks its child and returns its status. If the child is still running at the end of the given time, it is
+/// halted, and the next tick returns FAILURE. A time of 0 means that there is no limit.
 class Timeout : public Timed {
  public:
   using Timed::Timed;
@@ -60,20 +61,20 @@ class Timeout : public Timed {
     if (!started_) {
       started_ = true;
       expired_ = false;
-      set_status(NodeStatus::running);
+      set_status(NodeStatus::running);  // Observers see RUNNING before the child is ticked.
       if (limit.count() > 0) timer_ = context().timers.add(context().now + limit, [this] { expire(); });
     }
     if (expired_) {
       started_ = false;
       return NodeStatus::failure;
     }
-    const NodeStatus answer = tick_child(child());
-    if (completed(answer)) {
+    const NodeStatus child_status = tick_child(child());
+    if (completed(child_status)) {
       started_ = false;
       context().timers.cancel(timer_);
       reset_child();
     }
-    return answer;
+    return child_status;
   }
 
  private:
@@ -85,6 +86,7 @@ class Timeout : public Timed {
   bool expired_{false};
 };
 
+/// Returns RUNNING for the given time after its first tick, then SUCCESS.
 class Sleep : public Leaf {
  public:
   using Leaf::Leaf;
