@@ -124,6 +124,7 @@ void LiveWorld::step() {
 void LiveWorld::observe() {
   for (std::size_t i = 0; i < simulation_.size(); ++i)
     trails_[simulation_.id(i)].poses.push_back(simulation_.truth(i).pose.planar());
+  add_people(simulation_, people_);
   if (script_began_) expectations_.judge(simulation_.now() - *script_began_, evidence());
 }
 
@@ -160,6 +161,7 @@ RunOutcome LiveWorld::finish() {
     }
     report.expectations = expectations_.finish(evidence(), report);
     out.trails = std::move(trails_);
+    out.people = std::move(people_);
     out.goals = goals_of(judged_);
     out.collisions = simulation_.collisions();
   });

@@ -55,6 +55,7 @@ class LiveWorld {
   Time started_{};
   std::optional<Duration> script_began_{};  // on the simulation's clock
   std::map<std::string, Trail> trails_{};
+  std::vector<Trail> people_{};
 };
 
 }  // namespace adit::sim

@@ -19,7 +19,8 @@ constexpr Colour kPaper{0.955, 0.95, 0.935}, kFloorTone{1.0, 1.0, 0.995}, kGlimp
 // Okabe and Ito: also distinguishable for the colour-blind.
 constexpr std::array<Colour, 6> kPalette{Colour{0.00, 0.45, 0.70}, {0.84, 0.37, 0.00}, {0.00, 0.62, 0.45},
                                          {0.80, 0.40, 0.65},       {0.90, 0.62, 0.00}, {0.25, 0.60, 0.85}};
-constexpr Colour kEventTone{0.13, 0.15, 0.19};
+constexpr Colour kEventTone{0.13, 0.15, 0.19}, kPersonTone{0.45, 0.40, 0.36},
+    kPersonPathTone{0.45, 0.40, 0.36, 0.55};
 constexpr double kMargin = 28.0, kHeader = 84.0, kRow = 24.0;
 constexpr std::size_t kMaxEvents = 40;
 
@@ -127,6 +128,20 @@ Colour colour_of(const PictureSpec& spec, const std::string& id) {
   return kInk;
 }
 
+void draw_people(Sketch& sketch, const View& view, const PictureSpec& spec) {
+  for (const PicturePerson& person : spec.people) {
+    if (person.poses.empty()) continue;
+    const std::array dash{6.0, 5.0};  // Pixels.
+    cairo_set_dash(sketch.cairo(), dash.data(), static_cast<int>(dash.size()), 0.0);
+    trace(sketch, view, person.poses, 2.0, kPersonPathTone);
+    cairo_set_dash(sketch.cairo(), nullptr, 0, 0.0);
+    const Pose2& end = person.poses.back();
+    const double radius = std::max(0.5 * person.size * view.scale, 4.0);
+    sketch.disc(view.x(end.x), view.y(end.y), radius + 2.0, {1, 1, 1, 0.9});
+    sketch.disc(view.x(end.x), view.y(end.y), radius, kPersonTone);
+  }
+}
+
 /// Returns where labels stand, in pixels.
 std::vector<Eigen::Vector2d> draw_run(Sketch& sketch, const View& view, const PictureSpec& spec) {
   std::vector<Eigen::Vector2d> labels;
@@ -196,7 +211,7 @@ Legend plan_legend(const PictureSpec& spec) {
   const std::size_t columns = spec.width >= 1400 ? 3 : spec.width >= 900 ? 2 : 1;
   const std::size_t event_columns = std::max<std::size_t>(1, columns - 1);
   const std::size_t event_rows = (events + event_columns - 1) / event_columns;
-  const std::size_t robots = spec.trails.size();
+  const std::size_t robots = spec.trails.size() + (spec.people.empty() ? 0 : 1);
   return {columns, event_rows, columns == 1 ? robots + event_rows : std::max(robots, event_rows)};
 }
 
@@ -210,7 +225,14 @@ void draw_legend(Sketch& sketch, const PictureSpec& spec, const Legend& legend, 
     sketch.text(kMargin + 54 + sketch.text_width(15, spec.trails[n].id, true), y, 15, spec.trails[n].label,
                 kInk);
   }
-  const double first = legend.columns == 1 ? top + kRow * static_cast<double>(spec.trails.size()) : top;
+  const std::size_t people_row = spec.trails.size(), robot_rows = people_row + (spec.people.empty() ? 0 : 1);
+  if (!spec.people.empty()) {
+    const double y = top + kRow * (static_cast<double>(people_row) + 0.5);
+    sketch.disc(kMargin + 19, y, 7, kPersonTone);
+    sketch.text(kMargin + 46, y, 15,
+                spec.people.size() == 1 ? "a person" : fmt::format("{} people", spec.people.size()), kInk);
+  }
+  const double first = legend.columns == 1 ? top + kRow * static_cast<double>(robot_rows) : top;
   for (std::size_t n = 0; n < std::min(spec.events.size(), kMaxEvents); ++n) {
     const std::size_t c = legend.columns == 1 ? 0 : 1 + n / legend.event_rows;
     const double x = kMargin + column * static_cast<double>(c) + 12,
@@ -249,6 +271,7 @@ Result<void> write_picture(const World& world, const PictureSpec& spec, const st
   sketch.fill(0, 0, spec.width, height, kPaper);
   draw_plan(sketch, plan, world.grid(), view);
   draw_grid(sketch, view);
+  draw_people(sketch, view, spec);
   draw_events(sketch, view, spec, draw_run(sketch, view, spec));
   sketch.text(kMargin, 32, 26, spec.title, kInk, Align::left, true);
   sketch.text(kMargin, 62, 15, spec.subtitle, kFaint);

@@ -19,6 +19,12 @@ struct PictureTrail {
   double width{0.5};
 };
 
+/// The path of a person.
+struct PicturePerson {
+  std::vector<Pose2> poses{};  ///< World frame, by time; the body is drawn at the last one.
+  double size{0.45};           ///< Diameter of the body, m.
+};
+
 /// A place that a robot was sent to.
 struct PictureGoal {
   std::string robot{};
@@ -36,6 +42,7 @@ struct PictureSpec {
   std::string title{};
   std::string subtitle{};
   std::vector<PictureTrail> trails{};
+  std::vector<PicturePerson> people{};  ///< Drawn in grey, with one line for all in the legend.
   std::vector<PictureGoal> goals{};
   std::vector<PictureEvent> events{};
   double headroom{0.5};  ///< Open space at this height above the floor is drawn as free, m, (0, 5].

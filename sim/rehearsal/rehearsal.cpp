@@ -91,6 +91,7 @@ class Run {
     }
     out.report = report(seconds(std::chrono::steady_clock::now() - begin));
     out.trails = std::move(trails_);
+    out.people = std::move(people_);
     out.goals = witness_.goals();
     out.collisions = simulation_.collisions();
     return out;
@@ -170,6 +171,7 @@ class Run {
       const std::string& mode = witness_.word(id).mode;
       mode_seconds_[id][mode.empty() ? "none" : mode] += seconds(now - observed_);
     }
+    if (now % Trail::kPeriod == 0ns) add_people(simulation_, people_);
     checker_.advance(now);
     if (trajectories_ && now % kTruthPeriod == 0ns) trajectories_->add(simulation_, witness_, now);
     expectations_.judge(now, evidence());
@@ -254,11 +256,18 @@ class Run {
   std::unique_ptr<Trajectories> trajectories_{};
   std::map<std::string, TrajectoryFiles> trajectory_files_{};
   std::map<std::string, Trail> trails_{};
+  std::vector<Trail> people_{};
   std::map<std::string, std::map<std::string, double>> mode_seconds_{};
   Duration observed_{};
 };
 
 }  // namespace
+
+void add_people(const Simulation& simulation, std::vector<Trail>& trails) {
+  const std::vector<Person>& people = simulation.people();
+  trails.resize(people.size());
+  for (std::size_t n = 0; n < people.size(); ++n) trails[n].poses.push_back(people[n].body().pose);
+}
 
 Draws draw(const Scenario& scenario, std::uint64_t seed) {
   Random random(seed);

@@ -33,7 +33,7 @@ struct RunParams {
   std::string record{};  ///< MCAP file for all messages; empty: none.
 };
 
-/// A robot's way, for the picture.
+/// The path of a robot or a person, for the picture.
 struct Trail {
   static constexpr Duration kPeriod{100ms};
   std::vector<Pose2> poses{};  ///< True poses, one per period, world frame.
@@ -41,10 +41,14 @@ struct Trail {
 
 struct RunOutcome {
   RunReport report{};
-  std::map<std::string, Trail> trails{};
-  std::vector<Goal> goals{};  ///< Accepted goals.
+  std::map<std::string, Trail> trails{};  ///< By robot.
+  std::vector<Trail> people{};            ///< In the order of the scenario.
+  std::vector<Goal> goals{};              ///< Accepted goals.
   std::vector<Collision> collisions{};
 };
+
+/// Appends the present poses of the people to their trails.
+void add_people(const Simulation& simulation, std::vector<Trail>& trails);
 
 /// What a scenario leaves to its seed.
 struct Draws {

@@ -47,6 +47,7 @@ Result<void> draw_run(const Scenario& scenario, const World& world, const RunOut
     std::snprintf(text, sizeof text, "%s, %.1f m", start.platform.name.c_str(), robot->second.distance);
     spec.trails.push_back({start.id, text, trail->second.poses, start.platform.length, start.platform.width});
   }
+  for (const Trail& person : outcome.people) spec.people.push_back({person.poses, Person::kSize});
   for (const Goal& goal : outcome.goals) spec.goals.push_back({goal.robot, goal.position});
   for (const Collision& collision : outcome.collisions) {
     if (spec.events.size() >= kMaxEvents / 2) break;

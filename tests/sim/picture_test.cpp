@@ -42,6 +42,21 @@ TEST(Picture, the_same_run_gives_the_same_file) {
   EXPECT_FALSE(a == *read_file(scratch.path("c.png")));
 }
 
+TEST(Picture, shows_people_where_they_walked) {
+  const Scratch scratch;
+  const World world = room();
+  const auto drawn = [&](const char* name, std::vector<Pose2> poses) {
+    PictureSpec spec = run();
+    if (!poses.empty()) spec.people.push_back({std::move(poses), 0.45});
+    EXPECT_TRUE(write_picture(world, spec, scratch.path(name)));
+    return *read_file(scratch.path(name));
+  };
+  const std::string none = drawn("none.png", {}), here = drawn("here.png", {{5, 1, 0}, {5, 2, 0}}),
+                    there = drawn("there.png", {{5, 1, 0}, {7, 2, 0}});
+  EXPECT_FALSE(none == here);
+  EXPECT_FALSE(here == there);
+}
+
 TEST(Picture, an_empty_run_is_a_map) {
   const Scratch scratch;
   PictureSpec spec;
