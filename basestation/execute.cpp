@@ -157,6 +157,7 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
   } else if (request.verb == verb("status") && !selection.empty()) {
     outcome.text = status_text(fleet_, *selection.front(), at);
     outcome.json.update(robot_json(fleet_, *selection.front(), at));
+    outcome.json["notifications"] = notices_json(fleet_, selection.front()->name, at);
   } else if (request.verb == verb("status")) {
     const Counts& c = sender_.counts();
     outcome.text = "station " + params_.name +
@@ -173,9 +174,7 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
                                 {"accepted", c.accepted},
                                 {"refused", c.refused},
                                 {"unanswered", c.unanswered}};
-    nlohmann::json notices = nlohmann::json::array();
-    for (const Notice& notice : fleet_.notices()) notices.push_back(notice_json(notice, at));
-    outcome.json["notifications"] = notices;
+    outcome.json["notifications"] = notices_json(fleet_, "", at);
   } else if (request.verb == verb("net")) {
     outcome.text = net_text(fleet_, at, params_.link, params_.bandwidth);
     outcome.json.update(net_json(fleet_, at));

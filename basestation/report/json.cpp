@@ -85,6 +85,13 @@ json notice_json(const Notice& notice, Time now) {
           {"mine", notice.mine}};
 }
 
+json notices_json(const Fleet& fleet, const std::string& robot, Time now) {
+  json out = json::array();
+  for (const Notice& notice : fleet.notices())
+    if (robot.empty() || notice.robot == robot) out.push_back(notice_json(notice, now));
+  return out;
+}
+
 json answer_json(const Answer& answer) {
   json out{{"robot", answer.robot},
            {"accepted", answer.accepted},

@@ -12,6 +12,8 @@ namespace adit::station {
 /// Return one object each; unknown values are omitted or null.
 nlohmann::json robot_json(const Fleet& fleet, const RobotView& robot, Time now);
 nlohmann::json notice_json(const Notice& notice, Time now);
+/// Returns an array of the notices of one robot, oldest first; an empty name: all notices.
+nlohmann::json notices_json(const Fleet& fleet, const std::string& robot, Time now);
 nlohmann::json answer_json(const Answer& answer);
 nlohmann::json actions_json(const std::vector<Action>& actions);
 nlohmann::json net_json(const Fleet& fleet, Time now);

@@ -93,6 +93,25 @@ std::string list_text(const Fleet& fleet, Time now) {
   return out + "\n";
 }
 
+namespace {
+
+/// The newest notices of a robot, newest first, one per line; empty if there are none.
+std::string notices_text(const Fleet& fleet, const std::string& robot, Time now) {
+  constexpr int max_notices = 5;
+  std::string out;
+  int shown = 0;
+  const auto& all = fleet.notices();
+  for (auto notice = all.rbegin(); notice != all.rend() && shown < max_notices; ++notice) {
+    if (notice->robot != robot) continue;
+    out += (shown == 0 ? "  notices  " : "           ") + fixed(seconds(now - notice->at), 0) +
+           " s ago: " + (notice->text.empty() ? notice->code : notice->text) + "\n";
+    ++shown;
+  }
+  return out;
+}
+
+}  // namespace
+
 std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   std::string out = robot.name + "  " + or_dash(robot.platform) + ", " + or_dash(robot.software) +
                     ", heard " + fixed(seconds(now - robot.last_heard), 1) + " s ago" +
@@ -123,6 +142,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
     row.resize(std::max<std::size_t>(row.size() + 1, 23), ' ');
     out += row + (can_enter(choice) ? "possible" : "not now: " + std::string(describe(choice.reason))) + "\n";
   }
+  out += notices_text(fleet, robot.name, now);
   return out;
 }
 

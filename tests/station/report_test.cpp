@@ -88,6 +88,26 @@ TEST(Report, StatusSaysThatTheStationBringsTheStick) {
   EXPECT_THAT(text, HasSubstr("mode waypoint        not now: there is no goal"));
 }
 
+TEST(Report, StatusShowsTheNewestNoticesOfTheRobot) {
+  Fleet fleet("op1", {1});
+  radio::BehaviourState sample;
+  sample.robot("r1");
+  fleet.hear(sample, {.received = Time(1s)});
+  EXPECT_THAT(status_text(fleet, *fleet.robot("r1"), Time(1s)), testing::Not(HasSubstr("notices")));
+  for (int n = 1; n <= 7; ++n)
+    fleet.say({.at = Time(n * 1s), .robot = "r1", .text = "event " + std::to_string(n)});
+  fleet.say({.at = Time(8s), .robot = "r2", .text = "of another robot"});
+  const std::string text = status_text(fleet, *fleet.robot("r1"), Time(10s));
+  EXPECT_THAT(text, HasSubstr("  notices  3 s ago: event 7\n           4 s ago: event 6\n"));
+  EXPECT_THAT(text, HasSubstr("7 s ago: event 3\n"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("event 2")));
+  EXPECT_THAT(text, testing::Not(HasSubstr("of another robot")));
+  const auto json = notices_json(fleet, "r1", Time(10s));
+  ASSERT_EQ(json.size(), 7u);
+  EXPECT_EQ(json.back()["text"], "event 7");
+  EXPECT_EQ(notices_json(fleet, "", Time(10s)).size(), 8u);
+}
+
 TEST(Report, HealthOfSeveralRobotsIsOneTable) {
   RobotView first{.name = "r1"}, second{.name = "r2"}, silent{.name = "r3"};
   first.components = second.components = {{.name = "planner", .phase = ComponentPhase::up, .text = {}}};
