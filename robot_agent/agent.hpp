@@ -69,9 +69,9 @@ struct AgentParams {
 
 /// The agent of one robot: discovery, command interface, behaviours, mux, navigation, driver and telemetry.
 ///
-/// The components command, planner and sensors are supervised, and each is restarted separately. The same
-/// class runs live and in rehearsal. Construct, start and destroy it outside its strands; the runtime and the
-/// participants must outlive it.
+/// The components command, planner, router (if the platform has one) and sensors are supervised, and each is
+/// restarted separately. The same class runs live and in rehearsal. Construct, start and destroy it outside
+/// its strands; the runtime and the participants must outlive it.
 class Agent {
  public:
   Agent(AgentParams params, Runtime& runtime, wire::Participant& radio, wire::Participant& robot);
@@ -105,9 +105,9 @@ class Agent {
   void correct_map(Executor& caller, const MapFrame& corrected,
                    std::function<void(const Result<MapFrame>&)> done);
 
-  /// For tests and rehearsals: makes a callback on the strand of that component throw or never return.
-  /// Components: command, planner, sensors. Errors: bad_argument for another name. Callable from any thread
-  /// live, after start().
+  /// Injects a fault: makes a callback on the strand of that component throw or never return.
+  /// Components: command, planner, router (if the platform has one), sensors. Errors: bad_argument for
+  /// another name. Callable from any thread live, after start().
   Result<void> inject(const std::string& component, ComponentFault fault);
 
  private:

@@ -60,7 +60,7 @@ int run_line(Client& client, const Options& options, const std::string& line);
 int print_outcome(const Options& options, const nlohmann::json& outcome);
 /// Prints "basestation: TEXT" on stderr, or with --json an object on stdout; returns `exit_code`.
 int fail(const Options& options, int exit_code, const Error& error);
-/// Describes an ended command of another front end, e.g. "watch: take r1: r1: yours"; empty for all other
+/// Describes an ended command of another front end, e.g. "watch: take r1: r1: taken"; empty for all other
 /// events.
 std::string command_of_another(const nlohmann::json& event);
 /// Joins words into one line that splits into the same words.

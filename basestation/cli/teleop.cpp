@@ -22,8 +22,8 @@ using Clock = KeyStick::Clock;
 constexpr auto kPeriod = std::chrono::milliseconds(50);  // Period of the joystick samples.
 
 constexpr const char* kInstructions =
-    "arrows or w a s d: drive   q e: sideways   space: zero   + -: speed   x: software stop   Esc: let go\r\n"
-    "game controller: left stick drives, right stick turns, A stops, B lets go; k: dead man's switch (left "
+    "arrows or w a s d: drive   q e: sideways   space: zero   + -: speed   x: software stop   Esc: quit\r\n"
+    "game controller: left stick drives, right stick turns, A stops, B quits; k: dead man's switch (left "
     "shoulder)\r\n";
 
 /// Describes the robot's motion in one line.
@@ -101,9 +101,9 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
   terminal.write("\r\x1b[K");
   const json result = outcome->value("json", json::object());
   const json rows = result.value("results", json::array());
-  const bool let_go = leaving && !rows.empty() && rows[0].value("reason", std::string()) == "cancelled";
-  if (!let_go) return print_outcome(options, *outcome);
-  terminal.write(robot + ": let go\r\n");
+  const bool quit = leaving && !rows.empty() && rows[0].value("reason", std::string()) == "cancelled";
+  if (!quit) return print_outcome(options, *outcome);
+  terminal.write(robot + ": manual control ended\r\n");
   return kExitDone;
 }
 

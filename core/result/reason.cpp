@@ -39,7 +39,7 @@ constexpr std::array kRows{
     Row{Reason::sample_stale, "sample_stale", "the sample echoes too old a stamp"},
     Row{Reason::wrong_mode, "wrong_mode", "the current mode does not take this input"},
     Row{Reason::blocked, "blocked", "every path is blocked"},
-    Row{Reason::program_silent, "program_silent", "the program that is to steer from outside is silent"},
+    Row{Reason::program_silent, "program_silent", "the external program sends no velocities"},
     Row{Reason::obstacle_close, "obstacle_close", "an obstacle is too close to go on"},
     Row{Reason::just_restarted, "just_restarted", "the agent was started a moment ago, and listens first"},
     Row{Reason::goal_occupied, "goal_occupied", "something stands where the robot is to stand"},

@@ -39,14 +39,14 @@ struct Checker::WatchedRobot {
 
 const char* Checker::title(int number) {
   static constexpr std::array titles{"one holder",
-                                     "a lock is a lock",
-                                     "nothing is refused in silence",
+                                     "locks",
+                                     "no silent refusal",
                                      "a stop needs no authority",
                                      "one source",
-                                     "stale is zero",
-                                     "nothing moves by surprise",
-                                     "another robot's word moves nothing",
-                                     "nothing acknowledged is lost"};
+                                     "stale means zero",
+                                     "no unexpected motion",
+                                     "peers need permission",
+                                     "lost links"};
   return titles.at(static_cast<std::size_t>(number - 1));
 }
 

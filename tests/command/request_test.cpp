@@ -125,13 +125,13 @@ TEST(Request, AnyPayloadIsReadOrRefused) {
 }
 
 TEST(Request, AnswersComeOutOfTheTable) {
-  EXPECT_EQ(done_text(*parse("goto r1 12 -0.5")), "on its way to 12.00 -0.50");
+  EXPECT_EQ(done_text(*parse("goto r1 12 -0.5")), "driving to 12.00 -0.50");
   EXPECT_EQ(done_text(*parse("goto r1 12 0 --wait")), "arrived at 12.00 0.00");
   EXPECT_EQ(done_text(*parse("grant r1 op2")), "granted to op2");
   EXPECT_EQ(done_text(*parse("drive r1 1 0 0")), "drove for 1.0 s");
   EXPECT_EQ(done_text(*parse("drive r1 1 0 0 --for 2.5")), "drove for 2.5 s");
   EXPECT_EQ(done_text(*parse("policy r1 planner auto")), "planner has the restart policy auto");
-  EXPECT_EQ(done_text(*parse("home r1")), "on its way home");
+  EXPECT_EQ(done_text(*parse("home r1")), "driving home");
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TEST_F(ArrivalTest, WithoutWaitItReturnsWhenAccepted) {
   const Duration before = scheduler_.elapsed();
   const Outcome outcome = execute("goto r1 12 0.5");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.text, "r1: on its way to 12.00 0.50\n");
+  EXPECT_EQ(outcome.text, "r1: driving to 12.00 0.50\n");
   EXPECT_LT(scheduler_.elapsed() - before, 100ms);
 }
 

@@ -43,7 +43,7 @@ TEST_F(ExecuteTest, SeveralRobotsAnswerOneByOne) {
   robots_[1]->answering = refuse_locked;
   const Outcome outcome = execute("take r1 r2");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_EQ(outcome.text, "r1: yours\n");
+  EXPECT_EQ(outcome.text, "r1: taken\n");
   EXPECT_THAT(outcome.error, HasSubstr("r2: refused"));
 }
 

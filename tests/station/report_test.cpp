@@ -277,11 +277,11 @@ TEST(Report, NetShowsThroughputQueueSignalAndProfile) {
 
 TEST(Report, ARefusalNamesReasonAndHolder) {
   const Answer answer{.robot = "r1", .answered = true, .reason = Reason::not_holder, .holder = "op2"};
-  const std::string text = answer_text(answer, "yours");
+  const std::string text = answer_text(answer, "taken");
   EXPECT_THAT(text, HasSubstr("r1: refused: "));
   EXPECT_THAT(text, HasSubstr("(holder: op2)"));
   EXPECT_THAT(text, HasSubstr("[not_holder]"));
-  EXPECT_EQ(answer_text({.robot = "r1", .accepted = true}, "yours"), "r1: yours\n");
+  EXPECT_EQ(answer_text({.robot = "r1", .accepted = true}, "taken"), "r1: taken\n");
   const Answer own{
       .robot = "r1", .answered = true, .reason = Reason::goal_missing, .text = "no goal", .holder = "op1"};
   EXPECT_EQ(answer_text(own, "", "op1"), "r1: refused: no goal [goal_missing]\n");

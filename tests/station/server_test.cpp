@@ -310,9 +310,9 @@ TEST(Client, GetsAnOutcomeThatWasWrittenBeforeTheStationEnded) {
 TEST(Client, ShowsTheCommandsOfOtherFrontEndsWhenTheyEnd) {
   json event{{"event", "command"}, {"phase", "ended"},
              {"line", "take r1"},  {"query", false},
-             {"mine", false},      {"text", "r1: yours\n"},
+             {"mine", false},      {"text", "r1: taken\n"},
              {"error", ""},        {"by", {{"client", 1}, {"front_end", "script"}, {"pid", 1}}}};
-  EXPECT_EQ(command_of_another(event), "in another script: take r1 -> r1: yours");
+  EXPECT_EQ(command_of_another(event), "in another script: take r1 -> r1: taken");
   for (const auto& [key, value] :
        {std::pair<const char*, json>{"phase", "begun"}, {"query", true}, {"mine", true}}) {
     json hidden = event;

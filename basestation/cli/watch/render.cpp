@@ -224,7 +224,7 @@ void help(Page& page) {
       "up down 1-9  select a robot           t  take     r  release   l  lock, unlock",
       "s  stop it      S  stop all           e  reset your stop  E  reset every stop",
       "h  hold         w  waypoint, go on    g  goto X Y         :  any command line",
-      "m  drive it: arrows or wasd, q e sideways, space zero, + - speed, Esc lets go",
+      "m  drive it: arrows or wasd, q e sideways, space zero, + - speed, Esc quits",
       "?  this help                          Q or q  leave the dashboard",
   };
   page.line({{" KEYS", kBold}});
@@ -270,7 +270,7 @@ std::vector<std::string> render(const json& snapshot, const WatchState& state, i
   else
     page.line({{" " + state.message, state.refused ? kRed : kCyan}});
   if (state.driving)
-    page.line({{" DRIVING " + state.selected + "  " + state.driving_text + "  space zero  Esc lets go"}},
+    page.line({{" DRIVING " + state.selected + "  " + state.driving_text + "  space zero  Esc quits"}},
               "30;43");
   else
     page.line({{" t take r release l lock s stop S all e reset h hold w go g goto m drive ? q"}}, kReverse);
