@@ -52,7 +52,7 @@ using Mood = Mathematician::Mood;
 /// Asks, and writes down what comes back and when.
 class Asker final : public Component {
  public:
-  using Component::adopt;
+  using Component::set_generation;
   using Component::Component;
   CallHandle ask(const Squares& service, int x, Duration deadline = 10s) {
     return call(service, x, {.deadline = deadline}, [this](Result<int> square) {
