@@ -61,10 +61,14 @@ void Telemetry::report_driver(Time now) {
   const bool alive = dependencies_.frames.alive(now);
   ComponentRow driver{};
   driver.name = "driver";
-  driver.state = alive ? PartState::up : PartState::failed;
   driver.healthy = alive;
-  if (!alive) driver.heard = now - dependencies_.frames.silence(now, started_);
-  if (!alive) driver.text = "no odometry";
+  if (!alive) {
+    // A driver that was never present has not failed.
+    const bool was_present = dependencies_.frames.initialised();
+    driver.state = was_present ? PartState::failed : PartState::starting;
+    driver.heard = now - dependencies_.frames.silence(now, started_);
+    driver.text = was_present ? "no odometry" : "no odometry since the start of the agent";
+  }
   dependencies_.watch.note(driver);
 }
 

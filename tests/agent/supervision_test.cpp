@@ -184,6 +184,27 @@ TEST_F(SupervisionTest, AHungCommandStrandIsSeenFromOutsideAndEndsTheAgent) {
   EXPECT_EQ(alive, was_alive);  // the watchdog is not fed
 }
 
+TEST(Health, ADriverThatWasNeverPresentHasNotFailed) {
+  AgentBench bench;
+  bench.driver_alive = false;
+  const auto& op = bench.join("op1");
+  const auto driver = [&] {
+    for (const auto& c : op.health.components())
+      if (c.name() == "driver") return c;
+    ADD_FAILURE() << "no health of the driver";
+    return radio::ComponentHealth{};
+  };
+  bench.run(3s);
+  EXPECT_EQ(driver().state(), radio::COMPONENT_STARTING);
+  EXPECT_EQ(driver().text(), "no odometry since the start of the agent");
+  bench.driver_alive = true;
+  bench.run(1s);
+  EXPECT_EQ(driver().state(), radio::COMPONENT_UP);
+  bench.driver_alive = false;
+  bench.run(2s);
+  EXPECT_EQ(driver().state(), radio::COMPONENT_FAILED);
+}
+
 TEST_F(SupervisionTest, TheWatchdogIsFedTwentyTimesASecond) {
   const int before = alive;
   bench.run(1s);
