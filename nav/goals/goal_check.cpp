@@ -16,6 +16,7 @@ constexpr std::uint8_t kHoleTop = 1;
 
 struct GoalCheck::Ground {
   bool solid{}, hole{}, unknown{}, steep{};
+  bool sure{true};      ///< Each height was measured from near.
   double nearest{1e9};  ///< From the place to the nearest obstacle under the footprint, m.
 };
 
@@ -65,6 +66,7 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
       const double rise = before ? std::abs(cell->z - before->z) : 0.0;
       found.steep = found.steep || rise > limits_.obstacle + limits_.slope * kRouteCell;
       before = cell;
+      found.sure = found.sure && cell->sure;
       const Eigen::Vector3d row(off.x(), off.y(), 1.0);
       squares += row * row.transpose();
       sums += row * static_cast<double>(cell->z);
@@ -73,6 +75,11 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
   if (!found.solid && !found.unknown && !found.steep) {
     const Eigen::Vector3d plane = squares.ldlt().solve(sums);
     found.steep = plane.head<2>().norm() > limits_.slope + limits_.obstacle - limits_.step;
+  }
+  // Heights seen from afar lean with the attitude's error: they prove no slope and no step.
+  if (found.steep && !found.sure) {
+    found.steep = false;
+    found.unknown = true;
   }
   return found;
 }
