@@ -4,6 +4,7 @@
 #include "core/config/search.hpp"
 #include "core/time/random.hpp"
 #include "core/wire/component_io.hpp"
+#include "robot_agent/motion/sensor_readers.hpp"
 
 namespace adit::agent {
 namespace {
@@ -99,12 +100,12 @@ UnitParams Agent::Impl::sensors_unit() {
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
     auto readers =
-        Scans::read(io_of(*slot, *robot_wire), params.platform, [slot = std::weak_ptr<ComponentSlot>(slot)] {
+        read_sensors(io_of(*slot, *robot_wire), params.platform, [slot = std::weak_ptr<ComponentSlot>(slot)] {
           const auto taken = slot.lock();
           return taken ? static_cast<Scans*>(taken->component.get()) : nullptr;
         });
     if (!readers) return readers.error();
-    return std::shared_ptr<void>(std::make_shared<Scans::Readers>(std::move(*readers)));
+    return std::shared_ptr<void>(std::make_shared<SensorReaders>(std::move(*readers)));
   };
   return unit;
 }

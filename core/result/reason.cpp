@@ -65,6 +65,8 @@ constexpr std::array kRows{
     Row{Reason::imu_mounting, "imu_mounting", "the IMU is not mounted as the platform's file says"},
     Row{Reason::tilted, "tilted", "the robot leans so far that it may tip over; drive it down by hand"},
     Row{Reason::scan_empty, "scan_empty", "the lidar sees nothing; is it covered?"},
+    Row{Reason::lidar_mounting, "lidar_mounting", "the lidar cannot be where the platform's file says"},
+    Row{Reason::sensor_silent, "sensor_silent", "a sensor of the platform's file sends nothing"},
     Row{Reason::bad_argument, "bad_argument", "an argument is wrong"},
     Row{Reason::unknown_robot, "unknown_robot", "no robot of that name has been heard"},
     Row{Reason::unknown_command, "unknown_command", "no such command"},

@@ -58,6 +58,8 @@ enum class Reason : std::uint16_t {
   imu_mounting = 244,        ///< The IMU does not measure gravity where its mounting says.
   tilted = 245,              ///< The body leans so far that it may tip over.
   scan_empty = 246,          ///< A scan without any return.
+  lidar_mounting = 247,      ///< The lidar cannot be where its mounting says.
+  sensor_silent = 248,       ///< A sensor of the platform's file sends nothing, or has another clock.
 
   // Input that was typed or sent.
   bad_argument = 301,

@@ -13,6 +13,13 @@ constexpr std::uint64_t kClockSetBack =
 constexpr double kOldSweeps = 1.5;  ///< Of its period, that another lidar's sweep is merged.
 constexpr double kReach =
     30;  ///< A lowest beam that meets level ground within so far must return something, m.
+constexpr float kFalls = 0.05f;           ///< A ray that falls by more of its length points below the lidar.
+constexpr std::size_t kManyBelow = 30;    ///< So many returns below it show that a lidar sees the ground.
+constexpr std::size_t kManyPoints = 200;  ///< Of fewer nothing is concluded.
+constexpr double kFewBelow = 0.01;        ///< Of all returns: fewer below the lidar are not the ground.
+constexpr int kOvertaken = 10;            ///< More than one sweep in so many that is late is no accident.
+constexpr int kMostOvertaken = 40, kTooOften = 30;
+constexpr int kPatience = 10;  ///< Scans in a row without another sensor, before that is a warning.
 
 double after(std::uint64_t stamp, std::uint64_t than) {
   return static_cast<double>(static_cast<std::int64_t>(stamp - than)) * 1e-9;
@@ -22,10 +29,14 @@ double after(std::uint64_t stamp, std::uint64_t than) {
 
 ScanInput::ScanInput(const Platform& platform) : platform_(platform), body_(platform) {
   for (const LidarConfig& lidar : platform.all_lidars()) {
-    const double down = std::tan(-lidar.lowest * M_PI / 180);
+    const double lowest = lidar.mounting.upside_down() ? lidar.highest : -lidar.lowest;
+    const double down = std::tan(lowest * M_PI / 180);
     const bool sees_ground = !platform.flies() && !platform.lidars.empty() && lidar.rings > 1 &&
                              down * kReach > lidar.mounting.z && lidar.max_range >= kReach;
-    sources_.push_back({lidar, 0, 0, {}, sees_ground});
+    Source source;
+    source.lidar = lidar;
+    source.must_return = sees_ground;
+    sources_.push_back(std::move(source));
   }
   if (platform.imu) tilt_.emplace(platform.imu->mounting);
 }
@@ -56,8 +67,10 @@ Result<void> ScanInput::add(const ImuSample& sample, const std::string& frame) {
   return tilt_->add(sample);
 }
 
-void ScanInput::add_velocity(std::uint64_t stamp, const Eigen::Vector3d& velocity) {
-  if (tilt_) tilt_->set_velocity(stamp, velocity);
+void ScanInput::add_odometry(std::uint64_t stamp, const Eigen::Vector3d& velocity, double yaw) {
+  if (!tilt_) return;
+  tilt_->set_velocity(stamp, velocity);
+  tilt_->set_yaw(stamp, yaw);
 }
 
 std::uint64_t ScanInput::end_of(const Sweep& sweep) {
@@ -79,22 +92,75 @@ Result<std::optional<Eigen::Quaterniond>> ScanInput::attitude_at(std::uint64_t s
   return Attitude{};
 }
 
+Result<void> ScanInput::in_order(Source& source, std::uint64_t stamp) {
+  if (stamp != 0 && stamp < source.newest && source.newest - stamp < kClockSetBack) {
+    source.overtaken = std::min(source.overtaken + kOvertaken, kMostOvertaken);
+    if (source.overtaken > kTooOften)
+      return {Reason::sensor_times,
+              "many scans of the topic '" + source.lidar.topic +
+                  "' come after newer ones; is there one driver on it, with one clock?"};
+    return {Reason::sample_stale, "a scan came after a newer one"};
+  }
+  source.overtaken = std::max(source.overtaken - 1, 0);
+  source.newest = stamp;
+  return {};
+}
+
+Result<void> ScanInput::plausible(Source& source, const Sweep& sweep, const Scan& scan,
+                                  std::size_t below) const {
+  if (platform_.flies() || sweep.planar) return {};
+  const std::size_t used = scan.counts.used;
+  // A lidar that may see nothing has shown before that it works, and did not look at the ground.
+  if (used == 0 && (source.must_return || source.saw_ground || (!source.returned && !sweep.points.empty())))
+    return {Reason::scan_empty, "none of the scan's " + std::to_string(sweep.points.size()) +
+                                    " points is a return; is the lidar covered?"};
+  if (source.must_return && used >= kManyPoints &&
+      static_cast<double>(below) < kFewBelow * static_cast<double>(used))
+    return {Reason::lidar_mounting,
+            "the lidar '" + source.lidar.frame +
+                "' sees no ground below it; is it mounted as `sensors: lidar:` says, or "
+                "the other way up?"};
+  source.returned |= used > 0;
+  source.saw_ground |= below >= kManyBelow;
+  return {};
+}
+
+void ScanInput::note_attitude(Scan& scan) {
+  if (!tilt_ || scan.attitude || scan.stamp == 0) {
+    without_imu_ = 0;
+    return;
+  }
+  if (++without_imu_ < kPatience) return;
+  without_imu_ = kPatience;
+  scan.warnings.push_back(
+      {"sensor_silent", Reason::sensor_silent,
+       tilt_->newest() == 0 ? "the IMU on the topic '" + platform_.imu->topic +
+                                  "' sends nothing; roll and pitch are those of the odometry"
+                            : "the IMU has no samples of the time of the scans: it is silent, or has another "
+                              "clock; roll and pitch are those of the odometry"});
+}
+
 Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index, const std::string& frame,
                                            const PoseFunction& pose) {
   if (index >= sources_.size()) return Error{Reason::bad_argument, "the platform has no such lidar"};
   Source& source = sources_[index];
   const auto T_base_sensor = find(frame);
   if (!T_base_sensor) return T_base_sensor.error();
-  if (sweep.stamp != 0 && sweep.stamp < source.newest && source.newest - sweep.stamp < kClockSetBack)
-    return Error{Reason::sample_stale, "a scan came after a newer one"};
-  source.newest = sweep.stamp;
+  // What arrives in base_link was measured from the lidar, all the same.
+  const bool moved = frame_name(frame) == "base_link" || frame.empty();
+  const Eigen::Vector3d mounted = moved ? source.lidar.mounting.position() : T_base_sensor->position;
+  if (!platform_.flies() && mounted.z() <= 0)
+    return Error{Reason::lidar_mounting, "the lidar '" + frame + "' would be " +
+                                             std::to_string(-mounted.z()) +
+                                             " m under the floor, by the transform of its frame"};
+  if (const auto ordered = in_order(source, sweep.stamp); !ordered) return ordered.error();
 
   Scan scan;
   scan.stamp = end_of(sweep);
   auto attitude = attitude_at(scan.stamp);
   if (!attitude) return attitude.error();
   scan.attitude = *attitude;
-  scan.origin = source.lidar.mounting.position().cast<float>();
+  scan.origin = mounted.cast<float>();
 
   std::uint64_t from = scan.stamp;
   float before = 0;  // From the sweep's stamp to the first pose, s.
@@ -124,10 +190,9 @@ Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index
 
   const auto least2 = static_cast<float>(source.lidar.min_range * source.lidar.min_range);
   const auto most2 = static_cast<float>(source.lidar.max_range * source.lidar.max_range);
-  // What arrives in base_link was measured from the lidar, all the same.
-  const bool moved = frame_name(frame) == "base_link" || frame.empty();
   const Eigen::Vector3f origin = moved ? scan.origin : Eigen::Vector3f(0, 0, 0);
   scan.points.reserve(sweep.points.size());
+  std::size_t below = 0;
   for (const TimedPoint& point : sweep.points) {
     const float range2 = (point.position - origin).squaredNorm();
     if (!std::isfinite(range2)) {
@@ -143,25 +208,34 @@ Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index
       ++scan.counts.own_body;
       continue;
     }
+    const float fall = scan.origin.z() - at.z();
+    below += fall > 0 && fall * fall > kFalls * kFalls * range2;
     scan.points.push_back(at);
   }
   scan.counts.used = scan.points.size();
-  if (source.must_return && scan.counts.used == 0)
-    return Error{Reason::scan_empty, "none of the scan's " + std::to_string(sweep.points.size()) +
-                                         " points is a return; is the lidar covered?"};
-  if (sources_.size() == 1) return std::optional<Scan>(std::move(scan));
+  if (const auto fits = plausible(source, sweep, scan, below); !fits) return fits.error();
   if (index > 0) {
     source.stamp = scan.stamp;
     source.points = std::move(scan.points);
     return std::optional<Scan>{};
   }
+  note_attitude(scan);
   for (std::size_t n = 1; n < sources_.size(); ++n) merge(sources_[n], pose, scan);
   return std::optional<Scan>(std::move(scan));
 }
 
-void ScanInput::merge(const Source& other, const PoseFunction& pose, Scan& scan) const {
-  if (other.points.empty() || std::fabs(after(scan.stamp, other.stamp)) > kOldSweeps / other.lidar.rate)
+void ScanInput::merge(Source& other, const PoseFunction& pose, Scan& scan) {
+  if (other.stamp != scan.stamp &&
+      std::fabs(after(scan.stamp, other.stamp)) > kOldSweeps / other.lidar.rate) {
+    if (++other.missed < kPatience) return;
+    other.missed = kPatience;
+    scan.warnings.push_back(
+        {"sensor_silent", Reason::sensor_silent,
+         "no scan of the lidar on the topic '" + other.lidar.topic +
+             "' is of the time of the first lidar's: it is silent, or has another clock"});
     return;
+  }
+  other.missed = 0;
   Eigen::Isometry3f T = Eigen::Isometry3f::Identity();
   const auto now = pose(scan.stamp), then = pose(other.stamp);
   if (now && then) {

@@ -23,6 +23,13 @@ struct ScanCounts {
   std::size_t own_body{};
 };
 
+/// What is wrong with a scan that can be used all the same.
+struct ScanWarning {
+  const char* code{};  ///< Of the notification.
+  Reason reason{};
+  std::string text{};
+};
+
 /// One scan of all lidars, and how the body leans. Every layer gets the same.
 struct Scan {
   std::uint64_t stamp{};  ///< The instant of all points, driver's clock, ns; 0: the driver sends none.
@@ -32,6 +39,7 @@ struct Scan {
   std::optional<Eigen::Quaterniond> attitude{};
   ScanCounts counts{};
   bool deskewed{false};
+  std::vector<ScanWarning> warnings{};
 };
 
 /// A pose with the yaw of `T_odom_base` and this roll and pitch.
@@ -55,8 +63,8 @@ class ScanInput {
   }
   /// One sample of the IMU. Errors: frame_unknown; those of TiltFilter::add.
   Result<void> add(const ImuSample& sample, const std::string& frame);
-  /// What the body drives by its odometry, body frame, m/s.
-  void add_velocity(std::uint64_t stamp, const Eigen::Vector3d& velocity);
+  /// What the body drives by its odometry, body frame, m/s, and its yaw, rad.
+  void add_odometry(std::uint64_t stamp, const Eigen::Vector3d& velocity, double yaw);
 
   /// The last instant of a sweep, to which its points are moved, ns. Poses up to it are needed for deskewing.
   static std::uint64_t end_of(const Sweep& sweep);
@@ -66,11 +74,13 @@ class ScanInput {
   ///
   /// @param frame  The frame_id of the message; base_link: points are there already.
   /// @param pose   T_odom_base over the time of the sweep.
-  /// Errors: frame_unknown; sample_stale for a sweep that is older than the last one; scan_empty without any
-  /// return, where the lidar must see the ground; imu_mounting.
+  /// Errors: frame_unknown; sample_stale for a sweep that is older than the last one, sensor_times when many
+  /// are; scan_empty without any return, unless the lidar may see nothing; lidar_mounting; imu_mounting.
   Result<std::optional<Scan>> add(const Sweep& sweep, std::size_t index, const std::string& frame,
                                   const PoseFunction& pose);
 
+  /// The filter of the IMU; null: the platform has none.
+  const TiltFilter* tilt() const { return tilt_ ? &*tilt_ : nullptr; }
   /// The samples of the IMU are in g and are scaled.
   bool imu_in_g() const { return tilt_ && tilt_->in_g(); }
   /// The newest sample of the IMU, ns; 0: none.
@@ -84,10 +94,20 @@ class ScanInput {
     std::uint64_t newest{};  ///< Stamp of the newest sweep.
     std::uint64_t stamp{};   ///< Of `points`.
     PointCloud points{};     ///< Of the newest sweep, base_link at `stamp`.
-    bool must_return{};      ///< Its beams reach the ground.
+    bool must_return{};      ///< Its beams reach the ground, by the platform's file.
+    bool returned{};         ///< It has returned something.
+    bool saw_ground{};       ///< An earlier sweep had returns below the lidar.
+    int overtaken{};         ///< Rises by each sweep that comes after a newer one, falls by the others.
+    int missed{};            ///< Scans in a row without a sweep of it.
   };
+  /// Errors: sample_stale, sensor_times.
+  static Result<void> in_order(Source& source, std::uint64_t stamp);
+  /// Whether the lidar can be there; `below`: returns of `scan` that are below it. Errors: scan_empty,
+  /// lidar_mounting.
+  Result<void> plausible(Source& source, const Sweep& sweep, const Scan& scan, std::size_t below) const;
+  void note_attitude(Scan& scan);
   Result<std::optional<Eigen::Quaterniond>> attitude_at(std::uint64_t stamp) const;
-  void merge(const Source& other, const PoseFunction& pose, Scan& scan) const;
+  static void merge(Source& other, const PoseFunction& pose, Scan& scan);
 
   Platform platform_;
   BodyFilter body_;
@@ -95,6 +115,7 @@ class ScanInput {
   std::vector<Source> sources_{};
   std::optional<TiltFilter> tilt_{};
   std::string imu_frame_{};
+  int without_imu_{};  ///< Scans in a row.
 };
 
 }  // namespace adit::perception

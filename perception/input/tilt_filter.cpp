@@ -15,7 +15,8 @@ constexpr double kLongestStep = 0.1;             // s: over a longer gap the gyr
 constexpr double kAfterGap = 10.0;               // of the gain, in the step after a gap
 constexpr std::uint64_t kHeld = 200'000'000;     // ns after the newest sample
 constexpr std::uint64_t kOldVelocity = 300'000'000;
-constexpr double kSmooth = 0.15;  // s: of the derivative of the speed
+constexpr std::uint64_t kSetBack = 1'000'000'000;  // ns: an older stamp is of a clock that was set back
+constexpr double kSmooth = 0.15;                   // s: of the derivative of the speed
 
 std::string text(const char* format, double value) {
   char out[160];
@@ -41,6 +42,7 @@ TiltFilter::TiltFilter(const Mounting& mounting, const TiltFilterParams& params)
     : params_(params), R_base_imu_(mounting.pose().orientation), lever_(mounting.position()) {}
 
 void TiltFilter::set_velocity(std::uint64_t stamp, const Eigen::Vector3d& velocity) {
+  if (stamp + kSetBack < velocity_stamp_) velocity_stamp_ = 0;
   if (!velocity.allFinite() || stamp == 0 || stamp <= velocity_stamp_) return;
   const double dt = static_cast<double>(stamp - velocity_stamp_) * 1e-9;
   if (velocity_stamp_ == 0 || stamp - velocity_stamp_ > kOldVelocity)
@@ -54,8 +56,10 @@ void TiltFilter::set_velocity(std::uint64_t stamp, const Eigen::Vector3d& veloci
 Result<void> TiltFilter::add(const ImuSample& sample) {
   if (!sample.gyro.allFinite() || !sample.accel.allFinite())
     return {Reason::malformed, "a sample of the IMU is no number"};
+  if (sample.stamp + kSetBack < newest_) restart();
   if (sample.stamp <= newest_) return {};
   const Eigen::Vector3d gyro = R_base_imu_ * sample.gyro, accel = R_base_imu_ * sample.accel;
+  turns_.add_rate(sample.stamp, gyro.z());
   if (!started_) {
     newest_ = sample.stamp;
     return start(sample.stamp, gyro, accel);
@@ -65,6 +69,15 @@ Result<void> TiltFilter::add(const ImuSample& sample) {
   follow(dt, gyro, scale_ * accel);
   keep(sample.stamp);
   return {};
+}
+
+void TiltFilter::restart() {
+  started_ = false;
+  count_ = size_ = 0;
+  newest_ = velocity_stamp_ = 0;
+  accel_sum_.setZero();
+  gyro_sum_.setZero();
+  driven_sum_.setZero();
 }
 
 Result<void> TiltFilter::start(std::uint64_t stamp, const Eigen::Vector3d& gyro,
@@ -139,6 +152,7 @@ void TiltFilter::keep(std::uint64_t stamp) {
 
 Result<Eigen::Quaterniond> TiltFilter::at(std::uint64_t stamp) const {
   if (!refusal_.empty()) return Error{Reason::imu_mounting, refusal_};
+  if (!turns_.refusal().empty()) return Error{Reason::imu_mounting, turns_.refusal()};
   if (size_ == 0) return Error{Reason::no_localisation, "the IMU has not shown the attitude yet"};
   if (stamp < entry(0).stamp || stamp > newest_ + kHeld)
     return Error{Reason::no_localisation, "the IMU shows no attitude of that time"};

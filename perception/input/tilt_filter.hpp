@@ -7,6 +7,7 @@
 
 #include "core/config/sensors.hpp"
 #include "core/result/result.hpp"
+#include "perception/input/turn_check.hpp"
 #include "perception/types/imu_sample.hpp"
 
 namespace adit::perception {
@@ -31,21 +32,26 @@ class TiltFilter {
  public:
   explicit TiltFilter(const Mounting& mounting, const TiltFilterParams& params = {});
 
-  /// One sample. Stamps rise; one that does not rise is left out.
+  /// One sample. Stamps rise; one that does not rise is left out. One that is older by more than a second is
+  /// of a clock that was set back: the filter starts again.
   /// Errors: imu_mounting when gravity at rest is neither 9.81 m/s2 nor 1 g, or not up in `base_link`: the
   /// filter stays without an attitude; malformed for what is no number.
   Result<void> add(const ImuSample& sample);
   /// What the body drives by its odometry, body frame, m/s.
   void set_velocity(std::uint64_t stamp, const Eigen::Vector3d& velocity);
+  /// Yaw of the body by its odometry, rad; the gyro must turn as it does.
+  void set_yaw(std::uint64_t stamp, double yaw) { turns_.add_yaw(stamp, yaw); }
 
   /// R_level_base, without yaw, interpolated or held by at most 0.2 s. Errors: no_localisation while there is
-  /// none, or none of then; imu_mounting with the text of the refusal.
+  /// none, or none of then; imu_mounting with the text of the refusal, also when the gyro has the wrong sign
+  /// or unit.
   Result<Eigen::Quaterniond> at(std::uint64_t stamp) const;
   /// Of the newest sample, ns; 0: none.
   std::uint64_t newest() const { return newest_; }
   /// The samples are in g, and are scaled.
   bool in_g() const { return scale_ != 1.0; }
   const Eigen::Vector3d& gyro_bias() const { return bias_; }
+  const TurnCheck& turns() const { return turns_; }
 
  private:
   struct Entry {
@@ -54,6 +60,7 @@ class TiltFilter {
   };
   static constexpr std::size_t kCapacity = 512;
 
+  void restart();
   Result<void> start(std::uint64_t stamp, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel);
   void follow(double dt, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel);
   void keep(std::uint64_t stamp);
@@ -67,6 +74,7 @@ class TiltFilter {
   double scale_{1.0};      ///< From the sample's unit to m/s2.
   bool started_{false};
   std::string refusal_{};  ///< Why the IMU is not used.
+  TurnCheck turns_{};
   Eigen::Vector3d up_{0, 0, 1}, bias_{0, 0, 0};
   Eigen::Vector3d velocity_{0, 0, 0}, acceleration_{0, 0, 0};
   std::uint64_t velocity_stamp_{0};

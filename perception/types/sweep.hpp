@@ -18,6 +18,7 @@ struct TimedPoint {
 struct Sweep {
   std::uint64_t stamp{};  ///< Of the message, driver's clock, ns.
   bool timed{false};      ///< Whether the points have times of their own.
+  bool planar{false};     ///< Of a planar scanner, which may see nothing in the open.
   std::vector<TimedPoint> points{};
 };
 

@@ -5,10 +5,9 @@
 #include <numbers>
 #include <utility>
 
-#include "core/wire/component_io.hpp"
-#include "core/wire/topics.hpp"
 #include "nav_msgs/msg/Odometry.h"
 #include "perception/input/point_layout.hpp"
+#include "robot_agent/motion/sensor_messages.hpp"
 #include "sensor_msgs/msg/Imu.h"
 #include "sensor_msgs/msg/LaserScan.h"
 #include "sensor_msgs/msg/PointCloud2.h"
@@ -20,16 +19,6 @@ namespace {
 constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
 constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
 constexpr double kJump = 1.0;                        // m between two samples: another odometry frame
-
-std::uint64_t nanoseconds_of(const std_msgs::msg::Header& header) {
-  return static_cast<std::uint64_t>(header.stamp().sec()) * 1'000'000'000u + header.stamp().nanosec();
-}
-
-Eigen::Vector3d vector_of(const geometry_msgs::msg::Vector3& v) { return {v.x(), v.y(), v.z()}; }
-
-Eigen::Quaterniond quaternion_of(const geometry_msgs::msg::Quaternion& q) {
-  return {q.w(), q.x(), q.y(), q.z()};
-}
 
 }  // namespace
 
@@ -59,12 +48,9 @@ void Scans::take(const sensor_msgs::msg::LaserScan& scan, Time received) {
   });
 }
 
-void Scans::take(const sensor_msgs::msg::Imu& imu) {
+void Scans::take(const sensor_msgs::msg::Imu& imu, Time) {
   protect([&] {
-    const auto added =
-        input_.add(perception::ImuSample{nanoseconds_of(imu.header()), vector_of(imu.angular_velocity()),
-                                         vector_of(imu.linear_acceleration())},
-                   imu.header().frame_id());
+    const auto added = input_.add(imu_sample_of(imu), imu.header().frame_id());
     if (!added) refuse(added.error());
     if (!input_.imu_in_g() || std::exchange(in_g_reported_, true)) return;
     notice(Severity::warning, "imu_in_g", Reason::none,
@@ -72,7 +58,7 @@ void Scans::take(const sensor_msgs::msg::Imu& imu) {
   });
 }
 
-void Scans::take(const nav_msgs::msg::Odometry& odometry) {
+void Scans::take(const nav_msgs::msg::Odometry& odometry, Time) {
   protect([&] {
     const auto& p = odometry.pose().pose().position();
     const Eigen::Quaterniond q = quaternion_of(odometry.pose().pose().orientation());
@@ -83,13 +69,13 @@ void Scans::take(const nav_msgs::msg::Odometry& odometry) {
     const bool set_back = stamp < history_.newest() && history_.newest() - stamp > 500'000'000;
     if (set_back || (last && (last->position - at).norm() > kJump)) history_.clear();
     history_.add(stamp, {at, q.normalized()});
-    input_.add_velocity(stamp, vector_of(odometry.twist().twist().linear()));
+    input_.add_odometry(stamp, vector_of(odometry.twist().twist().linear()), Pose3{at, q.normalized()}.yaw());
     for (std::size_t n = 0; n < waiting_.size(); ++n)
       if (waiting_[n] && !is_ahead(waiting_[n]->sweep)) pass_on(n);
   });
 }
 
-void Scans::take(const tf2_msgs::msg::TFMessage& transforms) {
+void Scans::take(const tf2_msgs::msg::TFMessage& transforms, Time) {
   protect([&] {
     for (const auto& each : transforms.transforms()) {
       const auto set = input_.add_transform(
@@ -124,8 +110,9 @@ void Scans::pass_on(std::size_t lidar) {
   if (waiting.sweep.timed && !whole.deskewed && history_.size() > 0)
     notice(Severity::warning, "not_deskewed", Reason::sensor_times,
            "the odometry has no poses for the times of the scans, which are not corrected for motion; do "
-           "lidar and "
-           "odometry use one clock?");
+           "lidar and odometry use one clock?");
+  for (const perception::ScanWarning& warning : whole.warnings)
+    notice(Severity::warning, warning.code, warning.reason, warning.text);
   call(output_,
        {std::make_shared<PointCloud>(std::move(whole.points)), whole.stamp, whole.attitude, waiting.received},
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
@@ -141,35 +128,6 @@ void Scans::notice(Severity severity, const char* code, Reason reason, const std
   if (!reported_.pass(code + std::string(adit::name(reason)), now())) return;
   log().warn(text);
   if (notify_) notify_({{}, severity, code, reason, robot_ + ": " + text});
-}
-
-Result<Scans::Readers> Scans::read(const wire::ComponentIo& io, const Platform& platform,
-                                   std::function<Scans*()> taker) {
-  Readers all{};
-  const auto open = [&](auto topic, const std::string& named, auto take) -> Result<void> {
-    if (!named.empty()) topic.name = all.names.emplace_back("rt/" + named).c_str();
-    return io.open(all.readers.emplace_back(), topic,
-                   [taker, take](const auto& sample, const wire::SampleInfo& info) {
-                     if (Scans* scans = taker()) take(*scans, sample, info.received);
-                   });
-  };
-  namespace topics = wire::topics;
-  const std::vector<LidarConfig> lidars = platform.all_lidars();
-  for (std::size_t n = 0; n < lidars.size(); ++n)
-    if (auto opened = open(topics::kPoints, lidars[n].topic,
-                           [n](Scans& s, const auto& cloud, Time received) { s.take(cloud, n, received); });
-        !opened)
-      return opened.error();
-  const auto plain = [](Scans& s, const auto& sample, Time) { s.take(sample); };
-  if (auto opened =
-          open(topics::kScan, "", [](Scans& s, const auto& scan, Time received) { s.take(scan, received); });
-      !opened)
-    return opened.error();
-  if (auto opened = open(topics::kOdom, "", plain); !opened) return opened.error();
-  if (auto opened = open(topics::kTfStatic, "", plain); !opened) return opened.error();
-  if (platform.imu)
-    if (auto opened = open(topics::kImu, platform.imu->topic, plain); !opened) return opened.error();
-  return all;
 }
 
 Result<perception::Sweep> to_sweep(const sensor_msgs::msg::PointCloud2& cloud, double duration) {
@@ -190,6 +148,7 @@ Result<perception::Sweep> to_sweep(const sensor_msgs::msg::LaserScan& scan, doub
     return Error{Reason::malformed, "the scan's angles are none of one turn"};
   perception::Sweep sweep;
   sweep.stamp = nanoseconds_of(scan.header());
+  sweep.planar = true;
   sweep.points.reserve(count);
   const float each = scan.time_increment();
   sweep.timed = each > 0 && each * static_cast<float>(count) < 1.0f;

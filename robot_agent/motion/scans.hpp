@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,7 +10,6 @@
 #include "core/component/component.hpp"
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
-#include "core/wire/participant.hpp"
 #include "perception/input/scan_input.hpp"
 #include "robot_agent/common/notice.hpp"
 #include "robot_agent/common/rate_limit.hpp"
@@ -27,10 +25,6 @@ class Odometry;
 }
 namespace tf2_msgs::msg {
 class TFMessage;
-}
-
-namespace adit::wire {
-struct ComponentIo;
 }
 
 namespace adit::agent {
@@ -62,18 +56,9 @@ class Scans : public Component {
   /// On its strand; nothing when it does not run. `lidar`: index of Platform::all_lidars().
   void take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received);
   void take(const sensor_msgs::msg::LaserScan& scan, Time received);
-  void take(const sensor_msgs::msg::Imu& imu);
-  void take(const nav_msgs::msg::Odometry& odometry);
-  void take(const tf2_msgs::msg::TFMessage& transforms);
-
-  struct Readers {
-    std::deque<std::string> names{};  ///< Of topics that the platform's file names.
-    std::vector<std::unique_ptr<wire::RawReader>> readers{};
-  };
-  /// Readers of the sensors of `platform`, of /scan, /odom and /tf_static; `taker` gives the component that
-  /// takes them now, on the strand of `io`, or null. Errors of the wire.
-  static Result<Readers> read(const wire::ComponentIo& io, const Platform& platform,
-                              std::function<Scans*()> taker);
+  void take(const sensor_msgs::msg::Imu& imu, Time received);
+  void take(const nav_msgs::msg::Odometry& odometry, Time received);
+  void take(const tf2_msgs::msg::TFMessage& transforms, Time received);
 
  private:
   struct Waiting {

@@ -21,6 +21,7 @@
 #include "core/store/file_disk.hpp"
 #include "core/wire/link_file.hpp"
 #include "robot_agent/agent.hpp"
+#include "robot_agent/program/check.hpp"
 #include "robot_agent/program/console.hpp"
 #include "robot_agent/program/memory_limit.hpp"
 #include "robot_agent/program/parent.hpp"
@@ -40,11 +41,20 @@ Examples:
   robot_agent --config config/robots/r1.yaml             the robot of that file
   robot_agent --config config/robots/r1.yaml --supervised  restarted when it dies; zero is sent meanwhile
   robot_agent --config config/robots/r1.yaml --name r7 --pose 4 2 1.57 --robot-domain 7
+  robot_agent check --config r1.yaml                     judge the mounted sensors, before the first drive
   robot_agent console status --name r1                   at the robot itself
   robot_agent console unlock --name r1                   end the lock of an operator who is gone
   robot_agent console restart planner --name r1          make a component anew
 
-Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration.)";
+Exit status: 0 ended by a signal, 1 failed, 2 wrong usage or configuration. Of `check`: 0 all is OK, 1 something is
+wrong.)";
+
+constexpr const char* kCheckFooter = R"(
+It listens to the drivers and sends nothing. Let the robot stand on level ground for 10 s, then turn it on the spot by
+its own remote control. Each line is OK or wrong, with the line of the file to change: rates, delays, clocks, frames,
+height and tilt of the lidars against the ground, gravity and its axis, the gyro's sign, socket buffers.
+
+Exit status: 0 all is OK, 1 something is wrong, 2 wrong usage or configuration.)";
 
 struct Options {
   std::string config{}, name{}, state{}, log{}, link{}, record{};
@@ -287,6 +297,18 @@ int main(int argc, char** argv) {
                    "status | unlock | peers | health | restart COMPONENT | policy COMPONENT auto|manual")
       ->required();
   console->add_option("--name", robot, "the robot")->required();
+  auto* check = app.add_subcommand("check", "judge the robot's sensors: 10 s of standing and one turn");
+  check->footer(kCheckFooter);
+  double standing = 10, turning = 60;
+  bool no_turn = false;
+  check->add_option("--config", options.config, "robot file, as config/robots/r1.yaml")->required();
+  check->add_option("--robot-domain", options.robot_domain, "DDS domain of the driver")
+      ->check(CLI::Range(0, 232));
+  check->add_option("--standing", standing, "how long it listens to the standing robot, s [10]")
+      ->check(CLI::Range(0.1, 600.0));
+  check->add_option("--turning", turning, "how long it waits for the turn at most, s [60]")
+      ->check(CLI::Range(1.0, 600.0));
+  check->add_flag("--no-turn", no_turn, "do not ask for a turn");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -298,6 +320,13 @@ int main(int argc, char** argv) {
   if (!config) return fail(config.error(), 2);
 
   const sigset_t set = end_signals();
+  if (*check) {
+    const auto inner = robot_wire(*config);
+    if (!inner) return fail(inner.error(), 2);
+    const auto file = config::find_file(options.config, "./");
+    return check_sensors(*config, *inner,
+                         {*file, from_seconds(standing), no_turn ? Duration::zero() : from_seconds(turning)});
+  }
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   if (options.supervised) return run_parent(*config, options, argc, argv);
   if (options.reports) prctl(PR_SET_PDEATHSIG, SIGTERM);

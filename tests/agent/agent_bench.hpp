@@ -18,9 +18,11 @@
 #include "geometry_msgs/msg/Twist.h"
 #include "nav_msgs/msg/Odometry.h"
 #include "robot_agent/agent.hpp"
+#include "sensor_msgs/msg/Imu.h"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "tests/folders/folders.hpp"
 #include "tests/point_cloud.hpp"
+#include "tf2_msgs/msg/TFMessage.h"
 
 namespace adit::agent {
 
@@ -69,6 +71,8 @@ class AgentBench {
     driver_wire_ = network_.join(100, "driver");
     odom_ = wire::Writer<nav_msgs::msg::Odometry>::make(*driver_wire_, wire::topics::kOdom).value();
     points_ = wire::Writer<sensor_msgs::msg::PointCloud2>::make(*driver_wire_, wire::topics::kPoints).value();
+    imu_ = wire::Writer<sensor_msgs::msg::Imu>::make(*driver_wire_, wire::topics::kImu).value();
+    frames_ = wire::Writer<tf2_msgs::msg::TFMessage>::make(*driver_wire_, wire::topics::kTfStatic).value();
     cmd_vel_ = wire::make_reader(*driver_wire_, wire::topics::kCmdVel, *strand_,
                                  [this](const geometry_msgs::msg::Twist& t, const wire::SampleInfo&) {
                                    command = {t.linear().x(), t.linear().y(), t.angular().z()};
@@ -78,6 +82,7 @@ class AgentBench {
                    .value();
     odom_timer_ = strand_->every(20ms, [this] { drive(); });
     points_timer_ = strand_->every(100ms, [this] { scan(); });
+    imu_timer_ = strand_->every(10ms, [this] { inertia(); });
     start_agent();
   }
   ~AgentBench() { stop_agent(); }
@@ -170,6 +175,20 @@ class AgentBench {
   bool driver_alive{true}, lidar_alive{true};
   std::string lidar_frame{"base_link"};
   PointCloud obstacles{};  ///< Odometry frame; added to the plain.
+  /// Changes each cloud before it is sent; none: it is sent as it is.
+  std::function<void(sensor_msgs::msg::PointCloud2&)> spoil{};
+  /// Specific force that the IMU measures, 100 Hz; none: there is no IMU.
+  std::optional<Eigen::Vector3d> force{};
+  void send_frame(const std::string& child, double z) {
+    tf2_msgs::msg::TFMessage message;
+    message.transforms().resize(1);
+    auto& each = message.transforms()[0];
+    each.header().frame_id("base_link");
+    each.child_frame_id(child);
+    each.transform().translation().z(z);
+    each.transform().rotation().w(1.0);
+    (void)frames_.write(message);
+  }
   radio::Command last_command{};
   wire::SimulatedNetwork& network() { return network_; }
   const wire::Participant& radio() const { return *radio_; }
@@ -250,7 +269,18 @@ class AgentBench {
     sensor_msgs::msg::PointCloud2 c = cloud_of({cloud.data()->data(), 3 * cloud.size()});
     stamp(c.header());
     c.header().frame_id(lidar_frame);
+    if (spoil) spoil(c);
     (void)points_.write(c);
+  }
+  void inertia() {
+    if (!force) return;
+    sensor_msgs::msg::Imu sample;
+    stamp(sample.header());
+    sample.header().frame_id("imu");
+    sample.linear_acceleration().x(force->x());
+    sample.linear_acceleration().y(force->y());
+    sample.linear_acceleration().z(force->z());
+    (void)imu_.write(sample);
   }
   void stamp(std_msgs::msg::Header& h) {
     const auto ns = strand_->now().time_since_epoch().count();
@@ -266,8 +296,10 @@ class AgentBench {
   std::unique_ptr<wire::Participant> driver_wire_, radio_, robot_;
   wire::Writer<nav_msgs::msg::Odometry> odom_{};
   wire::Writer<sensor_msgs::msg::PointCloud2> points_{};
+  wire::Writer<sensor_msgs::msg::Imu> imu_{};
+  wire::Writer<tf2_msgs::msg::TFMessage> frames_{};
   std::unique_ptr<wire::RawReader> cmd_vel_{};
-  Timer odom_timer_{}, points_timer_{};
+  Timer odom_timer_{}, points_timer_{}, imu_timer_{};
   std::vector<std::unique_ptr<Operator>> operators_{};
   std::unique_ptr<Agent> agent_{};
 };

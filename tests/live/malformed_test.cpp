@@ -36,9 +36,10 @@ int malformed_of(const nlohmann::json& net, const std::string& agent) {
 
 TEST_F(Programs, MalformedSamplesOnEveryTopicAreSurvivedAndCounted) {
   PlainDriver driver(*net_);
-  folder_.write("body.yaml",
-                "name: body\ndrive: differential\nlength: 0.6\nwidth: 0.5\nheight: 0.5\nmax_speed: 2\nmax_turn: 1.5\n"
-                "max_acceleration: 1.5\nstep: 0.08\nlidar_height: 0.5\nsensors: {imu: {x: 0, y: 0, z: 0.2}}\n");
+  folder_.write(
+      "body.yaml",
+      "name: body\ndrive: differential\nlength: 0.6\nwidth: 0.5\nheight: 0.5\nmax_speed: 2\nmax_turn: 1.5\n"
+      "max_acceleration: 1.5\nstep: 0.08\nlidar_height: 0.5\nsensors: {imu: {x: 0, y: 0, z: 0.2}}\n");
   Process robot = agent({}, folder_.write("r1.yaml", "name: r1\nplatform: body.yaml\n"));
   ASSERT_EQ(op("op1", {"take", "r1"}).exit_code, 0);
   const auto radio = net_->join_radio("vandal"), inner = net_->join_robot("vandal");

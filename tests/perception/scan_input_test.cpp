@@ -46,7 +46,7 @@ TEST(ScanInput, DeskewsATurnWhileDriving) {
   std::vector<Eigen::Vector3d> truth;
   for (int i = 0; i < 360; ++i) {
     const double angle = i * M_PI / 180, time = 0.1 * i / 359;
-    const Eigen::Vector3d place(8 * std::cos(angle), 8 * std::sin(angle), 1);
+    const Eigen::Vector3d place(8 * std::cos(angle), 8 * std::sin(angle), 0);
     const Pose3 T_odom_lidar = *driven(kStart + static_cast<std::uint64_t>(time * 1e9)) * T_base_lidar;
     sweep.points.push_back({(T_odom_lidar.inverse() * place).cast<float>(), static_cast<float>(time), 0, 0});
     truth.push_back(place);
@@ -102,9 +102,59 @@ TEST(ScanInput, AScanWithoutAnyReturnIsRefused) {
   EXPECT_EQ(input.add(of({}), 0, "lidar", standing).reason(), Reason::scan_empty);
   EXPECT_EQ(input.add(of({{kNan, kNan, kNan}, {kNan, 0, 0}}), 0, "lidar", standing).reason(),
             Reason::scan_empty);
-  Platform planar = robot();
-  planar.lidars[0].rings = 1;
-  EXPECT_TRUE(ScanInput(planar).add(of({}), 0, "lidar", standing)) << "one level ring may see nothing";
+  EXPECT_EQ(input.add(of({{0.1f, 0, 0}, {0, 0.2f, 0}}), 0, "lidar", standing).reason(), Reason::scan_empty)
+      << "a bag over the lidar";
+}
+
+/// A scan of the ground and of what stands 1 m above it, `n` returns of each.
+Sweep of_ground(int n) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < n; ++i) {
+    const float a = 0.1f * static_cast<float>(i);
+    points.push_back({4 * std::cos(a), 4 * std::sin(a), -0.5f});
+    points.push_back({4 * std::cos(a), 4 * std::sin(a), 0.5f});
+  }
+  return of(points);
+}
+
+TEST(ScanInput, WhatMaySeeNothingIsNotRefused) {
+  Platform p = robot();
+  p.lidars[0].rings = 1;
+  ScanInput level(p), tilted(p), laser(p);
+  EXPECT_EQ(level.add(of({{kNan, 0, 0}}), 0, "lidar", standing).reason(), Reason::scan_empty)
+      << "it never saw anything";
+  ASSERT_TRUE(level.add(of({{3, 0, 0}}), 0, "lidar", standing));
+  EXPECT_TRUE(level.add(of({}), 0, "lidar", standing)) << "one level ring in the open";
+  ASSERT_TRUE(tilted.add(of_ground(40), 0, "lidar", standing));
+  EXPECT_EQ(tilted.add(of({}), 0, "lidar", standing).reason(), Reason::scan_empty) << "it saw the ground";
+  Sweep nothing = of({});
+  nothing.planar = true;
+  EXPECT_TRUE(laser.add(nothing, 0, "lidar", standing));
+}
+
+TEST(ScanInput, ALidarThatSeesNoGroundBelowItIsMountedOtherwise) {
+  ScanInput input(robot());
+  EXPECT_TRUE(input.add(of_ground(200), 0, "lidar", standing));
+  Sweep turned = of_ground(200);
+  for (TimedPoint& point : turned.points) point.position.z() = std::fabs(point.position.z());
+  const auto scan = input.add(turned, 0, "lidar", standing);
+  EXPECT_EQ(scan.reason(), Reason::lidar_mounting);
+  EXPECT_THAT(scan.error().text, testing::HasSubstr("'lidar'"));
+  Platform flying = robot();
+  flying.drive = Drive::aerial;
+  EXPECT_TRUE(ScanInput(flying).add(turned, 0, "lidar", standing));
+}
+
+TEST(ScanInput, ALidarUnderTheFloorIsRefused) {
+  ScanInput input(robot());
+  ASSERT_TRUE(input.add_transform("base_link", "velodyne", Pose3::level({0, 0, 0}, -0.4)));
+  const auto scan = input.add(of({{3, 0, 1}}), 0, "velodyne", standing);
+  EXPECT_EQ(scan.reason(), Reason::lidar_mounting);
+  EXPECT_THAT(scan.error().text, testing::HasSubstr("0.4"));
+  ASSERT_TRUE(input.add_transform("base_link", "velodyne", Pose3::level({0.1, 0, 0}, 0.4)));
+  const auto repaired = input.add(of({{3, 0, 1}}), 0, "velodyne", standing);
+  ASSERT_TRUE(repaired) << repaired.error().text;
+  EXPECT_LT(((*repaired)->origin - Eigen::Vector3f(0.1f, 0, 0.4f)).norm(), 1e-6f) << "where it really is";
 }
 
 TEST(ScanInput, AnOvertakenScanIsRefused) {
@@ -115,6 +165,70 @@ TEST(ScanInput, AnOvertakenScanIsRefused) {
   EXPECT_EQ(input.add(sweep, 0, "lidar", standing).reason(), Reason::sample_stale);
   sweep.stamp = 5;
   EXPECT_TRUE(input.add(sweep, 0, "lidar", standing)) << "the driver's clock was set back";
+}
+
+TEST(ScanInput, ManyOvertakenScansAreReported) {
+  ScanInput input(robot());
+  int late = 0, reported = 0;
+  // Two drivers on one topic, one of them 50 ms behind.
+  for (std::uint64_t n = 0; n < 40; ++n) {
+    Sweep sweep = of({{3, 0, 0}});
+    sweep.stamp = kStart + n * 50'000'000 - (n % 2) * 80'000'000;
+    const auto scan = input.add(sweep, 0, "lidar", standing);
+    late += scan.reason() == Reason::sample_stale;
+    reported += scan.reason() == Reason::sensor_times;
+  }
+  EXPECT_EQ(late, 3);
+  EXPECT_EQ(reported, 17);
+  // One in twenty is the network's.
+  ScanInput usual(robot());
+  for (std::uint64_t n = 0; n < 200; ++n) {
+    Sweep sweep = of({{3, 0, 0}});
+    sweep.stamp = kStart + (100 + n) * 100'000'000 - (n % 20 == 19 ? 150'000'000 : 0);
+    const auto scan = usual.add(sweep, 0, "lidar", standing);
+    if (!scan) {
+      EXPECT_EQ(scan.reason(), Reason::sample_stale) << n;
+    }
+  }
+}
+
+TEST(ScanInput, ASecondLidarThatIsSilentIsReported) {
+  Platform p = robot();
+  p.lidars.push_back({.mounting = {.x = -0.2, .z = 0.4}, .topic = "rear", .frame = "rear"});
+  ScanInput input(p);
+  std::size_t warned = 0;
+  for (std::uint64_t n = 0; n < 20; ++n) {
+    Sweep front = of({{4, 0, 0}});
+    front.stamp = kStart + n * 100'000'000;
+    const auto scan = input.add(front, 0, "lidar", standing);
+    ASSERT_TRUE(scan && *scan);
+    for (const ScanWarning& warning : (*scan)->warnings) {
+      EXPECT_EQ(warning.reason, Reason::sensor_silent);
+      EXPECT_THAT(warning.text, testing::HasSubstr("'rear'"));
+      ++warned;
+    }
+  }
+  EXPECT_EQ(warned, 11U) << "after a second";
+}
+
+TEST(ScanInput, AnImuThatIsSilentOrHasAnotherClockIsReported) {
+  Platform p = robot();
+  p.imu = ImuConfig{};
+  for (const std::uint64_t offset : {std::uint64_t{0}, std::uint64_t{500'000'000'000}}) {
+    ScanInput input(p);
+    std::string text;
+    for (std::uint64_t n = 0; n < 20; ++n) {
+      Sweep sweep = of({{3, 0, 0}});
+      sweep.stamp = kStart + n * 100'000'000;
+      for (std::uint64_t k = 0; offset != 0 && k < 10; ++k)
+        ASSERT_TRUE(
+            input.add(ImuSample{sweep.stamp + offset + k * 10'000'000, {0, 0, 0}, {0, 0, 9.81}}, "imu"));
+      const auto scan = input.add(sweep, 0, "lidar", standing);
+      ASSERT_TRUE(scan && *scan) << "the odometry's attitude serves";
+      for (const ScanWarning& warning : (*scan)->warnings) text = warning.text;
+    }
+    EXPECT_THAT(text, testing::HasSubstr(offset == 0 ? "sends nothing" : "another clock"));
+  }
 }
 
 TEST(ScanInput, SeveralLidarsBecomeOneScan) {

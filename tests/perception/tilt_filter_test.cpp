@@ -125,8 +125,27 @@ TEST(TiltFilter, AnswersOnlyForTimesThatItKnows) {
   EXPECT_EQ(filter.at(100 * kMs).reason(), Reason::no_localisation) << "it keeps 5 s at 100 Hz";
   EXPECT_TRUE(filter.at(10'150 * kMs));
   EXPECT_EQ(filter.at(10'300 * kMs).reason(), Reason::no_localisation);
-  EXPECT_TRUE(filter.add({500 * kMs, {5, 5, 5}, {9, 9, 9}})) << "late, and left out";
+  EXPECT_TRUE(filter.add({9'500 * kMs, {5, 5, 5}, {9, 9, 9}})) << "late, and left out";
   EXPECT_LT(degrees(filter.at(9'995 * kMs)).norm(), 1e-6);
+}
+
+TEST(TiltFilter, AClockThatIsSetBackStartsItAgain) {
+  TiltFilter filter({});
+  for (std::uint64_t n = 1; n <= 100; ++n) ASSERT_TRUE(filter.add({n * 10 * kMs, {0, 0, 0}, {0, 0, kG}}));
+  ASSERT_TRUE(filter.add({9'000'000 * kMs, {0, 0, 0}, {0, 0, kG}})) << "one wild stamp";
+  for (std::uint64_t n = 102; n <= 200; ++n) ASSERT_TRUE(filter.add({n * 10 * kMs, {0, 0, 0}, {0, 0, kG}}));
+  EXPECT_EQ(filter.newest(), 2000 * kMs);
+  EXPECT_TRUE(filter.at(1990 * kMs));
+}
+
+TEST(TiltFilter, AGyroThatTurnsTheWrongWayIsRefused) {
+  TiltFilter filter({});
+  for (std::uint64_t n = 1; n <= 400; ++n) {
+    ASSERT_TRUE(filter.add({n * 10 * kMs, {0, 0, -1}, {0, 0, kG}}));
+    filter.set_yaw(n * 10 * kMs, 0.01 * static_cast<double>(n));
+  }
+  EXPECT_EQ(filter.at(3990 * kMs).reason(), Reason::imu_mounting);
+  EXPECT_THAT(filter.at(3990 * kMs).error().text, testing::HasSubstr("opposite"));
 }
 
 }  // namespace
