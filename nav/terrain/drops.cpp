@@ -44,7 +44,9 @@ void Drops::clear() {
   cells_.clear();
 }
 
-void Drops::begin_scan(const GroundGrid& ground, float now, float farthest) {
+void Drops::begin_scan(const GroundGrid& ground, std::span<const std::uint8_t> solid, float now,
+                       float farthest) {
+  solid_ = solid;
   now_ = now;
   farthest_ = farthest;
   ground.entered([this](std::size_t place) { odds_[place] = 0, rays_below_[place] = 0; });
@@ -83,8 +85,8 @@ bool Drops::under_ground(const View& view, const Eigen::Vector3f& ray, float ran
     const Eigen::Vector3f p = view.sensor + r * way;
     if (!ground.inside(p.x(), p.y())) break;
     const int index = ground.window(p.x(), p.y());
-    if (ground.measured(index) && p.z() < ground.height(index) - geometry_.depth / 2)
-      under += GroundGrid::kCell;
+    const bool held = ground.measured(index) || solid_[static_cast<std::size_t>(index)] != 0;
+    if (held && p.z() < ground.height(index) - geometry_.depth / 2) under += GroundGrid::kCell;
   }
   // One cell may be that of an edge itself.
   return under > 1.5f * GroundGrid::kCell;
@@ -126,8 +128,14 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
 void Drops::below(const View& view, const Eigen::Vector3f& point, const GroundGrid& ground) {
   const Eigen::Vector3f ray = point - view.sensor;
   const float range = ray.head<2>().norm();
-  // What is not lower than the ground around the robot lies behind something that is higher.
-  const Cue cue = ground.below_plane(point) > geometry_.depth ? Cue::ray : Cue::doubtful;
+  // What is not lower than the ground around the robot lies behind something that is higher; and what lies
+  // below an obstacle may be its image in wet ground or in glass.
+  const auto solid_at = [&](float r) {
+    const Eigen::Vector2f p = point.head<2>() + (r - range) / range * ray.head<2>();
+    return ground.inside(p.x(), p.y()) && solid_[static_cast<std::size_t>(ground.window(p.x(), p.y()))] != 0;
+  };
+  const bool under_solid = solid_at(range) || solid_at(range + GroundGrid::kCell);
+  const Cue cue = !under_solid && ground.below_plane(point) > geometry_.depth ? Cue::ray : Cue::doubtful;
   if (ray.z() > -0.01f) return;
   const Cue passed = pass(view, ray, 1.0f, cue, ground);
   // Where it lies there is no ground, either.

@@ -35,8 +35,9 @@ class Drops {
   Drops(const TerrainParams& params, const Geometry& geometry, const GroundGrid& ground);
   void clear();
 
-  /// `farthest`: to where three standard deviations of the ground's height are less than a drop, m.
-  void begin_scan(const GroundGrid& ground, float now, float farthest);
+  /// `solid`: the cells of the ground's window that hold an obstacle; valid until finish(). `farthest`: to
+  /// where three standard deviations of the ground's height are less than a drop, m.
+  void begin_scan(const GroundGrid& ground, std::span<const std::uint8_t> solid, float now, float farthest);
   /// A return that lies below the ground.
   void below(const View& view, const Eigen::Vector3f& point, const GroundGrid& ground);
   /// Directions without a return.
@@ -51,7 +52,8 @@ class Drops {
   enum class Cue { none, ray, doubtful };
   /// Votes where a ray passed the ground's height; what it shows, or none.
   Cue pass(const View& view, const Eigen::Vector3f& ray, float end, Cue cue, const GroundGrid& ground);
-  /// Whether a ray that passed the ground at `range` went on below ground that was measured.
+  /// Whether a ray that passed the ground at `range` went on below ground that was measured, or below what
+  /// stands on it, as only a mirrored one does.
   bool under_ground(const View& view, const Eigen::Vector3f& ray, float range, float end,
                     const GroundGrid& ground) const;
   void vote(int index, float range, Cue cue, const GroundGrid& ground);
@@ -64,6 +66,7 @@ class Drops {
   Geometry geometry_;
   int edge_cells_;  ///< most between a ray's place and the last ground seen
   float farthest_{};
+  std::span<const std::uint8_t> solid_{};
   std::vector<float> odds_;  ///< log-odds, of a GroundGrid's torus
   std::vector<std::uint8_t> rays_below_;
   std::vector<float> stamp_;

@@ -118,14 +118,8 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   const float known = ground_.plane().sigma_gradient;
   const auto depth = static_cast<float>(limits_.drop) / 3,
              noise = static_cast<float>(platform_.lidar().noise);
-  drops_.begin_scan(ground_, now_, std::sqrt(std::max(0.0f, depth * depth - noise * noise)) / known);
-  classify(view);
-  drops_.silent(view, rays_, ground_);
-  drops_.finish(view, rays_, ground_);
-  obstacles_.keep(view, rays_, ground_, static_cast<float>(limits_.obstacle));
-  std::fill(solid_.begin(), solid_.end(), std::uint8_t{0});
-  for (const auto& e : obstacles_.entries())
-    if (e.again) solid_[static_cast<std::size_t>(ground_.window(e.x(), e.y()))] = 1;
+  mark_obstacles(view);
+  find_drops(view, std::sqrt(std::max(0.0f, depth * depth - noise * noise)) / known);
   surface_.work_out(ground_, solid_);
   write_cells();
 }
@@ -192,7 +186,7 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
   }
 }
 
-void TerrainMap::classify(const View& view) {
+void TerrainMap::mark_obstacles(const View& view) {
   const auto step = static_cast<float>(limits_.obstacle);
   const auto top = static_cast<float>(limits_.headroom);
   under_.clear();
@@ -203,15 +197,28 @@ void TerrainMap::classify(const View& view) {
       if (climb < top) obstacles_.mark(p.x(), p.y(), p.z(), climb);
     } else if (climb > step / 2) {
       if (under_.size() < under_.capacity()) under_.emplace_back(p.x(), p.y());
-    } else if (climb < 0 && p.z() - ground_.height(index) < -ground_.drop_limit(index)) {
-      drops_.below(view, p, ground_);
+    } else if (climb < 0 && is_below(p) && deep_.size() < kMostDeep) {
+      deep_.push_back(p);
     }
   }
   for (const Eigen::Vector2f& p : under_) obstacles_.mark_under(p.x(), p.y());
-  for (const Eigen::Vector3f& p : deep_) {
-    const int index = ground_.window(p.x(), p.y());
-    if (p.z() - ground_.height(index) < -ground_.drop_limit(index)) drops_.below(view, p, ground_);
-  }
+  obstacles_.keep(view, rays_, ground_, step);
+  std::fill(solid_.begin(), solid_.end(), std::uint8_t{0});
+  for (const auto& e : obstacles_.entries())
+    if (e.again) solid_[static_cast<std::size_t>(ground_.window(e.x(), e.y()))] = 1;
+}
+
+bool TerrainMap::is_below(const Eigen::Vector3f& p) const {
+  const int index = ground_.window(p.x(), p.y());
+  return p.z() - ground_.height(index) < -ground_.drop_limit(index);
+}
+
+void TerrainMap::find_drops(const View& view, float farthest) {
+  drops_.begin_scan(ground_, solid_, now_, farthest);
+  for (const Eigen::Vector3f& p : deep_)
+    if (is_below(p)) drops_.below(view, p, ground_);
+  drops_.silent(view, rays_, ground_);
+  drops_.finish(view, rays_, ground_);
 }
 
 // With the last cell of the ground before each: where in its cell a drop begins nobody knows.

@@ -49,7 +49,10 @@ class TerrainMap {
  private:
   void sort_in(std::span<const Eigen::Vector3f> points, const View& view);
   void register_scan(const Pose3& body, View& view, GroundGrid::Offset& offset);
-  void classify(const View& view);
+  void mark_obstacles(const View& view);
+  /// Whether a return lies so far below the ground that the ground is missing there.
+  bool is_below(const Eigen::Vector3f& p) const;
+  void find_drops(const View& view, float farthest);
   void write_drops();
   void write_cells();
 
@@ -65,7 +68,7 @@ class TerrainMap {
   RayImage rays_{};
   std::vector<Eigen::Vector3f> near_{};   ///< returns within range, in the map
   std::vector<Eigen::Vector2f> under_{};  ///< of those within range: nearly as high as an obstacle
-  std::vector<Eigen::Vector3f> deep_{};   ///< those farther away whose ray went below the ground within range
+  std::vector<Eigen::Vector3f> deep_{};   ///< whose ray went below the ground within range
   std::vector<std::uint8_t> solid_;       ///< cells of the ground's window with an obstacle in them
   std::vector<std::uint8_t> drop_;        ///< and those that are written as a drop that blocks
   std::vector<TerrainCell> cells_{};

@@ -33,6 +33,7 @@ void print(const TerrainOptions& options, const TerrainSurvey& survey, std::size
     const nlohmann::ordered_json out{{"m2", m2},
                                      {"cells", cells},
                                      {"drop_share", TerrainSurvey::drop_share(counts)},
+                                     {"unknown_share", survey.unknown_share()},
                                      {"range", options.range},
                                      {"clouds", clouds},
                                      {"terrain_ms", each}};

@@ -26,9 +26,14 @@ void TerrainSurvey::add_scan(std::span<const Eigen::Vector3f> points, const Pose
   for (std::int32_t i = cell(at.x()) - far; i <= cell(at.x()) + far; ++i)
     for (std::int32_t j = cell(at.y()) - far; j <= cell(at.y()) + far; ++j) {
       const Eigen::Vector2d middle((i + 0.5) * kCell, (j + 0.5) * kCell);
-      if ((middle - at).norm() <= range_ && cells_.size() < kMaxCells)
-        cells_.try_emplace({i, j}, TerrainClass::unknown);
+      if ((middle - at).norm() <= range_ && cells_.size() < kMaxCells) cells_.try_emplace({i, j});
     }
+  for (const Eigen::Vector3f& p : points) {
+    const Eigen::Vector2d place = (body * p.cast<double>()).head<2>();
+    if (!((place - at).norm() <= range_)) continue;  // Written so that a NaN fails.
+    if (const auto found = cells_.find({cell(place.x()), cell(place.y())}); found != cells_.end())
+      found->second.covered = true;
+  }
   map_.classify_cells(window_);
   for (std::size_t index = 0; index < window_.size(); ++index) {
     ++scan_counts_[static_cast<std::size_t>(window_[index])];
@@ -36,14 +41,25 @@ void TerrainSurvey::add_scan(std::span<const Eigen::Vector3f> points, const Pose
     const Eigen::Vector2f middle = map_.ground().middle(static_cast<int>(index));
     const auto found = cells_.find({cell(middle.x()), cell(middle.y())});
     if (found != cells_.end() && (middle.cast<double>() - at).norm() <= range_)
-      found->second = window_[index];
+      found->second.kind = window_[index];
   }
 }
 
 TerrainCounts TerrainSurvey::counts() const {
   TerrainCounts out{};
-  for (const auto& [key, kind] : cells_) ++out[static_cast<std::size_t>(kind)];
+  for (const auto& [key, cell] : cells_) ++out[static_cast<std::size_t>(cell.kind)];
   return out;
+}
+
+std::size_t TerrainSurvey::hidden() const {
+  return static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), [](const auto& entry) {
+    return entry.second.kind == TerrainClass::unknown && !entry.second.covered;
+  }));
+}
+
+double TerrainSurvey::unknown_share() const {
+  const std::size_t without = hidden(), unknown = counts()[0] - without, all = cells_.size() - without;
+  return all > 0 ? static_cast<double>(unknown) / static_cast<double>(all) : 0.0;
 }
 
 double TerrainSurvey::drop_share(const TerrainCounts& counts) {

@@ -29,6 +29,10 @@ class TerrainSurvey {
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
 
   TerrainCounts counts() const;
+  /// The unknown cells of counts() over which no scan had a return within range: walls and cars hide them.
+  std::size_t hidden() const;
+  /// Share of the unknown cells among those over which at least one scan had a return within range.
+  double unknown_share() const;
   /// The same of all scans, each with the terrain map's window as it then was: a cell counts once a scan.
   const TerrainCounts& scan_counts() const { return scan_counts_; }
   /// Share of the cells with a drop among those known to be ground, step, slope or drop; 0 when there are
@@ -37,10 +41,10 @@ class TerrainSurvey {
   /// Calls `use(middle, class)` for each cell, in no order.
   template <class Use>
   void for_each(const Use& use) const {
-    for (const auto& [key, kind] : cells_)
+    for (const auto& [key, cell] : cells_)
       use(Eigen::Vector2d((static_cast<double>(key.first) + 0.5) * kCell,
                           (static_cast<double>(key.second) + 0.5) * kCell),
-          kind);
+          cell.kind);
   }
   const nav::TerrainMap& map() const { return map_; }
 
@@ -53,11 +57,15 @@ class TerrainSurvey {
       return static_cast<std::size_t>(word * 0x9e3779b97f4a7c15ULL >> 16);
     }
   };
+  struct Cell {
+    TerrainClass kind{TerrainClass::unknown};
+    bool covered{false};  ///< A scan had a return over it.
+  };
   nav::TerrainMap map_;
   double range_;
   TerrainCounts scan_counts_{};
   std::vector<TerrainClass> window_{};  ///< Of the terrain map's window.
-  std::unordered_map<Key, TerrainClass, Hash> cells_{};
+  std::unordered_map<Key, Cell, Hash> cells_{};
 };
 
 }  // namespace adit::sim
