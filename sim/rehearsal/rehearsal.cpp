@@ -303,7 +303,7 @@ DriverParams make_driver_params(const RobotSpec& spec) {
 SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t seed) {
   SimulationParams out;
   if (scenario.lidar == LidarKind::planar) out.lidar = LidarParams::planar();
-  out.realistic = scenario.realistic && scenario.lidar == LidarKind::full;
+  out.realistic = scenario.lidar == LidarKind::full;
   out.noise = scenario.noise;
   out.odometry = (out.realistic ? OdometryParams::realistic() : OdometryParams{}).scaled(scenario.noise);
   if (!out.realistic) out.lidar.range_noise *= scenario.noise;  // A sweep scales its noise itself.

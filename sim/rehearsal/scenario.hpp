@@ -120,8 +120,6 @@ struct Scenario {
   wire::LinkProfile link{};
   LidarKind lidar{LidarKind::full};
   double noise{1.0};  ///< Scale of the errors of odometry and sensors, [0, 10]; 0: the truth.
-  /// With a full lidar: bodies tilt, lidars sweep, and there are inertial sensors.
-  bool realistic{false};
   std::vector<RobotSpec> robots{};
   std::vector<StationSpec> stations{};
   std::vector<PersonSpec> people{};

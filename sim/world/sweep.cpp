@@ -31,7 +31,7 @@ double albedo_at(const Eigen::Vector3d& place) {
 
 /// One beam of a column.
 struct Neighbours {
-  double range{};   ///< m, true
+  double range{};   ///< True, m.
   double before{};  ///< The same ring in the column before, m.
   double below{};   ///< The next lower ring of this column, m.
 };
@@ -44,7 +44,7 @@ class Receiver {
       : params_(params), errors_(errors), column_step_(column_step), ring_step_(ring_step), random_(seed) {}
 
   struct Return {
-    double range{};      ///< m, NaN: none
+    double range{};      ///< Measured, m; NaN: none.
     double intensity{};  ///< [0, 255]
   };
 

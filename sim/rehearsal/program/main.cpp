@@ -133,9 +133,6 @@ int main(int argc, char** argv) {
   auto* trajectories_option =
       app.add_option("--trajectories", params.trajectories,
                      "write truth, odometry and the robots' own poses into this folder (TUM files)");
-  bool realistic = false;
-  app.add_flag("--realistic", realistic,
-               "with a full lidar: bodies tilt, lidars sweep in their own frame, IMUs");
   auto* record_option =
       app.add_option("--record", params.record, "write an MCAP recording of everything said");
   seeds_option->excludes(seed_option)
@@ -175,7 +172,6 @@ int main(int argc, char** argv) {
   }
   auto scenario = load_scenario(file);
   if (!scenario) return report_error("rehearse", scenario.error());
-  scenario->realistic = realistic;
   auto world = make_world(scenario->world);
   if (!world) return report_error("rehearse", world.error());
   auto factory = make_agent_factory(defect);
