@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the driver of a realistic robot sends: layout, frames, stamps, and samples that come late.
+#include "sim/driver/robot_driver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+
+#include "core/exec/virtual_runtime.hpp"
+#include "core/wire/memory/simulated_network.hpp"
+#include "core/wire/topics.hpp"
+#include "core/wire/typed.hpp"
+#include "nav_msgs/msg/Odometry.h"
+#include "sensor_msgs/msg/Imu.h"
+#include "sensor_msgs/msg/PointCloud2.h"
+
+namespace adit::sim {
+namespace {
+
+std::int64_t stamp_of(const std_msgs::msg::Header& header) {
+  return std::int64_t{header.stamp().sec()} * 1'000'000'000 + header.stamp().nanosec();
+}
+
+/// A robot in a box of walls, and what it sent in 10 s.
+struct Sent {
+  explicit Sent(double noise) : simulation(make(noise)) {
+    const auto keep = [this](auto& samples, auto& clock) {
+      return [&samples, &clock, this](const auto& sample, const wire::SampleInfo&) {
+        samples.push_back(sample);
+        clock.push_back(scheduler.elapsed());
+      };
+    };
+    auto odom_reader = wire::make_reader<nav_msgs::msg::Odometry>(*agent, wire::topics::kOdom, *strand,
+                                                                  keep(odometry, odometry_came));
+    auto imu_reader =
+        wire::make_reader<sensor_msgs::msg::Imu>(*agent, wire::topics::kImu, *strand, keep(imu, imu_came));
+    auto points_reader = wire::make_reader<sensor_msgs::msg::PointCloud2>(*agent, wire::topics::kPoints,
+                                                                          *strand, keep(clouds, clouds_came));
+    RobotDriver driver(simulation, 0, *strand, *body, {});
+    EXPECT_TRUE(driver.start());
+    const Timer step = strand->every(10ms, [this] {
+      simulation.command(0, {0.3, 0.0, 0.5});
+      simulation.step();
+    });
+    scheduler.run_until(10s);
+  }
+
+  static Simulation make(double noise) {
+    const std::array<Box, 2> walls{Box{8, 8.5, -8, 8, 0, 3}, Box{-8, 8, 6, 6.5, 0, 3}};
+    SimulationParams params;
+    params.realistic = true;
+    params.noise = noise;
+    params.odometry = OdometryParams::realistic().scaled(noise);
+    return *Simulation::create(std::make_shared<const World>(*make_box_world(walls, 0, 3)),
+                               {{"r1", Platform{}, {0, 0, 0}}}, params);
+  }
+
+  /// How many samples of odometry came after a newer one.
+  int overtaken() const {
+    int count = 0;
+    for (std::size_t n = 1; n < odometry.size(); ++n)
+      count += stamp_of(odometry[n].header()) < stamp_of(odometry[n - 1].header());
+    return count;
+  }
+
+  Simulation simulation;
+  VirtualScheduler scheduler{1};
+  wire::SimulatedNetwork network{scheduler, {}};
+  std::unique_ptr<Runtime> machine{scheduler.machine("r1", 1h)};
+  std::shared_ptr<Executor> strand{machine->strand("r1")};
+  std::unique_ptr<wire::Participant> agent{network.join(101, "r1")}, body{network.join(101, "r1/driver")};
+  std::vector<nav_msgs::msg::Odometry> odometry{};
+  std::vector<sensor_msgs::msg::Imu> imu{};
+  std::vector<sensor_msgs::msg::PointCloud2> clouds{};
+  std::vector<Duration> odometry_came{}, imu_came{}, clouds_came{};
+};
+
+TEST(RobotDriver, SendsTheFieldsThatLidarDriversSend) {
+  const Sent sent(0.0);
+  ASSERT_NEAR(sent.clouds.size(), 99, 2);
+  const auto& cloud = sent.clouds.back();
+  EXPECT_EQ(cloud.header().frame_id(), "lidar");
+  std::vector<std::string> names;
+  std::size_t t = 0, ring = 0;
+  for (const auto& field : cloud.fields()) {
+    names.push_back(field.name());
+    if (field.name() == "t") t = field.offset();
+    if (field.name() == "ring") ring = field.offset();
+    EXPECT_EQ(field.datatype(), field.name() == "ring" ? 4 : 7) << field.name();
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"x", "y", "z", "intensity", "t", "ring"}));
+  ASSERT_EQ(cloud.data().size(), std::size_t{cloud.width()} * cloud.point_step());
+  float last = 0.0f;
+  int highest = 0;
+  for (std::size_t n = 0; n < cloud.width(); ++n) {
+    const std::uint8_t* point = cloud.data().data() + n * cloud.point_step();
+    float time = 0.0f;
+    std::uint16_t beam = 0;
+    std::memcpy(&time, point + t, sizeof time);
+    std::memcpy(&beam, point + ring, sizeof beam);
+    ASSERT_GE(time, last);
+    ASSERT_LT(time, 0.1f);
+    last = time;
+    highest = std::max(highest, int{beam});
+  }
+  EXPECT_GT(last, 0.05f);
+  EXPECT_EQ(highest, 15);
+}
+
+TEST(RobotDriver, WithoutNoiseNothingComesLateOrInAnotherOrder) {
+  const Sent sent(0.0);
+  EXPECT_EQ(sent.overtaken(), 0);
+  ASSERT_NEAR(sent.imu.size(), 997, 3);
+  for (std::size_t n = 1; n < sent.imu.size(); ++n)
+    ASSERT_EQ(stamp_of(sent.imu[n].header()) - stamp_of(sent.imu[n - 1].header()), 10'000'000);
+  EXPECT_EQ(sent.imu.front().orientation_covariance()[0], -1.0) << "no orientation is measured";
+  const Truth& truth = sent.simulation.truth(0);
+  const auto& pose = sent.odometry.back().pose().pose();
+  EXPECT_NEAR(pose.position().x(), truth.pose.position.x(), 0.02);
+  EXPECT_NEAR(pose.position().y(), truth.pose.position.y(), 0.02);
+}
+
+TEST(RobotDriver, WithNoiseSomeSamplesComeLateAndOdometryIsOvertaken) {
+  const Sent sent(1.0);
+  EXPECT_GT(sent.overtaken(), 0);
+  EXPECT_LT(sent.overtaken(), 25) << "2 % of 500";
+  int together = 0;
+  for (std::size_t n = 1; n < sent.imu_came.size(); ++n) together += sent.imu_came[n] == sent.imu_came[n - 1];
+  EXPECT_GT(together, 0) << "a busy bus hands samples over at once";
+  Duration longest{};
+  for (std::size_t n = 1; n < sent.clouds_came.size(); ++n)
+    longest = std::max(longest, sent.clouds_came[n] - sent.clouds_came[n - 1]);
+  EXPECT_GT(longest, 115ms) << "the delay of a scan varies";
+  EXPECT_LT(longest, 200ms);
+  EXPECT_GT(sent.odometry.back().pose().covariance()[0], 0.0);
+}
+
+}  // namespace
+}  // namespace adit::sim
