@@ -21,7 +21,8 @@ RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
 
 void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
                             bool search) {
-  profile_.add(points, body, map_);
+  // On stairs one step passes for another: there the heights are the odometry's.
+  profile_.add(points, platform_.stairs ? body : registration_.apply(points, body, map_), map_);
   map_.expire(stamp_s);
   for (int i = 0; search && i < params_.rebuilds; ++i) {
     const int index = map_.next_dirty();

@@ -7,6 +7,7 @@
 
 #include "core/geometry/pose.hpp"
 #include "nav/route/gate.hpp"
+#include "nav/route/ground_registration.hpp"
 #include "nav/route/route_graph.hpp"
 #include "nav/route/scan_profile.hpp"
 
@@ -68,6 +69,7 @@ class RoutePlanner {
   /// Forgets everything, as after a jump of the poses.
   void clear() {
     map_.clear();
+    registration_.clear();
     doubts_.reset();
   }
 
@@ -85,6 +87,7 @@ class RoutePlanner {
   double gate_width_;  // m: through what is no wider the robot is to go straight
   SurfaceMap map_;
   ScanProfile profile_;
+  GroundRegistration registration_{};
   RouteGraph graph_;
   std::unique_ptr<Doubts> doubts_{};  ///< made when a goal seems to be out of reach
 };

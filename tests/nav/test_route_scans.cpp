@@ -2,6 +2,7 @@
 // The global planner over scans, and the robot that follows it.
 #include <gtest/gtest.h>
 
+#include "tests/nav/height_world.hpp"
 #include "tests/nav/route_drive.hpp"
 #include "tests/nav/route_world.hpp"
 
@@ -43,6 +44,24 @@ TEST(RouteScans, ObstacleThatWentAwayIsFreed) {
   EXPECT_FALSE(planner.plan({0, 0, 0}, {8, 0, 0}).found());
   look(empty, 15);
   EXPECT_TRUE(planner.plan({0, 0, 0}, {8, 0, 0}).found());
+}
+
+TEST(RouteScans, AnAttitudeThatWandersMakesNoSteps) {
+  const HeightWorld plain{[](double, double) { return 0.0; }};
+  std::mt19937 random(1);
+  RoutePlanner planner(wheeled());
+  const auto reported = [](double x, double degrees) {
+    return Pose3{{x, 0, 0},
+                 Eigen::Quaterniond(Eigen::AngleAxisd(degrees * M_PI / 180, Eigen::Vector3d::UnitY()))};
+  };
+  for (int i = 0; i < 40; ++i) {
+    const double x = 0.05 * i;
+    const auto points = plain.scan(wheeled(), Pose3::level({x, 0, 0}, 0), 16, 180, 0.01, random);
+    planner.add_scan(points, reported(x, std::sin(0.4 * i)), 0.1 * i);
+  }
+  planner.finish();
+  for (const double y : {-3.0, 0.0, 3.0})
+    EXPECT_TRUE(planner.line({2.5, y, 0}, {8.5, y, 0}).passable) << "y = " << y;
 }
 
 TEST(RouteScans, OutOfADeadEnd) {
