@@ -98,7 +98,7 @@ TEST(SensorsFile, wrong_entries_name_the_line) {
         Row{"sensors:\n  lidar: {x: 0, y: 0, z: 1, min_range: 2, max_range: 2}\n",
             "min_range below max_range"},
         Row{"lidar_height: 1\nsensors:\n  lidar: {x: 0, y: 0, z: 1}\n",
-            ":9: lidar_height: expected no lidar_height"},
+            ":9: lidar_height: expected either lidar_height or a lidar under sensors"},
         Row{"sensors:\n  imu: {x: 0, y: 0, z: 1}\n", "'lidar_height' is missing"},
         Row{"lidar_height: 1\nmax_tilt: 2\n", ":10: max_tilt: expected a number in (0, 1.5]"}}) {
     const auto p = load(row.text);
