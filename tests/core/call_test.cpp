@@ -52,8 +52,8 @@ using Mood = Mathematician::Mood;
 /// Asks, and writes down what comes back and when.
 class Asker final : public Component {
  public:
-  using Component::set_generation;
   using Component::Component;
+  using Component::set_generation;
   CallHandle ask(const Squares& service, int x, Duration deadline = 10s) {
     return call(service, x, {.deadline = deadline}, [this](Result<int> square) {
       results.push_back(square ? *square : -static_cast<int>(square.reason()));
