@@ -166,7 +166,9 @@ void Agent::CommandComponent::check_goal(const Eigen::Vector3d& goal, bool repla
     query.from = frames_.T_odom_base().position;
     query.to = frames_.to_odom(goal);
     query.replace = replace;
-    call(context_.router->check, query, {.deadline = 500ms},
+    // The command waits for this, and each command is answered within 150 ms (rule 3): a router that is busy
+    // judges the goal with the next route.
+    call(context_.router->check, query, {.deadline = 100ms},
          [this, goal, epoch = query.odom_epoch,
           done = std::move(done)](const Result<nav::GoalFinding>& found) {
            if (!found) return done(found.error());

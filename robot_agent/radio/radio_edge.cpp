@@ -14,7 +14,7 @@ namespace adit::agent {
 namespace topics = wire::topics;
 
 constexpr Duration kPresencePeriod = 1s;
-constexpr Duration kMaxJudgement = 1s;
+constexpr Duration kMaxJudgement = 200ms;
 
 struct RadioEdge::Endpoints {
   wire::ComponentIo io;
@@ -38,8 +38,12 @@ struct RadioEdge::Endpoints {
   Timer presence_timer{};
   radio::RobotState state_sample{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
-  // Commands whose goal is being judged, and since when.
-  std::map<std::pair<wire::ParticipantId, std::uint64_t>, Time> judged{};
+  /// A command whose goal is being judged: since when, and how many samples of it wait for the answer.
+  struct Judgement {
+    Time since{};
+    int samples{1};
+  };
+  std::map<std::pair<wire::ParticipantId, std::uint64_t>, Judgement> judged{};
 
   template <class T, class Handler>
   Result<void> read(const wire::Topic<T>& topic, Handler handler, const std::string& partition = {}) {
@@ -66,7 +70,8 @@ bool asks_for_goal(const Command& command) {
 }
 
 /// Has the goal of a goto judged before the command interface handles it. A repeat that arrives meanwhile is
-/// dropped: the answer is on its way. Other commands may overtake it; the command interface compares numbers.
+/// answered then, too: each sample that is received gets an answer (rule 3). Other commands may overtake it;
+/// the command interface compares numbers.
 template <class Edge, class Commands, class Answers, class Check>
 void judge_goal(Edge& e, const Command& asked, const Commands& commands, const Answers& answer,
                 const Check& check) {
@@ -77,16 +82,17 @@ void judge_goal(Edge& e, const Command& asked, const Commands& commands, const A
   const std::pair key{asked.from.participant, asked.seq};
   const Time now = e.strand.now();
   // A judgement ends within its deadline, unless its component was restarted.
-  std::erase_if(e.judged, [now](const auto& entry) { return now - entry.second > kMaxJudgement; });
-  if (e.judged.contains(key)) return;
+  std::erase_if(e.judged, [now](const auto& entry) { return now - entry.second.since > kMaxJudgement; });
+  if (const auto same = e.judged.find(key); same != e.judged.end()) return (void)++same->second.samples;
   if (!check || e.judged.size() >= kMaxJudged) return handle(asked);
-  e.judged.emplace(key, now);
+  e.judged.try_emplace(key).first->second.since = now;
   check(place_of(asked.request), asked.request.has("--nearest"),
         [&e, key, asked, handle](const Result<GoalReport>& report) {
-          e.judged.erase(key);
+          const auto judged = e.judged.extract(key);
           Command command = asked;
           if (report) command.goal = *report;
-          handle(command);
+          // The command interface answers a repeat with the first answer.
+          for (int n = judged ? judged.mapped().samples : 1; n > 0; --n) handle(command);
         });
 }
 

@@ -41,7 +41,7 @@ class RadioEdge {
     /// within 0.5 s.
     std::function<void(const Eigen::Vector3d& goal, std::function<void(const Result<PlannedRoute>&)> done)>
         find_route{};
-    /// Judges a goal (map frame, m) by the robot's map and calls `done` exactly once, within 0.5 s.
+    /// Judges a goal (map frame, m) by the robot's map and calls `done` exactly once, within 0.1 s.
     /// `replace`: the report may name the nearest valid place instead. Error: the goal could not be judged.
     std::function<void(const Eigen::Vector3d& goal, bool replace,
                        std::function<void(const Result<GoalReport>&)> done)>

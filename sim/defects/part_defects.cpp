@@ -54,6 +54,8 @@ std::shared_ptr<const agent::ModeTable> modes_without_stop() {
 /// Takes out of every scan what stands on the ground.
 class SeesGroundAlone final : public Interceptor {
  public:
+  /// `lidar_height`: of the origin of the clouds that are not in base_link, m.
+  explicit SeesGroundAlone(double lidar_height) : lidar_height_(static_cast<float>(lidar_height)) {}
   std::vector<Arrival> received(Arrival arrival) override {
     sensor_msgs::msg::PointCloud2 cloud;
     if (arrival.topic->name == std::string_view(wire::topics::kPoints.name) &&
@@ -65,16 +67,19 @@ class SeesGroundAlone final : public Interceptor {
   }
 
  private:
-  static void flatten(sensor_msgs::msg::PointCloud2& cloud) {
-    constexpr float kGround = 0.05f;  // m, in the frame of base_link
+  void flatten(sensor_msgs::msg::PointCloud2& cloud) const {
+    constexpr float kGround = 0.05f;  // Highest ground, base_link, m.
+    const float highest = cloud.header().frame_id() == "base_link" ? kGround : kGround - lidar_height_;
     const std::uint32_t step = cloud.point_step();
     const float away = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t at = 0; step >= 12 && at + step <= cloud.data().size(); at += step) {
       float z = 0.0f;
       std::memcpy(&z, cloud.data().data() + at + 8, sizeof z);
-      if (z > kGround) std::memcpy(cloud.data().data() + at + 8, &away, sizeof away);
+      if (z > highest) std::memcpy(cloud.data().data() + at + 8, &away, sizeof away);
     }
   }
+
+  float lidar_height_;
 };
 
 }  // namespace
@@ -92,7 +97,7 @@ Decoration blind_planner(const Subject& subject) {
 
 Decoration blind_and_unwatched(const Subject& subject) {
   Decoration decoration = blind_planner(subject);
-  decoration.wires = std::make_unique<SeesGroundAlone>();
+  decoration.wires = std::make_unique<SeesGroundAlone>(subject.platform.lidar().mounting.z);
   return decoration;
 }
 
