@@ -19,6 +19,7 @@ namespace {
 constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
 constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
 constexpr double kJump = 1.0;                        // m between two samples: another odometry frame
+constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before the operator is warned
 
 }  // namespace
 
@@ -107,7 +108,9 @@ void Scans::pass_on(std::size_t lidar) {
   if (!scan) return refuse(scan.error());
   if (!*scan) return;  // A scan is made when the first lidar's sweep comes.
   perception::Scan& whole = **scan;
-  if (waiting.sweep.timed && !whole.deskewed && history_.size() > 0)
+  // The first sweep begins before the first pose.
+  not_deskewed_ = waiting.sweep.timed && !whole.deskewed && history_.size() > 0 ? not_deskewed_ + 1 : 0;
+  if (not_deskewed_ >= kMaxNotDeskewed)
     notice(Severity::warning, "not_deskewed", Reason::sensor_times,
            "the odometry has no poses for the times of the scans, which are not corrected for motion; do "
            "lidar and odometry use one clock?");

@@ -82,6 +82,7 @@ class Scans : public Component {
   std::vector<std::optional<Waiting>> waiting_;  ///< For odometry as new as the sweep, by lidar.
   RateLimit<std::string> reported_{5s};
   bool in_g_reported_{false};
+  int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion.
 };
 
 /// The points of a cloud that has float32 x, y and z, in its frame. `duration`: of a sweep, s.
