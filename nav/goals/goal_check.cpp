@@ -37,11 +37,10 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
   for (int iy = cy - reach; iy <= cy + reach; ++iy) {
     before = nullptr;
     for (int ix = cx - reach; ix <= cx + reach; ++ix) {
-      const int index = map.at_cell(ix, iy, place.z());
-      const GroundCell* cell =
-          index < 0 ? nullptr : &map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-      Eigen::Vector2d at((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell);
-      if (cell && cell->blocked) at += kAsideUnit * Eigen::Vector2d(cell->aside_x, cell->aside_y);
+      const GroundCell* cell = map.cell(ix, iy, place.z());
+      const Eigen::Vector2d at = cell && cell->blocked
+                                     ? obstacle_place(ix, iy, *cell)
+                                     : Eigen::Vector2d((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell);
       const Eigen::Vector2d off = at - place.head<2>();
       const bool inside = body_.depth(static_cast<float>(c * off.x() + s * off.y()),
                                       static_cast<float>(c * off.y() - s * off.x())) >= 0.0f;
@@ -114,20 +113,14 @@ Standing GoalCheck::stand(const RoutePlanner& planner, const Eigen::Vector3d& pl
 bool GoalCheck::is_between(const SurfaceMap& map, const Eigen::Vector3d& place) const {
   const int reach = static_cast<int>(body_.radius() / kRouteCell) + 1;
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
-  const auto cell_at = [&](int ix, int iy) -> const GroundCell* {
-    const int index = map.at_cell(ix, iy, place.z());
-    return index < 0 ? nullptr : &map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-  };
-  const GroundCell* own = cell_at(cx, cy);
+  const GroundCell* own = map.cell(cx, cy, place.z());
   if (!own || !own->known || own->blocked) return false;
   std::vector<Eigen::Vector2d> obstacles;
   for (int iy = cy - reach; iy <= cy + reach; ++iy)
     for (int ix = cx - reach; ix <= cx + reach; ++ix) {
-      const GroundCell* cell = cell_at(ix, iy);
+      const GroundCell* cell = map.cell(ix, iy, place.z());
       if (!cell || !cell->blocked) continue;
-      const Eigen::Vector2d off = Eigen::Vector2d((ix + 0.5) * kRouteCell, (iy + 0.5) * kRouteCell) +
-                                  kAsideUnit * Eigen::Vector2d(cell->aside_x, cell->aside_y) -
-                                  place.head<2>();
+      const Eigen::Vector2d off = obstacle_place(ix, iy, *cell) - place.head<2>();
       if (off.norm() <= body_.radius()) obstacles.push_back(off);
     }
   const auto nearest = std::min_element(

@@ -22,12 +22,9 @@ struct Sides {
 
 // Where what stands in a cell is, m; nothing where nothing does.
 std::optional<Eigen::Vector2d> obstacle_in(const SurfaceMap& map, int ix, int iy, double z) {
-  const int index = map.at_cell(ix, iy, z);
-  if (index < 0) return std::nullopt;
-  const GroundCell& cell = map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-  if (!cell.blocked) return std::nullopt;
-  return Eigen::Vector2d((ix + 0.5) * kRouteCell + cell.aside_x * double{kAsideUnit},
-                         (iy + 0.5) * kRouteCell + cell.aside_y * double{kAsideUnit});
+  const GroundCell* cell = map.cell(ix, iy, z);
+  if (!cell || !cell->blocked) return std::nullopt;
+  return obstacle_place(ix, iy, *cell);
 }
 
 // `along`: of length one. Both, when together they are no farther than `width`: a route need not be in the

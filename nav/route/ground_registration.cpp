@@ -44,13 +44,10 @@ Pose3 GroundRegistration::apply(std::span<const Eigen::Vector3f> points, const P
     const float range = offset.head<2>().norm();
     if (!(range >= kFrom && range <= kTo)) continue;
     const Eigen::Vector3f place = at + offset;
-    const int ix = route_cell(place.x()), iy = route_cell(place.y());
-    const int index = map.at_cell(ix, iy, place.z());
-    if (index < 0) continue;
-    const GroundCell& cell = map.tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-    const float apart = place.z() - cell.z;
-    if (cell.known && cell.measured && !cell.blocked && std::abs(apart) <= kSame)
-      samples_.emplace_back(offset.x(), offset.y(), apart);
+    const GroundCell* cell = map.cell(route_cell(place.x()), route_cell(place.y()), place.z());
+    if (!cell || !cell->known || !cell->measured || cell->blocked) continue;
+    const float apart = place.z() - cell->z;
+    if (std::abs(apart) <= kSame) samples_.emplace_back(offset.x(), offset.y(), apart);
   }
   if (samples_.size() < kEnoughSamples) return before;
   const PlanePrior prior{0.0f, {0, 0}, kSame / 2, kMostGradient / 3};

@@ -45,9 +45,8 @@ bool RouteGraph::stands_between(const Eigen::Vector3d& place, int ix, int iy) co
   for (int i = 0; i <= steps; ++i) {
     const Eigen::Vector2d p = place.head<2>() + way * i / steps;
     const int x = route_cell(p.x()), y = route_cell(p.y());
-    const int index = map_.at_cell(x, y, place.z());
-    if (index >= 0 && builder_.solid(map_.tile(index).cells[static_cast<std::size_t>(cell_in_tile(x, y))]))
-      return true;
+    const GroundCell* cell = map_.cell(x, y, place.z());
+    if (cell && builder_.solid(*cell)) return true;
   }
   return false;
 }

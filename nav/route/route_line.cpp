@@ -106,11 +106,8 @@ void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) {
   if (!points.empty()) dense.push_back(points.back());
   // A point between two on a slope takes its height from the ground's.
   for (Eigen::Vector3d& p : dense) {
-    const int ix = route_cell(p.x()), iy = route_cell(p.y());
-    if (const int t = map_.at_cell(ix, iy, p.z()); t >= 0) {
-      const GroundCell& cell = map_.tile(t).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-      if (cell.known && std::abs(cell.z - p.z()) < kSheetReach / 2) p.z() = cell.z;
-    }
+    const GroundCell* cell = map_.cell(route_cell(p.x()), route_cell(p.y()), p.z());
+    if (cell && cell->known && std::abs(cell->z - p.z()) < kSheetReach / 2) p.z() = cell->z;
   }
   shorten_once(dense);
   // A part of a line is rounded to other cells than the line: along a wall it may not be passable.

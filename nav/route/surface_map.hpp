@@ -52,6 +52,11 @@ class SurfaceMap {
   /// The same of a cell: the tile whose ground there is nearest to z, within reach; where none knows the
   /// ground, as at().
   int at_cell(int ix, int iy, double z) const;
+  /// The ground of a cell by the tile of at_cell(); null where there is no tile.
+  const GroundCell* cell(int ix, int iy, double z) const {
+    const int index = at_cell(ix, iy, z);
+    return index < 0 ? nullptr : &tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  }
   /// The tile beside one, (dx, dy) tiles away, that its ground goes on into; or -1.
   int beside(const Tile& tile, int dx, int dy) const;
   const Tile& tile(int index) const { return *tiles_[static_cast<std::size_t>(index)]; }

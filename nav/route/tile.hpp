@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -80,6 +81,12 @@ struct Tile {
     return cell.known ? cell.z : z;
   }
 };
+
+/// Where the obstacle in a blocked cell stands, m.
+inline Eigen::Vector2d obstacle_place(int ix, int iy, const GroundCell& cell) {
+  return {(ix + 0.5) * kRouteCell + cell.aside_x * double{kAsideUnit},
+          (iy + 0.5) * kRouteCell + cell.aside_y * double{kAsideUnit}};
+}
 
 inline int route_cell(double v) { return static_cast<int>(std::floor(v / kRouteCell)); }
 /// Of a cell, the tile it is in and its index there.
