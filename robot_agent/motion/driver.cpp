@@ -8,14 +8,11 @@
 #include "geometry_msgs/msg/Twist.h"
 #include "geometry_msgs/msg/TwistStamped.h"
 #include "nav_msgs/msg/Odometry.h"
+#include "robot_agent/motion/sensor_messages.hpp"
 #include "sensor_msgs/msg/BatteryState.h"
 
 namespace adit::agent {
 namespace {
-
-std::uint64_t stamp_of(const std_msgs::msg::Header& header) {
-  return static_cast<std::uint64_t>(header.stamp().sec()) * 1'000'000'000u + header.stamp().nanosec();
-}
 
 // Maps index their cells with 32 bits, so positions must be nearer than 1000 km.
 bool usable(const Pose3& pose, const Twist2& twist) {
@@ -61,14 +58,13 @@ Result<std::unique_ptr<Driver>> Driver::open(const wire::ComponentIo& io, Veloci
                    [odometry = std::move(handlers.odometry)](const nav_msgs::msg::Odometry&o,
                                                              const wire::SampleInfo&info) {
                      const auto& p = o.pose().pose().position();
-                     const auto& q = o.pose().pose().orientation();
-                     Pose3 pose{{p.x(), p.y(), p.z()}, Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};
+                     Pose3 pose{{p.x(), p.y(), p.z()}, quaternion_of(o.pose().pose().orientation())};
                      const auto& v = o.twist().twist();
                      const Twist2 twist{v.linear().x(), v.linear().y(), v.angular().z(), v.linear().z()};
                      if (!usable(pose, twist))
                        return;  // It counts as silence: the robot stops if it continues.
                      pose.orientation.normalize();
-                     odometry(pose, twist, stamp_of(o.header()), info.received);
+                     odometry(pose, twist, nanoseconds_of(o.header()), info.received);
                    }),
            io.open(
                e.battery, topics::kBattery,
