@@ -20,13 +20,14 @@ struct Seen {
   CollisionMonitor monitor{platform};
   std::mt19937 random{3};
   double noise{0.0};
+  int columns{720};  ///< of a scan; fewer make a test with many scans faster
 
   Seen(std::vector<Box> boxes, const Platform& p = wheeled(), const Pose2& at = {})
       : world{std::move(boxes)}, platform(p), pose(at), monitor(p) {
     look(0.0);
   }
   void look(double time) {
-    monitor.look(world.scan(pose, platform.lidar_height, 16, 720, noise, random), Pose3::level(pose, 0),
+    monitor.look(world.scan(pose, platform.lidar_height, 16, columns, noise, random), Pose3::level(pose, 0),
                  time);
   }
   CollisionMonitor::Verdict ask(const Twist2& wanted, Policy policy = Policy::stop, double now = 0.0) const {
@@ -348,6 +349,7 @@ double turns_towards_a_wall(double speed, double apart, double turn, const Odome
   p.wheelbase = 0.4;
   Seen seen({{-5, 20, p.width / 2 + apart, 6}}, p);
   seen.noise = 0.02;
+  seen.columns = 180;
   double least = 10, bend = 0;
   Twist2 v{speed, 0, 0}, allowed = v;
   std::vector<Twist2> driven{v};
@@ -372,19 +374,25 @@ double turns_towards_a_wall(double speed, double apart, double turn, const Odome
   return least;
 }
 
-TEST(CollisionMonitor, WhoTurnsTowardsAWallTooFastBrakesOnItsOwnArc) {
+class TurnTowardsAWall : public testing::TestWithParam<double> {};
+
+TEST_P(TurnTowardsAWall, TooFastBrakesOnItsOwnArc) {
+  const double speed = GetParam();
   double blind = 10;
-  for (const double speed : {0.5, 1.0, 2.0})
-    for (const double apart : {0.1, 0.3, 0.6})
-      for (const double turn : {0.3, 1.2}) {
-        for (const Odometer& odometer : {Odometer{}, Odometer{1.05}, Odometer{0.95}, Odometer{1, 0.1}})
-          EXPECT_GT(turns_towards_a_wall(speed, apart, turn, odometer), 0.0)
-              << speed << " m/s, " << apart << " m apart, " << turn << " per m, told " << odometer.share
-              << " of it " << odometer.late << " s late";
-        blind = std::min(blind, turns_towards_a_wall(speed, apart, turn, {0.0}));
-      }
-  EXPECT_LT(blind, 0.0) << "braking on the arc that was asked for is too late";
+  for (const double apart : {0.1, 0.3, 0.6})
+    for (const double turn : {0.3, 1.2}) {
+      for (const Odometer& odometer : {Odometer{}, Odometer{1.05}, Odometer{0.95}, Odometer{1, 0.1}})
+        EXPECT_GT(turns_towards_a_wall(speed, apart, turn, odometer), 0.0)
+            << apart << " m apart, " << turn << " per m, told " << odometer.share << " of it "
+            << odometer.late << " s late";
+      if (speed >= 2) blind = std::min(blind, turns_towards_a_wall(speed, apart, turn, {0.0}));
+    }
+  if (speed >= 2) {
+    EXPECT_LT(blind, 0.0) << "braking on the arc that was asked for is too late";
+  }
 }
+
+INSTANTIATE_TEST_SUITE_P(CollisionMonitor, TurnTowardsAWall, testing::Values(0.5, 1.0, 2.0));
 
 TEST(CollisionMonitor, AVelocityThatIsNoneIsNotDriven) {
   Seen seen({{0.45, 0.7, -3, 3}});
