@@ -10,12 +10,11 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStanding = 0.12;  ///< m/s: slow enough to begin to turn on the spot
-constexpr double kNoWay = 1e-3;     ///< m/s: slower says nothing about where a car's wheels shall point
-constexpr double kFarOff =
-    0.15;  ///< rad: a car drives slowly while its wheels are farther from where they shall be
-constexpr double kSteers = 0.15;     ///< m/s: so slowly
-constexpr double kSteerShare = 0.9;  ///< of the steering's rate is counted on
+constexpr double kStanding = 0.12;  ///< Below this speed a turn on the spot may begin, m/s.
+constexpr double kNoWay = 1e-3;  ///< Below this speed a velocity does not define a car's steering angle, m/s.
+constexpr double kFarOff = 0.15;     ///< Above this error of its steering angle a car drives at kSteers, rad.
+constexpr double kSteers = 0.15;     ///< Speed of a car while its steering angle is wrong, m/s.
+constexpr double kSteerShare = 0.9;  ///< Fraction of the steering rate that is counted on.
 
 double stepped(double from, double to, double step) { return from + std::clamp(to - from, -step, step); }
 
@@ -50,7 +49,7 @@ Twist2 Controller::follow(const Pose2& odom, double dt) {
 
 void Controller::sent(const Twist2& velocity) {
   last_ = velocity;
-  // A car that does not move was not told to steer.
+  // A velocity of zero says nothing about the steering of a car.
   steering_ = std::fabs(velocity.vx) < kNoWay
                   ? steering_before_
                   : std::clamp(std::atan(platform_.wheelbase * velocity.wz / velocity.vx),
@@ -60,7 +59,7 @@ void Controller::sent(const Twist2& velocity) {
 }
 
 void Controller::learn_grip(const Pose2& odom, double dt) {
-  constexpr double kEnough = 0.05;  // rad2/s: less says nothing
+  constexpr double kEnough = 0.05;  // rad2/s: a smaller sum is too noisy.
   if (yaw_before_) {
     const double keep = std::exp(-dt / params_.grip_memory);
     asked_ = keep * asked_ + sent_turn_ * sent_turn_ * dt;
@@ -100,7 +99,7 @@ Twist2 Controller::desired(const Pose2& odom, double dt) {
   turning_ = platform_.turns_on_spot() && off > (turns ? params_.turn_until : params_.turn_from);
   if (turning_) {
     rest();
-    // The planner may have found that only the long way round is free.
+    // The planner may have found that only the longer turn is free.
     if (plan_.turn != 0 && error * plan_.turn < 0 && off > M_PI / 3) error += plan_.turn * 2 * M_PI;
     return turn_on_spot(error);
   }

@@ -12,47 +12,48 @@
 namespace adit::nav {
 
 struct ControllerParams {
-  double turn_from{0.45};     ///< turns on the spot when the path starts off by more, rad, [0.1, 3]
-  double turn_until{0.12};    ///< and until it is off by less, rad, [0.02, turn_from]
-  double braking_share{0.7};  ///< share of the platform's acceleration that is planned with, (0, 1]
-  double grip_memory{3.0};    ///< tracked: over so long it learns how much of a turn arrives, s, [0.5, 60]
+  /// Starts to turn on the spot above this heading error at the path's start, rad, [0.1, 3].
+  double turn_from{0.45};
+  double turn_until{0.12};    ///< Ends the turn on the spot below this heading error, rad, [0.02, turn_from].
+  double braking_share{0.7};  ///< Fraction of the platform's acceleration used for planned braking, (0, 1].
+  /// Tracked robots: time constant of the estimate of turn effectiveness, s, [0.5, 60].
+  double grip_memory{3.0};
 };
 
-/// Turns a plan into velocities. What all controllers share is here: turning on the spot where the path
-/// starts to the side, and the platform's limits of acceleration; of a car its steering instead. How the path
-/// is tracked is each one's own. Obstacles are the planner's matter and, after all else, the
-/// CollisionMonitor's.
+/// Computes velocity commands that follow a plan. The base class turns on the spot where the path starts to
+/// the side and limits accelerations and a car's steering rate; subclasses implement the path tracking.
+/// Controllers do not see obstacles: the planner avoids them, and the CollisionMonitor checks every command.
 class Controller {
  public:
   Controller(const Platform& platform, const ControllerParams& params);
   virtual ~Controller() = default;
 
-  /// The plan to follow from now on (copied). An empty one brings the robot to a smooth stop.
+  /// Sets the plan to follow (copied). An empty plan brings the robot to a smooth stop.
   void set_plan(const Plan& plan);
-  /// The velocity for the next `dt` seconds, (0, 0.5], of a robot that is at `odom` (odometry frame).
+  /// Returns the velocity for the next `dt` seconds, (0, 0.5], of a robot at `odom` (odometry frame).
   Twist2 follow(const Pose2& odom, double dt);
-  /// Zero, at once, and no plan.
+  /// Drops the plan and returns zero at once, without a braking ramp.
   Twist2 stop_now();
 
-  /// The body's velocity as the controller reckons it; of tracks that skid more turn was asked for.
+  /// The velocity that the body is expected to have. Skidding tracks are sent a higher turn rate than this.
   const Twist2& command() const { return last_; }
-  /// What became of the last command on its way to the driver, when that was something else.
+  /// Reports the velocity that was sent to the driver, when it differs from the last command.
   void sent(const Twist2& velocity);
 
  protected:
-  /// Where the robot is on the path.
+  /// Position of the robot along the path.
   struct Place {
-    std::size_t nearest{};  ///< index of the path's pose
-    double remaining{};     ///< of the path from there, m
+    std::size_t nearest{};  ///< Index of the path's nearest pose.
+    double remaining{};     ///< Length of the path from there to its end, m.
   };
-  /// The velocity wanted next along plan().path(), which has two poses at least; limits of acceleration are
-  /// applied afterwards.
-  /// Poses are those of what does not move sideways: a car's rear axle, base_link of others.
+  /// Computes the next velocity along plan().path(), which has at least two poses. Limits of acceleration are
+  /// applied afterwards. Poses are those of the point that does not move sideways: the rear axle of a car,
+  /// base_link of other platforms.
   virtual Twist2 track(const Pose2& odom, const Place& place, double dt) = 0;
-  /// The robot stands, or turns on the spot: what was tracked is over.
+  /// Called when the robot stops or turns on the spot: resets the state of path tracking.
   virtual void rest() {}
 
-  /// Of a car: the angle of its front wheels as far as is known, rad.
+  /// The estimated angle of a car's front wheels, rad.
   double steering() const { return steering_; }
 
   const Platform& platform() const { return platform_; }
@@ -72,16 +73,16 @@ class Controller {
   Plan plan_{};
   Twist2 last_{};
   bool turning_{false};
-  double steering_{0}, steering_before_{0};  ///< of a car, rad
-  /// Of tracks: the share of a turn that arrives. The platform's file tells it first, then what was asked for
-  /// and what came, by least squares.
+  double steering_{0}, steering_before_{0};  ///< Of a car, rad.
+  /// Turn effectiveness of tracks: the measured turn divided by the commanded turn. It starts from the
+  /// platform file and is then estimated by least squares.
   double grip_{1}, asked_{0}, come_{0}, sent_turn_{0};
   std::optional<double> yaw_before_{};
 };
 
-/// Every controller there is, for configuration files and help.
+/// Names of all controllers, for configuration files and help.
 const std::vector<std::string>& controller_names();
-/// The controller of that name for a platform. Errors: bad_argument, naming those there are.
+/// Creates the controller `name` for a platform. Errors: bad_argument, which lists the known names.
 Result<std::unique_ptr<Controller>> make_controller(const std::string& name, const Platform& platform);
 
 }  // namespace adit::nav

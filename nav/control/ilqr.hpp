@@ -10,29 +10,29 @@
 
 namespace adit::nav {
 
-/// What a controller that looks ahead wants at one instant.
+/// Desired state of the robot at one instant of the horizon.
 struct Reference {
-  Pose2 pose{};    ///< odometry frame
-  Twist2 twist{};  ///< body frame
+  Pose2 pose{};    ///< Odometry frame.
+  Twist2 twist{};  ///< Body frame.
 };
 
 struct IlqrParams {
-  double along{2.0};       ///< cost of the distance along the reference's heading, 1/m2, (0, 1e4]
-  double across{30.0};     ///< and across it, (0, 1e4]
-  double yaw{4.0};         ///< of the heading's error, 1/rad2, [0, 1e4]
-  double velocity{0.4};    ///< of the velocity states' error, [0, 1e4]
-  double effort{0.05};     ///< of the controls, relative to their limits, (0, 1e3]
-  double limit{60.0};      ///< of each velocity state beyond its limit, squared and relative, [0, 1e5]
-  double terminal{4.0};    ///< the last instant counts so often, [0, 100]
-  int iterations{6};       ///< at most, [1, 100]
-  double tolerance{1e-3};  ///< ends when an iteration gains a smaller share of the cost, [0, 1]
+  double along{2.0};     ///< Cost of the error along the reference's heading, 1/m2, (0, 1e4].
+  double across{30.0};   ///< Cost of the error across it, 1/m2, (0, 1e4].
+  double yaw{4.0};       ///< Cost of the heading error, 1/rad2, [0, 1e4].
+  double velocity{0.4};  ///< Cost of the error of the velocity states, [0, 1e4].
+  double effort{0.05};   ///< Cost of the controls, relative to their limits, (0, 1e3].
+  double limit{60.0};  ///< Cost of a velocity state's excess over its limit, squared and relative, [0, 1e5].
+  double terminal{4.0};    ///< Factor on the state cost of the last instant, [0, 100].
+  int iterations{6};       ///< Maximum number of iterations, [1, 100].
+  double tolerance{1e-3};  ///< Stops when an iteration lowers the cost by a smaller fraction, [0, 1].
 };
 
 /// Iterative LQR with box limits on the controls: control-limited DDP with Gauss-Newton Hessians (W. Li and
 /// E. Todorov 2004; Y. Tassa, N. Mansard and E. Todorov, "Control-limited differential dynamic programming",
-/// ICRA 2014). Limits of the velocity states are soft, or hard
-/// where asked for: then they narrow the controls' box. Fixed sizes, nothing is allocated; a solve starts
-/// from the last one, moved on by one step.
+/// ICRA 2014). Limits of the velocity states are soft; where `Limits::hard` is set, they narrow the box of
+/// the controls instead. All sizes are fixed and nothing is allocated. Each solve starts from the last
+/// solution, shifted by one step.
 template <class Model, int Horizon = 50>
 class Ilqr {
  public:
@@ -42,11 +42,11 @@ class Ilqr {
   using V = Eigen::Matrix<double, kV, 1>;
   using X = Eigen::Matrix<double, kX, 1>;
 
-  /// Limits of the velocity states and of their rates, each one's absolute value.
+  /// Limits of the absolute values of the velocity states and of their rates.
   struct Limits {
     V velocity{V::Ones()};
     V rate{V::Ones()};
-    /// 1 where a velocity state stays within its limit come what may, as a car's steering; 0: at a cost.
+    /// 1: the limit of this velocity state is never exceeded, as for a car's steering; 0: excess has a cost.
     V hard{V::Zero()};
   };
   struct Report {
@@ -59,10 +59,11 @@ class Ilqr {
     reset();
   }
 
-  /// Forgets the last solution, as when the path is another one.
+  /// Discards the last solution, for example when the path changes.
   void reset() { controls_.fill(V::Zero()); }
 
-  /// The best controls from `start` on; `references` are those of the instants dt, 2 dt, ... Horizon dt.
+  /// Computes the controls of least cost from `start`; `references` belong to the instants dt, 2 dt, ...
+  /// Horizon dt.
   Report solve(const X& start, const std::array<Reference, Horizon>& references) {
     std::move(controls_.begin() + 1, controls_.end(), controls_.begin());
     prepare(references);
@@ -125,7 +126,7 @@ class Ilqr {
     }
   }
 
-  /// The controls' box where the velocity states are `v`.
+  /// Lower limits of the controls where the velocity states are `v`; most() gives the upper ones.
   V least(const V& v) const {
     V box = -limits_.rate;
     for (int i = 0; i < kV; ++i)
@@ -141,7 +142,8 @@ class Ilqr {
     return box;
   }
 
-  /// The velocity states take the control's effect first, the pose moves with them, along the mean heading.
+  /// One step of the dynamics: the control changes the velocity states, then the pose moves along the mean
+  /// heading.
   X next(const X& x, const V& u) const {
     X y;
     const V v = x.template tail<kV>() + dt_ * u;
@@ -180,7 +182,7 @@ class Ilqr {
     return cost;
   }
 
-  /// Half the gradient and Gauss-Newton Hessian of what an instant's state costs.
+  /// Computes half the gradient and the Gauss-Newton Hessian of the state cost at one instant.
   void expand(const X& x, std::size_t k, X& gradient, Square& hessian) const {
     const Goal& g = goals_[k];
     const double dx = x[0] - g.x, dy = x[1] - g.y;
@@ -208,7 +210,7 @@ class Ilqr {
     }
   }
 
-  /// The backward pass; false when it must be damped more.
+  /// The backward pass. Returns false when it needs more damping.
   bool improve(double damping) {
     X value = X::Zero();
     Square curve = Square::Zero();
@@ -220,7 +222,7 @@ class Ilqr {
       value += gradient;
       curve += hessian;
 
-      // The dynamics' derivatives: pose' by yaw and by the new velocity states; those by the control.
+      // Derivatives of the dynamics: a: by the yaw and the new velocity states; b: by the control.
       const X& x = states_[k];
       const V v = states_[k + 1].template tail<kV>();
       const Eigen::Vector3d t = model_.twist(v);
@@ -260,7 +262,8 @@ class Ilqr {
     return true;
   }
 
-  /// The least of a quadratic within a box, by projected Newton steps; controls at their limit have no gain.
+  /// Minimises a quadratic within a box by projected Newton steps. Controls at their limit get no feedback
+  /// gain.
   static bool limited(const Input& quu, const V& qu, const Gain& qux, const V& low, const V& high, V& change,
                       Gain& gain) {
     std::array<bool, kV> held{};
@@ -295,7 +298,7 @@ class Ilqr {
     return true;
   }
 
-  /// The forward pass with shorter and shorter steps; false when none is better.
+  /// The forward pass, a line search with decreasing steps. Returns false when no step lowers the cost.
   bool search(double& cost) {
     for (double share = 1.0; share > 0.02; share *= 0.5) {
       trial_states_[0] = states_[0];
@@ -310,7 +313,7 @@ class Ilqr {
         sum += stage_cost(trial_states_[k + 1], trial_controls_[k], k);
         if (!(sum < cost)) break;
       }
-      if (!(sum < cost)) continue;  // not a number is no better either
+      if (!(sum < cost)) continue;  // Written so that a cost that is not a number fails.
       std::swap(states_, trial_states_);
       std::swap(controls_, trial_controls_);
       cost = sum;

@@ -8,16 +8,17 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kLookAheadStep = 0.05;  ///< s, of the look ahead
-constexpr double kShortestPath = 0.05;   ///< m: what is left of the path when it is over
-constexpr double kCreepSpeed = 0.02;     ///< m/s: slower would not reach the path's end
+constexpr double kLookAheadStep = 0.05;  ///< Step of the horizon, s.
+constexpr double kShortestPath = 0.05;   ///< The path counts as driven when less than this is left, m.
+/// Minimum speed of the references, m/s: a lower one would not reach the end of the path.
+constexpr double kCreepSpeed = 0.02;
 
-/// Walks along a plan's path.
+/// A point that moves along the path of a plan.
 class Walk {
  public:
   Walk(const Plan& plan, std::size_t nearest, const Pose2& odom) : plan_(plan), path_(plan.path()) {
     spacing_ = std::max(1e-6, plan.length / static_cast<double>(path_.size() - 1));
-    // From the nearest pose on or back to abreast of the robot.
+    // Starts at the nearest pose, moved along the path by at most one spacing to be level with the robot.
     const Pose2& p = path_[nearest];
     const double side = plan.reverse ? -1.0 : 1.0;
     const double along = side * (std::cos(p.yaw) * (odom.x - p.x) + std::sin(p.yaw) * (odom.y - p.y));
@@ -33,19 +34,19 @@ class Walk {
     return {a.x + part * (b.x - a.x), a.y + part * (b.y - a.y),
             wrap_angle(a.yaw + part * wrap_angle(b.yaw - a.yaw))};
   }
-  /// Turn per metre here, rad/m.
+  /// Curvature at this point, rad/m.
   double curvature() const { return bend(spot().index); }
-  /// The value of a table over the path's poses here.
+  /// Interpolates a table over the path's poses at this point.
   double at(const std::array<double, Plan::kMaxPath>& table) const {
     const auto [i, part] = spot();
     return table[i] + part * (table[i + 1] - table[i]);
   }
-  /// How fast the path may be driven at each of its poses: its bends within `max_turn` (rad/s), its end, and
-  /// braking in time for both with `braking` (m/s2).
-  /// `max_swing`: how fast curvature may change, rad/m/s; 0: at will.
+  /// Computes the speed limit at each pose of the path from the turn rate `max_turn` (rad/s), the stop at the
+  /// path's end, and braking for both with `braking` (m/s2). `max_swing`: maximum change of curvature over
+  /// time, rad/m/s; 0: unlimited.
   void speeds(double cruise, double max_turn, double max_swing, double braking,
               std::array<double, Plan::kMaxPath>& top) const {
-    double next = 0.0;  // squared
+    double next = 0.0;  // Squared.
     for (std::size_t i = path_.size(); i-- > 0;) {
       const double bent = i + 1 < path_.size() ? std::fabs(bend(i)) : 0.0;
       double own = bent * cruise > max_turn ? max_turn / bent : cruise;
@@ -61,7 +62,7 @@ class Walk {
   }
 
  private:
-  /// The pose before, and how far the walk is from it to the next, [0, 1].
+  /// The pose before the point, and the fraction of the distance to the next pose, [0, 1].
   struct Spot {
     std::size_t index;
     double part;
@@ -101,7 +102,7 @@ class IlqrController final : public Controller {
     typename Solver::X start;
     start.template head<3>() << odom.x, odom.y, odom.yaw;
     start.template tail<Model::kVelocities>() = model_.inverse(command());
-    // Of a car that stands the velocity does not tell where its wheels point.
+    // The velocity of a car at rest does not define its steering angle.
     if constexpr (std::is_same_v<Model, model::Car>) start[4] = steering();
     solver_.solve(start, references_);
     const typename Solver::V first =
@@ -116,13 +117,14 @@ class IlqrController final : public Controller {
   void rest() override { solver_.reset(); }
 
  private:
-  /// Where the robot shall be, and how fast, at each step: along the path no faster than the plan, its
-  /// curvature, its end and the platform's acceleration allow.
+  /// Computes the reference pose and velocity of each step: along the path, no faster than the plan, the
+  /// path's curvature, its end and the platform's acceleration allow.
   void refer(const Pose2& odom, const Place& place) {
     Walk walk(plan(), place.nearest, odom);
     const double sign = plan().reverse ? -1.0 : 1.0;
     const double cruise = std::min(plan().max_speed, platform().max_speed);
-    // While a car's wheels turn at their rate, the curvature changes by at least rate / wheelbase a second.
+    // While the front wheels turn at their rate, the curvature changes by at least rate / wheelbase each
+    // second.
     const double swing =
         platform().drive == Drive::car ? platform().steering_rate / platform().wheelbase : 0.0;
     walk.speeds(cruise, params_.turn_share * platform().max_turn, swing,

@@ -5,14 +5,15 @@
 
 #include "core/geometry/pose.hpp"
 
-/// How platforms move, for controllers that look ahead. Every model has `kVelocities` velocity states, whose
-/// rates are its controls: state = (x, y, yaw, velocity states), odometry frame, m, rad.
+/// Motion models of the platforms, for predictive controllers. Every model has `kVelocities` velocity states,
+/// and the controls are their rates. The state is (x, y, yaw, velocity states) in the odometry frame, m and
+/// rad.
 ///
-/// twist(): the body's velocity (vx, vy, wz) for given velocity states; jacobian(): its derivative by them;
-/// inverse(): the velocity states nearest to a twist.
+/// twist() returns the body's velocity (vx, vy, wz) for given velocity states, jacobian() its derivative, and
+/// inverse() the velocity states nearest to a twist.
 namespace adit::nav::model {
 
-/// Velocity states (v, w): speed ahead, m/s, and turn rate, rad/s.
+/// Velocity states (v, w): forward speed, m/s, and turn rate, rad/s.
 struct Unicycle {
   static constexpr int kVelocities = 2;
   using V = Eigen::Vector2d;
@@ -25,7 +26,7 @@ struct Unicycle {
 
 /// Velocity states (left, right): speeds of the two tracks or wheel rows, m/s.
 struct Differential {
-  double track{0.4};  ///< between the two, m, (0, 5]
+  double track{0.4};  ///< Distance between the two, m, (0, 5].
   static constexpr int kVelocities = 2;
   using V = Eigen::Vector2d;
   Eigen::Vector3d twist(const V& v) const { return {0.5 * (v[0] + v[1]), 0.0, (v[1] - v[0]) / track}; }
@@ -35,8 +36,8 @@ struct Differential {
   V inverse(const Twist2& t) const { return {t.vx - 0.5 * track * t.wz, t.vx + 0.5 * track * t.wz}; }
 };
 
-/// Velocity states (v, steer): speed of the rear axle, m/s, and the front wheels' angle, rad. base_link lies
-/// over the rear axle.
+/// Velocity states (v, steer): speed of the rear axle, m/s, and angle of the front wheels, rad. base_link
+/// lies above the rear axle.
 struct Car {
   double wheelbase{0.5};  ///< m, (0, 5]
   static constexpr int kVelocities = 2;
@@ -52,7 +53,7 @@ struct Car {
   }
 };
 
-/// Velocity states (vx, vy, wz): the body's own.
+/// Velocity states (vx, vy, wz): the velocity of the body.
 struct Holonomic {
   static constexpr int kVelocities = 3;
   using V = Eigen::Vector3d;

@@ -7,7 +7,8 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kShortest = 0.12;  ///< m: a nearer point says little about the direction
+/// Minimum distance of the lookahead point, m. A nearer one does not define a direction.
+constexpr double kShortest = 0.12;
 
 }  // namespace
 
@@ -18,7 +19,7 @@ Twist2 PurePursuit::track(const Pose2& odom, const Place& place, double) {
   std::size_t aim = place.nearest;
   while (aim + 1 < path.size() && (path[aim].position() - odom.position()).norm() < ahead) ++aim;
   Eigen::Vector2d to = odom.inverse() * path[aim].position();
-  if (plan().reverse) to = -to;  // as seen by a robot whose front is its back
+  if (plan().reverse) to = -to;  // The robot drives backwards: its rear counts as its front.
   const double distance = to.norm();
   const double share = params().braking_share * platform().max_acceleration;
   double speed = std::min({plan().max_speed, platform().max_speed, std::sqrt(2 * share * place.remaining)});

@@ -6,13 +6,14 @@ namespace adit::nav {
 
 struct PurePursuitParams {
   ControllerParams common{};
-  double lookahead{0.35};      ///< least distance of the point that is steered at, m, [0.1, 2]
-  double lookahead_time{0.5};  ///< plus so many seconds of travel, s, [0, 2]
-  double yaw_gain{1.8};        ///< of the heading while a holonomic robot drives, 1/s, [0, 10]
+  double lookahead{0.35};      ///< Minimum lookahead distance, m, [0.1, 2].
+  double lookahead_time{0.5};  ///< Added lookahead per speed, s, [0, 2].
+  double yaw_gain{1.8};        ///< Heading gain while a holonomic robot drives, 1/s, [0, 10].
 };
 
-/// The light controller: pure pursuit (R. C. Coulter, CMU-RI-TR-92-01) with the speed regulated by curvature,
-/// the way left and the plan's limit (S. Macenski et al., "Regulated pure pursuit", Autonomous Robots 2023).
+/// The simple controller: pure pursuit (R. C. Coulter, CMU-RI-TR-92-01) with the speed regulated by
+/// curvature, remaining path length and the plan's limit (S. Macenski et al., "Regulated pure pursuit",
+/// Autonomous Robots 2023).
 class PurePursuit final : public Controller {
  public:
   explicit PurePursuit(const Platform& platform, const PurePursuitParams& params = {})
