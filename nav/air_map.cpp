@@ -21,10 +21,10 @@ void AirMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body
   const auto high = static_cast<float>(platform_.height + params_.margin);
   const auto reach = static_cast<float>(params_.reach), own = static_cast<float>(-params_.own);
   const auto lidar = static_cast<float>(platform_.lidar_height);
-  float lowest = 0.0f, highest = 0.0f;  // rise per metre of the rays
+  float lowest = 0.0f, highest = 0.0f;  // Range of the rays' slopes.
   for (const Eigen::Vector3f& p : points) {
     const float range = std::hypot(p.x(), p.y());
-    if (!(range > 0.1f && std::isfinite(p.z()))) continue;  // false when it is not a number
+    if (!(range > 0.1f && std::isfinite(p.z()))) continue;  // False when it is not a number.
     lowest = std::min(lowest, (p.z() - lidar) / range);
     highest = std::max(highest, (p.z() - lidar) / range);
     if (range > reach || p.z() < low || p.z() > high || body_.depth(p.x(), p.y()) > own) continue;
@@ -34,7 +34,7 @@ void AirMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body
     Cell& here = cell(i, j);
     if (here.scans == 0 || here.i != i || here.j != j) here = {i, j, static_cast<float>(at.z()), 0.0, 0};
     if (here.seen == stamp_s && here.scans > 0) {
-      here.scans = kSure;  // two returns of one scan
+      here.scans = kSure;  // Two returns in one scan.
       continue;
     }
     here.seen = stamp_s;
@@ -53,7 +53,7 @@ void AirMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body
     const float rise = (static_cast<float>(local.z()) - lidar) / std::max(range, 0.01f);
     const bool hidden = range < static_cast<float>(params_.shortest) || rise < lowest || rise > highest;
     const double age = stamp_s - each.seen;
-    constexpr float kPassed = 0.2f;  // m: since it was seen the robot left its height
+    constexpr float kPassed = 0.2f;  // m: the robot has left the height of the cell since it was seen.
     const auto z = static_cast<float>(local.z());
     if (age > (hidden ? params_.hidden_memory : params_.memory) || range > reach || z < low - kPassed ||
         z > high + kPassed) {

@@ -12,38 +12,39 @@
 namespace adit::nav {
 
 struct AirMapParams {
-  double margin{0.12};        ///< above and below the body that is kept free, too, m, [0, 1]
-  double reach{5.0};          ///< what is farther from the robot does not matter, m, [1, 6]
-  double own{0.03};           ///< returns so close around the footprint are the body itself, m, [0, 0.5]
-  double memory{0.7};         ///< what the lidar should see again is kept so long, s, [0.1, 10]
-  double hidden_memory{8.0};  ///< what it cannot, above or below its rays or too near, s, [0.1, 60]
-  double shortest{0.4};       ///< nearer to the lidar nothing may be seen, m, [0, 1]
+  double margin{0.12};  ///< Free height required above and below the body, m, [0, 1].
+  double reach{5.0};    ///< Ignores returns farther from the robot, m, [1, 6].
+  double own{0.03};     ///< Returns within this distance of the footprint belong to the robot, m, [0, 0.5].
+  double memory{0.7};   ///< Keeps a cell for this long when the lidar should see it again, s, [0.1, 10].
+  /// The same for a cell that is above or below the rays or too near, s, [0.1, 60].
+  double hidden_memory{8.0};
+  double shortest{0.4};  ///< The lidar may see nothing at shorter range, m, [0, 1].
 };
 
-/// The obstacles of what flies: whatever was seen at the height of its body, as cells of 5 cm; what is below
-/// and above, ground as well, does not count. Fixed size; nothing is allocated after construction.
+/// Obstacle map of a flying robot: 5 cm cells with returns at the height of its body. Returns below and
+/// above, the ground included, do not count. The size is fixed, and nothing is allocated after construction.
 class AirMap {
  public:
-  static constexpr std::size_t kMost = 8192;  ///< cells that cells() gives
+  static constexpr std::size_t kMost = 8192;  ///< Maximum number of cells().
 
   explicit AirMap(const Platform& platform, const AirMapParams& params = {});
 
-  /// One scan: points in base_link, m; the body in the odometry frame then; the time, s.
+  /// Takes one scan: points in base_link, m; pose of the body in the odometry frame; time, s.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
-  /// Middles of the cells that are not free, odometry frame, m.
+  /// Centres of the occupied cells, odometry frame, m.
   std::span<const Eigen::Vector2f> cells() const { return cells_; }
   void clear();
 
  private:
-  static constexpr int kSide = 256;  ///< cells; the grid rolls with the robot
+  static constexpr int kSide = 256;  ///< Cells; the grid rolls with the robot.
   static constexpr float kCell = 0.05f;
   struct Cell {
     std::int32_t i{}, j{};
-    float z{};  ///< odometry frame, m
+    float z{};  ///< Odometry frame, m.
     double seen{};
-    std::uint8_t scans{};  ///< that showed it, at most kSure; 0: free
+    std::uint8_t scans{};  ///< Number of scans with a return here, at most kSure; 0: free.
   };
-  static constexpr std::uint8_t kSure = 2;  ///< one return alone may be noise
+  static constexpr std::uint8_t kSure = 2;  ///< A single return may be noise.
 
   Cell& cell(std::int32_t i, std::int32_t j) {
     return grid_[static_cast<std::size_t>((j & (kSide - 1)) * kSide + (i & (kSide - 1)))];

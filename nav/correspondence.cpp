@@ -7,9 +7,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kSlack = 0.002f;  ///< m: straight on along a wall is not "deeper"
+/// Tolerance, m: driving straight along a wall does not count as moving deeper.
+constexpr float kSlack = 0.002f;
 
-/// Marks the cells that the body covers while it stands at `pose`.
+/// Rasterises the sweep of the body: marks the cells that it covers at a pose.
 class Painter {
  public:
   Painter(std::vector<PathMask>& masks, int rings, const Footprint& body)
@@ -35,7 +36,8 @@ class Painter {
     const float bx = c * x0 + s * y0, by = c * y0 - s * x0;
     for (int i = middle - half; i < middle + half; ++i) {
       const int a = (i + 2 * CorrespondenceGrid::kAngles) % CorrespondenceGrid::kAngles;
-      // Along a ray the body's coordinates are linear in the range, so that it covers one interval of it.
+      // Along a ray the body's coordinates are linear in the range, so the body covers one interval of
+      // ranges.
       const float ux = c * cos_[a] + s * sin_[a], uy = c * sin_[a] - s * cos_[a];
       float from = 0.0f, to = range(rings_);
       for (const Footprint::Edge& e : body_.edges())
@@ -70,7 +72,7 @@ class Painter {
   double radius_;
   int start_rings_{};
   std::array<float, CorrespondenceGrid::kAngles> cos_{}, sin_{};
-  std::vector<float> start_{};  ///< how deep each cell may come: as deep as it is at the start
+  std::vector<float> start_{};  ///< Permitted depth of each cell inside the margin: its depth at the start.
 };
 
 }  // namespace
@@ -80,7 +82,7 @@ CorrespondenceGrid::CorrespondenceGrid(const PathTree& tree, const Footprint& bo
   rings_ = static_cast<int>(std::ceil(reach / kRing));
   masks_.resize(static_cast<std::size_t>(rings_) * kAngles);
   Painter painter(masks_, rings_, body);
-  // A body at every second pose: 10 cm apart, against a body several times as long.
+  // Every second pose is rasterised: 10 cm apart, for a body several times as long.
   constexpr std::size_t kStride = 2;
   for (int stage = 0; stage < PathTree::kStages; ++stage) {
     const std::size_t begin = stage == 0 ? 0 : tree.last_pose(stage - 1);

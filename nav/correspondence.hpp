@@ -9,7 +9,7 @@
 
 namespace adit::nav {
 
-/// The parts of a PathTree's paths that are blocked: one bit per (stage, node); one cache line.
+/// A set of parts of a PathTree's paths that are blocked: one bit per (stage, node), one cache line in all.
 struct alignas(64) PathMask {
   std::array<std::uint64_t, 8> words{};
 
@@ -24,37 +24,37 @@ struct alignas(64) PathMask {
     for (auto w : words) all |= w;
     return all != 0;
   }
-  /// Every path is blocked in its first stage already.
+  /// Every path is already blocked in its first stage.
   bool dead() const { return (words[0] & 0x7f) == 0x7f; }
 };
 
-/// The correspondence grid: which parts of which paths an obstacle at a place blocks.
+/// Correspondence grid: a lookup table of the path parts that an obstacle at a given place blocks.
 ///
-/// Falco keeps a Cartesian grid and rotates each obstacle point into each of 36 headings. This grid is
-/// *polar*, 1 degree by 5 cm: a turn of ten degrees is a shift of ten columns, so that checking a heading
-/// costs one table access and the union of one cache line. And the body is the polygon that moves, not a disc
-/// around it: a robot longer than wide still fits a door.
+/// Falco stores a Cartesian grid and rotates each obstacle point into each of 36 headings. This grid is
+/// *polar*, 1 degree by 5 cm: a rotation by ten degrees is a shift by ten columns, so checking a heading
+/// costs one table access and the union of one cache line. The swept body is the footprint's polygon and not
+/// a disc around it, so a robot that is longer than wide fits through a door.
 ///
-/// An obstacle that is inside the body's margin already where the path starts blocks only what would bring it
-/// deeper in: a robot that came too close can slide along or away.
+/// An obstacle that is already inside the body's margin at the start of the path blocks only motion that
+/// brings it deeper inside, so a robot that came too close can slide along it or move away.
 class CorrespondenceGrid {
  public:
   static constexpr int kAngles = 360;
   static constexpr double kRing = 0.05;  ///< m
 
-  /// Builds the grid: each cell of a path's sweep is marked (10 to 20 ms). An empty grid, which blocks
-  /// nothing, is what a default-constructed one is.
+  /// Builds the grid by marking each cell of each path's sweep (10 to 20 ms). A default-constructed grid is
+  /// empty and blocks nothing.
   CorrespondenceGrid() = default;
   CorrespondenceGrid(const PathTree& tree, const Footprint& body);
 
-  /// Rings of the grid; an obstacle in a ring beyond blocks nothing.
+  /// Number of rings; an obstacle beyond the last ring blocks nothing.
   int rings() const { return rings_; }
-  /// The ring of an obstacle at this range (m); may be >= rings().
+  /// Ring of an obstacle at this range (m); may be >= rings().
   static int ring_of(float range) { return static_cast<int>(range * static_cast<float>(1.0 / kRing)); }
-  /// Largest |angle| (degrees, of 0..180) in this ring at which something blocks anything, or -1.
+  /// Largest |angle| (degrees, [0, 180]) in this ring at which an obstacle blocks anything, or -1.
   int half_angle(int ring) const { return half_angle_[ring]; }
-  /// What is blocked by an obstacle in this ring at `angle` in [0, 360) degrees, counter-clockwise from the
-  /// direction in which the paths start.
+  /// The parts that an obstacle blocks in this ring at `angle` in [0, 360) degrees, counter-clockwise from
+  /// the starting direction of the paths.
   const PathMask& at(int ring, int angle) const { return masks_[ring * kAngles + angle]; }
 
  private:

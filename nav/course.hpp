@@ -6,14 +6,15 @@
 
 namespace adit::nav {
 
-/// A stick held straight ahead, or back, holds the course that the robot had then: it goes round what is in
-/// the way and on, where turning with each detour would follow a wall.
+/// Heading hold for the smart joystick: while the stick is held straight ahead or back, the robot keeps the
+/// heading that it had then. It passes an obstacle and returns to that heading; a direction relative to the
+/// body would turn with each detour and make the robot follow a wall.
 class Course {
  public:
-  /// Where a target lies that is a direction: the bearing in the body frame at `pose`, rad.
+  /// Converts a direction target into a bearing in the body frame at `pose`, rad.
   double bearing(const Target& target, const Pose2& pose) {
-    constexpr double kStraightStick = 15.0 * M_PI / 180.0;  // within this of ahead or back
-    constexpr double kSteadyStick = 4.0 * M_PI / 180.0;     // a stick that moves more sets a new course
+    constexpr double kStraightStick = 15.0 * M_PI / 180.0;  // Maximum deviation from ahead or back.
+    constexpr double kSteadyStick = 4.0 * M_PI / 180.0;     // A stick that moves more sets a new heading.
     const double stick = wrap_angle(target.direction);
     held_ = target.speed > 0.0 && std::fabs(std::sin(stick)) < std::sin(kStraightStick);
     if (!held_) {
@@ -27,13 +28,13 @@ class Course {
     }
     return wrap_angle(course_ - pose.yaw);
   }
-  /// Whether the last bearing was a course that is held.
+  /// Whether the last bearing was a held heading.
   bool held() const { return held_; }
   void forget() { held_ = known_ = false; }
 
  private:
-  double course_{0};  ///< odometry frame, rad
-  double stick_{0};   ///< that set it
+  double course_{0};  ///< Held heading, odometry frame, rad.
+  double stick_{0};   ///< Stick direction that set it, rad.
   bool known_{false}, held_{false};
 };
 

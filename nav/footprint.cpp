@@ -61,7 +61,7 @@ double Footprint::reach(double nx, double ny) const {
 }
 
 void Footprint::build() {
-  // The sum (Minkowski's) of the polygon and the margin's rectangle: each normal of either is one of its own.
+  // The Minkowski sum of the polygon and the margins' rectangle has the normals of both.
   count_ = 0;
   radius_ = 0;
   const auto add = [this](double nx, double ny) {

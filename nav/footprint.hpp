@@ -10,12 +10,12 @@
 
 namespace adit::nav {
 
-/// A robot seen from above: a convex polygon around base_link, grown by margins that may differ ahead, behind
-/// and across the robot. As half planes, so that "how deep inside is this point" is a handful of
+/// Footprint of a robot: a convex polygon around base_link, grown by margins that may differ ahead, behind
+/// and to the sides. It is stored as half planes, so the depth of a point inside it takes a few
 /// multiplications.
 class Footprint {
  public:
-  /// Inside is where nx * x + ny * y <= offset, for every edge; (nx, ny) has length one.
+  /// A half plane: nx * x + ny * y <= offset inside; (nx, ny) has length one.
   struct Edge {
     float nx{}, ny{}, offset{};
   };
@@ -23,19 +23,21 @@ class Footprint {
   Footprint() = default;
   /// The platform's polygon, or the rectangle of its length and width.
   explicit Footprint(const Platform& platform);
-  /// A rectangle centred on base_link, half its size, m.
+  /// A rectangle centred on base_link; both arguments are half sizes, m.
   Footprint(double half_length, double half_width);
 
-  /// Grown by `along` to the front and back and by `across` to both sides, m (on top of earlier margins).
+  /// Grows the footprint by `along` at the front and rear and by `across` on both sides, m, beyond its
+  /// margins.
   Footprint grown(double along, double across) const { return grown(along, along, across); }
-  /// Grown by `ahead` to the front, `behind` to the back and `across` to both sides, m (on top of earlier
-  /// margins).
+  /// Grows the footprint by `ahead` at the front, `behind` at the rear and `across` on both sides, m, beyond
+  /// its margins.
   Footprint grown(double ahead, double behind, double across) const;
-  /// The same body facing the other way, with the same margins: `ahead` is then kept free before its rear.
+  /// The same body facing backwards, with the same margins: `ahead` then applies to its rear.
   Footprint turned() const;
 
   std::span<const Edge> edges() const { return {edges_.data(), count_}; }
-  /// How deep a point of the body's frame is inside, m; negative outside (never more than its distance).
+  /// Depth of a point (body frame, m) inside the footprint, m; negative outside, where its magnitude is a
+  /// lower bound of the distance.
   float depth(float x, float y) const {
     float least = 1e9f;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -44,20 +46,20 @@ class Footprint {
     }
     return least;
   }
-  /// Of the circle around base_link that the body stays in, m.
+  /// Radius of the circumscribed circle around base_link, m.
   double radius() const { return radius_; }
-  /// From base_link to the foremost point, m.
+  /// Distance from base_link to the foremost point, m.
   double front() const { return reach(1, 0); }
-  /// The body looks the same from behind (turned by half a turn).
+  /// Whether the footprint equals itself turned by 180 degrees.
   bool symmetric() const;
 
  private:
-  /// How far the body reaches along a direction of length one, m.
+  /// Extent of the body along a unit direction, m.
   double reach(double nx, double ny) const;
   void build();
 
   static constexpr std::size_t kMaxEdges = Platform::kMaxCorners + 4;
-  std::array<Eigen::Vector2d, Platform::kMaxCorners> corners_{};  ///< counter-clockwise, without the margin
+  std::array<Eigen::Vector2d, Platform::kMaxCorners> corners_{};  ///< Counter-clockwise, without margins.
   std::size_t corner_count_{0};
   double ahead_{0}, behind_{0}, across_{0};
   std::array<Edge, kMaxEdges> edges_{};

@@ -8,14 +8,14 @@
 
 namespace adit::nav {
 
-/// Every planner there is, for configuration files and help; the first one is the default.
+/// Names of all planners, for configuration files and help; the first one is the default.
 const std::vector<std::string>& planner_names();
-/// What is told of a name that no planner has: bad_argument, with those there are.
+/// The error for an unknown planner name: bad_argument, with the known names.
 Error no_planner(const std::string& name);
-/// Whether the planner that the platform asks for exists and is one for its drive: bad_argument, and why not.
+/// Checks that the platform's planner exists and supports its drive. Errors: bad_argument, with the cause.
 Result<void> fits(const Platform& platform);
-/// The planner that the platform asks for. `params` and `library` are those of `trajectories`; the library is
-/// built when null. Errors: fits().
+/// Creates the planner that the platform names. `params` and `library` belong to `trajectories`; the library
+/// is built when null. Errors: those of fits().
 Result<std::unique_ptr<Planner>> make_planner(const Platform& platform, const LocalPlannerParams& params = {},
                                               std::shared_ptr<const PlannerLibrary> library = nullptr);
 

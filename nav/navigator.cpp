@@ -7,7 +7,7 @@
 namespace adit::nav {
 namespace {
 
-constexpr std::size_t kMostPredicted = 8192;  ///< places of what moves
+constexpr std::size_t kMostPredicted = 8192;  ///< Maximum number of predicted places of movers.
 
 }  // namespace
 
@@ -62,7 +62,7 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
   predict(tracker_.movers(), age, pose, moves, platform_, obstacles_);
   Plan plan = planner_->plan(target, pose, obstacles_, stamp_s);
   if ((plan.blocked || target.held) && target.kind == Target::Kind::goal) {
-    // Where something moves the robot waits.
+    // Movers do not count: the robot waits for them.
     const auto out = escape_.plan(pose, std::span(obstacles_).first(standing));
     if (plan.blocked && out) {
       const double clearance = plan.clearance;
@@ -72,7 +72,7 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
     } else if (plan.blocked && escape_.side() != Side::none) {
       plan.reason = Reason::start_in_collision;
     }
-    // The collision monitor may hold what the planners let through.
+    // The collision monitor may block a motion that the planner permits.
     if (target.held || plan.blocked) plan.side = escape_.side();
   }
   plan.max_speed = std::min(plan.max_speed, speed_beside(tracker_.movers(), age, plan, platform_));
@@ -80,7 +80,7 @@ Plan Navigator::plan(const Target& target, const Pose2& pose, double stamp_s) {
 }
 
 double Navigator::speed(const Pose2& pose, double stamp_s) {
-  constexpr double kShortest = 0.02, kLongest = 0.5;  // s: else nothing is known
+  constexpr double kShortest = 0.02, kLongest = 0.5;  // s: outside of this interval the speed is unknown.
   const double dt = stamp_s - last_stamp_s_, way = (pose.position() - last_pose_.position()).norm();
   last_pose_ = pose;
   last_stamp_s_ = stamp_s;

@@ -8,9 +8,9 @@
 namespace adit::nav {
 namespace {
 
-constexpr std::size_t kStride = 4;  // poses of the path from one look to the next
+constexpr std::size_t kStride = 4;  // Every fourth pose of the path is checked.
 constexpr std::size_t kSectors = 120;
-constexpr float kBehind = 0.4f;  // m: so much farther than what hides it
+constexpr float kBehind = 0.4f;  // m: a place counts as hidden when it lies this much behind an obstacle.
 
 std::size_t sector(double y, double x) {
   const double turn = std::atan2(y, x) / (2 * M_PI);
@@ -40,7 +40,7 @@ double path_speed(const Plan& plan, const Pose2& pose, const Footprint& body, co
   for (std::size_t i = 0; i < path.size(); i += kStride) {
     const Pose2 at = back * path[i];
     const double before = braking * spacing * static_cast<double>(i);
-    if (top * top <= before) break;  // whatever comes there, it can be braked for
+    if (top * top <= before) break;  // The robot can brake for anything from here on.
     const auto c = static_cast<float>(std::cos(at.yaw)), s = static_cast<float>(std::sin(at.yaw));
     const auto x0 = static_cast<float>(at.x), y0 = static_cast<float>(at.y);
     float clear = enough;

@@ -10,15 +10,16 @@
 namespace adit::nav {
 
 struct PathSpeedParams {
-  double caution{0.3};        ///< speed with an obstacle at the footprint, m/s, (0, 2]
-  double caution_gain{2.4};   ///< more speed for each metre of clearance, 1/s, [0, 10]
-  double blind{0.6};          ///< where the path leads behind something that hides it, m/s, (0, 5]
-  double braking_share{0.7};  ///< of the platform's acceleration, to be down to these in time, (0, 1]
+  double caution{0.3};       ///< Speed with an obstacle at the footprint, m/s, (0, 2].
+  double caution_gain{2.4};  ///< Additional speed per clearance, 1/s, [0, 10].
+  double blind{0.6};         ///< Speed where the path enters hidden space, m/s, (0, 5].
+  /// Fraction of the platform's acceleration used to brake to these speeds in time, (0, 1].
+  double braking_share{0.7};
 };
 
-/// How fast a path may be driven from its start on, m/s: near obstacles, along all of its length, slower by
-/// how near they are; where it comes behind something (as seen from `pose`), slow enough for what may
-/// come out there. Later places count by as much as is left to brake for them.
+/// Speed limit at the start of a path, m/s. Near obstacles, anywhere along the path, the limit falls with the
+/// clearance. Where the path enters space that is hidden from `pose`, it is low enough for obstacles that may
+/// come out. Later places count as far as the distance to them is too short for braking.
 double path_speed(const Plan& plan, const Pose2& pose, const Footprint& body, const Platform& platform,
                   std::span<const ObstaclePoint> obstacles, const PathSpeedParams& params);
 

@@ -7,8 +7,8 @@
 namespace adit::nav {
 namespace {
 
-/// Curvature `s` metres along a path whose generations bend by `c`, changing linearly over `blend` at the
-/// start of the second and third segment. The first one bends at once.
+/// Curvature at `s` metres along a path whose generations have the curvatures `c`. It changes linearly over
+/// `blend` at the start of the second and third segment; the first segment is curved from its start.
 double curvature_at(double s, const std::array<double, 3>& c, const PathTreeParams& p) {
   const int segment = std::min(2, static_cast<int>(s / p.segment));
   if (segment == 0) return c[0];
@@ -38,7 +38,7 @@ PathTree::PathTree(const PathTreeParams& params) : params_(params) {
     Pose2 pose{};
     poses_.push_back(pose);
     for (std::size_t i = 0; i < steps; ++i) {
-      // Midpoint rule: exact enough (below a millimetre over three metres) at five centimetres a step.
+      // The midpoint rule is exact to a millimetre over three metres at steps of five centimetres.
       const double turn = ds * curvature_at((static_cast<double>(i) + 0.5) * ds, bend, params_);
       pose.x += ds * std::cos(pose.yaw + turn / 2);
       pose.y += ds * std::sin(pose.yaw + turn / 2);

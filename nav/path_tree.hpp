@@ -8,38 +8,38 @@
 
 namespace adit::nav {
 
-/// How the trajectory library is grown.
+/// Parameters of the trajectory library.
 struct PathTreeParams {
-  double segment{1.0};  ///< length of each of the three generations, m, [0.2, 3]
-  /// Largest curvature of each generation, rad/m, [0, 4]. The seven children of a node spread evenly over
-  /// [-c, c]. Later generations bend less: far ahead the fan is wide enough already.
+  double segment{1.0};  ///< Length of each of the three generations, m, [0.2, 3].
+  /// Maximum curvature of each generation, rad/m, [0, 4]. The seven children of a node are spread evenly over
+  /// [-c, c]. Later generations bend less, because the fan is already wide enough far ahead.
   std::array<double, 3> curvature{0.95, 0.80, 0.65};
-  double blend{0.25};    ///< length over which one curvature changes into the next, m, (0, segment]
-  double spacing{0.05};  ///< between the poses of a path, m, [0.01, 0.2]
+  double blend{0.25};    ///< Length over which one curvature changes into the next, m, (0, segment].
+  double spacing{0.05};  ///< Distance between the poses of a path, m, [0.01, 0.2].
 };
 
-/// The trajectory library: a tree of three generations, seven children each, which makes 343 paths in seven
+/// Trajectory library: a tree of three generations with seven children each, which makes 343 paths in seven
 /// groups. A path starts at the origin along +x. After J. Zhang et al., "Falco: Fast likelihood-based
-/// collision avoidance with extension to human-guided navigation", J. Field Robotics 2020; where Falco's
-/// generator splines bearings, this one integrates a piecewise linear curvature, so that what a path asks of
-/// a robot (turn rate / speed) is bounded by construction.
+/// collision avoidance with extension to human-guided navigation", J. Field Robotics 2020. Falco's generator
+/// fits splines through bearings; this one integrates a piecewise linear curvature, so the demand of a path
+/// on the robot (turn rate / speed) is bounded by construction.
 ///
-/// A path is checked in seven *stages*: four quarters of its first segment, two halves of its second, its
-/// third. Each (stage, node) has one bit, so that one mask of 512 bits says which parts of which paths an
-/// obstacle blocks, and the free length of every path follows from the union of masks.
+/// A path is checked in seven *stages*: four quarters of its first segment, two halves of its second, and its
+/// third. Each (stage, node) has one bit, so a mask of 512 bits holds the path parts that an obstacle blocks,
+/// and the free length of every path follows from the union of masks.
 class PathTree {
  public:
   static constexpr int kFan = 7;
   static constexpr int kGroups = kFan;
   static constexpr int kPaths = kFan * kFan * kFan;
   static constexpr int kStages = 7;
-  /// Nodes that are told apart in each stage, and the first bit of each stage.
+  /// Number of distinct nodes in each stage, and the first bit of each stage.
   static constexpr std::array<int, kStages> kNodes{7, 7, 7, 7, 49, 49, 343};
   static constexpr std::array<int, kStages + 1> kFirstBit{0, 7, 14, 21, 28, 77, 126, 469};
 
   explicit PathTree(const PathTreeParams& params = {});
 
-  /// Length from the start to the end of a stage, m.
+  /// Length from the start of a path to the end of a stage, m.
   double stage_end(int stage) const { return stage_end_[stage]; }
   double length() const { return stage_end_[kStages - 1]; }
   /// The first stage that reaches `distance` (m), or the last one.
@@ -47,11 +47,11 @@ class PathTree {
 
   /// All poses of a path, `params.spacing` apart, in the frame of its start.
   std::span<const Pose2> path(int path) const { return {&poses_[path * per_path_], per_path_}; }
-  /// Index of the last pose that lies within a stage.
+  /// Index of the last pose within a stage.
   std::size_t last_pose(int stage) const { return last_pose_[stage]; }
-  /// Bearing from the start of the point where `node` ends in `stage`, degrees.
+  /// Bearing from the start of a path to the end of `node` in `stage`, degrees.
   float end_bearing(int stage, int node) const { return bearing_[kFirstBit[stage] + node]; }
-  /// A path that runs through that node of that stage.
+  /// A path through `node` of `stage`.
   static int path_through(int stage, int node) { return node * (kPaths / kNodes[stage]); }
   const PathTreeParams& params() const { return params_; }
 

@@ -8,18 +8,18 @@
 
 namespace adit::nav {
 
-/// A bearing that needs no trigonometry, monotone in the angle: -1 .. 3, from -y over +x to -y. The "diamond
-/// angle".
+/// The "diamond angle": a bearing without trigonometry, monotone in the angle, [-1, 3) from -y over +x back
+/// to -y.
 inline float diamond_angle(float dx, float dy) {
-  const float t = dy / (std::fabs(dx) + std::fabs(dy));  // -1 .. 1
+  const float t = dy / (std::fabs(dx) + std::fabs(dy));  // [-1, 1]
   return dx < 0 ? 2.0f - t : t;
 }
 
-/// Where a return lies from its sensor.
+/// Direction and range of a return from its sensor.
 struct Ray {
-  float range{};    ///< horizontal distance, m
-  float tangent{};  ///< of the elevation
-  float bearing{};  ///< diamond angle
+  float range{};    ///< Horizontal distance, m.
+  float tangent{};  ///< Tangent of the elevation.
+  float bearing{};  ///< Diamond angle.
 
   static Ray to(float dx, float dy, float dz) {
     const float range = std::sqrt(dx * dx + dy * dy);
@@ -27,14 +27,14 @@ struct Ray {
   }
 };
 
-/// The rays to a few points at once. What runs for every return of a scan is written so that the compiler
-/// does four at a time.
+/// Rays to a block of points. The loops run for every return of a scan and are written so that the compiler
+/// vectorises them, four rays at a time.
 class RayBlock {
  public:
   static constexpr std::size_t kSize = 128;
 
-  /// To as many of the points as fit in, from a sensor at `lidar`, along axes turned by `turn`; points that
-  /// are not finite give rays that are not.
+  /// Computes the rays to as many points as fit in, from a sensor at `lidar` in axes rotated by `turn`.
+  /// Points that are not finite give rays that are not finite.
   void take(std::span<const Eigen::Vector3f> points, const Eigen::Vector3f& lidar,
             const Eigen::Matrix3f& turn) {
     count_ = points.size() < kSize ? points.size() : kSize;

@@ -3,7 +3,7 @@
 
 namespace adit::nav {
 
-/// From below, the lowest return of a stair's riser lies so much above its foot, m.
+/// Height of the lowest return of a stair's riser above its foot when seen from below, m.
 inline constexpr double kRiser = 0.06;
 
 }  // namespace adit::nav

@@ -18,8 +18,8 @@ RotationTable::RotationTable(const Footprint& body) {
       const double angle = (a + 0.5) * M_PI / 180.0;
       depth[a] = body.depth(static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)));
     }
-    // While the body turns left by t, the obstacle comes from angle a to a - t in the body's frame. As on
-    // paths, what is inside the margin already may not come deeper.
+    // While the body turns left by t, the obstacle moves from angle a to a - t in the body's frame. As on
+    // paths, an obstacle that is already inside the margin may not get deeper.
     const auto room = [&depth](int a, int side) {
       for (int turn = 0; turn < kAngles; ++turn)
         if (depth[(a - side * turn + kAngles) % kAngles] > std::max(0.0f, depth[a]) + 0.002f)

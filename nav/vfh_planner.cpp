@@ -7,10 +7,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr int kHeadings = 72;                       // 5 degrees
+constexpr int kHeadings = 72;                       // 5 degrees apart.
 constexpr double kSpacing = 0.05, kFarthest = 3.0;  // m
-constexpr double kTolerance = 0.25, kLeast = 0.4;   // m: arrived; a shorter way is none
-constexpr double kMargin = 0.06;                    // m around the robot
+constexpr double kTolerance = 0.25, kLeast = 0.4;   // m: goal tolerance; minimum length of a path.
+constexpr double kMargin = 0.06;                    // m around the robot.
 
 }  // namespace
 
@@ -47,7 +47,7 @@ Plan VfhPlanner::plan(const Target& target, const Pose2& pose, std::span<const O
     const double heading = wrap_angle(bearing + 2 * M_PI * i / kHeadings);
     const double free = free_along(heading, obstacles);
     if (free < std::min(kLeast, distance)) continue;
-    // Towards the target, without much turning, and rather where there is room.
+    // Prefers directions towards the target, with little turning and more free space.
     const double cost = std::fabs(wrap_angle(heading - bearing)) + 0.4 * std::fabs(heading) +
                         0.5 * (1 - std::min(free, distance) / std::min(kFarthest, distance));
     if (cost >= best) continue;

@@ -5,9 +5,9 @@
 
 namespace adit::nav {
 
-/// A planner as small as one can be: the free direction nearest to the target, straight on, for as long as
-/// it is free. After J. Borenstein and Y. Koren, "The vector field histogram", 1991, with corridors in place
-/// of a histogram. The robot counts as a disc: it passes what is wider than its diagonal.
+/// A minimal planner: drives straight along the free direction nearest to the target. After J. Borenstein and
+/// Y. Koren, "The vector field histogram", 1991, with corridors in place of a histogram. The robot counts as
+/// a disc, so it passes only gaps wider than its diagonal.
 class VfhPlanner final : public Planner {
  public:
   explicit VfhPlanner(const Platform& platform) : platform_(platform) {}

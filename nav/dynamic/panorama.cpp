@@ -6,7 +6,7 @@
 namespace adit::nav {
 namespace {
 
-constexpr int kAround = 2;  ///< bins to each side
+constexpr int kAround = 2;  ///< Half width of the neighbourhood, bins.
 
 }  // namespace
 
@@ -19,7 +19,8 @@ void Panorama::spread() {
     std::copy_n(bins, kAround, row.end() - kAround);
     for (int c = 0; c < kColumns; ++c) bins[c] = *std::min_element(&row[c], &row[c] + 2 * kAround + 1);
   }
-  std::array<std::array<std::uint16_t, kColumns>, kAround> above{};  // rows as they were, oldest first
+  // The unmodified rows above, oldest first.
+  std::array<std::array<std::uint16_t, kColumns>, kAround> above{};
   for (auto& r : above) r.fill(kNothing);
   for (int r = 0; r < kRows; ++r) {
     std::uint16_t* bins = bins_.data() + static_cast<std::ptrdiff_t>(r) * kColumns;

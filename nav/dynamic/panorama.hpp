@@ -7,11 +7,12 @@
 
 namespace adit::nav {
 
-/// How far one scan saw, by direction from the sensor with the vertical upright: bins of about 1.2 degrees of
-/// bearing (by the diamond angle) and of 0.02 of the elevation's tangent.
-/// After spread() each bin holds the nearest return of itself and its neighbours, so that "it saw past that
-/// place" needs every ray around to have gone past: edges, the grain of the rings, and small errors of the
-/// odometry do not count.
+/// Range image of one scan: the nearest return by direction from the sensor, with the vertical axis upright.
+/// Bins span about 1.2 degrees of bearing (by the diamond angle) and 0.02 of the elevation's tangent.
+///
+/// spread() replaces each bin by the minimum of itself and its neighbours. "Saw past that place" then
+/// requires that all rays around it went past, so edges, the spacing of the rings and small odometry errors
+/// do not count.
 class Panorama {
  public:
   static constexpr int kColumns = 288;
@@ -19,7 +20,8 @@ class Panorama {
   static constexpr int kBins = kColumns * kRows;
 
   void clear() { bins_.fill(kNothing); }
-  /// A return. The bin of which it is the nearest so far (column and row: kColumns to a row), else -1.
+  /// Adds a return. Gives the index of its bin (kColumns bins a row) if it is the nearest one there so far,
+  /// else -1.
   int add(const Ray& ray) {
     const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return -1;
@@ -31,12 +33,12 @@ class Panorama {
     bin = value;
     return index;
   }
-  /// Whether a bin has a return, before spread().
+  /// Whether a bin has a return; valid before spread() only.
   bool filled(int bin) const { return bins_[static_cast<std::size_t>(bin)] != kNothing; }
-  /// Once, after the last add().
+  /// Replaces each bin by the minimum of its neighbourhood. Call it once, after the last add().
   void spread();
-  /// Whether rays went past the place that `ray` leads to, by `beyond` metres at least.
-  /// Where nothing came back nothing is known: false.
+  /// Whether rays passed the place at the end of `ray` by at least `beyond` metres. Bins without a return
+  /// prove nothing: false.
   bool saw_past(const Ray& ray, float beyond) const {
     const int row = row_of(ray.tangent);
     if (row < 0 || row >= kRows) return false;

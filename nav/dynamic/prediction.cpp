@@ -9,17 +9,18 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kPredictionStep = 0.1;  // s between the places of one mover
-constexpr float kOwn = 0.1f;             // m around the footprint: what comes there cannot be driven around
-constexpr float kUnsure = 0.6f;          // cost of a place that may be taken
-constexpr float kLeft = 0.4f;            // cost of the side that is given away
-constexpr float kSpacing = 0.15f;        // m between its points
-constexpr double kSlower = 0.5;          // of its speed is the least that the robot is reckoned with
-constexpr double kHeadOn = 0.8;          // m: who passes farther off does not come head on
-constexpr float kAhead = 0.7f;           // cosine of the sector in which he does
-constexpr double kClosing = 0.3;         // m/s: and comes nearer by
+constexpr double kPredictionStep = 0.1;  // Time between the predicted places of one mover, s.
+// Margin around the footprint, m: the robot cannot drive around what comes there.
+constexpr float kOwn = 0.1f;
+constexpr float kUnsure = 0.6f;    // Cost of a place that the mover may occupy.
+constexpr float kLeft = 0.4f;      // Cost of the side that is left to an oncoming mover.
+constexpr float kSpacing = 0.15f;  // Distance between the points on that side, m.
+constexpr double kSlower = 0.5;    // Fraction of its speed that is assumed as the robot's minimum.
+constexpr double kHeadOn = 0.8;    // A mover that passes at a greater distance is not oncoming, m.
+constexpr float kAhead = 0.7f;     // Cosine of the half angle of the sector in which a mover can be oncoming.
+constexpr double kClosing = 0.3;   // Minimum approach speed of an oncoming mover, m/s.
 
-/// Ways that the robot can have made after a time, m.
+/// Distances that the robot can have travelled after a time, m.
 struct Reach {
   double least, most;
 };
@@ -31,7 +32,7 @@ Reach reach(const Platform& platform, double speed, double t) {
   return {kSlower * speed * t, std::max(fast, speed * t)};
 }
 
-/// Whether it comes towards the robot, and about along the line between them. Robot's frame.
+/// Whether a mover approaches the robot about along the line between them. Robot's frame.
 bool head_on(const Eigen::Vector2f& at, const Eigen::Vector2f& velocity) {
   const float range = at.norm(), speed = velocity.norm();
   if (range < 0.1f || at.x() < kAhead * range) return false;
@@ -55,7 +56,7 @@ void predict(std::span<const Mover> movers, double age, const Pose2& pose, doubl
   };
   const Eigen::Vector2f origin = pose.position().cast<float>();
   for (const Mover& mover : movers) {
-    if (!mover.moves) continue;  // it is where the map has it
+    if (!mover.moves) continue;  // The terrain map holds it as an obstacle.
     const Eigen::Vector2f velocity = local(mover.velocity);
     const Eigen::Vector2f middle = local(mover.position - origin) + static_cast<float>(age) * velocity;
     const bool gives_way = head_on(middle, velocity);
@@ -83,14 +84,14 @@ void predict(std::span<const Mover> movers, double age, const Pose2& pose, doubl
 
 double speed_beside(std::span<const Mover> movers, double age, const Plan& plan, const Platform& platform,
                     const PredictionParams& params) {
-  constexpr std::size_t kStride = 4;  // poses of the path from one look to the next
+  constexpr std::size_t kStride = 4;  // Every fourth pose of the path is checked.
   double top = platform.max_speed;
   const auto path = plan.path();
   if (path.size() < 2) return top;
   const Footprint body(platform);
   const double braking = params.braking_share * platform.max_acceleration;
   const double spacing = plan.length / static_cast<double>(path.size() - 1);
-  // The speed whose way to a stop, and the other's way meanwhile, are that far.
+  // The highest speed at which the robot's stopping distance and the mover's travel meanwhile fit in `apart`.
   const auto safe = [&](double apart, double closing) {
     const double left = std::max(0.0, apart - closing * params.reaction);
     const double linear = params.reaction + closing / braking;

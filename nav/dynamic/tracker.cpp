@@ -9,19 +9,19 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kNearest = 0.1f;       // m from the lidar; what is nearer is the own body
+constexpr float kNearest = 0.1f;       // Nearer returns belong to the robot, m from the lidar.
 constexpr float kFarthest = 1e3f;      // m
-constexpr float kSteepest = 1e2f;      // of a ray's elevation, tangent
-constexpr double kLeastPeriod = 0.08;  // s between the images that are kept
-constexpr double kBreak = 1.0;         // s without a scan: nothing of before counts
-constexpr int kGapColumns = 2;         // columns without a return within one thing
-constexpr float kStep = 0.45f;         // m between neighbouring columns of one thing
-constexpr int kFewest = 2;             // columns
-constexpr int kConfirmed = 3;          // times; of what moved before, one less
-constexpr float kSlowing = 0.5f;       // of the velocity is left after each scan that does not show it
-constexpr double kGate = 0.5;          // m: an observation so far off is another's
-constexpr double kFirstDoubt = 1.2;    // m/s of a velocity of which nothing is known
-constexpr double kLostDoubt = 0.4;     // m of the place of what stands
+constexpr float kSteepest = 1e2f;      // Maximum tangent of a ray's elevation.
+constexpr double kLeastPeriod = 0.08;  // Minimum time between the stored images, s.
+constexpr double kBreak = 1.0;         // A longer pause between scans resets the tracker, s.
+constexpr int kGapColumns = 2;         // Maximum number of columns without a return within one object.
+constexpr float kStep = 0.45f;         // Maximum distance between neighbouring columns of one object, m.
+constexpr int kFewest = 2;             // Minimum number of columns of an observation.
+constexpr int kConfirmed = 3;          // Observations that confirm a mover; one less if it moved before.
+constexpr float kSlowing = 0.5f;     // Fraction of the velocity left after each scan without an observation.
+constexpr double kGate = 0.5;        // Association gate, m: a farther observation belongs to another object.
+constexpr double kFirstDoubt = 1.2;  // Standard deviation of an unknown velocity, m/s.
+constexpr double kLostDoubt = 0.4;   // Standard deviation of the position of a stationary object, m.
 
 }  // namespace
 
@@ -66,8 +66,8 @@ void Tracker::look(std::span<const Eigen::Vector3f> points, const Pose3& body, d
 }
 
 bool Tracker::jumped(const Pose2& body, double dt) const {
-  constexpr double kMore = 1.5;                 // than its best a robot does not do
-  constexpr double kMetres = 0.2, kTurn = 0.3;  // rad; of what comes late or is told roughly
+  constexpr double kMore = 1.5;                 // Factor on the platform's maximum speed.
+  constexpr double kMetres = 0.2, kTurn = 0.3;  // m and rad: for late or inaccurate odometry.
   const Pose2 by = body_.inverse() * body;
   return std::hypot(by.x, by.y) > kMore * platform_.max_speed * dt + kMetres ||
          std::fabs(by.yaw) > kMore * platform_.max_turn * dt + kTurn;
@@ -82,7 +82,7 @@ void Tracker::take_in(std::span<const Eigen::Vector3f> points, const Pose3& body
     block_.take(points.subspan(first), lidar, turn);
     for (std::size_t n = 0; n < block_.count(); ++n) {
       const Ray ray = block_[n];
-      // Written so that what is not finite fails.
+      // Written so that values that are not finite fail.
       if (!(ray.range > kNearest && ray.range < kFarthest && std::fabs(ray.tangent) < kSteepest)) continue;
       const int bin = now.seen.add(ray);
       if (bin >= 0) nearest_[static_cast<std::size_t>(bin)] = static_cast<std::uint32_t>(first + n);
@@ -123,7 +123,7 @@ void Tracker::compare(std::span<const Eigen::Vector3f> points, const Pose3& body
 
 void Tracker::observe() {
   observation_count_ = 0;
-  int start = -1;  // begins behind a gap, so that nothing is cut at the seam
+  int start = -1;  // Begins behind a gap, so that no object is cut at the seam.
   for (int c = 0; c < Panorama::kColumns; ++c) {
     bool gap = true;
     for (int k = 0; k <= kGapColumns; ++k)
@@ -176,7 +176,7 @@ void Tracker::follow(double dt) {
     t.both += dt * t.speed + q * dt * dt * dt / 2;
     t.speed += q * dt * dt;
   }
-  // The nearest pair first, until none is near enough.
+  // Associates the nearest pair first, until no pair is within its gate.
   std::array<bool, kTracks> followed{};
   while (true) {
     double best = 1.0;
@@ -199,11 +199,11 @@ void Tracker::follow(double dt) {
   for (std::size_t i = 0; i < track_count_; ++i) {
     Track& t = tracks_[i];
     const double silent = stamp_s_ - t.seen_s;
-    // Not found where it should be: it slows down, or turns about, over ground that it stood on a moment ago.
+    // Without an observation it has probably slowed down or turned about on ground that it just left.
     if (silent > 0) t.mover.velocity *= kSlowing;
     if (silent > params_.lost) {
       if (!t.moved || silent > params_.memory) continue;
-      // It stands, or was lost from sight: where it was seen last, until it is seen to move.
+      // It stopped or is out of sight: it stays where it was seen last until it is seen to move.
       t.mover.velocity.setZero();
       t.confirmed = 0;
       t.both = 0;
@@ -251,7 +251,7 @@ void Tracker::show() {
     Mover& mover = t.mover;
     mover.doubt = static_cast<float>(std::sqrt(std::max(0.0, t.speed)));
     const float speed = mover.velocity.norm();
-    // Of what moved before less is asked.
+    // An object that moved before needs less evidence.
     mover.moves = t.confirmed >= kConfirmed - t.moved && speed >= static_cast<float>(params_.slowest) &&
                   speed >= (t.moved ? 1 : 2) * mover.doubt;
     t.moved |= mover.moves;

@@ -20,7 +20,7 @@ struct Seen {
   CollisionMonitor monitor{platform};
   std::mt19937 random{3};
   double noise{0.0};
-  int columns{720};  ///< of a scan; fewer make a test with many scans faster
+  int columns{720};  ///< Of a scan; fewer make a test with many scans faster
 
   Seen(std::vector<Box> boxes, const Platform& p = wheeled(), const Pose2& at = {})
       : world{std::move(boxes)}, platform(p), pose(at), monitor(p) {
