@@ -10,29 +10,30 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr int kAngles = CorrespondenceGrid::kAngles;
-constexpr int kHeadingStep = 10;       ///< degrees
-constexpr double kNoTurn = 12.0;       ///< degrees: the follower steers that much out while driving
-constexpr double kEitherSide = 140.0;  ///< degrees: beyond, the side of a turn is kept once chosen
-constexpr double kTurnSlack = 0.06;    ///< m kept free before the body beyond what a turn needs
-constexpr double kTurnMargin = 0.04;   ///< m around the footprint while it turns
-constexpr float kSmooth = 0.1f;        ///< cost of ground that is as good as any
-constexpr float kVeryRough = 0.5f;     ///< cost of ground that is avoided where there is another way
-constexpr std::array<float, 2> kEase{0.4f, 0.05f};  ///< weight of a path across rough and very rough ground
-constexpr double kSlowest = 0.25;                   ///< of the speed is left on ground that weighs nothing
-constexpr double kLongestRetreat = 8.0;             ///< s: then something holds it there, too
-constexpr float kSecondChoice = 0.3f;  ///< weight of driving the other way round than was asked for
+constexpr int kHeadingStep = 10;  ///< Degrees.
+/// Smaller heading errors need no turn on the spot: the controller corrects them, degrees.
+constexpr double kNoTurn = 12.0;
+constexpr double kEitherSide = 140.0;  ///< Beyond this angle the side of a turn is kept once chosen, degrees.
+constexpr double kTurnSlack = 0.06;    ///< Clearance ahead beyond what a turn on the spot needs, m.
+constexpr double kTurnMargin = 0.04;   ///< Clearance around the footprint during a turn on the spot, m.
+constexpr float kSmooth = 0.1f;        ///< Ground up to this cost counts as smooth.
+constexpr float kVeryRough = 0.5f;     ///< Ground above this cost is avoided where there is an alternative.
+constexpr std::array<float, 2> kEase{0.4f, 0.05f};  ///< Weight of a path across rough and very rough ground.
+constexpr double kSlowest = 0.25;                   ///< Fraction of the speed on ground of weight zero.
+constexpr double kLongestRetreat = 8.0;             ///< A retreat that takes longer is blocked too, s.
+constexpr float kSecondChoice = 0.3f;  ///< Weight of the driving direction opposite to the target's.
 
-/// Degrees in [0, 360), whole, of an angle in radians.
+/// Whole degrees in [0, 360) of an angle in radians.
 int whole_degrees(float radians) {
   int d = static_cast<int>(std::floor(radians * static_cast<float>(1.0 / kDegree)));
   d %= kAngles;
   return d < 0 ? d + kAngles : d;
 }
 
-/// An angle rounded to whole degrees, rad.
+/// Rounds an angle to whole degrees, rad.
 double whole(double radians) { return std::round(radians / kDegree) * kDegree; }
 
-/// Falco's weight of a heading: what asks for little turning is preferred, steeply.
+/// Falco's weight of a heading: it falls steeply with the turn that the heading needs.
 float heading_weight(double degrees) {
   const double w = std::max(1.0, 10.0 - std::fabs(degrees) / kHeadingStep);
   return static_cast<float>(w * w * w * w);
@@ -57,15 +58,15 @@ std::shared_ptr<const PlannerLibrary> PlannerLibrary::build(const Platform& plat
   const PathTree long_tree(large), short_tree(small);
   auto library = std::make_shared<PlannerLibrary>();
   const auto add = [&](const PathTree& tree, double front, double side, double speed, int least_stage) {
-    // The front's margin is for what the path leads to; the rear only swings past what stands beside it.
+    // The front's margin covers obstacles ahead; the rear only swings past obstacles beside it.
     const Footprint grown = body.grown(front, std::min(front, side), side);
     library->options.push_back(
         {tree, CorrespondenceGrid(tree, grown),
          body.symmetric() ? CorrespondenceGrid() : CorrespondenceGrid(tree, grown.turned()),
          std::min(speed, platform.max_speed), least_stage});
   };
-  // First whatever keeps well away, and so is the fastest. A narrow passage is seen from afar: the long tight
-  // library comes before the short ones, so that the robot lines up for the passage in time.
+  // Libraries with wide margins come first, because they are the fastest. The long library with tight margins
+  // comes before the short ones, so that the robot sees a narrow passage from afar and lines up in time.
   const double wide = std::max(params.front_margin, turn_needs);
   add(long_tree, wide, params.roomy_margin, platform.max_speed, 6);
   library->options.back().roomy = true;
@@ -138,7 +139,7 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
   list_headings(goal);
   judge_headings(goal);
   Choice choice;
-  // What it would choose is what it is held from; on the way back it is let go.
+  // The collision monitor blocks what the planner would choose now; during a retreat the choice is free.
   const bool held = target.held && target.kind == Target::Kind::goal && !retreating_;
   const bool found = !held && choose(goal, choice);
   if (found && !retreating_) free_stamp_ = stamp_s;
@@ -158,7 +159,7 @@ Plan LocalPlanner::plan(const Target& target, const Pose2& pose, std::span<const
 
 void LocalPlanner::watch_progress(const Target& target, double distance) {
   constexpr double kSameGoal = 0.1, kProgress = 0.5;  // m
-  // The point of a route that is the target stays as far ahead of the robot, so it moves back with it.
+  // The target is a point on a route at a fixed distance ahead, so it moves back with the robot.
   const double same = retreating_ ? params_.retreat + kProgress : kSameGoal;
   const bool other = target.kind != Target::Kind::goal || (target.goal - goal_).norm() > same;
   if (other) {
@@ -179,10 +180,10 @@ void LocalPlanner::watch_progress(const Target& target, double distance) {
 }
 
 bool LocalPlanner::given_up(bool drives, double stamp_s) {
-  constexpr double kLongest = 0.5;  // s: what is longer was a break
+  constexpr double kLongest = 0.5;  // s: a longer interval was a pause.
   if (drives) effort_ += std::clamp(stamp_s - last_stamp_, 0.0, kLongest);
   last_stamp_ = stamp_s;
-  // It may have to turn once around before it can come nearer.
+  // The robot may have to turn fully before it can get nearer.
   const double turn = 2 * M_PI / platform_.max_turn;
   if (effort_ > (closest_ < params_.effort_range ? params_.effort_near + turn : params_.effort)) {
     effort_ = 0;
@@ -280,7 +281,7 @@ void LocalPlanner::list_headings(const Goal& goal) {
 }
 
 void LocalPlanner::judge_headings(const Goal& goal) {
-  // The side to which a turn by `degrees` is free: 1, -1, or 0 when it needs none; 2 when there is no room.
+  // Side to which a turn by `degrees` is free: 1, -1, 0 when none is needed, 2 when there is no room.
   const auto side = [this](double degrees) {
     const double by = std::fabs(degrees);
     if (by <= kNoTurn) return 0;
@@ -324,7 +325,7 @@ void LocalPlanner::cover(const Option& option, const Cells& cells, bool drop_dea
   for (const Occupied& cell : cells.list) {
     if (cell.ring >= option.grid.rings() || living == 0) break;
     if (cell.ring != ring) {
-      // Nearest rings first: headings that are blocked at their very start drop out early.
+      // Nearest rings first: headings that are blocked at their start drop out early.
       ring = cell.ring;
       for (int i = 0; i < living;) {
         if (drop_dead && masks[alive[i]].dead())
@@ -402,8 +403,8 @@ bool LocalPlanner::vote(const Option& option, int stage, double spread, Choice& 
   return best_score > 0.0f;
 }
 
-// The first library in which a way over good ground leads about towards the target; else the first in which
-// any does.
+// Chooses the first library with a path over good ground about towards the target; if there is none, the
+// first library with any path.
 bool LocalPlanner::choose(const Goal& goal, Choice& best) {
   const double direct = std::min(goal.spread, params_.direct_spread);
   const double detour = std::min(goal.spread, params_.detour_spread);

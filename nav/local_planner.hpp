@@ -17,70 +17,74 @@ namespace adit::nav {
 
 struct LocalPlannerParams {
   PathTreeParams tree{};
-  double roomy_margin{0.5};     ///< kept free beside the footprint where there is room, m, [0, 1]
-  double side_margin{0.09};     ///< the same where there is less, m, [0, 1]
-  double front_margin{0.20};    ///< kept free before and behind it, m, [0, 1]; never less than a turn needs
-  double tight_margin{0.05};    ///< on the sides, where there is no more, m, [0.02, 0.5]
-  double squeeze_margin{0.02};  ///< the same where nothing else is left, m, [0, 0.5]
-  double short_scale{0.5};      ///< of the second, shorter and more curved library, [0.2, 1]
-  double tight_speed{0.5};      ///< where only the tight margin is left, m/s, (0, 2]
-  double squeeze_speed{0.25};   ///< and where less is, m/s, (0, 2]
-  double tolerance{0.25};       ///< arrived within this distance of the goal, m, [0.02, 2]
-  double goal_spread{95.0};     ///< paths may lead away from the goal's bearing by this, degrees, [10, 120]
-  double direct_spread{35.0};   ///< before one farther off a tighter way is taken, degrees, [10, 120]
-  double stick_spread{45.0};    ///< the same for a direction, degrees, [10, 120]
-  double detour_spread{
-      60.0};             ///< the same for paths that are free for a part of the way only, degrees, [10, 120]
-  double patience{3.0};  ///< stands blocked this long before it backs away, s, [0, 60]
-  double retreat{1.2};   ///< backs away this far to look for another way, m, [0.5, 3]
-  int retreats{2};       ///< as often, until it came nearer to the goal again; then it stays blocked, [0, 10]
-  double effort{20.0};  ///< drives this long without coming nearer to a goal, then it is blocked, s, [1, 600]
-  double effort_near{4.0};   ///< the same within effort_range of it, and a whole turn more, s, [1, 600]
+  double roomy_margin{0.5};  ///< Clearance beside the footprint where there is plenty of room, m, [0, 1].
+  double side_margin{0.09};  ///< Clearance beside it where there is less room, m, [0, 1].
+  /// Clearance ahead and behind, m, [0, 1]; at least what a turn on the spot needs.
+  double front_margin{0.20};
+  double tight_margin{0.05};    ///< Clearance beside it in tight space, m, [0.02, 0.5].
+  double squeeze_margin{0.02};  ///< Clearance beside it when nothing else is free, m, [0, 0.5].
+  double short_scale{0.5};      ///< Scale of the second, shorter and more curved library, [0.2, 1].
+  double tight_speed{0.5};      ///< Speed with only the tight margin, m/s, (0, 2].
+  double squeeze_speed{0.25};   ///< Speed with only the squeeze margin, m/s, (0, 2].
+  double tolerance{0.25};       ///< Default goal tolerance, m, [0.02, 2].
+  double goal_spread{95.0};  ///< Maximum angle between a heading and the goal's bearing, degrees, [10, 120].
+  /// Beyond this angle a library with tighter margins is preferred, degrees, [10, 120].
+  double direct_spread{35.0};
+  double stick_spread{45.0};  ///< Maximum angle to a direction target, degrees, [10, 120].
+  /// Maximum angle for paths that are only partly free, degrees, [10, 120].
+  double detour_spread{60.0};
+  double patience{3.0};  ///< Time without a free path before the robot backs up, s, [0, 60].
+  double retreat{1.2};   ///< Distance that it backs up, m, [0.5, 3].
+  int retreats{2};  ///< Attempts at backing up until it gets nearer to the goal; then it is blocked, [0, 10].
+  double effort{20.0};  ///< Driving time without getting nearer to a goal until it is blocked, s, [1, 600].
+  /// The same within effort_range of the goal, plus the time of a full turn, s, [1, 600].
+  double effort_near{4.0};
   double effort_range{1.0};  ///< m, [0, 10]
-  double rest{30.0};         ///< and stays blocked this long before it tries again, s, [0, 3600]
+  double rest{30.0};         ///< Time that it then stays blocked before it tries again, s, [0, 3600].
   PathSpeedParams speed{};
 };
 
-/// What a local planner looks up: its libraries, longest and widest first, and the turning table of the
-/// footprint. Immutable; robots of one platform can share it.
+/// Lookup tables of the local planner: its trajectory libraries, longest and widest first, and the rotation
+/// table of the footprint. Immutable; robots of one platform can share it.
 struct PlannerLibrary {
-  /// One library: a scale and a margin.
+  /// A trajectory library with one scale and one set of margins.
   struct Option {
     PathTree tree;
     CorrespondenceGrid grid;
-    CorrespondenceGrid back;  ///< of the body driving backwards; empty: the same
-    double max_speed;         ///< m/s, with such margins
-    int least_stage;          ///< a shorter way than this is left to the next library
-    bool roomy{};             ///< and one over rough ground, or hardly towards the goal
+    CorrespondenceGrid back;  ///< For driving backwards; empty: equal to `grid`.
+    double max_speed;         ///< Speed limit with these margins, m/s.
+    int least_stage;          ///< Paths that are free for fewer stages are left to the next library.
+    /// Wide margins: rough ground and headings far off the target are left to the next library.
+    bool roomy{};
   };
   std::vector<Option> options{};
   RotationTable rotation{};
 
-  /// Builds it (about 60 ms, 8 MB).
+  /// Builds the tables (about 60 ms, 8 MB).
   static std::shared_ptr<const PlannerLibrary> build(const Platform& platform,
                                                      const LocalPlannerParams& params = {});
 };
 
-/// The local planner: looks for the heading, group and path of the trajectory library along which the robot
-/// can go on towards its target. After Falco (see PathTree and CorrespondenceGrid): 36 headings, a vote of
-/// the free paths for their group, weighted by how well they lead to the target and how little the robot has
-/// to turn. Different from it:
-/// - headings are counted from the target's bearing, so that the straight way to it is one of them; towards a
-///   goal the robot's own heading and the opposite one are two more, so that a robot that has no room to turn
-///   can drive straight ahead or back;
-/// - one pass over the obstacles yields the free length of all paths; Falco repeats it for each range;
-/// - a path is swept by the footprint, and a heading counts only when the turn towards it on the spot is free
-///   (or, failing that, when the robot can get into it backwards);
-/// - a stick held straight ahead (or back) holds the course that the robot had: it goes round an obstacle and
-///   on, and stops at a wall; turning with each detour it would follow the wall;
-/// - on the way to a goal, a robot that stood blocked (or that the collision monitor holds) backs away a
-/// little and tries again, a few times: in a
-///   passage it cannot turn, and so cannot take the way beside the one that it tried;
-/// - a robot that drives to and fro without coming nearer to its goal (it stands in something, or behind it)
-///   gives up for a while and says so;
-/// - ground that is passable at a cost makes the paths across it count for less, and slow;
-/// - shorter paths and tighter margins are further libraries of the true footprint: scaling the obstacle
-///   points, as Falco does, would scale the robot as well.
+/// The local planner `trajectories`: selects the heading, group and path of the trajectory library that lead
+/// best towards the target. After Falco (see PathTree and CorrespondenceGrid): for 36 headings, the free
+/// paths vote for their group, weighted by how well they lead to the target and how little the robot has to
+/// turn. Differences from Falco:
+/// - Headings are counted from the target's bearing, so the straight line to the target is one of them.
+///   Towards a goal, the robot's own heading and the opposite one are two more, so a robot without room to
+///   turn can drive straight ahead or back.
+/// - One pass over the obstacles yields the free length of all paths; Falco repeats it for each range.
+/// - The footprint is swept along each path, and a heading counts only when the turn on the spot towards it
+///   is free or, failing that, when the robot can reach it by driving backwards.
+/// - A stick held straight ahead or back holds the robot's heading (see Course), so the robot passes an
+///   obstacle and stops at a wall instead of following it.
+/// - On the way to a goal, a robot that was blocked, or that the collision monitor stopped, backs up a little
+///   and tries again, a few times: in a passage it cannot turn, and so cannot reach a free path beside the
+///   one that it tried.
+/// - A robot that drives without getting nearer to its goal, for example because the goal lies inside or
+///   behind an obstacle, reports for a while that it is blocked.
+/// - Passable ground with a cost lowers the weight and the speed of paths across it.
+/// - Shorter paths and tighter margins are further libraries of the true footprint. Falco scales the obstacle
+///   points, which would scale the robot as well.
 class LocalPlanner final : public Planner {
  public:
   static constexpr int kHeadings = 36;
@@ -98,14 +102,15 @@ class LocalPlanner final : public Planner {
   using Option = PlannerLibrary::Option;
 
   struct Goal {
-    double distance;    ///< m, or infinite
-    double bearing;     ///< in the body frame, rad
-    double spread;      ///< degrees
-    int headings;       ///< to each side of the bearing
-    bool own_headings;  ///< Straight ahead and straight back are candidates, too; `bearing` is whole degrees.
-    bool backwards;     ///< driving backwards is what was asked for
+    double distance;  ///< m, or infinite.
+    double bearing;   ///< Body frame, rad.
+    double spread;    ///< Degrees.
+    int headings;     ///< Number of headings to each side of the bearing.
+    /// Straight ahead and straight back are candidates too; `bearing` is a whole number of degrees.
+    bool own_headings;
+    bool backwards;  ///< The target asks for driving backwards.
   };
-  /// A heading's way of being taken.
+  /// How the robot would take a heading.
   struct Approach {
     bool possible{false};
     bool reverse{false};
@@ -115,15 +120,15 @@ class LocalPlanner final : public Planner {
   struct Choice {
     const Option* option{nullptr};
     int stage{};
-    int heading{};  ///< index, 0 is along the bearing
+    int heading{};  ///< Index; 0 is the bearing of the goal.
     int node{};
     int group{};
-    float ease{1};  ///< weight of its ground
+    float ease{1};  ///< Weight of the ground.
   };
   struct Occupied {
-    std::uint16_t ring, angle;  ///< angle from the goal's bearing, degrees
+    std::uint16_t ring, angle;  ///< Angle from the goal's bearing, degrees.
   };
-  /// A set of polar cells: as bits while it is filled, then as a list by ring, nearest first.
+  /// A set of polar cells: bits while it is filled, then a list by ring, nearest first.
   struct Cells {
     std::vector<std::uint64_t> bits{};
     std::vector<Occupied> list{};
@@ -155,31 +160,31 @@ class LocalPlanner final : public Planner {
   LocalPlannerParams params_;
   std::shared_ptr<const PlannerLibrary> library_;
   Footprint body_;
-  int rings_{0};  ///< of the largest grid
+  int rings_{0};  ///< Of the largest grid.
   int last_turn_{0};
   Course course_{};
-  Eigen::Vector2d goal_{0, 0};  ///< that the following are about
-  double nearest_{0};           ///< to it so far, m, in steps of half a metre
-  double closest_{0};           ///< the same in finer steps
-  double effort_{0};            ///< driven since it came closer, s
-  double last_stamp_{0};        ///< of the plan before, s
-  double rest_until_{0};        ///< given up until then, s
-  double free_stamp_{0};        ///< when a way was last free or it began to be blocked, s; or infinite
+  Eigen::Vector2d goal_{0, 0};  ///< The goal that the following members refer to, odometry frame.
+  double nearest_{0};           ///< Least distance to it, updated in steps of half a metre, m.
+  double closest_{0};           ///< Least distance to it, in finer steps, m.
+  double effort_{0};            ///< Driving time since the robot last got nearer, s.
+  double last_stamp_{0};        ///< Of the previous plan, s.
+  double rest_until_{0};        ///< The robot stays blocked until then, s.
+  double free_stamp_{0};  ///< Time when a path was last free or the robot became blocked, s; or infinite.
   int retreats_left_{0};
   bool retreating_{false};
   double retreat_until_{0};           ///< s
-  Eigen::Vector2d retreat_to_{0, 0};  ///< odometry frame
+  Eigen::Vector2d retreat_to_{0, 0};  ///< Odometry frame.
 
-  // Of one cycle.
-  Cells occupied_{};              ///< cannot be passed
-  std::array<Cells, 2> rough_{};  ///< costs something; costs much
+  // Data of one cycle.
+  Cells occupied_{};              ///< Impassable cells.
+  std::array<Cells, 2> rough_{};  ///< Cells with some cost; cells with a high cost.
   TurnRoom room_{};
-  std::array<int, kHeadings> offset_{};  ///< of each heading from the goal's bearing, degrees
+  std::array<int, kHeadings> offset_{};  ///< Angle of each heading from the goal's bearing, degrees.
   int heading_count_{0};
   std::array<Approach, kHeadings> approach_{};
   std::array<PathMask, kHeadings> blocked_{};
   std::array<std::array<PathMask, kHeadings>, 2> rough_paths_{};
-  std::array<float, 361> agreement_{};  ///< of a bearing that is off by so many degrees, 0..1
+  std::array<float, 361> agreement_{};  ///< Weight of a bearing by its error in degrees, [0, 1].
 };
 
 }  // namespace adit::nav

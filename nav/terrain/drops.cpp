@@ -7,19 +7,19 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kRay =
-    0.75f;  ///< log-odds that a ray below the ground adds: of three one may be a reflection
-constexpr float kBelieved = 2.2f;      ///< the log-odds of Drops::kBlocks
-constexpr float kSlows = 1.7f;         ///< silence without a second cue says no more
-constexpr float kTold = 1.4f;          ///< less, a single ray, is noise
-constexpr float kMost = 6.0f;          ///< more adds nothing
-constexpr float kLeast = -2.2f;        ///< and of ground that was seen often
-constexpr float kGround = 0.75f;       ///< that a measurement of the ground takes away
-constexpr float kNearest = 0.3f;       ///< m
-constexpr float kSilenceTells = 2.0f;  ///< m: up to here silence alone makes a drop
-constexpr float kGrazing =
-    0.125f;  ///< a ray that meets the ground flatter may not come back from wet asphalt
-constexpr int kRing = RayImage::kColumns * 3 / 8;  ///< directions in which a ring gives returns
+/// Evidence of one ray below the ground: one of three may be a reflection, log-odds.
+constexpr float kRay = 0.75f;
+constexpr float kBelieved = 2.2f;      ///< The log-odds of Drops::kBlocks.
+constexpr float kSlows = 1.7f;         ///< Limit for missing returns without a second cue.
+constexpr float kTold = 1.4f;          ///< Below this, a single ray, a cell is noise.
+constexpr float kMost = 6.0f;          ///< Upper limit of the log-odds.
+constexpr float kLeast = -2.2f;        ///< Lower limit, for ground that was measured often.
+constexpr float kGround = 0.75f;       ///< Evidence of one measurement of the ground.
+constexpr float kNearest = 0.3f;       ///< Nearer cells are not judged, m.
+constexpr float kSilenceTells = 2.0f;  ///< Up to this range missing returns alone make a drop, m.
+/// Rays at a flatter angle may not return from wet asphalt.
+constexpr float kGrazing = 0.125f;
+constexpr int kRing = RayImage::kColumns * 3 / 8;  ///< Minimum number of columns with returns in a ring.
 
 std::size_t at(int row, int column) { return static_cast<std::size_t>(row * RayImage::kColumns + column); }
 
@@ -88,13 +88,13 @@ bool Drops::under_ground(const View& view, const Eigen::Vector3f& ray, float ran
     const bool held = ground.measured(index) || solid_[static_cast<std::size_t>(index)] != 0;
     if (held && p.z() < ground.height(index) - geometry_.depth / 2) under += GroundGrid::kCell;
   }
-  // One cell may be that of an edge itself.
+  // One cell may belong to the edge itself.
   return under > 1.5f * GroundGrid::kCell;
 }
 
 Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, Cue cue,
                        const GroundGrid& ground) {
-  // Where the ray went below the ground, as far as that is level or bends little.
+  // Intersects the ray with the ground, assuming that the ground is flat or bends little.
   float t = (ground.at(view.sensor.x() + end * ray.x(), view.sensor.y() + end * ray.y()) - view.sensor.z()) /
             ray.z();
   for (int i = 0; i < 3; ++i)
@@ -106,7 +106,7 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
   const auto index_at = [&](float r) {
     return ground.window(view.sensor.x() + r * ux, view.sensor.y() + r * uy);
   };
-  // How far back the ground ends that was seen; where rings lie far apart it must have been seen.
+  // Distance back to the last measured ground; where rings are far apart that ground must have been measured.
   int back = 0;
   for (bool met = false; back <= edge_cells_ && !met; ++back) {
     const float r = range - static_cast<float>(back) * GroundGrid::kCell;
@@ -128,8 +128,8 @@ Drops::Cue Drops::pass(const View& view, const Eigen::Vector3f& ray, float end, 
 void Drops::below(const View& view, const Eigen::Vector3f& point, const GroundGrid& ground) {
   const Eigen::Vector3f ray = point - view.sensor;
   const float range = ray.head<2>().norm();
-  // What is not lower than the ground around the robot lies behind something that is higher; and what lies
-  // below an obstacle may be its image in wet ground or in glass.
+  // A return that is not lower than the ground around the robot lies behind something higher. A return below
+  // an obstacle may be its reflection in wet ground or glass.
   const auto solid_at = [&](float r) {
     const Eigen::Vector2f p = point.head<2>() + (r - range) / range * ray.head<2>();
     return ground.inside(p.x(), p.y()) && solid_[static_cast<std::size_t>(ground.window(p.x(), p.y()))] != 0;
@@ -138,7 +138,7 @@ void Drops::below(const View& view, const Eigen::Vector3f& point, const GroundGr
   const Cue cue = !under_solid && ground.below_plane(point) > geometry_.depth ? Cue::ray : Cue::doubtful;
   if (ray.z() > -0.01f) return;
   const Cue passed = pass(view, ray, 1.0f, cue, ground);
-  // Where it lies there is no ground, either.
+  // There is no ground at the place of the return either.
   if (passed != Cue::none && range < farthest_ && ground.inside(point.x(), point.y()))
     vote(ground.window(point.x(), point.y()), range, passed, ground);
 }
@@ -156,7 +156,7 @@ void Drops::turn_columns(const View& view) {
 }
 
 void Drops::silent(const View& view, const RayImage& rays, const GroundGrid& ground) {
-  constexpr int kLevel = 48;  // rows from here on look up, or so far ahead that nothing is expected
+  constexpr int kLevel = 48;  // Higher rows point upwards, or so far ahead that no return is expected.
   turn_columns(view);
   for (int row = 1; row < kLevel; ++row) {
     int count = 0;
@@ -174,7 +174,7 @@ void Drops::silent(const View& view, const RayImage& rays, const GroundGrid& gro
         continue;
       }
       if (!returned_[at(row, own)]) continue;
-      bool lonely = count < kRing;  // a ring on the border of two rows flickers; a single ray may fail
+      bool lonely = count < kRing;  // A ring on the border of two rows flickers, and a single ray may fail.
       for (int r = row - 1; r <= row + 1; ++r)
         for (int k = own - 1; k <= own + 1; ++k) lonely |= !rays.empty_at(r, k);
       if (lonely) {
@@ -209,7 +209,7 @@ void Drops::finish(const View& view, const RayImage& rays, const GroundGrid& gro
     const Eigen::Vector2f middle = ground.middle(index);
     const Eigen::Vector3f seen = view.seen(middle.x(), middle.y(), ground.height(index));
     if (seen.z() < rays.lowest() * seen.head<2>().norm())
-      stamp_[place] = now_;  // in the blind spot
+      stamp_[place] = now_;  // In the blind spot.
     else if (now_ - stamp_[place] > params_.drop_memory)
       odds = 0, rays_below_[place] = 0;
     if (odds >= kTold) cells_.push_back({static_cast<std::uint32_t>(index), 1 / (1 + std::exp(-odds))});

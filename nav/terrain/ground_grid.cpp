@@ -8,41 +8,41 @@ namespace adit::nav {
 namespace {
 
 constexpr float kLongAgo = -1e9f;
-constexpr float kFlat = 0.02f;       ///< m: unevenness that is no slope
-constexpr float kBend = 0.05f;       ///< by so much the ground's gradient differs from that of the plane that
-                                     ///< fits it: a road's crown, 2.5 % to each side
-constexpr int kBlindCells = 5;       ///< over more cells nobody knows how the ground goes on
-constexpr int kFallCells = 3;        ///< the same where it falls: rays pass over what is lower
-constexpr float kNewest = 0.5f;      ///< weight of a scan in a cell's height
-constexpr float kSame = 0.05f;       ///< m: what differs more is another thing
-constexpr std::size_t kEnough = 40;  ///< cells that tell how scan and map lie to each other
-constexpr float kRecent = 5.0f;      ///< s: and are younger than this
-constexpr float kUnsure = 0.003f;    ///< m: such a disagreement is noise, also of a tilt at kArm
-constexpr float kArm = 2.0f;         ///< m
-constexpr float kMostLift = 0.25f;   ///< m a scan
-constexpr float kMostTilt = 0.0524f;        ///< 3 degrees a scan
-constexpr std::size_t kMostSamples = 1024;  ///< of a fit: more add nothing
-constexpr float kSampleNoise = 0.02f;       ///< m: of the lowest return of a cell
-constexpr float kSigmaHeight = 0.03f;       ///< m: of the lidar above the ground
-constexpr float kExplained = 0.6f;          ///< of the samples must lie near a plane that is believed
-constexpr float kNearGround = 1.0f;         ///< m: the plane is that of the blind ring and so much around it
-constexpr float kSeenFrom = 1.0f, kSeenTo = 6.0f;  ///< m: a first scan tells the plane in this ring
+constexpr float kFlat = 0.02f;  ///< Unevenness that does not count as slope, m.
+/// Deviation of the ground's gradient from the fitted plane: a road's crown, 2.5 % to each side.
+constexpr float kBend = 0.05f;
+constexpr int kBlindCells = 5;   ///< Over more cells without a measurement the ground cannot be extrapolated.
+constexpr int kFallCells = 3;    ///< The same for falling ground: rays pass over lower ground.
+constexpr float kNewest = 0.5f;  ///< Weight of a scan in a cell's height.
+constexpr float kSame = 0.05f;   ///< Heights that differ by more belong to different surfaces, m.
+constexpr std::size_t kEnough = 40;         ///< Minimum number of cells to register a scan to the map.
+constexpr float kRecent = 5.0f;             ///< Maximum age of those cells, s.
+constexpr float kUnsure = 0.003f;           ///< A smaller difference is noise, also of a tilt at kArm, m.
+constexpr float kArm = 2.0f;                ///< Lever arm for tilts, m.
+constexpr float kMostLift = 0.25f;          ///< Maximum height correction per scan, m.
+constexpr float kMostTilt = 0.0524f;        ///< Maximum tilt correction per scan, rad: 3 degrees.
+constexpr std::size_t kMostSamples = 1024;  ///< Maximum number of samples of a fit.
+constexpr float kSampleNoise = 0.02f;       ///< Noise of the lowest return of a cell, m.
+constexpr float kSigmaHeight = 0.03f;       ///< Uncertainty of the lidar's height above the ground, m.
+constexpr float kExplained = 0.6f;          ///< Minimum inlier fraction of an accepted plane.
+constexpr float kNearGround = 1.0f;         ///< Margin around the blind ring for the plane's samples, m.
+constexpr float kSeenFrom = 1.0f, kSeenTo = 6.0f;  ///< The ring that gives the plane in the first scan, m.
 
-/// The gap of a cell beside one of this gap.
+/// The gap of a cell whose neighbour has this gap.
 constexpr std::uint8_t after(std::uint8_t gap) {
   return gap >= GroundGrid::kNever - 1 ? gap : static_cast<std::uint8_t>(gap + 1);
 }
 
 int half_of(float range) { return static_cast<int>(std::ceil((range + 0.25f) / GroundGrid::kCell)); }
 
-/// The torus that holds a window of so many cells around the robot.
+/// Address bits per axis of a torus that holds the window around the robot.
 int bits_of(int half) {
   int bits = 7;
   while ((1 << bits) < 2 * half + 1 + 8) ++bits;
   return bits;
 }
 
-/// Every n-th, so that kMostSamples are left.
+/// Thins the samples out evenly to at most kMaxSamples.
 void thin_out(std::vector<Eigen::Vector3f>& samples) {
   const std::size_t every = (samples.size() + kMostSamples - 1) / kMostSamples;
   if (every < 2) return;
@@ -77,11 +77,11 @@ GroundGrid::GroundGrid(const GroundParams& params)
   for (int dx = -half_; dx <= half_; ++dx)
     for (int dy = -half_; dy <= half_; ++dy) {
       if (dx == 0 && dy == 0) continue;
-      // One step towards the middle along the longer axis, and diagonally where there is a diagonal.
+      // One step towards the middle along the longer axis, and one along the diagonal if there is one.
       const int sx = (dx > 0) - (dx < 0), sy = (dy > 0) - (dy < 0);
       const bool along_x = std::abs(dx) >= std::abs(dy), diagonal = std::abs(dx) == std::abs(dy);
-      // On the diagonal both neighbours would be the same outer one: the diagonal step alone counts. On the
-      // axes there is no diagonal: the cell beside counts, so that no way hangs on single cells.
+      // On the diagonal both neighbours would be the same outer cell, so only the diagonal step counts. On
+      // the axes there is no diagonal; the cell beside counts, so that no path depends on single cells.
       int ax = along_x ? dx - sx : dx, ay = along_x ? dy : dy - sy;
       int bx = dx - sx, by = dy - sy;
       if (diagonal) ax = bx, ay = by;
@@ -102,7 +102,8 @@ GroundGrid::GroundGrid(const GroundParams& params)
   });
   for (std::size_t gap = 0; gap < rise_.size(); ++gap) {
     const int cells_away = gap >= kNever ? 0 : static_cast<int>(gap);
-    // As steep as the platform can, over so many cells; beyond, the ground bends as it usually does.
+    // Up to a few cells the ground may be as steep as the platform permits; beyond, it bends as it usually
+    // does.
     const auto by_slope = [&](int most) {
       const int steep = std::min(cells_away, most);
       return kCell *
@@ -139,7 +140,7 @@ void GroundGrid::roll(int x, int y) {
         if (new_row || std::abs(j - old_y) > half) each(slot(i, j));
     }
   };
-  // Who turns round on a landing has to know the stairs that he came up, which cannot be seen from there.
+  // Stairs that the robot climbed are not visible from the landing, and it needs them when it turns round.
   entering(kept_, [&](std::size_t s) { stamp_[s] = kLongAgo; });
   entering(half_, [&](std::size_t s) { entered_.push_back(s); });
 }
@@ -156,14 +157,15 @@ GroundGrid::Offset GroundGrid::disagreement() {
   for (int i = -half_; i <= half_; ++i)
     for (int j = -half_; j <= half_; ++j) {
       const std::size_t s = slot(centre_x_ + i, centre_y_ + j);
-      // A cell with returns above each other is one of a wall: where its lowest lies changes with the way.
+      // Cells with returns at different heights belong to walls: their lowest return changes with the
+      // viewpoint.
       if (low_[s] < kNothing && high_[s] - low_[s] < kSame && is_ground_[s] && now_ - stamp_[s] <= kRecent)
         samples_.emplace_back(kCell * static_cast<float>(i), kCell * static_cast<float>(j),
                               height_[s] - low_[s]);
     }
   if (samples_.size() < kEnough) return {};
   thin_out(samples_);
-  // From the median on, which the few cells with other things in them do not move.
+  // Starts at the median, which is robust against the few cells with other contents.
   const auto middle = samples_.begin() + static_cast<std::ptrdiff_t>(samples_.size() / 2);
   std::nth_element(samples_.begin(), middle, samples_.end(),
                    [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a.z() < b.z(); });
@@ -194,10 +196,10 @@ void GroundGrid::fit_ground(const Offset& offset, float z, const Eigen::Vector2f
         if (float height; height_of(s, dx, dy, height)) samples_.emplace_back(dx, dy, height);
       }
   };
-  // The robot stands on the ground, as exactly as the height of its lidar is known.
+  // The height of the ground under the robot is known as exactly as the height of its lidar.
   const PlanePrior prior{z, tilt, kSigmaHeight, params_.sigma_tilt + kBend};
-  // Between walls, whose feet a lidar sees before it sees the floor, no plane explains most of what was seen:
-  // then the body's attitude is the best that is known.
+  // Between walls the lidar sees the walls' feet before the floor, and no plane explains most of the returns.
+  // Then the body's attitude is the best estimate.
   const auto take = [&](const Eigen::Vector2f& start) {
     plane_ = fit_plane(samples_, prior, start, kSampleNoise, 2 * kSame, kSame / 2);
     if (plane_.inliers < kExplained) plane_ = {z, tilt, prior.sigma_height, params_.sigma_tilt, 0};
@@ -215,7 +217,7 @@ void GroundGrid::fit_ground(const Offset& offset, float z, const Eigen::Vector2f
   samples_.clear();
   collect(around(std::max(kSeenTo, blind + kNearGround)), 1,
           [&](std::size_t s, float dx, float dy, float& height) {
-            // What lies higher than ground may rise from the body's attitude on stands there.
+            // A return higher than ground can be, counted from the body's attitude, belongs to an obstacle.
             height = low_[s] + offset.height + offset.gradient.dot(Eigen::Vector2f(dx, dy));
             const float off = std::fabs(height - z - tilt.x() * dx - tilt.y() * dy), far2 = dx * dx + dy * dy;
             return low_[s] < kNothing && far2 > kSeenFrom * kSeenFrom && off < params_.most &&
@@ -235,7 +237,7 @@ float GroundGrid::below_plane(const Eigen::Vector3f& p) const {
 bool GroundGrid::falls_by_slope(const Step& s, float rise, std::uint8_t gap, float lidar) const {
   const float range = kCell * std::sqrt(static_cast<float>(s.dx * s.dx + s.dy * s.dy));
   if (range * lidar < params_.sure * (lidar - rise))
-    return false;  // where the ray passed the ground's height
+    return false;  // The ray would have shown an edge at this place.
   const float spacing = (range * range + lidar * lidar) / lidar * params_.rings;
   const float run = std::min(2 * spacing, kCell * static_cast<float>(gap));
   return rise >= -(kFlat + params_.slope * run);
@@ -267,13 +269,13 @@ void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt
                     lean.y() * static_cast<float>(s.from_a_y);
     const float b = ground_[s.inner_b] + lean.x() * static_cast<float>(s.from_b_x) +
                     lean.y() * static_cast<float>(s.from_b_y);
-    // It is ground when it follows from either neighbour; from the one it fits better.
+    // The cell is ground when it is consistent with either neighbour; the better one is used.
     const bool by_a = std::fabs(height_[at] - a) <= std::fabs(height_[at] - b);
     const std::uint8_t gap = after(gap_[by_a ? s.inner_a : s.inner_b]);
     const float rise = height_[at] - (by_a ? a : b);
     float most = rise_[gap], least = -fall_[gap], climb = climb_[gap];
     if (gap >= kNever) {
-      // Over the blind ring the tolerance grows, until a first cell is accepted.
+      // Over the blind ring the tolerance grows until a first cell is accepted.
       const float grown =
           kFlat + doubt * kCell * static_cast<float>(std::max(std::abs(s.dx), std::abs(s.dy)));
       most = std::min(std::max(most, grown), params_.most);

@@ -7,11 +7,11 @@
 namespace adit::nav {
 namespace {
 
-constexpr int kMany = 8;               ///< a surface has this many times the hits of the noise before it
-constexpr int kMeanOver = 32;          ///< returns: older ones fade, odometry drifts
-constexpr double kForgetBeyond = 0.3;  ///< m beyond the range
-constexpr float kNoise = 0.07f;        ///< m: the highest of many returns lies so much too high
-constexpr float kInside = 0.05f;       ///< m within the body's outline
+constexpr int kMany = 8;       ///< A surface has this many times as many hits as the noise before it.
+constexpr int kMeanOver = 32;  ///< Window of the mean, returns: older ones fade, because odometry drifts.
+constexpr double kForgetBeyond = 0.3;  ///< Distance beyond the range at which cells are removed, m.
+constexpr float kNoise = 0.07f;        ///< Upward bias of the highest of many returns, m.
+constexpr float kInside = 0.05f;       ///< Depth inside the footprint, m.
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void ObstacleCells::mark(float x, float y, float z, float climb) {
       e.mean_y += (y - e.mean_y) / static_cast<float>(e.weight);
       return;
     }
-    // Left behind on the other side of the torus: its place is taken.
+    // Left behind on the other side of the torus: its slot is reused.
     e = fresh;
     return;
   }
@@ -111,11 +111,11 @@ bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, 
   if (range > params_.range + kForgetBeyond) return false;
   const Eigen::Vector3f low = view.seen(entry.x(), entry.y(), entry.z_low);
   const Eigen::Vector3f high = low + view.up(entry.z_high - entry.z_low);
-  // Where the robot stands nothing else does.
+  // The robot itself is here, so there is no obstacle.
   if (body_.depth(low.x(), low.y()) >= kInside) return false;
   if (passable && ++entry.misses >= params_.misses) return false;
   if (range < 0.05f || high.z() < (rays.lowest() - 0.01f) * range) {
-    entry.stamp = now_;  // in the blind spot: nothing can be said against it
+    entry.stamp = now_;  // In the blind spot, where no ray can show that it is free.
     return true;
   }
   if (rays.saw_through(low, high, 3.0f * kCell)) {
@@ -123,7 +123,7 @@ bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, 
   } else if (!passable) {
     entry.misses = 0;
   }
-  // A lidar has a shortest range, too: what came so close is not gone because it is no longer seen.
+  // Closer than the lidar's minimum range an obstacle is not seen any more, and stays.
   return range < params_.blind_range || now_ - entry.stamp <= memory;
 }
 

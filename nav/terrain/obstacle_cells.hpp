@@ -11,27 +11,27 @@
 
 namespace adit::nav {
 
-/// What stands in the way, as 5 cm cells. A cell stays until rays went through it in several scans (a robot
-/// that moved on leaves no ghost), until the ground there turns out to be passable, until it was hidden for
-/// `memory`, or until the robot leaves it behind; a cell below the lowest ray (the blind spot of a spinning
-/// lidar) is remembered as long as it is near.
+/// Obstacle map of 5 cm cells. A cell is removed when rays passed through it in several scans (so a robot
+/// that moved on leaves no trace), when the ground there turns out to be passable, when it was hidden for
+/// `memory`, or when the robot leaves it behind. A cell below the lowest ray (the blind spot of a spinning
+/// lidar) stays as long as it is near.
 class ObstacleCells {
  public:
   static constexpr float kCell = 0.05f;              ///< m
-  static constexpr std::size_t kMaxCells = 200'000;  ///< in all
+  static constexpr std::size_t kMaxCells = 200'000;  ///< In total.
   struct Entry {
     int ix, iy;
     float z_low, z_high;
     std::uint32_t scan;
-    std::int32_t hits;  ///< of the newest scan that hit it
+    std::int32_t hits;  ///< In the newest scan that hit it.
     std::int32_t misses;
-    bool solid;            ///< once hit by more than stray returns
-    bool again;            ///< hit more than once: a single return is noise
-    float since, stamp;    ///< hit first and last, s
-    float mean_x, mean_y;  ///< of the newest returns, m: where in the cell the surface is
-    std::int32_t weight;   ///< of them
-    std::int32_t under;    ///< returns of the newest scan from what may be climbed
-    float climb;           ///< above the ground before it, the highest of the newest scan, m
+    bool solid;            ///< It had more hits than stray returns give.
+    bool again;            ///< It was hit more than once: a single return is noise.
+    float since, stamp;    ///< Times of the first and last hit, s.
+    float mean_x, mean_y;  ///< Mean of the newest returns, m: the position of the surface in the cell.
+    std::int32_t weight;   ///< Number of returns in the mean.
+    std::int32_t under;    ///< Returns of the newest scan that were low enough to climb.
+    float climb;           ///< Highest return of the newest scan above the support height, m.
     float x() const { return (static_cast<float>(ix) + 0.5f) * kCell; }
     float y() const { return (static_cast<float>(iy) + 0.5f) * kCell; }
   };
@@ -43,12 +43,12 @@ class ObstacleCells {
     ++scan_;
     now_ = now;
   }
-  /// A return from an obstacle, `climb` metres above the ground before it.
+  /// Adds a return from an obstacle, `climb` metres above the support height.
   void mark(float x, float y, float z, float climb);
-  /// A return from something that is no obstacle but nearly as high, after all that are from one: a cell with
-  /// more of these than of those, none of which is much too high, holds a stair measured with noise.
+  /// Adds a return nearly as high as an obstacle; call it after all mark(). A cell with more of these than of
+  /// obstacle returns, none of them much too high, holds a stair measured with noise.
   void mark_under(float x, float y);
-  /// Drops what is free by now, or no more than a `step` (m) above the ground as it is known by now.
+  /// Removes cells that are free by now, or at most `step` (m) above the ground as known by now.
   void keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step);
 
   std::span<const Entry> entries() const { return entries_; }
@@ -64,9 +64,9 @@ class ObstacleCells {
 
   Footprint body_;
   TerrainParams params_;
-  int bits_, mask_;                   ///< of a torus that is more than twice as wide as the range
-  std::size_t max_cells_;             ///< every cell within range fits, up to kMaxCells
-  std::vector<std::uint32_t> slots_;  ///< index into entries_ plus one, or 0
+  int bits_, mask_;                   ///< Of a torus more than twice as wide as the range.
+  std::size_t max_cells_;             ///< Every cell within range fits, up to kMaxCells.
+  std::vector<std::uint32_t> slots_;  ///< Index into entries_ plus one, or 0.
   std::vector<Entry> entries_{};
   std::uint32_t scan_{0};
   float now_{0};

@@ -3,12 +3,12 @@
 
 namespace adit::nav {
 
-/// Something that makes a place hard to cross, as the local planner sees it: the centre of a cell of the
-/// terrain, in the robot's frame (x ahead, y left, on the ground) at the pose that is planned from.
+/// A place that is hard to cross, as input to local planners: the centre of a terrain cell in the robot's
+/// frame (x ahead, y left, on the ground) at the pose that the plan starts from.
 struct ObstaclePoint {
   float x{};        ///< m
   float y{};        ///< m
-  float cost{1.0};  ///< [0, 1]; 1: this platform cannot pass
+  float cost{1.0};  ///< [0, 1]; 1: impassable for this platform.
 };
 
 }  // namespace adit::nav

@@ -10,9 +10,9 @@ namespace adit::nav {
 namespace {
 
 constexpr int kIterations = 5;
-constexpr int kLattice = 6;  ///< gradients to each side of the prior's in a search
-constexpr float kDecorrelated =
-    4.0f;  ///< neighbouring cells share errors: so many of them tell as much as one
+constexpr int kLattice = 6;  ///< Gradients of the lattice to each side of the prior's.
+/// Neighbouring cells share errors: this many of them count as one measurement.
+constexpr float kDecorrelated = 4.0f;
 
 }  // namespace
 
@@ -69,7 +69,7 @@ PlaneFit fit_plane(std::span<const Eigen::Vector3f> samples, const PlanePrior& p
 
 Eigen::Vector2f search_gradient(std::span<const Eigen::Vector3f> samples, const PlanePrior& prior,
                                 float tolerance, float reach) {
-  const float between = 0.5f * reach / kLattice;  // from a true gradient to that of the lattice
+  const float between = 0.5f * reach / kLattice;  // From a true gradient to the nearest one of the lattice.
   Eigen::Vector2f best = prior.gradient;
   float most = -1e9f;
   for (int i = -kLattice; i <= kLattice; ++i)
@@ -83,7 +83,7 @@ Eigen::Vector2f search_gradient(std::span<const Eigen::Vector3f> samples, const 
         const float near = tolerance + between * std::max(std::fabs(s.x()), std::fabs(s.y()));
         score += std::fabs(e) < near ? 1.0f : e < 0 ? -0.5f : 0.0f;
       }
-      // Of planes that explain the same number of samples the one nearest to the prior.
+      // Among planes with equally many close samples, prefers the one nearest to the prior.
       const float unlikely = off.norm() / prior.sigma_gradient;
       score -= 0.02f * static_cast<float>(samples.size()) * unlikely * unlikely / 2;
       if (score > most) {

@@ -5,16 +5,16 @@
 
 namespace adit::nav {
 
-/// A plane over the robot's surroundings, z = height + gradient . (x, y), and how well it is known.
+/// A plane z = height + gradient . (x, y) and its uncertainty.
 struct PlaneFit {
-  float height{0};                 ///< at the origin of the samples, m
-  Eigen::Vector2f gradient{0, 0};  ///< rise per metre along x and y
-  float sigma_height{1e3f};        ///< standard deviation of the height, m
-  float sigma_gradient{1e3f};      ///< of the gradient in its worse direction
-  float inliers{0};                ///< share of the samples that lie close to it, [0, 1]
+  float height{0};                 ///< At the origin of the samples, m.
+  Eigen::Vector2f gradient{0, 0};  ///< Rise per metre along x and y.
+  float sigma_height{1e3f};        ///< Standard deviation of the height, m.
+  float sigma_gradient{1e3f};      ///< Of the gradient in its less certain direction.
+  float inliers{0};                ///< Fraction of the samples close to the plane, [0, 1].
 };
 
-/// What is believed of a plane before its samples are seen.
+/// Prior of a plane fit.
 struct PlanePrior {
   float height{0};
   Eigen::Vector2f gradient{0, 0};
@@ -24,16 +24,17 @@ struct PlanePrior {
 
 /// Fits a plane to samples (x, y, z) by least squares with Geman-McClure weights, whose scale shrinks from
 /// `first` to `last` (m) over the iterations (graduated non-convexity: H. Yang et al., *Graduated
-/// Non-Convexity for Robust Spatial Perception*, 2020), and with the prior as one more measurement. Samples
-/// near the plane with the gradient `start` decide at first, so that a wall or a lower floor that holds fewer
-/// of them does not tilt the result. Deterministic; allocates nothing. `noise`: of one sample, m.
+/// Non-Convexity for Robust Spatial Perception*, 2020). The prior is one more measurement. The first
+/// iteration weights the samples by their distance to the plane with gradient `start`, so a wall or a lower
+/// floor with fewer samples does not tilt the result. Deterministic; allocates nothing. `noise`: standard
+/// deviation of one sample, m.
 PlaneFit fit_plane(std::span<const Eigen::Vector3f> samples, const PlanePrior& prior,
                    const Eigen::Vector2f& start, float noise, float first, float last);
 
-/// The gradient around the prior's whose plane through its height has the most samples close to it, from a
-/// lattice of gradients within `reach`: the start of fit_plane() where nothing is known of the ground but
-/// how the body leans. Samples below a plane count against it: of two floors the lower one is not the one
-/// that a robot stands on, but a plane that cuts through the ground has half of it below.
+/// Searches a lattice of gradients within `reach` of the prior's for the plane through the prior's height
+/// with the most samples close to it. The result starts fit_plane() when only the body's attitude is known.
+/// Samples below a plane count against it: the robot stands on the upper of two floors, and a plane that cuts
+/// through the ground has half of it below.
 Eigen::Vector2f search_gradient(std::span<const Eigen::Vector3f> samples, const PlanePrior& prior,
                                 float tolerance, float reach);
 

@@ -29,8 +29,8 @@ bool RayImage::saw_through(const Eigen::Vector3f& low, const Eigen::Vector3f& hi
 
 Eigen::Vector2f RayImage::direction_of(int column) {
   float turn = (static_cast<float>(column) + 0.5f) * (4.0f / kColumns);
-  if (turn >= 3.0f) turn -= 4.0f;                    // -1 .. 3
-  const float t = turn > 1.0f ? 2.0f - turn : turn;  // y over the sum of both
+  if (turn >= 3.0f) turn -= 4.0f;                    // [-1, 3)
+  const float t = turn > 1.0f ? 2.0f - turn : turn;  // y divided by |x| + |y|.
   const float x = (turn > 1.0f ? -1.0f : 1.0f) * (1.0f - std::fabs(t));
   return Eigen::Vector2f(x, t).normalized();
 }

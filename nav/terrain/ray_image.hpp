@@ -8,16 +8,16 @@
 
 namespace adit::nav {
 
-/// The whole number below: without SSE 4.1, which the build does not assume, std::floor is a call, and this
+/// Rounds down. Without SSE 4.1, which the build does not assume, std::floor is a function call, and this
 /// runs for every point.
 inline int floor_int(float v) {
   const int i = static_cast<int>(v);
   return i - (v < static_cast<float>(i));
 }
 
-/// How far one scan saw in each direction of the lidar: what it saw through is free. Directions are binned
-/// by the diamond angle of their bearing and by the tangent of the elevation; a bin keeps its shortest range,
-/// so that a ray which ended near wins over one that slipped past.
+/// Range image of one scan: the shortest range in each direction of the lidar; space before it is free.
+/// Directions are binned by the diamond angle of their bearing and by the tangent of the elevation. A bin
+/// stores its shortest range, so a ray that ended near wins over one that slipped past.
 class RayImage {
  public:
   static constexpr int kColumns = 256;
@@ -26,7 +26,7 @@ class RayImage {
   RayImage();
   void clear();
 
-  /// A return, from the lidar in its frame.
+  /// Adds a return, in the lidar's frame.
   void add(const Ray& ray) {
     if (ray.tangent < lowest_) lowest_ = ray.tangent;
     const int row = row_of(ray.tangent);
@@ -37,18 +37,18 @@ class RayImage {
     if (value < bin) bin = value;
   }
 
-  /// Whether a ray went through the line from `low` to `high` (in the lidar's frame, about upright), and at
-  /// least `beyond` metres further.
+  /// Whether a ray passed the line from `low` to `high` (lidar's frame, about upright) and went at least
+  /// `beyond` metres farther.
   bool saw_through(const Eigen::Vector3f& low, const Eigen::Vector3f& high, float beyond) const;
 
-  /// The tangent of the lowest ray of this scan: what stands lower at some range cannot be seen there.
+  /// Tangent of the lowest ray of this scan: the lidar sees nothing below it.
   float lowest() const { return lowest_; }
   bool empty_at(int row, int column) const {
     return bins_[static_cast<std::size_t>(row * kColumns + (column & (kColumns - 1)))] == kEmpty;
   }
-  /// The tangent in the middle of a row.
+  /// Tangent at the centre of a row.
   static float tangent_of(int row) { return (static_cast<float>(row) - 50.0f) * 0.02f; }
-  /// A direction in the middle of a column, of length one.
+  /// Unit direction at the centre of a column.
   static Eigen::Vector2f direction_of(int column);
   static int column_of(const Eigen::Vector2f& direction) {
     return column_of(diamond_angle(direction.x(), direction.y()));
@@ -58,7 +58,7 @@ class RayImage {
   static constexpr std::uint16_t kEmpty = 0xffff;
   static constexpr std::uint16_t kFar = 0xfffe;
 
-  static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 50.5f); }  // 0.02 a row
+  static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 50.5f); }  // 0.02 per row.
   static int column_of(float bearing) {
     return static_cast<int>(bearing * (kColumns / 4) + kColumns) & (kColumns - 1);
   }

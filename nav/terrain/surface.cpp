@@ -8,13 +8,15 @@ namespace adit::nav {
 namespace {
 
 constexpr float kCell = GroundGrid::kCell;
-constexpr float kFewest = 8;       ///< measured cells that tell a plane
-constexpr float kSpread = 0.006f;  ///< m2: variance of their places in the direction in which it is less
-constexpr float kCertain = 18;     ///< and one that is too steep
+constexpr float kFewest = 8;  ///< Minimum number of measured cells of a plane.
+/// Minimum variance of their positions in the direction of less spread, m2.
+constexpr float kSpread = 0.006f;
+constexpr float kCertain = 18;  ///< Minimum number of cells of a plane that is too steep.
 constexpr float kCertainSpread = 0.02f;
-constexpr float kLeastCost = 0.1f;   ///< what costs less is as good as any
-constexpr float kOverSlope = 1.08f;  ///< of the steepest ground: more is too steep, for sure
-constexpr float kMostCost = 0.9f;    ///< of what can be passed
+constexpr float kLeastCost = 0.1f;  ///< Lower costs are ignored.
+/// Factor on the maximum slope above which ground is certainly too steep.
+constexpr float kOverSlope = 1.08f;
+constexpr float kMostCost = 0.9f;  ///< Maximum cost of passable ground.
 
 }  // namespace
 
@@ -48,7 +50,7 @@ void Surface::add_rows(const GroundGrid& ground, int i) {
     std::fill(sum->begin(), sum->end(), 0.0f);
   float *n = sums_.n.data(), *sx = sums_.x.data(), *sxx = sums_.xx.data(), *sz = sums_.z.data(),
         *sxz = sums_.xz.data(), *szz = sums_.zz.data();
-  // Heights from that under the robot, so that squares stay small.
+  // Heights relative to the one under the robot keep the squares small.
   const float level = ground.height(static_cast<int>(ground.cells() / 2));
   for (int di = -kReach; di <= kReach; ++di) {
     const float x = static_cast<float>(di) * kCell;
@@ -93,7 +95,7 @@ void Surface::follow_step(const GroundGrid& ground, int i, int j, float gx, floa
       const Step step = step_at(ground, cell, gx, gy);
       if (step.height <= params_.blocking_step) continue;
       add(cell);
-      // Who stands above touches nothing there: to him the step begins where the ground ends.
+      // A robot above the step touches nothing in the upper cell: the step begins where the ground ends.
       const bool high = weight_[static_cast<std::size_t>(cell)] != 0 &&
                         ground.height(step.above) - ground.height(cell) < step.height / 2;
       if (!high) add(step.above);
@@ -131,7 +133,8 @@ void Surface::judge(const GroundGrid& ground, int i, int j) {
   const bool certain = n >= kCertain && det > kCertainSpread * n * (sxx + syy);
   Place place{static_cast<std::uint32_t>(middle), Layer::slope,
               certain && slope > kOverSlope ? 1.0f : cost(slope)};
-  const float step_cost = step > params_.blocking_step ? 0.0f : cost(step / params_.step);  // followed
+  // Handled by follow_step().
+  const float step_cost = step > params_.blocking_step ? 0.0f : cost(step / params_.step);
   if (step_cost > place.cost) place = {place.index, Layer::step, step_cost};
   const float rough = cost(rms / (params_.rough * params_.step));
   if (rough > place.cost) place = {place.index, Layer::roughness, rough};

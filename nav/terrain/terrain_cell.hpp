@@ -4,20 +4,20 @@
 
 namespace adit::nav {
 
-/// What makes a place hard to cross.
+/// Cause of a terrain cell's cost.
 enum class Layer : std::uint8_t {
-  obstacle,   ///< something stands or hangs there
-  drop,       ///< the ground is missing
-  slope,      ///< ground too steep, or steep
-  step,       ///< an edge
-  roughness,  ///< uneven ground
+  obstacle,   ///< An obstacle stands or hangs there.
+  drop,       ///< The ground is missing.
+  slope,      ///< Steep ground, passable or not.
+  step,       ///< An edge.
+  roughness,  ///< Uneven ground.
 };
 
-/// A place of the terrain that costs something.
+/// A cell of the terrain with a cost.
 struct TerrainCell {
-  float x{}, y{};   ///< of its middle, odometry frame, m
-  float cost{1.0};  ///< (0, 1]; 1: this platform cannot pass
-  float age{};      ///< how long an obstacle has stood there, s; 0 in other layers
+  float x{}, y{};   ///< Centre, odometry frame, m.
+  float cost{1.0};  ///< (0, 1]; 1: impassable for this platform.
+  float age{};      ///< Time since an obstacle was first seen there, s; 0 in other layers.
   Layer layer{};
 };
 

@@ -10,24 +10,26 @@
 namespace adit::nav {
 namespace {
 
-constexpr std::size_t kUsualReturns = 32768;  ///< within range
+constexpr std::size_t kUsualReturns = 32768;  ///< Within range.
 constexpr std::size_t kMostDeep = 32768;
 constexpr std::size_t kMostUnder = 16384;
-constexpr double kStood = 0.005;      ///< m: a robot that moved less stands
-constexpr double kSteady = 0.002;     ///< rad: and turned or leaned less
-constexpr float kSigmaTilt = 0.035f;  ///< rad: of a body's attitude, with its suspension, lidar mount and IMU
-constexpr double kBuiltRamp = 0.2;    ///< rise per run of the steepest ramps that are built for vehicles
-constexpr double kLidarShare = 0.7;   ///< of the lidar's height: a first return as high as this may be ground
+constexpr double kStood = 0.005;   ///< A robot that moved less is stationary, m.
+constexpr double kSteady = 0.002;  ///< Maximum rotation of a stationary robot, rad.
+/// Uncertainty of a body's attitude with its suspension, lidar mount and IMU, rad.
+constexpr float kSigmaTilt = 0.035f;
+constexpr double kBuiltRamp = 0.2;  ///< Rise per run of the steepest ramps that are built for vehicles.
+/// A first return up to this fraction of the lidar's height may be ground.
+constexpr double kLidarShare = 0.7;
 
-/// Between two rings of the lidar, rad.
+/// Angle between two rings of the lidar, rad.
 double ring_angle(const Platform& platform) {
   const LidarConfig lidar = platform.lidar();
   return std::max(1e-4, (lidar.highest - lidar.lowest) * M_PI / 180 / std::max(1, lidar.rings - 1));
 }
 
-/// To where a ray that passes the ground's height tells a drop from a ramp, m: rings lie denser than half a
-/// body on the ground (r2 + h2) / h apart for each radian between them, and rays are steeper than ramps that
-/// are built.
+/// Range up to which a ray that passes the ground's height tells a drop from a ramp, m. There the rings are
+/// less than half a body apart on the ground, (r2 + h2) / h for each radian between them, and rays are
+/// steeper than built ramps.
 double sure_range(const Platform& platform) {
   const double h = platform.lidar_height, gap = platform.length / 2 + double{GroundGrid::kCell};
   return std::min(std::sqrt(std::max(0.0, gap * h / ring_angle(platform) - h * h)), h / kBuiltRamp);
@@ -54,7 +56,7 @@ SurfaceParams surface_params(const Platform& platform) {
   SurfaceParams surface;
   surface.slope = static_cast<float>(limits.slope);
   surface.step = static_cast<float>(std::max(limits.step, 0.02));
-  // On stairs the edges seen from below are uncertain; what is too high for legs stands in the way anyway.
+  // On stairs the edges seen from below are uncertain; steps too high for legs are obstacles anyway.
   if (!platform.stairs)
     surface.blocking_step = static_cast<float>(
         std::max(limits.step, limits.slope * double{GroundGrid::kCell}) + limits.obstacle - limits.step);
@@ -113,8 +115,8 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   const float blind =
       rays_.lowest() < 0 ? static_cast<float>(platform_.lidar_height) / -rays_.lowest() : 0.0f;
   ground_.grow(offset, view.base.z(), view.tilt(), view.sensor.z() - view.base.z(), blind);
-  // The ground's height at a range of r is known to r times the deviation of its gradient, and a return's to
-  // its noise.
+  // The standard deviation of the ground's height at range r is r times that of its gradient; that of a
+  // return is its noise.
   const float known = ground_.plane().sigma_gradient;
   const auto depth = static_cast<float>(limits_.drop) / 3,
              noise = static_cast<float>(platform_.lidar().noise);
@@ -131,7 +133,7 @@ void TerrainMap::register_scan(const Pose3& body, View& view, GroundGrid::Offset
   last_body_ = body;
   offset = ground_.disagreement();
   if (offset.sigma_gradient > 0) {
-    // The attitude is a measurement, too: it pulls the map back as far as the registration is uncertain.
+    // The attitude is a measurement too: it pulls the map back as far as the registration is uncertain.
     const float share = offset.sigma_gradient / kSigmaTilt;
     const Eigen::Vector2f back = std::min(1.0f, share * share) * tilt_error_;
     offset.gradient -= back;
@@ -156,10 +158,10 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
   const auto min2 = static_cast<float>(params_.min_range * params_.min_range);
   const auto reach2 = static_cast<float>(std::pow(body_.radius() + params_.body_margin, 2));
   const auto own = static_cast<float>(-params_.body_margin);
-  // A ray that passes the plane of the ground within range, and ends below it.
+  // Rays that cross the plane of the ground within range and end below it.
   const Eigen::Vector2f rise = ground_.grown() ? ground_.plane().gradient : view.tilt();
   const Eigen::Vector3f up = view.turn.transpose() * Eigen::Vector3f(-rise.x(), -rise.y(), 1.0f);
-  const float above = up.z() * lidar;  // of the lidar over that plane
+  const float above = up.z() * lidar;  // Of the lidar over that plane.
   const auto range = static_cast<float>(params_.range);
   const Eigen::Vector3f sensor(0.0f, 0.0f, lidar);
   const Eigen::Matrix3f straight = Eigen::Matrix3f::Identity();
@@ -170,7 +172,7 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
       const Ray ray = block_[n];
       const float flat2 = ray.range * ray.range, dz = p.z() - lidar;
       const float full2 = flat2 + dz * dz;
-      // Written so that a NaN fails; straight up and down says nothing about the way.
+      // Written so that a NaN fails. A vertical ray has no bearing.
       if (!(full2 > min2 && flat2 > 1e-4f && full2 < 1e6f)) continue;
       rays_.add(ray);
       if (flat2 <= range2) {
@@ -221,7 +223,7 @@ void TerrainMap::find_drops(const View& view, float farthest) {
   drops_.finish(view, rays_, ground_);
 }
 
-// With the last cell of the ground before each: where in its cell a drop begins nobody knows.
+// Includes the last cell of the ground before each drop, because a drop may begin anywhere in it.
 void TerrainMap::write_drops() {
   const int side = ground_.side();
   std::fill(drop_.begin(), drop_.end(), std::uint8_t{0});
@@ -251,7 +253,7 @@ void TerrainMap::classify_cells(std::vector<Kind>& kinds) const {
   for (std::size_t k = 0; k < kinds.size(); ++k)
     if (ground_.measured(static_cast<int>(k))) kinds[k] = Kind::ground;
   for (const Surface::Place& place : surface_.places()) {
-    // A step that is too high has a place for each of its cells, all else one for every second cell.
+    // A step that is too high has a place for each of its cells; other layers have one for every second cell.
     const bool edge = place.layer == Layer::step && place.cost >= 1;
     const Kind kind = place.layer == Layer::slope ? Kind::slope : Kind::step;
     const std::size_t first = place.index;

@@ -12,45 +12,45 @@
 
 namespace adit::nav {
 
-/// What the ground around the robot is to its platform, from registered scans, in a grid that rolls with it:
-/// ground (GroundGrid), what stands and hangs in the way (ObstacleCells), missing ground (Drops), and what
-/// the rest costs (Surface). What stands higher above the ground than the platform's step and lower than body
-/// and lidar is in the way; what hangs higher is passed under. Allocates nothing once it has seen a scan of
-/// its lidar's size.
+/// Traversability map around the robot, from scans that are registered in a grid that rolls with it: ground
+/// (GroundGrid), obstacles (ObstacleCells), missing ground (Drops), and the cost of the remaining ground
+/// (Surface). A return is an obstacle when it is higher above the ground than the platform's step and lower
+/// than the body and the lidar; the robot passes under what hangs higher. Allocates nothing after the first
+/// scan of its lidar's size.
 class TerrainMap {
  public:
-  /// What a cell of the ground is to the platform.
+  /// Class of a ground cell for the platform.
   enum class Kind : std::uint8_t { unknown, ground, step, slope, obstacle, drop };
 
   explicit TerrainMap(const Platform& platform, const TerrainParams& params = {});
 
-  /// Takes one scan. `points`: in base_link, m, not finite or within min_range of the lidar (which is
-  /// lidar_height above base_link) where nothing was hit. `body`: base_link, which is on the ground, in the
-  /// odometry frame at the scan's time. `stamp_s`: that time, s, not decreasing.
+  /// Takes one scan. `points`: base_link, m; not finite, or within min_range of the lidar (which is
+  /// lidar_height above base_link), where there was no return. `body`: base_link, which is on the ground, in
+  /// the odometry frame at the scan's time. `stamp_s`: that time, s, not decreasing.
   void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
 
-  /// All that costs something; valid until the next scan. Where several layers have a place each has a cell.
+  /// All places with a cost; valid until the next scan. Layers that share a place have one cell each.
   std::span<const TerrainCell> cells() const { return cells_; }
-  /// As many cells as there can be.
+  /// Maximum number of cells().
   std::size_t max_cells() const { return obstacles_.max_cells() + ground_.cells() * 9 / 4; }
   const GroundGrid& ground() const { return ground_; }
-  /// What each cell of the ground's window is, by index; the layers that block before those that cost.
+  /// Classifies each cell of the ground's window, by index. Classes that block win over those with a cost.
   void classify_cells(std::vector<Kind>& kinds) const;
-  /// Height of the map's ground above that of the odometry frame, m: see GroundGrid.
+  /// Height of the map's datum above that of the odometry frame, m: see GroundGrid.
   double lift() const { return static_cast<double>(lift_); }
-  /// How much more the map's ground rises per metre along x and y than the body's attitude says: see
+  /// Error of the body's attitude: additional rise of the map's ground per metre along x and y: see
   /// GroundGrid.
   const Eigen::Vector2f& tilt_error() const { return tilt_error_; }
-  /// How the ground around the robot rises, per metre along x and y, whatever the body does.
+  /// Gradient of the ground around the robot, per metre along x and y, independent of the body's attitude.
   const Eigen::Vector2f& ground_gradient() const { return ground_.plane().gradient; }
-  /// Forgets everything, as after a jump of the odometry.
+  /// Forgets everything, for example after a jump of the odometry.
   void clear();
 
  private:
   void sort_in(std::span<const Eigen::Vector3f> points, const View& view);
   void register_scan(const Pose3& body, View& view, GroundGrid::Offset& offset);
   void mark_obstacles(const View& view);
-  /// Whether a return lies so far below the ground that the ground is missing there.
+  /// Whether a return is so far below the ground that the ground is missing there.
   bool is_below(const Eigen::Vector3f& p) const;
   void find_drops(const View& view, float farthest);
   void write_drops();
@@ -66,11 +66,11 @@ class TerrainMap {
   Surface surface_;
   RayBlock block_{};
   RayImage rays_{};
-  std::vector<Eigen::Vector3f> near_{};   ///< returns within range, in the map
-  std::vector<Eigen::Vector2f> under_{};  ///< of those within range: nearly as high as an obstacle
-  std::vector<Eigen::Vector3f> deep_{};   ///< whose ray went below the ground within range
-  std::vector<std::uint8_t> solid_;       ///< cells of the ground's window with an obstacle in them
-  std::vector<std::uint8_t> drop_;        ///< and those that are written as a drop that blocks
+  std::vector<Eigen::Vector3f> near_{};   ///< Returns within range, in the map frame.
+  std::vector<Eigen::Vector2f> under_{};  ///< Those of them nearly as high as an obstacle.
+  std::vector<Eigen::Vector3f> deep_{};   ///< Returns whose ray went below the ground within range.
+  std::vector<std::uint8_t> solid_;       ///< Marks the cells of the ground's window with an obstacle.
+  std::vector<std::uint8_t> drop_;        ///< Marks those that are written as a blocking drop.
   std::vector<TerrainCell> cells_{};
   Pose3 last_body_{};
   double epoch_{0};

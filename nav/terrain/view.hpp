@@ -8,11 +8,11 @@
 
 namespace adit::nav {
 
-/// From where a scan was taken: the lidar, upright on a body that stands at `body`.
+/// Viewpoint of a scan: the pose of the lidar, which is mounted upright on the body.
 struct View {
-  Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};  ///< from base_link's axes to the map's
-  Eigen::Vector3f sensor{0, 0, 0};                    ///< in the map, m
-  Eigen::Vector3f base{0, 0, 0};                      ///< base_link in the map, m
+  Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};  ///< Rotation from base_link to the map.
+  Eigen::Vector3f sensor{0, 0, 0};                    ///< Lidar in the map, m.
+  Eigen::Vector3f base{0, 0, 0};                      ///< base_link in the map, m.
 
   View() = default;
   View(const Pose3& body, double lidar_height)
@@ -23,7 +23,7 @@ struct View {
     sensor.z() += by;
     base.z() += by;
   }
-  /// Leans the body about base_link, so that the map rises by `gradient` more per metre.
+  /// Tilts the body about base_link, so that the map rises by `gradient` more per metre.
   void lean(const Eigen::Vector2f& gradient) {
     const Eigen::Vector3f axis(gradient.y(), -gradient.x(), 0);
     const float angle = axis.norm();
@@ -32,13 +32,13 @@ struct View {
     turn = rotation * turn;
     sensor = base + rotation * (sensor - base);
   }
-  /// A place of the map, in the lidar's frame.
+  /// Converts a point of the map into the lidar's frame.
   Eigen::Vector3f seen(float x, float y, float z) const {
     return turn.transpose() * (Eigen::Vector3f(x, y, z) - sensor);
   }
-  /// A way straight up in the map, in the lidar's frame.
+  /// Converts a vertical distance of the map into the lidar's frame.
   Eigen::Vector3f up(float height) const { return height * turn.row(2).transpose(); }
-  /// How the body leans: rise per metre along the map's x and y.
+  /// Attitude of the body: rise per metre along the map's x and y.
   Eigen::Vector2f tilt() const {
     const Eigen::Vector3f up = turn.col(2);
     if (up.z() < 0.5f) return {0, 0};
