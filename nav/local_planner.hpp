@@ -102,7 +102,7 @@ class LocalPlanner final : public Planner {
   using Option = PlannerLibrary::Option;
 
   struct Goal {
-    double distance;  ///< m, or infinite.
+    double distance;  ///< Infinite for a direction, m.
     double bearing;   ///< Body frame, rad.
     double spread;    ///< Degrees.
     int headings;     ///< Number of headings to each side of the bearing.

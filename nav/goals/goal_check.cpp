@@ -9,7 +9,7 @@ namespace adit::nav {
 namespace {
 
 constexpr double kMapError = kRouteCell / 2;  // m
-/// The top of what ScanProfile writes at the edge of missing ground, kTopUnit.
+/// Obstacle height that ScanProfile writes at the edge of missing ground, kTopUnit.
 constexpr std::uint8_t kHoleTop = 1;
 
 }  // namespace
@@ -17,7 +17,7 @@ constexpr std::uint8_t kHoleTop = 1;
 struct GoalCheck::Ground {
   bool solid{}, hole{}, unknown{}, steep{};
   bool sure{true};      ///< Each height was measured from near.
-  double nearest{1e9};  ///< From the place to the nearest obstacle under the footprint, m.
+  double nearest{1e9};  ///< Distance from the place to the nearest obstacle under the footprint, m.
 };
 
 GoalCheck::GoalCheck(const Platform& platform)
@@ -30,7 +30,7 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
   const double c = std::cos(yaw), s = std::sin(yaw);
   const int reach = static_cast<int>(body_.radius() / kRouteCell) + 1;
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
-  // The plane that fits the ground under the body best.
+  // Fits a plane to the ground under the body.
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
   const GroundCell* before = nullptr;
@@ -75,7 +75,7 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
     const Eigen::Vector3d plane = squares.ldlt().solve(sums);
     found.steep = plane.head<2>().norm() > limits_.slope + limits_.obstacle - limits_.step;
   }
-  // Heights seen from afar lean with the attitude's error: they prove no slope and no step.
+  // Heights seen from afar tilt with the error of the attitude, so they prove neither a slope nor a step.
   if (found.steep && !found.sure) {
     found.steep = false;
     found.unknown = true;

@@ -8,8 +8,8 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kTrackingError = 0.10;  // m: control and the map's cells together
-constexpr double kDrift = 0.005;         // of odometry sideways, per metre, one standard deviation
+constexpr double kTrackingError = 0.10;  // Tracking error and the map's cell size together, m.
+constexpr double kDrift = 0.005;         // Standard deviation of the lateral odometry drift per metre.
 
 }  // namespace
 

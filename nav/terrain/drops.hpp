@@ -16,7 +16,7 @@ namespace adit::nav {
 /// stopped them: in the cell where they passed that height, and between it and the last measured ground. Two
 /// weaker cues make no drop beyond 2 m on their own: missing returns in a ring that returns elsewhere and did
 /// so before (a hole too deep to see, or water), and returns below ground that was measured (a gap in a
-/// floor, or a mirror). Rays that are too flat or too sparse to tell an edge from a ramp do not count.
+/// floor, or a mirror). Rays that are too flat or too sparse to distinguish an edge from a ramp do not count.
 /// Measured ground is evidence against a drop. Cells below the lowest ray cannot be seen and keep their
 /// probability.
 class Drops {

@@ -17,8 +17,8 @@ struct GroundParams {
   float slope{0.35f};        ///< Maximum ground slope, rise per run, [0, 1.5].
   float rise{0.06f};         ///< Maximum rise from one cell to the next, m, [0.01, 0.5].
   float drop{0.2f};          ///< Maximum fall of the ground, m, [0.05, 2].
-  /// Up to this range rays are steep and dense enough to tell an edge from a ramp, m; farther away ground may
-  /// fall by the slope from one ring to the next.
+  /// Up to this range rays are steep and dense enough to distinguish an edge from a ramp, m; farther away
+  /// ground may fall by the slope from one ring to the next.
   float sure{2.3f};
   float rings{0.035f};  ///< Angle between two rings of the lidar, rad.
   float range{4.5f};    ///< Radius of the window around the robot, m, [1, 25].

@@ -27,9 +27,9 @@ double ring_angle(const Platform& platform) {
   return std::max(1e-4, (lidar.highest - lidar.lowest) * M_PI / 180 / std::max(1, lidar.rings - 1));
 }
 
-/// Range up to which a ray that passes the ground's height tells a drop from a ramp, m. There the rings are
-/// less than half a body apart on the ground, (r2 + h2) / h for each radian between them, and rays are
-/// steeper than built ramps.
+/// Range up to which a ray that passes the ground's height distinguishes a drop from a ramp, m. There the
+/// rings are less than half a body apart on the ground, (r2 + h2) / h for each radian between them, and rays
+/// are steeper than built ramps.
 double sure_range(const Platform& platform) {
   const double h = platform.lidar_height, gap = platform.length / 2 + double{GroundGrid::kCell};
   return std::min(std::sqrt(std::max(0.0, gap * h / ring_angle(platform) - h * h)), h / kBuiltRamp);
