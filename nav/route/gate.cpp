@@ -7,28 +7,30 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kOppositeCosine = 0.5;  // the sides are this much, as a cosine, on opposite sides of the way
-constexpr int kLongestMouth = 6;         // samples: of a passage its mouth counts
-constexpr double kNarrower = 0.15;       // m: than the passage that a route begins in a door at its end is
-constexpr double kFitReach = 1.4;        // m around the middle: fit_gateway looks at no more
-constexpr double kLoose = 0.15;  // m: sides that are not opposite each other are farther apart than the strip
+// Minimum cosine between the sides and exact opposition across the route.
+constexpr double kOppositeCosine = 0.5;
+constexpr int kLongestMouth = 6;    // Samples: a longer passage is represented by its mouth.
+constexpr double kNarrower = 0.15;  // A door at the end of a passage is at least this much narrower, m.
+constexpr double kFitReach = 1.4;   // Radius around the centre in which obstacles are used, m.
+// Sides that are not opposite are farther apart than the strip between them, m.
+constexpr double kLoose = 0.15;
 
-// What stands on both sides of a place.
+// The obstacles on both sides of a place.
 struct Sides {
   Eigen::Vector2d left{0, 0}, right{0, 0};
-  double width{0};  // from side to side by way of the place, m
+  double width{0};  // From side to side through the place, m.
   bool both{false};
 };
 
-// Where what stands in a cell is, m; nothing where nothing does.
+// Position of the obstacle in a cell, m; nothing if the cell is free.
 std::optional<Eigen::Vector2d> obstacle_in(const SurfaceMap& map, int ix, int iy, double z) {
   const GroundCell* cell = map.cell(ix, iy, z);
   if (!cell || !cell->blocked) return std::nullopt;
   return obstacle_place(ix, iy, *cell);
 }
 
-// `along`: of length one. Both, when together they are no farther than `width`: a route need not be in the
-// middle.
+// Finds the sides of a place. `along`: unit vector. Both sides count when together they are at most `width`
+// apart, because a route need not run in the middle.
 Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Vector2d& along, double width,
                double beside) {
   Sides sides;
@@ -56,7 +58,7 @@ Sides sides_of(const SurfaceMap& map, const Eigen::Vector3d& at, const Eigen::Ve
   return sides;
 }
 
-// What stands around a place, relative to it.
+// The obstacles around a place, relative to it.
 std::vector<ObstaclePoint> obstacles_near(const SurfaceMap& map, const Eigen::Vector3d& at) {
   std::vector<ObstaclePoint> points;
   const int reach = static_cast<int>(kFitReach / kRouteCell) + 1;
@@ -78,15 +80,15 @@ std::optional<NarrowPassage> find_gate(const SurfaceMap& map, std::span<const Ei
   double z = 0;
   int samples = 0;
   const double loose = width + kLoose;
-  double most = -1;  // a place is a gate up to this width; negative: the route has not begun
-  // Ends a run of samples; nothing when it is wider than it seemed.
+  double most = -1;  // Maximum width of a passage, m; negative: at the start of the route.
+  // Ends a run of samples; nothing if the fitted strip is wider than `width`.
   const auto gate = [&]() -> std::optional<NarrowPassage> {
     const Eigen::Vector2d middle = (left + right) / (2.0 * samples), across = left - right;
     const Eigen::Vector3d at(middle.x(), middle.y(), z);
     const auto obstacles = obstacles_near(map, at);
     auto fitted = fit_passage({at, along, 0.0}, obstacles);
-    // A route that crosses a wall at an angle is a worse guess than what is normal to the line between its
-    // sides.
+    // For a route that crosses a wall at an angle, the normal of the line between the sides is a better
+    // guess.
     const Eigen::Vector2d normal = Eigen::Vector2d(across.y(), -across.x()).normalized();
     const auto other =
         fit_passage({at, normal.dot(along) < 0 ? Eigen::Vector2d(-normal) : normal, 0.0}, obstacles);
@@ -104,7 +106,8 @@ std::optional<NarrowPassage> find_gate(const SurfaceMap& map, std::span<const Ei
     for (double s = 0; s < length && passed + s < ahead; s += kRouteCell) {
       const Eigen::Vector3d at = points[i] + way * (s / length);
       const Sides sides = sides_of(map, at, direction, loose, beside);
-      // Where it begins is none; what is clearly narrower, or comes after a wide place, may be one.
+      // The place where the route begins is no passage. A clearly narrower place, or one after a wide place,
+      // may be.
       if (most < 0) most = sides.width - kNarrower;
       if (!sides.both) most = loose;
       if (!sides.both || sides.width > most) {

@@ -9,10 +9,10 @@
 
 namespace adit::nav {
 
-/// Finds the first narrow passage over the first `ahead` metres of a route: where the widest straight strip
-/// between what stands on both sides is no wider than `width`, m. A robot on the route keeps at least about
-/// `beside` from it, m. The place that the route begins in is none, but a door at the end of a corridor is.
-/// Nothing when there is none, or the map does not know.
+/// Finds the first narrow passage on the first `ahead` metres of a route: a place where the widest straight
+/// strip between the obstacles on both sides is at most `width`, m. `beside`: minimum distance between the
+/// route and the obstacles, m. The narrow place in which the route begins does not count, but a door at the
+/// end of a corridor does. Returns nothing if there is no passage or the map is unknown there.
 std::optional<NarrowPassage> find_gate(const SurfaceMap& map, std::span<const Eigen::Vector3d> points,
                                        double ahead, double width, double beside);
 

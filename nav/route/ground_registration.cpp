@@ -9,15 +9,15 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kFrom = 1.0f, kTo = 8.0f;                // m: ground in this ring is compared
-constexpr float kSame = 0.25f;                           // m: what differs by more is not the same ground
-constexpr std::size_t kMostSamples = 1024;               // of a scan
-constexpr std::size_t kEnoughSamples = 64;               // for a plane
-constexpr float kReturnNoise = 0.02f;                    // m
-constexpr float kFirstScale = 0.2f, kLastScale = 0.03f;  // m: of the fit's weights
-constexpr float kInliers = 0.6f;                         // share of the samples that must lie near the plane
-constexpr float kMostGradient = 0.0524f;                 // 3 degrees
-constexpr float kFade = 0.02f;                           // a scan: within about 5 s at 10 Hz
+constexpr float kFrom = 1.0f, kTo = 8.0f;   // Inner and outer radius of the ground that is compared, m.
+constexpr float kSame = 0.25f;              // Heights that differ by more belong to different ground, m.
+constexpr std::size_t kMostSamples = 1024;  // Per scan.
+constexpr std::size_t kEnoughSamples = 64;  // Minimum number of samples for a plane.
+constexpr float kReturnNoise = 0.02f;       // m
+constexpr float kFirstScale = 0.2f, kLastScale = 0.03f;  // Scales of the fit's weights, m.
+constexpr float kInliers = 0.6f;                         // Minimum inlier fraction of the plane.
+constexpr float kMostGradient = 0.0524f;                 // 3 degrees.
+constexpr float kFade = 0.02f;                           // Per scan: fades within about 5 s at 10 Hz.
 
 Pose3 corrected(const Pose3& body, const Eigen::Vector2f& gradient, float height) {
   const double size = gradient.norm();
@@ -37,7 +37,7 @@ Pose3 GroundRegistration::apply(std::span<const Eigen::Vector3f> points, const P
   const Eigen::Matrix3f turn = before.orientation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f at = before.position.cast<float>();
   samples_.clear();
-  // An odd stride takes all rings of a sweep whose columns follow each other.
+  // An odd stride samples all rings when the points of a column follow each other.
   const std::size_t stride = (points.size() / kMostSamples + 1) | 1;
   for (std::size_t n = 0; n < points.size(); n += stride) {
     const Eigen::Vector3f offset = turn * points[n];

@@ -6,40 +6,42 @@
 
 namespace adit::nav {
 
-/// What came of a search.
+/// Result of a route search.
 enum class RouteStatus : std::uint8_t {
   found,
-  unreachable,    ///< proven: what can be reached, unknown space included, does not hold the goal
-  start_blocked,  ///< nothing is passable near the start: nothing is proven
-  too_far,        ///< the search would need more than its memory
+  unreachable,    ///< Proven: the goal is not in the reachable space, unknown space included.
+  start_blocked,  ///< No cell near the start is passable; nothing is proven.
+  too_far,        ///< The search exceeded its memory.
 };
 
 /// Whether a body can stand at a place.
 enum class Standing : std::uint8_t {
-  standable,      ///< The footprint fits on known ground at one heading or more.
-  occupied,       ///< An obstacle stands there, or on one side too near.
+  standable,      ///< The footprint fits on known ground at one heading at least.
+  occupied,       ///< An obstacle is there, or too near on one side.
   no_floor,       ///< The ground is missing.
-  too_steep,      ///< The ground is too steep, or a step.
-  too_narrow,     ///< Obstacles on opposite sides of the place leave no heading.
-  unseen,         ///< Not known: part of the ground was not seen.
+  too_steep,      ///< The ground is too steep, or has a step.
+  too_narrow,     ///< Obstacles on opposite sides leave no heading free.
+  unseen,         ///< Part of the ground has not been seen.
   not_connected,  ///< No route leads there.
 };
-/// Whether it is known that the body cannot stand there.
+/// Whether the body is known not to fit there.
 constexpr bool is_refused(Standing standing) {
   return standing != Standing::standable && standing != Standing::unseen;
 }
 
-/// A way on the ground from one place to another. Frame: that of the map, m.
+/// A path on the ground between two places. Map frame, m.
 struct Route {
   RouteStatus status{RouteStatus::unreachable};
-  std::vector<Eigen::Vector3d> points{};  ///< corners, from the start to the goal; empty unless found
-  std::vector<std::uint8_t> unknown{};  ///< one per leg (points - 1): whether it leads through unknown space
-  bool doubtful{false};      ///< over what may be steps, seen from afar only: to be looked at, not relied on
+  std::vector<Eigen::Vector3d> points{};  ///< Corners from the start to the goal; empty unless found.
+  /// One per leg (points - 1): whether the leg leads through unknown space.
+  std::vector<std::uint8_t> unknown{};
+  /// Leads over possible steps that were only seen from afar and must be inspected first.
+  bool doubtful{false};
   double length{0};          ///< m
-  double unknown_length{0};  ///< of it through unknown space, m
-  double cost{0};            ///< m, with what narrow and unknown places cost more
+  double unknown_length{0};  ///< Length of its part through unknown space, m.
+  double cost{0};            ///< Length with the penalties of narrow and unknown places, m.
 
-  Standing goal{Standing::standable};  ///< Of the goal, where that was asked for.
+  Standing goal{Standing::standable};  ///< Of the goal, if it was checked.
 
   bool found() const { return status == RouteStatus::found; }
   bool attempt() const { return unknown_length > 0.0; }

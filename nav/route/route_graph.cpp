@@ -6,8 +6,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStartReach = 1.5;  // m: a robot that stands close to something is let out
-constexpr double kOwnGoal = 0.1;     // m: a goal that was moved by more is a leg of its own
+// m: a robot close to an obstacle may start up to this far from a passable cell.
+constexpr double kStartReach = 1.5;
+// m: if the goal was moved by more, the last leg leads from the cell to the goal.
+constexpr double kOwnGoal = 0.1;
 
 }  // namespace
 
@@ -24,7 +26,7 @@ std::optional<double> RouteGraph::ground(double x, double y, double z) const {
   bool free = false;
   for (int i = map_.first(tile_of(ix), tile_of(iy)); i >= 0; i = map_.tile(i).next) {
     const GroundCell& cell = map_.tile(i).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
-    // The side of a ramp stands on the floor below it: what is free counts before that.
+    // The side of a ramp stands on the floor below it: free cells win over blocked ones.
     if (!cell.known || (free && cell.blocked)) continue;
     const bool better = !best || free == cell.blocked || std::abs(cell.z - z) < std::abs(*best - z);
     if (better) best = cell.z;
@@ -51,8 +53,8 @@ bool RouteGraph::stands_between(const Eigen::Vector3d& place, int ix, int iy) co
   return false;
 }
 
-// The passable cell nearest to a place, with nothing between; unknown space without a tile is passable as it
-// is.
+// Finds the passable cell nearest to a place with nothing between them; unknown space without a tile is
+// passable.
 std::optional<RouteEnd> RouteGraph::find_end(const Eigen::Vector3d& place, double reach) {
   const int cx = route_cell(place.x()), cy = route_cell(place.y());
   if (params_.through_unknown && map_.at_cell(cx, cy, place.z()) < 0) return RouteEnd{place, -1, 0};
@@ -74,7 +76,7 @@ std::optional<RouteEnd> RouteGraph::find_end(const Eigen::Vector3d& place, doubl
   return best;
 }
 
-// The ends were moved to passable cells; a robot starts and arrives where it was told.
+// The search ends at passable cells; this adds the exact start and goal to the route.
 void RouteGraph::finish_ends(Route& route, const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
   const auto join = [&](const Eigen::Vector3d& cell, const Eigen::Vector3d& place) {
     return (cell - place).head<2>().norm() > kOwnGoal;
@@ -105,7 +107,7 @@ Route RouteGraph::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d goal_place{to.x(), to.y(), goal_height(from, to)};
   const auto start = find_end(from, kStartReach);
   auto goal = find_end(goal_place, params_.snap);
-  // Nobody knows the ground there nor said how high it is: it may as well be on a deck whose side is seen.
+  // The ground at the goal is unknown and no height was given: it may be on any floor, also a deck above.
   const bool any_floor = !std::isfinite(to.z()) && !ground(to.x(), to.y(), from.z());
   if (params_.through_unknown && any_floor && (!goal || goal->tile < 0))
     goal = RouteEnd{goal_place, -1, 0, true};

@@ -9,8 +9,8 @@
 
 namespace adit::nav {
 
-/// The graph over a map, and all that is asked of it. `doubting`: what may be a step was seen from too far to
-/// be sure does not count; the map is to be a copy, since tiles keep what they cost.
+/// Route queries over the graph of a map. `doubting`: possible steps that were seen from too far do not
+/// block; use a copy of the map then, because tiles store their costs.
 class RouteGraph {
  public:
   RouteGraph(SurfaceMap& map, const Platform& platform, const RouteParams& params, bool doubting = false);

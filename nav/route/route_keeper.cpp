@@ -9,20 +9,21 @@ namespace adit::nav {
 namespace {
 
 constexpr double kSameGoal = 0.05;   // m
-constexpr double kReachAhead = 0.9;  // m: a route that is blocked is so this far ahead
+constexpr double kReachAhead = 0.9;  // m: a route that is blocked is blocked at this distance ahead.
 constexpr double kSampling = 0.5;    // m
 constexpr double kNextCorner = 5.0;  // m
-constexpr double kSameGate = 0.5;    // m: its middle wanders with what was seen of it
-constexpr double kAtGate = 1.5;      // m before it a robot that is blocked is blocked by the passage
-constexpr double kBeyondGate = 0.9;  // m behind its middle the robot has left it
-constexpr double kLeft = 0.6;        // m behind its middle the route goes on as it likes
-constexpr double kReported = 3.0;    // m before it the planner is given a passage
-constexpr double kNear = 2.5;        // m: from nearer it is not measured anew for less than the following
-constexpr double kShifted = 0.10;    // m
+constexpr double kSameGate = 0.5;    // m: the estimated centre moves with the visible part of a passage.
+// m before a passage: a robot that is blocked there is blocked by the passage.
+constexpr double kAtGate = 1.5;
+constexpr double kBeyondGate = 0.9;  // m behind its centre: the straight part ends here.
+constexpr double kLeft = 0.6;        // m behind its centre: the route is free again.
+constexpr double kReported = 3.0;    // m before a passage: it is reported to the planner from here on.
+constexpr double kNear = 2.5;  // m: from nearer, only changes larger than the following replace a passage.
+constexpr double kShifted = 0.10;  // m
 constexpr double kTurned = 5.0 * M_PI / 180.0;
-constexpr double kDetour = 1.03;  // a straight line that costs more than this much of the route is none
+constexpr double kDetour = 1.03;  // A straight line may cost at most this factor of the route.
 
-// The point of a way at a length from its beginning, and whether that is its end.
+// The point of a polyline at a length from its beginning. `end`: the polyline is shorter.
 Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double length, bool& end) {
   end = false;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -35,13 +36,13 @@ Eigen::Vector3d point_at(const std::vector<Eigen::Vector3d>& points, double leng
   return points.back();
 }
 
-// A height that is not given is a place of its own.
+// Compares two places. A missing height (NaN) equals only another missing height.
 bool same_place(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const bool level = std::isnan(a.z()) ? std::isnan(b.z()) : std::abs(a.z() - b.z()) <= kSameGoal;
   return level && (a - b).head<2>().norm() <= kSameGoal;
 }
 
-// A place on the axis of a passage, so far behind its middle.
+// The place on the axis of a passage at a distance behind its centre.
 Eigen::Vector3d on_axis(const NarrowPassage& gate, double behind) {
   return {gate.middle.x() + behind * gate.axis.x(), gate.middle.y() + behind * gate.axis.y(),
           gate.middle.z()};
@@ -49,8 +50,8 @@ Eigen::Vector3d on_axis(const NarrowPassage& gate, double behind) {
 
 }  // namespace
 
-// The route from the point of it that is nearest, over the first metres: a way that comes back beside
-// itself is not cut. A corner that was passed at some distance is none any more.
+// Shortens the route to the part from its point nearest to the robot. Only the first metres are searched, so
+// a route that returns beside itself is not cut. Corners that the robot passed at a distance are dropped.
 void RouteKeeper::advance(RoutePlanner& planner, const Eigen::Vector3d& place) {
   auto& points = route_.points;
   double least = std::numeric_limits<double>::infinity(), passed = 0;
@@ -91,18 +92,18 @@ void RouteKeeper::watch_blocked(RoutePlanner& planner, const Eigen::Vector3d& pl
   if (stamp_s - *blocked_since_ < params_.blocked || stamp_s < retry_until_) return;
   blocked_since_.reset();
   if (lines_up_for_ && !is_waived(*lines_up_for_)) {
-    // The robot has the time to back off and try again.
+    // The robot has time to back up and try again.
     waived_ = lines_up_for_;
     retry_until_ = stamp_s + params_.retry;
     return;
   }
-  waived_.reset();  // whoever comes again may line up
+  waived_.reset();  // The next approach may line up again.
   bool end = false;
   const Eigen::Vector3d there = point_at(route_.points, kReachAhead, end);
   if (!end) planner.block({there.x(), there.y(), place.z()}, stamp_s);
 }
 
-// Of the route's first part, which ends at a length from its beginning.
+// Cost of the first `length` metres of the route.
 double RouteKeeper::cost_to(RoutePlanner& planner, double length) const {
   double cost = 0;
   for (std::size_t i = 0; i + 1 < route_.points.size() && length > 0; ++i) {
@@ -121,7 +122,7 @@ bool RouteKeeper::is_waived(const Eigen::Vector3d& gate) const {
   return waived_ && (*waived_ - gate).norm() < kSameGate;
 }
 
-// Whether the robot has not left the passage that it was given, and the route still leads through it.
+// Whether the robot has not left the passage yet, and the route still leads through it.
 bool RouteKeeper::leads_through(const NarrowPassage& gate, const Eigen::Vector3d& place) const {
   if ((place - gate.middle).head<2>().dot(gate.axis) > kLeft) return false;
   double passed = 0;
@@ -136,8 +137,8 @@ bool RouteKeeper::leads_through(const NarrowPassage& gate, const Eigen::Vector3d
   return false;
 }
 
-// The passage that the robot is in or comes to next. Seen from near it is kept as it is, unless it turns out
-// to be clearly elsewhere: a target that moves with each scan would keep the robot turning before it.
+// Updates the passage that the robot is in or approaches. A passage seen from near is fixed unless it turns
+// out to be clearly elsewhere: a target that moves with each scan would keep the robot turning before it.
 void RouteKeeper::watch_gate(RoutePlanner& planner, const Eigen::Vector3d& place) {
   if (gate_ && !leads_through(*gate_, place)) {
     if (is_waived(gate_->middle)) waived_.reset();
@@ -146,7 +147,7 @@ void RouteKeeper::watch_gate(RoutePlanner& planner, const Eigen::Vector3d& place
   const auto seen = planner.gate(route_.points, kReported);
   if (!seen || !planner.line(seen->middle, on_axis(*seen, kBeyondGate), {.let_out = true}).passable) return;
   const bool same = gate_ && (gate_->middle - seen->middle).head<2>().norm() < kSameGate;
-  // The one that it is in has to be left before the next one.
+  // The robot must leave its passage before the next one counts.
   if (gate_ && !same && (gate_->middle - place).head<2>().norm() < (seen->middle - place).head<2>().norm())
     return;
   if (same && frozen_) {
@@ -162,8 +163,8 @@ void RouteKeeper::watch_gate(RoutePlanner& planner, const Eigen::Vector3d& place
   frozen_ = (seen->middle - place).head<2>().norm() < kNear;
 }
 
-// The farthest point of the route, up to `ahead`, that is in a straight line from here: one that keeps as far
-// from what stands there as the route does.
+// Computes the farthest point of the route, up to `ahead`, with a straight line to it that keeps the same
+// clearance as the route.
 RouteStep RouteKeeper::along(RoutePlanner& planner, const Eigen::Vector3d& place) {
   lines_up_for_.reset();
   RouteStep step{RouteStep::State::along, {}, false};
@@ -195,7 +196,7 @@ RouteStep RouteKeeper::step(RoutePlanner& planner, const Eigen::Vector3d& place,
   bool kept = route_.found(), longer = false;
   if (kept) advance(planner, place);
   watch_blocked(planner, place, blocked, stamp_s);
-  // A doubtful route is none to the map as it is: it is driven along until the next look.
+  // The plain map does not permit a doubtful route, so it stays valid until the next search.
   const bool lost = kept && !route_.doubtful && !planner.measure(route_);
   kept = kept && !lost && !route_.doubtful;
   if (lost || !looked_ || stamp_s - *looked_ >= params_.look) {

@@ -9,51 +9,52 @@
 namespace adit::nav {
 
 struct RouteKeeperParams {
-  double momentum{
-      0.85};          ///< another route is taken when it costs less than this part of the one kept, (0, 1]
-  double look{0.5};   ///< another route than the one kept is looked for this often, s, [0, 10]
-  double gain{0.5};   ///< and so much less, m, [0, 10]
-  double ahead{4.0};  ///< the local planner is given the point of the route this far ahead, m, [1, 10]
-  double least_ahead{1.2};  ///< and never a nearer one but the goal, m, [0.3, 5]
-  bool gates{true};         ///< Reports narrow passages: for planners that drive onto their axis before them.
-  double proof{2.0};        ///< a goal is unreachable when that was so all this time, s, [0, 10]
-  double blocked{1.0};      ///< a route is blocked when the local planner says so for this long, s, [0, 30]
-  double retry{3.0};  ///< After the first failure at a passage, time for one more attempt before the passage
-                      ///< counts as blocked, s, [0, 30]
+  /// Replaces the route only if the new cost is below this fraction of the current one, (0, 1].
+  double momentum{0.85};
+  double look{0.5};         ///< Period of the search for a better route, s, [0, 10].
+  double gain{0.5};         ///< Required gain of a new route, m, [0, 10].
+  double ahead{4.0};        ///< Distance along the route to the local planner's target, m, [1, 10].
+  double least_ahead{1.2};  ///< Minimum of that distance, except at the goal, m, [0.3, 5].
+  bool gates{true};         ///< Reports narrow passages, for planners that line up before them.
+  double proof{2.0};        ///< A goal is unreachable after failing for this long, s, [0, 10].
+  double blocked{1.0};  ///< A route is blocked after the local planner was blocked for this long, s, [0, 30].
+  /// After the first failure at a passage: time for another attempt before the passage counts as blocked, s,
+  /// [0, 30].
+  double retry{3.0};
 };
 
-/// Where to drive next.
+/// The local goal of a robot that follows a route.
 struct RouteStep {
   enum class State : std::uint8_t {
-    straight,     ///< nothing is known: to the goal
-    along,        ///< to `target`, a point of the route
-    unreachable,  ///< proven
-    blocked,      ///< no way round the places that were found blocked
+    straight,     ///< No route yet: heads straight for the goal.
+    along,        ///< Heads for `target`, a point of the route.
+    unreachable,  ///< Proven unreachable.
+    blocked,      ///< No route leads around the places that were found blocked.
   };
-  /// So near a robot comes to a target that is not the goal, should it stop there, m.
+  /// Tolerance of a target that is not the goal, m.
   static constexpr double kTolerance = 0.08;
 
   State state{State::straight};
   Eigen::Vector3d target{0, 0, 0};      ///< m
-  bool last{true};                      ///< `target` is the goal
-  Standing goal{Standing::standable};   ///< Of the goal itself: `unseen` while its ground is not known.
-  std::optional<NarrowPassage> gate{};  ///< Passage that `target` lies behind.
+  bool last{true};                      ///< `target` is the goal.
+  Standing goal{Standing::standable};   ///< Of the goal itself: `unseen` while its ground is unknown.
+  std::optional<NarrowPassage> gate{};  ///< The next passage on the route to `target`.
   bool stuck{false};                    ///< No progress along the route for a long time: see ProgressChecker.
 };
 
-/// Keeps to a route: another one is taken when it is clearly better or the old one is blocked, so that it
-/// does not flicker between two that are alike.
+/// Follows a route with hysteresis: replaces the current route only when a new one is clearly better or the
+/// current one is blocked, so that it does not alternate between two similar routes.
 class RouteKeeper {
  public:
   explicit RouteKeeper(const RouteKeeperParams& params = {}) : params_(params) {}
-  /// With what suits the platform.
+  /// Uses the default parameters for the platform's planner.
   explicit RouteKeeper(const Platform& platform) { params_.gates = platform.planner != "vfh"; }
 
-  /// After a scan: the next step from `place` to `goal` (z NaN: the floor of `place`). `blocked`: the local
-  /// planner found no way along the step before.
+  /// Computes the next local goal after a scan, from `place` to `goal` (z NaN: the floor of `place`).
+  /// `blocked`: the local planner found no path to the previous local goal.
   RouteStep step(RoutePlanner& planner, const Eigen::Vector3d& place, const Eigen::Vector3d& goal,
                  bool blocked, double stamp_s);
-  /// What is left of the route, from where it was last asked.
+  /// The rest of the route, from the place of the last step().
   const Route& route() const { return route_; }
   void clear() { *this = RouteKeeper(params_); }
 
@@ -73,11 +74,13 @@ class RouteKeeper {
   std::optional<double> blocked_since_{};
   std::optional<double> lost_since_{};
   std::optional<double> looked_{};
-  std::optional<Eigen::Vector3d> lines_up_for_{};                 // the gate it is near and not yet in
-  std::optional<Eigen::Vector3d> waived_{};                       // the one where it could not get there
-  double retry_until_{-std::numeric_limits<double>::infinity()};  // s: so long being blocked does not count
-  std::optional<NarrowPassage> gate_{};                           // that it comes to or goes through
-  bool frozen_{false};                                            // gate_ was seen from near
+  // The passage that the robot approaches and has not entered.
+  std::optional<Eigen::Vector3d> lines_up_for_{};
+  std::optional<Eigen::Vector3d> waived_{};  // The passage at which an attempt has failed.
+  // Being blocked does not count until then, s.
+  double retry_until_{-std::numeric_limits<double>::infinity()};
+  std::optional<NarrowPassage> gate_{};  // The passage that the robot approaches or crosses.
+  bool frozen_{false};                   // gate_ was seen from near and is fixed.
 };
 
 }  // namespace adit::nav

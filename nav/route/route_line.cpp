@@ -8,9 +8,9 @@ namespace adit::nav {
 namespace {
 
 constexpr double kResample = 0.5;     // m
-constexpr double kLongestLeg = 40.0;  // m: of a leg
-constexpr int kGiveUp = 3;            // corners in a row that are not seen
-constexpr double kLetOut = 0.5;       // m: of a way's ends, where it is too narrow but nothing stands
+constexpr double kLongestLeg = 40.0;  // Maximum length of a leg, m.
+constexpr int kGiveUp = 3;            // Consecutive corners without a straight line.
+constexpr double kLetOut = 0.5;  // m at the ends of a line, where cells may be too narrow but must be free.
 
 }  // namespace
 
@@ -22,8 +22,8 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
   LineCost result;
   double z = from.z();
   int tx = 0, ty = 0;
-  const Tile* tile = nullptr;          // that the line is over, where the ground is known
-  const GroundCell* before = nullptr;  // where the height of the cell before is known
+  const Tile* tile = nullptr;          // The tile under the line, if the ground is known.
+  const GroundCell* before = nullptr;  // The previous cell, if its height is known.
   bool have = false, letting_out = ends.let_out, letting_in = false;
   for (int i = 0; i <= steps; ++i) {
     if (result.cost > ends.most) return {};
@@ -104,13 +104,13 @@ void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) {
     for (int k = 0; k < parts; ++k) dense.push_back(points[i] + way * k / parts);
   }
   if (!points.empty()) dense.push_back(points.back());
-  // A point between two on a slope takes its height from the ground's.
+  // Interpolated points on a slope take the height of the ground.
   for (Eigen::Vector3d& p : dense) {
     const GroundCell* cell = map_.cell(route_cell(p.x()), route_cell(p.y()), p.z());
     if (cell && cell->known && std::abs(cell->z - p.z()) < kSheetReach / 2) p.z() = cell->z;
   }
   shorten_once(dense);
-  // A part of a line is rounded to other cells than the line: along a wall it may not be passable.
+  // A part of a line may round to other cells than the line, and along a wall it may not be passable.
   for (std::size_t i = 0; i + 1 < dense.size(); ++i)
     if (!line(dense[i], dense[i + 1]).passable) return;
   points = std::move(dense);

@@ -10,32 +10,32 @@
 
 namespace adit::nav {
 
-/// What a straight line over the ground costs.
+/// Cost of a straight line over the ground.
 struct LineCost {
   bool passable{false};
-  double cost{0};     ///< m, as of a route
-  double unknown{0};  ///< of its length, m
+  double cost{0};     ///< As for a route, m.
+  double unknown{0};  ///< Length in unknown space, m.
 };
 
-/// A robot may stand, and a goal lie, nearer to something than a way leads: an end of a line that is let out
-/// or in may be too narrow for half a metre, as long as nothing stands there.
+/// Relaxation at the ends of a line: a robot or goal may be closer to obstacles than a route permits, so half
+/// a metre at an end may be too narrow, as long as its cells are free.
 struct LineEnds {
   bool let_out{false}, let_in{false};
-  double most{std::numeric_limits<double>::infinity()};  ///< what costs more is not followed to its end, m
+  double most{std::numeric_limits<double>::infinity()};  ///< The evaluation stops at this cost, m.
 };
 
-/// Walks lines over the map's ground, and shortens ways with them.
+/// Evaluates straight lines over the map's ground and shortens routes with them.
 class RouteLine {
  public:
   RouteLine(SurfaceMap& map, TileBuilder& builder) : map_(map), builder_(builder) {}
 
-  /// From one point of the ground to another, both within 1.2 m of it; not passable where the ground is
-  /// not, where a step is, where the floor does not lead to `to`'s height, or where it costs too much.
+  /// Evaluates the line between two points within 1.2 m of the ground. It is not passable across impassable
+  /// cells or steps, if the floor does not lead to the height of `to`, or if it costs too much.
   LineCost line(const Eigen::Vector3d& from, const Eigen::Vector3d& to, LineEnds ends = {});
-  /// Replaces parts of a way by straight lines, where those are passable and cost no more. Each leg of
-  /// `points` must be passable.
+  /// Replaces parts of a route by straight lines that are passable and cost no more. Each leg of `points`
+  /// must be passable.
   void shorten(std::vector<Eigen::Vector3d>& points);
-  /// Fills in lengths, unknown legs and cost of all legs. False when one of them is not passable.
+  /// Computes lengths, unknown legs and cost of a route. False if a leg is not passable.
   bool measure(Route& route);
 
  private:

@@ -7,7 +7,7 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kApproach = 2.5;  // m: from so far on a passage is not measured anew
+constexpr double kApproach = 2.5;  // m: distance at which the estimate of a passage is fixed.
 
 }  // namespace
 
@@ -21,7 +21,7 @@ RoutePlanner::RoutePlanner(const Platform& platform, const RouteParams& params)
 
 void RoutePlanner::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
                             bool search) {
-  // On stairs one step passes for another: there the heights are the odometry's.
+  // On stairs one step would be registered to another, so there the odometry's heights are used.
   profile_.add(points, platform_.stairs ? body : registration_.apply(points, body, map_), map_);
   map_.expire(stamp_s);
   for (int i = 0; search && i < params_.rebuilds; ++i) {
@@ -67,7 +67,7 @@ Route RoutePlanner::plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to)
   Route route = graph_.plan(from, to);
   if (route.found()) doubts_.reset();
   if (route.status != RouteStatus::unreachable) return route;
-  // Nothing is proven by what was seen from afar.
+  // What was seen from afar proves nothing.
   if (!doubts_) doubts_ = std::make_unique<Doubts>(platform_, params_);
   doubts_->map.copy(map_);
   Route doubtful = doubts_->graph.plan(from, to);

@@ -9,7 +9,7 @@ namespace adit::nav {
 namespace {
 
 constexpr double kTile = kTileSide * kRouteCell;  // m
-constexpr std::int64_t kMostGhosts = 262'144;     // places of unknown space: 17 MB
+constexpr std::int64_t kMostGhosts = 262'144;     // Number of virtual nodes in unknown space: 17 MB.
 
 int opposite(int side) { return (side + 2) % 4; }
 
@@ -17,8 +17,8 @@ Eigen::Vector3d cell_place(const Tile& tile, int cell) {
   return {tile.cell_x(cell), tile.cell_y(cell), tile.cell_z(cell)};
 }
 
-// Of the straight line between two cells of a tile, m; infinite when it is not passable. At the same places
-// as RouteLine looks, and on both sides where these lie between cells.
+// Cost of the straight line between two cells of a tile, m; infinite if it is not passable. Samples the same
+// places as RouteLine, and both neighbours where a sample lies between cells.
 float straight_cost(const Tile& tile, int from, int to) {
   const int dx = to % kTileSide - from % kTileSide, dy = to / kTileSide - from / kTileSide;
   const double length = std::hypot(dx, dy);
@@ -81,7 +81,7 @@ Eigen::Vector3d RouteSearch::place(Id id) const {
   return {node.x, node.y, node.z};
 }
 
-// The box of unknown space that may be used, and the numbers of its nodes.
+// Computes the box of usable unknown space and the numbering of its nodes.
 bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
   start_ = start;
   goal_ = goal;
@@ -209,7 +209,7 @@ bool RouteSearch::costs(const RouteEnd& start, std::span<const RouteEnd> goals, 
   if (!prepare(start, {start.place, -1, 0})) return false;
   to_many_ = true;
   const std::vector<ManyGoal> sorted = goals_by_tile(goals);
-  begin(start);  // Spreads last over the start's tile.
+  begin(start);  // Leaves the distances in the start's tile in the builder.
   for (const ManyGoal& goal : sorted)
     if (goal.tile == start.tile) costs[goal.index] = builder_.distance(goals[goal.index].cell);
   const auto dearest = [&costs] { return *std::max_element(costs.begin(), costs.end()); };
@@ -258,8 +258,8 @@ void RouteSearch::expand_tile(int index, int node, float cost, Id id) {
   cross(tile, tile.nodes[static_cast<std::size_t>(node)], cost, id);
 }
 
-// Where along the side both are open and the ground goes on without a step; -1: nowhere. The place nearest to
-// the middles.
+// The place along a side where both tiles are open and the ground continues without a step, nearest to both
+// middles; -1: none.
 int RouteSearch::meeting_place(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const {
   const int first = std::max(from.first, to.first), last = std::min(from.last, to.last);
   const int middle = (from.first + from.last + to.first + to.last) / 4;
@@ -349,7 +349,8 @@ void RouteSearch::expand_ghost(const Ghost& g, float cost, Id id) {
     if (goal_.any_floor && !(s.search == search_ && s.cost <= total)) goal_.place.z() = here.z();
     reach(goal_id_, total, id);
   }
-  // Nobody knows where it goes up or down: anywhere, at a price, but only towards a goal that is not here.
+  // Ramps are unknown here: a change of level is possible anywhere at a cost, but only towards the goal's
+  // level.
   if (g.level != goal_level_) {
     const int level = g.level + (goal_level_ > g.level ? 1 : -1);
     if (in_box(g.tx, g.ty, level) && map_.at(g.tx, g.ty, level_z(level)) < 0)
@@ -358,7 +359,7 @@ void RouteSearch::expand_ghost(const Ghost& g, float cost, Id id) {
   enter_from_ghost(g, cost, id);
 }
 
-// Straight where that costs hardly more than the way that was found; else along it.
+// Writes a straight line if it costs hardly more than the path that was found; else that path.
 void RouteSearch::write_within(int index, int from, int to, float cost,
                                std::vector<Eigen::Vector3d>& points) {
   const Tile& tile = map_.tile(index);
@@ -398,7 +399,7 @@ void RouteSearch::write_leg(Id from, Id to, std::vector<Eigen::Vector3d>& points
     points.push_back(cell_place(q, side_cell(in.side, i)));
     points.push_back(cell_place(q, in.cell));
   } else {
-    // Straight across the tile's side: its opening may be no wider.
+    // Crosses the tile's side at a right angle: its opening may be only one cell wide.
     const auto beyond = [this](Id id) {
       const TileNode& node = map_.tile(static_cast<int>(id / kTileNodes)).nodes[id % kTileNodes];
       return Eigen::Vector3d(node.x + kSideX[node.side] * kRouteCell, node.y + kSideY[node.side] * kRouteCell,

@@ -15,26 +15,26 @@ namespace adit::nav {
 /// A start or goal on the map.
 struct RouteEnd {
   Eigen::Vector3d place{0, 0, 0};  ///< m
-  int tile{-1};                    ///< -1: in unknown space without a tile
-  int cell{0};                     ///< of the tile, passable
-  bool any_floor{false};           ///< of an unknown goal: whichever floor leads there first
+  int tile{-1};                    ///< -1: in unknown space without a tile.
+  int cell{0};                     ///< Passable cell of the tile.
+  bool any_floor{false};           ///< Goal of unknown height: any floor counts.
 };
 
-/// A* over the openings of the tiles. Where there is no tile, unknown space is as if there were open ones:
-/// on the heights of the start and, through unknown space too, of a goal on another floor.
+/// A* over the openings of the tiles. Unknown space without tiles has a virtual node on each side of each
+/// tile place: on the heights of the start and, through unknown space, also of a goal on another floor.
 class RouteSearch {
  public:
   RouteSearch(SurfaceMap& map, TileBuilder& builder, const RouteParams& params);
 
-  /// The way as points of the ground, each leg passable. Tiles that it comes to are brought up to date.
+  /// Searches a route as points on the ground, each leg passable. Updates the tiles that it reaches.
   RouteStatus search(const RouteEnd& start, const RouteEnd& goal, std::vector<Eigen::Vector3d>& points);
-  /// Costs from one place to many through known space, m; infinite where no route leads. One search from the
-  /// start (Dijkstra), which ends when every goal's cost is certain. `start` and `goals` lie on tiles;
-  /// `costs`: one for each goal. Returns false when the map is too large for the search's memory.
+  /// Costs from one place to many through known space, m; infinite where there is no route. One search from
+  /// the start (Dijkstra) ends when the cost of every goal is certain. `start` and `goals` lie on tiles;
+  /// `costs`: one for each goal. Returns false when the map exceeds the memory of the search.
   bool costs(const RouteEnd& start, std::span<const RouteEnd> goals, std::span<float> costs);
-  /// Nodes that the last search looked at.
+  /// Number of nodes that the last search expanded.
   std::size_t expanded() const { return expanded_; }
-  /// Of its buffers, bytes.
+  /// Memory of its buffers, bytes.
   std::size_t memory() const;
 
  private:
@@ -52,12 +52,12 @@ class RouteSearch {
       return estimate > o.estimate || (estimate == o.estimate && id > o.id);
     }
   };
-  /// A node beside unknown space: place in tiles, height in levels from the start's, side.
+  /// A virtual node beside unknown space: tile coordinates, height in levels from the start's, side.
   struct Ghost {
     int tx, ty, level, side;
   };
 
-  /// One of many goals: its tile, its place in the list, and the costs from the tile's nodes, m.
+  /// One of many goals: its tile, its index in the list, and its costs from the tile's nodes, m.
   struct ManyGoal {
     int tile;
     std::size_t index;
@@ -79,14 +79,14 @@ class RouteSearch {
   void expand_ghost(const Ghost& g, float cost, Id id);
   void cross(const Tile& tile, const TileNode& node, float cost, Id id);
   void enter_from_ghost(const Ghost& g, float cost, Id id);
-  /// Whether one of a side's cells is of the floor at z.
+  /// Whether one of the side's cells belongs to the floor at z.
   bool borders(const Tile& tile, int side, int first, int last, float z) const;
   bool meets(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const;
   int meeting_place(const Tile& a, const TileNode& from, const Tile& b, const TileNode& to) const;
   void begin(const RouteEnd& start);
   void write(std::vector<Eigen::Vector3d>& points);
   void write_leg(Id from, Id to, std::vector<Eigen::Vector3d>& points);
-  /// `cost`: of the way that was found, m.
+  /// `cost`: of the path found by the search, m.
   void write_within(int index, int from, int to, float cost, std::vector<Eigen::Vector3d>& points);
 
   SurfaceMap& map_;
@@ -99,8 +99,8 @@ class RouteSearch {
   std::vector<State> states_{};
   std::vector<Open> open_{};
   std::uint32_t search_{0};
-  bool to_many_{false};  ///< No single goal: costs are not estimated, and unknown space is not used.
-  std::array<float, kTileNodes> to_goal_{};  // from the nodes of the goal's tile
+  bool to_many_{false};                      ///< Search to many goals: no heuristic and no unknown space.
+  std::array<float, kTileNodes> to_goal_{};  // From the nodes of the goal's tile, m.
   std::size_t expanded_{0};
 };
 

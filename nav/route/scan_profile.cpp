@@ -9,15 +9,15 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kStack = 0.15f;      // m: returns this near above each other are of one thing
-constexpr float kNextReturn = 1.0f;  // m: 16 rays over 30 degrees are so far apart in 28 m
-constexpr float kRun = 0.8f;         // m: over more than this nobody knows how the ground goes on
+constexpr float kStack = 0.15f;      // m: returns this close above each other belong to one object.
+constexpr float kNextReturn = 1.0f;  // m: 16 rings over 30 degrees are this far apart at 28 m.
+constexpr float kRun = 0.8f;         // m: the ground cannot be extrapolated over a longer distance.
 constexpr float kWallGap = 1.5f;     // m
 constexpr float kStraight = 0.1f;    // m
 constexpr float kGap = 0.5f;         // m
-constexpr float kFirst = 1.5f;       // m: nothing is known of the ground this far around a lidar of few rings
+constexpr float kFirst = 1.5f;  // m: the ground is unknown within this distance of a lidar with few rings.
 
-// As std::atan2 within 1e-5 rad, by an odd minimax polynomial of degree 11: this runs for every return.
+// Approximates std::atan2 within 1e-5 rad by an odd minimax polynomial of degree 11; runs for every return.
 float bearing(float y, float x) {
   const float ax = std::abs(x), ay = std::abs(y), most = std::max(ax, ay);
   if (most == 0.0f) return 0.0f;
@@ -31,8 +31,8 @@ float bearing(float y, float x) {
   return y < 0 ? -angle : angle;
 }
 
-/// How much ground may rise per metre where nothing was seen between two returns. Steeper ground shows more
-/// returns; with more a box of half a metre between two rings would pass for a ramp.
+/// Maximum rise of ground per metre between two returns. Steeper ground gives more returns; with a larger
+/// value a box of half a metre between two rings would pass for a ramp.
 double rise_between_returns(const Traversability& limits) {
   constexpr double kMost = 0.35;
   return std::min(kMost, limits.slope);
@@ -96,14 +96,14 @@ void ScanProfile::sort(std::span<const Eigen::Vector3f> points, const Pose3& bod
               });
 }
 
-// Behind the first obstacle: of something that stands there, and not of ground higher up that is looked down
-// on, like a ramp from beside it, where a robot may well drive.
+// Whether a return behind the first obstacle belongs to an obstacle and not to higher ground that the lidar
+// looks down on, like a ramp seen from the side, where a robot may drive.
 bool ScanProfile::is_face(std::span<const Return> returns, std::size_t which) const {
-  constexpr float kBelow = 0.05f;  // m below the lidar: no ground is seen from there
+  constexpr float kBelow = 0.05f;  // m below the lidar: it cannot look down on higher ground.
   return returns[which].z > sensor_.z() - kBelow || stands(returns, which);
 }
 
-// Others are right above or below it.
+// Whether other returns are right above or below it.
 bool ScanProfile::stands(std::span<const Return> returns, std::size_t which) const {
   const Return& r = returns[which];
   const auto near = [&](const Return& other) { return std::abs(other.range - r.range) < kStack; };
@@ -115,23 +115,23 @@ bool ScanProfile::stands(std::span<const Return> returns, std::size_t which) con
   return false;
 }
 
-// Hits are marked; the free pieces before the first of them are kept for write_free().
+// Marks the obstacles of a direction and stores the free pieces before the first of them for write_free().
 void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit) {
   hit = {};
   const std::size_t first = pieces_.size();
-  float z = ground_, at = 0.0f;  // the last ground
-  float z_before = ground_;      // and the one before it
+  float z = ground_, at = 0.0f;  // The last ground.
+  float z_before = ground_;      // The ground before it.
   const Return* last_ground = nullptr;
   bool ended = false;
   for (const Return& r : returns) {
     const float run = std::min(r.range - at, kRun);
     const auto which = static_cast<std::size_t>(&r - returns.data());
-    // Before the first return the ground goes on as it is below the body, or gets level.
+    // Before the first return the ground continues the plane under the body, or becomes level.
     const bool begins = !last_ground && !ended;
     if (const float on = ground_at(r.x, r.y); begins)
       z = std::abs(r.z - on) <= step_ && !stands(returns, which) ? on : ground_;
     const float rise = r.z - z;
-    // The foot of what stands there passed for ground that rises: the next return is right above it.
+    // The foot of an obstacle was taken for rising ground: the next return is right above it.
     const bool foot = !ended && last_ground && r.range - at < kStack && z - z_before > step_ &&
                       rise > step_ && rise < kNextReturn;
     if (!foot && rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
@@ -152,7 +152,7 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
       z = base;
       ended = true;
     } else if (rise < -(drop_ + slope_ * run)) {
-      // Where the ray went through the ground's height there is none.
+      // There is no ground where the ray passed the ground's height.
       const float share = (sensor_.z() - z) / (sensor_.z() - r.z);
       const float there = share * r.range;
       if (there > std::max(at, kFirst)) {
@@ -170,9 +170,9 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
   }
 }
 
-// Far away, and along a wall, the returns of neighbouring directions leave gaps that a robot does not fit
-// through; unknown space would leak out of a closed room. Longer ones are closed where a wall goes straight
-// on.
+// Closes gaps between the returns of neighbouring directions, far away and along walls, that are too narrow
+// for a robot; unknown space would leak out of a closed room. Longer gaps are closed if a wall continues
+// straight.
 void ScanProfile::close_gaps(SurfaceMap& map) const {
   const auto at = [this](std::size_t d) -> const Hit& { return hits_[(d + kDirections) % kDirections]; };
   for (std::size_t d = 0; d < kDirections; ++d) {
@@ -192,7 +192,7 @@ void ScanProfile::close_gaps(SurfaceMap& map) const {
   }
 }
 
-// Each cell within range belongs to the one direction that its middle lies in.
+// Assigns each cell within range to the one direction that contains its centre.
 void ScanProfile::list_sectors() {
   const int reach = static_cast<int>(params_.range / kRouteCell);
   std::array<std::vector<SectorCell>, kQuarter> sectors;
@@ -214,8 +214,8 @@ void ScanProfile::list_sectors() {
 
 void ScanProfile::write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const {
   const auto sector = static_cast<std::size_t>(direction % kQuarter);
-  const int turns = direction / kQuarter + 2;                    // of a quarter: direction 0 is -x
-  const int cx = route_cell(at_.x()), cy = route_cell(at_.y());  // ranges are from the body's middle
+  const int turns = direction / kQuarter + 2;                    // Quarter turns: direction 0 is -x.
+  const int cx = route_cell(at_.x()), cy = route_cell(at_.y());  // Ranges are from the body's centre.
   std::size_t i = first_[sector];
   for (const Piece& p : pieces) {
     const float run = std::max(p.to - p.from, 1e-3f);
@@ -227,7 +227,7 @@ void ScanProfile::write_free(int direction, std::span<const Piece> pieces, Surfa
       const float r = quarter_[i].range;
       const float z = p.z_from + (p.z_to - p.z_from) * (r - p.from) / run;
       const float ray = sensor_.z() + (p.ray_z - sensor_.z()) * r / std::max(p.to, r);
-      const bool there = p.to - r < kRouteCellF;  // at a return, or at the foot of what stands there
+      const bool there = p.to - r < kRouteCellF;  // At a return, or at the foot of an obstacle.
       map.see_free(cx + dx, cy + dy, z, std::max(0.0f, ray - z),
                    there ? SurfaceMap::Seen::measured : SurfaceMap::Seen::between);
     }
@@ -259,7 +259,7 @@ void ScanProfile::add(std::span<const Eigen::Vector3f> points, const Pose3& body
   map.begin_scan(body.position.x(), body.position.y());
   sort(points, body);
   stand(body, map);
-  // All hits first: a cell that was hit is not freed by a neighbouring ray.
+  // All obstacles first, so that a neighbouring ray does not free an occupied cell.
   pieces_.clear();
   std::array<std::size_t, kDirections + 1> first{};
   for (std::size_t d = 0; d < kDirections; ++d) {

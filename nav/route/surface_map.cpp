@@ -6,10 +6,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr int kHit = 3;      // evidence of a return
-constexpr int kBlocked = 5;  // two returns
-constexpr int kRay = 2;      // and of a scan that saw through
-constexpr int kMost = 12;    // half as many scans, and no more, free it again
+constexpr int kHit = 3;      // Evidence of a return.
+constexpr int kBlocked = 5;  // Threshold: two returns.
+constexpr int kRay = 2;      // Evidence of a scan that saw through.
+constexpr int kMost = 12;    // Upper limit: half as many scans free the cell again.
 constexpr int kFree = 0;
 constexpr int kLeast = -4;
 constexpr std::size_t kPlaces = 32;
@@ -19,7 +19,7 @@ constexpr std::array<int, 8> kAroundX{1, 0, -1, 0, 1, -1, -1, 1};
 constexpr std::array<int, 8> kAroundY{0, 1, 0, -1, 1, 1, -1, -1};
 constexpr std::array<std::size_t, 8> kOpposite{2, 3, 0, 1, 6, 7, 4, 5};
 
-// The least difference of height to the known cells around; -1 when there are none.
+// The smallest height difference to the known cells around; -1 if there are none.
 float step_around(const Tile& tile, int x, int y, float z) {
   float least = -1;
   for (int v = std::max(0, y - 2); v <= std::min(kTileSide - 1, y + 2); ++v)
@@ -96,8 +96,8 @@ int SurfaceMap::at_cell(int ix, int iy, double z) const {
   return best >= 0 ? best : beyond;
 }
 
-// By the heights along the side that both share; of a corner, or where nothing is known there, by those of
-// the tiles.
+// Selects the floor by the heights along the common side; for a corner, or where these are unknown, by the
+// heights of the tiles.
 int SurfaceMap::beside(const Tile& t, int dx, int dy) const {
   const int only = first(t.tx + dx, t.ty + dy);
   if (only < 0) return -1;
@@ -126,8 +126,8 @@ int SurfaceMap::beside(const Tile& t, int dx, int dy) const {
   return best;
 }
 
-// The floor that a height belongs to: the one whose cell there is at that height; else one that its cells
-// around lead to; else the nearest that has none around.
+// Finds the floor that a height belongs to: the one whose cell there has that height, else one with
+// continuous neighbouring cells, else the nearest one without neighbouring cells.
 int SurfaceMap::sheet(int ix, int iy, float z) {
   const int tx = tile_of(ix), ty = tile_of(iy);
   const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
@@ -143,7 +143,7 @@ int SurfaceMap::sheet(int ix, int iy, float z) {
     if (t.cells[c].known) continue;
     const float step = step_around(t, ix & 15, iy & 15, z);
     if (step > same_) continue;
-    // Cells around that lead there count before all that is merely near.
+    // A continuous neighbour wins over any floor that is merely near.
     const float d = step >= 0 ? step - 2 * same_ : std::abs(t.z - z);
     if (d <= least) {
       least = d;
@@ -197,7 +197,7 @@ void SurfaceMap::link(int index) {
   }
 }
 
-// All floors of the farthest place; what is known there is forgotten.
+// Removes all floors of the farthest place.
 void SurfaceMap::evict() {
   int farthest = -1;
   double most = -1;
@@ -227,7 +227,7 @@ void SurfaceMap::evict() {
 }
 
 void SurfaceMap::begin_scan(double x, double y) {
-  if (++scan_ == 0) scan_ = 1;  // 0: no scan hit it yet
+  if (++scan_ == 0) scan_ = 1;  // 0: no scan has hit a cell yet.
   x_ = x;
   y_ = y;
 }
@@ -238,7 +238,7 @@ void SurfaceMap::mark_dirty(int index) {
   queue_.push_back(index);
 }
 
-// An obstacle takes clearance from the tiles around, too.
+// An obstacle also reduces the clearance in the neighbouring tiles.
 void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
   const int lx = ix & 15, ly = iy & 15;
   const int dx = lx < kTileHalo ? -1 : lx >= kTileSide - kTileHalo ? 1 : 0;
@@ -252,7 +252,7 @@ void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
 }
 
 bool SurfaceMap::is_near(int ix, int iy) const {
-  constexpr double kNear = 4.0;  // m: from farther off a ramp's side and a step look alike
+  constexpr double kNear = 4.0;  // m: from farther away the side of a ramp and a step look alike.
   const double dx = (ix + 0.5) * kRouteCell - x_, dy = (iy + 0.5) * kRouteCell - y_;
   return dx * dx + dy * dy < kNear * kNear;
 }
@@ -266,13 +266,13 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   if (!cell.known) {
     cell = {z, 0, 0, true, measured, false, sure};
     mark_dirty(index);
-    // A step between two cells is known with the second; it is looked for over four (TileBuilder).
+    // A step between two cells is known with the second one; TileBuilder searches it over four cells.
     if (const int x = ix & 15, y = iy & 15; x < 4 || y < 4 || x > 11 || y > 11) mark_around(t, ix, iy);
     return;
   }
   const float before = cell.z;
-  // From afar stairs look like a ramp: what is drawn takes nothing from what was measured, and what is seen
-  // from afar nothing from what was seen from near.
+  // From afar stairs look like a ramp: interpolated heights do not change measured ones, and heights seen
+  // from afar do not change those seen from near.
   const bool counts = sure || !cell.sure;
   if (counts && measured && !cell.measured) {
     cell.z = z;
@@ -285,14 +285,14 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   }
   cell.measured |= measured && counts;
   if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
-  if (std::abs(cell.z - before) > 0.05f) mark_around(t, ix, iy);  // it may be a step now, or none any more
+  if (std::abs(cell.z - before) > 0.05f) mark_around(t, ix, iy);  // A step may have appeared or disappeared.
   if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
   if (cell.evidence <= kLeast || (cell.scan == scan_ && !certain)) return;
   if (cell.blocked && height > static_cast<float>(cell.top) * kTopUnit + 0.05f) return;
   cell.evidence = static_cast<std::int8_t>(cell.evidence - kRay);
   if (!cell.blocked || cell.evidence > kFree) return;
   cell.blocked = false;
-  cell.sure = sure;  // its height was that before what stood there
+  cell.sure = sure;  // Its height was measured before the obstacle appeared.
   cell.top = 0;
   mark_dirty(index);
   mark_around(t, ix, iy);
@@ -311,7 +311,8 @@ void SurfaceMap::see_obstacle(float x, float y, float z, float top, bool sure) {
   cell.top = std::max(cell.top, static_cast<std::uint8_t>(std::clamp(top / kTopUnit, 0.0f, 255.0f)));
   if (cell.scan == scan_ && !sure) return;
   cell.scan = scan_;
-  if (cell.evidence < kMost || sure) {  // the mean over its first scans: once it is sure it stays
+  // Averages over the first scans; a certain obstacle keeps its position.
+  if (cell.evidence < kMost || sure) {
     const int before = sure ? 0 : std::max(0, int{cell.evidence}) / kHit;
     const auto mean = [&](std::int8_t& aside, double at, int i) {
       const double off = std::clamp((at - (i + 0.5) * kRouteCell) / double{kAsideUnit}, -125.0, 125.0);
@@ -365,7 +366,7 @@ int SurfaceMap::next_dirty() {
   while (!queue_.empty()) {
     const int index = queue_.front();
     queue_.pop_front();
-    if (tile(index).dirty) return index;  // else made anew out of turn
+    if (tile(index).dirty) return index;  // Otherwise it has been rebuilt already.
   }
   return -1;
 }

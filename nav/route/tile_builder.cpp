@@ -12,18 +12,18 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kUnit = 16.0f;  // of a cell's cost
+constexpr float kUnit = 16.0f;  // Of a cell's cost.
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr double kAsideOfGap = 0.03;  // m
-constexpr int kSteep = 5;             // cells, and fewer: a step is looked for over them
-constexpr int kLongSteep = 13;        // when it was seen from afar
-constexpr double kSureNoise = 0.025;  // m: of two heights that were measured from near
-constexpr double kNoise = 0.05;       // m: of two heights; or a kerb with a ramp behind it
+constexpr int kSteep = 5;             // Maximum number of cells over which a step is searched.
+constexpr int kLongSteep = 13;        // The same for heights seen from afar.
+constexpr double kSureNoise = 0.025;  // m: of the difference of two heights measured from near.
+constexpr double kNoise = 0.05;  // m: of the difference of two heights; also a kerb with a ramp behind it.
 
 }  // namespace
 
-// Less than the body needs: the nearest cell's middle lies aside of the middle of a gap. The local
-// planner knows better, and tells when it does not get through.
+// The required clearance is less than the body needs, because the nearest cell's centre lies beside the
+// middle of a gap. The local planner is exact and reports when the robot does not fit.
 TileBuilder::TileBuilder(const Platform& platform, const RouteParams& params, bool doubting)
     : TileBuilder(platform, params, Traversability::of(platform), doubting) {}
 
@@ -61,7 +61,7 @@ void TileBuilder::gather_tile(const Tile& from, float z, int ox, int oy) {
     for (int x = x0; x < x1; ++x) {
       const GroundCell& cell = from.cells[static_cast<std::size_t>((y - oy) * kTileSide + (x - ox))];
       if (!cell.known || std::abs(cell.z - z) > 2 * kSheetReach) continue;
-      // The ground under what stands there is a guess, and no step.
+      // The height of the ground under an obstacle is a guess and makes no step.
       known_[in_window(x, y)] = true;
       height_[in_window(x, y)] = cell.blocked || !said(cell) ? kNan : cell.z;
       sure_[in_window(x, y)] = certain(cell);
@@ -77,8 +77,8 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   stands_.fill(false);
   aside_.fill({0, 0});
   gather_tile(tile, tile.z, kTileHalo, kTileHalo);
-  // What is ground of another floor, higher or lower by less than a storey, is an edge of this one; and what
-  // stands there stands here, too.
+  // Ground of another floor less than a storey higher or lower is an edge of this floor, and its obstacles
+  // block this floor too.
   for (int i = map.first(tile.tx, tile.ty); i >= 0; i = map.tile(i).next) {
     const Tile& other = map.tile(i);
     if (&other == &tile) continue;
@@ -109,8 +109,8 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
   }
 }
 
-// Beside what stands there, a return of its foot passes for ground that is higher: that is no step, which
-// would keep robots farther away than the thing itself, and close gaps.
+// Whether a step is the foot of an obstacle: beside an obstacle, a return of its foot passes for higher
+// ground. Such a step would keep robots farther away than the obstacle itself, and close gaps.
 bool TileBuilder::is_foot(std::size_t cell) const {
   const int x = static_cast<int>(cell % kWindow), y = static_cast<int>(cell / kWindow);
   for (int v = std::max(0, y - 1); v <= std::min(kWindow - 1, y + 1); ++v)
@@ -119,20 +119,20 @@ bool TileBuilder::is_foot(std::size_t cell) const {
   return false;
 }
 
-// Ground that is too steep between two cells is an edge to keep away from, below and above.
+// Ground that is too steep between two cells is an edge, for both the lower and the upper cell.
 void TileBuilder::find_steps() {
   float lowest = std::numeric_limits<float>::max(), highest = std::numeric_limits<float>::lowest();
   const auto compare = [this](std::size_t a, std::size_t b) {
     const float most = sure_[a] && sure_[b] ? rise_ : doubtful_rise_;
     if (std::abs(height_[a] - height_[b]) > most &&
-        !is_foot(height_[a] > height_[b] ? a : b))  // false for NaN
+        !is_foot(height_[a] > height_[b] ? a : b))  // False for NaN.
       solid_[a] = solid_[b] = true;
   };
   for (int y = 0; y < kWindow; ++y)
     for (int x = 0; x < kWindow; ++x) {
       if (x + 1 < kWindow) compare(in_window(x, y), in_window(x + 1, y));
       if (y + 1 < kWindow) compare(in_window(x, y), in_window(x, y + 1));
-      lowest = std::fmin(lowest, height_[in_window(x, y)]);  // not the NaN
+      lowest = std::fmin(lowest, height_[in_window(x, y)]);  // Ignores NaN.
       highest = std::fmax(highest, height_[in_window(x, y)]);
     }
   if (climbs_stairs_ || highest - lowest <= rise_) return;
@@ -144,9 +144,9 @@ void TileBuilder::find_steps() {
       }
 }
 
-// The returns of a riser, or drift, smear a step over cells that rise little each; and from afar, where
-// nobody can tell stairs from a ramp, there is what is too steep for either. What a shorter piece of it
-// explains is left to that.
+// The returns of a riser, or drift, spread a step over cells that each rise little. From afar, where stairs
+// and ramps look alike, the limit is what is too steep for either. A steep piece that a shorter one explains
+// is left to that one.
 void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
   const std::size_t to = from + stride * static_cast<std::size_t>(cells);
   const float rise = std::abs(height_[from] - height_[to]);
@@ -161,10 +161,10 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
                            : std::max(kTall * double{kTopUnit}, step_ + slope_ * run + kNoise);
   if (rise <= most || is_foot(height_[from] > height_[to] ? from : to)) return;
   for (std::size_t i = from + stride; i < to; i += stride)
-    solid_[i] = cells < kSteep || known_[i];  // nobody knows what is below a stage
+    solid_[i] = cells < kSteep || known_[i];  // The ground below a stage is unknown.
 }
 
-// From the middle of a cell of the window to the nearest obstacle, as it lies in its cell, m.
+// Distance from the centre of a cell of the window to the nearest obstacle, with its position in its cell, m.
 double TileBuilder::exact_clearance(int x, int y) const {
   const int reach = static_cast<int>(hard_ / kRouteCell) + 2;
   double least = kTileHalo * kRouteCell;
@@ -178,7 +178,7 @@ double TileBuilder::exact_clearance(int x, int y) const {
   return least;
 }
 
-// The squared distance to the nearest obstacle, exact within the halo: columns first, then across.
+// Squared distance to the nearest obstacle, exact within the halo: along columns first, then across.
 void TileBuilder::measure(Tile& tile) {
   constexpr int kFar = kTileHalo + 1;
   std::array<std::uint8_t, kWindow * kWindow> up{};
@@ -202,7 +202,7 @@ void TileBuilder::measure(Tile& tile) {
         if (d <= kTileHalo) least = std::min(least, dx * dx + d * d);
       }
       const auto c = static_cast<std::size_t>(y * kTileSide + x);
-      // Where a cell more or less decides, as exact as it is known.
+      // Where one cell decides, uses the exact position of the obstacle.
       const double about = std::sqrt(static_cast<double>(least)) * kRouteCell;
       float cost = std::abs(about - hard_) < kRouteCell
                        ? cost_at(exact_clearance(x + kTileHalo, y + kTileHalo))
@@ -216,7 +216,7 @@ void TileBuilder::add_node(Tile& tile, int side, int first, int last) {
   int place = tile.node_count;
   if (place < kTileNodes) {
     ++tile.node_count;
-  } else {  // the narrowest goes, which may be this one
+  } else {  // Drops the narrowest, which may be this one.
     const auto narrowest = std::min_element(
         tile.nodes.begin(), tile.nodes.end(),
         [](const TileNode& a, const TileNode& b) { return a.last - a.first < b.last - b.first; });
@@ -249,7 +249,7 @@ void TileBuilder::open_sides(Tile& tile) {
     }
 }
 
-// Not negative, so that the bits of a distance sort as it does.
+// Distances are not negative, so their bits sort in the same order.
 std::uint64_t TileBuilder::entry(float distance, int cell) {
   return (std::uint64_t{std::bit_cast<std::uint32_t>(distance)} << 32) | static_cast<std::uint32_t>(cell);
 }
@@ -262,7 +262,7 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
     left += !node;
     node = true;
   }
-  // With a border around it nothing has to be asked about the tile's end.
+  // A border around the tile saves the range checks.
   constexpr int kWide = kTileSide + 2;
   std::array<std::uint8_t, kWide * kWide> costs{};
   for (int y = 0; y < kTileSide; ++y)
@@ -275,7 +275,7 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
   heap_.push_back(entry(0, cell));
   while (!heap_.empty()) {
     std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-    const auto at = static_cast<std::uint32_t>(heap_.back());  // the lower half: a cell
+    const auto at = static_cast<std::uint32_t>(heap_.back());  // The lower half holds the cell.
     const auto so_far = std::bit_cast<float>(static_cast<std::uint32_t>(heap_.back() >> 32));
     heap_.pop_back();
     if (so_far > distance_[at]) continue;
@@ -287,7 +287,7 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
         if (dx == 0 && dy == 0) continue;
         const int cost = cost_of(here + dy * kWide + dx);
         if (cost == 0) continue;
-        // Not across a corner: a straight line would touch it.
+        // Not diagonally past a corner: a straight line would touch it.
         const bool across = dx != 0 && dy != 0;
         if (across && (cost_of(here + dx) == 0 || cost_of(here + dy * kWide) == 0)) continue;
         const int next = static_cast<int>(at) + dy * kTileSide + dx;
@@ -303,7 +303,7 @@ void TileBuilder::spread(const Tile& tile, int cell, bool to_nodes) {
 }
 
 void TileBuilder::connect(Tile& tile, int node) {
-  // In a tile that costs the same everywhere ways are straight.
+  // In a tile of uniform cost paths are straight.
   const bool even = std::all_of(tile.cost.begin(), tile.cost.end(),
                                 [&](std::uint8_t c) { return c == tile.cost[0] && c > 0; });
   const TileNode& from = tile.nodes[static_cast<std::size_t>(node)];
@@ -336,7 +336,7 @@ void TileBuilder::build(SurfaceMap& map, int index) {
   find_steps();
   const std::array<std::uint8_t, kTileArea> before = tile.cost;
   measure(tile);
-  // Most of what is told of a tile changes no cell's cost: what was measured holds, but for heights.
+  // Most updates of a tile change no cost: its distances stay valid, except for heights.
   const bool same = tile.built && before == tile.cost;
   open_sides(tile);
   if (same) return;

@@ -9,49 +9,50 @@
 
 namespace adit::nav {
 
-/// Makes a tile's part of the graph: what each cell costs, the openings in its sides, and how far they are
-/// from each other within it (Botea, Müller, Schaeffer: *Near optimal hierarchical path-finding*, 2004, with
-/// openings of its own for each tile, so that one tile can be made anew alone).
+/// Builds a tile's part of the graph: the cost of each cell, the openings in its sides, and the distances
+/// between them within the tile (Botea, Müller, Schaeffer: *Near optimal hierarchical path-finding*, 2004).
+/// Unlike there, each tile has its own openings, so a single tile can be rebuilt.
 class TileBuilder {
  public:
   /// `doubting`: see RouteGraph.
   TileBuilder(const Platform& platform, const RouteParams& params, bool doubting = false);
 
-  /// Whether something stands in a cell.
+  /// Whether a cell holds an obstacle.
   bool solid(const GroundCell& cell) const { return cell.blocked && (certain(cell) || cell.top > kTall); }
-  /// From one of two neighbouring cells to the other: what is higher is a step, m.
+  /// Maximum height difference between two neighbouring cells, m: a larger one is a step.
   float most_rise(const GroundCell& a, const GroundCell& b) const {
     if (!said(a) || !said(b)) return kSheetReach;
     return certain(a) && certain(b) ? rise_ : doubtful_rise_;
   }
 
-  /// From the map's evidence: cells and openings; the ways between these are measured when they are asked
-  /// for.
+  /// Computes the cells' costs and the openings from the map. The distances between openings are computed on
+  /// demand.
   void build(SurfaceMap& map, int index);
-  /// The tile, made anew first when it is not up to date.
+  /// The tile, rebuilt first if it is not up to date.
   const Tile& current(SurfaceMap& map, int index) {
     if (map.tile(index).dirty) build(map, index);
     return map.tile(index);
   }
-  /// Measures all of a tile's ways between openings.
+  /// Computes all distances between a tile's openings.
   void connect(SurfaceMap& map, int index);
-  /// From one node of a tile to all of its nodes, within it, m.
+  /// Distances from one node of a tile to all of its nodes within the tile, m.
   std::span<const float, kTileNodes> distances(SurfaceMap& map, int index, int node);
-  /// Ways from a cell to all others of its tile, m; see distance() and trace().
-  /// `to_nodes`: only as far as the tile's nodes.
+  /// Computes the distances from a cell to all others of its tile, m; see distance() and before().
+  /// `to_nodes`: stops when the tile's nodes are reached.
   void spread(const Tile& tile, int cell, bool to_nodes = false);
   float distance(int cell) const { return distance_[static_cast<std::size_t>(cell)]; }
-  /// The cell before that one on the way from where spread() began; -1 at its beginning.
+  /// The preceding cell on the path from the cell of spread(); -1 at that cell.
   int before(int cell) const { return before_[static_cast<std::size_t>(cell)]; }
-  /// What a cell in the open costs (unknown: in unknown space), m per m.
+  /// Cost of unknown space far from obstacles, per metre.
   float unknown_cost() const { return unknown_cost_; }
 
  private:
   TileBuilder(const Platform& platform, const RouteParams& params, const Traversability& limits,
               bool doubting);
-  static constexpr std::uint8_t kTall = 18;  ///< kTopUnit each: higher is a wall or an edge, also from afar
+  /// In kTopUnit: higher obstacles are walls or edges, also when seen from afar.
+  static constexpr std::uint8_t kTall = 18;
   bool certain(const GroundCell& cell) const { return !doubting_ || cell.sure; }
-  /// What was only drawn, from afar, says nothing.
+  /// Whether a height is usable: interpolated heights seen from afar are not.
   bool said(const GroundCell& cell) const { return cell.known && (certain(cell) || cell.measured); }
   static constexpr int kWindow = kTileSide + 2 * kTileHalo;
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
@@ -66,20 +67,20 @@ class TileBuilder {
   void open_sides(Tile& tile);
   void add_node(Tile& tile, int side, int first, int last);
   void connect(Tile& tile, int node);
-  /// A distance and a cell as one number, which sorts as they do.
+  /// Packs a distance and a cell into one number that sorts in the same order.
   static std::uint64_t entry(float distance, int cell);
 
-  double hard_, comfort_, narrow_cost_;  // clearance that is needed and that is liked, m
+  double hard_, comfort_, narrow_cost_;  // Required and preferred clearance, m.
   float rise_, doubtful_rise_, unknown_cost_;
   double step_, slope_;
   bool climbs_stairs_, doubting_, through_unknown_;
-  std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // by squared clearance in cells
-  std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown
+  std::array<std::uint8_t, kTileHalo * kTileHalo + 2> cost_of_{};  // By squared clearance in cells.
+  std::array<float, kWindow * kWindow> height_{};                  // NaN: unknown.
   std::array<bool, kWindow * kWindow> known_{}, sure_{}, stands_{}, solid_{};
-  std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // of what is solid, kAsideUnit
+  std::array<std::array<std::int8_t, 2>, kWindow * kWindow> aside_{};  // Position of obstacles, kAsideUnit.
   std::array<float, kTileArea> distance_{};
   std::array<int, kTileArea> before_{};
-  std::vector<std::uint64_t> heap_{};  // of entries
+  std::vector<std::uint64_t> heap_{};  // Of entries.
 };
 
 }  // namespace adit::nav
