@@ -8,7 +8,7 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kNone = 1e6f;  ///< squared cells: nothing in sight
+constexpr float kNone = 1e6f;  ///< No obstacle in the row, squared cells.
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void ClearField::fill(std::span<const ObstaclePoint> obstacles, float ahead) {
 }
 
 void ClearField::transform(std::size_t first, std::size_t stride) {
-  // The lower envelope of parabolas, one over each cell.
+  // Computes the lower envelope of parabolas, one over each cell.
   bool any = false;
   for (std::size_t n = 0; n < kSide; ++n) {
     row_[n] = distance_[first + n * stride];

@@ -9,29 +9,29 @@
 
 namespace adit::nav {
 
-/// How far it is from any place near the robot to the nearest obstacle: a grid of 5 cm around the origin of
-/// the obstacles' frame. Fixed size; nothing is allocated after construction.
+/// Distance field: the distance from any place near the robot to the nearest obstacle, on a 5 cm grid around
+/// the origin of the obstacles' frame. The size is fixed, and nothing is allocated after construction.
 class ClearField {
  public:
   static constexpr int kSide = 192;
   static constexpr float kCell = 0.05f;              ///< m
-  static constexpr float kHalf = kCell * kSide / 2;  ///< m from the middle to the border
-  static constexpr float kFar = 3.0f;                ///< m: so far or farther
+  static constexpr float kHalf = kCell * kSide / 2;  ///< Distance from the centre to the border, m.
+  static constexpr float kFar = 3.0f;                ///< Upper limit of the distances, m.
 
   ClearField();
 
-  /// Takes the obstacles, `ahead` m farther along x: those of cost 1 as solid, others as ground that costs.
-  /// The distances are exact from
-  /// cell to cell (P. Felzenszwalb and D. Huttenlocher, "Distance transforms of sampled functions", 2012).
+  /// Updates the field. `ahead`: offset added to x, m. Obstacles of cost 1 are solid; others are ground with
+  /// a cost. The distances are exact from cell to cell (P. Felzenszwalb and D. Huttenlocher, "Distance
+  /// transforms of sampled functions", 2012).
   void fill(std::span<const ObstaclePoint> obstacles, float ahead = 0.0f);
-  /// From (x, y) to the nearest solid cell, m; kFar beside the grid.
+  /// Distance from (x, y) to the nearest solid cell, m; kFar outside of the grid.
   float clearance(float x, float y) const {
     const int i = cell(x), j = cell(y);
     return inside(i) && inside(j) ? distance_[index(i, j)] : kFar;
   }
-  /// The solid obstacles themselves.
+  /// The solid obstacles as points.
   const SolidPoints& points() const { return points_; }
-  /// What it costs to be there, [0, 1).
+  /// Cost of the ground, [0, 1).
   float cost(float x, float y) const {
     const int i = cell(x), j = cell(y);
     return inside(i) && inside(j) ? cost_[index(i, j)] : 0.0f;

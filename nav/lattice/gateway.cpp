@@ -8,10 +8,10 @@
 namespace adit::nav {
 namespace {
 
-constexpr int kFits = 3;                        ///< Each starts from the strip that the one before found.
-constexpr int kTurns = 15;                      ///< to each side of the guess
-constexpr double kTurn = M_PI / 180.0;          ///< rad
-constexpr float kAlong = 0.5f, kAcross = 1.2f;  ///< m from the guess: what stands there is looked at
+constexpr int kFits = 3;                        ///< Each starts from the result of the previous one.
+constexpr int kTurns = 15;                      ///< Number of headings tried to each side of the guess.
+constexpr double kTurn = M_PI / 180.0;          ///< Angle between them, rad.
+constexpr float kAlong = 0.5f, kAcross = 1.2f;  ///< Obstacles within these distances of the guess count, m.
 
 std::optional<Gateway> fit_once(const Pose2& guess, std::span<const ObstaclePoint> obstacles) {
   struct Strip {
@@ -35,7 +35,7 @@ std::optional<Gateway> fit_once(const Pose2& guess, std::span<const ObstaclePoin
         strip.right = std::max(strip.right, across);
     }
   }
-  // Of strips about as wide the one that is turned least.
+  // Among strips of about the same width, prefers the one that is turned least.
   const auto width = [](const Strip& strip) { return strip.left - strip.right; };
   float widest = 0;
   for (const Strip& strip : strips) widest = std::max(widest, width(strip));

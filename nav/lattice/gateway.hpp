@@ -8,15 +8,15 @@
 
 namespace adit::nav {
 
-/// The straight way through a gap: the line in the middle of the widest strip that is free there.
+/// The straight path through a gap: the centre line of the widest free strip.
 struct Gateway {
-  Pose2 line{};    ///< a pose on it, about in the gap's middle, heading through
-  double room{0};  ///< width of the strip, m
+  Pose2 line{};    ///< A pose on the line, about in the middle of the gap, heading through.
+  double room{0};  ///< Width of the strip, m.
 };
 
-/// `guess`: about the gap's middle, between its sides and within 30 degrees, in the frame of the obstacles.
-/// Of these the solid ones count that are no more than 0.5 m before or behind it. Nothing when one side is
-/// open.
+/// Fits the strip. `guess`: about the middle of the gap, between its sides, heading within 30 degrees; same
+/// frame as the obstacles. Only solid obstacles at most 0.5 m before or behind the guess count. Returns
+/// nothing if one side is open.
 std::optional<Gateway> fit_gateway(const Pose2& guess, std::span<const ObstaclePoint> obstacles);
 
 }  // namespace adit::nav

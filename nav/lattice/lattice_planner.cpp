@@ -10,23 +10,26 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kMoving = 0.08;        ///< m/s: slower is standing
-constexpr double kTurned = 0.13;        ///< m before the end of a part: near enough, when nearly standing
-constexpr double kOver = 0.04;          ///< m: the part is over
-constexpr double kSteersAtOnce = 0.35;  ///< m/s: no faster, wheels are where they shall be after a motion
-constexpr double kSlow = 0.25;          ///< m/s: nearly standing
-constexpr double kAhead = 4.2;          ///< m: a direction becomes a place so far off
-constexpr float kHysteresis = 0.02f;    ///< m of the margin that a path which is kept may lose
-constexpr float kTightLoss = 0.015f;    ///< the same of the tight margin
-constexpr double kTightAhead = 1.0;     ///< m along the path, and the way that braking takes: so far before
-                                        ///< a tight place it goes slowly
-constexpr double kGap = 0.24;        ///< m: an opening with so much more than the margins is none to be met
-                                     ///< straight
-constexpr double kEasy = 0.12;       ///< m: in one with so much more other ways lead, too
-constexpr double kLineUp = 1.7;      ///< m before a gap: about there a path gets onto its axis
-constexpr double kMisses = 0.015;    ///< m off the middle of a gap, place and heading together
-constexpr double kMends = 0.2;       ///< m from the body's front to a gap's middle: nearer it is too late
-constexpr double kBehindGate = 0.4;  ///< m behind its middle a gap is left
+constexpr double kMoving = 0.08;  ///< A slower robot is stationary, m/s.
+/// A part ends this far before its last pose if the robot is almost stationary, m.
+constexpr double kTurned = 0.13;
+constexpr double kOver = 0.04;          ///< A part ends this far before its last pose, m.
+constexpr double kSteersAtOnce = 0.35;  ///< Speed limit while the steering may still be changing, m/s.
+constexpr double kSlow = 0.25;          ///< A slower robot is almost stationary, m/s.
+constexpr double kAhead = 4.2;          ///< Distance of the target that replaces a direction, m.
+constexpr float kHysteresis = 0.02f;    ///< Part of the margin that the current path may lose, m.
+constexpr float kTightLoss = 0.015f;    ///< Part of the tight margin that it may lose, m.
+/// The robot slows down this far before a tight place, in addition to the braking distance, m.
+constexpr double kTightAhead = 1.0;
+/// An opening that is wider than body and margins by more need not be crossed straight, m.
+constexpr double kGap = 0.24;
+constexpr double kEasy = 0.12;   ///< An opening that is wider by more than this has other solutions too, m.
+constexpr double kLineUp = 1.7;  ///< A path reaches the axis of a gap about this far before it, m.
+/// Maximum error at the middle of a gap, position and heading together, m.
+constexpr double kMisses = 0.015;
+/// From the body's front to a gap's middle: when nearer, it is too late for a correction, m.
+constexpr double kMends = 0.2;
+constexpr double kBehindGate = 0.4;  ///< The gap ends this far behind its middle, m.
 
 }  // namespace
 
@@ -60,12 +63,11 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
   const Target aim = aim_of(target, pose, stamp_s);
   LatticeTask task = task_of(aim, pose, rear);
   if (goal && !retreat_) see_gate(target, pose, obstacles, task);
-  // What it would drive is what it is held from; backing away it is let go.
+  // The collision monitor blocks what the planner would choose now; during a retreat the choice is free.
   const bool held = target.held && goal && !retreat_;
   const bool keeps = !held && follows_on(rear) && kept_for_.kind == aim.kind &&
                      (!goal || (kept_for_.goal - aim.goal).norm() < 1.0) && passable(rear);
-  // Through a gap there is one way: it is kept to, unless what is seen from nearer shows that it misses the
-  // middle.
+  // A path through a gap is kept unless a nearer view shows that it misses the middle.
   const bool to_gate = keeps && kept_.through && task.gate;
   const bool goes_through = to_gate && !misses(*task.gate, rear);
   if (to_gate && !changes_ahead()) task.only = 1;
@@ -93,7 +95,7 @@ Plan LatticePlanner::plan(const Target& target, const Pose2& pose, std::span<con
 Target LatticePlanner::aim_of(const Target& target, const Pose2& pose, double stamp_s) {
   constexpr double kSameGoal = 0.1, kProgress = 0.5, kThere = 0.3;  // m
   const double distance = (target.goal - pose.position()).norm();
-  // A point of a route is so far ahead of the robot: it goes back with it.
+  // The target is a point on a route at a fixed distance ahead, so it moves back with the robot.
   const double same = retreat_ ? params_.retreat + kProgress : kSameGoal;
   const bool other = target.kind != Target::Kind::goal || !goal_ || (target.goal - *goal_).norm() > same;
   if (other) forget_retreat();
@@ -121,7 +123,7 @@ void LatticePlanner::consider_retreat(const Target& target, const Pose2& pose, d
   }
   if (!blocked_since_) blocked_since_ = stamp_s;
   if (!target.held && stamp_s - *blocked_since_ < params_.patience) return;
-  // Straight back; ahead where that leads away from the goal.
+  // Straight back, or ahead when that leads away from the goal.
   const Eigen::Vector2d to = pose.inverse() * target.goal;
   retreat_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
   retreat_until_ = stamp_s + kLongest;
@@ -160,7 +162,7 @@ LatticeTask LatticePlanner::task_of(const Target& target, const Pose2& pose, con
   const double bearing = course_.bearing(target, pose);
   task.goal = false;
   task.target = Eigen::Vector2d(rear_ + kAhead * std::cos(bearing), kAhead * std::sin(bearing));
-  // Ahead or back as the stick points; held straight back the body's way is the other one.
+  // Forwards or backwards by the stick; for a stick held straight back the path has the opposite heading.
   task.only = std::fabs(wrap_angle(target.direction)) <= M_PI / 2 ? 1 : -1;
   task.heading = bearing;
   const double now = std::fabs(wrap_angle((task.only > 0 ? 0.0 : M_PI) - bearing));
@@ -168,8 +170,8 @@ LatticeTask LatticePlanner::task_of(const Target& target, const Pose2& pose, con
   return task;
 }
 
-// Before a gap that cannot be gone through from here, to a place from where it can; into one that is so wide
-// that it may be met at an angle, any way, where no way leads to that place.
+// Finds a path to a place from where a gap can be crossed, if it cannot be crossed from here. If there is
+// none, and the gap is wide enough to be met at an angle, any path through it counts.
 bool LatticePlanner::find(LatticeTask task) {
   if (!task.gate) return find_there(task);
   if (find_through(task)) return true;
@@ -182,7 +184,7 @@ bool LatticePlanner::find(LatticeTask task) {
   return easy && find_there(task);
 }
 
-// A path that keeps the margin; where there is none, one that keeps the tight one.
+// Finds a path with the full margin; if there is none, one with the tight margin.
 bool LatticePlanner::find_there(LatticeTask task) {
   const auto& search = params_.search;
   for (const bool tight : {false, true}) {
@@ -206,13 +208,14 @@ void LatticePlanner::see_gate(const Target& target, const Pose2& pose,
   task.room = gateway->room;
 }
 
-// Onto the axis of the gap and straight on; before that with the margin where there is room for it.
+// Finds a path onto the axis of the gap and straight through it, with the full margin before the gap if there
+// is room.
 bool LatticePlanner::find_through(LatticeTask task) {
   task.target = (*task.gate * Pose2{-kLineUp, 0, 0}).position();
   return find_there(task);
 }
 
-// Whether the way that is kept to is off the middle of the gap, and there is still room to mend that.
+// Whether the current path misses the middle of the gap and can still be corrected.
 bool LatticePlanner::misses(const Pose2& gate, const Pose2& rear) const {
   const Pose2 to_gate = gate.inverse();
   const Pose2 end = to_gate * rear.inverse() * kept_.spots[kept_.count - 1].pose;
@@ -221,10 +224,10 @@ bool LatticePlanner::misses(const Pose2& gate, const Pose2& rear) const {
   return -to_gate.x - (rear_ + body_.front()) > kMends && aside > kMisses;
 }
 
-// Whether the way that was found is driven instead of the one that is kept to.
+// Whether the new path replaces the current one.
 bool LatticePlanner::is_better(const Pose2& rear, bool to_gate) const {
   const double ahead = kept_.cost() - static_cast<double>(kept_.spots[at_].cost);
-  // Through a gap the middle is worth a little more way, but no turning.
+  // Through a gap, a central path is worth a slightly longer distance, but no turning.
   if (to_gate) return found_.cost() < ahead + (found_.straight_on() ? params_.better : -params_.better);
   if (found_.through) return true;
   if (found_.tight && !kept_.tight) return false;
@@ -284,7 +287,7 @@ bool LatticePlanner::follows_on(const Pose2& rear) {
 
 bool LatticePlanner::passable(const Pose2& rear) const {
   const Pose2 back = rear.inverse();
-  // What it stands in already it may leave.
+  // Places in which the robot already is do not count.
   const std::size_t first = at_ + 8;
   for (std::size_t i = first; i < kept_.count; i += 2)
     if (!search_.free(clear_, back * kept_.spots[i].pose, kept_.tight,
@@ -294,12 +297,12 @@ bool LatticePlanner::passable(const Pose2& rear) const {
 }
 
 bool LatticePlanner::given_up(const Target& target, double distance, bool drives, double stamp_s) {
-  constexpr double kSameGoal = 0.1, kCloser = 0.1, kLongest = 0.5;  // m, m, s: what is longer was a break
+  constexpr double kSameGoal = 0.1, kCloser = 0.1, kLongest = 0.5;  // m, m, s: a longer interval was a pause.
   if (target.kind != Target::Kind::goal) {
     goal_.reset();
     return false;
   }
-  if (retreat_) {  // it shall not come nearer
+  if (retreat_) {  // A retreat need not get nearer.
     last_s_ = stamp_s;
     return false;
   }
@@ -318,7 +321,8 @@ bool LatticePlanner::given_up(const Target& target, double distance, bool drives
   return stamp_s < rest_until_;
 }
 
-// Whether the way up to a spot comes, before it could slow down, to where only the tight margin is left.
+// Whether the path up to a spot reaches, before the robot could slow down, a place with only the tight
+// margin.
 bool LatticePlanner::tightens(const Pose2& back, std::size_t last) const {
   const double slow = std::max(0.0, speed_ * speed_ - params_.tight_speed * params_.tight_speed);
   const double ahead = kTightAhead + slow / (2.0 * platform_.max_acceleration);
@@ -342,7 +346,7 @@ void LatticePlanner::write(const Target& target, const Pose2& pose, std::span<co
   if (plan.reverse) limit = std::min(limit, params_.reverse_speed);
   const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();
   if (kept_.tight && tightens(back, last)) limit = std::min(limit, params_.tight_speed);
-  // Ground that costs is driven slowly.
+  // Ground with a cost is driven slowly.
   float rough = 0.0f;
   for (std::size_t i = at_; i <= last; i += 2) {
     const Pose2 at = back * kept_.spots[i].pose;

@@ -12,39 +12,39 @@ namespace adit::nav {
 
 struct LatticePlannerParams {
   LatticeSearchParams search{};
-  double tolerance{0.25};     ///< arrived within this distance of the goal, m, [0.02, 2]
-  double better{0.6};         ///< another path must be so much cheaper where directions change, m, [0, 5]
-  double off_path{0.25};      ///< a robot farther from its path is not on it any more, m, [0.05, 1]
-  double off_heading{0.4};    ///< the same for the heading, rad, [0.05, 1.5]
-  double stick_spread{50.0};  ///< paths may leave a stick's direction by so much, degrees, [10, 120]
-  double reverse_speed{1.0};  ///< backwards no faster, m/s, (0, 10]
-  double tight_speed{0.3};    ///< where only the tight margin is left, m/s, (0, 2]
-  double rough_slows{0.75};   ///< share of the speed that ground of cost 1 takes, [0, 0.95]
-  double effort{25.0};  ///< drives this long without coming nearer to a goal, then it is blocked, s, [1, 600]
-  double rest{30.0};    ///< and stays blocked this long before it tries again, s, [0, 3600]
-  double patience{2.0};  ///< blocked for so long on the way to a goal it backs away, s, [0, 60]
-  double retreat{1.5};   ///< by so much, m, [0.3, 3]
-  int retreats{3};       ///< times, until that brings it nearer to the goal, [0, 100]
+  double tolerance{0.25};     ///< Default goal tolerance, m, [0.02, 2].
+  double better{0.6};         ///< Required gain of a new path whose direction changes, m, [0, 5].
+  double off_path{0.25};      ///< Maximum distance of the robot from its path, m, [0.05, 1].
+  double off_heading{0.4};    ///< Maximum heading error on the path, rad, [0.05, 1.5].
+  double stick_spread{50.0};  ///< Maximum angle between a path and a direction target, degrees, [10, 120].
+  double reverse_speed{1.0};  ///< Speed limit backwards, m/s, (0, 10].
+  double tight_speed{0.3};    ///< Speed limit with only the tight margin, m/s, (0, 2].
+  double rough_slows{0.75};   ///< Fraction of the speed lost on ground of cost 1, [0, 0.95].
+  double effort{25.0};   ///< Driving time without getting nearer to a goal until it is blocked, s, [1, 600].
+  double rest{30.0};     ///< Time that it then stays blocked before it tries again, s, [0, 3600].
+  double patience{2.0};  ///< Time without a path to a goal before the robot backs up, s, [0, 60].
+  double retreat{1.5};   ///< Distance that it backs up, m, [0.3, 3].
+  int retreats{3};       ///< Attempts at backing up until it gets nearer to the goal, [0, 100].
   PathSpeedParams speed{};
 };
 
-/// The local planner of what cannot turn on the spot: searches a path of short motions, ahead and backwards,
-/// for the next metres (LatticeSearch), from the curvature that the robot has. So it turns round in as many
-/// moves as the place needs. A path whose directions change is kept to until another one is clearly better or
-/// something is in its way; a plan is what is driven in one direction. Where no path leads on it backs away
-/// and tries again from there. For every drive.
+/// Local planner for tight space and for robots that cannot turn on the spot, of any drive. LatticeSearch
+/// finds a path of short motions, forwards and backwards, for the next metres, starting with the robot's
+/// curvature, so the robot turns round in as many moves as the place requires. A path whose direction changes
+/// is followed until another one is clearly better or an obstacle blocks it; each plan is the part that is
+/// driven in one direction. Without a path the robot backs up and tries again.
 class LatticePlanner final : public Planner {
  public:
   explicit LatticePlanner(const Platform& platform, const LatticePlannerParams& params = {});
 
   Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
             double stamp_s) override;
-  /// Measures speed and curvature from one cycle to the next; plan() does so itself. For cycles in which
-  /// another planner plans.
+  /// Measures speed and curvature between cycles. plan() calls it itself; call it in cycles in which another
+  /// planner plans.
   void watch(const Pose2& pose, double stamp_s) { watch_motion(pose * Pose2{-rear_, 0, 0}, stamp_s); }
-  /// As measured, m/s, negative backwards.
+  /// Measured speed, m/s, negative backwards.
   double speed() const { return speed_; }
-  /// Neither a part of the path that it keeps to nor a retreat leads backwards.
+  /// Whether neither the rest of the current path nor a retreat leads backwards.
   bool drives_ahead() const;
 
  private:
@@ -56,7 +56,7 @@ class LatticePlanner final : public Planner {
   bool find(LatticeTask task);
   bool find_there(LatticeTask task);
   bool find_through(LatticeTask task);
-  /// Writes the gap on the way to the target, when it is one that has to be met straight.
+  /// Sets the task's gap if one on the path to the target must be crossed straight.
   void see_gate(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
                 LatticeTask& task) const;
   bool misses(const Pose2& gate, const Pose2& rear) const;
@@ -64,7 +64,7 @@ class LatticePlanner final : public Planner {
   void adopt(const Pose2& rear);
   void next_part();
   bool changes_ahead() const;
-  /// What is driven to now: the target, or a place to back away to.
+  /// The current target: `target`, or the end of a retreat.
   Target aim_of(const Target& target, const Pose2& pose, double stamp_s);
   void forget_retreat();
   void consider_retreat(const Target& target, const Pose2& pose, double stamp_s);
@@ -76,24 +76,25 @@ class LatticePlanner final : public Planner {
   Platform platform_;
   LatticePlannerParams params_;
   Footprint body_;
-  double rear_;  ///< axle behind base_link, m
+  double rear_;  ///< Distance of the rear axle behind base_link, m.
   LatticeSearch search_;
   ClearField clear_{};
   WayField way_{};
-  LatticePath found_{}, kept_{};  ///< kept: odometry frame
+  LatticePath found_{}, kept_{};  ///< kept_: odometry frame.
   std::size_t at_{0},
-      end_{0};  ///< of the kept path: where the robot is, and where its direction changes next
+      end_{0};  ///< On the current path: index of the robot, and of the next change of direction.
   Target kept_for_{};
-  std::optional<Pose2> before_{};  ///< of the rear axle, odometry frame
+  std::optional<Pose2> before_{};  ///< Of the rear axle, odometry frame.
   double before_s_{0};
-  double speed_{0};      ///< m/s, negative backwards
-  double curvature_{0};  ///< of the way driven, rad/m
+  double speed_{0};      ///< Negative backwards, m/s.
+  double curvature_{0};  ///< Of the driven path, rad/m.
   Course course_{};
-  std::optional<Eigen::Vector2d> goal_{};  ///< that the effort and the retreats are about
+  std::optional<Eigen::Vector2d> goal_{};  ///< The goal that effort and retreats refer to.
   double closest_{0}, effort_{0}, last_s_{0}, rest_until_{0};
-  std::optional<Eigen::Vector2d> retreat_{};  ///< odometry frame
+  std::optional<Eigen::Vector2d> retreat_{};  ///< Odometry frame.
   std::optional<double> blocked_since_{};
-  double retreat_until_{0}, nearest_{0};  ///< nearest_: to the goal, when retreats were counted anew
+  /// nearest_: distance to the goal when the retreats were last refilled, m.
+  double retreat_until_{0}, nearest_{0};
   int retreats_left_{0};
 };
 

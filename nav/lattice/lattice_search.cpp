@@ -7,15 +7,18 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kLed = 1.25f;       ///< weight of the way that is left: fewer states, a little longer paths
-constexpr float kLeaving = 0.8f;    ///< m: a body that starts within its margin may be in it so far
-constexpr float kDeeper = 0.01f;    ///< m: cells are not finer
-constexpr float kCoarse = 0.05f;    ///< m: with so much more than the margin by the cells a body is free
-constexpr double kStraight = 0.25;  ///< m before a gap a body is straight on its axis
-constexpr double kMouth = 0.1;      ///< m before a gap's middle it may begin
-constexpr double kNearlyOn = 0.08;  ///< m off the axis, place and heading together: no corner in a jamb
-constexpr double kBehind = 0.9;     ///< m behind a gap's middle the path ends
-constexpr double kSteepest = 1.0;   ///< rad off the axis
+constexpr float kLed = 1.25f;  ///< Weight of the heuristic: expands fewer states for slightly longer paths.
+/// A body that starts inside its margin may stay inside for this distance, m.
+constexpr float kLeaving = 0.8f;
+constexpr float kDeeper = 0.01f;  ///< Tolerance, m, for the size of the cells.
+/// A body whose clearance by the cells exceeds the margin by this much is free, m.
+constexpr float kCoarse = 0.05f;
+constexpr double kStraight = 0.25;  ///< The body is straight on the axis this far before a gap, m.
+constexpr double kMouth = 0.1;      ///< A gap may begin this far before its middle, m.
+/// Maximum error off the axis, position and heading together, with which no corner hits a side, m.
+constexpr double kNearlyOn = 0.08;
+constexpr double kBehind = 0.9;    ///< The path ends this far behind the middle of a gap, m.
+constexpr double kSteepest = 1.0;  ///< Maximum heading error off the axis, rad.
 
 }  // namespace
 
@@ -129,8 +132,9 @@ void LatticeSearch::expand(const ClearField& clear, const WayField& way, const L
   }
 }
 
-// Onto the axis before the gap. A body that stands in the gap already, or nearly on its axis, gets there over
-// the next metre or so; from elsewhere so near a bend would end with a corner in the jamb.
+// Adds a curve onto the axis before the gap. A body that is already in the gap, or nearly on its axis,
+// reaches the axis over the next metre or so; from other places that near, a curve would end with a corner in
+// a side of the gap.
 bool LatticeSearch::shoot(const ClearField& clear, const LatticeTask& task, std::int32_t index,
                           LatticePath& path) const {
   const Pose2 at = task.gate->inverse() * nodes_[static_cast<std::size_t>(index)].pose;
@@ -152,7 +156,7 @@ bool LatticeSearch::shoot_onto(const ClearField& clear, const LatticeTask& task,
   const Pose2 at = task.gate->inverse() * node.pose;
   const double length = straight_from - at.x, slope = std::tan(at.yaw);
   const double bend = node.direction > 0 && node.level >= 0 ? motions_.curvature(node.level) : 0.0;
-  // y(u), u from 0 to 1: place, slope and curvature of the node, then none of any.
+  // y(u), u in [0, 1]: starts with the node's offset, slope and curvature and ends with all of them zero.
   const double a0 = at.y, a1 = slope * length;
   const double a2 = bend * std::pow(1 + slope * slope, 1.5) * length * length / 2;
   const double a3 = -10 * a0 - 6 * a1 - 3 * a2, a4 = 15 * a0 + 8 * a1 + 3 * a2, a5 = -6 * a0 - 3 * a1 - a2;
@@ -207,7 +211,7 @@ bool LatticeSearch::find(const ClearField& clear, const WayField& way, const Lat
   path.through = false;
   tight_ = task.tight;
   depth_ = tight_ || task.gate ? clear.points().depth(outline_, {base_, 0, 0}) + kDeeper / 2 : 0.0f;
-  if (++round_ == 0) {  // the marks of the last time that it had this number are gone by then
+  if (++round_ == 0) {  // The round counter wrapped: all old marks are invalid.
     std::fill(closed_.begin(), closed_.end(), 0);
     round_ = 1;
   }
@@ -271,7 +275,7 @@ void LatticeSearch::write(std::int32_t index, LatticePath& path) const {
     const Node& node = nodes_[static_cast<std::size_t>(chain[length])];
     const Node& before = nodes_[static_cast<std::size_t>(node.parent)];
     if (path.count + MotionSet::kPoses > LatticePath::kMost) {
-      path.complete = false;  // so long is none but one of many manoeuvres; the rest is planned later
+      path.complete = false;  // A longer path consists of many manoeuvres; the rest is planned later.
       break;
     }
     if (path.count > 1 && path.spots[path.count - 1].direction != node.direction) ++path.direction_changes;

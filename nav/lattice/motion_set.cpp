@@ -14,7 +14,7 @@ MotionSet::MotionSet(const Platform& platform, const MotionSetParams& params)
     for (int from = 0; from < kLevels; ++from)
       for (int to = 0; to < kLevels; ++to) {
         Motion motion{};
-        // Levels that lie farther apart: steered where it stood.
+        // Indices that differ by more: the robot steered while it was stationary.
         const double begin = std::abs(from - to) <= 1 ? curvature(from) : curvature(to);
         Pose2 pose{};
         const double ds = direction * spacing();

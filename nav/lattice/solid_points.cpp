@@ -14,7 +14,7 @@ void SolidPoints::fill(std::span<const ObstaclePoint> obstacles, float ahead) {
     if (o.cost < 1.0f || !(std::fabs(x) < kHalf && std::fabs(o.y) < kHalf)) return -1;
     return cell(o.y) * kSide + cell(x);
   };
-  // Counted first, then put where they belong.
+  // Counting sort by cell.
   begin_.fill(0);
   std::size_t count = 0;
   for (const ObstaclePoint& o : obstacles)
@@ -38,7 +38,7 @@ float SolidPoints::depth(const Footprint& body, const Pose2& pose) const {
   const auto reach = static_cast<float>(body.radius()) + kNear;
   float most = -kNear;
   for (int j = cell(y - reach); j <= cell(y + reach); ++j) {
-    // A row's squares lie side by side.
+    // The cells of a row are contiguous.
     const auto row = static_cast<std::size_t>(j * kSide);
     const auto from = row + static_cast<std::size_t>(cell(x - reach));
     const auto to = row + static_cast<std::size_t>(cell(x + reach));

@@ -11,15 +11,16 @@
 
 namespace adit::nav {
 
-/// The solid points near a robot, sorted by squares of 20 cm: whether a body touches one of them, to the
-/// millimetre, where the cells of a ClearField are too coarse. Nothing is allocated after construction.
+/// Index of the solid obstacle points near a robot, in cells of 20 cm. It gives collision checks that are
+/// exact to the millimetre, for which the cells of a ClearField are too coarse. Nothing is allocated after
+/// construction.
 class SolidPoints {
  public:
   SolidPoints();
-  /// Takes the obstacles of cost 1, `ahead` m farther along x; those beside the grid are left out.
+  /// Takes the obstacles of cost 1, with `ahead` metres added to x; those outside of the grid are ignored.
   void fill(std::span<const ObstaclePoint> obstacles, float ahead);
-  /// How deep the deepest point is inside a body that stands at `pose`, m; negative when none is (no less
-  /// than -0.2, and only as near as that).
+  /// Depth of the deepest point inside a body at `pose`, m; negative if no point is inside: then it is minus
+  /// the distance, at least -0.2.
   float depth(const Footprint& body, const Pose2& pose) const;
 
  private:

@@ -7,10 +7,12 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kNearTarget = 1.2f;  ///< m: a target that stands in something is approached so near
-constexpr float kMissed = 3.0f;      ///< of each metre that is left to it
-constexpr float kComfort = 0.3f;     ///< m beyond what the body needs: nearer to obstacles a way is longer
-constexpr float kCrowded = 1.5f;     ///< by so much at the least distance
+/// A target inside an obstacle is approached to within this distance, m.
+constexpr float kNearTarget = 1.2f;
+constexpr float kMissed = 3.0f;  ///< Cost of each metre that remains to such a target.
+/// Clearance beyond the body's need, m: nearer to obstacles a path has a higher cost.
+constexpr float kComfort = 0.3f;
+constexpr float kCrowded = 1.5f;  ///< Additional cost per metre at the least clearance.
 constexpr std::size_t kMostOpen = 8 * WayField::kSide * WayField::kSide + 8;
 
 }  // namespace
@@ -29,7 +31,7 @@ void WayField::fill(const ClearField& clear, const Eigen::Vector2d& target, floa
   const auto tx = static_cast<float>(target.x()), ty = static_cast<float>(target.y());
   std::fill(cost_.begin(), cost_.end(), kNoWay);
   open_.clear();
-  // Cells are coarse: a passage whose middle lies between two of them counts, too.
+  // Cells are coarse: a passage whose middle lies between two of them counts too.
   const float needs = std::max(0.05f, radius - kCell / 2);
   const auto room = [&](int i, int j) { return clear.clearance(middle(i), middle(j)) - needs; };
   for (int j = 0; j < kSide; ++j)
@@ -67,7 +69,7 @@ void WayField::fill(const ClearField& clear, const Eigen::Vector2d& target, floa
 float WayField::at(float x, float y) const {
   const int i = static_cast<int>((x + kHalf) / kCell), j = static_cast<int>((y + kHalf) / kCell);
   if (x < -kHalf || y < -kHalf || i >= kSide || j >= kSide) return kNoWay;
-  // The nearest of the cells around, so that a body that stands close to something knows a way, too.
+  // The best of the cells around, so that a body close to an obstacle has a value too.
   float best = kNoWay;
   for (int b = std::max(0, j - 1); b <= std::min(kSide - 1, j + 1); ++b)
     for (int a = std::max(0, i - 1); a <= std::min(kSide - 1, i + 1); ++a) {

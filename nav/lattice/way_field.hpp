@@ -7,9 +7,9 @@
 
 namespace adit::nav {
 
-/// How long the way to a target is from any place near the robot, round obstacles, for a point that keeps a
-/// distance from them: what a search over poses is led by. Cells of 20 cm around the origin. Nothing is
-/// allocated after construction.
+/// Cost-to-go map: the length of the path to a target from any place near the robot, around obstacles, for a
+/// point that keeps a clearance. It is the heuristic of a search over poses. Cells of 20 cm around the
+/// origin. Nothing is allocated after construction.
 class WayField {
  public:
   static constexpr int kSide = 46;
@@ -19,13 +19,14 @@ class WayField {
 
   WayField();
 
-  /// Ways to `target` (m, the field's frame) for a body that needs `radius` on each side. A target beside the
-  /// field is approached across the border that is nearer to it than the origin (it does not lead out of a
-  /// dead end); one that stands in something, as near as can be.
+  /// Computes the paths to `target` (m, the field's frame) for a body that needs `radius` on each side. For a
+  /// target outside of the field, the paths lead across the part of the border that is nearer to it than the
+  /// origin (this does not lead out of a dead end); for a target inside an obstacle, as near to it as
+  /// possible.
   void fill(const ClearField& clear, const Eigen::Vector2d& target, float radius);
-  /// m; kNoWay where none leads there.
+  /// Cost to go from (x, y), m; kNoWay if there is no path.
   float at(float x, float y) const;
-  /// The least that is left wherever one gets to: 0, or more where the target stands in something, m.
+  /// Minimum over the field: 0, or more if the target is inside an obstacle, m.
   float least() const { return least_; }
 
  private:
