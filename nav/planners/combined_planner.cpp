@@ -11,7 +11,7 @@ CombinedPlanner::CombinedPlanner(const Platform& platform, const LocalPlannerPar
                                  const CombinedPlannerParams& params)
     : platform_(platform), params_(params), open_(platform, open, std::move(library)), lattice_(platform) {}
 
-// By the straight line to the target, which the router keeps as far from obstacles as the route.
+// Checks the straight line to the target, which the global planner keeps as far from obstacles as the route.
 bool CombinedPlanner::is_tight(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles) const {
   if (target.gate) return true;
@@ -43,7 +43,7 @@ void CombinedPlanner::choose(const Target& target, const Pose2& pose,
   instead_ = false;
   const bool tight = is_tight(target, pose, obstacles);
   if (tight) switched_at_ = pose.position();
-  // A manoeuvre that has been begun is finished.
+  // A manoeuvre that has begun is finished.
   if (tight || (gone && lattice_.drives_ahead())) tight_ = tight;
 }
 

@@ -8,16 +8,16 @@
 namespace adit::nav {
 
 struct CombinedPlannerParams {
-  double clearance{0.25};  ///< Space is tight where less than this is free beside the body, m, [0, 1].
-  double ahead{2.0};       ///< Looked at along the route, beyond the way that braking takes, m, [0.5, 4].
-  double hysteresis{1.0};  ///< The open begins so much way after the last tight place, m, [0, 4].
+  double clearance{0.25};  ///< Space with less clearance beside the body than this is tight, m, [0, 1].
+  double ahead{2.0};  ///< Distance that is checked along the route, beyond the braking distance, m, [0.5, 4].
+  double hysteresis{1.0};  ///< Distance after the last tight place at which open space begins, m, [0, 4].
 };
 
-/// Plans with the trajectory library in the open and with hybrid A* (LatticePlanner) in tight space: where
-/// the clearance along the route ahead is less than half the body's width and
-/// CombinedPlannerParams::clearance, or the route leads through a narrow passage. Where the one whose turn it
-/// is finds no way, the other one is asked. Both plan from the pose and the motion that the robot has, so
-/// that a switch is no jump. Directions, and goals that no route leads to, are the library's.
+/// Plans with the trajectory library in open space and with hybrid A* (LatticePlanner) in tight space: where
+/// the clearance along the route ahead is less than half the body's width plus
+/// CombinedPlannerParams::clearance, or the route leads through a narrow passage. When the selected planner
+/// finds no path, the other one plans. Both start from the robot's pose and motion, so a switch causes no
+/// jump. Direction targets, and goals without a route, belong to the trajectory library.
 class CombinedPlanner final : public Planner {
  public:
   explicit CombinedPlanner(const Platform& platform, const LocalPlannerParams& open = {},
@@ -38,7 +38,7 @@ class CombinedPlanner final : public Planner {
   LocalPlanner open_;
   LatticePlanner lattice_;
   bool tight_{false};
-  bool instead_{false};  ///< It plans because the other one found no way.
+  bool instead_{false};  ///< It plans because the other planner found no path.
   Eigen::Vector2d switched_at_{
       0, 0};  ///< Where space was last tight, or where `instead_` began; odometry frame.
 };

@@ -7,16 +7,17 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStep = 0.10;                // m, of a motion
-constexpr double kTurn = 5.0 * M_PI / 180.0;  // rad, of one on the spot
-constexpr double kCell = 0.05;                // m: states in one cell and within one turn are the same
-constexpr float kKept = 0.02f;                // m: an obstacle farther off may come as near as this
-constexpr float kCloser = 0.002f;             // m: less is not "closer"
-constexpr float kChange = 0.1f;               // m that a change of direction costs
+constexpr double kStep = 0.10;                // Length of a motion, m.
+constexpr double kTurn = 5.0 * M_PI / 180.0;  // Angle of a turn on the spot, rad.
+constexpr double kCell = 0.05;                // States in the same cell and turn are equal, m.
+constexpr float kKept = 0.02f;                // An obstacle that is farther away may come as near as this, m.
+constexpr float kCloser = 0.002f;             // A smaller change does not count as closer, m.
+constexpr float kChange = 0.1f;               // Cost of a change of direction, m.
 
 }  // namespace
 
-// A car's poses are those of base_link here, which a bend moves sideways too: it turns about its rear axle.
+// The poses of a car are those of base_link here. A curve moves base_link sideways, because a car turns about
+// its rear axle.
 Escape::Escape(const Platform& platform)
     : platform_(platform),
       body_(platform),

@@ -14,10 +14,10 @@
 
 namespace adit::nav {
 
-/// Plans out of a place where the robot stands closer to obstacles than any planner accepts, or in contact. A
-/// search (Dijkstra's) over short motions, straight, bent and on the spot, finds the nearest pose that has
-/// `kClear` beside the whole body. On the way there the body may be as close to obstacles as it is where it
-/// starts, and no closer. Fixed size; nothing is allocated after construction.
+/// Plans a path out of a place where the robot is closer to obstacles than any planner accepts, or in
+/// contact. A search (Dijkstra's) over short motions, straight, curved and on the spot, finds the nearest
+/// pose with `kClear` beside the whole body. On the way there the body may be as close to obstacles as at the
+/// start, and no closer. The size is fixed, and nothing is allocated after construction.
 class Escape {
  public:
   static constexpr double kClear = 0.10;  ///< m
@@ -25,10 +25,10 @@ class Escape {
 
   explicit Escape(const Platform& platform);
 
-  /// The way out's first part that is driven in one direction; nothing when there is none within 1.2 m, or
-  /// `kClear` is free already. `pose`: odometry frame; `obstacles`: in the robot's frame at `pose`.
+  /// Plans the first part of the path that is driven in one direction. Returns nothing if there is no path
+  /// within 1.2 m, or `kClear` is free already. `pose`: odometry frame; `obstacles`: robot's frame at `pose`.
   std::optional<Plan> plan(const Pose2& pose, std::span<const ObstaclePoint> obstacles);
-  /// Where the obstacle is that was nearest at the last plan(); none: at least `kClear` was free.
+  /// Side of the obstacle that was nearest at the last plan(); none: at least `kClear` was free.
   Side side() const { return side_; }
 
  private:
@@ -36,9 +36,10 @@ class Escape {
     Pose2 pose{};
     float cost{};
     float depth{},
-        least{};  ///< Of the deepest obstacle in the body, m, negative outside; least on the way there.
+        /// Depth of the deepest obstacle in the body, m, negative outside; and its minimum along the path.
+        least{};
     std::int32_t parent{-1};
-    std::int8_t direction{};  ///< In which it was driven to, 1 or -1; 0: turned to on the spot.
+    std::int8_t direction{};  ///< Driving direction that leads here, 1 or -1; 0: a turn on the spot.
   };
   struct Open {
     float cost;
@@ -57,7 +58,7 @@ class Escape {
 
   Platform platform_;
   Footprint body_;
-  double bend_;  ///< Largest curvature, rad/m.
+  double bend_;  ///< Maximum curvature, rad/m.
   SolidPoints points_{};
   Side side_{Side::none};
   std::vector<Node> nodes_{};

@@ -5,23 +5,23 @@
 namespace adit::nav {
 
 struct ProgressParams {
-  double gain{0.5};   ///< The route left must get shorter by this, m, [0.1, 5] ...
-  double time{45.0};  ///< ... within this time, s, [1, 600].
-  int detours{3};     ///< As often the time starts again because a longer route was taken, [0, 100].
+  double gain{0.5};   ///< Minimum progress, m, [0.1, 5].
+  double time{45.0};  ///< Maximum time for it, s, [1, 600].
+  int detours{3};     ///< Maximum number of restarts of that time for a longer route, [0, 100].
 };
 
-/// Watches whether a robot makes progress towards its goal, by the length of the route that is left: the
-/// distance to the goal may grow on a detour, and the distance to a point of the route that moves ahead of
-/// the robot says nothing.
+/// Checks that a robot makes progress towards its goal, by the length of the remaining route. The distance to
+/// the goal may grow on a detour, and the distance to a route point that moves ahead of the robot proves
+/// nothing.
 class ProgressChecker {
  public:
   explicit ProgressChecker(const ProgressParams& params = {}) : params_(params) {}
 
-  /// True when there was no progress for ProgressParams::time. `left`: of the route, m; `longer`: it is
-  /// another one than before, and longer.
+  /// Returns true when there was no progress for ProgressParams::time. `left`: length of the remaining route,
+  /// m; `longer`: it is a new route that is longer than the previous one.
   bool stuck(double left, bool longer, double now_s) {
     const bool nearer = left < nearest_ - params_.gain;
-    // On a detour what is left of it counts, until the goal is nearer than ever.
+    // On a detour its own remaining length counts, until the goal is nearer than ever.
     const bool detour = longer && detours_ < params_.detours;
     if (nearer) {
       nearest_ = left;
@@ -38,8 +38,8 @@ class ProgressChecker {
 
  private:
   ProgressParams params_;
-  double nearest_{std::numeric_limits<double>::infinity()};   // to the goal so far, m
-  double shortest_{std::numeric_limits<double>::infinity()};  // the same on the present detour
+  double nearest_{std::numeric_limits<double>::infinity()};   // Least length of the remaining route, m.
+  double shortest_{std::numeric_limits<double>::infinity()};  // The same on the present detour.
   double since_{0};                                           // s
   int detours_{0};
 };
