@@ -6,16 +6,18 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStride = 0.03;   ///< m between the poses of a sweep
-constexpr int kMostStrides = 160;  ///< of one sweep
-constexpr float kDeeper = 0.002f;  ///< m: less is not "deeper": sliding along a wall is allowed
-constexpr double kCreep = 0.02;    ///< m/s: less than this is standing
-constexpr int kShares = 10;        ///< of a velocity that are tried against what moves
-constexpr double kInstead = 0.1;   ///< m/s of the body's fastest part where the motion asked for is stopped
-constexpr double kSlow = 0.2;      ///< m/s: who is slower stands within a hand; odometry may be noise
-constexpr double kFastest = 1.5;   ///< of the platform's speed: more is no velocity
-constexpr double kNext = 0.05;     ///< s from one check to the next
-constexpr double kTick = 0.06;     ///< s between the looks at where it is then
+constexpr double kStride = 0.03;   ///< Distance between the poses of a sweep, m.
+constexpr int kMostStrides = 160;  ///< Maximum number of poses of a sweep.
+/// A smaller change does not count as deeper, m: sliding along a wall is allowed.
+constexpr float kDeeper = 0.002f;
+constexpr double kCreep = 0.02;   ///< A lower speed counts as stationary, m/s.
+constexpr int kShares = 10;       ///< Number of fractions of a velocity that are tried against movers.
+constexpr double kInstead = 0.1;  ///< Speed of the body's fastest part in a replacement motion, m/s.
+/// A slower robot stops within a hand's width, and its odometry may be noise, m/s.
+constexpr double kSlow = 0.2;
+constexpr double kFastest = 1.5;  ///< Factor on the platform's speed above which a velocity is implausible.
+constexpr double kNext = 0.05;    ///< Period of the checks, s.
+constexpr double kTick = 0.06;    ///< Step of the prediction of movers, s.
 constexpr std::size_t kMostMoving = Tracker::kMost * Mover::kMost;
 
 Twist2 scaled(const Twist2& t, double by) { return {by * t.vx, by * t.vy, by * t.wz, t.vz}; }
@@ -27,7 +29,7 @@ double reach_of(const Platform& p, const CollisionMonitorParams& m) {
          p.max_speed * p.max_speed / (2 * m.braking_share * p.max_acceleration) + 0.1;
 }
 
-constexpr double kUpright = 0.9;  ///< Of the limit, below which a body that leaned too far may drive again.
+constexpr double kUpright = 0.9;  ///< Fraction of the tilt limit below which a tilted body may drive again.
 
 }  // namespace
 
@@ -62,7 +64,7 @@ Twist2 CollisionMonitor::limited(const Twist2& wanted) const {
   return fastest > params_.limit_speed ? scaled(wanted, params_.limit_speed / fastest) : wanted;
 }
 
-// The speed of the body's fastest part, m/s.
+// Speed of the body's fastest part, m/s.
 double CollisionMonitor::rim(const Twist2& velocity) const {
   return std::max(speed_of(velocity), std::fabs(velocity.wz) * body_.radius());
 }
@@ -81,7 +83,7 @@ Twist2 CollisionMonitor::instead_of(const Twist2& stopped, const Pose2& odom, do
 }
 
 double CollisionMonitor::share(const Twist2& wanted, const Pose2& odom, double now_s) const {
-  // Braking takes this long from all of `wanted`; from a share of it, that share of the time.
+  // Braking time from the full `wanted`; from a fraction of it, that fraction of the time.
   const double brake =
       std::max(speed_of(wanted) / (params_.braking_share * platform_.max_acceleration),
                std::fabs(wanted.wz) / (params_.braking_share * platform_.max_turn_acceleration));
@@ -89,7 +91,7 @@ double CollisionMonitor::share(const Twist2& wanted, const Pose2& odom, double n
   const double free = free_time(wanted, odom, horizon);
   const double k = share_before_movers(wanted, odom, now_s, brake);
   if (free >= horizon) return k;
-  // The share k whose way to a stop, k reaction + k^2 brake / 2 (s of driving all of it), ends there.
+  // The fraction k whose stopping distance, k reaction + k^2 brake / 2 (in s of driving `wanted`), fits.
   return std::min(
       k, (std::sqrt(params_.reaction * params_.reaction + 2 * brake * free) - params_.reaction) / brake);
 }
@@ -98,7 +100,7 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
                                                   Policy policy, const Driven& drives) const {
   if (wanted.zero()) return {wanted, Cause::none};
   if (!fresh(now_s)) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::stale};
-  // An operator may have to drive it down by hand.
+  // An operator may have to drive it down manually.
   if (tilted_) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::tilted};
   const double k = share(wanted, odom, now_s);
   if (k >= 1) return {wanted, Cause::none};
@@ -110,7 +112,7 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
     return {speed_of(allowed) + std::fabs(allowed.wz) > speed_of(slow) + std::fabs(slow.wz) ? allowed : slow,
             cause};
   }
-  // Who turns towards something at speed cannot be as slow at once as that arc needs: he would be beyond.
+  // A robot that turns towards an obstacle at speed cannot slow down to the speed for that arc in time.
   const double lost = platform_.max_acceleration * kNext, by_odometry = speed_of(drives.velocity);
   const Twist2 moves =
       by_odometry > drives.told ? scaled(drives.velocity, drives.told / by_odometry) : drives.velocity;
@@ -122,7 +124,7 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
     const double braked = std::min(kept, share(moves, odom, now_s));
     Twist2 braking = scaled(moves, braked);
     braking.vz = wanted.vz;
-    // What tracks swallow of a turn has to be asked for.
+    // Compensates the slip of tracks.
     braking.wz = std::clamp(braking.wz / (1 - platform_.turn_slip), -platform_.max_turn, platform_.max_turn);
     if (braked * speed > speed_of(allowed)) return {braking, Cause::slowed};
   }
@@ -142,19 +144,20 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
   struct Point {
     float x, y, depth;
   };
-  std::array<Point, NearPoints::kMost> points;  // those in reach; the sweep ends at the first that it meets
+  // The points within reach; the sweep ends at the first one that it meets.
+  std::array<Point, NearPoints::kMost> points;
   std::size_t count = 0;
   for (const NearPoints::Place& place : near_.places()) {
     const float dx = place.x - x0, dy = place.y - y0;
     if (dx * dx + dy * dy > far * far) continue;
     const float x = c * dx + s * dy, y = c * dy - s * dx;
-    // What few noisy returns showed is kept farther off.
+    // The margin grows with the uncertainty of places with few, noisy returns.
     points[count++] = {x, y, std::max(0.0f, body_.depth(x, y) + place.doubt) + kDeeper - place.doubt};
   }
   if (count == 0) return horizon;
 
   Pose2 pose{};
-  // A car turns about its rear axle, so that base_link goes sideways, too.
+  // A car turns about its rear axle, so base_link moves sideways too.
   const double sideways = velocity.vy + platform_.rear_axle() * velocity.wz;
   const Pose2 half{0, 0, velocity.wz * dt / 2};
   const auto reach = static_cast<float>(wide * wide);
@@ -174,7 +177,7 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
 double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& odom, double now_s,
                                              double brake) const {
   struct Point {
-    float x, y, vx, vy;  // in the robot's frame now
+    float x, y, vx, vy;  // Relative to the robot now.
   };
   std::array<Point, kMostMoving> points;
   std::size_t count = 0;
@@ -184,7 +187,7 @@ double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& 
   const double longest = params_.reaction + brake;
   const auto own_way = static_cast<float>(wide_.radius() + speed_of(wanted) * longest);
   for (const Mover& mover : tracker_.movers()) {
-    if (!mover.moves) continue;  // where it stands the scan shows it
+    if (!mover.moves) continue;  // The scan shows it as a static obstacle.
     const Eigen::Vector2f& v = mover.velocity;
     const float far = own_way + v.norm() * static_cast<float>(longest);
     for (const Eigen::Vector2f& p : mover.surface()) {
@@ -194,7 +197,7 @@ double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& 
     }
   }
   if (count == 0) return 1;
-  const double sideways = wanted.vy + platform_.rear_axle() * wanted.wz;  // of a car, as above
+  const double sideways = wanted.vy + platform_.rear_axle() * wanted.wz;  // As above, for a car.
   const auto met = [&](double share) {
     const double braking = share * brake, end = params_.reaction + braking;
     const int steps = static_cast<int>(std::ceil(end / kTick));
@@ -204,7 +207,7 @@ double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& 
     Pose2 before{};
     for (int i = 1; i <= steps; ++i) {
       const double t = end * i / steps, late = std::max(0.0, t - params_.reaction);
-      // s of driving all of `wanted`: at the share, then slower and slower.
+      // Driven distance in s of driving `wanted`: first at the fraction, then braking.
       const double way = share * (t - late * late / (2 * std::max(braking, 1e-6)));
       const double half = wanted.wz * way / 2;
       const double chord = std::fabs(half) > 1e-6 ? way * std::sin(half) / half : way;
@@ -223,7 +226,7 @@ double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& 
         if (dx * dx + dy * dy > radius2) continue;
         const float inside = depth(pose, x, y);
         if (inside <= 0) continue;
-        // Who walks into a robot that comes no nearer by itself is not helped by its standing still.
+        // Stopping does not help against a mover that walks into a robot that does not get nearer by itself.
         if (inside - depth(before, x, y) > kCreep * end / steps) return true;
         gone[j] = inside > through;
       }

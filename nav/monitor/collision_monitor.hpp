@@ -11,80 +11,83 @@ namespace adit::nav {
 struct CollisionMonitorParams {
   NearPointsParams points{};
   TrackerParams tracker{};
-  double margin{0.02};         ///< kept around the footprint, m, [0, 0.2]
-  double mover_margin{0.10};   ///< the same towards what moves, m, [0, 0.5]
-  double reaction{0.15};       ///< a velocity goes on this long before braking begins, s, [0, 1]
-  double braking_share{0.75};  ///< of the platform's acceleration, that slowing down counts on, (0, 1]
-  double stale{0.5};           ///< an older scan shows nothing, s, (0, 10]
-  double limit_speed{0.3};     ///< of any part of the body, where a robot is limited and not stopped, m/s
+  double margin{0.02};        ///< Safety margin around the footprint, m, [0, 0.2].
+  double mover_margin{0.10};  ///< Safety margin towards movers, m, [0, 0.5].
+  double reaction{0.15};      ///< Latency before braking begins, s, [0, 1].
+  /// Fraction of the platform's acceleration that is assumed for braking, (0, 1].
+  double braking_share{0.75};
+  double stale{0.5};  ///< An older scan is stale, s, (0, 10].
+  /// Speed limit of any part of the body when a robot is limited and not stopped, m/s.
+  double limit_speed{0.3};
 };
 
-/// How a robot drives now; nothing: nobody knows.
+/// The present motion of the robot; without values it is unknown.
 struct Driven {
-  Twist2 velocity{};  ///< by its odometry, of what it turns about: without a car's rear axle's share
-  double told{
-      std::numeric_limits<double>::infinity()};  ///< the speed that it may have by what it was told, m/s
+  Twist2 velocity{};  ///< From odometry, at the centre of rotation: a car's rear axle.
+  /// Maximum speed that follows from the commands, m/s.
+  double told{std::numeric_limits<double>::infinity()};
 };
 
-/// The last word on a velocity, by the newest scan and the odometry alone: independent of map, planner and
-/// controller, which it watches. It sweeps the footprint along the arc of the velocity that is asked for and
-/// lets through as much of it as can be braked before the body, and a margin, touch what was seen: far off
-/// everything, nearer less (the slow zone), at the margin nothing (the stop zone). Both zones grow with the
-/// speed and bend with the arc. What is inside the margin already may not come deeper: a robot that touches
-/// something can leave it, and what stands behind it does not matter to one that drives ahead.
+/// The last check of every velocity command, based only on the newest scan and the odometry: it is
+/// independent of map, planner and controller. It sweeps the footprint along the arc of the commanded
+/// velocity and scales it so that the robot can brake before the body, with a margin, touches an obstacle:
+/// far away the full velocity passes, nearer less (the slow zone), at the margin none (the stop zone). Both
+/// zones grow with the speed and bend with the arc. Obstacles that are already inside the margin may not get
+/// deeper: a robot in contact can leave, and obstacles behind it do not matter to a robot that drives ahead.
 ///
-/// What moves (it has a tracker of its own) is taken to go on as it does: the robot brakes in time to stand
-/// when they meet, and may always drive away from it, or be where it does not come.
+/// Movers, found by its own tracker, are assumed to keep their velocity: the robot brakes so that it is
+/// stationary when they meet, and may always drive away from a mover or where it does not come.
 ///
-/// After Nav2's collision monitor, with fixed polygons replaced: they stop a robot for what it is driving
-/// away from, and hold it there (ros-navigation/navigation2, issues 3313 and 3748).
+/// After Nav2's collision monitor, without its fixed polygons: these stop a robot because of obstacles that
+/// it is driving away from, and hold it there (ros-navigation/navigation2, issues 3313 and 3748).
 class CollisionMonitor {
  public:
-  /// What is done about a collision ahead, and about a scan that is too old.
+  /// Reaction to a collision ahead, and to a stale scan.
   enum class Policy : std::uint8_t {
-    stop,       ///< autonomous modes and smart joystick: both stop
-    limit,      ///< manual: both limit the speed, neither ever stops
-    stop_seen,  ///< manual, as the platform's file may ask for: what is seen stops, an old scan limits
+    stop,       ///< Autonomous modes and smart joystick: both stop the robot.
+    limit,      ///< Manual mode: both limit the speed, and neither stops.
+    stop_seen,  ///< Manual mode, if the platform file asks for it: an obstacle stops, a stale scan limits.
   };
-  /// `tilted`: the body leans so far that it may tip over.
+  /// `tilted`: the body tilts so far that it may tip over.
   enum class Cause : std::uint8_t { none, slowed, stopped, stale, tilted };
   struct Verdict {
     Twist2 velocity{};
-    Cause cause{Cause::none};  ///< `stopped`: nothing of it may be driven; under Policy::limit it is, slowly
+    Cause cause{Cause::none};  ///< `stopped`: no motion is possible; under Policy::limit it continues slowly.
   };
 
   explicit CollisionMonitor(const Platform& platform, const CollisionMonitorParams& params = {});
 
-  /// The newest scan: points in base_link, m; the body in the odometry frame when it was taken; the time
-  /// that it came, s.
+  /// Takes the newest scan: points in base_link, m; pose of the body in the odometry frame; time of arrival,
+  /// s.
   void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
-  /// What may be driven of `wanted` (body frame) by a robot that is at `odom`, at `now_s`. Where it cannot
-  /// lose as much speed as the arc of `wanted` needs, it brakes on the arc that it is on: faster than
-  /// `wanted`, slower than it `drives` and, whatever its odometry says, than it was told.
+  /// Returns the part of `wanted` (body frame) that is safe for a robot at `odom` at the time `now_s`. If the
+  /// robot cannot slow down as fast as the arc of `wanted` requires, it brakes on its present arc: faster
+  /// than `wanted`, but slower than it `drives` and, whatever the odometry reports, slower than its commands.
   Verdict check(const Twist2& wanted, const Pose2& odom, double now_s, Policy policy,
                 const Driven& drives = {}) const;
-  /// What may be driven instead of a motion that check() stopped, no part of the body faster than 0.1 m/s:
-  /// its translation alone, its turn alone, or with half the turn, the first of them that nothing limits;
-  /// else zero. So a robot beside a wall that may not swing its rear drives straight ahead first.
+  /// Returns a motion to replace one that check() stopped, with no part of the body faster than 0.1 m/s: its
+  /// translation alone, its rotation alone, or both with half the rotation, the first of them without a
+  /// limit; else zero. For example, a robot beside a wall that cannot swing its rear drives straight ahead
+  /// first.
   Twist2 instead_of(const Twist2& stopped, const Pose2& odom, double now_s) const;
-  /// Forgets what was seen, as after a jump of the odometry: every scan is too old until the next one.
+  /// Forgets all scans, for example after a jump of the odometry: scans are stale until the next one.
   void clear();
   bool fresh(double now_s) const { return now_s - stamp_s_ <= params_.stale; }
 
  private:
-  /// How long `velocity` can be driven until the body touches something, s, at most `horizon`.
+  /// Time for which `velocity` can be driven until the body touches an obstacle, s, at most `horizon`.
   double free_time(const Twist2& velocity, const Pose2& odom, double horizon) const;
-  /// How much of `wanted`, 0 to 1, can be driven and braked before the body touches what stands, or, by its
-  /// own motion, what moves.
+  /// Fraction of `wanted`, [0, 1], that can be driven and braked before the body touches a static obstacle
+  /// or, by its own motion, a mover.
   double share(const Twist2& wanted, const Pose2& odom, double now_s) const;
-  /// The same of what moves; braking takes `brake` s from all of `wanted`.
+  /// The same for movers alone; braking takes `brake` s from the full `wanted`.
   double share_before_movers(const Twist2& wanted, const Pose2& odom, double now_s, double brake) const;
   Twist2 limited(const Twist2& wanted) const;
   double rim(const Twist2& velocity) const;
 
   Platform platform_;
   CollisionMonitorParams params_;
-  Footprint body_, wide_;  ///< with the margins towards what stands and what moves
+  Footprint body_, wide_;  ///< With the margins towards static obstacles and movers.
   NearPoints near_;
   Tracker tracker_;
   double tilt_;         ///< Roll or pitch at which the body may tip over, rad.

@@ -5,12 +5,12 @@
 
 namespace adit::nav {
 
-/// How long the collision monitor has kept a robot on the spot. Breaks shorter than 0.5 s do not end that;
-/// who came farther than 0.3 m meanwhile is not held, only slow.
+/// Measures how long the collision monitor has kept a robot on the spot. Interruptions shorter than 0.5 s do
+/// not count. A robot that moved more than 0.3 m meanwhile is only slow.
 class HeldWatch {
  public:
-  /// After each velocity: whether the monitor stopped it, where the robot was, m, odometry frame, and when,
-  /// s.
+  /// Records a command. `stopped`: the monitor stopped it; `at`: position of the robot, odometry frame, m;
+  /// `now_s`: s.
   void look(bool stopped, const Eigen::Vector2d& at, double now_s) {
     constexpr double kFreeAgain = 0.5;   // s
     constexpr double kHeldWithin = 0.3;  // m
@@ -21,14 +21,14 @@ class HeldWatch {
     since_ = now_s;
     at_ = at;
   }
-  /// Whether it has been held for so long, s.
+  /// Whether the robot has been held for at least `long_s`, s.
   bool held(double now_s, double long_s) const { return since_ && now_s - *since_ >= long_s; }
   void clear() { since_.reset(); }
 
  private:
   std::optional<double> since_{};
-  double last_{0};                // s: when it was last stopped
-  Eigen::Vector2d at_{0.0, 0.0};  // where it was first stopped
+  double last_{0};                // Time of the last stopped command, s.
+  Eigen::Vector2d at_{0.0, 0.0};  // Position at the first stopped command, odometry frame, m.
 };
 
 }  // namespace adit::nav

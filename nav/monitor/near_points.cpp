@@ -7,23 +7,26 @@
 namespace adit::nav {
 namespace {
 
-constexpr float kEdge = 0.06f;        ///< of the fan of rays: what lies that near to its edge may be missed
-constexpr float kLevel = 1e-3f;       ///< rise per metre that is none
-constexpr float kWithinCell = 0.10f;  ///< m: ground may rise over this far within a 10 cm cell
-constexpr float kPast = 0.15f;        ///< m: rays that went so much farther show that nothing is there
-constexpr float kLevelRay = 0.1f;     ///< m below the lidar
-constexpr float kNotSeen = 1e9f;      ///< lowest return of a cell without one
+/// Margin at the edge of the fan of rays, where an obstacle may be missed, rise per metre.
+constexpr float kEdge = 0.06f;
+constexpr float kLevel = 1e-3f;       ///< A smaller rise per metre counts as level.
+constexpr float kWithinCell = 0.10f;  ///< Distance over which ground may rise within a 10 cm cell, m.
+constexpr float kPast = 0.15f;        ///< A ray must pass a place by this much to show that it is free, m.
+constexpr float kLevelRay = 0.1f;     ///< Returns at most this much below the lidar come from level rays, m.
+constexpr float kNotSeen = 1e9f;      ///< Lowest return of a cell without returns.
 constexpr std::array kBefore{0.1f, 0.15f, 0.2f,
-                             0.25f};  ///< m: so far before a riser the tread is seen that leads to it
-constexpr float kFlat = 0.14f;        ///< m: what is higher within a cell is a face, and no tread
-constexpr float kSpread =
-    0.04f;                      ///< m: the lowest and the highest of many returns lie so much apart by noise
-constexpr int kFewest = 2;      ///< returns in a cell and those around it; one alone is noise
-constexpr double kKink = 0.35;  ///< Level ground may begin to rise so much, unless it is too steep to climb.
-constexpr double kSteeper = 0.05;  ///< A ramp goes on so much steeper than where the body stands.
-constexpr double kBelow = 0.1;     ///< What flies: what is less below it than this is in its way, m.
+                             0.25f};  ///< Distances before a riser at which its tread is searched, m.
+constexpr float kFlat = 0.14f;  ///< A cell with a larger height range holds a vertical face and no tread, m.
+/// Noise of the height range of many returns, m.
+constexpr float kSpread = 0.04f;
+/// Minimum number of returns in a cell and its neighbours; a single one is noise.
+constexpr int kFewest = 2;
+constexpr double kKink = 0.35;     ///< Maximum change of the ground's gradient where level ground ends.
+constexpr double kSteeper = 0.05;  ///< A ramp may get steeper than under the body by this much.
+constexpr double kBelow = 0.1;     ///< A flying robot must be at least this far above an object, m.
 
-/// Below and above what flies there is air, not ground: all in the band that the body needs is an obstacle.
+/// Limits for obstacles. A flying robot has no ground: everything in the height band of its body is an
+/// obstacle.
 Traversability near_limits(const Platform& platform) {
   Traversability limits = Traversability::of(platform);
   if (platform.flies()) {
@@ -73,7 +76,7 @@ bool NearPoints::seen_again(const Eigen::Vector2f& local) const {
       raised |= highest_[i] > step;
       obstacle += cells_[i].count;
     }
-  // Where the newest scan shows an obstacle by itself, that one counts alone.
+  // A return that the newest scan shows to be an obstacle by itself counts alone.
   return raised && obstacle < kFewest;
 }
 
@@ -96,7 +99,7 @@ NearPoints::Lean NearPoints::lean_of(const Pose3& body) const {
   const auto steepest = static_cast<float>(limits_.slope);
   if (!platform_.flies() && up.z() > 0.2f) {
     lean.rise = -up.head<2>() / up.z();
-    // A body that leans more stands on no such ground.
+    // Steeper tilts are those of the body and not of the ground.
     if (lean.rise.norm() > steepest) lean.rise *= steepest / lean.rise.norm();
   }
   lean.slope = std::min(steepest,
@@ -113,10 +116,10 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
   const auto step = static_cast<float>(limits_.obstacle);
   const float slope = lean.slope;
   const auto stairs = static_cast<float>(limits_.slope);
-  // Stairs rise by one step within a cell, and a face that is higher is a wall. What is too high by less than
-  // noise is left to the planner.
+  // Within a cell stairs rise by one step, and a higher face is a wall. Excess below the noise is left to the
+  // planner.
   const float within = platform_.stairs ? kSpread : slope * kWithinCell;
-  /// How high the plane that the body stands on is there, over the level one.
+  /// Height of the plane under the body above the level plane.
   const auto leaning = [&lean](const Eigen::Vector3f& p) {
     return lean.rise.x() * p.x() + lean.rise.y() * p.y();
   };
@@ -128,9 +131,9 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
   std::fill(highest_.begin(), highest_.end(), -1e9f);
   Fan fan{};
   for (const Eigen::Vector3f& raw : points) {
-    // The rays are the lidar's, which leans with the body.
+    // The rays belong to the lidar, which tilts with the body.
     const float range = std::sqrt(raw.x() * raw.x() + raw.y() * raw.y());
-    if (range > 0.1f) {  // compares false when it is not a number
+    if (range > 0.1f) {  // False when it is not a number.
       const float rise = (raw.z() - height) / range;
       fan.lowest = std::min(fan.lowest, rise);
       fan.highest = std::max(fan.highest, rise);
@@ -149,15 +152,15 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
     if (!inside(p) || p.z() > top || p.z() - below <= step) continue;
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const bool led_to = platform_.stairs && tread_leads_to(p, range, step + stairs * range, step + within);
-    // What was a wall from below is a riser when the tread before it is seen.
+    // A wall as seen from below is a riser when the tread before it is visible.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     if (!led_to) highest_[index] = std::max(highest_[index], p.z() - below);
     if (body_.depth(raw.x(), raw.y()) > own) continue;
     const float depth = body_.depth(p.x(), p.y());
-    // Who climbs stairs stands on them with its middle: they rise from there. What is as high as the lidar is
-    // seen by a level ray: nothing lower need be there, unless the tread before it is seen.
+    // A robot that climbs stairs has its centre on them, and they rise from there. A return as high as the
+    // lidar comes from a level ray: there need be no ground below it, unless the tread before it is visible.
     const bool riser = platform_.stairs && (p.z() < lidar - kLevelRay || led_to);
-    // On a ramp the ground is as high as the body's plane where its footprint ends, and goes on from there.
+    // On a ramp the ground follows the body's plane up to the edge of the footprint and continues from there.
     const float edge = std::max(0.0f, leaning(p) * (1 + std::min(0.0f, depth) / std::max(range, 0.1f)));
     const float ground = edge + (riser ? step + stairs * range : step - slope * depth);
     if (p.z() <= ground && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
@@ -198,7 +201,7 @@ void NearPoints::remember(const Pose3& body, const Lean& lean, const Fan& fan, d
     if (again) place.seen = stamp_s;
     const Eigen::Vector3d level(at.x(), at.y(), place.z - body.position.z());
     const Eigen::Vector3d local = lean.R_level_base.cast<double>().transpose() * level;
-    // What is nearer than the lidar sees would be in the way of the rays that went on.
+    // An obstacle nearer than the lidar's minimum range would block the rays that went past.
     if (again || (hidden(local, fan) && !seen_past(local, body, seen))) kept_.push_back(place);
   }
 }
@@ -209,7 +212,7 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
   const Fan fan = sort_in(points, lean);
   remember(body, lean, fan, stamp_s, seen);
   std::swap(places_, kept_);
-  // Nearest first, should there be more than are kept.
+  // Nearest first, in case there are more than the maximum.
   const auto rank = [this](std::uint32_t i) {
     return std::pair{cells_[i].x * cells_[i].x + cells_[i].y * cells_[i].y, i};
   };
