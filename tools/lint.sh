@@ -100,14 +100,6 @@ check_words() {
 # tools/lint_language.awk has the rules: words (house words), comments (`///` begins with a capital letter), constants
 # (kLikeThis at the scope of namespaces and classes), columns (at most 120 in docs, table rows apart).
 
-# Where it does not hold yet: a folder ("." is the root) and its rules. `tools/lint.sh --count language` shows how many
-# findings there are. When a rule's count is 0, delete the rule here. nav/ joins when it is rebuilt.
-language_open() {
-  cat <<'TEXT'
-nav          words comments constants columns
-TEXT
-}
-
 # Every finding, in any folder: "RULE FILE:LINE: what"
 language_findings() {
   files -name '*.hpp' -o -name '*.cpp' -o -name '*.idl' -o -name '*.md' -o -name '*.cmake' -o -name 'CMakeLists.txt' \
@@ -115,19 +107,9 @@ language_findings() {
     grep -v '^tests/lint/' | LC_ALL=C xargs -r awk -f "$language_rules"
 }
 
-# Findings of the folders and rules that are held.
-check_language() {
-  { language_open; echo ---; language_findings; } | awk '
-    $0 == "---" { listed = 1; next }
-    !listed { for (i = 2; i <= NF; ++i) open[$1, $i] = 1; next }
-    {
-      folder = $2; if (!sub(/\/.*/, "", folder)) folder = "."
-      if ((folder, $1) in open) next
-      rule = $1; sub(/^[^ ]* /, ""); print $0 "   <- " rule
-    }'
-}
+check_language() { language_findings | sed 's/^\([^ ]*\) \(.*\)/\2   <- \1/'; }
 
-# How many findings each folder has, held or not.
+# How many findings each folder has.
 count_language() {
   language_findings | awk '
     { folder = $2; if (!sub(/\/.*/, "", folder)) folder = "."; ++count[folder, $1]; folders[folder] = 1 }

@@ -7,7 +7,7 @@
 
 namespace adit::nav {
 
-/// What the local planner is asked for on the way along a route. Frame: that of the route.
+/// The local planner's target for a step of a route follower. Frame: that of the route.
 inline Target target_of(const RouteStep& step) {
   if (step.state == RouteStep::State::unreachable) return {};
   Target target = Target::to(step.target.head<2>());

@@ -86,7 +86,7 @@ clean "// $wide"
 
 # --- folders -----------------------------------------------------------------------------------------------
 put nav/a.hpp '// Made anew.\n'
-expect language ""
+expect language "nav/a.hpp:1: \"anew\""
 [ "$("$lint" --root "$tree" --count language | grep '^nav' | tr -s ' ')" = "nav 1 0 0 0" ] ||
   { echo "--count does not count nav"; failed=1; }
 exit $failed
