@@ -42,7 +42,7 @@ int bits_of(int half) {
   return bits;
 }
 
-/// Thins the samples out evenly to at most kMaxSamples.
+/// Thins the samples out evenly to at most kMostSamples.
 void thin_out(std::vector<Eigen::Vector3f>& samples) {
   const std::size_t every = (samples.size() + kMostSamples - 1) / kMostSamples;
   if (every < 2) return;
