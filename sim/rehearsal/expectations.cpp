@@ -50,6 +50,25 @@ std::string mismatch(const FindingsExpectation& e, const Evidence& evidence) {
   return it->second == e.findings ? std::string() : "it has " + std::to_string(it->second);
 }
 
+std::string percent(const char* what, double share) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%s %.1f %%", what, 100 * share);
+  return text;
+}
+
+std::string mismatch(const ExploredExpectation& e, const Evidence& evidence) {
+  std::vector<std::size_t> robots;
+  for (const std::string& robot : e.robots) robots.push_back(evidence.index(robot));
+  const ExplorationTruth& truth = evidence.exploration->truth();
+  const double share = e.area || !robots.empty() ? truth.share(e.area, robots) : truth.share();
+  return share >= e.share ? std::string() : percent("explored", share);
+}
+
+std::string mismatch(const RepeatExpectation& e, const Evidence& evidence) {
+  const double share = evidence.exploration->way().share();
+  return share <= e.share ? std::string() : percent("driven again", share);
+}
+
 std::string collisions(const NoCollision& e, const Scenario& scenario, const Evidence& evidence) {
   for (const RobotSpec& robot : scenario.robots) {
     if (e.caused && evidence.caused(robot.id) > 0) return robot.id + " ran into something";
@@ -99,6 +118,9 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
     if (const auto* near = std::get_if<NearExpectation>(&e.what)) found = mismatch(*near, evidence);
     if (const auto* answer = std::get_if<AnswerExpectation>(&e.what)) found = mismatch(*answer, evidence);
     if (const auto* desk = std::get_if<FindingsExpectation>(&e.what)) found = mismatch(*desk, evidence);
+    if (const auto* explored = std::get_if<ExploredExpectation>(&e.what))
+      found = mismatch(*explored, evidence);
+    if (const auto* repeat = std::get_if<RepeatExpectation>(&e.what)) found = mismatch(*repeat, evidence);
     if (e.when == When::always) continue;
     state.result.ok = found.empty();
     state.result.found = found;

@@ -6,6 +6,7 @@
 #include "sim/rehearsal/report.hpp"
 #include "sim/rehearsal/scenario.hpp"
 #include "sim/rehearsal/witness.hpp"
+#include "sim/truth/exploration_record.hpp"
 
 namespace adit::sim {
 
@@ -15,8 +16,10 @@ struct Evidence {
   std::function<Pose2(const std::string& robot)> pose{};  ///< True pose, world frame.
   std::function<int(const std::string& robot)> collisions{};
   std::function<int(const std::string& robot)> caused{};  ///< Contacts caused by the robot.
-  std::map<std::string, Reason> last_answer{};            ///< By operator.
-  std::map<std::string, std::size_t> findings{};          ///< By operator whose station runs.
+  const ExplorationRecord* exploration{nullptr};          ///< Of a scenario that explores().
+  std::function<std::size_t(const std::string& robot)> index{};
+  std::map<std::string, Reason> last_answer{};    ///< By operator.
+  std::map<std::string, std::size_t> findings{};  ///< By operator whose station runs.
 };
 
 /// Judges a scenario's expectations as time goes on.

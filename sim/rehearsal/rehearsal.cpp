@@ -112,6 +112,11 @@ class Run {
       if (!opened) return opened.error();
       trajectories_ = std::move(*opened);
     }
+    if (scenario_.explores()) {
+      auto truth = explorers();
+      if (!truth) return truth.error();
+      exploration_ = std::make_unique<ExplorationRecord>(std::move(*truth), scenario_.robots.size());
+    }
     network_.set_tap([this](const wire::SampleEvent& frame) {
       witness_.see(frame);
       if (recorder_) recorder_->see(frame);
@@ -141,6 +146,21 @@ class Run {
     for (const std::vector<Fault>* faults : {&scenario_.faults, &drawn.faults})
       for (const Fault& fault : *faults) faults_.schedule(fault);
     return {};
+  }
+
+  Result<ExplorationTruth> explorers() const {
+    std::vector<ExplorationRobot> robots;
+    for (std::size_t i = 0; i < simulation_.size(); ++i)
+      robots.push_back({simulation_.platform(i), scenario_.robots[i].pose});
+    auto truth = ExplorationTruth::create(simulation_.shared_world(), robots);
+    if (!truth) return Error{truth.error().reason, scenario_.file.string() + ": " + truth.error().text};
+    return truth;
+  }
+
+  void explore(Duration now) {
+    std::vector<Pose3> poses;
+    for (std::size_t i = 0; i < simulation_.size(); ++i) poses.push_back(simulation_.truth(i).pose);
+    exploration_->add(seconds(now), poses);
   }
 
   void schedule(const std::vector<ScriptLine>& lines) {
@@ -174,6 +194,7 @@ class Run {
     if (now % Trail::kPeriod == 0ns) add_people(simulation_, people_);
     checker_.advance(now);
     if (trajectories_ && now % kTruthPeriod == 0ns) trajectories_->add(simulation_, witness_, now);
+    if (exploration_ && now % from_seconds(ExplorationRecord::kPeriod) == 0ns) explore(now);
     expectations_.judge(now, evidence());
     observed_ = now;
     if (params_.progress && now % 1s == 0ns) params_.progress(now);
@@ -185,6 +206,8 @@ class Run {
     out.pose = [this](const std::string& robot) { return truth(robot).pose.planar(); };
     out.collisions = [this](const std::string& robot) { return static_cast<int>(truth(robot).collisions); };
     out.caused = [this](const std::string& robot) { return static_cast<int>(truth(robot).caused); };
+    out.exploration = exploration_.get();
+    out.index = [this](const std::string& robot) { return simulation_.find(robot).value(); };
     for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
       if (const auto findings = station->findings()) out.findings[id] = *findings;
@@ -231,6 +254,7 @@ class Run {
           is.distance,      static_cast<int>(is.collisions),    static_cast<int>(is.caused),
           is.min_clearance, seconds(is.moving) / out.virtual_s, mode_seconds_[robot.id]};
     }
+    if (exploration_) out.exploration = exploration_->result();
     out.trajectories = trajectory_files_;
     out.expectations = expectations_.finish(evidence(), out);
     return out;
@@ -253,6 +277,7 @@ class Run {
   RobotMachines robots_{};
   StationMachines stations_{};
   FaultPlayer faults_{stage_, robots_, stations_};
+  std::unique_ptr<ExplorationRecord> exploration_{};
   std::unique_ptr<Trajectories> trajectories_{};
   std::map<std::string, TrajectoryFiles> trajectory_files_{};
   std::map<std::string, Trail> trails_{};

@@ -46,6 +46,21 @@ ordered_json robots_json(const RunReport& report) {
   return out;
 }
 
+ordered_json exploration_json(const ExplorationResult& result) {
+  ordered_json out{{"share", result.share},
+                   {"volume", result.volume},
+                   {"metres", result.metres},
+                   {"repeat", result.repeat},
+                   {"overlap", result.overlap}};
+  for (std::size_t n = 0; n < result.reached.size(); ++n)
+    out[ExplorationResult::name(n)] =
+        result.reached[n] ? ordered_json(result.reached[n]->time_s) : ordered_json();
+  ordered_json curve = ordered_json::array();
+  for (const ExplorationResult::Point& p : result.curve) curve.push_back({p.time_s, p.metres, p.share});
+  out["curve"] = std::move(curve);
+  return out;
+}
+
 }  // namespace
 
 std::string RobotResult::clearance() const {
@@ -94,7 +109,7 @@ std::string to_json(const RunReport& report) {
   ordered_json trajectories = ordered_json::object();
   for (const auto& [id, files] : report.trajectories)
     trajectories[id] = {{"truth", files.truth}, {"odometry", files.odometry}, {"map", files.map}};
-  const ordered_json out{
+  ordered_json out{
       {"scenario", report.scenario},
       {"digest", report.digest},
       {"seed", report.seed},
@@ -116,6 +131,7 @@ std::string to_json(const RunReport& report) {
       {"failures", report.failures},
       {"events", events},
   };
+  if (report.exploration) out["exploration"] = exploration_json(*report.exploration);
   return out.dump(2);
 }
 

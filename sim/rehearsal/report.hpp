@@ -8,6 +8,7 @@
 
 #include "core/result/result.hpp"
 #include "sim/checker/checker.hpp"
+#include "sim/truth/exploration_record.hpp"
 
 namespace adit::sim {
 
@@ -71,6 +72,7 @@ struct RunReport {
   std::vector<ExpectationResult> expectations{};
   std::vector<RuleResult> rules{};
   std::map<std::string, RobotResult> robots{};
+  std::optional<ExplorationResult> exploration{};         ///< Of a scenario that explores().
   std::map<std::string, TrajectoryFiles> trajectories{};  ///< By robot; empty unless they were asked for.
   std::map<std::string, TopicResult, std::less<>> topics{};
   CommandResult commands{};

@@ -16,4 +16,12 @@ const StationSpec* Scenario::station(const std::string& id) const {
   return it == stations.end() ? nullptr : &*it;
 }
 
+bool Scenario::explores() const {
+  const auto judged = [](const Expectation& e) {
+    return std::holds_alternative<ExploredExpectation>(e.what) ||
+           std::holds_alternative<RepeatExpectation>(e.what);
+  };
+  return std::any_of(expectations.begin(), expectations.end(), judged);
+}
+
 }  // namespace adit::sim

@@ -14,6 +14,7 @@
 #include "core/wire/link.hpp"
 #include "robot_agent/program/robot_config.hpp"
 #include "sim/rehearsal/fault.hpp"
+#include "sim/truth/exploration.hpp"
 #include "sim/world/person.hpp"
 
 /// A rehearsal as its YAML file says it; docs/rehearsal.md is the reference.
@@ -95,6 +96,16 @@ struct FindingsExpectation {
 struct NoCollision {
   bool caused{};  ///< Only contacts caused by a robot, see Collision.
 };
+/// The share of what can be seen at all that these robots truly saw, see ExplorationTruth.
+struct ExploredExpectation {
+  double share{};                         ///< At least, [0, 1].
+  std::optional<ExplorationArea> area{};  ///< Nothing: everywhere.
+  std::vector<std::string> robots{};      ///< Empty: any.
+};
+/// The share of their way that all robots drove again, see RepeatedWay.
+struct RepeatExpectation {
+  double share{};  ///< At most, [0, 1].
+};
 /// Counted over the whole run.
 struct AtLeast {
   std::string what{};  ///< `commands`, `refusals`, `faults`, or `distance` and `moving` (of every robot).
@@ -104,7 +115,7 @@ struct Expectation {
   enum class When { at, by, always } when{When::always};
   Duration time{};
   std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
-               AtLeast>
+               ExploredExpectation, RepeatExpectation, AtLeast>
       what{};
   int line{};          ///< In the scenario file.
   std::string text{};  ///< As written.
@@ -131,6 +142,8 @@ struct Scenario {
 
   const RobotSpec* robot(const std::string& id) const;
   const StationSpec* station(const std::string& id) const;
+  /// Whether its exploration is judged.
+  bool explores() const;
 };
 
 }  // namespace adit::sim

@@ -42,6 +42,23 @@ void read_robot_expectation(const Node& node, const Scenario& scenario, Expectat
     out.what = state;
 }
 
+ExploredExpectation read_explored(const Node& node, const Scenario& scenario) {
+  ExploredExpectation out;
+  out.share = node.number("explored_at_least", config::within(0.0, 1.0));
+  if (node.has("area")) {
+    const std::vector<double> v = node.numbers("area", 4, 4, config::within(-1e5, 1e5));
+    if (v.size() == 4) out.area = ExplorationArea{v[0], v[1], v[2], v[3]};
+    if (out.area && (v[0] >= v[2] || v[1] >= v[3]))
+      node.child("area").fail(Reason::bad_argument, "expected [x0, y0, x1, y1] with x0 < x1 and y0 < y1");
+  }
+  for (const Node& robot : node.list_if("robots")) {
+    out.robots.push_back(robot.as_text());
+    if (!scenario.robot(out.robots.back()))
+      robot.fail(Reason::unknown_robot, "expected one of the scenario's robots, not " + out.robots.back());
+  }
+  return out;
+}
+
 Expectation read_expectation(const Node& node, const Scenario& scenario) {
   static const std::vector<std::string> counted{"commands", "refusals", "faults", "distance", "moving"};
   Expectation out;
@@ -64,7 +81,11 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
               "moving_at_least");
   out.when = at ? Expectation::When::at : Expectation::When::by;
   out.time = read_time(node, at ? "at" : "by", scenario);
-  if (node.has("by_operator") && node.has("findings")) {
+  if (node.has("explored_at_least")) {
+    out.what = read_explored(node, scenario);
+  } else if (node.has("repeat_at_most")) {
+    out.what = RepeatExpectation{node.number("repeat_at_most", config::within(0.0, 1.0))};
+  } else if (node.has("by_operator") && node.has("findings")) {
     out.what = FindingsExpectation{read_station(node, "by_operator", scenario),
                                    static_cast<std::size_t>(node.integer("findings", 0, 65536))};
   } else if (node.has("by_operator")) {

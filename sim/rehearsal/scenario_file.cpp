@@ -48,8 +48,12 @@ WorldSpec read_world(const Node& world, const std::string& file) {
   if (world.has("generate")) {
     const std::vector<std::string> words(world_kinds().begin(), world_kinds().end());
     const std::string& kind = words[world.choice("generate", words)];
-    out.boxes =
-        generate_world(kind, static_cast<std::uint64_t>(world.integer("seed", 0, kMaxSeed, 1))).value().boxes;
+    const bool sized = world.has("size");
+    if (sized && kind != "blocks")
+      world.child("size").fail(Reason::bad_argument, "expected no size: only blocks have one");
+    const auto size = static_cast<int>(world.integer("size", kLeastBlocks, kMostBlocks, kLeastBlocks));
+    const auto seed = static_cast<std::uint64_t>(world.integer("seed", 0, kMaxSeed, sized ? 0 : 1));
+    out.boxes = sized ? generate_blocks(size, seed).boxes : generate_world(kind, seed).value().boxes;
     out.ceiling = 3.0;
   }
   if (world.has("boxes")) {
@@ -168,6 +172,21 @@ Result<Scenario> load_scenario(const std::string& file) {
   auto text = read_file(file);
   if (!text) return text.error();
   return parse_scenario(*text, file);
+}
+
+Result<WorldSpec> load_world_spec(const std::string& file) {
+  auto text = read_file(file);
+  if (!text) return text.error();
+  auto root = config::parse(*text, file);
+  if (!root) return root.error();
+  if (root->has("world")) {
+    auto scenario = parse_scenario(*text, file);
+    if (!scenario) return scenario.error();
+    return scenario->world;
+  }
+  WorldSpec out = read_world(*root, file);
+  if (auto done = root->finish(); !done) return done.error();
+  return out;
 }
 
 Result<Scenario> parse_scenario(const std::string& text, const std::string& file) {

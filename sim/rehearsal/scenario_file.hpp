@@ -14,4 +14,8 @@ Result<Scenario> load_scenario(const std::string& file);
 /// The same from memory; `file` is the name that messages show, and says where "beside" is.
 Result<Scenario> parse_scenario(const std::string& text, const std::string& file);
 
+/// Reads the world alone: that of a scenario, or of a file that has at its top level what a scenario has
+/// under its key `world`. Errors as load_scenario().
+Result<WorldSpec> load_world_spec(const std::string& file);
+
 }  // namespace adit::sim

@@ -61,16 +61,70 @@ GeneratedWorld corridor(Random random) {
   return b.take();
 }
 
+constexpr double kStreet = 3.2, kBlock = 8.0;  ///< Widths, m.
+
+/// Corners with the smallest x and y of blocks in a square of `size` x `size`.
+std::vector<Eigen::Vector2d> block_corners(int size) {
+  std::vector<Eigen::Vector2d> out;
+  for (int i = 0; i < size; ++i)
+    for (int j = 0; j < size; ++j)
+      out.emplace_back(kStreet + i * (kBlock + kStreet), kStreet + j * (kBlock + kStreet));
+  return out;
+}
+
+double blocks_side(int size) { return size * kBlock + (size + 1) * kStreet; }
+
 /// 3 x 3 blocks of 8 m with streets of 3.2 m between and around them (docs/references.md, FAR Planner).
 GeneratedWorld blocks(Random) {
-  constexpr double street = 3.2, block = 8.0, side = 3 * block + 4 * street;
-  Builder b(side, side, {street / 2, street / 2});
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const double x = street + i * (block + street), y = street + j * (block + street);
-      b.add_wall(x, x + block, y, y + block);
-    }
+  constexpr int size = 3;
+  const double side = blocks_side(size);
+  Builder b(side, side, {kStreet / 2, kStreet / 2});
+  for (const Eigen::Vector2d& corner : block_corners(size))
+    b.add_wall(corner.x(), corner.x() + kBlock, corner.y(), corner.y() + kBlock);
   return b.take();
+}
+
+constexpr double kStreetBox = 0.5;  ///< Edge of the boxes in the streets, m.
+constexpr std::size_t kStreetBoxes = 10;
+using StreetBoxes = std::array<std::array<double, 2>, kStreetBoxes>;
+
+/// Corners with the smallest x and y of the boxes in the worlds that TARE was measured in, m.
+constexpr StreetBoxes kBoxesOf3{{{2.050, 29.420},
+                                 {2.050, 30.876},
+                                 {11.450, 21.547},
+                                 {33.850, 18.710},
+                                 {8.657, 13.250},
+                                 {25.399, 2.050},
+                                 {13.250, 7.763},
+                                 {33.850, 11.282},
+                                 {13.250, 11.951},
+                                 {20.577, 22.650}}};
+constexpr StreetBoxes kBoxesOf5{{{13.250, 48.925},
+                                 {13.250, 51.453},
+                                 {22.650, 35.250},
+                                 {45.050, 30.322},
+                                 {12.862, 13.250},
+                                 {41.940, 2.050},
+                                 {24.450, 11.309},
+                                 {56.250, 17.422},
+                                 {24.450, 18.583},
+                                 {33.565, 33.850}}};
+
+/// Boxes on either side of the streets, as in those worlds: 0.25 m from the one wall, or 0.65 m from the
+/// other. None stands within 2 m of the start.
+StreetBoxes draw_street_boxes(int size, std::uint64_t seed) {
+  constexpr std::array kAcross{0.25, 2.05};  // m from the street's edge
+  Random random(seed);
+  StreetBoxes out{};
+  for (std::size_t n = 0; n < out.size();) {
+    const auto street = static_cast<double>(random.below(static_cast<std::uint64_t>(size) + 1));
+    const double across = street * (kBlock + kStreet) + kAcross[random.below(kAcross.size())];
+    const double along = random.uniform(kStreetBox, blocks_side(size) - 2 * kStreetBox);
+    const bool along_x = random.chance(0.5);
+    const std::array<double, 2> corner{along_x ? along : across, along_x ? across : along};
+    if (std::max(corner[0], corner[1]) > kStreet / 2 + 2) out[n++] = corner;
+  }
+  return out;
 }
 
 /// A car park with pillars, two rows of parked cars, and a ramp of 12 % up to a deck 1.2 m high.
@@ -318,6 +372,26 @@ Result<GeneratedWorld> generate_world(std::string_view kind, std::uint64_t seed)
   for (const Kind& each : kKinds)
     if (each.name == kind) return each.make(Random(seed));
   return {Reason::bad_argument, "no world is called " + std::string(kind)};
+}
+
+GeneratedWorld generate_blocks(int size, std::uint64_t seed) {
+  constexpr double wall = 0.3, below = -1.0, above = 4.0, box_height = 0.9;  // m
+  const double side = blocks_side(size);
+  GeneratedWorld out;
+  out.size = {side, side};
+  out.start = {kStreet / 2, kStreet / 2};
+  for (const Eigen::Vector2d& c : block_corners(size))
+    out.boxes.push_back({c.x(), c.x() + kBlock, c.y(), c.y() + kBlock, below, above});
+  out.boxes.push_back({-wall, 0, 0, side, below, above});
+  out.boxes.push_back({side, side + wall, 0, side, below, above});
+  out.boxes.push_back({0, side, -wall, 0, below, above});
+  out.boxes.push_back({0, side, side, side + wall, below, above});
+  const StreetBoxes boxes = seed == 0 && size == 3   ? kBoxesOf3
+                            : seed == 0 && size == 5 ? kBoxesOf5
+                                                     : draw_street_boxes(size, seed);
+  for (const auto& [x, y] : boxes)
+    out.boxes.push_back({x, x + kStreetBox, y, y + kStreetBox, 0.0, box_height});
+  return out;
 }
 
 }  // namespace adit::sim

@@ -24,4 +24,11 @@ std::span<const std::string_view> world_kinds();
 /// kind that is none of world_kinds().
 Result<GeneratedWorld> generate_world(std::string_view kind, std::uint64_t seed);
 
+constexpr int kLeastBlocks = 2, kMostBlocks = 9;
+
+/// `size` x `size` blocks of 8 m ([kLeastBlocks, kMostBlocks]) with streets of 3.2 m between and around them,
+/// in which ten boxes of 0.5 m stand, 0.9 m high. Seed 0 has the boxes of the worlds that TARE was measured
+/// in, where there is one of that size (3 and 5; docs/references.md); others are drawn.
+GeneratedWorld generate_blocks(int size, std::uint64_t seed);
+
 }  // namespace adit::sim

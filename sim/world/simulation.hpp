@@ -86,6 +86,7 @@ class Simulation {
   std::optional<std::size_t> find(const std::string& id) const;
   const Platform& platform(std::size_t robot) const { return robots_[robot].body.platform(); }
   const World& world() const { return *world_; }
+  const std::shared_ptr<const World>& shared_world() const { return world_; }
   const SimulationParams& params() const { return params_; }
 
   /// What a driver does with a cmd_vel.

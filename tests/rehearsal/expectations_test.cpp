@@ -115,6 +115,31 @@ TEST(Expectations, NoAnswerIsNotTheAnswerExpected) {
   EXPECT_FALSE(c.finish().ok);
 }
 
+TEST(Expectations, ExploredAndDrivenAgainAreThoseOfTheTruth) {
+  const std::vector<Box> room{
+      {-0.3, 0, 0, 6, 0, 3}, {10, 10.3, 0, 6, 0, 3}, {0, 10, -0.3, 0, 0, 3}, {0, 10, 6, 6.3, 0, 3}};
+  const ExplorationRobot robot{{}, {5, 3, 0}};
+  ExplorationRecord record(
+      ExplorationTruth::create(std::make_shared<World>(make_box_world(room, 0, 3).value()),
+                               std::span(&robot, 1))
+          .value(),
+      1);
+  Case c({When::by, 10s, ExploredExpectation{0.5, {}, {}}, 1, ""});
+  c.evidence.exploration = &record;
+  c.evidence.index = [](const std::string&) { return std::size_t{0}; };
+  c.expectations->judge(1s, c.evidence);
+  EXPECT_EQ(c.finish().found, "explored 0.0 %");
+  const Pose3 pose = Pose3::level(robot.start, 0);
+  record.add(1, std::span(&pose, 1));
+  c.expectations->judge(2s, c.evidence);
+  EXPECT_TRUE(c.finish().ok) << c.finish().found;
+
+  Case again({When::at, 10s, RepeatExpectation{0.1}, 1, ""});
+  again.evidence.exploration = &record;
+  again.expectations->judge(10s, again.evidence);
+  EXPECT_TRUE(again.finish().ok);
+}
+
 TEST(Expectations, CollisionFailsAtTheEnd) {
   Case c({When::always, 0s, NoCollision{}, 1, ""});
   EXPECT_TRUE(c.finish().ok);

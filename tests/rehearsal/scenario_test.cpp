@@ -282,6 +282,11 @@ INSTANTIATE_TEST_SUITE_P(
             "expected near"},
         Bad{"expect_no_time", "{at: 12, by_operator", "{by_operator", 21, "one of at"},
         Bad{"near_without_tolerance", "[12, 0.5, 0.5]", "[12, 0.5]", 22, "3"},
+        Bad{"explored_too_much", "{always: no_collision}", "{by: 9, explored_at_least: 1.2}", 23, "[0, 1]"},
+        Bad{"explored_turned", "{always: no_collision}", "{by: 9, explored_at_least: 1, area: [9, 0, 1, 5]}",
+            23, "x0 < x1"},
+        Bad{"explored_by_whom", "{always: no_collision}", "{by: 9, explored_at_least: 1, robots: [r9]}", 23,
+            "r9"},
         Bad{"always_what", "no_collision", "happy", 23, "no_collision"},
         Bad{"no_yaml", "robots:", "robots: [", 6, ""}),
     [](const auto& bad_case) { return std::string(bad_case.param.name); });

@@ -53,6 +53,14 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
     std::printf("  %s: %.1f m, moving %.0f %% of the time, %d collisions (%d caused), %s\n", id.c_str(),
                 robot.distance, 100.0 * robot.moving, robot.collisions, robot.caused,
                 robot.clearance().c_str());
+  if (report.exploration) {
+    std::printf("  explored %.1f %% of what can be seen, %.0f %% of the way driven again;",
+                100 * report.exploration->share, 100 * report.exploration->repeat);
+    for (std::size_t n = 0; n < ExplorationResult::kShares.size(); ++n)
+      if (const auto& reached = report.exploration->reached[n])
+        std::printf(" %s %.1f s", ExplorationResult::name(n).c_str(), reached->time_s);
+    std::printf("\n");
+  }
   std::printf("  commands: %llu sent, %llu accepted, %llu refused\n",
               static_cast<unsigned long long>(report.commands.sent),
               static_cast<unsigned long long>(report.commands.accepted),

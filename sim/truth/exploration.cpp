@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/truth/exploration.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "sim/world/standing_map.hpp"
+
+namespace adit::sim {
+namespace {
+
+constexpr double kPlaces = 0.8;   ///< Between the places from which cells can be seen, m.
+constexpr double kWay = 0.2;      ///< Between the points of the search for these places, m.
+constexpr double kMargin = 0.05;  ///< Distance that a body keeps from obstacles beside half its width, m.
+constexpr double kBefore =
+    1e-4;  ///< A ray ends so far before the surface that it meets, in the cell before it, m.
+constexpr double kAside = 1e-3;      ///< Places lie so much beside the multiples of kPlaces, m.
+constexpr int kColumns = 900;        ///< Of a lidar's turn.
+constexpr int kSparseColumns = 300;  ///< 0.25 m apart at kRange: enough to meet every cell from some place.
+
+LidarParams lidar_of(const Platform& platform, int columns) {
+  const LidarConfig config = platform.lidar();
+  LidarParams out;
+  out.rings = config.rings;
+  out.lowest = config.lowest;
+  out.highest = config.highest;
+  out.columns = columns;
+  return out;
+}
+
+Pose3 sensor_of(const Platform& platform, const Pose3& base) {
+  Pose3 out = base;
+  out.position += base.orientation * Eigen::Vector3d(0, 0, platform.lidar_height);
+  return out;
+}
+
+/// The points, kWay apart, to which a body can drive from a start, in the order in which they were found.
+/// Points are counted from the start's nearest multiples of kWay, so that places of several robots agree.
+std::vector<Eigen::Vector2i> reachable(const World& world, const Platform& platform, const StandingMap& map,
+                                       const Pose2& start) {
+  const VoxelGrid& grid = world.grid();
+  const Eigen::Vector2d low = grid.origin();
+  const Eigen::Vector2d high = low + grid.resolution() * Eigen::Vector2d(grid.nx(), grid.ny());
+  const Eigen::Vector2i first = (low / kWay).array().floor().cast<int>();
+  const Eigen::Vector2i count = (high / kWay).array().ceil().cast<int>() - first.array() + 1;
+  std::vector<std::uint8_t> known(static_cast<std::size_t>(count.x()) * count.y(), 0);
+  std::vector<Eigen::Vector2i> out;
+  const double clearance = platform.width / 2 + kMargin;
+  const auto visit = [&](const Eigen::Vector2i& at, bool is_start) {
+    const Eigen::Vector2i local = at - first;
+    if (local.minCoeff() < 0 || local.x() >= count.x() || local.y() >= count.y()) return;
+    std::uint8_t& cell = known[static_cast<std::size_t>(local.y()) * count.x() + local.x()];
+    if (cell != 0) return;
+    cell = 1;
+    const Eigen::Vector2d p = kWay * at.cast<double>();
+    if (is_start || (map.distance(p.x(), p.y()) >= clearance && std::isfinite(map.ground(p.x(), p.y()))))
+      out.push_back(at);
+  };
+  visit((start.position() / kWay).array().round().cast<int>(), true);
+  for (std::size_t n = 0; n < out.size(); ++n) {
+    const Eigen::Vector2i at = out[n];
+    for (const auto& step :
+         {Eigen::Vector2i(1, 0), Eigen::Vector2i(-1, 0), Eigen::Vector2i(0, 1), Eigen::Vector2i(0, -1)})
+      visit(at + step, false);
+  }
+  return out;
+}
+
+}  // namespace
+
+ExplorationTruth::ExplorationTruth(std::shared_ptr<const World> world,
+                                   std::span<const ExplorationRobot> robots)
+    : world_(std::move(world)),
+      robots_(robots.begin(), robots.end()),
+      cells_(*world_),
+      possible_(cells_.size(), 0),
+      seen_(cells_.size(), 0) {
+  for (const ExplorationRobot& robot : robots_) lidars_.emplace_back(lidar_of(robot.platform, kColumns));
+}
+
+Result<ExplorationTruth> ExplorationTruth::create(std::shared_ptr<const World> world,
+                                                  std::span<const ExplorationRobot> robots) {
+  if (robots.empty() || robots.size() > kMostRobots)
+    return Error{Reason::bad_argument, "expected 1 to 64 robots whose exploration is to be judged"};
+  ExplorationTruth out(std::move(world), robots);
+  out.find_possible();
+  if (out.possible_count_ == 0)
+    return Error{Reason::bad_argument, "the robots' lidars see nothing of this world"};
+  return out;
+}
+
+template <class Mark, class End>
+void ExplorationTruth::turn(const LidarPattern& lidar, const Pose3& sensor, const Mark& mark,
+                            const End& end) const {
+  const Eigen::Matrix3d R = sensor.orientation.toRotationMatrix();
+  const VoxelGrid::Start start = world_->grid().locate(sensor.position);
+  std::vector<Eigen::Vector3d> directions(lidar.elevations().size());
+  std::vector<double> ranges(directions.size());
+  for (const Eigen::Vector2d& azimuth : lidar.azimuths()) {
+    const Eigen::Vector3d ahead = R.col(0) * azimuth.x() + R.col(1) * azimuth.y();
+    for (std::size_t n = 0; n < directions.size(); ++n)
+      directions[n] = ahead * lidar.elevations()[n].x() + R.col(2) * lidar.elevations()[n].y();
+    world_->grid().cast(start, directions, kRange, ranges);
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+      const double length = std::min(ranges[n], kRange) - kBefore;
+      cells_.for_each_on(sensor.position, directions[n], length, mark);
+      end(sensor.position + length * directions[n]);
+    }
+  }
+}
+
+void ExplorationTruth::find_possible() {
+  constexpr int kEvery = 4;
+  static_assert(kEvery * kWay == kPlaces);
+  Eigen::AlignedBox3d seen;
+  for (const ExplorationRobot& robot : robots_) {
+    const double headroom = std::max(robot.platform.height, robot.platform.lidar_height);
+    const StandingMap map(*world_, headroom, robot.platform.step);
+    const LidarPattern lidar(lidar_of(robot.platform, kSparseColumns));
+    for (const Eigen::Vector2i& at : reachable(*world_, robot.platform, map, robot.start)) {
+      if (at.x() % kEvery != 0 || at.y() % kEvery != 0) continue;
+      // A ray along the face of a wall would be neither in front of it nor behind.
+      const Eigen::Vector2d p = kWay * at.cast<double>() + Eigen::Vector2d::Constant(kAside);
+      const Pose3 base = Pose3::level({p.x(), p.y(), 0}, map.ground(p.x(), p.y()));
+      turn(
+          lidar, sensor_of(robot.platform, base), [this](std::size_t cell) { possible_[cell] = 1; },
+          [&seen](const Eigen::Vector3d& point) { seen.extend(point); });
+    }
+  }
+  for (std::size_t cell = 0; cell < possible_.size(); ++cell)
+    if (!seen.contains(cells_.centre(cell))) possible_[cell] = 0;
+  possible_count_ = static_cast<std::size_t>(std::count(possible_.begin(), possible_.end(), 1));
+}
+
+void ExplorationTruth::look(std::size_t robot, const Pose3& base) {
+  const std::uint64_t bit = std::uint64_t{1} << robot;
+  const auto mark = [this, bit](std::size_t cell) {
+    if (possible_[cell] == 0) return;
+    if (seen_[cell] == 0) ++seen_count_;
+    seen_[cell] |= bit;
+  };
+  turn(lidars_[robot], sensor_of(robots_[robot].platform, base), mark, [](const Eigen::Vector3d&) {});
+}
+
+double ExplorationTruth::share(const std::optional<ExplorationArea>& area,
+                               std::span<const std::size_t> robots) const {
+  std::uint64_t of = robots.empty() ? ~std::uint64_t{0} : 0;
+  for (const std::size_t robot : robots) of |= std::uint64_t{1} << robot;
+  std::size_t possible = 0, seen = 0;
+  for (std::size_t cell = 0; cell < possible_.size(); ++cell) {
+    if (possible_[cell] == 0) continue;
+    if (area) {
+      const Eigen::Vector3d at = cells_.centre(cell);
+      if (at.x() < area->x0 || at.x() > area->x1 || at.y() < area->y0 || at.y() > area->y1) continue;
+    }
+    ++possible;
+    if ((seen_[cell] & of) != 0) ++seen;
+  }
+  return possible == 0 ? 1.0 : static_cast<double>(seen) / static_cast<double>(possible);
+}
+
+double ExplorationTruth::overlap() const {
+  if (seen_count_ == 0) return 0;
+  const auto several =
+      std::count_if(seen_.begin(), seen_.end(), [](std::uint64_t who) { return std::popcount(who) > 1; });
+  return static_cast<double>(several) / static_cast<double>(seen_count_);
+}
+
+double ExplorationTruth::volume() const {
+  return static_cast<double>(seen_count_) * std::pow(ExplorationCells::kSize, 3);
+}
+
+}  // namespace adit::sim
