@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/explore/coverage_map.hpp"
+
+#include "nav/explore/voxel_line.hpp"
+
+namespace adit::nav {
+namespace {
+
+constexpr int kTileShift = 2;  // A tile has 4 x 4 columns.
+
+std::size_t column_index(int x, int y) {
+  return static_cast<std::size_t>((y & (CoverageMap::kSide - 1)) * CoverageMap::kSide +
+                                  (x & (CoverageMap::kSide - 1)));
+}
+
+}  // namespace
+
+std::uint64_t CoverageMap::key(int tx, int ty, int band) {
+  return (std::uint64_t{static_cast<std::uint32_t>(tx) & 0xff'ffffu} << 40) |
+         (std::uint64_t{static_cast<std::uint32_t>(ty) & 0xff'ffffu} << 16) |
+         (static_cast<std::uint32_t>(band) & 0xffffu);
+}
+
+int CoverageMap::find(int tx, int ty, int band) const {
+  const auto found = index_.find(key(tx, ty, band));
+  return found == index_.end() ? -1 : found->second;
+}
+
+CoverageMap::Column CoverageMap::column(int x, int y, int band) const {
+  const int index = find(x >> kTileShift, y >> kTileShift, band);
+  return index < 0 ? Column{} : tiles_[static_cast<std::size_t>(index)].columns[column_index(x, y)];
+}
+
+CoverageMap::Column* CoverageMap::column_to_write(const CoverageVoxel& v) {
+  const int tx = v.x >> kTileShift, ty = v.y >> kTileShift, band = band_of(v.z);
+  if (last_ >= 0) {
+    Tile& tile = tiles_[static_cast<std::size_t>(last_)];
+    if (tile.tx == tx && tile.ty == ty && tile.band == band) return &tile.columns[column_index(v.x, v.y)];
+  }
+  int index = find(tx, ty, band);
+  if (index < 0) {
+    if (tiles_.size() >= most_) return nullptr;
+    index = static_cast<int>(tiles_.size());
+    tiles_.push_back({tx, ty, band, {}});
+    index_.emplace(key(tx, ty, band), index);
+  }
+  last_ = index;
+  return &tiles_[static_cast<std::size_t>(index)].columns[column_index(v.x, v.y)];
+}
+
+void CoverageMap::add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d way = to - from;
+  const double length = way.norm();
+  if (!(length > 0.0)) return;
+  const bool ends = length <= range_;
+  const Eigen::Vector3d end = ends ? to : Eigen::Vector3d(from + way * (range_ / length));
+  walk_voxels(from, end, [&](const CoverageVoxel& v, bool last) {
+    Column* column = column_to_write(v);
+    if (column == nullptr) return false;
+    const auto mask = static_cast<std::uint16_t>(1u << (v.z & 15));
+    std::uint16_t& kind = last && ends ? column->hit : column->free;
+    kind = static_cast<std::uint16_t>(kind | mask);
+    return true;
+  });
+}
+
+void CoverageMap::add_scan(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& sensor,
+                           const Pose3& body) {
+  const Eigen::Matrix3d turn = body.orientation.toRotationMatrix();
+  const Eigen::Vector3d from = body.position + turn * sensor;
+  for (const Eigen::Vector3f& p : points)
+    if (p.allFinite()) add_ray(from, body.position + turn * p.cast<double>());
+}
+
+void CoverageMap::set_tried(const CoverageVoxel& voxel) {
+  if (Column* column = column_to_write(voxel))
+    column->tried = static_cast<std::uint16_t>(column->tried | (1u << (voxel.z & 15)));
+}
+
+bool CoverageMap::visible(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  const CoverageVoxel first = voxel_at(from);
+  bool clear = true;
+  walk_voxels(from, to, [&](const CoverageVoxel& v, bool last) {
+    clear = last || v == first || !hit(v);
+    return clear;
+  });
+  return clear;
+}
+
+double CoverageMap::seen_volume() const {
+  int voxels = 0;
+  for (const Tile& tile : tiles_)
+    for (const Column& column : tile.columns) voxels += std::popcount(column.seen());
+  return voxels * kVoxel * kVoxel * kVoxel;
+}
+
+std::size_t CoverageMap::memory() const {
+  return tiles_.capacity() * sizeof(Tile) + index_.size() * 32 + index_.bucket_count() * sizeof(void*);
+}
+
+void CoverageMap::clear() {
+  tiles_.clear();
+  index_.clear();
+  last_ = -1;
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "core/geometry/pose.hpp"
+
+namespace adit::nav {
+
+/// Address of a voxel: its edges lie at these multiples of kCoverageVoxel.
+struct CoverageVoxel {
+  int x{}, y{}, z{};
+  bool operator==(const CoverageVoxel&) const = default;
+};
+
+/// What a robot's lidars have seen of the space around it: voxels of 0.5 m that a ray passed or ended in,
+/// within a range. Frame: that of the poses, z up, m. Has no clock. Bounded: `tiles`.
+class CoverageMap {
+ public:
+  static constexpr double kVoxel = 0.5;  ///< Edge of a voxel, m.
+  static constexpr int kSide = 4;        ///< Columns along the side of a tile.
+  static constexpr int kSlices = 16;     ///< Voxels above one another in a tile.
+
+  /// A column of a tile; bit k: its k-th voxel from below.
+  struct Column {
+    std::uint16_t free{0};   ///< A ray passed.
+    std::uint16_t hit{0};    ///< A ray ended here.
+    std::uint16_t tried{0};  ///< The robot looked from a place that should show it, and saw nothing.
+    std::uint16_t seen() const { return free | hit; }
+  };
+  struct Tile {
+    int tx{}, ty{}, band{};
+    std::array<Column, kSide * kSide> columns{};
+  };
+
+  /// `range`: what lies farther from the sensor does not count as seen, m, (0, 60]. `tiles`: most tiles of
+  /// 2 x 2 x 8 m (128 bytes each); a ray that would need more of them ends.
+  explicit CoverageMap(double range = 12.0, std::size_t tiles = 65'536) : range_(range), most_(tiles) {}
+
+  /// Takes a scan. `points`: base_link, m, not finite where nothing was hit; `sensor`: the lidar in
+  /// base_link, m; `body`: base_link in the map's frame.
+  void add_scan(std::span<const Eigen::Vector3f> points, const Eigen::Vector3d& sensor, const Pose3& body);
+  /// Notes that a voxel cannot be seen from where it should be visible.
+  void set_tried(const CoverageVoxel& voxel);
+
+  const std::vector<Tile>& tiles() const { return tiles_; }
+  /// The column of a voxel; an empty one where nothing is known.
+  Column column(int x, int y, int band) const;
+  bool seen(const CoverageVoxel& v) const { return bit(column(v.x, v.y, band_of(v.z)).seen(), v.z); }
+  bool hit(const CoverageVoxel& v) const { return bit(column(v.x, v.y, band_of(v.z)).hit, v.z); }
+  /// Whether the straight line between two places passes no voxel that was hit, but for those it begins and
+  /// ends in.
+  bool visible(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  /// Volume of what was seen, m3.
+  double seen_volume() const;
+  double range() const { return range_; }
+  std::size_t memory() const;
+  void clear();
+
+  static CoverageVoxel voxel_at(const Eigen::Vector3d& place) {
+    return {static_cast<int>(std::floor(place.x() / kVoxel)),
+            static_cast<int>(std::floor(place.y() / kVoxel)),
+            static_cast<int>(std::floor(place.z() / kVoxel))};
+  }
+  static Eigen::Vector3d centre(const CoverageVoxel& v) {
+    return kVoxel * Eigen::Vector3d(v.x + 0.5, v.y + 0.5, v.z + 0.5);
+  }
+  static int band_of(int z) { return z >> 4; }
+  static bool bit(std::uint16_t mask, int z) { return (mask >> (z & 15)) & 1u; }
+
+ private:
+  static std::uint64_t key(int tx, int ty, int band);
+  int find(int tx, int ty, int band) const;
+  Column* column_to_write(const CoverageVoxel& v);
+  void add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+  double range_;
+  std::size_t most_;
+  std::vector<Tile> tiles_{};
+  std::unordered_map<std::uint64_t, int> index_{};  ///< Looked up only.
+  int last_{-1};                                    ///< Tile that was written last.
+};
+
+}  // namespace adit::nav

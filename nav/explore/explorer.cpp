@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/explore/explorer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace adit::nav {
+namespace {
+
+constexpr double kArrived = 0.5;      // m
+constexpr int kLooks = 1;             // Scans at a viewpoint before what it does not show is given up.
+constexpr double kSettled = 3.0;      // s without a frontier before the exploration is done.
+constexpr double kFirstPause = 60.0;  // s before a place that was blocked is tried again; doubles each time.
+constexpr double kSamePlace = 1.0;    // m
+constexpr std::size_t kViewpoints = 6;  // Of a frontier, the nearest to the robot.
+constexpr std::size_t kSamples = 8;     // Voxels of a frontier that are looked at for a viewpoint.
+constexpr std::array kAway{2.0, 4.0, 6.0, 8.0, 10.0};  // Of a viewpoint from its frontier, m.
+constexpr int kDirections = 8;
+constexpr std::size_t kMostDeferred = 64;
+
+std::size_t unseen_of(const CoverageMap& map, const Frontier& frontier) {
+  return static_cast<std::size_t>(
+      std::count_if(frontier.unseen.begin(), frontier.unseen.end(), [&map](const CoverageVoxel& v) {
+        const CoverageMap::Column column = map.column(v.x, v.y, CoverageMap::band_of(v.z));
+        return !CoverageMap::bit(static_cast<std::uint16_t>(column.seen() | column.tried), v.z);
+      }));
+}
+
+}  // namespace
+
+Explorer::Explorer(const Platform& platform, const ExploreParams& params)
+    : params_(params), sensor_(0, 0, platform.lidar().mounting.z), map_(params.range) {
+  const LidarConfig lidar = platform.lidar();
+  sensor_.head<2>() = Eigen::Vector2d(lidar.mounting.x, lidar.mounting.y);
+  steepest_ = std::tan(lidar.highest * M_PI / 180.0);
+  lowest_ = std::tan(lidar.lowest * M_PI / 180.0);
+}
+
+void Explorer::begin() {
+  goal_.reset();
+  deferred_.clear();
+  nothing_since_.reset();
+  scans_ = 0;
+}
+
+void Explorer::clear() {
+  begin();
+  map_.clear();
+  ever_ = false;
+}
+
+void Explorer::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body) {
+  map_.add_scan(points, sensor_, body);
+  ++scans_;
+}
+
+// Whether the lidar of a robot at a viewpoint sees a place, as far as the map tells.
+bool Explorer::in_view(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& target) const {
+  const Eigen::Vector3d from = viewpoint + Eigen::Vector3d(0, 0, sensor_.z());
+  const Eigen::Vector3d way = target - from;
+  const double across = way.head<2>().norm(), half = CoverageMap::kVoxel / 2;
+  return way.norm() < params_.range && way.z() - half < steepest_ * across + half &&
+         way.z() + half > lowest_ * across - half && map_.visible(from, target);
+}
+
+bool Explorer::satisfied(const Goal& goal) const {
+  return 4 * unseen_of(map_, goal.frontier) <= goal.frontier.unseen.size();
+}
+
+void Explorer::defer(const Eigen::Vector3d& place, double stamp_s) {
+  const auto same = std::find_if(deferred_.begin(), deferred_.end(), [&place](const Deferred& d) {
+    return (d.place - place).norm() < kSamePlace;
+  });
+  if (same != deferred_.end()) {
+    same->pause *= 2;
+    same->until = stamp_s + same->pause;
+    return;
+  }
+  if (deferred_.size() >= kMostDeferred)
+    deferred_.erase(std::min_element(deferred_.begin(), deferred_.end(),
+                                     [](const Deferred& a, const Deferred& b) { return a.until < b.until; }));
+  deferred_.push_back({place, stamp_s + kFirstPause, kFirstPause});
+}
+
+bool Explorer::is_deferred(const Eigen::Vector3d& place, double stamp_s) const {
+  return std::any_of(deferred_.begin(), deferred_.end(), [&](const Deferred& d) {
+    return stamp_s < d.until && (d.place - place).norm() < kSamePlace;
+  });
+}
+
+void Explorer::give_up_unseen(const Goal& goal) {
+  for (const CoverageVoxel& v : goal.frontier.unseen)
+    if (!map_.seen(v) && in_view(goal.place, CoverageMap::centre(v))) map_.set_tried(v);
+}
+
+std::vector<Explorer::Viewpoint> Explorer::viewpoints(GroundView& ground, const Frontiers& frontiers,
+                                                      const Eigen::Vector3d& place, double stamp_s) const {
+  std::vector<Viewpoint> all;
+  std::vector<Eigen::Vector3d> places;
+  for (std::size_t i = 0; i < frontiers.list.size(); ++i) {
+    const Frontier& frontier = frontiers.list[i];
+    const std::size_t stride = std::max<std::size_t>(1, frontier.unseen.size() / kSamples);
+    const auto shows = [&](const Eigen::Vector3d& viewpoint) {
+      std::size_t looked = 0, shown = 0;
+      for (std::size_t k = 0; k < frontier.unseen.size(); k += stride) {
+        ++looked;
+        shown += in_view(viewpoint, CoverageMap::centre(frontier.unseen[k]));
+      }
+      return 2 * shown >= looked;
+    };
+    places.clear();
+    const auto offer = [&](double x, double y) {
+      const auto z = ground.ground(x, y, std::min(place.z(), frontier.centre.z()));
+      if (z && !is_deferred({x, y, *z}, stamp_s)) places.emplace_back(x, y, *z);
+    };
+    offer(frontier.centre.x(), frontier.centre.y());
+    for (const double away : kAway)
+      for (int k = 0; k < kDirections; ++k) {
+        const double bearing = 2 * M_PI * k / kDirections;
+        offer(frontier.centre.x() + away * std::cos(bearing), frontier.centre.y() + away * std::sin(bearing));
+      }
+    std::sort(places.begin(), places.end(), [&place](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+      return (a - place).squaredNorm() < (b - place).squaredNorm();
+    });
+    std::size_t kept = 0;
+    for (const Eigen::Vector3d& p : places) {
+      if (kept == kViewpoints) break;
+      if (!shows(p) || !ground.standable(p)) continue;
+      all.push_back({p, i});
+      ++kept;
+    }
+  }
+  return all;
+}
+
+ExploreStep Explorer::step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {
+  if (goal_) {
+    const bool here = (goal_->place - place).head<2>().norm() < kArrived;
+    if (here && !goal_->arrived) {
+      goal_->arrived = true;
+      scans_ = 0;
+    }
+    if (satisfied(*goal_)) {
+      goal_.reset();
+    } else if (goal_->arrived && scans_ >= kLooks) {
+      give_up_unseen(*goal_);
+      goal_.reset();
+    } else if (blocked) {
+      defer(goal_->place, stamp_s);
+      goal_.reset();
+    }
+  }
+  const Frontiers frontiers = find_frontiers(map_, {.least_gain = params_.least_gain});
+  std::vector<Viewpoint> places = viewpoints(ground, frontiers, place, stamp_s);
+  std::vector<Eigen::Vector3d> goals;
+  goals.reserve(places.size() + 1);
+  for (const Viewpoint& v : places) goals.push_back(v.place);
+  if (goal_) goals.push_back(goal_->place);
+  const std::vector<float> costs = ground.costs(place, goals);
+  std::vector<bool> reachable(frontiers.list.size(), false);
+  std::size_t best = places.size();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!std::isfinite(costs[i])) continue;
+    reachable[places[i].frontier] = true;
+    if (best == places.size() || costs[i] < costs[best]) best = i;
+  }
+  if (goal_) {
+    const double present = costs.back();
+    const bool better = best < places.size() && costs[best] < params_.keep_cost * present &&
+                        costs[best] < present - params_.keep_gain;
+    if (better || !std::isfinite(present)) goal_.reset();
+  }
+  if (!goal_ && best < places.size()) goal_ = Goal{places[best].place, frontiers.list[places[best].frontier]};
+
+  ExploreStep step;
+  step.frontiers = static_cast<std::size_t>(std::count(reachable.begin(), reachable.end(), true));
+  step.unreachable = reachable.size() - step.frontiers;
+  step.dropped = frontiers.dropped;
+  step.volume = map_.seen_volume();
+  for (std::size_t i = 0; i < reachable.size(); ++i)
+    if (reachable[i]) step.open += frontiers.list[i].gain;
+  if (goal_) {
+    ever_ = true;
+    nothing_since_.reset();
+    step.state = ExploreState::exploring;
+    step.goal = goal_->place;
+    return step;
+  }
+  if (!nothing_since_) {
+    nothing_since_ = stamp_s;
+    scans_ = 0;
+  }
+  const bool settled = stamp_s - *nothing_since_ >= kSettled && scans_ > 0;
+  step.state = settled ? (ever_ ? ExploreState::done : ExploreState::no_viewpoint)
+               : ever_ ? ExploreState::exploring
+                       : ExploreState::starting;
+  return step;
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "nav/explore/coverage_map.hpp"
+#include "nav/explore/frontiers.hpp"
+
+namespace adit::nav {
+
+struct ExploreParams {
+  double range{12.0};  ///< What lies farther from the lidar does not count as seen, m, (0, 60].
+  double least_gain{
+      8.0};  ///< Frontiers with less volume behind them are left out, m3, [0, 100]. Chosen with test_explore.
+  double keep_cost{0.9};  ///< Another frontier is taken when it costs this share of the present one, (0, 1],
+  double keep_gain{2.0};  ///< and so many metres less, m, [0, 20].
+};
+
+/// The ground as a global planner knows it.
+class GroundView {
+ public:
+  virtual ~GroundView() = default;
+  /// Height of the ground at a place, of the floor nearest to z; nothing when it is not known.
+  virtual std::optional<double> ground(double x, double y, double z) = 0;
+  /// Whether the ground around a place is known to be free, as far as the body and a margin reach.
+  virtual bool standable(const Eigen::Vector3d& place) = 0;
+  /// Costs of the routes from one place to many through known space, m; infinite where none leads.
+  virtual std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) = 0;
+};
+
+enum class ExploreState : std::uint8_t {
+  starting,      ///< No plan was made yet.
+  exploring,     ///< On the way to `goal`.
+  no_viewpoint,  ///< There was never a place from which something unseen could be seen.
+  done,          ///< Everything that can be reached was seen.
+};
+
+struct ExploreStep {
+  ExploreState state{ExploreState::starting};
+  std::optional<Eigen::Vector3d>
+      goal{};                  ///< Place to drive to, on the ground, m. It may change before arrival.
+  std::size_t frontiers{0};    ///< Those that a route leads to.
+  std::size_t unreachable{0};  ///< Those that no known route leads to.
+  double volume{0};            ///< Volume that was seen, m3.
+  double open{0};              ///< Volume that is expected behind the frontiers that a route leads to, m3.
+  double dropped{0};           ///< Volume behind frontiers that were left out, m3.
+};
+
+/// Explores by driving to the nearest place from which something unseen can be seen, and goes on as soon as
+/// that was seen. Has no thread and no clock: the same scans and steps give the same goals. Frame: that of
+/// the poses, z up, m.
+class Explorer {
+ public:
+  explicit Explorer(const Platform& platform, const ExploreParams& params = {});
+
+  /// Takes a scan. `points`: base_link, m; `body`: base_link, on the ground.
+  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body);
+  /// Begins an exploration: what was seen stays seen, and places that were blocked may be tried again.
+  void begin();
+  /// To be called after scans, about once a second and when a goal is blocked. `place`: the robot on the
+  /// ground; `stamp_s`: s, not decreasing; `blocked`: no way to the goal of the last step was found.
+  ExploreStep step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked);
+  const CoverageMap& coverage() const { return map_; }
+  std::size_t memory() const { return map_.memory(); }
+  /// Forgets everything, as after a jump of the poses.
+  void clear();
+
+ private:
+  struct Goal {
+    Eigen::Vector3d place;
+    Frontier frontier;
+    bool arrived{false};
+  };
+  /// A place that was found blocked: it is no goal until a time that doubles with each block.
+  struct Deferred {
+    Eigen::Vector3d place;
+    double until, pause;
+  };
+  struct Viewpoint {
+    Eigen::Vector3d place;
+    std::size_t frontier;
+  };
+
+  bool in_view(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& target) const;
+  bool satisfied(const Goal& goal) const;
+  void defer(const Eigen::Vector3d& place, double stamp_s);
+  bool is_deferred(const Eigen::Vector3d& place, double stamp_s) const;
+  void give_up_unseen(const Goal& goal);
+  std::vector<Viewpoint> viewpoints(GroundView& ground, const Frontiers& frontiers,
+                                    const Eigen::Vector3d& place, double stamp_s) const;
+
+  ExploreParams params_;
+  Eigen::Vector3d sensor_;  ///< The lidar in base_link, m.
+  double steepest_;         ///< Tangent of the highest elevation that the lidar sees.
+  double lowest_;           ///< Tangent of the lowest one.
+  CoverageMap map_;
+  std::optional<Goal> goal_{};
+  std::vector<Deferred> deferred_{};
+  int scans_{0};      ///< Since the robot arrived at the goal, or since nothing was left.
+  bool ever_{false};  ///< A plan had a goal.
+  std::optional<double> nothing_since_{};
+};
+
+}  // namespace adit::nav

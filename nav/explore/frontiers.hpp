@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "nav/explore/coverage_map.hpp"
+
+namespace adit::nav {
+
+/// Free space beside space that nobody saw: something to look at.
+struct Frontier {
+  std::vector<CoverageVoxel> unseen{};  ///< The voxels beside it, in the order of the map's tiles.
+  Eigen::Vector3d centre{0, 0, 0};      ///< Centre of the free voxel nearest to the middle of the group, m.
+  double gain{0};                       ///< Volume that is expected behind it, m3.
+};
+
+/// What `find_frontiers` leaves out, and in which part of the space it looks.
+struct FrontierLimits {
+  double least_gain{1.0};  ///< A frontier with less behind it is left out, m3.
+  int least_voxels{3};     ///< The same for one of fewer free voxels: holes between beams.
+  int across{6};           ///< A group spreads over so many columns at most.
+};
+
+/// The frontiers of a map and the volume of those that were left out.
+struct Frontiers {
+  std::vector<Frontier> list{};
+  double dropped{0};  ///< m3.
+};
+
+/// Groups free voxels with an unseen voxel beside them (Yamauchi: *A frontier-based approach for autonomous
+/// exploration*, 1997), column by column, in the order of the map's tiles: the same map gives the same list.
+/// Voxels that were tried do not count as unseen.
+Frontiers find_frontiers(const CoverageMap& map, const FrontierLimits& limits);
+
+}  // namespace adit::nav

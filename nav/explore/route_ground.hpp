@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cmath>
+
+#include "nav/explore/explorer.hpp"
+#include "nav/route/route_planner.hpp"
+
+namespace adit::nav {
+
+/// The ground as the robot's own global planner knows it, which must outlive this.
+class RouteGround final : public GroundView {
+ public:
+  RouteGround(RoutePlanner& planner, const Platform& platform)
+      : planner_(planner), reach_(platform.width / 2 + kMargin) {}
+  std::optional<double> ground(double x, double y, double z) override { return planner_.ground(x, y, z); }
+  bool standable(const Eigen::Vector3d& place) override {
+    for (int k = 0; k < kSides; ++k) {
+      const double bearing = 2 * M_PI * k / kSides;
+      const GroundCell* cell =
+          planner_.map().cell(route_cell(place.x() + reach_ * std::cos(bearing)),
+                              route_cell(place.y() + reach_ * std::sin(bearing)), place.z());
+      if (cell == nullptr || !cell->known || cell->blocked) return false;
+    }
+    return true;
+  }
+  std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) override {
+    return planner_.costs(from, goals);
+  }
+
+ private:
+  static constexpr double kMargin = 0.1;  ///< Free on each side of the body, m.
+  static constexpr int kSides = 8;
+
+  RoutePlanner& planner_;
+  double reach_;  ///< m
+};
+
+}  // namespace adit::nav
