@@ -56,7 +56,7 @@ void Explorer::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& bo
   ++scans_;
 }
 
-// Whether the lidar of a robot at a viewpoint sees a place, as far as the map tells.
+// Whether the lidar of a robot at a viewpoint sees a place, according to the map.
 bool Explorer::in_view(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& target) const {
   const Eigen::Vector3d from = viewpoint + Eigen::Vector3d(0, 0, sensor_.z());
   const Eigen::Vector3d way = target - from;

@@ -11,11 +11,11 @@
 namespace adit::nav {
 
 struct ExploreParams {
-  double range{12.0};  ///< What lies farther from the lidar does not count as seen, m, (0, 60].
-  double least_gain{
-      8.0};  ///< Frontiers with less volume behind them are left out, m3, [0, 100]. Chosen with test_explore.
-  double keep_cost{0.9};  ///< Another frontier is taken when it costs this share of the present one, (0, 1],
-  double keep_gain{2.0};  ///< and so many metres less, m, [0, 20].
+  double range{12.0};  ///< Space farther from the lidar does not count as seen, m, (0, 60].
+  /// Frontiers with less unseen volume behind them are ignored, m3, [0, 100]. Chosen with test_explore.
+  double least_gain{8.0};
+  double keep_cost{0.9};  ///< Another frontier must cost less than this fraction of the present one, (0, 1].
+  double keep_gain{2.0};  ///< Another frontier must cost this much less than the present one, m, [0, 20].
 };
 
 /// The ground as a global planner knows it.

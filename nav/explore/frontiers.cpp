@@ -10,7 +10,7 @@ namespace adit::nav {
 namespace {
 
 constexpr std::array<std::pair<int, int>, 4> kBeside{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-constexpr int kDeep = 3;  // Voxels: so far behind a frontier space is counted that nobody saw.
+constexpr int kDeep = 3;  // Depth of the unseen space that counts behind a frontier, voxels.
 
 /// Part of a column: its free voxels that have an unseen one beside them.
 struct Edge {
@@ -55,7 +55,7 @@ std::vector<Edge> find_edges(const CoverageMap& map) {
   return edges;
 }
 
-/// The voxels behind a frontier that nobody saw, kDeep deep at most.
+/// The unseen voxels behind a frontier, at most kDeep deep.
 double gain_behind(const CoverageMap& map, const std::vector<CoverageVoxel>& unseen) {
   std::unordered_set<CoverageVoxel, Hash> known(unseen.begin(), unseen.end());
   std::vector<CoverageVoxel> layer = unseen, next;

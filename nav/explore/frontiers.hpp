@@ -7,7 +7,7 @@
 
 namespace adit::nav {
 
-/// Free space beside space that nobody saw: something to look at.
+/// The border between free and unseen space: a place to look at.
 struct Frontier {
   std::vector<CoverageVoxel> unseen{};  ///< The voxels beside it, in the order of the map's tiles.
   Eigen::Vector3d centre{0, 0, 0};      ///< Centre of the free voxel nearest to the middle of the group, m.

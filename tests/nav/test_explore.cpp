@@ -20,7 +20,7 @@ Platform explorer_platform() {
   return p;
 }
 
-/// n x n blocks of 8 m between streets of 3.2 m, closed all around.
+/// A square of `n` blocks on each side: 8 m wide, between streets of 3.2 m, closed all around.
 BoxWorld blocks(int n) {
   BoxWorld world;
   world.ceiling = 3.0;
