@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <algorithm>
+
+namespace adit::nav {
+
+/// Keeps the distance of a follower to its predecessor, from outline to outline along the path.
+///
+/// The wanted gap grows with speed (constant time headway), and the speed of the predecessor is fed forward:
+/// v = v_pred + gain * (gap - standstill - headway * v), solved for v. The transfer from the predecessor's
+/// speed to the follower's is (s + k) / ((1 + k h) s + k), whose magnitude is at most 1 at every frequency: a
+/// change of speed does not grow along the convoy (string stability, Swaroop and Hedrick 1996).
+struct Spacing {
+  double standstill{1.5};  ///< Gap at rest, m.
+  double headway{0.8};     ///< h, s
+  double gain{0.5};        ///< k, 1/s
+
+  double wanted(double speed) const { return standstill + headway * speed; }
+  /// The speed for a gap (m) to a predecessor that drives at `predecessor` (m/s, negative: towards the
+  /// follower), within [0, max].
+  double speed(double gap, double predecessor, double max) const {
+    const double v = (predecessor + gain * (gap - standstill)) / (1.0 + gain * headway);
+    return std::clamp(v, 0.0, max);
+  }
+};
+
+}  // namespace adit::nav
