@@ -128,6 +128,8 @@ void Station::Impl::run(std::uint64_t handle, const Request& request, Done done)
   }
   if (request.verb == verb("down")) return down(std::move(done));
   if (request.verb == verb("stop") && request.all) return stop_all(request, std::move(done));
+  if (request.verb == verb("convoy start")) return start_convoy(handle, request, std::move(done));
+  if (request.verb == verb("convoy stop")) return stop_convoy(handle, request, std::move(done));
   command_robots(handle, request, std::move(done));
 }
 
@@ -197,15 +199,20 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
 void Station::Impl::command_robots(std::uint64_t handle, const Request& request, Done done) {
   auto gather = std::make_shared<Gather>();
   gather->request = request;
-  gather->answers.resize(request.robots.size());
-  gather->missing = request.robots.size();
   gather->done = std::move(done);
-  for (std::size_t i = 0; i < request.robots.size(); ++i) command_robot(handle, request.robots[i], gather, i);
+  send_to_all(handle, gather);
+}
+
+void Station::Impl::send_to_all(std::uint64_t handle, const std::shared_ptr<Gather>& gather) {
+  const std::vector<std::string>& robots = gather->request.robots;
+  gather->answers.resize(robots.size());
+  gather->missing = robots.size();
+  for (std::size_t i = 0; i < robots.size(); ++i) command_robot(handle, robots[i], gather, i);
 }
 
 void Station::Impl::command_robot(std::uint64_t handle, const std::string& robot,
                                   const std::shared_ptr<Gather>& gather, std::size_t index) {
-  const Request& request = gather->request;
+  const Request& request = gather->sent ? *gather->sent : gather->request;
   const auto ended = [this, gather, index](const Answer& answer) { gathered(gather, index, answer); };
   if (!fleet_.robot(robot) && request.verb != verb("stop"))
     return ended({.robot = robot, .reason = Reason::unknown_robot, .text = unknown_text(fleet_)});

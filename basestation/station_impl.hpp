@@ -17,7 +17,8 @@ namespace adit::station {
 /// Collects the answers of one command line to several robots.
 struct Gather {
   command::Request request{};
-  std::vector<Answer> answers{};  ///< In the order of the robots in the command.
+  std::optional<command::Request> sent{};  ///< What each robot is sent, if not the request itself.
+  std::vector<Answer> answers{};           ///< In the order of the robots in the command.
   std::size_t missing{};
   Station::Done done{};
 };
@@ -77,8 +78,14 @@ class Station::Impl {
   void run(std::uint64_t handle, const command::Request& request, Done done);
   void answer_query(const command::Request& request, const Done& done);
   void command_robots(std::uint64_t handle, const command::Request& request, Done done);
+  /// Sends the gather's command to every robot of its request.
+  void send_to_all(std::uint64_t handle, const std::shared_ptr<Gather>& gather);
   void command_robot(std::uint64_t handle, const std::string& robot, const std::shared_ptr<Gather>& gather,
                      std::size_t index);
+  // Defined in convoy.cpp.
+  /// Gives each robot its place; if one refuses, the others leave again.
+  void start_convoy(std::uint64_t handle, const command::Request& request, Done done);
+  void stop_convoy(std::uint64_t handle, const command::Request& request, Done done);
   void stop_all(const command::Request& request, Done done);
   void ask_stop(StopAll& all, const std::string& robot);
   void finish_stop_all();

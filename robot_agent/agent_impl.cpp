@@ -192,6 +192,12 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
        },
        [&e, &strand](const Id& station, std::span<const std::uint64_t> ids) {
          e.findings->acknowledged(station, ids, strand.now());
+       },
+       [&e, &strand](const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from) {
+         if (beacon)
+           e.peers.hear_beacon(*beacon, from, strand.now());
+         else
+           e.peers.refuse_beacon(BeaconFault::malformed);
        }});
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/time/random.hpp"
 #include "robot_agent/behaviour/modes/external.hpp"
+#include "robot_agent/convoy/without_members.hpp"
 
 namespace adit::agent {
 namespace {
@@ -45,6 +46,7 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
       navigation_(navigation_params(params), command, log(), frames_, context.planner, context.router.get(),
                   navigation_outputs()),
       mux_(navigation_),
+      convoy_({params.name, params.platform.length, params.platform.max_speed}, convoy_inputs()),
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, frames_, context.instances++), behaviour_, command_outputs()),
       notices_(params.name, *context.notifier, log(), [this] { return commands_.authority().holder_name(); }),
@@ -110,7 +112,9 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
   // The yaw is the odometry's; how the body leans the IMU knows better.
   if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
-  navigation_.add_scan(std::move(scan), waiting.received, now());
+  const auto for_route = without_members(scan, frames_.T_map_odom() * scan->body.planar(), convoy_.others(),
+                                         context_.peers, now());
+  navigation_.add_scan(std::move(scan), waiting.received, now(), for_route);
 }
 
 void Agent::CommandComponent::battery(float charge) {
@@ -231,6 +235,7 @@ Result<void> Agent::CommandComponent::on_start() {
   timers_.push_back(every(kStatePeriod, [this] {
     telemetry_.send_state(now(), safeguards_.charge());
     context_.directory.tick(now());
+    send_beacon(now());
   }));
   timers_.push_back(every(kStatusPeriod, [this] {
     commands_.tick(now());
@@ -253,7 +258,9 @@ void Agent::CommandComponent::beat() {
   watch_driver();
   watch_namesakes(at);
   listen_first(at);
+  convoy_.tick(at);
   behaviour_.tick(at);
+  navigation_.limit_speed(convoy_.speed_limit(behaviour_.mode().name == "convoy_follow"));
   mux_.step(at);
   navigation_.step(at);
   keep();
@@ -301,6 +308,26 @@ void Agent::CommandComponent::send_findings() {
     context_.radio->send(*f, context_.findings->size(), context_.findings->overflowed());
 }
 
+void Agent::CommandComponent::send_beacon(Time at) {
+  if (!frames_.initialised()) return;
+  const wire::LinkProfile* link = context_.wire->sender().link;
+  double rate = BeaconRate::rate(link ? link->bandwidth : 0.0, context_.peers.robots_present(), convoy_.in());
+  if (!convoy_.in()) rate /= context_.rate.stretch();  // A full link.
+  if (!beacon_rate_.due(rate, at, kStatePeriod)) return;
+  TeamBeacon beacon{};
+  beacon.robot = params_.name;
+  beacon.start = commands_.authority().epoch().start;
+  beacon.seq = ++beacons_;
+  beacon.pose = frames_.T_map_base();
+  beacon.z = frames_.height();
+  beacon.twist = frames_.twist();
+  beacon.mode = behaviour_.mode().name;
+  beacon.stopped = commands_.stops().any();
+  beacon.holder = commands_.authority().holder_name();
+  beacon.convoy = convoy_.part(beacon.seq);
+  context_.radio->send(beacon);
+}
+
 Facts Agent::CommandComponent::sense(Time now) const {
   Facts f{};
   f.driver_alive = frames_.alive(now);
@@ -344,7 +371,18 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
     const double speed = std::hypot(frames_.twist().vx, frames_.twist().vy);
     return speed * (seconds(kBeat) + speed / (2 * params_.platform.max_acceleration));
   };
+  inputs.convoy = &convoy_;
   return inputs;
+}
+
+Convoy::Inputs Agent::CommandComponent::convoy_inputs() {
+  return {context_.peers,
+          [this]() -> std::optional<Eigen::Vector3d> {
+            if (!frames_.initialised()) return std::nullopt;
+            const Pose2 pose = frames_.T_map_base();
+            return Eigen::Vector3d(pose.x, pose.y, frames_.height());
+          },
+          [this](const Notice& notice) { notices_.send_to_holder(notice); }};
 }
 
 Behaviour::Outputs Agent::CommandComponent::behaviour_outputs() {

@@ -10,6 +10,7 @@
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/common/rate_limit.hpp"
+#include "robot_agent/convoy/convoy.hpp"
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
 #include "robot_agent/discovery/peer_table.hpp"
@@ -27,6 +28,7 @@
 #include "robot_agent/state/restored.hpp"
 #include "robot_agent/state/state_keeper.hpp"
 #include "robot_agent/supervisor/agent_supervisor.hpp"
+#include "robot_agent/team/beacon_rate.hpp"
 #include "robot_agent/telemetry/telemetry.hpp"
 
 namespace adit::agent {
@@ -106,6 +108,8 @@ class Agent::CommandComponent : public Component {
   /// Keeps the robot in hold while it gives way to another one of its name.
   void watch_namesakes(Time at);
   void send_findings();
+  /// Sends this robot's state to the other robots, when the link allows.
+  void send_beacon(Time at);
   Facts sense(Time now) const;
   CommandInterface::Outputs command_outputs();
   /// Passes the holder to the table of peers, which never evicts it.
@@ -113,12 +117,14 @@ class Agent::CommandComponent : public Component {
   Behaviour::Inputs behaviour_inputs();
   Behaviour::Outputs behaviour_outputs();
   Navigation::Outputs navigation_outputs();
+  Convoy::Inputs convoy_inputs();
 
   AgentParams params_;
   Context& context_;
   Frames frames_;
   Navigation navigation_;
   Mux mux_;
+  Convoy convoy_;
   Behaviour behaviour_;
   CommandInterface commands_;
   Notices notices_;
@@ -131,6 +137,8 @@ class Agent::CommandComponent : public Component {
   RivalWatch rivals_;
   bool gives_way_{};                     ///< It gives way to another robot of its name.
   RateLimit<bool> namesakes_told_{10s};  // The key is `gives_way_`.
+  BeaconRate beacon_rate_{};
+  std::uint32_t beacons_{};  ///< Number of beacons sent.
   std::vector<Timer> timers_{};
 };
 

@@ -207,6 +207,10 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   robot->goal_phase = phase <= 4 ? static_cast<GoalPhase>(phase) : GoalPhase::none;
   robot->goal_id = sample.goal_id();
   robot->goal = {sample.goal()[0], sample.goal()[1], sample.goal()[2]};
+  robot->convoy.clear();
+  for (const std::string& member : sample.convoy())
+    if (robot->convoy.size() < command::kMaxConvoy && command::valid_name(member))
+      robot->convoy.push_back(member);
   robot->choices.clear();
   for (const auto& option : sample.modes()) {
     if (robot->choices.size() == 16) break;

@@ -107,6 +107,7 @@ struct RobotView {
   std::uint32_t goal_id{};
   std::array<double, 3> goal{};
   std::vector<ModeChoice> choices{};
+  std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
 
   std::vector<ComponentView> components{};
 };

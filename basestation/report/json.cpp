@@ -62,6 +62,7 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
            {"goal_state", to_string(robot.goal_phase)},
            {"goal_id", robot.goal_id},
            {"modes", modes},
+           {"convoy", robot.convoy},
            {"troubles", troubles}};
   if (robot.described) out.update(abilities_json(robot));
   if (robot.located) {

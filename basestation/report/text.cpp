@@ -128,6 +128,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   out += "  mode     " + mode + "\n";
   out += "  stops    " + stops_text(robot) + "\n";
   out += "  goal     " + goal_text(robot) + "\n";
+  if (!robot.convoy.empty()) out += "  convoy   " + command::joined(robot.convoy, "") + "\n";
   if (robot.located)
     out += "  pose     x " + fixed(robot.x, 2) + " y " + fixed(robot.y, 2) + " z " + fixed(robot.z, 2) +
            " m, yaw " + fixed(robot.yaw * 180.0 / std::numbers::pi, 1) + " degrees\n  speed    " +

@@ -139,6 +139,8 @@ class Reader {
     if (argument.type == Type::robots) {
       if (auto checked = check_word(row_, argument, word); !checked) return checked;
       auto& robots = request_.robots;
+      if (argument.distinct && std::find(robots.begin(), robots.end(), word) != robots.end())
+        return wrong(row_, word + " is named twice");
       if (std::find(robots.begin(), robots.end(), word) == robots.end()) robots.push_back(word);
       return {};
     }

@@ -11,7 +11,8 @@ inline constexpr double kMaxDuration = 3600.0;  ///< Largest duration, s.
 inline constexpr std::uint8_t kMaxRobots = 64;  ///< Largest number of robots of one command.
 
 /// Modes that completion proposes. The robot checks the name of a mode against its own table of modes.
-inline constexpr std::string_view kUsualModes = "hold|manual|smart_joystick|waypoint|explore|external";
+inline constexpr std::string_view kUsualModes =
+    "hold|manual|smart_joystick|waypoint|explore|external|convoy_follow";
 
 inline constexpr Argument kRobot{.name = "R", .type = Type::robots, .what = "a robot"};
 inline constexpr Argument kRobots{
@@ -32,6 +33,18 @@ constexpr Argument coordinate(std::string_view name, std::uint8_t least = 1) {
 constexpr Argument speed(std::string_view name, std::string_view unit) {
   return {.name = name, .type = Type::number, .minimum = -kMaxSpeed, .maximum = kMaxSpeed, .unit = unit};
 }
+/// Options of the rows that start a convoy.
+inline constexpr std::array<Option, 4> kConvoyOptions{
+    Option{
+        .name = "--gap",
+        .values = {Argument{.name = "M", .type = Type::number, .minimum = 0.5, .maximum = 20.0, .unit = "m"}},
+        .preset = 1.5},
+    Option{.name = "--speed",
+           .values = {Argument{
+               .name = "V", .type = Type::number, .minimum = 0.1, .maximum = kMaxSpeed, .unit = "m/s"}}}};
+inline constexpr std::uint8_t kMaxConvoy = 8;               ///< Largest number of robots of a convoy.
+inline constexpr double kMaxConvoyId = 9007199254740992.0;  ///< 2^53: a number holds integers up to here.
+
 constexpr Argument component(std::string_view choices) {
   return {.name = "COMPONENT", .type = Type::name, .what = "a component", .choices = choices};
 }
@@ -243,6 +256,39 @@ inline constexpr std::array kTable{
         .summary = "set where a robot in hold is in the map: m, m and rad; moves nothing",
         .example = "pose r1 1 2 0.5",
         .done = "at {X.2} {Y.2}, heading {YAW.2} rad"},
+    CommandInfo{
+        .name = "convoy start",
+        .arguments = {Argument{.name = "start", .type = Type::keyword},
+                      Argument{.name = "L", .type = Type::robots, .what = "a leader", .distinct = true},
+                      Argument{.name = "F",
+                               .type = Type::robots,
+                               .what = "a follower",
+                               .max_count = kMaxConvoy - 1,
+                               .distinct = true}},
+        .options = kConvoyOptions,
+        .runs = Runs::station,
+        .danger = Danger::some,
+        .conditions = {.holder = true},
+        .summary = "robots F follow along the path of L, in this order; moves no leader",
+        .details = "all or none: see [team.md](team.md)",
+        .example = "convoy start r1 r2 r3 --speed 0.8",
+        .done = "in the convoy"},
+    CommandInfo{.name = "convoy stop",
+                .arguments = {Argument{.name = "stop", .type = Type::keyword}, kRobot},
+                .runs = Runs::station,
+                .conditions = {.holder = true},
+                .summary = "end the convoy of a robot: followers hold, the leader stays in its mode",
+                .example = "convoy stop r1",
+                .done = "left the convoy"},
+    CommandInfo{.name = "peeloff",
+                .arguments = {kRobots},
+                .number = 16,
+                .conditions = {.holder = true},
+                .line = Line::steering,
+                .summary = "take a robot out of its convoy; those behind it close up",
+                .example = "peeloff r2",
+                .done = "left the convoy",
+                .label = "Peel off"},
     CommandInfo{.name = "restart",
                 .arguments = {kRobot, component("agent|command|planner|router|sensors")},
                 .number = 10,
@@ -275,6 +321,23 @@ inline constexpr std::array kTable{
                 .summary = "a completion script for the shell",
                 .details = "`source <(basestation completion bash)`",
                 .example = "completion bash"},
+    CommandInfo{
+        .name = "join",
+        .arguments = {Argument{.name = "ROBOT",
+                               .type = Type::name,
+                               .what = "a robot",
+                               .min_count = 2,
+                               .max_count = kMaxConvoy},
+                      Argument{.name = "ID", .type = Type::number, .minimum = 1.0, .maximum = kMaxConvoyId}},
+        .options = kConvoyOptions,
+        .runs = Runs::nobody,
+        .number = 15,
+        .danger = Danger::some,
+        .conditions = {.holder = true, .mode = "convoy_follow"},
+        .line = Line::steering,
+        .summary = "gives a robot its place in a convoy; `convoy start` sends it to each of them",
+        .example = "join",
+        .done = "in the convoy"},
     CommandInfo{.name = "query",
                 .runs = Runs::nobody,
                 .number = 9,

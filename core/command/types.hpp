@@ -37,6 +37,7 @@ struct Argument {
   std::string_view unlimited{};             ///< A word that means an infinite number.
   std::uint8_t min_count{1}, max_count{1};  ///< Number of values; 0 and 1: optional.
   std::uint8_t group{1};                    ///< Numbers that belong together: 2 for points X Y.
+  bool distinct{false};                     ///< For robots: a name typed twice is an error.
   bool all{false};                          ///< For robots: the word `all` means every robot that is heard.
 
   constexpr explicit operator bool() const { return type != Type::none; }

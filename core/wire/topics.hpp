@@ -17,6 +17,7 @@ class Health;
 class LinkReport;
 class Finding;
 class FindingsAck;
+class TeamBeacon;
 }  // namespace adit::radio
 namespace geometry_msgs::msg {
 class Twist;
@@ -69,6 +70,10 @@ inline constexpr Topic<radio::Finding> kFinding{
     {"adit/finding", "adit::radio::v1::Finding", QosClass::bulk, 8, kUnkeyed, 1024}};
 inline constexpr Topic<radio::FindingsAck> kFindingsAck{
     {"adit/findings_ack", "adit::radio::v1::FindingsAck", QosClass::bulk, 8, kUnkeyed, 1024}};
+
+/// Robots to robots: position, motion, and their parts in what several robots do together.
+inline constexpr Topic<radio::TeamBeacon> kTeam{
+    {"adit/team", "adit::radio::v1::TeamBeacon", QosClass::state, 1, kKeyed, 512}};
 
 /// Topics of the robot domain: ROS 2 names and types, for drivers.
 inline constexpr Topic<geometry_msgs::msg::Twist> kCmdVel{

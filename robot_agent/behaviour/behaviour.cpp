@@ -21,8 +21,9 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
   for (const ModeRow& row : table().rows()) {
     Mode& mode = modes_.emplace_back(Mode{row});
     if (row.moves())
-      mode.module = row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
-                              inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping});
+      mode.module =
+          row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
+                    inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping, inputs_.convoy});
   }
 }
 
@@ -117,7 +118,40 @@ void Behaviour::stop_changed(bool stopped, Time now) {
   tick(now);
 }
 
+Result<void> Behaviour::join_convoy(const ConvoyOrder& order, Time now) {
+  const ModeRow* row = table().find("convoy_follow");
+  if (!inputs_.convoy || !row) return refuse(Reason::mode_not_installed, "convoy");
+  if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, "convoy");
+  const auto before = inputs_.convoy->role();
+  if (const auto started = inputs_.convoy->start(order); !started) return started;
+  const bool leads = inputs_.convoy->leads();
+  const Facts f = facts(now);
+  const Reason leader_reason = f.stopped     ? Reason::stopped
+                               : f.localised ? Reason::none
+                                             : Reason::no_localisation;
+  const Reason reason = leads ? leader_reason : guard_.admit(*row, Commander::holder, f);
+  if (reason != Reason::none) {
+    inputs_.convoy->set_role(before);
+    return refuse(reason, "convoy");
+  }
+  ++holder_requests_;
+  if (!leads) return enter(*row, now);
+  tick(now);  // The leader stays in its mode.
+  return {};
+}
+
+Result<void> Behaviour::leave_convoy(Time now) {
+  if (!inputs_.convoy) return refuse(Reason::not_in_convoy, "convoy");
+  const bool followed = guard_.admitted().name == "convoy_follow";
+  if (const auto left = inputs_.convoy->leave(); !left) return left;
+  if (followed) return request_mode(std::string(table().hold().name), now);
+  tick(now);
+  return {};
+}
+
 void Behaviour::holder_changed(Time now) {
+  // The order to follow was the former holder's (rule 8).
+  if (inputs_.convoy) (void)inputs_.convoy->leave();
   stick_.forget();
   idle_since_ = now;
   idle_told_ = false;
@@ -245,6 +279,7 @@ BehaviourView Behaviour::view() const {
   v.goal_state = p.state;
   v.goal_id = p.goal_id;
   v.goal = p.goal;
+  if (inputs_.convoy) v.convoy = inputs_.convoy->order();
   v.reason = stopped_                           ? Reason::stopped
              : p.state == GoalState::blocked    ? p.reason
              : v.moving_allowed                 ? Reason::none

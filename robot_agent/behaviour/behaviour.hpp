@@ -9,6 +9,7 @@
 #include "robot_agent/behaviour/motion_guard.hpp"
 #include "robot_agent/behaviour/stick.hpp"
 #include "robot_agent/command/requests.hpp"
+#include "robot_agent/convoy/convoy.hpp"
 
 namespace adit::agent {
 
@@ -27,6 +28,7 @@ struct BehaviourView {
   GoalState goal_state{GoalState::none};
   std::uint32_t goal_id{};
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};
+  std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
   bool operator==(const BehaviourView&) const = default;
 };
 
@@ -50,6 +52,7 @@ class Behaviour : public Requests {
     /// Sets the robot's pose in the map. Errors: no_localisation.
     std::function<Result<void>(const Pose2&)> set_pose{};
     std::function<double()> stopping{};  ///< Metres that the robot needs to stop. Empty: always 0.
+    Convoy* convoy{};                    ///< Must outlive the behaviour. Null: the robot has no team.
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.
@@ -69,6 +72,8 @@ class Behaviour : public Requests {
   /// Number of accepted mode and goal requests of holders since the start.
   std::uint64_t holder_requests() const { return holder_requests_; }
   Result<void> set_pose(const Pose2& pose, Time now) override;
+  Result<void> join_convoy(const ConvoyOrder& order, Time now) override;
+  Result<void> leave_convoy(Time now) override;
   void stop_changed(bool stopped, Time now) override;
   void holder_changed(Time now) override;
   void holder_restarted(Time now) override;

@@ -11,6 +11,8 @@
 
 namespace adit::agent {
 
+class Convoy;
+
 /// Maximum distance of goals and robot poses from the map's origin, m.
 inline constexpr double kFarthestPlace = 10'000.0;
 
@@ -36,6 +38,7 @@ struct ModeContext {
   std::function<std::optional<Pose2>()> pose{};
   /// Metres that the robot needs to stop.
   std::function<double()> stopping{};
+  Convoy* convoy{};  ///< The robot's place in a convoy; null: it has no team.
 };
 
 /// One mode of the mode table: turns its input into motions for the mux.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "robot_agent/behaviour/modes/convoy_follow.hpp"
 #include "robot_agent/behaviour/modes/external.hpp"
 #include "robot_agent/behaviour/modes/manual.hpp"
 #include "robot_agent/behaviour/modes/waypoint.hpp"
@@ -80,11 +81,12 @@ std::vector<ModeRow> standard_modes() {
        .make = ExternalMode::make,
        .output_lifetime = kMaxVelocityAge,
        .optional = true},
+      ConvoyFollowMode::row(),
   };
 }
 
 /// Modes of the design that have no module yet.
-constexpr std::array<std::string_view, 3> kPlannedModes{"explore", "convoy_follow", "get_out"};
+constexpr std::array<std::string_view, 2> kPlannedModes{"explore", "get_out"};
 
 }  // namespace
 

@@ -95,7 +95,8 @@ class ModeTable {
   ModeTable(const ModeTable&) = delete;
   ModeTable& operator=(const ModeTable&) = delete;
 
-  /// The modes of this version: hold, manual, smart_joystick, waypoint, external.
+  /// The modes of this version: hold, manual, smart_joystick, waypoint, external,
+  /// convoy_follow.
   static const ModeTable& shipped();
 
   const std::vector<ModeRow>& rows() const { return rows_; }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "robot_agent/convoy/convoy.hpp"
+
 namespace adit::agent {
 namespace {
 
@@ -20,6 +22,15 @@ Result<void> supervised(const Function& function, const Arguments&... arguments)
 /// effect that the first command did not have.
 bool is_question(const command::CommandInfo& row) {
   return !row.conditions.holder && row.line == command::Line::none;
+}
+
+ConvoyOrder convoy_of(const command::Request& request) {
+  ConvoyOrder order{};
+  order.convoy = static_cast<std::uint64_t>(request.number("ID"));
+  if (const auto* names = request.find("ROBOT")) order.robots = names->words;
+  order.gap = request.number("--gap");
+  order.speed = request.number("--speed");
+  return order;
 }
 
 }  // namespace
@@ -146,6 +157,10 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
     case verb("pose"):
       return outcome(
           requests_.set_pose({c.request.number("X"), c.request.number("Y"), c.request.number("YAW")}, now));
+    case verb("join"):
+      return asked(c, requests_.join_convoy(convoy_of(c.request), now));
+    case verb("peeloff"):
+      return outcome(requests_.leave_convoy(now));
     case verb("lock"):
       authority_.lock();
       outputs_.changed();

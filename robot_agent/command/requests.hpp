@@ -9,6 +9,8 @@
 
 namespace adit::agent {
 
+struct ConvoyOrder;
+
 /// The interface through which accepted commands act on the robot. Every call takes effect before it returns,
 /// so that the output is zero before a stop is acknowledged.
 class Requests {
@@ -24,6 +26,11 @@ class Requests {
   /// Sets the robot's pose, map frame; moves nothing. Errors: wrong_mode outside hold, out_of_range,
   /// no_localisation.
   virtual Result<void> set_pose(const Pose2& pose, Time now) = 0;
+  /// Takes a place in a convoy; a follower enters convoy_follow, the leader stays in its mode. Errors: those
+  /// of Convoy::start(), and the first condition that does not hold.
+  virtual Result<void> join_convoy(const ConvoyOrder& order, Time now) = 0;
+  /// Leaves the convoy; a follower falls to hold. Errors: not_in_convoy.
+  virtual Result<void> leave_convoy(Time now) = 0;
   virtual void stop_changed(bool stopped, Time now) = 0;
   /// Called when the holder changed, also when it released the robot.
   virtual void holder_changed(Time now) = 0;

@@ -8,7 +8,7 @@
 namespace adit::agent {
 namespace {
 
-/// All fields except the ages.
+/// All fields except the ages and the beacon.
 auto content(const Peer& p) {
   return std::tie(p.name, p.id, p.station, p.participant, p.has_capabilities, p.protocol, p.software,
                   p.platform, p.length, p.width, p.height, p.max_speed, p.modes, p.place, p.namesake,
@@ -78,6 +78,7 @@ bool PeerTable::put(Peer peer, Time now) {
   peer.first_seen = known->id == peer.id ? known->first_seen : now;
   peer.last_seen = now;
   const bool changed = content(*known) != content(peer);
+  if (known->participant == peer.participant) peer.heard_beacon = std::move(known->heard_beacon);
   *known = std::move(peer);
   if (changed) publish();
   return true;
@@ -119,6 +120,31 @@ void PeerTable::hear_namesake(const std::string& name, const Id& id, const wire:
   if (add(std::move(peer), now)) publish();
 }
 
+BeaconFault PeerTable::hear_beacon(const TeamBeacon& beacon, const wire::ParticipantId& participant,
+                                   Time now) {
+  const auto judge = [&](const Peer* peer) {
+    if (!peer || peer->station || peer->participant != participant) return BeaconFault::unknown;
+    const auto& last = peer->heard_beacon;
+    const bool is_old = last && last->beacon.start == beacon.start && beacon.seq <= last->beacon.seq;
+    return is_old ? BeaconFault::old : BeaconFault::none;
+  };
+  Peer* peer = edit(beacon.robot);
+  const BeaconFault fault = judge(peer);
+  beacon_faults_.count(fault);
+  if (fault != BeaconFault::none) return fault;
+  Duration period = 1s;
+  if (const auto& last = peer->heard_beacon; last && last->beacon.start == beacon.start)
+    period = (now - last->at) / static_cast<std::int64_t>(beacon.seq - last->beacon.seq);
+  peer->heard_beacon = HeardBeacon{beacon, now, period};
+  return fault;
+}
+
+std::size_t PeerTable::robots_present() const {
+  return static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [](const Peer& peer) {
+    return peer.present && !peer.station && !peer.namesake;
+  }));
+}
+
 void PeerTable::leave(const wire::ParticipantId& participant) {
   bool changed = false;
   for (Peer& peer : peers_) {
@@ -157,8 +183,17 @@ std::string describe(const PeerTable& peers, Time now) {
                     peer.place->z());
       text += line;
     }
+    if (peer.heard_beacon) {
+      const TeamBeacon& beacon = peer.heard_beacon->beacon;
+      std::snprintf(line, sizeof line, ", beacon %.1f s ago at %.1f %.1f in %s",
+                    seconds(now - peer.heard_beacon->at), beacon.pose.x, beacon.pose.y, beacon.mode.c_str());
+      text += line;
+    }
     text += peers.holder() == &peer ? ", the holder\n" : "\n";
   }
+  if (const BeaconFaults& refused = peers.beacon_faults(); refused.total() > 0)
+    text += "refused beacons: " + std::to_string(refused.malformed) + " malformed, " +
+            std::to_string(refused.unknown) + " of unknown robots, " + std::to_string(refused.old) + " old\n";
   return text.empty() ? "no peers\n" : text;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/topic/local_topic.hpp"
 #include "robot_agent/common/identity.hpp"
+#include "robot_agent/team/beacon.hpp"
 
 namespace adit::agent {
 
@@ -24,6 +25,8 @@ struct Peer {
   double max_speed{};                  ///< m/s
   std::vector<std::string> modes{};
   std::optional<Eigen::Vector3d> place{};  ///< Position of a station, map frame, m; unset: not announced.
+
+  std::optional<HeardBeacon> heard_beacon{};  ///< Of a robot; unset: none arrived.
 
   bool namesake{};                 ///< Another robot with this robot's name.
   bool present{};                  ///< It was heard within PeerTable::kPresenceTimeout, and did not leave.
@@ -76,6 +79,13 @@ class PeerTable {
     holder_ = name;
     holder_id_ = id;
   }
+  /// Stores the beacon of a robot that is bound to its name, or counts why it is refused.
+  BeaconFault hear_beacon(const TeamBeacon& beacon, const wire::ParticipantId& participant, Time now);
+  /// Counts a beacon that could not be read.
+  void refuse_beacon(BeaconFault fault) { beacon_faults_.count(fault); }
+  const BeaconFaults& beacon_faults() const { return beacon_faults_; }
+  /// Number of other robots that are present.
+  std::size_t robots_present() const;
   void leave(const wire::ParticipantId& participant);
   /// Marks silent peers as absent. Call it at 10 Hz.
   void tick(Time now);
@@ -92,6 +102,7 @@ class PeerTable {
   PeerList peers_{};
   std::string holder_{};
   Id holder_id_{};
+  BeaconFaults beacon_faults_{};
   mutable LocalTopic<PeerList> list_;  // Mutable: a subscription changes no peer.
 };
 

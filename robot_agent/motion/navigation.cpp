@@ -108,7 +108,13 @@ Twist2 Navigation::along_plan(Time now) {
   const bool centred = guidance && guidance->stick.zero();
   if (centred || !has_plan_ || now - plan_made_ > params_.plan_age || !frames_.alive(now))
     return controller_->stop_now();
-  const Twist2 wanted = controller_->follow(frames_.T_odom_base().planar(), seconds(params_.period));
+  Twist2 wanted = controller_->follow(frames_.T_odom_base().planar(), seconds(params_.period));
+  if (const double speed = std::hypot(wanted.vx, wanted.vy); speed > speed_limit_) {
+    // All components alike, so that the path keeps its curvature.
+    const double scale = speed_limit_ / speed;
+    wanted = {scale * wanted.vx, scale * wanted.vy, scale * wanted.wz, wanted.vz};
+    controller_->sent(wanted);
+  }
   auto verdict = guarded(wanted, nav::CollisionMonitor::Policy::stop);
   if (verdict.cause == nav::CollisionMonitor::Cause::stopped && !guidance)
     verdict.velocity =
@@ -180,14 +186,15 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
   return t;
 }
 
-void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now) {
+void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now,
+                          std::shared_ptr<const Scan> for_route) {
   scanned_ = received;
   monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
   if (planning_)
     waiting_ = scan;
   else
     plan(scan, now);
-  ask_route(scan, now);
+  ask_route(for_route ? std::move(for_route) : std::move(scan), now);
 }
 
 const nav::RouteStep* Navigation::step_on(Time now) const {
@@ -198,7 +205,7 @@ const nav::RouteStep* Navigation::step_on(Time now) const {
   return outdated ? nullptr : &*step_;
 }
 
-void Navigation::ask_route(const std::shared_ptr<Scan>& scan, Time now) {
+void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now) {
   if (!router_ || routing_) return;
   auto job = std::make_shared<RouteJob>();
   job->scan = scan;

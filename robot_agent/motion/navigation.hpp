@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -53,7 +54,11 @@ class Navigation : public Component, public NavigationInput {
   void accept(MuxKey, const Motion& motion, Time now) override;
   /// Sends the velocity for the next period; call it every period.
   void step(Time now);
-  void add_scan(std::shared_ptr<Scan> scan, Time received, Time now);
+  /// Limits the speed along the planner's paths, m/s; infinite: the platform's limit alone.
+  void limit_speed(double limit) { speed_limit_ = limit; }
+  /// `for_route`: the scan for the route map; null: `scan` itself.
+  void add_scan(std::shared_ptr<Scan> scan, Time received, Time now,
+                std::shared_ptr<const Scan> for_route = nullptr);
   /// Discards points and plans, because the odometry frame has changed. Until the next scan the terrain is
   /// not fresh.
   void clear();
@@ -69,7 +74,7 @@ class Navigation : public Component, public NavigationInput {
   nav::Target target() const;
   /// The next step of the route; null if there is none.
   const nav::RouteStep* step_on(Time now) const;
-  void ask_route(const std::shared_ptr<Scan>& scan, Time now);
+  void ask_route(const std::shared_ptr<const Scan>& scan, Time now);
   void routed(const RouteJob& job, const Result<nav::RouteStep>& step);
   Twist2 along_plan(Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
@@ -99,6 +104,7 @@ class Navigation : public Component, public NavigationInput {
   Time plan_made_{};
   std::array<std::optional<Time>, 3> warned_{};  // Indexed by Warning: last time of its cause.
   nav::HeldWatch held_{};
+  double speed_limit_{std::numeric_limits<double>::infinity()};
   double sent_speed_{0};  // Maximum speed of the robot according to the velocities sent, m/s.
   Time sent_at_{};
   bool planning_{};                       // A call to the planner is pending.

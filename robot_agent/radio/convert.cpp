@@ -188,6 +188,7 @@ radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<Mode
   out.goal_state(to_radio(view.goal_state));
   out.goal_id(view.goal_id);
   out.goal({view.goal.x(), view.goal.y(), view.goal.z()});
+  out.convoy(view.convoy);
   for (const ModeOption& option : options) {
     radio::ModeOption mode;
     mode.mode(std::string(option.mode));

@@ -7,6 +7,7 @@
 #include "adit/findings.h"
 #include "adit/link.h"
 #include "adit/robot.h"
+#include "adit/team.h"
 #include "core/config/platform.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
@@ -31,6 +32,9 @@ inline Epoch from_radio(const radio::Epoch& epoch) { return {epoch.start(), epoc
 Command from_radio(const radio::Command& in, const wire::ParticipantId& sender);
 StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sender);
 Peer from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender);
+/// Returns nothing if the beacon is malformed.
+std::optional<TeamBeacon> from_radio(const radio::TeamBeacon& in);
+radio::TeamBeacon to_radio(const TeamBeacon& beacon);
 
 radio::PlannedRoute to_radio(const PlannedRoute& route);
 radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot);

@@ -32,11 +32,13 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
   wire::Writer<radio::Finding> finding{};
+  wire::Writer<radio::TeamBeacon> team{};
   radio::Presence presence_sample{};
   radio::Capabilities capabilities_sample{};
   wire::PeerMeter stations{};  // Quality of the link from each station.
   Timer presence_timer{};
   radio::RobotState state_sample{};
+  std::uint64_t malformed_beacons{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
   /// A command whose goal is being judged: since when, and how many samples of it wait for the answer.
   struct Judgement {
@@ -107,7 +109,8 @@ Result<std::unique_ptr<RadioEdge>> RadioEdge::open(const wire::ComponentIo& io, 
        {io.open(e->acknowledgement, topics::kAcknowledgement), io.open(e->authority, topics::kAuthority),
         io.open(e->behaviour, topics::kBehaviour), io.open(e->state, topics::kRobotState),
         io.open(e->capabilities, topics::kCapabilities), io.open(e->link, topics::kLinkReport),
-        io.open(e->presence, topics::kPresence), io.open(e->finding, topics::kFinding)})
+        io.open(e->presence, topics::kPresence), io.open(e->finding, topics::kFinding),
+        io.open(e->team, topics::kTeam)})
     if (!made) return made.error();
   return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
 }
@@ -201,6 +204,13 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                  });
                },
                e.robot),
+           e.read(topics::kTeam,
+                  [&e, take = dependencies.beacon](const radio::TeamBeacon&b, const wire::SampleInfo&info) {
+                    if (info.sender == e.wire.id() || !take) return;
+                    const auto beacon = from_radio(b);
+                    e.malformed_beacons += beacon ? 0 : 1;
+                    take(beacon, info.sender);
+                  }),
            e.read(
                topics::kFindingsAck,
                [&e, kept = dependencies.findings_kept](const radio::FindingsAck&a, const wire::SampleInfo&) {
@@ -230,6 +240,10 @@ void RadioEdge::send(const findings::Finding& f, std::size_t kept, std::uint32_t
   out.kept(static_cast<std::uint32_t>(kept));
   out.overflowed(overflowed);
   (void)endpoints_->finding.write(out);  // It is sent again until it is acknowledged.
+}
+
+void RadioEdge::send(const TeamBeacon& beacon) {
+  (void)endpoints_->team.write(to_radio(beacon));  // Best effort: the next one replaces it.
 }
 
 void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
@@ -278,7 +292,7 @@ void RadioEdge::send_link_report(Time now, std::uint64_t inner_malformed, double
   Endpoints& e = *endpoints_;
   radio::LinkReport report = e.meter.report(e.wire.counters(), e.wire.sender(), e.robot, now);
   report.state_rate(static_cast<float>(state_rate));
-  report.malformed(report.malformed() + static_cast<std::uint32_t>(inner_malformed));
+  report.malformed(report.malformed() + static_cast<std::uint32_t>(inner_malformed + e.malformed_beacons));
   constexpr std::size_t kPeers = 16;    // The contract's maximum.
   constexpr Duration kForgotten = 60s;  // A station that was silent for longer has no link.
   for (const wire::PeerMeter::Peer& peer : e.stations.peers(now)) {

@@ -48,6 +48,8 @@ class RadioEdge {
         check_goal{};
     /// Reports that a station has these findings of this robot on its disk.
     std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};
+    /// Takes what another robot said of itself; nothing: the beacon was malformed.
+    std::function<void(const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from)> beacon{};
   };
 
   /// `io`: the command component's, on the radio domain. Errors: those of the participant.
@@ -69,6 +71,8 @@ class RadioEdge {
   void send_authority(const CommandInterface& commands, Time now);
   void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
   void send_state(const RobotReport& report, std::uint64_t stamp);
+  /// Sends a beacon to the other robots.
+  void send(const TeamBeacon& beacon);
   /// Sends the capabilities, and from now on a heartbeat once a second and when a participant appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
                          const ModeTable& modes = ModeTable::shipped());

@@ -29,7 +29,8 @@ struct Checker::WatchedRobot {
     rules[4] = make_one_source_rule();
     rules[5] = make_stale_is_zero_rule();
     rules[6] = make_no_surprise_rule();
-    rules[7] = make_nothing_lost_rule();
+    rules[7] = make_peers_rule();
+    rules[8] = make_nothing_lost_rule();
   }
   RobotModel model;
   std::array<std::unique_ptr<Rule>, Checker::kNumbers.size()> rules{};  ///< Same order as kNumbers.

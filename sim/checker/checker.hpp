@@ -19,8 +19,8 @@ struct Violation {
 /// robot sent, and what the world did, and never looks into an agent.
 class Checker {
  public:
-  /// The rules that are checked. Rule 8 is not: no mode acts on other robots' messages yet.
-  static constexpr std::array kNumbers{1, 2, 3, 4, 5, 6, 7, 9};
+  /// The rules that are checked.
+  static constexpr std::array kNumbers{1, 2, 3, 4, 5, 6, 7, 8, 9};
   /// Title of rule `number` in docs/architecture.md.
   static const char* title(int number);
 

@@ -35,12 +35,13 @@ class NoSurprise : public Rule {
   }
 
   void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
-    // The holder changed, or his station came back: a manual mode that was on falls to hold.
-    const bool overdue =
-        manual_must_end_ && robot.in_manual_mode() && robot.now() - *manual_must_end_ > kReaction;
+    // The holder changed, or his station came back: a manual mode that was on falls to hold, and
+    // convoy_follow when the holder changed.
+    const bool on = robot.in_manual_mode() || robot.mode() == "convoy_follow";
+    const bool overdue = manual_must_end_ && on && robot.now() - *manual_must_end_ > kReaction;
     if (overdue)
       report_violation("stayed in " + robot.mode() + " when its holder changed or was started again");
-    if (overdue || !robot.in_manual_mode()) manual_must_end_.reset();
+    if (overdue || !on) manual_must_end_.reset();
   }
 
  private:
@@ -49,14 +50,20 @@ class NoSurprise : public Rule {
     why_not_ = why;
   }
 
+  /// Whether the command makes the robot follow in a convoy; the first of an order leads it.
+  static bool follows(const RobotModel& robot, const CommandHeard& command) {
+    return command.verb == Verb::join && command.text != robot.facts().name;
+  }
+
   // An autonomous mode goes on when it was on, or was asked for when the agent ended; a manual one does not.
   void on_start(const RobotModel& robot) {
     first_velocity_ = true;
     odometry_.reset();
-    bool goes_on = allowed_ && robot.mode() == "waypoint";
+    bool goes_on = allowed_ && (robot.mode() == "waypoint" || robot.mode() == "convoy_follow");
     for (const RobotModel::Pending& p : robot.unanswered())
-      goes_on = goes_on || p.command.verb == Verb::go_to ||
-                (p.command.verb == Verb::mode && p.command.text == "waypoint");
+      goes_on = goes_on || p.command.verb == Verb::go_to || follows(robot, p.command) ||
+                (p.command.verb == Verb::mode &&
+                 (p.command.text == "waypoint" || p.command.text == "convoy_follow"));
     if (!goes_on) revoke("a start of its agent");
   }
 
@@ -90,7 +97,8 @@ class NoSurprise : public Rule {
     if (!pending || !ack.accepted || robot.first_answer(RobotModel::key(pending->command))) return;
     const CommandHeard& command = pending->command;
     const Authority& before = robot.authority();
-    if (command.verb == Verb::go_to || (command.verb == Verb::mode && command.text != "hold")) {
+    if (command.verb == Verb::go_to || follows(robot, command) ||
+        (command.verb == Verb::mode && command.text != "hold")) {
       allowed_ = true;
       granted_at_ = robot.now();
       manual_must_end_.reset();
@@ -102,7 +110,7 @@ class NoSurprise : public Rule {
                                  (command.station != before.holder || command.id != before.holder_id)) ||
                                 command.verb == Verb::release ||
                                 (command.verb == Verb::grant && command.text != before.holder);
-    if (holder_changes && robot.in_manual_mode()) {
+    if (holder_changes && (robot.in_manual_mode() || robot.mode() == "convoy_follow")) {
       manual_must_end_ = robot.now();
       revoke("a change of holder");
     }
@@ -140,7 +148,7 @@ class NoSurprise : public Rule {
     // A velocity sent in the very instant in which motion was forbidden may have come before.
     if (allowed_ || told_ || robot.mode_changed() == robot.now()) return;
     if (jumped_ && robot.now() - *jumped_ < kReaction) return;
-    if (RobotModel::asked(robot.pending(), {Verb::go_to, Verb::mode}))
+    if (RobotModel::asked(robot.pending(), {Verb::go_to, Verb::mode, Verb::join}))
       return;  // its answer waits for the disk
     told_ = true;
     report_violation("moved without a new request after " + why_not_);

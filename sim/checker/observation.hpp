@@ -49,6 +49,8 @@ enum class Verb {
   policy,   ///< Sets the restart policy of a component.
   plan,     ///< Asks the global planner for a route.
   pose,     ///< Sets the pose of the robot.
+  join,     ///< Gives the robot its place in a convoy; the words are the names in their order.
+  peeloff,  ///< Takes the robot out of its convoy.
   unknown   ///< A number that the checker does not know.
 };
 
@@ -84,6 +86,7 @@ struct CommandHeard {
   std::string text{};
   bool flag{};
   std::optional<std::array<double, 2>> position{};  ///< Goal of goto, map frame, m.
+  std::vector<std::string> words{};
 };
 struct JoystickHeard {
   wire::ParticipantId from{};
@@ -93,6 +96,11 @@ struct JoystickHeard {
   std::uint64_t seq{};
   std::uint64_t echo{};  ///< Robot's clock, ns.
   Twist2 stick{};
+};
+
+/// A beacon of another robot reached the robot.
+struct BeaconHeard {
+  std::string robot{};
 };
 
 /// A scan of its lidar reached the robot.
@@ -133,6 +141,7 @@ struct BehaviourSent {
   bool stopped{};
   bool has_goal{};
   std::uint32_t goal_id{};
+  std::vector<std::string> convoy{};  ///< The robots of its convoy in their order.
 };
 struct StateSent {
   std::uint64_t stamp{};  ///< Robot's clock, ns.
@@ -159,10 +168,10 @@ struct ClockJumped {
   Duration by{};
 };
 
-using Event =
-    std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent, AuthoritySent,
-                 BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion, ClockJumped,
-                 ComponentFaulted, DiskChanged, ScanHeard, ProgramHeard, OdometryHeard, NamesakeAnswered>;
+using Event = std::variant<AgentStarted, AgentDied, PresenceHeard, CommandHeard, JoystickHeard, AckSent,
+                           AuthoritySent, BehaviourSent, StateSent, NotificationSent, VelocitySent, Motion,
+                           ClockJumped, ComponentFaulted, DiskChanged, ScanHeard, ProgramHeard, OdometryHeard,
+                           NamesakeAnswered, BeaconHeard>;
 
 /// What the outsider knows of a robot's body beforehand.
 struct RobotFacts {

@@ -7,6 +7,7 @@
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/robot.h"
+#include "adit/team.h"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "geometry_msgs/msg/Twist.h"
@@ -51,6 +52,10 @@ Verb verb_of(radio::CommandKind kind) {
       return Verb::plan;
     case radio::CMD_POSE:
       return Verb::pose;
+    case radio::CMD_JOIN:
+      return Verb::join;
+    case radio::CMD_PEELOFF:
+      return Verb::peeloff;
   }
   return Verb::unknown;
 }
@@ -77,6 +82,7 @@ Decoded command(std::span<const std::uint8_t> cdr, const wire::ParticipantId& fr
                      c->words().empty() ? std::string{} : c->words().front(),
                      c->options() != 0 || (c->words().size() == 2 && c->words().back() == "auto"),
                      {}};
+  heard.words = c->words();
   if (c->numbers().size() >= 2) heard.position = {c->numbers()[0], c->numbers()[1]};
   return DecodedSample{c->robot(), std::move(heard)};
 }
@@ -144,6 +150,11 @@ Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cd
   if (is(topic, topics::kJoystick)) return joystick(cdr, from);
   if (is(topic, topics::kPresence)) return station(cdr, from, true);
   if (is(topic, topics::kCapabilities)) return station(cdr, from, false);
+  if (is(topic, topics::kTeam)) {
+    const auto b = read<radio::TeamBeacon>(cdr);
+    if (!b) return std::nullopt;
+    return DecodedSample{{}, BeaconHeard{b->robot()}};
+  }
   if (is(topic, topics::kPoints)) return DecodedSample{{}, ScanHeard{}};
   if (is(topic, topics::kOdom)) {
     const auto o = read<nav_msgs::msg::Odometry>(cdr);
@@ -174,8 +185,9 @@ Decoded decode_sent(std::string_view topic, std::string_view type, std::span<con
   if (is(topic, topics::kBehaviour)) {
     const auto b = read<radio::BehaviourState>(cdr);
     if (!b) return std::nullopt;
-    return DecodedSample{b->robot(), BehaviourSent{b->mode(), b->stopped(),
-                                                   b->goal_state() != radio::GOAL_NONE, b->goal_id()}};
+    return DecodedSample{
+        b->robot(), BehaviourSent{b->mode(), b->stopped(), b->goal_state() != radio::GOAL_NONE, b->goal_id(),
+                                  b->convoy()}};
   }
   if (is(topic, topics::kNotification)) {
     const auto n = read<radio::Notification>(cdr);

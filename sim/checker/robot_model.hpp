@@ -145,6 +145,7 @@ class RobotModel {
   void take_in_event(const ScanHeard&) { scanned_ = now_; }
   void take_in_event(const OdometryHeard&) {}
   void take_in_event(const NamesakeAnswered&) {}
+  void take_in_event(const BeaconHeard&) {}
   void take_in_event(const ProgramHeard& e);
   void take_in_event(const ClockJumped& e) { jumps_.emplace_back(now_, e.by); }
   void hear(const std::string& station, const StationId& id, const wire::ParticipantId& from);

@@ -31,6 +31,7 @@ std::unique_ptr<Rule> make_stop_rule();           ///< Rule 4.
 std::unique_ptr<Rule> make_one_source_rule();     ///< Rule 5.
 std::unique_ptr<Rule> make_stale_is_zero_rule();  ///< Rule 6.
 std::unique_ptr<Rule> make_no_surprise_rule();    ///< Rule 7.
+std::unique_ptr<Rule> make_peers_rule();          ///< Rule 8.
 std::unique_ptr<Rule> make_nothing_lost_rule();   ///< Rule 9.
 
 }  // namespace adit::sim

@@ -41,6 +41,7 @@ Decoration findings_deleted_at_start(const Subject& subject);
 Decoration blind_planner(const Subject& subject);
 Decoration blind_and_unwatched(const Subject& subject);
 Decoration drives_through_stop(const Subject& subject);
+Decoration follows_nobody(const Subject& subject);
 
 // Of its parent process.
 Decoration none(const Subject& subject);

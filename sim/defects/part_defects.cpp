@@ -10,6 +10,7 @@
 #include "core/wire/typed.hpp"
 #include "nav/planner.hpp"
 #include "robot_agent/behaviour/decider.hpp"
+#include "robot_agent/behaviour/mode_module.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"
 #include "sim/defects/decorations.hpp"
 
@@ -48,6 +49,31 @@ std::shared_ptr<const agent::ModeTable> modes_without_stop() {
     std::erase_if(row.conditions, [](const agent::Condition& condition) {
       return condition.leaf == agent::conditions::kNotStopped.leaf;
     });
+  return std::make_shared<const agent::ModeTable>(std::move(rows));
+}
+
+/// A convoy_follow that asks for no place in a convoy, and drives ahead.
+class FollowsNobody final : public agent::ModeModule {
+ public:
+  explicit FollowsNobody(const agent::ModeContext& context) : output_(context.output) {}
+  static std::unique_ptr<agent::ModeModule> make(const agent::ModeContext& context) {
+    return std::make_unique<FollowsNobody>(context);
+  }
+  void tick(bool, Time now) override { output_.write(agent::Velocity{{0.3, 0.0, 0.0}, true}, now); }
+
+ private:
+  agent::Mux::Output output_;
+};
+
+std::shared_ptr<const agent::ModeTable> modes_that_follow_nobody() {
+  std::vector<agent::ModeRow> rows = agent::ModeTable::shipped().rows();
+  for (agent::ModeRow& row : rows) {
+    if (row.name != "convoy_follow") continue;
+    row.make = FollowsNobody::make;
+    for (agent::Condition& condition : row.conditions)
+      if (condition.leaf == "InConvoy" || condition.leaf == "LeaderKnown" || condition.leaf == "OrderAgrees")
+        condition.holds = [](const agent::Facts&) { return true; };
+  }
   return std::make_shared<const agent::ModeTable>(std::move(rows));
 }
 
@@ -98,6 +124,12 @@ Decoration blind_planner(const Subject& subject) {
 Decoration blind_and_unwatched(const Subject& subject) {
   Decoration decoration = blind_planner(subject);
   decoration.wires = std::make_unique<SeesGroundAlone>(subject.platform.lidar().mounting.z);
+  return decoration;
+}
+
+Decoration follows_nobody(const Subject&) {
+  Decoration decoration;
+  decoration.parameters = [](agent::AgentParams& params) { params.modes = modes_that_follow_nobody(); };
   return decoration;
 }
 

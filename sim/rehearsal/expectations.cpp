@@ -2,8 +2,10 @@
 #include "sim/rehearsal/expectations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace adit::sim {
 namespace {
@@ -69,6 +71,76 @@ std::string mismatch(const RepeatExpectation& e, const Evidence& evidence) {
   return share <= e.share ? std::string() : percent("driven again", share);
 }
 
+std::string mismatch(const ConvoyExpectation& e, const Evidence& evidence) {
+  for (const std::string& robot : e.order) {
+    const auto& said = evidence.word(robot).convoy;
+    if (said == e.order) continue;
+    std::string names;
+    for (const std::string& name : said) names += " " + name;
+    return robot + " says:" + (names.empty() ? " no convoy" : names);
+  }
+  return {};
+}
+
+std::string mismatch(const InLineExpectation& e, const Evidence& evidence) {
+  const Eigen::Vector2d direction = (e.to - e.from).normalized();
+  std::string previous;
+  double before = std::numeric_limits<double>::infinity();
+  for (const std::string& robot : e.robots) {
+    const double along = (evidence.pose(robot).position() - e.from).dot(direction);
+    if (along >= before) return robot + " is before " + previous;
+    previous = robot;
+    before = along;
+  }
+  return {};
+}
+
+std::string mismatch(const NoticeExpectation& e, const Evidence& evidence) {
+  return evidence.notified(e.by, e.code, e.robot) ? std::string() : e.by + " was not notified";
+}
+
+using Outline = std::array<Eigen::Vector2d, 4>;
+
+Outline outline(const RobotSpec& robot, const Pose2& pose) {
+  const Platform& p = robot.settings.platform;
+  const double x = p.length / 2, y = p.width / 2;
+  return {pose * Eigen::Vector2d(x, y), pose * Eigen::Vector2d(-x, y), pose * Eigen::Vector2d(-x, -y),
+          pose * Eigen::Vector2d(x, -y)};
+}
+
+/// The least distance of a corner of one outline from a side of the other; outlines do not overlap.
+double distance(const Outline& a, const Outline& b) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [corners, sides] : {std::pair(&a, &b), std::pair(&b, &a)})
+    for (const Eigen::Vector2d& corner : *corners)
+      for (std::size_t i = 0; i < sides->size(); ++i) {
+        const Eigen::Vector2d from = (*sides)[i], side = (*sides)[(i + 1) % sides->size()] - from;
+        const double part = std::clamp((corner - from).dot(side) / side.squaredNorm(), 0.0, 1.0);
+        least = std::min(least, (corner - from - part * side).norm());
+      }
+  return least;
+}
+
+std::string mismatch(const GapExpectation& e, const Scenario& scenario, const Evidence& evidence) {
+  const double gap = distance(outline(*scenario.robot(e.a), evidence.pose(e.a)),
+                              outline(*scenario.robot(e.b), evidence.pose(e.b)));
+  if (gap >= e.min && gap <= e.max) return {};
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", gap);
+  return text;
+}
+
+std::string mismatch(const StillExpectation& e, std::optional<Eigen::Vector2d>& start,
+                     const Evidence& evidence) {
+  const Eigen::Vector2d place = evidence.pose(e.robot).position();
+  if (!start) start = place;
+  const double moved = (place - *start).norm();
+  if (moved <= e.distance) return {};
+  char text[32];
+  std::snprintf(text, sizeof text, "moved %.2f m", moved);
+  return text;
+}
+
 std::string collisions(const NoCollision& e, const Scenario& scenario, const Evidence& evidence) {
   for (const RobotSpec& robot : scenario.robots) {
     if (e.caused && evidence.caused(robot.id) > 0) return robot.id + " ran into something";
@@ -104,6 +176,8 @@ std::vector<Duration> Expectations::instants() const {
   std::vector<Duration> out;
   for (const Expectation& e : scenario_.expectations)
     if (e.when != When::always) out.push_back(e.time);
+  for (const Expectation& e : scenario_.expectations)
+    if (e.when == When::during) out.push_back(e.from);
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -112,7 +186,8 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const Expectation& e = scenario_.expectations[i];
     State& state = states_[i];
-    if (state.settled || (e.when == When::at && now < e.time)) continue;
+    if (state.settled || (e.when == When::at && now < e.time) || (e.when == When::during && now < e.from))
+      continue;
     std::string found;
     if (const auto* robot = std::get_if<StateExpectation>(&e.what)) found = mismatch(*robot, evidence);
     if (const auto* near = std::get_if<NearExpectation>(&e.what)) found = mismatch(*near, evidence);
@@ -121,7 +196,20 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
     if (const auto* explored = std::get_if<ExploredExpectation>(&e.what))
       found = mismatch(*explored, evidence);
     if (const auto* repeat = std::get_if<RepeatExpectation>(&e.what)) found = mismatch(*repeat, evidence);
+    if (const auto* convoy = std::get_if<ConvoyExpectation>(&e.what)) found = mismatch(*convoy, evidence);
+    if (const auto* line = std::get_if<InLineExpectation>(&e.what)) found = mismatch(*line, evidence);
+    if (const auto* notice = std::get_if<NoticeExpectation>(&e.what)) found = mismatch(*notice, evidence);
     if (e.when == When::always) continue;
+    if (e.when == When::during) {
+      if (const auto* gap = std::get_if<GapExpectation>(&e.what)) found = mismatch(*gap, scenario_, evidence);
+      if (const auto* still = std::get_if<StillExpectation>(&e.what))
+        found = mismatch(*still, state.start, evidence);
+      if (!found.empty()) found += " at " + std::to_string(now / 1s) + " s";
+      state.result.ok = found.empty();
+      state.result.found = found;
+      state.settled = !found.empty() || now >= e.time;
+      continue;
+    }
     state.result.ok = found.empty();
     state.result.found = found;
     state.settled = e.when == When::at || state.result.ok || now >= e.time;

@@ -18,6 +18,8 @@ struct Evidence {
   std::function<int(const std::string& robot)> caused{};  ///< Contacts caused by the robot.
   const ExplorationRecord* exploration{nullptr};          ///< Of a scenario that explores().
   std::function<std::size_t(const std::string& robot)> index{};
+  /// Whether a robot notified an operator of a matter.
+  std::function<bool(const std::string& by, const std::string& code, const std::string& robot)> notified{};
   std::map<std::string, Reason> last_answer{};    ///< By operator.
   std::map<std::string, std::size_t> findings{};  ///< By operator whose station runs.
 };
@@ -38,6 +40,7 @@ class Expectations {
   struct State {
     bool settled{};
     ExpectationResult result{};
+    std::optional<Eigen::Vector2d> start{};  ///< Where the robot was when the time began.
   };
   const Scenario& scenario_;
   std::vector<State> states_;

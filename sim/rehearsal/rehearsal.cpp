@@ -208,6 +208,9 @@ class Run {
     out.caused = [this](const std::string& robot) { return static_cast<int>(truth(robot).caused); };
     out.exploration = exploration_.get();
     out.index = [this](const std::string& robot) { return simulation_.find(robot).value(); };
+    out.notified = [this](const std::string& by, const std::string& code, const std::string& robot) {
+      return witness_.notified(by, code, robot);
+    };
     for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
       if (const auto findings = station->findings()) out.findings[id] = *findings;

@@ -93,6 +93,31 @@ struct FindingsExpectation {
   std::string by{};
   std::size_t findings{};
 };
+/// The order of a convoy, as every member says.
+struct ConvoyExpectation {
+  std::vector<std::string> order{};
+};
+/// The robots are in that order along a line, the first farthest on; true positions.
+struct InLineExpectation {
+  std::vector<std::string> robots{};
+  Eigen::Vector2d from{Eigen::Vector2d::Zero()}, to{Eigen::Vector2d::Zero()};  ///< m
+};
+/// The true distance of two robots' outlines is within these limits all the time, m.
+struct GapExpectation {
+  std::string a{}, b{};
+  double min{}, max{};
+};
+/// The robot is never farther than this from where it was at the beginning, m.
+struct StillExpectation {
+  std::string robot{};
+  double distance{};
+};
+/// The robot notified the operator of a matter.
+struct NoticeExpectation {
+  std::string by{};
+  std::string code{};
+  std::string robot{};
+};
 struct NoCollision {
   bool caused{};  ///< Only contacts caused by a robot, see Collision.
 };
@@ -112,13 +137,15 @@ struct AtLeast {
   double amount{};
 };
 struct Expectation {
-  enum class When { at, by, always } when{When::always};
-  Duration time{};
+  enum class When { at, by, always, during } when{When::always};
+  Duration time{};  ///< `during`: the end.
   std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
-               ExploredExpectation, RepeatExpectation, AtLeast>
+               ExploredExpectation, RepeatExpectation, AtLeast, ConvoyExpectation, InLineExpectation,
+               GapExpectation, StillExpectation, NoticeExpectation>
       what{};
   int line{};          ///< In the scenario file.
   std::string text{};  ///< As written.
+  Duration from{};     ///< Of `during`.
 };
 
 struct Scenario {

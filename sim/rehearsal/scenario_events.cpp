@@ -59,6 +59,35 @@ ExploredExpectation read_explored(const Node& node, const Scenario& scenario) {
   return out;
 }
 
+std::vector<std::string> read_robots(const Node& node, const char* key, const Scenario& scenario) {
+  std::vector<std::string> names = node.texts(key);
+  for (const std::string& name : names)
+    if (!scenario.robot(name)) node.child(key).fail(Reason::unknown_robot, "no robot is named " + name);
+  if (names.size() < 2) node.child(key).fail(Reason::bad_argument, "expected at least two robots");
+  return names;
+}
+
+/// An expectation of what holds from one time to another.
+void read_period(const Node& node, const Scenario& scenario, Expectation& out) {
+  out.when = Expectation::When::during;
+  out.from = read_time(node, "from", scenario);
+  out.time = read_time(node, "to", scenario);
+  if (out.time < out.from) node.child("to").fail(Reason::out_of_range, "expected a time after from");
+  if (node.has("gap")) {
+    const auto robots = read_robots(node, "gap", scenario);
+    const auto between = node.numbers("between", 2, 2, config::within(0.0, 1e4));
+    if (robots.size() == 2 && between.size() == 2)
+      out.what = GapExpectation{robots[0], robots[1], between[0], between[1]};
+    else
+      node.child("gap").fail(Reason::bad_argument, "expected two robots");
+  } else if (node.has("still")) {
+    const std::string robot = read_robot(node, "robot", scenario);
+    out.what = StillExpectation{robot, node.number("still", config::within(0.0, 1e4))};
+  } else {
+    node.fail(Reason::missing_key, "expected gap or still");
+  }
+}
+
 Expectation read_expectation(const Node& node, const Scenario& scenario) {
   static const std::vector<std::string> counted{"commands", "refusals", "faults", "distance", "moving"};
   Expectation out;
@@ -71,6 +100,10 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
   }
   if (node.has("always")) {
     out.what = NoCollision{node.choice("always", {"no_collision", "no_collision_caused"}) == 1};
+    return out;
+  }
+  if (node.has("from")) {
+    read_period(node, scenario, out);
     return out;
   }
   const bool at = node.has("at");
@@ -88,6 +121,23 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
   } else if (node.has("by_operator") && node.has("findings")) {
     out.what = FindingsExpectation{read_station(node, "by_operator", scenario),
                                    static_cast<std::size_t>(node.integer("findings", 0, 65536))};
+  } else if (node.has("by_operator") && node.has("notified")) {
+    out.what = NoticeExpectation{read_station(node, "by_operator", scenario), node.text("notified"),
+                                 read_robot(node, "robot", scenario)};
+  } else if (node.has("convoy")) {
+    const std::string leader = read_robot(node, "convoy", scenario);
+    ConvoyExpectation convoy{read_robots(node, "order", scenario)};
+    if (!convoy.order.empty() && convoy.order.front() != leader)
+      node.child("order").fail(Reason::bad_argument, "expected " + leader + " first");
+    out.what = convoy;
+  } else if (node.has("in_line")) {
+    InLineExpectation line{read_robots(node, "in_line", scenario)};
+    const auto along = node.numbers("along", 4, 4, config::within(-1e5, 1e5));
+    if (along.size() == 4) {
+      line.from = {along[0], along[1]};
+      line.to = {along[2], along[3]};
+    }
+    out.what = line;
   } else if (node.has("by_operator")) {
     AnswerExpectation answer{read_station(node, "by_operator", scenario), Reason::none};
     const std::string reason = node.text("refused");

@@ -77,6 +77,7 @@ void Witness::sent(const wire::SampleEvent& frame) {
       note(robot, frame.at, behaviour->stopped ? "stopped" : "stop cleared");
     said.mode = behaviour->mode;
     said.stopped = behaviour->stopped;
+    said.convoy = behaviour->convoy;
     said.heard = true;
   }
   if (const auto* state = std::get_if<StateSent>(&decoded->event)) {
@@ -90,6 +91,7 @@ void Witness::sent(const wire::SampleEvent& frame) {
     said.authority = status->authority;
   }
   if (const auto* notice = std::get_if<NotificationSent>(&decoded->event)) {
+    if (told_.size() < kMaxEvents) told_.insert({notice->to, notice->code, robot});
     if (notifications_.size() < kMaxEvents) notifications_.push_back({frame.at, robot, notice->code});
     if (notice->code == "unreachable") note(robot, frame.at, "no way to its goal");
   }

@@ -26,8 +26,9 @@ struct RobotWord {
   Authority authority{};
   bool stopped{};
   bool heard{};
-  std::optional<Pose3> pose{};  ///< Its own estimate, map frame.
-  Duration pose_sent{};         ///< When it sent that, virtual time.
+  std::optional<Pose3> pose{};        ///< Its own estimate, map frame.
+  Duration pose_sent{};               ///< When it sent that, virtual time.
+  std::vector<std::string> convoy{};  ///< The robots of its convoy in their order.
 };
 
 /// Sees every frame of a rehearsal: feeds the checker, the digest and the counters, and keeps each robot's
@@ -66,6 +67,10 @@ class Witness {
   const std::vector<TimedEvent>& events() const { return events_; }
   /// The robots' notifications by their codes, the first 2000.
   const std::vector<TimedEvent>& notifications() const { return notifications_; }
+  /// Whether a robot notified that operator, or all of them, of a matter.
+  bool notified(const std::string& by, const std::string& code, const std::string& robot) const {
+    return told_.contains({by, code, robot}) || told_.contains({{}, code, robot});
+  }
   std::string digest() const { return digest_.text(); }
 
  private:
@@ -91,6 +96,7 @@ class Witness {
   CommandResult commands_{};
   std::vector<Goal> goals_{};
   std::vector<TimedEvent> events_{}, notifications_{};
+  std::set<std::tuple<std::string, std::string, std::string>> told_{};  ///< Operator, code, robot.
   Digest digest_{};
 };
 

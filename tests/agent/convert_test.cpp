@@ -79,6 +79,55 @@ TEST(Convert, ShortTextsStay) {
   EXPECT_EQ(ack.text(), "locked by op2");
 }
 
+TeamBeacon a_beacon() {
+  TeamBeacon beacon{.robot = "r2", .start = 5, .seq = 3, .pose = {300, -200, 1}, .z = 0.5};
+  beacon.mode = "waypoint";
+  beacon.holder = "op1";
+  beacon.convoy = ConvoyPart{7, 8, 1, false, true, 3.25, 1.5, 4, 9, {}};
+  for (int i = 0; i < 8; ++i) beacon.convoy->points.push_back({300 + 0.5 * i, -200.0, 0.5});
+  return beacon;
+}
+
+TEST(Convert, ABeaconArrivesAsItWasSentAndFitsItsTopic) {
+  const TeamBeacon sent = a_beacon();
+  const auto read = from_radio(to_radio(sent));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->robot, "r2");
+  EXPECT_EQ(read->convoy->first, 9u);
+  ASSERT_EQ(read->convoy->points.size(), 8u);
+  for (std::size_t i = 0; i < 8; ++i)
+    EXPECT_LT((read->convoy->points[i] - sent.convoy->points[i]).norm(), 0.01);
+  TeamBeacon longest = sent;
+  longest.robot = longest.holder = longest.mode = std::string(32, 'n');
+  EXPECT_LE(encoded(to_radio(longest)), wire::topics::kTeam.max_bytes);
+  EXPECT_LE(encoded(to_radio(sent)), 220u) << "what BeaconRate counts on, less the headers";
+  TeamBeacon far = sent;
+  far.convoy->points[3].x() += 400.0;
+  EXPECT_EQ(from_radio(to_radio(far))->convoy->points.size(), 3u) << "the rest would be misnumbered";
+}
+
+TEST(Convert, MalformedBeaconsAreRefused) {
+  const radio::TeamBeacon good = to_radio(a_beacon());
+  ASSERT_TRUE(from_radio(good));
+  const auto refused = [&](const auto& spoil) {
+    radio::TeamBeacon bad = good;
+    spoil(bad);
+    return !from_radio(bad);
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(refused([&](auto& b) { b.pose()[0] = nan; }));
+  EXPECT_TRUE(refused([&](auto& b) { b.pose()[2] = 1e30f; }));
+  EXPECT_TRUE(refused([&](auto& b) { b.speed()[1] = nan; }));
+  EXPECT_TRUE(refused([&](auto& b) { b.convoy()[0].along(nan); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.robot("r 2"); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.robot(std::string(64, 'r')); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.holder("op\n1"); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.mode(std::string(64, 'm')); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.convoy().resize(64, b.convoy()[0]); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.convoy()[0].points().resize(27); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.convoy()[0].points().resize(4); }));
+}
+
 TEST(Convert, CommandsAreReadByTheCommandTable) {
   radio::Command sample;
   sample.robot("r1");

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "robot_agent/command/requests.hpp"
+#include "robot_agent/convoy/convoy.hpp"
 
 namespace adit::agent {
 
@@ -26,6 +27,15 @@ struct FakeRequests : Requests {
     calls.push_back("pose");
     return {};
   }
+  Result<void> join_convoy(const ConvoyOrder& order, Time) override {
+    convoy = order;
+    calls.push_back("join");
+    return {};
+  }
+  Result<void> leave_convoy(Time) override {
+    calls.push_back("peeloff");
+    return {};
+  }
   void stop_changed(bool on, Time) override {
     stopped = on;
     calls.push_back(on ? "stopped" : "reset");
@@ -44,7 +54,8 @@ struct FakeRequests : Requests {
   double budget{-1.0};                  ///< The last one set, m.
   bool takes_stick{true};
   bool holds{true};
-  Pose2 pose{};  ///< The last one set.
+  ConvoyOrder convoy{};  ///< The last one joined.
+  Pose2 pose{};          ///< The last one set.
   std::vector<std::string> calls{};
   std::vector<Twist2> sticks{};
   Time stick_at{};  ///< Time of the newest sample.

@@ -8,7 +8,17 @@
 namespace adit::agent {
 namespace {
 
-const Facts kAllMet{false, true, true, true, true, true, true, true, true, true};
+const Facts kAllMet{false,
+                    true,
+                    true,
+                    true,
+                    true,
+                    true,
+                    true,
+                    true,
+                    true,
+                    true,
+                    {"in_convoy", "leader_known", "order_agrees"}};
 
 struct Row {
   const char* mode;
@@ -36,6 +46,9 @@ void pushed(Facts& f) { f.stick_centred = false; }
 void no_goal(Facts& f) { f.goal_known = false; }
 void silent(Facts& f) { f.program_fresh = false; }
 void walled(Facts& f) { f.goal_free = false; }
+void alone(Facts& f) { std::erase(f.also, "in_convoy"); }
+void leaderless(Facts& f) { std::erase(f.also, "leader_known"); }
+void disordered(Facts& f) { std::erase(f.also, "order_agrees"); }
 
 INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
                          testing::Values(Row{"hold", "stop", stop, Reason::none},
@@ -57,6 +70,10 @@ INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
                                          Row{"external", "localisation", lost, Reason::none},
                                          Row{"external", "terrain", blind, Reason::none},
                                          Row{"external", "program", silent, Reason::program_silent},
+                                         Row{"convoy_follow", "stop", stop, Reason::stopped},
+                                         Row{"convoy_follow", "alone", alone, Reason::not_in_convoy},
+                                         Row{"convoy_follow", "leader", leaderless, Reason::leader_unknown},
+                                         Row{"convoy_follow", "order", disordered, Reason::order_differs},
                                          Row{"waypoint", "stop", stop, Reason::stopped},
                                          Row{"waypoint", "driver", no_driver, Reason::driver_silent},
                                          Row{"waypoint", "localisation", lost, Reason::no_localisation},
@@ -75,7 +92,7 @@ TEST(ModeTable, HoldIsFirstAndUnconditional) {
 }
 
 TEST(ModeTable, ModesOfTheDesignThatHaveNoModuleAreKnown) {
-  for (const char* mode : {"explore", "convoy_follow", "get_out"}) {
+  for (const char* mode : {"explore", "get_out"}) {
     EXPECT_EQ(ModeTable::shipped().find(mode), nullptr);
     EXPECT_TRUE(is_planned_mode(mode));
   }

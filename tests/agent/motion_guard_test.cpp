@@ -6,7 +6,17 @@
 namespace adit::agent {
 namespace {
 
-const Facts kAllConditions{false, true, true, true, true, true, true, true, true, true};
+const Facts kAllConditions{false,
+                           true,
+                           true,
+                           true,
+                           true,
+                           true,
+                           true,
+                           true,
+                           true,
+                           true,
+                           {"in_convoy", "leader_known", "order_agrees"}};
 
 class Guard : public testing::Test {
  protected:
@@ -56,6 +66,11 @@ TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
                               &Facts::goal_known, &Facts::goal_free, &Facts::program_fresh}) {
       Facts f = kAllConditions;
       f.*fact = false;
+      if (!c.holds(f)) return f;
+    }
+    for (const std::string_view fact : kAllConditions.also) {
+      Facts f = kAllConditions;
+      std::erase(f.also, fact);
       if (!c.holds(f)) return f;
     }
     Facts stopped = kAllConditions;

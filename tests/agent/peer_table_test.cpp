@@ -52,6 +52,35 @@ TEST_F(PeerTableTest, AgesCountFromTheLastSignOfLife) {
   EXPECT_EQ(find("r2")->age(now + 10s), 8s) << "its age goes on";
 }
 
+TEST_F(PeerTableTest, KeepsTheBeaconOfARobotThatIsBoundToItsName) {
+  directory.on_capabilities(peer("r2", 1), now);
+  directory.on_capabilities(peer("op1", 2, true), now);
+  TeamBeacon beacon{.robot = "r2", .start = 5, .seq = 3};
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(1), now + 1s), BeaconFault::none);
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(1), now + 2s), BeaconFault::old) << "a repeat";
+  beacon.seq = 2;
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(1), now + 2s), BeaconFault::old);
+  beacon.seq = 7;
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(9), now + 2s), BeaconFault::unknown) << "a stranger";
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(1), now + 3s), BeaconFault::none);
+  EXPECT_EQ(find("r2")->heard_beacon->period, 500ms) << "four numbers in 2 s";
+  directory.on_presence("r2", id_of("r2"), participant(1), now + 3s);
+  directory.on_capabilities(peer("r2", 1), now + 3s);
+  EXPECT_EQ(find("r2")->heard_beacon->beacon.seq, 7u) << "a heartbeat changes no beacon";
+  beacon = {.robot = "r2", .start = 6, .seq = 1};
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(1), now + 4s), BeaconFault::none)
+      << "its agent was restarted";
+  beacon.robot = "op1";
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(2), now + 4s), BeaconFault::unknown) << "a station";
+  beacon.robot = "r9";
+  EXPECT_EQ(peers.hear_beacon(beacon, participant(3), now + 4s), BeaconFault::unknown) << "never announced";
+  peers.refuse_beacon(BeaconFault::malformed);
+  EXPECT_EQ(peers.beacon_faults().unknown, 3u);
+  EXPECT_EQ(peers.beacon_faults().total(), 6u);
+  EXPECT_THAT(describe(peers, now + 5s),
+              testing::HasSubstr("refused beacons: 1 malformed, 3 of unknown robots, 2 old"));
+}
+
 TEST_F(PeerTableTest, APeerThatReturnsUnderAnotherAddressIsTheSameOne) {
   directory.on_capabilities(peer("r2", 1), now);
   directory.on_participant({participant(1), false});

@@ -252,5 +252,64 @@ TEST(CheckerMotion, MovedByAForeignStick) {
   EXPECT_THAT(r.broken(), testing::Contains(1)) << r.texts();
 }
 
+/// op1 gives r1 a place behind r0.
+void join(Record& r, std::vector<std::string> order = {"r0", "r1"}) {
+  CommandHeard c{participant(1), "op1",         station_id(1), r.start, r.epoch, ++r.sequence,
+                 Verb::join,     order.front(), false,         {},      order};
+  r.see(c);
+  r.answer(c);
+  r.behave("convoy_follow");
+  r.pass(20ms);
+}
+
+TEST(CheckerMotion, AFollowerWithAPlaceThatHearsItsPredecessorBreaksNothing) {
+  Record r;
+  r.take(1);
+  r.see(BeaconHeard{"r0"});
+  join(r);
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerMotion, AFollowerWithoutAPlace) {
+  Record r;
+  r.take(1);
+  r.see(BeaconHeard{"r0"});
+  r.enter("convoy_follow");
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), ElementsAre(8)) << r.texts();
+}
+
+TEST(CheckerMotion, AFollowerThatHearsOnlyAStranger) {
+  Record r;
+  r.take(1);
+  r.see(BeaconHeard{"r7"});
+  join(r);
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), ElementsAre(8)) << r.texts();
+}
+
+TEST(CheckerMotion, AFollowerWhosePredecessorIsSilent) {
+  Record r;
+  r.take(1);
+  r.see(BeaconHeard{"r0"});
+  join(r);
+  r.pass(11s, kForward);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+  r.pass(2s, kForward);
+  EXPECT_THAT(r.broken(), ElementsAre(8)) << r.texts();
+}
+
+TEST(CheckerMotion, AFollowerGoesOnUnderAnotherHolder) {
+  Record r;
+  r.take(1);
+  r.see(BeaconHeard{"r0"});
+  join(r);
+  r.pass(1s, kForward);
+  r.take(2);
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), ElementsAre(7, 8)) << r.texts();
+}
+
 }  // namespace
 }  // namespace adit::sim

@@ -87,6 +87,7 @@ const std::vector<Broken>& table() {
        "  - {at: 3, by: op1, do: drive r1 0.6 0 0 --for 6}\n  - {at: 5, by: op2, do: take r1}\n"},
       {"enter_off_centre", 7, 1, "  - {at: 6.03, by: op1, do: mode r1 manual}\n",
        "faults:\n  - {at: 4, stuck: [op1, r1], for: 5}\n"},
+      {"follows_nobody", 8, 1, "  - {at: 3, by: op1, do: mode r1 convoy_follow}\n"},
       {"lock_forgotten", 9, 1, kLock, kCrash},
       {"acknowledged_lost", 9, 1, kGo, kCrash},
       {"state_lost_whole", 9, 1, kLock, kCrash},

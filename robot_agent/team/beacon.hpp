@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/pose.hpp"
+#include "core/time/time.hpp"
+
+namespace adit::agent {
+
+/// A robot's part in a convoy. Lengths are measured along the path that the leader drove, m.
+struct ConvoyPart {
+  static constexpr std::size_t kPoints = 8;  ///< Points of the path in one beacon.
+
+  std::uint64_t convoy{};                 ///< Drawn by the station at each start of a convoy.
+  std::uint32_t order_hash{};             ///< Of the names in their order.
+  std::uint8_t index{};                   ///< Place in the order; 0: the leader.
+  bool left{};                            ///< It left the convoy: its successors follow the one before it.
+  bool placed{};                          ///< `along` is known.
+  double along{};                         ///< Position on the path; negative: before its beginning.
+  double gap{-1.0};                       ///< To the one before it, outline to outline; negative: unknown.
+  std::uint32_t wanted{};                 ///< Number of the first point of the path that it lacks.
+  std::uint32_t first{};                  ///< Number of the first of `points`.
+  std::vector<Eigen::Vector3d> points{};  ///< Consecutive points of the path, map frame, m.
+  bool operator==(const ConvoyPart&) const = default;
+};
+
+/// The state of a robot as it sends it to the other robots.
+struct TeamBeacon {
+  std::string robot{};
+  std::uint64_t start{};  ///< Random number of the start of its agent.
+  std::uint32_t seq{};    ///< From 1 at each start.
+  Pose2 pose{};           ///< Map frame.
+  double z{};             ///< m
+  Twist2 twist{};         ///< Body frame.
+  std::string mode{};
+  bool stopped{};
+  std::string holder{};  ///< Empty: no holder.
+  std::optional<ConvoyPart> convoy{};
+  bool operator==(const TeamBeacon&) const = default;
+};
+
+/// The last beacon of a peer, and when it arrived by this robot's clock.
+struct HeardBeacon {
+  TeamBeacon beacon{};
+  Time at{};
+  Duration period{1s};  ///< Time between its beacons, without the lost ones.
+};
+
+/// Why a beacon was refused.
+enum class BeaconFault : std::uint8_t {
+  none,
+  malformed,  ///< A number that is not finite or out of range, an invalid name, too many entries.
+  unknown,    ///< No robot of that name is known, or another participant is bound to the name.
+  old,        ///< A newer beacon of that robot arrived before it.
+};
+
+/// Number of refused beacons since the start, by reason.
+struct BeaconFaults {
+  std::uint64_t malformed{}, unknown{}, old{};
+  std::uint64_t total() const { return malformed + unknown + old; }
+  void count(BeaconFault fault) {
+    malformed += fault == BeaconFault::malformed ? 1 : 0;
+    unknown += fault == BeaconFault::unknown ? 1 : 0;
+    old += fault == BeaconFault::old ? 1 : 0;
+  }
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Convoys of whole agents: they follow, stop, peel off, refuse, and survive restarts and changes of holder.
+#include "tests/rehearsal/run_text.hpp"
+
+namespace adit::sim {
+namespace {
+
+/// Three robots in a row in a wide corridor; planar lidars.
+std::string in_a_row(const std::string& rest) {
+  return "world: {boxes: [[-8, 40, 3, 3.3, 0, 3], [-8, 40, -3.3, -3, 0, 3]], floor: 0, ceiling: 3}\n"
+         "link: mesh_500k\nlidar: planar\nrobots:\n"
+         "  - {id: r1, platform: wheeled, pose: [2.4, 0, 0]}\n"
+         "  - {id: r2, platform: wheeled, pose: [0, 0, 0]}\n"
+         "  - {id: r3, platform: wheeled, pose: [-2.4, 0, 0]}\n"
+         "basestations:\n  - {id: op1, pose: [0, 2]}\n  - {id: op2, pose: [0, -2]}\n" +
+         rest;
+}
+
+void holds(const RunReport& report) {
+  for (const std::string& line : report.complaints()) ADD_FAILURE() << line;
+}
+
+TEST(Convoy, TheShippedScenariosHold) {
+  for (const char* file : {"convoy_two.yaml", "convoy_peel.yaml"}) {
+    const Scenario scenario = load_shipped(file);
+    RunParams params;
+    params.make_agent = *make_agent_factory("");
+    params.seed = scenario.seed;
+    const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+    ASSERT_TRUE(outcome.ok()) << outcome.error().text;
+    holds(outcome->report);
+  }
+}
+
+TEST(Convoy, IsAllOrNone) {
+  holds(run_text(in_a_row(R"(duration: 14
+script:
+  - {at: 1, by: op1, do: take r1 r2}
+  - {at: 1, by: op2, do: take r3}
+  - {at: 2, by: op1, do: convoy start r1 r2 r3}        # r3 is op2's
+  - {at: 4, by: op2, do: stop r2}
+  - {at: 5, by: op1, do: convoy start r1 r2}           # r2 is stopped
+  - {at: 7, by: op1, do: reset r2 --override}
+  - {at: 8, by: op1, do: mode r2 convoy_follow}        # no place was kept
+  - {at: 9, by: op1, do: goto r1 8 0}
+expect:
+  - {at: 3.5, by_operator: op1, refused: not_holder}
+  - {at: 3.5, robot: r2, mode: hold}
+  - {at: 6.5, by_operator: op1, refused: stopped}
+  - {at: 8.5, by_operator: op1, refused: not_in_convoy}
+  - {from: 2, to: 14, robot: r2, still: 0.05}
+  - {from: 2, to: 14, robot: r3, still: 0.05}
+  - {always: no_collision}
+)"),
+                 "all_or_none.yaml"));
+}
+
+TEST(Convoy, AFollowerKeepsItsPlaceOverARestartAndLosesItWithItsHolder) {
+  holds(run_text(in_a_row(R"(duration: 50
+script:
+  - {at: 1, by: op1, do: take r1 r2 r3}
+  - {at: 2, by: op1, do: convoy start r1 r2 r3 --speed 0.6}
+  - {at: 3, by: op1, do: goto r1 24 0}
+  - {at: 28, by: op2, do: take r3}
+faults: [{at: 12, crash: r2}]
+expect:
+  - {at: 20, robot: r2, mode: convoy_follow}
+  - {at: 20, convoy: r1, order: [r1, r2, r3]}
+  - {from: 8, to: 28, gap: [r1, r2], between: [0.5, 7]}
+  - {at: 29, robot: r3, mode: hold, holder: op2}
+  - {from: 29.5, to: 50, robot: r3, still: 0.3}
+  - {by: 34, convoy: r1, order: [r1, r2]}
+  - {by: 48, robot: r1, near: [24, 0, 0.6]}
+  - {by: 50, robot: r2, near: [21.9, 0, 1.0]}
+  - {always: no_collision}
+)"),
+                 "restart.yaml"));
+}
+
+TEST(Convoy, ACutLinkHoldsThoseBehindItUntilItHeals) {
+  holds(run_text(in_a_row(R"(duration: 75
+script:
+  - {at: 1, by: op1, do: take r1 r2 r3}
+  - {at: 2, by: op1, do: convoy start r1 r2 r3 --speed 0.6}
+  - {at: 3, by: op1, do: goto r1 24 0}
+faults: [{at: 12, partition: [[r1, r2], [r3, op1, op2]], for: 25}]
+expect:
+  - {from: 27, to: 36, robot: r3, still: 0.1}
+  - {at: 36, robot: r3, mode: convoy_follow}
+  - {by: 40, by_operator: op1, notified: convoy_lost, robot: r3}
+  - {by: 74, robot: r3, near: [19.8, 0, 1.2]}
+  - {always: no_collision}
+)"),
+                 "cut.yaml"));
+}
+
+}  // namespace
+}  // namespace adit::sim
