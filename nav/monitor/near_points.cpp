@@ -19,6 +19,8 @@ constexpr std::array kBefore{0.1f, 0.15f, 0.2f,
 constexpr float kFlat = 0.14f;  ///< A cell with a larger height range holds a vertical face and no tread, m.
 /// Noise of the height range of many returns, m.
 constexpr float kSpread = 0.04f;
+/// A cell with this many times the returns of the one before it shows that those are its noise.
+constexpr int kTail = 2;
 /// Minimum number of returns in a cell and its neighbours; a single one is noise.
 constexpr int kFewest = 2;
 constexpr double kKink = 0.35;     ///< Maximum change of the ground's gradient where level ground ends.
@@ -112,7 +114,6 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
   const auto height = static_cast<float>(platform_.lidar_height);
   const Eigen::Matrix3f& R = lean.R_level_base;
   const float lidar = R(2, 2) * height;
-  const auto own = static_cast<float>(-params_.body_margin);
   const auto step = static_cast<float>(limits_.obstacle);
   const float slope = lean.slope;
   const auto stairs = static_cast<float>(limits_.slope);
@@ -155,7 +156,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
     // A wall as seen from below is a riser when the tread before it is visible.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     if (!led_to) highest_[index] = std::max(highest_[index], p.z() - below);
-    if (body_.depth(raw.x(), raw.y()) > own) continue;
+    if (body_.depth(raw.x(), raw.y()) > 0.0f) continue;
     const float depth = body_.depth(p.x(), p.y());
     // A robot that climbs stairs has its centre on them, and they rise from there. A return as high as the
     // lidar comes from a level ray: there need be no ground below it, unless the tread before it is visible.
@@ -221,6 +222,27 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
     cells_[i].y /= static_cast<float>(cells_[i].count);
   };
   for (const std::uint32_t i : used_) mean(i);
+  // The mean of a cell's returns. Where a cell beyond it along the rays, within the noise of a range, has
+  // many more, these few are noise of the same surface, and the mean of both counts. Of few returns that is
+  // not known.
+  const auto surface = [this](std::uint32_t i) -> Eigen::Vector2f {
+    const Cell& cell = cells_[i];
+    const Eigen::Vector2f at(cell.x, cell.y);
+    const Cell* most = nullptr;
+    for (const int row : {-kSide, 0, kSide})
+      for (int k = -1; k <= 1; ++k) {
+        const auto beside = static_cast<std::int64_t>(i) + row + k;
+        if (beside < 0 || beside >= static_cast<std::int64_t>(cells_.size())) continue;
+        const Cell& other = cells_[static_cast<std::size_t>(beside)];
+        if (other.count < kTail * cell.count) continue;
+        const float beyond = (Eigen::Vector2f(other.x, other.y) - at).dot(at.normalized());
+        const bool noise = beyond > 0 && beyond < 3 * static_cast<float>(params_.noise);
+        if (noise && (!most || other.count > most->count)) most = &other;
+      }
+    if (!most) return at;
+    const float own = static_cast<float>(cell.count) / static_cast<float>(cell.count + most->count);
+    return own * at + (1 - own) * Eigen::Vector2f(most->x, most->y);
+  };
   const std::size_t room = kMost - places_.size();
   if (used_.size() > room)
     std::sort(used_.begin(), used_.end(), [&](auto a, auto b) { return rank(a) < rank(b); });
@@ -234,9 +256,11 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
           around += cells_[static_cast<std::size_t>(beside)].count;
       }
     if (around < kFewest) continue;
-    const Eigen::Vector2d at = body.planar() * Eigen::Vector2d(cells_[i].x, cells_[i].y);
     const double doubt =
         std::min(params_.most_doubt, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
+    const bool certain = doubt < params_.noise / 2;
+    const Eigen::Vector2f place = certain ? surface(i) : Eigen::Vector2f(cells_[i].x, cells_[i].y);
+    const Eigen::Vector2d at = body.planar() * place.cast<double>();
     places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()),
                        cells_[i].z + static_cast<float>(body.position.z()), static_cast<float>(doubt),
                        stamp_s});

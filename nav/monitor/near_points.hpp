@@ -13,8 +13,6 @@
 namespace adit::nav {
 
 struct NearPointsParams {
-  /// Returns within this distance of the footprint belong to the robot, m, [0, 0.5].
-  double body_margin{0.02};
   double shortest{0.35};    ///< The lidar may see nothing at shorter range, m, [0, 1].
   double memory{10.0};      ///< Lifetime of a place that newer scans cannot show, s, [0, 60].
   double noise{0.02};       ///< Standard deviation of a return's range, m, [0, 0.2].

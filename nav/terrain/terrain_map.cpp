@@ -156,8 +156,7 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
   const auto lidar = static_cast<float>(platform_.lidar_height);
   const auto range2 = static_cast<float>(params_.range * params_.range);
   const auto min2 = static_cast<float>(params_.min_range * params_.min_range);
-  const auto reach2 = static_cast<float>(std::pow(body_.radius() + params_.body_margin, 2));
-  const auto own = static_cast<float>(-params_.body_margin);
+  const auto reach2 = static_cast<float>(std::pow(body_.radius(), 2));
   // Rays that cross the plane of the ground within range and end below it.
   const Eigen::Vector2f rise = ground_.grown() ? ground_.plane().gradient : view.tilt();
   const Eigen::Vector3f up = view.turn.transpose() * Eigen::Vector3f(-rise.x(), -rise.y(), 1.0f);
@@ -176,7 +175,7 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
       if (!(full2 > min2 && flat2 > 1e-4f && full2 < 1e6f)) continue;
       rays_.add(ray);
       if (flat2 <= range2) {
-        if (flat2 < reach2 && body_.depth(p.x(), p.y()) >= own) continue;
+        if (flat2 < reach2 && body_.depth(p.x(), p.y()) > 0.0f) continue;
         const Eigen::Vector3f world = view.base + view.turn * p;
         ground_.add(world.x(), world.y(), world.z());
         near_.push_back(world);

@@ -11,8 +11,6 @@ struct TerrainParams {
   int misses{3};               ///< Consecutive scans that saw through a cell before it is free, [1, 100].
   /// Consecutive scans without an expected return of the ground before it counts as a hole, [1, 100].
   int silent{3};
-  /// Returns within this distance of the footprint belong to the robot, m, [0, 0.5].
-  double body_margin{0.02};
   double min_range{0.05};  ///< Shorter ranges are no returns, m, [0, 1].
   /// Within this distance of the lidar obstacles stay until rays pass through them, m, [0, 2].
   double blind_range{0.6};

@@ -11,7 +11,7 @@ constexpr double kBelow = 0.3;   ///< Wheels stand lower than base_link where th
 
 }  // namespace
 
-BodyFilter::BodyFilter(const Platform& platform, double margin) {
+BodyFilter::BodyFilter(const Platform& platform) {
   std::vector<Eigen::Vector2d> corners = platform.footprint;
   if (corners.empty()) {
     const double x = platform.length / 2, y = platform.width / 2;
@@ -21,10 +21,10 @@ BodyFilter::BodyFilter(const Platform& platform, double margin) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector2d along = corners[(i + 1) % corners.size()] - corners[i];
     const Eigen::Vector2d normal = Eigen::Vector2d(along.y(), -along.x()).normalized();
-    edges_.push_back({normal.cast<float>(), static_cast<float>(normal.dot(corners[i]) + margin)});
+    edges_.push_back({normal.cast<float>(), static_cast<float>(normal.dot(corners[i]))});
     radius = std::max(radius, corners[i].norm());
   }
-  radius2_ = static_cast<float>((radius + 2 * margin) * (radius + 2 * margin));
+  radius2_ = static_cast<float>(radius * radius);
   top_ = static_cast<float>(top + kAbove);
   bottom_ = static_cast<float>(-kBelow);
 }

@@ -7,12 +7,11 @@
 
 namespace adit::perception {
 
-/// The space that the robot's own body takes: its footprint and a margin, from the ground up to its highest
-/// part.
+/// The space that the robot's own body takes: its footprint, from the ground up to its highest part. No
+/// margin is added, because a wall that nearly touches the body must be seen.
 class BodyFilter {
  public:
-  /// `margin`: around the footprint, m.
-  explicit BodyFilter(const Platform& platform, double margin = 0.02);
+  explicit BodyFilter(const Platform& platform);
 
   /// Whether a return at `p` (base_link, m) is of the body itself.
   bool contains(const Eigen::Vector3f& p) const {
@@ -25,7 +24,7 @@ class BodyFilter {
  private:
   struct Edge {
     Eigen::Vector2f normal{};  ///< Outwards.
-    float distance{};          ///< From base_link, the margin included, m.
+    float distance{};          ///< From base_link, m.
   };
   std::vector<Edge> edges_{};
   float radius2_{}, top_{}, bottom_{};

@@ -153,6 +153,27 @@ TEST(CollisionMonitor, TurnsOnTheSpotBesideAWallAsFarAsThereIsRoom) {
   EXPECT_GT(open.pose.yaw, 1.4);
 }
 
+TEST(CollisionMonitor, SeesAWallThatIsNearerThanTheErrorsOfTheSensors) {
+  // Bias and mounting make a wall 2 cm beside the body look as if it were 1 cm beside it, or touched it.
+  for (const double gap : {0.01, 0.0}) {
+    Seen seen({{-3, 3, tracked().width / 2 + gap, 1}}, tracked());
+    seen.noise = 0.02;
+    seen.look(0.0);
+    EXPECT_EQ(seen.ask({0.3, 0, 0.3}).cause, Cause::stopped) << gap;
+    EXPECT_EQ(seen.ask({0, 0, 0.5}).cause, Cause::stopped) << gap;
+  }
+}
+
+TEST(CollisionMonitor, TheNoiseOfAWallIsNoNearerWall) {
+  Seen seen({{-3, 3, wheeled().width / 2 + 0.045, 1}});
+  seen.noise = 0.02;
+  for (int i = 0; i < 20; ++i) {
+    seen.look(0.1 * i);
+    const auto verdict = seen.ask({0.3, 0, 0}, Policy::stop, 0.1 * i);
+    EXPECT_EQ(verdict.cause, Cause::none) << i << ": " << verdict.velocity.vx;
+  }
+}
+
 TEST(CollisionMonitor, WhoTouchesSomethingMayLeaveIt) {
   Seen seen({{0.325, 0.5, -1, 1}});
   EXPECT_TRUE(seen.ask({0.3, 0, 0}).velocity.zero());
