@@ -89,16 +89,15 @@ TEST(Goals, EachReasonIsAnsweredAtOnceAndNothingMoves) {
 }
 
 TEST(Goals, StepsAreTooSteep) {
-  // Eight steps of 0.1 m, 0.2 m deep. Without errors of sensors: from 2.4 m away these make the side of a
-  // step an obstacle.
+  // Sixteen steps of 0.05 m, 0.1 m deep: none is too high, and all together are too steep.
   std::string steps;
-  for (int i = 0; i < 8; ++i)
-    steps += (i ? ", [" : "[") + std::to_string(-3.0 - 0.2 * i) + ", " + std::to_string(-2.8 - 0.2 * i) +
-             ", -6, -3, 0, " + std::to_string(0.1 + 0.1 * i) + "]";
+  for (int i = 0; i < 16; ++i)
+    steps += (i ? ", [" : "[") + std::to_string(-2.9 - 0.1 * i) + ", " + std::to_string(-2.8 - 0.1 * i) +
+             ", -6, -3, 0, " + std::to_string(0.05 + 0.05 * i) + "]";
   const GoalsRun run =
       run_goals("world: {boxes: [" + steps +
                 ", [-6.2, -6, -7, 7, 0, 2]], floor: 0, ceiling: 3}\nduration: 7\nlink: wifi\nlidar: full\n"
-                "odometry: {noise: 0}\nrobots:\n  - {id: r1, platform: wheeled, pose: [-1, -4.5, 3.14]}\n"
+                "robots:\n  - {id: r1, platform: wheeled, pose: [-1, -4.5, 3.14]}\n"
                 "basestations:\n  - {id: op1, pose: [0, 0]}\nscript:\n  - {at: 2, by: op1, do: take r1}\n"
                 "  - {at: 4, by: op1, do: goto r1 -3.4 -4.5}\nexpect:\n"
                 "  - {at: 4.9, by_operator: op1, refused: goal_too_steep}\n  - {always: no_collision}\n");
@@ -145,7 +144,7 @@ TEST(Goals, ARobotThatStartsNearlyInContactLeavesOrNamesIt) {
       "world: {boxes: [[-1, 1, 0.30, 0.4, 0, 1], [-1, 1, 10.3, 10.4, 0, 1], [-1, 1, 20.3, 20.4, 0, 1], "
       "[-1, 1, 19.6, 19.7, 0, 1], [0.4, 0.5, 19.6, 20.4, 0, 1], [-1, 1, 30.3, 30.4, 0, 1], "
       "[0.35, 0.45, 29.4, 30.4, 0, 1], [-0.45, -0.35, 29.4, 30.4, 0, 1]], "
-      "floor: 0, ceiling: 3}\nduration: 25\nlink: wifi\nlidar: full\nodometry: {noise: 0}\nrobots:\n"
+      "floor: 0, ceiling: 3}\nduration: 25\nlink: wifi\nlidar: full\nrobots:\n"
       "  - {id: r1, platform: wheeled, pose: [0, 0.01, 0]}\n"
       "  - {id: r2, platform: wheeled, pose: [0, 10.03, 0]}\n"
       "  - {id: r3, platform: wheeled, pose: [0.05, 20, 0]}\n"
