@@ -22,7 +22,8 @@ struct GoalRun {
 
 struct GoalResult {
   std::string error{};   ///< Why the run failed; empty: it did not.
-  bool arrived{};        ///< The robot stands at the goal.
+  bool arrived{};        ///< The robot stands at the goal, by its odometry.
+  double off{};          ///< Then from the true pose to the goal, m.
   bool ends{};           ///< The robot reported why it does not go on, and stands.
   bool refused{};        ///< The goto command was refused.
   std::string reason{};  ///< Of the refusal, or the code of the first such report.

@@ -58,17 +58,21 @@ std::optional<Drawn> draw_goal(const TrueMap& map, std::uint64_t seed) {
 
 struct Tally {
   int runs{}, reached{}, contacts{};
-  std::vector<double> ratios{};
+  std::vector<double> ratios{}, off{};
   void add(const GoalResult& result, double shortest, double speed) {
     ++runs;
     contacts += result.contacts;
     if (!result.arrived) return;
     ++reached;
     ratios.push_back(result.seconds / (shortest / speed + kAllowance));
+    off.push_back(result.off);
   }
   std::string text() const {
-    return fmt::format("{} of {} reached, {} contacts, time {:.2f} x (shortest path at top speed + 10 s)",
-                       reached, runs, contacts, median(ratios));
+    return fmt::format(
+        "{} of {} reached, {} contacts, time {:.2f} x (shortest path at top speed + 10 s), truly {:.2f} m "
+        "from the goal (at most {:.2f})",
+        reached, runs, contacts, median(ratios), median(off),
+        off.empty() ? 0.0 : *std::max_element(off.begin(), off.end()));
   }
 };
 
