@@ -6,7 +6,7 @@
 
 #include "core/time/random.hpp"
 #include "nav/control/controller.hpp"
-#include "nav/make_planner.hpp"
+#include "nav/planners/make_planner.hpp"
 #include "robot_agent/agent_impl.hpp"
 
 namespace adit::agent {

@@ -10,7 +10,7 @@
 #include <new>
 
 #include "bench/nav/calibration.hpp"
-#include "nav/navigator.hpp"
+#include "nav/local_navigation.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace {
@@ -72,7 +72,7 @@ Case all_blocked(const char* name, int points) {
 bool run(const Case& c) {
   // Beside each case, so that both see the same machine.
   const double unit = bench::calibration_unit_ms();
-  Navigator navigator(test::wheeled());
+  LocalNavigation local_navigation(test::wheeled());
   std::vector<double> scan_ms, total_ms;
   std::size_t points = 0, cells = 0, blocked = 0;
   std::uint64_t allocated = 0;
@@ -86,9 +86,9 @@ bool run(const Case& c) {
     const std::size_t k = at < n ? at : 2 * n - 1 - at;
     const std::uint64_t before = allocations;
     const double t0 = bench::thread_cpu_ms();
-    navigator.add_scan(c.scans[k], Pose3::level(c.poses[k], 0.0), 0.1 * i);
+    local_navigation.add_scan(c.scans[k], Pose3::level(c.poses[k], 0.0), 0.1 * i);
     const double t1 = bench::thread_cpu_ms();
-    const Plan plan = navigator.plan(Target::to({30, 0.5}), c.poses[k], 0.1 * i);
+    const Plan plan = local_navigation.plan(Target::to({30, 0.5}), c.poses[k], 0.1 * i);
     const double t2 = bench::thread_cpu_ms();
     if (i < kWarm) continue;
     allocated += allocations - before;
@@ -96,7 +96,7 @@ bool run(const Case& c) {
     total_ms.push_back(t2 - t0);
     cpu += t2 - t0;
     points += c.scans[k].size();
-    cells += navigator.terrain().cells().size();
+    cells += local_navigation.terrain().cells().size();
     blocked += plan.blocked;
   }
   std::sort(scan_ms.begin(), scan_ms.end());
@@ -117,7 +117,7 @@ bool run(const Case& c) {
 int main() {
   using namespace adit::nav;
   const double begin = adit::bench::thread_cpu_ms();
-  { const LocalPlanner planner(test::wheeled()); }
+  { const FalcoPlanner planner(test::wheeled()); }
   std::printf("libraries built in %.1f ms\n", adit::bench::thread_cpu_ms() - begin);
   std::printf("%-28s %7s %6s %8s %8s %8s %8s %8s %8s %6s %9s %7s\n", "case", "points", "cells", "unit ms",
               "scan ms", "cycle ms", "p99 ms", "units", "p99", "goal", "Mpoint/s", "allocs");

@@ -57,7 +57,7 @@ struct Platform {
   double max_tilt{0.0};
   bool stairs{false};
   std::string router{"none"};  ///< Router around obstacles beyond the local planner's view: none or graph.
-  std::string planner{"trajectories"};  ///< Planner of paths to a goal: nav/make_planner.hpp.
+  std::string planner{"trajectories"};  ///< Planner of paths to a goal: nav/planners/make_planner.hpp.
   /// Largest curvature of the planner's paths, rad/m, (0, 4]; 0: the planner's default.
   double path_curvature{0.0};
   /// Segment length of its trajectory library, m, [0.2, 2]; 0: the planner's default.

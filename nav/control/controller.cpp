@@ -11,7 +11,8 @@ namespace adit::nav {
 namespace {
 
 constexpr double kStanding = 0.12;  ///< Below this speed a turn on the spot may begin, m/s.
-constexpr double kNoWay = 1e-3;  ///< Below this speed a velocity does not define a car's steering angle, m/s.
+/// Below this speed a velocity does not define a car's steering angle, m/s.
+constexpr double kNoDirection = 1e-3;
 constexpr double kFarOff = 0.15;     ///< Above this error of its steering angle a car drives at kSteers, rad.
 constexpr double kSteers = 0.15;     ///< Speed of a car while its steering angle is wrong, m/s.
 constexpr double kSteerShare = 0.9;  ///< Fraction of the steering rate that is counted on.
@@ -50,7 +51,7 @@ Twist2 Controller::follow(const Pose2& odom, double dt) {
 void Controller::sent(const Twist2& velocity) {
   last_ = velocity;
   // A velocity of zero says nothing about the steering of a car.
-  steering_ = std::fabs(velocity.vx) < kNoWay
+  steering_ = std::fabs(velocity.vx) < kNoDirection
                   ? steering_before_
                   : std::clamp(std::atan(platform_.wheelbase * velocity.wz / velocity.vx),
                                -platform_.max_steering, platform_.max_steering);
@@ -125,7 +126,7 @@ Twist2 Controller::towards(const Twist2& wanted, double dt) const {
 Twist2 Controller::steered(const Twist2& wanted, double dt) {
   const Platform& p = platform_;
   const double most = p.max_steering;
-  const double target = std::fabs(wanted.vx) < kNoWay
+  const double target = std::fabs(wanted.vx) < kNoDirection
                             ? steering_
                             : std::clamp(std::atan(p.wheelbase * wanted.wz / wanted.vx), -most, most);
   steering_before_ = steering_;

@@ -7,7 +7,7 @@
 
 #include "core/config/platform.hpp"
 #include "core/result/result.hpp"
-#include "nav/plan.hpp"
+#include "nav/planners/plan.hpp"
 
 namespace adit::nav {
 
@@ -42,9 +42,10 @@ class Controller {
 
  protected:
   /// Position of the robot along the path.
+  /// Index of the path's nearest pose.
   struct Place {
-    std::size_t nearest{};  ///< Index of the path's nearest pose.
-    double remaining{};     ///< Length of the path from there to its end, m.
+    std::size_t nearest{};
+    double remaining{};  ///< Length of the path from there to its end, m.
   };
   /// Computes the next velocity along plan().path(), which has at least two poses. Limits of acceleration are
   /// applied afterwards. Poses are those of the point that does not move sideways: the rear axle of a car,

@@ -18,7 +18,7 @@ constexpr std::size_t kViewpoints = 6;  // Of a frontier, the nearest to the rob
 constexpr std::size_t kSamples = 8;     // Voxels of a frontier that are looked at for a viewpoint.
 constexpr std::array kAway{2.0, 4.0, 6.0, 8.0, 10.0};  // Of a viewpoint from its frontier, m.
 constexpr int kDirections = 8;
-constexpr std::size_t kMostDeferred = 64;
+constexpr std::size_t kMaxDeferred = 64;
 
 std::size_t unseen_of(const CoverageMap& map, const Frontier& frontier) {
   return static_cast<std::size_t>(
@@ -78,7 +78,7 @@ void Explorer::defer(const Eigen::Vector3d& place, double stamp_s) {
     same->until = stamp_s + same->pause;
     return;
   }
-  if (deferred_.size() >= kMostDeferred)
+  if (deferred_.size() >= kMaxDeferred)
     deferred_.erase(std::min_element(deferred_.begin(), deferred_.end(),
                                      [](const Deferred& a, const Deferred& b) { return a.until < b.until; }));
   deferred_.push_back({place, stamp_s + kFirstPause, kFirstPause});

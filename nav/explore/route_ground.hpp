@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "nav/explore/explorer.hpp"
-#include "nav/route/route_planner.hpp"
+#include "nav/routing/route_planner.hpp"
 
 namespace adit::nav {
 

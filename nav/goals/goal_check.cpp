@@ -9,8 +9,8 @@ namespace adit::nav {
 namespace {
 
 constexpr double kMapError = kRouteCell / 2;  // m
-/// Obstacle height that ScanProfile writes at the edge of missing ground, kTopUnit.
-constexpr std::uint8_t kHoleTop = 1;
+/// Obstacle height that ScanProfile writes at the edge of missing ground, kObstacleHeightUnit.
+constexpr std::uint8_t kHoleHeight = 1;
 
 }  // namespace
 
@@ -57,7 +57,7 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
         found.solid = true;
         if (off.norm() < found.nearest) {
           found.nearest = off.norm();
-          found.hole = cell->top <= kHoleTop;
+          found.hole = cell->obstacle_height <= kHoleHeight;
         }
         before = nullptr;
         continue;

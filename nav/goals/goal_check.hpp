@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "core/config/traversability.hpp"
-#include "nav/footprint.hpp"
-#include "nav/route/route_planner.hpp"
+#include "nav/geometry/footprint.hpp"
+#include "nav/routing/route_planner.hpp"
 
 namespace adit::nav {
 

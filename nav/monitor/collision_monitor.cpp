@@ -6,8 +6,8 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kStride = 0.03;   ///< Distance between the poses of a sweep, m.
-constexpr int kMostStrides = 160;  ///< Maximum number of poses of a sweep.
+constexpr double kStride = 0.03;  ///< Distance between the poses of a sweep, m.
+constexpr int kMaxStrides = 160;  ///< Maximum number of poses of a sweep.
 /// A smaller change does not count as deeper, m: sliding along a wall is allowed.
 constexpr float kDeeper = 0.002f;
 constexpr double kCreep = 0.02;   ///< A lower speed counts as stationary, m/s.
@@ -18,7 +18,7 @@ constexpr double kSlow = 0.2;
 constexpr double kFastest = 1.5;  ///< Factor on the platform's speed above which a velocity is implausible.
 constexpr double kNext = 0.05;    ///< Period of the checks, s.
 constexpr double kTick = 0.06;    ///< Step of the prediction of movers, s.
-constexpr std::size_t kMostMoving = Tracker::kMost * Mover::kMost;
+constexpr std::size_t kMaxMoving = Tracker::kMax * Mover::kMax;
 
 Twist2 scaled(const Twist2& t, double by) { return {by * t.vx, by * t.vy, by * t.wz, t.vz}; }
 
@@ -60,12 +60,12 @@ void CollisionMonitor::clear() {
 }
 
 Twist2 CollisionMonitor::limited(const Twist2& wanted) const {
-  const double fastest = rim(wanted);
+  const double fastest = rim_speed(wanted);
   return fastest > params_.limit_speed ? scaled(wanted, params_.limit_speed / fastest) : wanted;
 }
 
 // Speed of the body's fastest part, m/s.
-double CollisionMonitor::rim(const Twist2& velocity) const {
+double CollisionMonitor::rim_speed(const Twist2& velocity) const {
   return std::max(speed_of(velocity), std::fabs(velocity.wz) * body_.radius());
 }
 
@@ -76,20 +76,20 @@ Twist2 CollisionMonitor::instead_of(const Twist2& stopped, const Pose2& odom, do
   for (Twist2 part : {Twist2{stopped.vx, stopped.vy, 0}, Twist2{0, 0, stopped.wz},
                       Twist2{stopped.vx, stopped.vy, stopped.wz / 2}}) {
     if (speed_of(part) == 0 && !platform_.turns_on_spot()) continue;
-    if (const double fastest = rim(part); fastest > kInstead) part = scaled(part, kInstead / fastest);
-    if (share(part, odom, now_s) >= 1) return part;
+    if (const double fastest = rim_speed(part); fastest > kInstead) part = scaled(part, kInstead / fastest);
+    if (speed_scale(part, odom, now_s) >= 1) return part;
   }
   return {};
 }
 
-double CollisionMonitor::share(const Twist2& wanted, const Pose2& odom, double now_s) const {
+double CollisionMonitor::speed_scale(const Twist2& wanted, const Pose2& odom, double now_s) const {
   // Braking time from the full `wanted`; from a fraction of it, that fraction of the time.
   const double brake =
       std::max(speed_of(wanted) / (params_.braking_share * platform_.max_acceleration),
                std::fabs(wanted.wz) / (params_.braking_share * platform_.max_turn_acceleration));
   const double horizon = params_.reaction + brake / 2;
   const double free = free_time(wanted, odom, horizon);
-  const double k = share_before_movers(wanted, odom, now_s, brake);
+  const double k = speed_scale_before_movers(wanted, odom, now_s, brake);
   if (free >= horizon) return k;
   // The fraction k whose stopping distance, k reaction + k^2 brake / 2 (in s of driving `wanted`), fits.
   return std::min(
@@ -102,11 +102,11 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
   if (!fresh(now_s)) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::stale};
   // An operator may have to drive it down manually.
   if (tilted_) return {policy == Policy::stop ? Twist2{} : limited(wanted), Cause::tilted};
-  const double k = share(wanted, odom, now_s);
+  const double k = speed_scale(wanted, odom, now_s);
   if (k >= 1) return {wanted, Cause::none};
-  const bool stands = k * rim(wanted) < kCreep;
-  const Cause cause = stands ? Cause::stopped : Cause::slowed;
-  const Twist2 allowed = stands ? Twist2{} : scaled(wanted, k);
+  const bool is_stopped = k * rim_speed(wanted) < kCreep;
+  const Cause cause = is_stopped ? Cause::stopped : Cause::slowed;
+  const Twist2 allowed = is_stopped ? Twist2{} : scaled(wanted, k);
   if (policy == Policy::limit) {
     const Twist2 slow = limited(wanted);
     return {speed_of(allowed) + std::fabs(allowed.wz) > speed_of(slow) + std::fabs(slow.wz) ? allowed : slow,
@@ -114,14 +114,15 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
   }
   // A robot that turns towards an obstacle at speed cannot slow down to the speed for that arc in time.
   const double lost = platform_.max_acceleration * kNext, by_odometry = speed_of(drives.velocity);
-  const Twist2 moves =
-      by_odometry > drives.told ? scaled(drives.velocity, drives.told / by_odometry) : drives.velocity;
+  const Twist2 moves = by_odometry > drives.commanded
+                           ? scaled(drives.velocity, drives.commanded / by_odometry)
+                           : drives.velocity;
   const double speed = speed_of(moves);
   const bool ahead = moves.vx * wanted.vx + moves.vy * wanted.vy > 0;
   if (ahead && speed > kSlow && by_odometry <= kFastest * platform_.max_speed &&
       speed - speed_of(allowed) > lost) {
     const double kept = 1 - params_.braking_share * lost / speed;
-    const double braked = std::min(kept, share(moves, odom, now_s));
+    const double braked = std::min(kept, speed_scale(moves, odom, now_s));
     Twist2 braking = scaled(moves, braked);
     braking.vz = wanted.vz;
     // Compensates the slip of tracks.
@@ -133,26 +134,27 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
 
 double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, double horizon) const {
   const double radius = body_.radius();
-  const double rim = speed_of(velocity) + std::fabs(velocity.wz) * radius;
-  const int steps = std::clamp(static_cast<int>(std::ceil(rim * horizon / kStride)), 1, kMostStrides);
+  const double rim_speed = speed_of(velocity) + std::fabs(velocity.wz) * radius;
+  const int steps = std::clamp(static_cast<int>(std::ceil(rim_speed * horizon / kStride)), 1, kMaxStrides);
   const double dt = horizon / steps;
 
   const auto c = static_cast<float>(std::cos(odom.yaw)), s = static_cast<float>(std::sin(odom.yaw));
   const auto x0 = static_cast<float>(odom.x), y0 = static_cast<float>(odom.y);
-  const double wide = radius + params_.points.most_doubt;
+  const double wide = radius + params_.points.max_uncertainty;
   const auto far = static_cast<float>(wide + speed_of(velocity) * horizon);
   struct Point {
     float x, y, depth;
   };
   // The points within reach; the sweep ends at the first one that it meets.
-  std::array<Point, NearPoints::kMost> points;
+  std::array<Point, NearPoints::kMax> points;
   std::size_t count = 0;
   for (const NearPoints::Place& place : near_.places()) {
     const float dx = place.x - x0, dy = place.y - y0;
     if (dx * dx + dy * dy > far * far) continue;
     const float x = c * dx + s * dy, y = c * dy - s * dx;
     // The margin grows with the uncertainty of places with few, noisy returns.
-    points[count++] = {x, y, std::max(0.0f, body_.depth(x, y) + place.doubt) + kDeeper - place.doubt};
+    points[count++] = {x, y,
+                       std::max(0.0f, body_.depth(x, y) + place.uncertainty) + kDeeper - place.uncertainty};
   }
   if (count == 0) return horizon;
 
@@ -174,12 +176,12 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
   return horizon;
 }
 
-double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& odom, double now_s,
-                                             double brake) const {
+double CollisionMonitor::speed_scale_before_movers(const Twist2& wanted, const Pose2& odom, double now_s,
+                                                   double brake) const {
   struct Point {
     float x, y, vx, vy;  // Relative to the robot now.
   };
-  std::array<Point, kMostMoving> points;
+  std::array<Point, kMaxMoving> points;
   std::size_t count = 0;
   const auto c = static_cast<float>(std::cos(odom.yaw)), s = static_cast<float>(std::sin(odom.yaw));
   const auto x0 = static_cast<float>(odom.x), y0 = static_cast<float>(odom.y);
@@ -198,17 +200,17 @@ double CollisionMonitor::share_before_movers(const Twist2& wanted, const Pose2& 
   }
   if (count == 0) return 1;
   const double sideways = wanted.vy + platform_.rear_axle() * wanted.wz;  // As above, for a car.
-  const auto met = [&](double share) {
-    const double braking = share * brake, end = params_.reaction + braking;
+  const auto met = [&](double speed_scale) {
+    const double braking = speed_scale * brake, end = params_.reaction + braking;
     const int steps = static_cast<int>(std::ceil(end / kTick));
     const auto radius2 = static_cast<float>(wide_.radius() * wide_.radius());
     const auto through = static_cast<float>(params_.mover_margin);
-    std::array<bool, kMostMoving> gone{};
+    std::array<bool, kMaxMoving> gone{};
     Pose2 before{};
     for (int i = 1; i <= steps; ++i) {
       const double t = end * i / steps, late = std::max(0.0, t - params_.reaction);
       // Driven distance in s of driving `wanted`: first at the fraction, then braking.
-      const double way = share * (t - late * late / (2 * std::max(braking, 1e-6)));
+      const double way = speed_scale * (t - late * late / (2 * std::max(braking, 1e-6)));
       const double half = wanted.wz * way / 2;
       const double chord = std::fabs(half) > 1e-6 ? way * std::sin(half) / half : way;
       const Pose2 pose =

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <limits>
 
-#include "nav/dynamic/tracker.hpp"
 #include "nav/monitor/near_points.hpp"
+#include "nav/tracking/tracker.hpp"
 
 namespace adit::nav {
 
@@ -22,10 +22,11 @@ struct CollisionMonitorParams {
 };
 
 /// The present motion of the robot; without values it is unknown.
+/// From odometry, at the centre of rotation: a car's rear axle.
 struct Driven {
-  Twist2 velocity{};  ///< From odometry, at the centre of rotation: a car's rear axle.
+  Twist2 velocity{};
   /// Maximum speed that follows from the commands, m/s.
-  double told{std::numeric_limits<double>::infinity()};
+  double commanded{std::numeric_limits<double>::infinity()};
 };
 
 /// The last check of every velocity command, based only on the newest scan and the odometry: it is
@@ -79,11 +80,11 @@ class CollisionMonitor {
   double free_time(const Twist2& velocity, const Pose2& odom, double horizon) const;
   /// Fraction of `wanted`, [0, 1], that can be driven and braked before the body touches a static obstacle
   /// or, by its own motion, a mover.
-  double share(const Twist2& wanted, const Pose2& odom, double now_s) const;
+  double speed_scale(const Twist2& wanted, const Pose2& odom, double now_s) const;
   /// The same for movers alone; braking takes `brake` s from the full `wanted`.
-  double share_before_movers(const Twist2& wanted, const Pose2& odom, double now_s, double brake) const;
+  double speed_scale_before_movers(const Twist2& wanted, const Pose2& odom, double now_s, double brake) const;
   Twist2 limited(const Twist2& wanted) const;
-  double rim(const Twist2& velocity) const;
+  double rim_speed(const Twist2& velocity) const;
 
   Platform platform_;
   CollisionMonitorParams params_;

@@ -22,7 +22,7 @@ constexpr float kSpread = 0.04f;
 /// A cell with this many times the returns of the one before it shows that those are its noise.
 constexpr int kTail = 2;
 /// Minimum number of returns in a cell and its neighbours; a single one is noise.
-constexpr int kFewest = 2;
+constexpr int kMinReturns = 2;
 constexpr double kKink = 0.35;     ///< Maximum change of the ground's gradient where level ground ends.
 constexpr double kSteeper = 0.05;  ///< A ramp may get steeper than under the body by this much.
 constexpr double kBelow = 0.1;     ///< A flying robot must be at least this far above an object, m.
@@ -51,8 +51,8 @@ NearPoints::NearPoints(const Platform& platform, double reach, const NearPointsP
       highest_(kSide * kSide),
       cells_(kSide * kSide) {
   used_.reserve(cells_.size());
-  places_.reserve(kMost);
-  kept_.reserve(kMost);
+  places_.reserve(kMax);
+  kept_.reserve(kMax);
 }
 
 std::size_t NearPoints::coarse(float x, float y) {
@@ -79,7 +79,7 @@ bool NearPoints::seen_again(const Eigen::Vector2f& local) const {
       obstacle += cells_[i].count;
     }
   // A return that the newest scan shows to be an obstacle by itself counts alone.
-  return raised && obstacle < kFewest;
+  return raised && obstacle < kMinReturns;
 }
 
 bool NearPoints::tread_leads_to(const Eigen::Vector3f& p, float range, float highest, float rise) const {
@@ -93,36 +93,36 @@ bool NearPoints::tread_leads_to(const Eigen::Vector3f& p, float range, float hig
   return false;
 }
 
-NearPoints::Lean NearPoints::lean_of(const Pose3& body) const {
-  Lean lean;
+NearPoints::Tilt NearPoints::tilt_of(const Pose3& body) const {
+  Tilt tilt;
   const Eigen::Quaterniond heading(Eigen::AngleAxisd(body.yaw(), Eigen::Vector3d::UnitZ()));
-  lean.R_level_base = (heading.conjugate() * body.orientation).toRotationMatrix().cast<float>();
-  const Eigen::Vector3f up = lean.R_level_base.col(2);
+  tilt.R_level_base = (heading.conjugate() * body.orientation).toRotationMatrix().cast<float>();
+  const Eigen::Vector3f up = tilt.R_level_base.col(2);
   const auto steepest = static_cast<float>(limits_.slope);
   if (!platform_.flies() && up.z() > 0.2f) {
-    lean.rise = -up.head<2>() / up.z();
+    tilt.rise = -up.head<2>() / up.z();
     // Steeper tilts are those of the body and not of the ground.
-    if (lean.rise.norm() > steepest) lean.rise *= steepest / lean.rise.norm();
+    if (tilt.rise.norm() > steepest) tilt.rise *= steepest / tilt.rise.norm();
   }
-  lean.slope = std::min(steepest,
-                        std::max(static_cast<float>(kKink), lean.rise.norm() + static_cast<float>(kSteeper)));
-  return lean;
+  tilt.slope = std::min(steepest,
+                        std::max(static_cast<float>(kKink), tilt.rise.norm() + static_cast<float>(kSteeper)));
+  return tilt;
 }
 
-NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, const Lean& lean) {
+NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, const Tilt& tilt) {
   const auto top = static_cast<float>(limits_.headroom);
   const auto height = static_cast<float>(platform_.lidar_height);
-  const Eigen::Matrix3f& R = lean.R_level_base;
+  const Eigen::Matrix3f& R = tilt.R_level_base;
   const float lidar = R(2, 2) * height;
   const auto step = static_cast<float>(limits_.obstacle);
-  const float slope = lean.slope;
+  const float slope = tilt.slope;
   const auto stairs = static_cast<float>(limits_.slope);
   // Within a cell stairs rise by one step, and a higher face is a wall. Excess below the noise is left to the
   // planner.
   const float within = platform_.stairs ? kSpread : slope * kWithinCell;
   /// Height of the plane under the body above the level plane.
-  const auto leaning = [&lean](const Eigen::Vector3f& p) {
-    return lean.rise.x() * p.x() + lean.rise.y() * p.y();
+  const auto plane_height = [&tilt](const Eigen::Vector3f& p) {
+    return tilt.rise.x() * p.x() + tilt.rise.y() * p.y();
   };
   const auto inside = [this](const Eigen::Vector3f& p) {
     return std::fabs(p.x()) < reach_ && std::fabs(p.y()) < reach_ && std::isfinite(p.z());
@@ -149,7 +149,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
   used_.clear();
   for (const Eigen::Vector3f& raw : points) {
     const Eigen::Vector3f p = R * raw;
-    const float below = std::min(0.0f, leaning(p));
+    const float below = std::min(0.0f, plane_height(p));
     if (!inside(p) || p.z() > top || p.z() - below <= step) continue;
     const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
     const bool led_to = platform_.stairs && tread_leads_to(p, range, step + stairs * range, step + within);
@@ -162,7 +162,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
     // lidar comes from a level ray: there need be no ground below it, unless the tread before it is visible.
     const bool riser = platform_.stairs && (p.z() < lidar - kLevelRay || led_to);
     // On a ramp the ground follows the body's plane up to the edge of the footprint and continues from there.
-    const float edge = std::max(0.0f, leaning(p) * (1 + std::min(0.0f, depth) / std::max(range, 0.1f)));
+    const float edge = std::max(0.0f, plane_height(p) * (1 + std::min(0.0f, depth) / std::max(range, 0.1f)));
     const float ground = edge + (riser ? step + stairs * range : step - slope * depth);
     if (p.z() <= ground && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
     Cell& cell = cells_[index];
@@ -185,14 +185,15 @@ bool NearPoints::hidden(const Eigen::Vector3d& local, const Fan& fan) const {
   return rise < fan.lowest + edge || rise > fan.highest - edge;
 }
 
-bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body, const Panorama& seen) const {
+bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body,
+                           const UprightRangeImage& seen) const {
   const Eigen::Vector3f d =
       (body.orientation * (local - Eigen::Vector3d(0, 0, platform_.lidar_height))).cast<float>();
   return seen.saw_past(Ray::to(d.x(), d.y(), d.z()), kPast);
 }
 
-void NearPoints::remember(const Pose3& body, const Lean& lean, const Fan& fan, double stamp_s,
-                          const Panorama& seen) {
+void NearPoints::remember(const Pose3& body, const Tilt& tilt, const Fan& fan, double stamp_s,
+                          const UprightRangeImage& seen) {
   kept_.clear();
   const Pose2 back = body.planar().inverse();
   for (Place& place : places_) {
@@ -201,17 +202,17 @@ void NearPoints::remember(const Pose3& body, const Lean& lean, const Fan& fan, d
     const bool again = seen_again(at.cast<float>());
     if (again) place.seen = stamp_s;
     const Eigen::Vector3d level(at.x(), at.y(), place.z - body.position.z());
-    const Eigen::Vector3d local = lean.R_level_base.cast<double>().transpose() * level;
+    const Eigen::Vector3d local = tilt.R_level_base.cast<double>().transpose() * level;
     // An obstacle nearer than the lidar's minimum range would block the rays that went past.
     if (again || (hidden(local, fan) && !seen_past(local, body, seen))) kept_.push_back(place);
   }
 }
 
 void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
-                      const Panorama& seen) {
-  const Lean lean = lean_of(body);
-  const Fan fan = sort_in(points, lean);
-  remember(body, lean, fan, stamp_s, seen);
+                      const UprightRangeImage& seen) {
+  const Tilt tilt = tilt_of(body);
+  const Fan fan = sort_in(points, tilt);
+  remember(body, tilt, fan, stamp_s, seen);
   std::swap(places_, kept_);
   // Nearest first, in case there are more than the maximum.
   const auto rank = [this](std::uint32_t i) {
@@ -243,11 +244,11 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
     const float own = static_cast<float>(cell.count) / static_cast<float>(cell.count + most->count);
     return own * at + (1 - own) * Eigen::Vector2f(most->x, most->y);
   };
-  const std::size_t room = kMost - places_.size();
+  const std::size_t room = kMax - places_.size();
   if (used_.size() > room)
     std::sort(used_.begin(), used_.end(), [&](auto a, auto b) { return rank(a) < rank(b); });
   for (const std::uint32_t i : used_) {
-    if (places_.size() == kMost) break;
+    if (places_.size() == kMax) break;
     int around = 0;
     for (const int row : {-kSide, 0, kSide})
       for (int k = -1; k <= 1; ++k) {
@@ -255,14 +256,14 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
         if (beside >= 0 && beside < static_cast<std::int64_t>(cells_.size()))
           around += cells_[static_cast<std::size_t>(beside)].count;
       }
-    if (around < kFewest) continue;
-    const double doubt =
-        std::min(params_.most_doubt, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
-    const bool certain = doubt < params_.noise / 2;
+    if (around < kMinReturns) continue;
+    const double uncertainty =
+        std::min(params_.max_uncertainty, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
+    const bool certain = uncertainty < params_.noise / 2;
     const Eigen::Vector2f place = certain ? surface(i) : Eigen::Vector2f(cells_[i].x, cells_[i].y);
     const Eigen::Vector2d at = body.planar() * place.cast<double>();
     places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()),
-                       cells_[i].z + static_cast<float>(body.position.z()), static_cast<float>(doubt),
+                       cells_[i].z + static_cast<float>(body.position.z()), static_cast<float>(uncertainty),
                        stamp_s});
   }
 }

@@ -7,16 +7,17 @@
 
 #include "core/config/traversability.hpp"
 #include "core/geometry/pose.hpp"
-#include "nav/dynamic/panorama.hpp"
-#include "nav/footprint.hpp"
+#include "nav/geometry/footprint.hpp"
+#include "nav/tracking/upright_range_image.hpp"
 
 namespace adit::nav {
 
+/// The lidar may see nothing at shorter range, m, [0, 1].
 struct NearPointsParams {
-  double shortest{0.35};    ///< The lidar may see nothing at shorter range, m, [0, 1].
-  double memory{10.0};      ///< Lifetime of a place that newer scans cannot show, s, [0, 60].
-  double noise{0.02};       ///< Standard deviation of a return's range, m, [0, 0.2].
-  double most_doubt{0.05};  ///< Upper limit of the position uncertainty, m, [0, 0.2].
+  double shortest{0.35};
+  double memory{10.0};           ///< Lifetime of a place that newer scans cannot show, s, [0, 60].
+  double noise{0.02};            ///< Standard deviation of a return's range, m, [0, 0.2].
+  double max_uncertainty{0.05};  ///< Upper limit of the position uncertainty, m, [0, 0.2].
 };
 
 /// Obstacles near the robot by its newest scan alone, without a map or a ground model. A return is an
@@ -30,12 +31,12 @@ struct NearPointsParams {
 /// obstacle only if it is too high above the higher of both planes, and is examined from the lower one on.
 class NearPoints {
  public:
-  static constexpr std::size_t kMost = 4096;  ///< Maximum number of places; the nearest are kept.
+  static constexpr std::size_t kMax = 4096;  ///< Maximum number of places; the nearest are kept.
   /// Position of an obstacle, odometry frame, m: the mean of the returns in one 5 cm cell.
   struct Place {
     float x{}, y{};
-    float z{};      ///< Of the highest return, m.
-    float doubt{};  ///< Three standard deviations of the mean, m: the obstacle may be this much nearer.
+    float z{};            ///< Of the highest return, m.
+    float uncertainty{};  ///< Three standard deviations of the mean, m: the obstacle may be this much nearer.
     double seen{};
   };
 
@@ -44,7 +45,8 @@ class NearPoints {
 
   /// Takes a scan: points in base_link, m; pose of the body in the odometry frame; time, s; and its range
   /// image.
-  void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s, const Panorama& seen);
+  void take(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s,
+            const UprightRangeImage& seen);
   /// Forgets all places.
   void clear() { places_.clear(); }
   std::span<const Place> places() const { return {places_.data(), places_.size()}; }
@@ -53,8 +55,9 @@ class NearPoints {
   static constexpr int kSide = 160;  ///< Cells of 5 cm.
   static constexpr int kCoarse = 80;
   static constexpr float kCell = 0.05f;
+  /// Sums of x and y, and the highest z, in level axes at base_link, m.
   struct Cell {
-    float x, y, z;  ///< Sums of x and y, and the highest z, in level axes at base_link, m.
+    float x, y, z;
     std::uint16_t count;
   };
   /// Elevation range of the newest scan's rays, rise per metre.
@@ -65,19 +68,20 @@ class NearPoints {
   static std::size_t coarse(float x, float y);
   static std::size_t fine(float x, float y);
   /// Tilt of the body. Level axes are those of base_link turned upright, with its yaw.
-  struct Lean {
+  struct Tilt {
     Eigen::Matrix3f R_level_base{Eigen::Matrix3f::Identity()};
     Eigen::Vector2f rise{0, 0};  ///< Of the plane under the body, per metre along the level x and y.
     float slope{};               ///< Maximum rise of the ground per metre outside of the footprint.
   };
-  Lean lean_of(const Pose3& body) const;
-  Fan sort_in(std::span<const Eigen::Vector3f> points, const Lean& lean);
+  Tilt tilt_of(const Pose3& body) const;
+  Fan sort_in(std::span<const Eigen::Vector3f> points, const Tilt& tilt);
   /// Whether the ground was seen one step before `p`: flat, at most `highest`, and at most `rise` lower.
   bool tread_leads_to(const Eigen::Vector3f& p, float range, float highest, float rise) const;
   bool seen_again(const Eigen::Vector2f& local) const;
-  void remember(const Pose3& body, const Lean& lean, const Fan& fan, double stamp_s, const Panorama& seen);
+  void remember(const Pose3& body, const Tilt& tilt, const Fan& fan, double stamp_s,
+                const UprightRangeImage& seen);
   bool hidden(const Eigen::Vector3d& local, const Fan& fan) const;
-  bool seen_past(const Eigen::Vector3d& local, const Pose3& body, const Panorama& seen) const;
+  bool seen_past(const Eigen::Vector3d& local, const Pose3& body, const UprightRangeImage& seen) const;
 
   Platform platform_;
   NearPointsParams params_;

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "nav/lattice/gateway.hpp"
+#include "nav/passages/widest_strip.hpp"
 
 namespace adit::nav {
 namespace {
@@ -19,7 +19,7 @@ double narrow_width(const Platform& platform, double approach) {
 
 std::optional<NarrowPassage> fit_passage(const NarrowPassage& guess,
                                          std::span<const ObstaclePoint> obstacles) {
-  const auto strip = fit_gateway({0, 0, std::atan2(guess.axis.y(), guess.axis.x())}, obstacles);
+  const auto strip = fit_widest_strip({0, 0, std::atan2(guess.axis.y(), guess.axis.x())}, obstacles);
   if (!strip) return std::nullopt;
   NarrowPassage passage;
   passage.middle = {guess.middle.x() + strip->line.x, guess.middle.y() + strip->line.y, guess.middle.z()};

@@ -6,7 +6,7 @@
 
 namespace adit::nav {
 
-CombinedPlanner::CombinedPlanner(const Platform& platform, const LocalPlannerParams& open,
+CombinedPlanner::CombinedPlanner(const Platform& platform, const FalcoPlannerParams& open,
                                  std::shared_ptr<const PlannerLibrary> library,
                                  const CombinedPlannerParams& params)
     : platform_(platform), params_(params), open_(platform, open, std::move(library)), lattice_(platform) {}
@@ -14,7 +14,7 @@ CombinedPlanner::CombinedPlanner(const Platform& platform, const LocalPlannerPar
 // Checks the straight line to the target, which the global planner keeps as far from obstacles as the route.
 bool CombinedPlanner::is_tight(const Target& target, const Pose2& pose,
                                std::span<const ObstaclePoint> obstacles) const {
-  if (target.gate) return true;
+  if (target.passage) return true;
   const Eigen::Vector2d to = pose.inverse() * target.goal;
   const double distance = to.norm();
   const double speed = lattice_.speed();

@@ -8,9 +8,9 @@
 
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
-#include "nav/footprint.hpp"
-#include "nav/lattice/solid_points.hpp"
-#include "nav/plan.hpp"
+#include "nav/geometry/footprint.hpp"
+#include "nav/planners/hybrid_astar/solid_points.hpp"
+#include "nav/planners/plan.hpp"
 
 namespace adit::nav {
 

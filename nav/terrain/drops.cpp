@@ -9,19 +9,22 @@ namespace {
 
 /// Evidence of one ray below the ground: one of three may be a reflection, log-odds.
 constexpr float kRay = 0.75f;
-constexpr float kBelieved = 2.2f;      ///< The log-odds of Drops::kBlocks.
-constexpr float kSlows = 1.7f;         ///< Limit for missing returns without a second cue.
-constexpr float kTold = 1.4f;          ///< Below this, a single ray, a cell is noise.
-constexpr float kMost = 6.0f;          ///< Upper limit of the log-odds.
-constexpr float kLeast = -2.2f;        ///< Lower limit, for ground that was measured often.
-constexpr float kGround = 0.75f;       ///< Evidence of one measurement of the ground.
-constexpr float kNearest = 0.3f;       ///< Nearer cells are not judged, m.
-constexpr float kSilenceTells = 2.0f;  ///< Up to this range missing returns alone make a drop, m.
+constexpr float kBelieved = 2.2f;             ///< The log-odds of Drops::kBlocks.
+constexpr float kSlows = 1.7f;                ///< Limit for missing returns without a second cue.
+constexpr float kMinReported = 1.4f;          ///< Below this, a single ray, a cell is noise.
+constexpr float kMaxOdds = 6.0f;              ///< Upper limit of the log-odds.
+constexpr float kMinOdds = -2.2f;             ///< Lower limit, for ground that was measured often.
+constexpr float kGround = 0.75f;              ///< Evidence of one measurement of the ground.
+constexpr float kNearest = 0.3f;              ///< Nearer cells are not judged, m.
+constexpr float kMissingReturnsRange = 2.0f;  ///< Up to this range missing returns alone make a drop, m.
 /// Rays at a flatter angle may not return from wet asphalt.
 constexpr float kGrazing = 0.125f;
-constexpr int kRing = RayImage::kColumns * 3 / 8;  ///< Minimum number of columns with returns in a ring.
+/// Minimum number of columns with returns in a ring.
+constexpr int kRing = LidarRangeImage::kColumns * 3 / 8;
 
-std::size_t at(int row, int column) { return static_cast<std::size_t>(row * RayImage::kColumns + column); }
+std::size_t at(int row, int column) {
+  return static_cast<std::size_t>(row * LidarRangeImage::kColumns + column);
+}
 
 }  // namespace
 
@@ -32,15 +35,15 @@ Drops::Drops(const TerrainParams& params, const Geometry& geometry, const Ground
       odds_(ground.places(), 0.0f),
       rays_below_(ground.places(), 0),
       stamp_(ground.places(), 0.0f),
-      quiet_(RayImage::kRows * RayImage::kColumns, 0),
-      returned_(RayImage::kRows * RayImage::kColumns, 0) {
+      missing_returns_(LidarRangeImage::kRows * LidarRangeImage::kColumns, 0),
+      returned_(LidarRangeImage::kRows * LidarRangeImage::kColumns, 0) {
   cells_.reserve(ground.cells());
 }
 
 void Drops::clear() {
   std::fill(odds_.begin(), odds_.end(), 0.0f);
   std::fill(rays_below_.begin(), rays_below_.end(), std::uint8_t{0});
-  std::fill(quiet_.begin(), quiet_.end(), std::uint8_t{0});
+  std::fill(missing_returns_.begin(), missing_returns_.end(), std::uint8_t{0});
   cells_.clear();
 }
 
@@ -65,10 +68,10 @@ void Drops::vote(int index, float range, Cue cue, const GroundGrid& ground) {
   const std::size_t place = ground.place(index);
   float& odds = odds_[place];
   if (cue == Cue::ray) {
-    odds = std::min(odds + kRay, kMost);
+    odds = std::min(odds + kRay, kMaxOdds);
     rays_below_[place] = static_cast<std::uint8_t>(std::min(rays_below_[place] + 1, 255));
-  } else if (range <= kSilenceTells || has_cue(index, ground)) {
-    odds = std::min(odds + 3 * kRay, kMost);
+  } else if (range <= kMissingReturnsRange || has_cue(index, ground)) {
+    odds = std::min(odds + 3 * kRay, kMaxOdds);
   } else {
     odds = std::max(odds, std::min(odds + kRay, kSlows));
   }
@@ -148,29 +151,29 @@ void Drops::turn_columns(const View& view) {
   const float length = ahead.norm();
   if (length < 1e-3f) return;
   ahead /= length;
-  for (int c = 0; c < RayImage::kColumns; ++c) {
-    const Eigen::Vector2f way = RayImage::direction_of(c);
+  for (int c = 0; c < LidarRangeImage::kColumns; ++c) {
+    const Eigen::Vector2f way = LidarRangeImage::direction_of(c);
     column_[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(
-        RayImage::column_of({ahead.dot(way), ahead.x() * way.y() - ahead.y() * way.x()}));
+        LidarRangeImage::column_of({ahead.dot(way), ahead.x() * way.y() - ahead.y() * way.x()}));
   }
 }
 
-void Drops::silent(const View& view, const RayImage& rays, const GroundGrid& ground) {
+void Drops::count_missing_returns(const View& view, const LidarRangeImage& rays, const GroundGrid& ground) {
   constexpr int kLevel = 48;  // Higher rows point upwards, or so far ahead that no return is expected.
   turn_columns(view);
   for (int row = 1; row < kLevel; ++row) {
     int count = 0;
-    for (int c = 0; c < RayImage::kColumns; ++c) {
+    for (int c = 0; c < LidarRangeImage::kColumns; ++c) {
       const bool hit = !rays.empty_at(row, c);
       count += hit;
       returned_[at(row, c)] |= static_cast<std::uint8_t>(hit);
     }
     if (count == 0) continue;
-    for (int c = 0; c < RayImage::kColumns; ++c) {
+    for (int c = 0; c < LidarRangeImage::kColumns; ++c) {
       const int own = column_[static_cast<std::size_t>(c)];
-      std::uint8_t& quiet = quiet_[at(row, c)];
+      std::uint8_t& missing = missing_returns_[at(row, c)];
       if (!rays.empty_at(row, own)) {
-        quiet = 0;
+        missing = 0;
         continue;
       }
       if (!returned_[at(row, own)]) continue;
@@ -178,19 +181,20 @@ void Drops::silent(const View& view, const RayImage& rays, const GroundGrid& gro
       for (int r = row - 1; r <= row + 1; ++r)
         for (int k = own - 1; k <= own + 1; ++k) lonely |= !rays.empty_at(r, k);
       if (lonely) {
-        quiet = 0;
+        missing = 0;
         continue;
       }
-      if (quiet < params_.silent) ++quiet;
-      if (quiet < params_.silent) continue;
-      const Eigen::Vector2f way = RayImage::direction_of(own);
-      const Eigen::Vector3f ray = view.turn * Eigen::Vector3f(way.x(), way.y(), RayImage::tangent_of(row));
+      if (missing < params_.missing_returns) ++missing;
+      if (missing < params_.missing_returns) continue;
+      const Eigen::Vector2f way = LidarRangeImage::direction_of(own);
+      const Eigen::Vector3f ray =
+          view.turn * Eigen::Vector3f(way.x(), way.y(), LidarRangeImage::tangent_of(row));
       if (ray.z() < -kGrazing * ray.head<2>().norm()) pass(view, ray, farthest_, Cue::doubtful, ground);
     }
   }
 }
 
-void Drops::finish(const View& view, const RayImage& rays, const GroundGrid& ground) {
+void Drops::finish(const View& view, const LidarRangeImage& rays, const GroundGrid& ground) {
   cells_.clear();
   const auto window = static_cast<int>(ground.cells());
   if (!any_) return;
@@ -201,7 +205,7 @@ void Drops::finish(const View& view, const RayImage& rays, const GroundGrid& gro
     if (odds == 0) continue;
     any_ = true;
     if (ground.fresh(index)) {
-      odds = std::max(std::min(odds, 0.0f) - kGround, kLeast);
+      odds = std::max(std::min(odds, 0.0f) - kGround, kMinOdds);
       rays_below_[place] = 0;
       continue;
     }
@@ -212,7 +216,8 @@ void Drops::finish(const View& view, const RayImage& rays, const GroundGrid& gro
       stamp_[place] = now_;  // In the blind spot.
     else if (now_ - stamp_[place] > params_.drop_memory)
       odds = 0, rays_below_[place] = 0;
-    if (odds >= kTold) cells_.push_back({static_cast<std::uint32_t>(index), 1 / (1 + std::exp(-odds))});
+    if (odds >= kMinReported)
+      cells_.push_back({static_cast<std::uint32_t>(index), 1 / (1 + std::exp(-odds))});
   }
 }
 

@@ -23,13 +23,15 @@ class Drops {
  public:
   /// Cells with a higher drop probability block; cells with a lower one slow the robot.
   static constexpr float kBlocks = 0.9f;
+  /// In the ground's window.
   struct Cell {
-    std::uint32_t index;  ///< In the ground's window.
-    float probability;    ///< [0.5, 1)
+    std::uint32_t index;
+    float probability;  ///< [0.5, 1)
   };
 
+  /// Minimum depth of a drop, m.
   struct Geometry {
-    float depth;      ///< Minimum depth of a drop, m.
+    float depth;
     float sure;       ///< Range up to which a ray that passes the ground's height shows an edge, m.
     float half_body;  ///< Half the body's length, m; shorter gaps are passable.
   };
@@ -42,9 +44,9 @@ class Drops {
   /// Adds a return below the ground.
   void below(const View& view, const Eigen::Vector3f& point, const GroundGrid& ground);
   /// Evaluates the directions without a return.
-  void silent(const View& view, const RayImage& rays, const GroundGrid& ground);
+  void count_missing_returns(const View& view, const LidarRangeImage& rays, const GroundGrid& ground);
   /// Updates cells().
-  void finish(const View& view, const RayImage& rays, const GroundGrid& ground);
+  void finish(const View& view, const LidarRangeImage& rays, const GroundGrid& ground);
 
   std::span<const Cell> cells() const { return cells_; }
 
@@ -72,9 +74,10 @@ class Drops {
   std::vector<std::uint8_t> rays_below_;
   std::vector<float> stamp_;
   /// Consecutive missing returns per direction, by the lidar's row and the map's column.
-  std::vector<std::uint8_t> quiet_;
-  std::vector<std::uint8_t> returned_;                     ///< Lidar directions that have had a return.
-  std::array<std::uint8_t, RayImage::kColumns> column_{};  ///< The lidar's column for each column of the map.
+  std::vector<std::uint8_t> missing_returns_;
+  std::vector<std::uint8_t> returned_;  ///< Lidar directions that have had a return.
+  std::array<std::uint8_t, LidarRangeImage::kColumns>
+      column_{};  ///< The lidar's column for each column of the map.
   std::vector<Cell> cells_{};
   bool any_{false};
   float now_{};

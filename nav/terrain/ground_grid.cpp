@@ -15,17 +15,17 @@ constexpr int kBlindCells = 5;   ///< Over more cells without a measurement the 
 constexpr int kFallCells = 3;    ///< The same for falling ground: rays pass over lower ground.
 constexpr float kNewest = 0.5f;  ///< Weight of a scan in a cell's height.
 constexpr float kSame = 0.05f;   ///< Heights that differ by more belong to different surfaces, m.
-constexpr std::size_t kEnough = 40;         ///< Minimum number of cells to register a scan to the map.
-constexpr float kRecent = 5.0f;             ///< Maximum age of those cells, s.
-constexpr float kUnsure = 0.003f;           ///< A smaller difference is noise, also of a tilt at kArm, m.
-constexpr float kArm = 2.0f;                ///< Lever arm for tilts, m.
-constexpr float kMostLift = 0.25f;          ///< Maximum height correction per scan, m.
-constexpr float kMostTilt = 0.0524f;        ///< Maximum tilt correction per scan, rad: 3 degrees.
-constexpr std::size_t kMostSamples = 1024;  ///< Maximum number of samples of a fit.
-constexpr float kSampleNoise = 0.02f;       ///< Noise of the lowest return of a cell, m.
-constexpr float kSigmaHeight = 0.03f;       ///< Uncertainty of the lidar's height above the ground, m.
-constexpr float kExplained = 0.6f;          ///< Minimum inlier fraction of an accepted plane.
-constexpr float kNearGround = 1.0f;         ///< Margin around the blind ring for the plane's samples, m.
+constexpr std::size_t kEnough = 40;            ///< Minimum number of cells to register a scan to the map.
+constexpr float kRecent = 5.0f;                ///< Maximum age of those cells, s.
+constexpr float kUnsure = 0.003f;              ///< A smaller difference is noise, also of a tilt at kArm, m.
+constexpr float kArm = 2.0f;                   ///< Lever arm for tilts, m.
+constexpr float kMaxHeightCorrection = 0.25f;  ///< Maximum height correction per scan, m.
+constexpr float kMaxTilt = 0.0524f;            ///< Maximum tilt correction per scan, rad: 3 degrees.
+constexpr std::size_t kMaxSamples = 1024;      ///< Maximum number of samples of a fit.
+constexpr float kSampleNoise = 0.02f;          ///< Noise of the lowest return of a cell, m.
+constexpr float kSigmaHeight = 0.03f;          ///< Uncertainty of the lidar's height above the ground, m.
+constexpr float kExplained = 0.6f;             ///< Minimum inlier fraction of an accepted plane.
+constexpr float kNearGround = 1.0f;            ///< Margin around the blind ring for the plane's samples, m.
 constexpr float kSeenFrom = 1.0f, kSeenTo = 6.0f;  ///< The ring that gives the plane in the first scan, m.
 
 /// The gap of a cell whose neighbour has this gap.
@@ -42,9 +42,9 @@ int bits_of(int half) {
   return bits;
 }
 
-/// Thins the samples out evenly to at most kMostSamples.
+/// Thins the samples out evenly to at most kMaxSamples.
 void thin_out(std::vector<Eigen::Vector3f>& samples) {
-  const std::size_t every = (samples.size() + kMostSamples - 1) / kMostSamples;
+  const std::size_t every = (samples.size() + kMaxSamples - 1) / kMaxSamples;
   if (every < 2) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < samples.size(); i += every) samples[kept++] = samples[i];
@@ -171,17 +171,17 @@ GroundGrid::Offset GroundGrid::disagreement() {
                    [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a.z() < b.z(); });
   const float median = middle->z();
   for (Eigen::Vector3f& sample : samples_) sample.z() -= median;
-  const PlanePrior prior{0.0f, {0, 0}, kMostLift, kMostTilt / 3};
+  const PlanePrior prior{0.0f, {0, 0}, kMaxHeightCorrection, kMaxTilt / 3};
   PlaneFit fit = fit_plane(samples_, prior, prior.gradient, kSampleNoise, 2 * kSame, kSame / 2);
   if (fit.inliers < kExplained) return {};
   fit.height += median;
   Offset offset;
   offset.sigma_gradient = fit.sigma_gradient;
   if (const float sure = std::fabs(fit.height) - kUnsure; sure > 0)
-    offset.height = std::copysign(std::min(sure, kMostLift), fit.height);
+    offset.height = std::copysign(std::min(sure, kMaxHeightCorrection), fit.height);
   const float tilt = fit.gradient.norm();
   if (const float sure = tilt - kUnsure / kArm; sure > 0)
-    offset.gradient = std::min(sure, kMostTilt) / tilt * fit.gradient;
+    offset.gradient = std::min(sure, kMaxTilt) / tilt * fit.gradient;
   return offset;
 }
 
@@ -247,9 +247,9 @@ void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt
   at_ = kCell * Eigen::Vector2f(static_cast<float>(centre_x_), static_cast<float>(centre_y_));
   fit_ground(offset, z, tilt, blind);
   const float steep = plane_.gradient.norm() / params_.slope;
-  const Eigen::Vector2f lean = kCell / std::max(1.0f, steep) * plane_.gradient;
-  const float doubt = kBend + plane_.sigma_gradient;
-  limit_[kNever] = std::max(params_.drop, kFlat + doubt * blind);
+  const Eigen::Vector2f cell_gradient = kCell / std::max(1.0f, steep) * plane_.gradient;
+  const float gradient_uncertainty = kBend + plane_.sigma_gradient;
+  limit_[kNever] = std::max(params_.drop, kFlat + gradient_uncertainty * blind);
   const auto middle = static_cast<std::size_t>(half_ * side_ + half_);
   ground_[middle] = z;
   floor_[middle] = z;
@@ -265,10 +265,10 @@ void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt
       height_[at] = same ? height_[at] + kNewest * (low - height_[at]) : low;
       stamp_[at] = now_;
     }
-    const float a = ground_[s.inner_a] + lean.x() * static_cast<float>(s.from_a_x) +
-                    lean.y() * static_cast<float>(s.from_a_y);
-    const float b = ground_[s.inner_b] + lean.x() * static_cast<float>(s.from_b_x) +
-                    lean.y() * static_cast<float>(s.from_b_y);
+    const float a = ground_[s.inner_a] + cell_gradient.x() * static_cast<float>(s.from_a_x) +
+                    cell_gradient.y() * static_cast<float>(s.from_a_y);
+    const float b = ground_[s.inner_b] + cell_gradient.x() * static_cast<float>(s.from_b_x) +
+                    cell_gradient.y() * static_cast<float>(s.from_b_y);
     // The cell is ground when it is consistent with either neighbour; the better one is used.
     const bool by_a = std::fabs(height_[at] - a) <= std::fabs(height_[at] - b);
     const std::uint8_t gap = after(gap_[by_a ? s.inner_a : s.inner_b]);
@@ -277,7 +277,7 @@ void GroundGrid::grow(const Offset& offset, float z, const Eigen::Vector2f& tilt
     if (gap >= kNever) {
       // Over the blind ring the tolerance grows until a first cell is accepted.
       const float grown =
-          kFlat + doubt * kCell * static_cast<float>(std::max(std::abs(s.dx), std::abs(s.dy)));
+          kFlat + gradient_uncertainty * kCell * static_cast<float>(std::max(std::abs(s.dx), std::abs(s.dy)));
       most = std::min(std::max(most, grown), params_.most);
       least = std::min(least, -grown);
       climb = std::max(climb, grown);

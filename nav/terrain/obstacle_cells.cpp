@@ -66,7 +66,8 @@ void ObstacleCells::mark_under(float x, float y) {
   if (e.ix == ix && e.iy == iy && e.scan == scan_) ++e.under;
 }
 
-void ObstacleCells::keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step) {
+void ObstacleCells::keep(const View& view, const LidarRangeImage& rays, const GroundGrid& ground,
+                         float step) {
   std::size_t kept = 0;
   for (Entry& entry : entries_) {
     const bool passable = entry.scan != scan_ && ground.measured(entry.x(), entry.y()) &&
@@ -95,14 +96,14 @@ bool ObstacleCells::stray(const Entry& entry, float dx, float dy, float range) c
   return false;
 }
 
-bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, float step,
+bool ObstacleCells::stays(Entry& entry, const View& view, const LidarRangeImage& rays, float step,
                           bool passable) const {
   const float dx = entry.x() - view.sensor.x(), dy = entry.y() - view.sensor.y();
   const float range = std::sqrt(dx * dx + dy * dy);
   const auto memory = static_cast<float>(params_.memory);
   if (entry.scan == scan_) {
     if (entry.under > entry.hits && entry.climb <= step + kNoise) return false;
-    entry.misses = 0;
+    entry.free_hits = 0;
     if (stray(entry, dx, dy, range)) return entry.solid && now_ - entry.stamp <= memory;
     entry.solid = true;
     entry.stamp = now_;
@@ -113,15 +114,15 @@ bool ObstacleCells::stays(Entry& entry, const View& view, const RayImage& rays, 
   const Eigen::Vector3f high = low + view.up(entry.z_high - entry.z_low);
   // The robot itself is here, so there is no obstacle.
   if (body_.depth(low.x(), low.y()) >= kInside) return false;
-  if (passable && ++entry.misses >= params_.misses) return false;
+  if (passable && ++entry.free_hits >= params_.free_hits) return false;
   if (range < 0.05f || high.z() < (rays.lowest() - 0.01f) * range) {
     entry.stamp = now_;  // In the blind spot, where no ray can show that it is free.
     return true;
   }
   if (rays.saw_through(low, high, 3.0f * kCell)) {
-    if (++entry.misses >= params_.misses) return false;
+    if (++entry.free_hits >= params_.free_hits) return false;
   } else if (!passable) {
-    entry.misses = 0;
+    entry.free_hits = 0;
   }
   // Closer than the lidar's minimum range an obstacle is not seen any more, and stays.
   return range < params_.blind_range || now_ - entry.stamp <= memory;

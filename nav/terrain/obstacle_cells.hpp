@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "nav/footprint.hpp"
+#include "nav/geometry/footprint.hpp"
 #include "nav/terrain/ground_grid.hpp"
 #include "nav/terrain/terrain_params.hpp"
 #include "nav/terrain/view.hpp"
@@ -24,7 +24,7 @@ class ObstacleCells {
     float z_low, z_high;
     std::uint32_t scan;
     std::int32_t hits;  ///< In the newest scan that hit it.
-    std::int32_t misses;
+    std::int32_t free_hits;
     bool solid;            ///< It had more hits than stray returns give.
     bool again;            ///< It was hit more than once: a single return is noise.
     float since, stamp;    ///< Times of the first and last hit, s.
@@ -49,7 +49,7 @@ class ObstacleCells {
   /// obstacle returns, none of them much too high, holds a stair measured with noise.
   void mark_under(float x, float y);
   /// Removes cells that are free by now, or at most `step` (m) above the ground as known by now.
-  void keep(const View& view, const RayImage& rays, const GroundGrid& ground, float step);
+  void keep(const View& view, const LidarRangeImage& rays, const GroundGrid& ground, float step);
 
   std::span<const Entry> entries() const { return entries_; }
   std::size_t max_cells() const { return max_cells_; }
@@ -59,7 +59,7 @@ class ObstacleCells {
   std::size_t slot(int ix, int iy) const {
     return static_cast<std::size_t>(((ix & mask_) << bits_) | (iy & mask_));
   }
-  bool stays(Entry& entry, const View& view, const RayImage& rays, float step, bool passable) const;
+  bool stays(Entry& entry, const View& view, const LidarRangeImage& rays, float step, bool passable) const;
   bool stray(const Entry& entry, float dx, float dy, float range) const;
 
   Footprint body_;

@@ -8,15 +8,15 @@ namespace adit::nav {
 namespace {
 
 constexpr float kCell = GroundGrid::kCell;
-constexpr float kFewest = 8;  ///< Minimum number of measured cells of a plane.
+constexpr float kMinCells = 8;  ///< Minimum number of measured cells of a plane.
 /// Minimum variance of their positions in the direction of less spread, m2.
 constexpr float kSpread = 0.006f;
 constexpr float kCertain = 18;  ///< Minimum number of cells of a plane that is too steep.
 constexpr float kCertainSpread = 0.02f;
-constexpr float kLeastCost = 0.1f;  ///< Lower costs are ignored.
+constexpr float kMinCost = 0.1f;  ///< Lower costs are ignored.
 /// Factor on the maximum slope above which ground is certainly too steep.
 constexpr float kOverSlope = 1.08f;
-constexpr float kMostCost = 0.9f;  ///< Maximum cost of passable ground.
+constexpr float kMaxCost = 0.9f;  ///< Maximum cost of passable ground.
 
 }  // namespace
 
@@ -30,8 +30,8 @@ Surface::Surface(const SurfaceParams& params, int side) : params_(params), side_
 
 float Surface::cost(float share) const {
   if (share <= params_.easy) return 0.0f;
-  return std::min(kMostCost,
-                  kLeastCost + (params_.hard - kLeastCost) * (share - params_.easy) / (1 - params_.easy));
+  return std::min(kMaxCost,
+                  kMinCost + (params_.hard - kMinCost) * (share - params_.easy) / (1 - params_.easy));
 }
 
 void Surface::work_out(const GroundGrid& ground, std::span<const std::uint8_t> solid) {
@@ -118,7 +118,7 @@ void Surface::judge(const GroundGrid& ground, int i, int j) {
     xy += at * sums_.x[k];
     yz += at * sums_.z[k];
   }
-  if (n < kFewest) return;
+  if (n < kMinCells) return;
   const float sxx = xx - x * x / n, syy = yy - y * y / n, sxy = xy - x * y / n;
   const float sxz = xz - x * z / n, syz = yz - y * z / n, szz = zz - z * z / n;
   const float det = sxx * syy - sxy * sxy;
@@ -138,7 +138,7 @@ void Surface::judge(const GroundGrid& ground, int i, int j) {
   if (step_cost > place.cost) place = {place.index, Layer::step, step_cost};
   const float rough = cost(rms / (params_.rough * params_.step));
   if (rough > place.cost) place = {place.index, Layer::roughness, rough};
-  if (place.cost >= kLeastCost) places_.push_back(place);
+  if (place.cost >= kMinCost) places_.push_back(place);
 }
 
 }  // namespace adit::nav

@@ -5,14 +5,14 @@
 #include <cmath>
 #include <utility>
 
-#include "nav/riser.hpp"
+#include "nav/terrain/riser.hpp"
 
 namespace adit::nav {
 namespace {
 
 constexpr std::size_t kUsualReturns = 32768;  ///< Within range.
-constexpr std::size_t kMostDeep = 32768;
-constexpr std::size_t kMostUnder = 16384;
+constexpr std::size_t kMaxDeep = 32768;
+constexpr std::size_t kMaxUnder = 16384;
 constexpr double kStood = 0.005;   ///< A robot that moved less is stationary, m.
 constexpr double kSteady = 0.002;  ///< Maximum rotation of a stationary robot, rad.
 /// Uncertainty of a body's attitude with its suspension, lidar mount and IMU, rad.
@@ -80,8 +80,8 @@ TerrainMap::TerrainMap(const Platform& platform, const TerrainParams& params)
       solid_(ground_.cells(), 0),
       drop_(ground_.cells(), 0) {
   near_.reserve(kUsualReturns);
-  under_.reserve(platform.stairs ? kMostUnder : 0);
-  deep_.reserve(kMostDeep);
+  under_.reserve(platform.stairs ? kMaxUnder : 0);
+  deep_.reserve(kMaxDeep);
   cells_.reserve(max_cells());
 }
 
@@ -90,7 +90,7 @@ void TerrainMap::clear() {
   obstacles_.clear();
   drops_.clear();
   cells_.clear();
-  lift_ = 0;
+  height_correction_ = 0;
   tilt_error_.setZero();
   begun_ = false;
 }
@@ -103,8 +103,8 @@ void TerrainMap::add_scan(std::span<const Eigen::Vector3f> points, const Pose3& 
   }
   now_ = static_cast<float>(stamp_s - epoch_);
   View view(body, platform_.lidar_height);
-  view.raise(lift_);
-  view.lean(tilt_error_);
+  view.raise(height_correction_);
+  view.tilt_by(tilt_error_);
   ground_.begin_scan(view.base.x(), view.base.y(), now_);
   obstacles_.begin_scan(now_);
   rays_.clear();
@@ -139,10 +139,10 @@ void TerrainMap::register_scan(const Pose3& body, View& view, GroundGrid::Offset
     offset.gradient -= back;
   }
   if (offset.none()) return;
-  lift_ += offset.height;
+  height_correction_ += offset.height;
   tilt_error_ += offset.gradient;
   const Eigen::Matrix3f before = view.turn;
-  view.lean(offset.gradient);
+  view.tilt_by(offset.gradient);
   const Eigen::Matrix3f rotation = view.turn * before.transpose();
   const Eigen::Vector3f base = view.base;
   view.raise(offset.height);
@@ -180,7 +180,7 @@ void TerrainMap::sort_in(std::span<const Eigen::Vector3f> points, const View& vi
         ground_.add(world.x(), world.y(), world.z());
         near_.push_back(world);
       } else if (const float end = up.dot(p);
-                 end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMostDeep) {
+                 end < 0 && above * ray.range < range * (above - end) && deep_.size() < kMaxDeep) {
         deep_.push_back(view.base + view.turn * p);
       }
     }
@@ -198,7 +198,7 @@ void TerrainMap::mark_obstacles(const View& view) {
       if (climb < top) obstacles_.mark(p.x(), p.y(), p.z(), climb);
     } else if (climb > step / 2) {
       if (under_.size() < under_.capacity()) under_.emplace_back(p.x(), p.y());
-    } else if (climb < 0 && is_below(p) && deep_.size() < kMostDeep) {
+    } else if (climb < 0 && is_below(p) && deep_.size() < kMaxDeep) {
       deep_.push_back(p);
     }
   }
@@ -218,7 +218,7 @@ void TerrainMap::find_drops(const View& view, float farthest) {
   drops_.begin_scan(ground_, solid_, now_, farthest);
   for (const Eigen::Vector3f& p : deep_)
     if (is_below(p)) drops_.below(view, p, ground_);
-  drops_.silent(view, rays_, ground_);
+  drops_.count_missing_returns(view, rays_, ground_);
   drops_.finish(view, rays_, ground_);
 }
 

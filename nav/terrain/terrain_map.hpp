@@ -37,7 +37,7 @@ class TerrainMap {
   /// Classifies each cell of the ground's window, by index. Classes that block win over those with a cost.
   void classify_cells(std::vector<Kind>& kinds) const;
   /// Height of the map's datum above that of the odometry frame, m: see GroundGrid.
-  double lift() const { return static_cast<double>(lift_); }
+  double height_correction() const { return static_cast<double>(height_correction_); }
   /// Error of the body's attitude: additional rise of the map's ground per metre along x and y: see
   /// GroundGrid.
   const Eigen::Vector2f& tilt_error() const { return tilt_error_; }
@@ -65,7 +65,7 @@ class TerrainMap {
   Drops drops_;
   Surface surface_;
   RayBlock block_{};
-  RayImage rays_{};
+  LidarRangeImage rays_{};
   std::vector<Eigen::Vector3f> near_{};   ///< Returns within range, in the map frame.
   std::vector<Eigen::Vector2f> under_{};  ///< Those of them nearly as high as an obstacle.
   std::vector<Eigen::Vector3f> deep_{};   ///< Returns whose ray went below the ground within range.
@@ -75,7 +75,7 @@ class TerrainMap {
   Pose3 last_body_{};
   double epoch_{0};
   float now_{0};
-  float lift_{0};
+  float height_correction_{0};
   Eigen::Vector2f tilt_error_{0, 0};
   bool begun_{false};
 };

@@ -9,10 +9,11 @@
 namespace adit::nav {
 
 /// Viewpoint of a scan: the pose of the lidar, which is mounted upright on the body.
+/// Rotation from base_link to the map.
 struct View {
-  Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};  ///< Rotation from base_link to the map.
-  Eigen::Vector3f sensor{0, 0, 0};                    ///< Lidar in the map, m.
-  Eigen::Vector3f base{0, 0, 0};                      ///< base_link in the map, m.
+  Eigen::Matrix3f turn{Eigen::Matrix3f::Identity()};
+  Eigen::Vector3f sensor{0, 0, 0};  ///< Lidar in the map, m.
+  Eigen::Vector3f base{0, 0, 0};    ///< base_link in the map, m.
 
   View() = default;
   View(const Pose3& body, double lidar_height)
@@ -24,7 +25,7 @@ struct View {
     base.z() += by;
   }
   /// Tilts the body about base_link, so that the map rises by `gradient` more per metre.
-  void lean(const Eigen::Vector2f& gradient) {
+  void tilt_by(const Eigen::Vector2f& gradient) {
     const Eigen::Vector3f axis(gradient.y(), -gradient.x(), 0);
     const float angle = axis.norm();
     if (angle < 1e-6f) return;

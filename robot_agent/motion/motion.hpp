@@ -8,7 +8,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
-#include "nav/plan.hpp"
+#include "nav/planners/plan.hpp"
 
 namespace adit::agent {
 
@@ -19,8 +19,8 @@ struct Stand {
 /// A velocity command, body frame, limited to the platform's limits.
 struct Velocity {
   Twist2 twist{};
-  bool by_program{
-      false};  ///< No operator watches the motion: the collision monitor stops the robot instead of warning.
+  /// No operator watches the motion: the collision monitor stops the robot instead of warning.
+  bool by_program{false};
   bool operator==(const Velocity&) const = default;
 };
 /// A stick command for the local planner: direction and speed in the body frame, and turn rate.

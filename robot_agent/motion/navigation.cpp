@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nav/route/route_target.hpp"
+#include "nav/routing/route_target.hpp"
 
 namespace adit::agent {
 namespace {

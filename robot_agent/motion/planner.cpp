@@ -6,16 +6,16 @@
 namespace adit::agent {
 namespace {
 
-nav::Navigator make_navigator(const PlannerParams& params,
-                              std::shared_ptr<const nav::PlannerLibrary> library) {
-  if (params.local_planner) return nav::Navigator(params.platform, {}, params.local_planner);
-  return nav::Navigator(params.platform, {}, {}, std::move(library));
+nav::LocalNavigation make_local_navigation(const PlannerParams& params,
+                                           std::shared_ptr<const nav::PlannerLibrary> library) {
+  if (params.local_planner) return nav::LocalNavigation(params.platform, {}, params.local_planner);
+  return nav::LocalNavigation(params.platform, {}, {}, std::move(library));
 }
 
 }  // namespace
 
 struct Planner::Maps {
-  nav::Navigator navigator;
+  nav::LocalNavigation local_navigation;
   std::uint32_t odom_epoch{};  ///< Odometry epoch of the points.
 };
 
@@ -24,7 +24,7 @@ Planner::Planner(PlannerParams params, Executor& strand, Log log, PlanService& s
     : Component("planner", strand, std::move(log), {.beat = 100ms}),
       params_(std::move(params)),
       service_(service),
-      maps_(new Maps{make_navigator(params_, std::move(library))}) {}
+      maps_(new Maps{make_local_navigation(params_, std::move(library))}) {}
 
 Result<void> Planner::on_start() {
   offer(service_, [this](const auto& job, const auto& reply) { plan(job, reply); });
@@ -37,14 +37,14 @@ void Planner::plan(const std::shared_ptr<const PlanJob>& job,
   compute(
       {.name = "plan", .modelled = params_.planning, .lane = "map"},
       [job, maps = maps_]() -> Answer {
-        nav::Navigator& navigator = maps->navigator;
-        if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) navigator.clear();
+        nav::LocalNavigation& local_navigation = maps->local_navigation;
+        if (std::exchange(maps->odom_epoch, job->odom_epoch) != job->odom_epoch) local_navigation.clear();
         const double stamp = seconds(job->made.time_since_epoch());
-        navigator.add_scan(job->scan->points, job->scan->body, stamp);
+        local_navigation.add_scan(job->scan->points, job->scan->body, stamp);
         auto answer = std::make_shared<PlanAnswer>();
         if (job->target.kind != nav::Target::Kind::none)
-          answer->plan = navigator.plan(job->target, job->pose, stamp);
-        navigator.blocked(answer->obstacles);
+          answer->plan = local_navigation.plan(job->target, job->pose, stamp);
+        local_navigation.blocked(answer->obstacles);
         return answer;
       },
       [reply](Result<Answer> planned) { reply(std::move(planned)); });

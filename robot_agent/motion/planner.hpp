@@ -5,7 +5,7 @@
 
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
-#include "nav/navigator.hpp"
+#include "nav/local_navigation.hpp"
 
 namespace adit::agent {
 

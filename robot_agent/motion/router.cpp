@@ -15,15 +15,15 @@ constexpr double kRefusedFor = 3.0;  // s: the body cannot stand at a goal for s
 
 struct Router::Maps {
   explicit Maps(const RouterParams& params)
-      : planner(params.platform, params.route), keeper(params.platform), goals(params.platform) {}
+      : planner(params.platform, params.route), route_follower(params.platform), goals(params.platform) {}
   nav::RoutePlanner planner;
-  nav::RouteKeeper keeper;
+  nav::RouteFollower route_follower;
   nav::GoalCheck goals;
   std::optional<double> refused_since{};  ///< The body cannot stand at the goal, which it is near, s.
   std::uint32_t odom_epoch{};             ///< Odometry epoch of the points.
 
   nav::RouteStep step(const RouteJob& job, double stamp) {
-    nav::RouteStep step = keeper.step(planner, job.place, *job.goal, job.blocked, stamp);
+    nav::RouteStep step = route_follower.step(planner, job.place, *job.goal, job.blocked, stamp);
     step.goal = goals.stand(planner, *job.goal, job.place.z());
     // From afar the map may show what was there a while ago, and a person who passes is no reason to stop.
     const bool near = (*job.goal - job.place).head<2>().norm() < kJudged;
@@ -40,7 +40,7 @@ struct Router::Maps {
     if (std::exchange(odom_epoch, epoch) == epoch) return;
     refused_since.reset();
     planner.clear();
-    keeper.clear();
+    route_follower.clear();
   }
 };
 
@@ -73,7 +73,7 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
         if (job->goal) return maps->step(*job, stamp);
-        maps->keeper.clear();
+        maps->route_follower.clear();
         maps->refused_since.reset();
         return {};
       },

@@ -6,7 +6,7 @@
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
 #include "nav/goals/goal_check.hpp"
-#include "nav/route/route_keeper.hpp"
+#include "nav/routing/route_follower.hpp"
 #include "robot_agent/common/goal_report.hpp"
 #include "robot_agent/common/planned_route.hpp"
 #include "robot_agent/motion/frames.hpp"

@@ -8,7 +8,7 @@
 
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
-#include "nav/planner.hpp"
+#include "nav/planners/planner.hpp"
 #include "robot_agent/behaviour/decider.hpp"
 #include "robot_agent/behaviour/mode_module.hpp"
 #include "sensor_msgs/msg/PointCloud2.h"

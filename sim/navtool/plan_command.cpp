@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/config/platform_file.hpp"
-#include "nav/navigator.hpp"
+#include "nav/local_navigation.hpp"
 #include "sim/navtool/canvas.hpp"
 #include "sim/navtool/commands.hpp"
 #include "sim/navtool/cpu_time.hpp"
@@ -115,7 +115,7 @@ int plan(const PlanOptions& options) {
   if (!platform) return report_error("navtool", platform.error());
   const auto files = pcd_files(options.clouds);
   if (!files) return report_error("navtool", files.error());
-  nav::Navigator navigator(*platform);
+  nav::LocalNavigation local_navigation(*platform);
   const Pose3 sensor_in_body{{0, 0, platform->lidar_height}, Eigen::Quaterniond::Identity()};
   bool registered = false;
   for (std::size_t cycle = 0; cycle < files->size(); ++cycle) {
@@ -130,12 +130,12 @@ int plan(const PlanOptions& options) {
       if (p.allFinite()) points.push_back((to_body * p.cast<double>()).cast<float>());
     const double stamp = kPeriod * static_cast<double>(cycle);
     const double t0 = cpu_ms();
-    navigator.add_scan(points, body, stamp);
+    local_navigation.add_scan(points, body, stamp);
     const double t1 = cpu_ms();
-    const nav::Plan plan = navigator.plan(nav::Target::to(options.goal), body.planar(), stamp);
+    const nav::Plan plan = local_navigation.plan(nav::Target::to(options.goal), body.planar(), stamp);
     print(options, cycle, t1 - t0, cpu_ms() - t1, plan);
     if (!options.picture.empty() && cycle + 1 == files->size())
-      if (const auto drawn = draw(options, *platform, plan, navigator.terrain().cells(), *cloud,
+      if (const auto drawn = draw(options, *platform, plan, local_navigation.terrain().cells(), *cloud,
                                   registered ? Pose3{} : cloud->viewpoint, body);
           !drawn)
         return report_error("navtool", drawn.error());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include "nav/route/route_planner.hpp"
+#include "nav/routing/route_planner.hpp"
 #include "sim/world/world.hpp"
 
 namespace adit::sim {

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <vector>
 
-#include "nav/local_planner.hpp"
+#include "nav/planners/falco/falco_planner.hpp"
 #include "robot_agent/agent.hpp"
 #include "sim/defects/defect.hpp"
 #include "sim/defects/intercepted_participant.hpp"

@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "nav/control/controller.hpp"
+#include "nav/local_navigation.hpp"
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
-#include "nav/navigator.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {
@@ -20,7 +20,7 @@ struct ClosedLoop {
   double noise{0.01};  ///< Standard deviation of ranges, m.
   int rings{16}, columns{360};
   std::mt19937 random{7};
-  Navigator navigator{platform};
+  LocalNavigation local_navigation{platform};
   std::unique_ptr<Controller> controller;
   Controller& follower;
   CollisionMonitor monitor;
@@ -36,7 +36,7 @@ struct ClosedLoop {
       : world(std::move(w)),
         platform(p),
         truth(start),
-        navigator(p),
+        local_navigation(p),
         controller(make_controller(tracks, p).value()),
         follower(*controller),
         monitor(p) {}
@@ -47,9 +47,9 @@ struct ClosedLoop {
   void cycle(const Target& target) {
     const Pose2 odom = odometry();
     const auto scan = world.scan(truth, platform.lidar_height, rings, columns, noise, random);
-    navigator.add_scan(scan, Pose3::level(odom, 0.0), time);
+    local_navigation.add_scan(scan, Pose3::level(odom, 0.0), time);
     monitor.look(scan, Pose3::level(odom, 0.0), time);
-    last = navigator.plan(target, odom, time);
+    last = local_navigation.plan(target, odom, time);
     blocked_cycles += last.blocked;
     follower.set_plan(last);
     for (int i = 0; i < 5; ++i) {

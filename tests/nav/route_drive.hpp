@@ -2,21 +2,22 @@
 #pragma once
 #include <cmath>
 
-#include "nav/route/route_target.hpp"
+#include "nav/routing/route_target.hpp"
 #include "tests/nav/closed_loop.hpp"
 
 namespace adit::nav::test {
 
 /// A robot that is led by the route keeper, as the agent does it.
+/// Default of the agent, s: then the way counts as blocked.
 struct RouteDrive {
-  static constexpr double kHeldAfter = 1.5;  ///< Default of the agent, s: then the way counts as blocked.
+  static constexpr double kHeldAfter = 1.5;
   ClosedLoop loop;
   RoutePlanner planner;
-  RouteKeeper keeper;
+  RouteFollower route_follower;
   RouteStep step{};
 
   RouteDrive(const Platform& platform, BoxWorld world, const Pose2& start)
-      : loop(platform, std::move(world), start), planner(platform), keeper(platform) {}
+      : loop(platform, std::move(world), start), planner(platform), route_follower(platform) {}
 
   /// The map takes a scan, and the keeper says where to drive next.
   void look(const Eigen::Vector2d& goal) {
@@ -24,8 +25,8 @@ struct RouteDrive {
     planner.add_scan(loop.world.scan(loop.truth, loop.platform.lidar_height, loop.rings, loop.columns,
                                      loop.noise, loop.random),
                      Pose3::level(at, 0.0), loop.time);
-    step = keeper.step(planner, {at.x, at.y, 0}, {goal.x(), goal.y(), std::nan("")},
-                       loop.last.blocked || loop.held.held(loop.time, kHeldAfter), loop.time);
+    step = route_follower.step(planner, {at.x, at.y, 0}, {goal.x(), goal.y(), std::nan("")},
+                               loop.last.blocked || loop.held.held(loop.time, kHeldAfter), loop.time);
   }
   /// Drives there for a tenth of a second.
   void drive() {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "nav/route/route_planner.hpp"
+#include "nav/routing/route_planner.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {

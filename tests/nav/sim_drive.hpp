@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "nav/control/controller.hpp"
+#include "nav/local_navigation.hpp"
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
-#include "nav/navigator.hpp"
 #include "sim/world/simulation.hpp"
 #include "tests/nav/box_world.hpp"
 
@@ -18,7 +18,7 @@ namespace adit::nav::test {
 class SimDrive {
  public:
   struct Robot {
-    Navigator navigator;
+    LocalNavigation local_navigation;
     std::unique_ptr<Controller> controller;
     CollisionMonitor monitor;
     Pose2 start{};
@@ -35,7 +35,7 @@ class SimDrive {
            const sim::SimulationParams& params)
       : simulation(sim::Simulation::create(std::move(world), starts, params).value()) {
     for (const sim::RobotStart& start : starts)
-      robots.push_back({Navigator(start.platform), make_controller("ilqr", start.platform).value(),
+      robots.push_back({LocalNavigation(start.platform), make_controller("ilqr", start.platform).value(),
                         CollisionMonitor(start.platform), start.pose});
   }
 
@@ -55,12 +55,12 @@ class SimDrive {
         const auto points = r.job.compute();
         const Pose3 body = Pose3::level(r.scanned, 0.0);
         r.monitor.look(points, body, now);
-        r.navigator.add_scan(points, body, now);
-        r.moving += r.navigator.movers().size();
+        r.local_navigation.add_scan(points, body, now);
+        r.moving += r.local_navigation.movers().size();
         if (!r.goal) continue;
         Target target = Target::to(r.start.inverse() * *r.goal);
         target.held = r.held.held(now, 3.0);
-        r.plan = r.navigator.plan(target, odom, now);
+        r.plan = r.local_navigation.plan(target, odom, now);
       }
       if (phase == 4 && r.goal) {
         r.controller->set_plan(r.plan);

@@ -6,11 +6,11 @@
 #include <cstdlib>
 #include <new>
 
-#include "nav/air_map.hpp"
 #include "nav/control/controller.hpp"
-#include "nav/make_planner.hpp"
+#include "nav/local_navigation.hpp"
 #include "nav/monitor/collision_monitor.hpp"
-#include "nav/navigator.hpp"
+#include "nav/planners/make_planner.hpp"
+#include "nav/terrain/air_map.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace {
@@ -65,7 +65,7 @@ TEST(Allocations, NoneInATerrainCycle) {
   // Crates, a kerb and an edge come and go as the robot drives.
   const BoxWorld world{{{3, 3.3, -1, 1}, {-3, 9, 2, 2.2}, {4, 9, -2.2, -1, 0.0, 0.06}, {-3, 9, -2.2, -2}}};
   std::mt19937 random(4);
-  Navigator navigator(wheeled());
+  LocalNavigation local_navigation(wheeled());
   std::vector<std::vector<Eigen::Vector3f>> scans;
   for (int i = 0; i < 30; ++i) {
     scans.push_back(world.scan({0.05 * i, 0, 0}, 0.5, 16, 360, 0.01, random));
@@ -77,8 +77,8 @@ TEST(Allocations, NoneInATerrainCycle) {
   for (int i = 0; i < 30; ++i) {
     if (i == 5) before = allocations;
     const Pose2 pose{0.05 * i, 0, 0};
-    navigator.add_scan(scans[static_cast<std::size_t>(i)], Pose3::level(pose, 0), 0.1 * i);
-    navigator.plan(Target::to({6, 0}), pose, 0.1 * i);
+    local_navigation.add_scan(scans[static_cast<std::size_t>(i)], Pose3::level(pose, 0), 0.1 * i);
+    local_navigation.plan(Target::to({6, 0}), pose, 0.1 * i);
   }
   EXPECT_EQ(allocations, before);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/correspondence.hpp"
+#include "nav/planners/falco/correspondence.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/footprint.hpp"
+#include "nav/geometry/footprint.hpp"
 
 #include <gtest/gtest.h>
 

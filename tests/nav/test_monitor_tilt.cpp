@@ -96,7 +96,7 @@ int draws() {
 TEST(MonitorTilt, ABodyThatLeansSeesWhatALevelOneSees) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> bearing(-M_PI, M_PI);
-  const Panorama nothing{};
+  const UprightRangeImage nothing{};
   int missed = 0;
   for (int n = 0; n < draws(); ++n) {
     const Platform platform = n % 2 == 0 ? wheeled() : tracked();
@@ -122,7 +122,7 @@ TEST(MonitorTilt, WhatWasSeenOnTheWayIsRemembered) {
     const Obstacle box{0, 4.0, 0.30};
     for (int i = 0; i <= 20; ++i) {
       const Pose3 body = leaning(1.0 + 0.1 * i, 0, kTen, random);
-      near.take(look(platform, kUsual, body, box, random), body, 0.1 * i, Panorama{});
+      near.take(look(platform, kUsual, body, box, random), body, 0.1 * i, UprightRangeImage{});
     }
     missed += !shows(near, 4.0, 0);
   }
@@ -136,7 +136,8 @@ TEST(MonitorTilt, LevelGroundIsNoObstacleToABodyThatLeans) {
     const Platform platform = n % 2 == 0 ? wheeled() : tracked();
     NearPoints near(platform, 2.5);
     const Pose3 body = leaning(0, 0, kTen, random);
-    near.take(look(platform, n % 4 < 2 ? kDown : kUsual, body, std::nullopt, random), body, 0, Panorama{});
+    near.take(look(platform, n % 4 < 2 ? kDown : kUsual, body, std::nullopt, random), body, 0,
+              UprightRangeImage{});
     wrong += !near.places().empty();
   }
   EXPECT_EQ(wrong, 0);
@@ -150,9 +151,9 @@ TEST(MonitorTilt, ARampIsNoObstacleAndABoxOnItIsOne) {
     NearPoints near(platform, 2.5);
     Pose3 body{};
     body.orientation = Eigen::AngleAxisd(-std::atan(slope), Eigen::Vector3d::UnitY());
-    near.take(look(platform, kDown, Pose3{}, std::nullopt, random), body, 0, Panorama{});
+    near.take(look(platform, kDown, Pose3{}, std::nullopt, random), body, 0, UprightRangeImage{});
     EXPECT_TRUE(near.places().empty()) << slope;
-    near.take(look(platform, kDown, Pose3{}, Obstacle{0, 1.0, 0.30}, random), body, 0.1, Panorama{});
+    near.take(look(platform, kDown, Pose3{}, Obstacle{0, 1.0, 0.30}, random), body, 0.1, UprightRangeImage{});
     EXPECT_FALSE(near.places().empty()) << slope;
   }
 }

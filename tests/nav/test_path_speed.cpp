@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/path_speed.hpp"
+#include "nav/planners/path_speed.hpp"
 
 #include <gtest/gtest.h>
 

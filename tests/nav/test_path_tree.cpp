@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/path_tree.hpp"
+#include "nav/planners/falco/path_tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every planner behind its face: named in a platform's file, driven in a closed loop with each controller.
-#include "nav/make_planner.hpp"
+#include "nav/planners/make_planner.hpp"
 
 #include <gtest/gtest.h>
 
-#include "nav/lattice/motion_set.hpp"
+#include "nav/planners/hybrid_astar/motion_primitives.hpp"
 #include "tests/nav/closed_loop.hpp"
 
 namespace adit::nav::test {
@@ -59,8 +59,8 @@ TEST(Planners, APlatformChoosesTheCurvatureOfItsPaths) {
   EXPECT_EQ(usual->options.front().tree.params().curvature, PathTreeParams{}.curvature);
   Platform lattice = car();
   lattice.path_curvature = 0.4;
-  EXPECT_NEAR(MotionSet(lattice).curvature(MotionSet::kLevels - 1), 0.4, 1e-9);
-  EXPECT_LT(MotionSet(car()).curvature(MotionSet::kLevels - 1), 1 / car().least_radius());
+  EXPECT_NEAR(MotionPrimitives(lattice).curvature(MotionPrimitives::kLevels - 1), 0.4, 1e-9);
+  EXPECT_LT(MotionPrimitives(car()).curvature(MotionPrimitives::kLevels - 1), 1 / car().least_radius());
 }
 
 class EveryPlanner : public testing::TestWithParam<std::tuple<std::string, std::string>> {
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Swap, EveryPlanner,
                          });
 
 TEST(RoughGround, IsAvoidedWhereThereIsAnotherWayAndCrossedSlowlyWhereThereIsNone) {
-  LocalPlanner planner(wheeled());
+  FalcoPlanner planner(wheeled());
   std::vector<ObstaclePoint> patch, everywhere;
   for (float x = 0.8f; x < 2.5f; x += 0.05f)
     for (float y = -4.0f; y < 4.0f; y += 0.05f) {
@@ -141,7 +141,7 @@ TEST(PolygonFootprint, DrivesBackwardsWithItsOwnShape) {
   const auto library = PlannerLibrary::build(wedge);
   EXPECT_GT(library->options.front().back.rings(), 0);
   EXPECT_EQ(PlannerLibrary::build(wheeled())->options.front().back.rings(), 0) << "symmetric: the same grid";
-  LocalPlanner planner(wedge, {}, library);
+  FalcoPlanner planner(wedge, {}, library);
   const Plan plan = planner.plan(Target::along(M_PI, 0.5), {}, {}, 0);
   EXPECT_TRUE(plan.reverse);
 }

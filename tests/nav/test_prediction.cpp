@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/dynamic/prediction.hpp"
+#include "nav/tracking/prediction.hpp"
 
 #include <gtest/gtest.h>
 
-#include "nav/footprint.hpp"
+#include "nav/geometry/footprint.hpp"
 #include "tests/nav/box_world.hpp"
 
 namespace adit::nav::test {

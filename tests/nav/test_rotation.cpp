@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/rotation.hpp"
+#include "nav/planners/falco/rotation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // Costs from one place to many, against one plan for each.
 #include <gtest/gtest.h>
 
-#include "nav/route/route_planner.hpp"
+#include "nav/routing/route_planner.hpp"
 #include "tests/nav/route_world.hpp"
 
 namespace adit::nav::test {

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "nav/route/route_keeper.hpp"
+#include "nav/routing/route_follower.hpp"
 #include "tests/nav/route_world.hpp"
 
 namespace adit::nav::test {
@@ -260,11 +260,11 @@ TEST(RoutePlanner, TwoFloorsWithARamp) {
 
 TEST(RoutePlanner, TheSamePlaceOnAnotherFloorIsAnotherGoal) {
   TwoFloors floors(true);
-  RouteKeeper keeper;
-  keeper.step(floors.planner, {2, 2, 0}, {8, 2, std::nan("")}, false, 0.0);
-  EXPECT_LT(keeper.route().length, 7);
-  keeper.step(floors.planner, {2, 2, 0}, {8, 2, 3}, false, 0.1);
-  EXPECT_GT(keeper.route().length, 15);
+  RouteFollower route_follower;
+  route_follower.step(floors.planner, {2, 2, 0}, {8, 2, std::nan("")}, false, 0.0);
+  EXPECT_LT(route_follower.route().length, 7);
+  route_follower.step(floors.planner, {2, 2, 0}, {8, 2, 3}, false, 0.1);
+  EXPECT_GT(route_follower.route().length, 15);
 }
 
 TEST(RoutePlanner, WhatStandsOnTheFloorBelowARampIsNotItsGround) {

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "nav/route/route_planner.hpp"
+#include "nav/routing/route_planner.hpp"
 #include "tests/nav/route_world.hpp"
 
 namespace adit::nav::test {

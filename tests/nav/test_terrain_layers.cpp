@@ -187,7 +187,7 @@ TEST(TerrainLayers, AnOdometryThatDriftsUpwardsLeavesTheTerrainAsItIs) {
     robot.map.add_scan(scan, Pose3::level(robot.pose, drift), 0.1 * i);
     ASSERT_EQ(robot.blocked(robot.pose.x - 3, robot.pose.x + 3, -1.3, 1.3), 0) << robot.pose.x;
   }
-  EXPECT_NEAR(robot.map.lift(), -drift, 0.1);
+  EXPECT_NEAR(robot.map.height_correction(), -drift, 0.1);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "nav/dynamic/tracker.hpp"
+#include "nav/tracking/tracker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -129,9 +129,9 @@ TEST(Tracker, MoreThanItHasRoomForHarmNothing) {
       points.emplace_back(Eigen::Vector3d(range * std::cos(a), range * std::sin(a), 0.5).cast<float>());
     }
     tracker.look(points, {}, 0.1 * scan);
-    EXPECT_LE(tracker.movers().size(), Tracker::kMost);
+    EXPECT_LE(tracker.movers().size(), Tracker::kMax);
   }
-  EXPECT_EQ(tracker.movers().size(), Tracker::kMost);
+  EXPECT_EQ(tracker.movers().size(), Tracker::kMax);
 }
 
 TEST(Tracker, GarbageIsNothing) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "nav/planners/make_planner.hpp"
+#include "nav/recovery/escape.hpp"
+#include "nav/terrain/air_map.hpp"
+#include "nav/terrain/terrain_map.hpp"
+#include "nav/tracking/prediction.hpp"
+
+namespace adit::nav {
+
+/// Creates the local planner of a LocalNavigation: at construction and at each clear().
+using PlannerFactory = std::function<std::unique_ptr<Planner>()>;
+
+/// The computationally heavy half of local navigation: terrain map, tracker and local planner turn scans into
+/// plans. It has no thread and no clock; calls must not overlap. The light half, a Controller, shares only
+/// the plan with it.
+class LocalNavigation {
+ public:
+  /// Throws when the platform names an unknown planner: see make_planner.
+  explicit LocalNavigation(const Platform& platform, const TerrainParams& terrain = {},
+                           const FalcoPlannerParams& planner = {},
+                           std::shared_ptr<const PlannerLibrary> library = nullptr);
+  /// Uses a local planner of the caller instead of the one that the platform names. `planner` never returns
+  /// null.
+  LocalNavigation(const Platform& platform, const TerrainParams& terrain, PlannerFactory planner);
+
+  /// See TerrainMap::add_scan.
+  void add_scan(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  /// Plans over the terrain seen so far; see Planner::plan. When the planner finds no path to a goal and less
+  /// than Escape::kClear is free beside the body, the plan leads out of there at Escape::kSpeed; when that
+  /// fails too, its reason is start_in_collision. Before the first scan no space is known to be free: the
+  /// plan is blocked with Reason::terrain_stale.
+  Plan plan(const Target& target, const Pose2& pose, double stamp_s);
+
+  const TerrainMap& terrain() const { return terrain_; }
+  /// Writes the centres of the impassable cells into `cells`, odometry frame, m.
+  void blocked(std::vector<Eigen::Vector2f>& cells) const;
+  std::span<const Mover> movers() const { return tracker_.movers(); }
+  /// Forgets all state in the odometry frame, for example after a jump of the odometry: terrain, movers and
+  /// the local planner's state.
+  void clear();
+
+ private:
+  /// Speed of the robot between the last two plans, m/s.
+  double speed(const Pose2& pose, double stamp_s);
+
+  Platform platform_;
+  PlannerFactory make_planner_;
+  TerrainMap terrain_;
+  std::optional<AirMap> air_{};  ///< Replaces the terrain map for flying robots.
+  Tracker tracker_;
+  std::unique_ptr<Planner> planner_;
+  Escape escape_;
+  std::vector<ObstaclePoint> obstacles_{};  ///< Of one plan.
+  bool has_scan_{false};
+  Pose2 last_pose_{};
+  double last_stamp_s_{-std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "nav/planners/falco/correspondence.hpp"
+#include "nav/planners/falco/path_tree.hpp"
+#include "nav/planners/falco/rotation.hpp"
+#include "nav/planners/heading_hold.hpp"
+#include "nav/planners/path_speed.hpp"
+#include "nav/planners/planner.hpp"
+
+namespace adit::nav {
+
+struct FalcoPlannerParams {
+  PathTreeParams tree{};
+  double roomy_margin{0.5};  ///< Clearance beside the footprint where there is plenty of room, m, [0, 1].
+  double side_margin{0.09};  ///< Clearance beside it where there is less room, m, [0, 1].
+  /// Clearance ahead and behind, m, [0, 1]; at least what a turn on the spot needs.
+  double front_margin{0.20};
+  double tight_margin{0.05};    ///< Clearance beside it in tight space, m, [0.02, 0.5].
+  double squeeze_margin{0.02};  ///< Clearance beside it when nothing else is free, m, [0, 0.5].
+  double short_scale{0.5};      ///< Scale of the second, shorter and more curved library, [0.2, 1].
+  double tight_speed{0.5};      ///< Speed with only the tight margin, m/s, (0, 2].
+  double squeeze_speed{0.25};   ///< Speed with only the squeeze margin, m/s, (0, 2].
+  double tolerance{0.25};       ///< Default goal tolerance, m, [0.02, 2].
+  double goal_spread{95.0};  ///< Maximum angle between a heading and the goal's bearing, degrees, [10, 120].
+  /// Beyond this angle a library with tighter margins is preferred, degrees, [10, 120].
+  double direct_spread{35.0};
+  double stick_spread{45.0};  ///< Maximum angle to a direction target, degrees, [10, 120].
+  /// Maximum angle for paths that are only partly free, degrees, [10, 120].
+  double detour_spread{60.0};
+  double patience{3.0};  ///< Time without a free path before the robot backs up, s, [0, 60].
+  double retreat{1.2};   ///< Distance that it backs up, m, [0.5, 3].
+  int retreats{2};  ///< Attempts at backing up until it gets nearer to the goal; then it is blocked, [0, 10].
+  double effort{20.0};  ///< Driving time without getting nearer to a goal until it is blocked, s, [1, 600].
+  /// The same within effort_range of the goal, plus the time of a full turn, s, [1, 600].
+  double effort_near{4.0};
+  double effort_range{1.0};  ///< m, [0, 10]
+  double rest{30.0};         ///< Time that it then stays blocked before it tries again, s, [0, 3600].
+  PathSpeedParams speed{};
+};
+
+/// Lookup tables of the local planner: its trajectory libraries, longest and widest first, and the rotation
+/// table of the footprint. Immutable; robots of one platform can share it.
+struct PlannerLibrary {
+  /// A trajectory library with one scale and one set of margins.
+  struct Option {
+    PathTree tree;
+    CorrespondenceGrid grid;
+    CorrespondenceGrid back;  ///< For driving backwards; empty: equal to `grid`.
+    double max_speed;         ///< Speed limit with these margins, m/s.
+    int least_stage;          ///< Paths that are free for fewer stages are left to the next library.
+    /// Wide margins: rough ground and headings far off the target are left to the next library.
+    bool roomy{};
+  };
+  std::vector<Option> options{};
+  RotationTable rotation{};
+
+  /// Builds the tables (about 60 ms, 8 MB).
+  static std::shared_ptr<const PlannerLibrary> build(const Platform& platform,
+                                                     const FalcoPlannerParams& params = {});
+};
+
+/// The local planner `trajectories`: selects the heading, group and path of the trajectory library that lead
+/// best towards the target. After Falco (see PathTree and CorrespondenceGrid): for 36 headings, the free
+/// paths vote for their group, weighted by how well they lead to the target and how little the robot has to
+/// turn. Differences from Falco:
+/// - Headings are counted from the target's bearing, so the straight line to the target is one of them.
+///   Towards a goal, the robot's own heading and the opposite one are two more, so a robot without room to
+///   turn can drive straight ahead or back.
+/// - One pass over the obstacles yields the free length of all paths; Falco repeats it for each range.
+/// - The footprint is swept along each path, and a heading counts only when the turn on the spot towards it
+///   is free or, failing that, when the robot can reach it by driving backwards.
+/// - A stick held straight ahead or back holds the robot's heading (see HeadingHold), so the robot passes an
+///   obstacle and stops at a wall instead of following it.
+/// - On the way to a goal, a robot that was blocked, or that the collision monitor stopped, backs up a little
+///   and tries again, a few times: in a passage it cannot turn, and so cannot reach a free path beside the
+///   one that it tried.
+/// - A robot that drives without getting nearer to its goal, for example because the goal lies inside or
+///   behind an obstacle, reports for a while that it is blocked.
+/// - Passable ground with a cost lowers the weight and the speed of paths across it.
+/// - Shorter paths and tighter margins are further libraries of the true footprint. Falco scales the obstacle
+///   points, which would scale the robot as well.
+class FalcoPlanner final : public Planner {
+ public:
+  static constexpr int kHeadings = 36;
+
+  /// `library`: of this platform and these params; built here when null.
+  explicit FalcoPlanner(const Platform& platform, const FalcoPlannerParams& params = {},
+                        std::shared_ptr<const PlannerLibrary> library = nullptr);
+
+  Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+            double stamp_s) override;
+
+  const FalcoPlannerParams& params() const { return params_; }
+
+ private:
+  using Option = PlannerLibrary::Option;
+
+  /// Infinite for a direction, m.
+  struct Goal {
+    double distance;
+    double bearing;  ///< Body frame, rad.
+    double spread;   ///< Degrees.
+    int headings;    ///< Number of headings to each side of the bearing.
+    /// Straight ahead and straight back are candidates too; `bearing` is a whole number of degrees.
+    bool own_headings;
+    bool backwards;  ///< The target asks for driving backwards.
+  };
+  /// How the robot would take a heading.
+  struct Approach {
+    bool possible{false};
+    bool reverse{false};
+    int turn{0};
+    float weight{0};
+  };
+  struct Choice {
+    const Option* option{nullptr};
+    int stage{};
+    int heading{};  ///< Index; 0 is the bearing of the goal.
+    int node{};
+    int group{};
+    float ease{1};  ///< Weight of the ground.
+  };
+  /// Angle from the goal's bearing, degrees.
+  struct Occupied {
+    std::uint16_t ring, angle;
+  };
+  /// A set of polar cells: bits while it is filled, then a list by ring, nearest first.
+  struct Cells {
+    std::vector<std::uint64_t> bits{};
+    std::vector<Occupied> list{};
+    void size(int rings);
+    void clear();
+    void add(int ring, int angle);
+    void to_list();
+  };
+
+  Goal goal_of(const Target& target, const Pose2& pose);
+  void project(const Goal& goal, std::span<const ObstaclePoint> obstacles, Plan& plan);
+  void list_headings(const Goal& goal);
+  void judge_headings(const Goal& goal);
+  void block_paths(const Option& option);
+  void cover(const Option& option, const Cells& cells, bool drop_dead,
+             std::array<PathMask, kHeadings>& masks);
+  float ease(int heading, int stage, int node) const;
+  bool vote(const Option& option, int stage, double spread, Choice& best);
+  bool choose(const Goal& goal, Choice& best);
+  Goal retreat_goal(const Pose2& pose, double stamp_s);
+  void consider_retreat(const Pose2& pose, double stamp_s, bool at_once);
+  void watch_progress(const Target& target, double distance);
+  bool given_up(bool drives, double stamp_s);
+  void write_path(const Choice& choice, const Goal& goal, const Pose2& pose, Plan& plan) const;
+  double speed_limit(const Target& target, const Choice& choice, const Pose2& pose, const Plan& plan,
+                     std::span<const ObstaclePoint> obstacles) const;
+
+  Platform platform_;
+  FalcoPlannerParams params_;
+  std::shared_ptr<const PlannerLibrary> library_;
+  Footprint body_;
+  int rings_{0};  ///< Of the largest grid.
+  int last_turn_{0};
+  HeadingHold heading_hold_{};
+  Eigen::Vector2d goal_{0, 0};  ///< The goal that the following members refer to, odometry frame.
+  double nearest_{0};           ///< Least distance to it, updated in steps of half a metre, m.
+  double closest_{0};           ///< Least distance to it, in finer steps, m.
+  double effort_{0};            ///< Driving time since the robot last got nearer, s.
+  double last_stamp_{0};        ///< Of the previous plan, s.
+  double rest_until_{0};        ///< The robot stays blocked until then, s.
+  double free_stamp_{0};  ///< Time when a path was last free or the robot became blocked, s; or infinite.
+  int retreats_left_{0};
+  bool retreating_{false};
+  double retreat_until_{0};           ///< s
+  Eigen::Vector2d retreat_to_{0, 0};  ///< Odometry frame.
+
+  // Data of one cycle.
+  Cells occupied_{};              ///< Impassable cells.
+  std::array<Cells, 2> rough_{};  ///< Cells with some cost; cells with a high cost.
+  TurnRoom room_{};
+  std::array<int, kHeadings> offset_{};  ///< Angle of each heading from the goal's bearing, degrees.
+  int heading_count_{0};
+  std::array<Approach, kHeadings> approach_{};
+  std::array<PathMask, kHeadings> blocked_{};
+  std::array<std::array<PathMask, kHeadings>, 2> rough_paths_{};
+  std::array<float, 361> agreement_{};  ///< Weight of a bearing by its error in degrees, [0, 1].
+};
+
+}  // namespace adit::nav

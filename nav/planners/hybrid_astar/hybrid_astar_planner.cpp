@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/planners/hybrid_astar/hybrid_astar_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "nav/passages/widest_strip.hpp"
+
+namespace adit::nav {
+namespace {
+
+constexpr double kMoving = 0.08;  ///< A slower robot is stationary, m/s.
+/// A part ends this far before its last pose if the robot is almost stationary, m.
+constexpr double kTurned = 0.13;
+constexpr double kOver = 0.04;          ///< A part ends this far before its last pose, m.
+constexpr double kSteersAtOnce = 0.35;  ///< Speed limit while the steering may still be changing, m/s.
+constexpr double kSlow = 0.25;          ///< A slower robot is almost stationary, m/s.
+constexpr double kAhead = 4.2;          ///< Distance of the target that replaces a direction, m.
+constexpr float kHysteresis = 0.02f;    ///< Part of the margin that the current path may lose, m.
+constexpr float kTightLoss = 0.015f;    ///< Part of the tight margin that it may lose, m.
+/// The robot slows down this far before a tight place, in addition to the braking distance, m.
+constexpr double kTightAhead = 1.0;
+/// An opening that is wider than body and margins by more need not be crossed straight, m.
+constexpr double kGap = 0.24;
+constexpr double kEasy = 0.12;   ///< An opening that is wider by more than this has other solutions too, m.
+constexpr double kLineUp = 1.7;  ///< A path reaches the axis of a gap about this far before it, m.
+/// Maximum error at the middle of a gap, position and heading together, m.
+constexpr double kMisses = 0.015;
+/// From the body's front to a gap's middle: when nearer, it is too late for a correction, m.
+constexpr double kMends = 0.2;
+constexpr double kBehindPassage = 0.4;  ///< The gap ends this far behind its middle, m.
+
+}  // namespace
+
+HybridAStarPlanner::HybridAStarPlanner(const Platform& platform, const HybridAStarPlannerParams& params)
+    : platform_(platform),
+      params_(params),
+      body_(platform),
+      rear_(platform.rear_axle()),
+      search_(platform, params.search) {}
+
+Plan HybridAStarPlanner::plan(const Target& target, const Pose2& pose,
+                              std::span<const ObstaclePoint> obstacles, double stamp_s) {
+  Plan plan;
+  plan.stamp_s = stamp_s;
+  const Pose2 rear = pose * Pose2{-rear_, 0, 0};
+  watch_motion(rear, stamp_s);
+  plan.clearance = take_obstacles(obstacles);
+  const bool nowhere =
+      target.kind == Target::Kind::none || (target.kind == Target::Kind::direction && target.speed <= 0.0);
+  const double distance = (target.goal - pose.position()).norm();
+  const bool goal = target.kind == Target::Kind::goal;
+  plan.arrived = goal && distance <= params_.tolerance;
+  if (nowhere || plan.arrived) {
+    kept_.count = 0;
+    heading_hold_.forget();
+    forget_retreat();
+    plan.reason = target.kind == Target::Kind::none ? Reason::goal_missing : Reason::none;
+    return plan;
+  }
+
+  const Target aim = aim_of(target, pose, stamp_s);
+  HybridAStarTask task = task_of(aim, pose, rear);
+  if (goal && !retreat_) see_passage(target, pose, obstacles, task);
+  // The collision monitor blocks what the planner would choose now; during a retreat the choice is free.
+  const bool held = target.held && goal && !retreat_;
+  const bool keeps = !held && follows_on(rear) && kept_for_.kind == aim.kind &&
+                     (!goal || (kept_for_.goal - aim.goal).norm() < 1.0) && passable(rear);
+  // A path through a gap is kept unless a nearer view shows that it misses the middle.
+  const bool to_passage = keeps && kept_.through && task.passage;
+  const bool goes_through = to_passage && !misses(*task.passage, rear);
+  if (to_passage && !changes_ahead()) task.only = 1;
+  const bool finds = !held && !goes_through && (to_passage ? find_through(task) : find(task));
+  const bool takes = finds && (!keeps || is_better(rear, to_passage));
+  if (takes) {
+    adopt(rear);
+    kept_for_ = aim;
+  }
+  const bool drives = takes || keeps;
+  const bool tired = given_up(target, distance, drives, stamp_s);
+  if (!drives || tired) {
+    kept_.count = 0;
+    plan.blocked = true;
+    plan.reason = Reason::blocked;
+    if (!tired) consider_retreat(target, pose, stamp_s);
+    return plan;
+  }
+  if (!retreat_) blocked_since_.reset();
+  write(aim, pose, obstacles, plan);
+  if (retreat_) plan.ends_at_goal = false;
+  return plan;
+}
+
+Target HybridAStarPlanner::aim_of(const Target& target, const Pose2& pose, double stamp_s) {
+  constexpr double kSameGoal = 0.1, kProgress = 0.5, kThere = 0.3;  // m
+  const double distance = (target.goal - pose.position()).norm();
+  // The target is a point on a route at a fixed distance ahead, so it moves back with the robot.
+  const double same = retreat_ ? params_.retreat + kProgress : kSameGoal;
+  const bool other = target.kind != Target::Kind::goal || !goal_ || (target.goal - *goal_).norm() > same;
+  if (other) forget_retreat();
+  if (other || distance < nearest_ - kProgress) {
+    nearest_ = distance;
+    retreats_left_ = params_.retreats;
+  }
+  if (retreat_ && ((*retreat_ - pose.position()).norm() < kThere || stamp_s > retreat_until_)) {
+    retreat_.reset();
+    kept_.count = 0;
+  }
+  return retreat_ ? Target::to(*retreat_, target.speed) : target;
+}
+
+void HybridAStarPlanner::forget_retreat() {
+  retreat_.reset();
+  blocked_since_.reset();
+}
+
+void HybridAStarPlanner::consider_retreat(const Target& target, const Pose2& pose, double stamp_s) {
+  constexpr double kLongest = 8.0;  // s
+  if (retreat_ || target.kind != Target::Kind::goal || retreats_left_ == 0) {
+    forget_retreat();
+    return;
+  }
+  if (!blocked_since_) blocked_since_ = stamp_s;
+  if (!target.held && stamp_s - *blocked_since_ < params_.patience) return;
+  // Straight back, or ahead when that leads away from the goal.
+  const Eigen::Vector2d to = pose.inverse() * target.goal;
+  retreat_ = pose * Eigen::Vector2d(to.x() > 0 ? -params_.retreat : params_.retreat, 0.0);
+  retreat_until_ = stamp_s + kLongest;
+  blocked_since_.reset();
+  --retreats_left_;
+}
+
+void HybridAStarPlanner::watch_motion(const Pose2& rear, double stamp_s) {
+  if (before_ && stamp_s > before_s_) {
+    const Pose2 moved = before_->inverse() * rear;
+    const double way = std::copysign(std::hypot(moved.x, moved.y), moved.x);
+    speed_ = way / (stamp_s - before_s_);
+    if (std::fabs(way) > 0.02) curvature_ = moved.yaw / way;
+  }
+  before_ = rear;
+  before_s_ = stamp_s;
+}
+
+float HybridAStarPlanner::take_obstacles(std::span<const ObstaclePoint> obstacles) {
+  float clearance = 2.0f;
+  for (const ObstaclePoint& o : obstacles)
+    if (o.cost >= 1.0f) clearance = std::min(clearance, std::max(0.0f, -body_.depth(o.x, o.y)));
+  distance_field_.fill(obstacles, static_cast<float>(rear_));
+  return clearance;
+}
+
+HybridAStarTask HybridAStarPlanner::task_of(const Target& target, const Pose2& pose, const Pose2& rear) {
+  HybridAStarTask task{};
+  if (std::fabs(speed_) > kSteersAtOnce) task.level = search_.motions().level(curvature_);
+  if (std::fabs(speed_) > kMoving) task.direction = speed_ > 0 ? 1 : -1;
+  if (target.kind == Target::Kind::goal) {
+    task.target = rear.inverse() * target.goal;
+    heading_hold_.forget();
+    return task;
+  }
+  const double bearing = heading_hold_.bearing(target, pose);
+  task.goal = false;
+  task.target = Eigen::Vector2d(rear_ + kAhead * std::cos(bearing), kAhead * std::sin(bearing));
+  // Forwards or backwards by the stick; for a stick held straight back the path has the opposite heading.
+  task.only = std::fabs(wrap_angle(target.direction)) <= M_PI / 2 ? 1 : -1;
+  task.heading = bearing;
+  const double now = std::fabs(wrap_angle((task.only > 0 ? 0.0 : M_PI) - bearing));
+  task.spread = std::max(params_.stick_spread * M_PI / 180.0, now + 0.05);
+  return task;
+}
+
+// Finds a path to a place from where a gap can be crossed, if it cannot be crossed from here. If there is
+// none, and the gap is wide enough to be met at an angle, any path through it counts.
+bool HybridAStarPlanner::find(HybridAStarTask task) {
+  if (!task.passage) return find_there(task);
+  if (find_through(task)) return true;
+  HybridAStarTask before = task;
+  before.target = (*task.passage * Pose2{rear_ - kLineUp, 0, 0}).position();
+  before.passage.reset();
+  const bool easy = task.room >= platform_.width + 2 * params_.search.margin + kEasy;
+  if (find_there(before) && (found_.complete || !easy)) return true;
+  task.passage.reset();
+  return easy && find_there(task);
+}
+
+// Finds a path with the full margin; if there is none, one with the tight margin.
+bool HybridAStarPlanner::find_there(HybridAStarTask task) {
+  const auto& search = params_.search;
+  for (const bool tight : {false, true}) {
+    task.tight = tight;
+    const double margin = tight ? search.tight_margin : search.margin;
+    cost_to_go_.fill(distance_field_, task.target, static_cast<float>(platform_.width / 2 + margin));
+    if (search_.find(distance_field_, cost_to_go_, task, found_)) return true;
+  }
+  return false;
+}
+
+void HybridAStarPlanner::see_passage(const Target& target, const Pose2& pose,
+                                     std::span<const ObstaclePoint> obstacles, HybridAStarTask& task) const {
+  if (!target.passage) return;
+  const auto strip = fit_widest_strip(pose.inverse() * *target.passage, obstacles);
+  const auto& search = params_.search;
+  if (!strip || strip->room < platform_.width + 2 * search.tight_margin ||
+      strip->room > platform_.width + 2 * search.margin + kGap || strip->line.inverse().x > kBehindPassage)
+    return;
+  task.passage = Pose2{rear_, 0, 0} * strip->line;
+  task.room = strip->room;
+}
+
+// Finds a path onto the axis of the gap and straight through it, with the full margin before the gap if there
+// is room.
+bool HybridAStarPlanner::find_through(HybridAStarTask task) {
+  task.target = (*task.passage * Pose2{-kLineUp, 0, 0}).position();
+  return find_there(task);
+}
+
+// Whether the current path misses the middle of the gap and can still be corrected.
+bool HybridAStarPlanner::misses(const Pose2& passage, const Pose2& rear) const {
+  const Pose2 to_passage = passage.inverse();
+  const Pose2 end = to_passage * rear.inverse() * kept_.spots[kept_.count - 1].pose;
+  const double turned = wrap_angle(end.yaw);
+  const double aside = std::fabs(end.y - end.x * std::tan(turned)) + std::fabs(turned) * body_.front();
+  return -to_passage.x - (rear_ + body_.front()) > kMends && aside > kMisses;
+}
+
+// Whether the new path replaces the current one.
+bool HybridAStarPlanner::is_better(const Pose2& rear, bool to_passage) const {
+  const double ahead = kept_.cost() - static_cast<double>(kept_.spots[at_].cost);
+  // Through a gap, a central path is worth a slightly longer distance, but no turning.
+  if (to_passage) return found_.cost() < ahead + (found_.straight_on() ? params_.better : -params_.better);
+  if (found_.through) return true;
+  if (found_.tight && !kept_.tight) return false;
+  const bool other = found_.spots[0].direction != kept_.spots[end_].direction;
+  if (!other && !changes_ahead() && found_.straight_on()) return true;
+  const Eigen::Vector2d end =
+      rear.inverse() * (kept_.spots[kept_.count - 1].pose * Eigen::Vector2d(rear_, 0.0));
+  const double left = cost_to_go_.at(static_cast<float>(end.x()), static_cast<float>(end.y()));
+  return found_.cost() + found_.left + params_.better < ahead + left;
+}
+
+void HybridAStarPlanner::adopt(const Pose2& rear) {
+  kept_ = found_;
+  for (std::size_t i = 0; i < kept_.count; ++i) kept_.spots[i].pose = rear * kept_.spots[i].pose;
+  end_ = 0;
+  next_part();
+}
+
+void HybridAStarPlanner::next_part() {
+  at_ = end_;
+  std::size_t i = at_ + 1;
+  while (i + 1 < kept_.count && kept_.spots[i + 1].direction == kept_.spots[at_ + 1].direction) ++i;
+  end_ = i;
+}
+
+bool HybridAStarPlanner::drives_ahead() const {
+  if (retreat_) return false;
+  for (std::size_t i = at_ + 1; i < kept_.count; ++i)
+    if (kept_.spots[i].direction < 0) return false;
+  return true;
+}
+
+bool HybridAStarPlanner::changes_ahead() const { return end_ + 1 < kept_.count; }
+
+bool HybridAStarPlanner::follows_on(const Pose2& rear) {
+  if (kept_.count < 2) return false;
+  const auto nearest = [&] {
+    double best = std::numeric_limits<double>::infinity();
+    std::size_t where = at_;
+    for (std::size_t i = at_; i <= end_; ++i) {
+      const double d = (kept_.spots[i].pose.position() - rear.position()).squaredNorm();
+      if (d < best) best = d, where = i;
+    }
+    return where;
+  };
+  at_ = nearest();
+  const double left = search_.motions().spacing() * static_cast<double>(end_ - at_);
+  if (left < kOver || (left < kTurned && std::fabs(speed_) < kSlow)) {
+    if (!changes_ahead()) return false;
+    next_part();
+    at_ = nearest();
+  }
+  const Pose2& spot = kept_.spots[at_].pose;
+  return (spot.position() - rear.position()).norm() < params_.off_path &&
+         std::fabs(wrap_angle(spot.yaw - rear.yaw)) < params_.off_heading;
+}
+
+bool HybridAStarPlanner::passable(const Pose2& rear) const {
+  const Pose2 back = rear.inverse();
+  // Places in which the robot already is do not count.
+  const std::size_t first = at_ + 8;
+  for (std::size_t i = first; i < kept_.count; i += 2)
+    if (!search_.free(distance_field_, back * kept_.spots[i].pose, kept_.tight,
+                      kept_.tight ? kTightLoss : kHysteresis))
+      return false;
+  return true;
+}
+
+bool HybridAStarPlanner::given_up(const Target& target, double distance, bool drives, double stamp_s) {
+  constexpr double kSameGoal = 0.1, kCloser = 0.1, kLongest = 0.5;  // m, m, s: a longer interval was a pause.
+  if (target.kind != Target::Kind::goal) {
+    goal_.reset();
+    return false;
+  }
+  if (retreat_) {  // A retreat need not get nearer.
+    last_s_ = stamp_s;
+    return false;
+  }
+  if (!goal_ || (target.goal - *goal_).norm() > kSameGoal || distance < closest_ - kCloser) {
+    goal_ = target.goal;
+    closest_ = distance;
+    effort_ = 0;
+    rest_until_ = -std::numeric_limits<double>::infinity();
+  }
+  if (drives) effort_ += std::clamp(stamp_s - last_s_, 0.0, kLongest);
+  last_s_ = stamp_s;
+  if (effort_ > params_.effort) {
+    effort_ = 0;
+    rest_until_ = stamp_s + params_.rest;
+  }
+  return stamp_s < rest_until_;
+}
+
+// Whether the path up to a spot reaches, before the robot could slow down, a place with only the tight
+// margin.
+bool HybridAStarPlanner::tightens(const Pose2& back, std::size_t last) const {
+  const double slow = std::max(0.0, speed_ * speed_ - params_.tight_speed * params_.tight_speed);
+  const double ahead = kTightAhead + slow / (2.0 * platform_.max_acceleration);
+  const auto end = std::min(last, at_ + static_cast<std::size_t>(ahead / search_.motions().spacing()));
+  for (std::size_t i = at_; i <= end; i += 2)
+    if (!search_.free(distance_field_, back * kept_.spots[i].pose, false, 0.0f)) return true;
+  return false;
+}
+
+void HybridAStarPlanner::write(const Target& target, const Pose2& pose,
+                               std::span<const ObstaclePoint> obstacles, Plan& plan) const {
+  const std::size_t last = std::min(end_, at_ + Plan::kMaxPath - 1);
+  for (std::size_t i = at_; i <= last; ++i)
+    plan.poses[plan.pose_count++] = kept_.spots[i].pose * Pose2{rear_, 0, 0};
+  plan.length = static_cast<double>(plan.pose_count - 1) * search_.motions().spacing();
+  plan.reverse = kept_.spots[end_].direction < 0;
+  const Eigen::Vector2d end = plan.poses[plan.pose_count - 1].position();
+  plan.ends_at_goal = target.kind == Target::Kind::goal && (end - target.goal).norm() <= params_.tolerance;
+  plan.option = 0;
+  double limit = path_speed(plan, pose, body_, platform_, obstacles, params_.speed);
+  if (plan.reverse) limit = std::min(limit, params_.reverse_speed);
+  const Pose2 back = (pose * Pose2{-rear_, 0, 0}).inverse();
+  if (kept_.tight && tightens(back, last)) limit = std::min(limit, params_.tight_speed);
+  // Ground with a cost is driven slowly.
+  float rough = 0.0f;
+  for (std::size_t i = at_; i <= last; i += 2) {
+    const Pose2 at = back * kept_.spots[i].pose;
+    rough = std::max(rough, distance_field_.cost(static_cast<float>(at.x), static_cast<float>(at.y)));
+  }
+  limit = std::min(limit, platform_.max_speed * (1.0 - params_.rough_slows * static_cast<double>(rough)));
+  plan.max_speed = target.speed > 0.0 ? std::min(limit, target.speed) : limit;
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <optional>
+
+#include "nav/planners/heading_hold.hpp"
+#include "nav/planners/hybrid_astar/hybrid_astar_search.hpp"
+#include "nav/planners/path_speed.hpp"
+#include "nav/planners/planner.hpp"
+
+namespace adit::nav {
+
+struct HybridAStarPlannerParams {
+  HybridAStarSearchParams search{};
+  double tolerance{0.25};     ///< Default goal tolerance, m, [0.02, 2].
+  double better{0.6};         ///< Required gain of a new path whose direction changes, m, [0, 5].
+  double off_path{0.25};      ///< Maximum distance of the robot from its path, m, [0.05, 1].
+  double off_heading{0.4};    ///< Maximum heading error on the path, rad, [0.05, 1.5].
+  double stick_spread{50.0};  ///< Maximum angle between a path and a direction target, degrees, [10, 120].
+  double reverse_speed{1.0};  ///< Speed limit backwards, m/s, (0, 10].
+  double tight_speed{0.3};    ///< Speed limit with only the tight margin, m/s, (0, 2].
+  double rough_slows{0.75};   ///< Fraction of the speed lost on ground of cost 1, [0, 0.95].
+  double effort{25.0};   ///< Driving time without getting nearer to a goal until it is blocked, s, [1, 600].
+  double rest{30.0};     ///< Time that it then stays blocked before it tries again, s, [0, 3600].
+  double patience{2.0};  ///< Time without a path to a goal before the robot backs up, s, [0, 60].
+  double retreat{1.5};   ///< Distance that it backs up, m, [0.3, 3].
+  int retreats{3};       ///< Attempts at backing up until it gets nearer to the goal, [0, 100].
+  PathSpeedParams speed{};
+};
+
+/// Local planner for tight space and for robots that cannot turn on the spot, of any drive. HybridAStarSearch
+/// finds a path of short motions, forwards and backwards, for the next metres, starting with the robot's
+/// curvature, so the robot turns round in as many moves as the place requires. A path whose direction changes
+/// is followed until another one is clearly better or an obstacle blocks it; each plan is the part that is
+/// driven in one direction. Without a path the robot backs up and tries again.
+class HybridAStarPlanner final : public Planner {
+ public:
+  explicit HybridAStarPlanner(const Platform& platform, const HybridAStarPlannerParams& params = {});
+
+  Plan plan(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+            double stamp_s) override;
+  /// Measures speed and curvature between cycles. plan() calls it itself; call it in cycles in which another
+  /// planner plans.
+  void watch(const Pose2& pose, double stamp_s) { watch_motion(pose * Pose2{-rear_, 0, 0}, stamp_s); }
+  /// Measured speed, m/s, negative backwards.
+  double speed() const { return speed_; }
+  /// Whether neither the rest of the current path nor a retreat leads backwards.
+  bool drives_ahead() const;
+
+ private:
+  void watch_motion(const Pose2& rear, double stamp_s);
+  HybridAStarTask task_of(const Target& target, const Pose2& pose, const Pose2& rear);
+  float take_obstacles(std::span<const ObstaclePoint> obstacles);
+  bool follows_on(const Pose2& rear);
+  bool passable(const Pose2& rear) const;
+  bool find(HybridAStarTask task);
+  bool find_there(HybridAStarTask task);
+  bool find_through(HybridAStarTask task);
+  /// Sets the task's gap if one on the path to the target must be crossed straight.
+  void see_passage(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+                   HybridAStarTask& task) const;
+  bool misses(const Pose2& passage, const Pose2& rear) const;
+  bool is_better(const Pose2& rear, bool to_passage) const;
+  void adopt(const Pose2& rear);
+  void next_part();
+  bool changes_ahead() const;
+  /// The current target: `target`, or the end of a retreat.
+  Target aim_of(const Target& target, const Pose2& pose, double stamp_s);
+  void forget_retreat();
+  void consider_retreat(const Target& target, const Pose2& pose, double stamp_s);
+  bool given_up(const Target& target, double distance, bool drives, double stamp_s);
+  bool tightens(const Pose2& back, std::size_t last) const;
+  void write(const Target& target, const Pose2& pose, std::span<const ObstaclePoint> obstacles,
+             Plan& plan) const;
+
+  Platform platform_;
+  HybridAStarPlannerParams params_;
+  Footprint body_;
+  double rear_;  ///< Distance of the rear axle behind base_link, m.
+  HybridAStarSearch search_;
+  DistanceField distance_field_{};
+  CostToGo cost_to_go_{};
+  HybridAStarPath found_{}, kept_{};  ///< kept_: odometry frame.
+  std::size_t at_{0},
+      end_{0};  ///< On the current path: index of the robot, and of the next change of direction.
+  Target kept_for_{};
+  std::optional<Pose2> before_{};  ///< Of the rear axle, odometry frame.
+  double before_s_{0};
+  double speed_{0};      ///< Negative backwards, m/s.
+  double curvature_{0};  ///< Of the driven path, rad/m.
+  HeadingHold heading_hold_{};
+  std::optional<Eigen::Vector2d> goal_{};  ///< The goal that effort and retreats refer to.
+  double closest_{0}, effort_{0}, last_s_{0}, rest_until_{0};
+  std::optional<Eigen::Vector2d> retreat_{};  ///< Odometry frame.
+  std::optional<double> blocked_since_{};
+  /// nearest_: distance to the goal when the retreats were last refilled, m.
+  double retreat_until_{0}, nearest_{0};
+  int retreats_left_{0};
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/planners/hybrid_astar/motion_primitives.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::nav {
+
+MotionPrimitives::MotionPrimitives(const Platform& platform, const MotionPrimitiveParams& params)
+    : step_(params.step),
+      largest_(platform.turns_on_spot() ? params.curvature : params.car_share / platform.least_radius()) {
+  if (platform.path_curvature > 0) largest_ = std::min(largest_, platform.path_curvature);
+  for (const int direction : {1, -1})
+    for (int from = 0; from < kLevels; ++from)
+      for (int to = 0; to < kLevels; ++to) {
+        MotionPrimitive motion{};
+        // Indices that differ by more: the robot steered while it was stationary.
+        const double begin = std::abs(from - to) <= 1 ? curvature(from) : curvature(to);
+        Pose2 pose{};
+        const double ds = direction * spacing();
+        for (int i = 0; i < kPoses; ++i) {
+          const double bend = begin + (curvature(to) - begin) * (i + 0.5) / kPoses;
+          const double turn = ds * bend;
+          pose = pose * Pose2{ds * std::cos(turn / 2), ds * std::sin(turn / 2), turn};
+          motion.poses[static_cast<std::size_t>(i)] = pose;
+        }
+        primitives_.push_back(motion);
+      }
+}
+
+int MotionPrimitives::level(double curvature) const {
+  const double exact = curvature / largest_ * (kLevels / 2) + kLevels / 2;
+  return std::clamp(static_cast<int>(std::lround(exact)), 0, kLevels - 1);
+}
+
+}  // namespace adit::nav

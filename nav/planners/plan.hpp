@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/geometry/pose.hpp"
+#include "core/result/reason.hpp"
+
+namespace adit::nav {
+
+/// The local planner's target.
+struct Target {
+  enum class Kind : std::uint8_t {
+    none,       ///< No target: the robot stops.
+    goal,       ///< A point.
+    direction,  ///< A direction, as far as it is free (smart joystick).
+  };
+  Kind kind{Kind::none};
+  Eigen::Vector2d goal{0, 0};  ///< Odometry frame, m.
+  double direction{0};         ///< Body frame, rad, counter-clockwise from ahead.
+  double speed{0};             ///< Speed limit, m/s; 0 for a goal: the platform's speed.
+  double tolerance{0};         ///< Goal tolerance, m; 0: the planner's default.
+  bool on_route{false};  ///< The goal is a point on a route, which leads there in about a straight line.
+  std::optional<Pose2>
+      passage{};     ///< Narrow passage before the goal: its centre and heading, odometry frame.
+  bool held{false};  ///< The collision monitor prevents the robot from following its plan.
+
+  static Target to(const Eigen::Vector2d& goal, double speed = 0.0) {
+    return {.kind = Kind::goal, .goal = goal, .speed = speed};
+  }
+  static Target along(double direction, double speed) {
+    return {.kind = Kind::direction, .direction = direction, .speed = speed};
+  }
+};
+
+/// A side of the body.
+enum class Side : std::uint8_t { none, ahead, left, behind, right };
+
+/// Result of the local planner. Its size is bounded and it has no pointers, so a copy is a memcpy.
+struct Plan {
+  static constexpr std::size_t kMaxPath = 72;
+
+  double stamp_s{0};            ///< Time of the pose that the plan starts from, s.
+  bool blocked{false};          ///< No path is free: `path` is empty.
+  Reason reason{Reason::none};  ///< Reason::blocked, start_in_collision, goal_missing (no target) or none.
+  Side side{Side::none};        ///< Side of the obstacle that prevents the robot from starting.
+  bool arrived{false};          ///< The robot is within the tolerance of the goal: `path` is empty.
+  bool ends_at_goal{false};
+  bool reverse{false};     ///< The path is driven backwards; its poses are those of the body.
+  bool turn_first{false};  ///< The path begins with a turn on the spot, however small it is.
+  int turn{0};             ///< Side of the turn if the path starts behind: 1 left, -1 right, 0 either.
+  double max_speed{0};     ///< m/s
+  double length{0};        ///< Length of the path, m.
+  double clearance{0};     ///< Distance from the footprint to the nearest obstacle, m, at most 2.
+  int heading{0};          ///< Bearing of the chosen heading, degrees from the body's x axis.
+  int group{-1};           ///< Chosen group of the trajectory library.
+  int option{-1};  ///< Chosen library option: 0 long with wide margins, last short with the least margins.
+
+  std::array<Pose2, kMaxPath> poses{};  ///< Odometry frame, from the robot on.
+  std::uint32_t pose_count{0};
+
+  std::span<const Pose2> path() const { return {poses.data(), pose_count}; }
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/routing/ground_registration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "nav/terrain/plane_fit.hpp"
+
+namespace adit::nav {
+namespace {
+
+constexpr float kFrom = 1.0f, kTo = 8.0f;   // Inner and outer radius of the ground that is compared, m.
+constexpr float kSame = 0.25f;              // Heights that differ by more belong to different ground, m.
+constexpr std::size_t kMaxSamples = 1024;   // Per scan.
+constexpr std::size_t kEnoughSamples = 64;  // Minimum number of samples for a plane.
+constexpr float kReturnNoise = 0.02f;       // m
+constexpr float kFirstScale = 0.2f, kLastScale = 0.03f;  // Scales of the fit's weights, m.
+constexpr float kInliers = 0.6f;                         // Minimum inlier fraction of the plane.
+constexpr float kMaxGradient = 0.0524f;                  // 3 degrees.
+constexpr float kFade = 0.02f;                           // Per scan: fades within about 5 s at 10 Hz.
+
+Pose3 corrected(const Pose3& body, const Eigen::Vector2f& gradient, float height) {
+  const double size = gradient.norm();
+  const Eigen::Vector3d position = body.position - Eigen::Vector3d(0.0, 0.0, height);
+  if (size < 1e-6) return {position, body.orientation};
+  const Eigen::Vector3d axis(-gradient.y() / size, gradient.x() / size, 0.0);
+  return {position, Eigen::Quaterniond(Eigen::AngleAxisd(std::atan(size), axis)) * body.orientation};
+}
+
+}  // namespace
+
+Pose3 GroundRegistration::apply(std::span<const Eigen::Vector3f> points, const Pose3& body,
+                                const SurfaceMap& map) {
+  gradient_ *= 1.0f - kFade;
+  height_ *= 1.0f - kFade;
+  const Pose3 before = corrected(body, gradient_, height_);
+  const Eigen::Matrix3f turn = before.orientation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f at = before.position.cast<float>();
+  samples_.clear();
+  // An odd stride samples all rings when the points of a column follow each other.
+  const std::size_t stride = (points.size() / kMaxSamples + 1) | 1;
+  for (std::size_t n = 0; n < points.size(); n += stride) {
+    const Eigen::Vector3f offset = turn * points[n];
+    const float range = offset.head<2>().norm();
+    if (!(range >= kFrom && range <= kTo)) continue;
+    const Eigen::Vector3f place = at + offset;
+    const GroundCell* cell = map.cell(route_cell(place.x()), route_cell(place.y()), place.z());
+    if (!cell || !cell->known || !cell->measured || cell->blocked) continue;
+    const float apart = place.z() - cell->z;
+    if (std::abs(apart) <= kSame) samples_.emplace_back(offset.x(), offset.y(), apart);
+  }
+  if (samples_.size() < kEnoughSamples) return before;
+  const PlanePrior prior{0.0f, {0, 0}, kSame / 2, kMaxGradient / 3};
+  const PlaneFit fit = fit_plane(samples_, prior, prior.gradient, kReturnNoise, kFirstScale, kLastScale);
+  if (fit.inliers < kInliers) return before;
+  gradient_ += fit.gradient;
+  height_ = std::clamp(height_ + fit.height, -kSame, kSame);
+  if (const float size = gradient_.norm(); size > kMaxGradient) gradient_ *= kMaxGradient / size;
+  return corrected(body, gradient_, height_);
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cmath>
+
+#include "nav/planners/plan.hpp"
+#include "nav/routing/route_follower.hpp"
+
+namespace adit::nav {
+
+/// The local planner's target for a step of a route follower. Frame: that of the route.
+inline Target target_of(const RouteStep& step) {
+  if (step.state == RouteStep::State::unreachable) return {};
+  Target target = Target::to(step.target.head<2>());
+  target.on_route = step.state == RouteStep::State::along;
+  if (!step.last) target.tolerance = RouteStep::kTolerance;
+  if (step.passage)
+    target.passage = {step.passage->middle.x(), step.passage->middle.y(),
+                      std::atan2(step.passage->axis.y(), step.passage->axis.x())};
+  return target;
+}
+
+}  // namespace adit::nav

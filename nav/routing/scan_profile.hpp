@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "core/config/traversability.hpp"
+#include "core/geometry/pose.hpp"
+#include "nav/routing/surface_map.hpp"
+
+namespace adit::nav {
+
+/// Extracts ground and obstacles from a scan, direction by direction. From under the robot outwards the
+/// ground continues as far as slope and step permit. Higher returns are obstacles, returns above the
+/// clearance height are ignored, and a ray that passed below the expected ground marks a hole. The sectors
+/// follow M. Himmelsbach et al., *Fast segmentation of 3D point clouds for ground vehicles*, 2010. A lidar
+/// with one level ring sees no ground; then the ground before an obstacle is taken to be as high as under the
+/// robot.
+class ScanProfile {
+ public:
+  ScanProfile(const Platform& platform, const RouteParams& params);
+  /// Maximum height difference to the preceding ground at which a return may be taken for ground by mistake,
+  /// m.
+  static float most_wrong(const Platform& platform);
+
+  /// Adds a scan to the map. `points`: base_link, m, not finite or on the robot itself where there was no
+  /// return. `body`: map frame.
+  void add(std::span<const Eigen::Vector3f> points, const Pose3& body, SurfaceMap& map);
+
+ private:
+  ScanProfile(const Platform& platform, const RouteParams& params, const Traversability& limits);
+  static constexpr int kDirections = 360;
+  static constexpr int kQuarter = kDirections / 4;
+  struct Return {
+    float range, x, y, z;
+  };
+  /// A piece of ground between two ranges.
+  /// ray_z: height of the ray at `to`, m.
+  struct Piece {
+    float from, to, z_from, z_to, ray_z;
+  };
+  /// The first obstacle in a direction; range 0: none.
+  struct Hit {
+    float range{0}, x{0}, y{0}, base{0}, obstacle_height{0};
+  };
+  /// A cell relative to the sensor's cell.
+  struct SectorCell {
+    std::int16_t dx, dy;
+    float range;  ///< Of its centre, m.
+  };
+  void sort(std::span<const Eigen::Vector3f> points, const Pose3& body);
+  void walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit);
+  bool is_obstacle(std::span<const Return> returns, std::size_t which) const;
+  bool is_face(std::span<const Return> returns, std::size_t which) const;
+  void list_sectors();
+  void write_free(int direction, std::span<const Piece> pieces, SurfaceMap& map) const;
+  void close_gaps(SurfaceMap& map) const;
+  void stand(const Pose3& body, SurfaceMap& map) const;
+  /// Height of the plane under the body, m.
+  float ground_at(double x, double y) const;
+
+  Platform platform_;
+  RouteParams params_;
+  float clear_, step_, drop_, slope_;
+  Eigen::Vector3f sensor_{0, 0, 0};
+  Eigen::Vector2f at_{0, 0}, gradient_{0, 0};  ///< Position of the body, and gradient of the ground under it.
+  float ground_{0};                            ///< Height under the body, m.
+  std::vector<Return> sorted_{};
+  std::vector<Return> unsorted_{};
+  std::vector<int> direction_{};
+  std::vector<int> begin_{};
+  std::vector<Piece> pieces_{};
+  std::array<Hit, kDirections> hits_{};
+  /// Cells of the 90 directions from +x on, by direction, nearest first.
+  std::vector<SectorCell> quarter_{};
+  std::array<std::size_t, kQuarter + 1> first_{};  ///< Index of the first cell of each of these directions.
+};
+
+}  // namespace adit::nav

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/routing/surface_map.hpp"
+
+#include <algorithm>
+
+namespace adit::nav {
+namespace {
+
+constexpr int kHit = 3;           // Evidence of a return.
+constexpr int kBlocked = 5;       // Threshold: two returns.
+constexpr int kRay = 2;           // Evidence of a scan that saw through.
+constexpr int kMaxEvidence = 12;  // Upper limit: half as many scans free the cell again.
+constexpr int kFree = 0;
+constexpr int kMinEvidence = -4;
+constexpr std::size_t kPlaces = 32;
+constexpr double kSamePlace = 0.6;  // m
+constexpr int kMaxTimes = 4;
+constexpr std::array<int, 8> kAroundX{1, 0, -1, 0, 1, -1, -1, 1};
+constexpr std::array<int, 8> kAroundY{0, 1, 0, -1, 1, 1, -1, -1};
+constexpr std::array<std::size_t, 8> kOpposite{2, 3, 0, 1, 6, 7, 4, 5};
+
+// The smallest height difference to the known cells around; -1 if there are none.
+float step_around(const Tile& tile, int x, int y, float z) {
+  float least = -1;
+  for (int v = std::max(0, y - 2); v <= std::min(kTileSide - 1, y + 2); ++v)
+    for (int u = std::max(0, x - 2); u <= std::min(kTileSide - 1, x + 2); ++u) {
+      const GroundCell& cell = tile.cells[static_cast<std::size_t>(v * kTileSide + u)];
+      if (!cell.known) continue;
+      const float d = std::abs(cell.z - z);
+      if (least < 0 || d < least) least = d;
+    }
+  return least;
+}
+
+}  // namespace
+
+void SurfaceMap::clear() {
+  tiles_.clear();
+  free_.clear();
+  heads_.clear();
+  queue_.clear();
+  places_.clear();
+  extent_ = {};
+  used_ = 0;
+  last_ = -1;
+}
+
+void SurfaceMap::copy(const SurfaceMap& other) {
+  tiles_.resize(other.tiles_.size());
+  for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    if (!tiles_[i]) tiles_[i] = std::make_unique<Tile>();
+    *tiles_[i] = *other.tiles_[i];
+    tiles_[i]->dirty = tiles_[i]->used;
+    tiles_[i]->built = false;
+  }
+  free_ = other.free_;
+  heads_ = other.heads_;
+  queue_.clear();
+  places_ = other.places_;
+  extent_ = other.extent_;
+  used_ = other.used_;
+  last_ = -1;
+}
+
+int SurfaceMap::first(int tx, int ty) const {
+  const auto found = heads_.find(key(tx, ty));
+  return found == heads_.end() ? -1 : found->second;
+}
+
+int SurfaceMap::at(int tx, int ty, double z) const {
+  int best = -1;
+  double least = kFloorSeparation;
+  for (int i = first(tx, ty); i >= 0; i = tile(i).next)
+    if (const double d = std::abs(tile(i).z - z); d <= least) {
+      least = d;
+      best = i;
+    }
+  return best;
+}
+
+int SurfaceMap::at_cell(int ix, int iy, double z) const {
+  const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
+  int best = -1, beyond = -1;
+  double least = kFloorSeparation, near = kFloorSeparation;
+  for (int i = first(tile_of(ix), tile_of(iy)); i >= 0; i = tile(i).next) {
+    const GroundCell& cell = tile(i).cells[c];
+    if (const double d = std::abs(cell.z - z); cell.known && d <= least) {
+      least = d;
+      best = i;
+    }
+    if (const double d = std::abs(tile(i).z - z); !cell.known && d <= near) {
+      near = d;
+      beyond = i;
+    }
+  }
+  return best >= 0 ? best : beyond;
+}
+
+// Selects the floor by the heights along the common side; for a corner, or where these are unknown, by the
+// heights of the tiles.
+int SurfaceMap::beside(const Tile& t, int dx, int dy) const {
+  const int only = first(t.tx + dx, t.ty + dy);
+  if (only < 0) return -1;
+  constexpr int last = kTileSide - 1;
+  int best = -1;
+  float least = kFloorSeparation;
+  for (int i = only; i >= 0; i = tile(i).next) {
+    const Tile& other = tile(i);
+    float sum = 0;
+    int count = 0;
+    for (int k = 0; k < kTileSide && (dx == 0 || dy == 0); ++k) {
+      const int x = dx == 0 ? k : dx > 0 ? last : 0, y = dy == 0 ? k : dy > 0 ? last : 0;
+      const int u = dx == 0 ? k : last - x, v = dy == 0 ? k : last - y;
+      const GroundCell& p = t.cells[static_cast<std::size_t>(y * kTileSide + x)];
+      const GroundCell& q = other.cells[static_cast<std::size_t>(v * kTileSide + u)];
+      if (!p.known || !q.known) continue;
+      sum += std::abs(p.z - q.z);
+      ++count;
+    }
+    const float d = count > 0 ? sum / static_cast<float>(count) : std::abs(other.z - t.z);
+    if (d <= least) {
+      least = d;
+      best = i;
+    }
+  }
+  return best;
+}
+
+// Finds the floor that a height belongs to: the one whose cell there has that height, else one with
+// continuous neighbouring cells, else the nearest one without neighbouring cells.
+int SurfaceMap::surface_layer(int ix, int iy, float z) {
+  const int tx = tile_of(ix), ty = tile_of(iy);
+  const auto c = static_cast<std::size_t>(cell_in_tile(ix, iy));
+  const auto same = [&](const Tile& t) { return t.cells[c].known && std::abs(t.cells[c].z - z) <= same_; };
+  const bool again = last_ >= 0 && tile(last_).tx == tx && tile(last_).ty == ty;
+  if (again && same(tile(last_))) return last_;
+  if (!again) last_first_ = first(tx, ty);
+  int best = -1;
+  float least = kFloorSeparation;
+  for (int i = last_first_; i >= 0; i = tile(i).next) {
+    const Tile& t = tile(i);
+    if (same(t)) return last_ = i;
+    if (t.cells[c].known) continue;
+    const float step = step_around(t, ix & 15, iy & 15, z);
+    if (step > same_) continue;
+    // A continuous neighbour wins over any floor that is merely near.
+    const float d = step >= 0 ? step - 2 * same_ : std::abs(t.z - z);
+    if (d <= least) {
+      least = d;
+      best = i;
+    }
+  }
+  return last_ = best >= 0 ? best : create(tx, ty, z);
+}
+
+int SurfaceMap::create(int tx, int ty, float z) {
+  if (used_ >= params_.tiles) evict();
+  int index;
+  if (free_.empty()) {
+    index = size();
+    tiles_.push_back(std::make_unique<Tile>());
+  } else {
+    index = free_.back();
+    free_.pop_back();
+    tile(index) = Tile{};
+  }
+  ++used_;
+  Tile& t = tile(index);
+  t.tx = tx;
+  t.ty = ty;
+  t.z = z;
+  t.used = true;
+  if (const int head = first(tx, ty); head >= 0) {
+    int i = head;
+    while (tile(i).next >= 0) i = tile(i).next;
+    tile(i).next = index;
+    t.beside = tile(head).beside;
+  } else {
+    heads_[key(tx, ty)] = last_first_ = index;
+    link(index);
+  }
+  if (extent_.empty())
+    extent_ = {tx, tx, ty, ty, z, z};
+  else
+    extent_ = {std::min(extent_.x0, tx), std::max(extent_.x1, tx), std::min(extent_.y0, ty),
+               std::max(extent_.y1, ty), std::min(extent_.z0, z),  std::max(extent_.z1, z)};
+  mark_dirty(index);
+  return index;
+}
+
+void SurfaceMap::link(int index) {
+  Tile& t = tile(index);
+  for (std::size_t k = 0; k < 8; ++k) {
+    const int other = first(t.tx + kAroundX[k], t.ty + kAroundY[k]);
+    t.beside[k] = other;
+    for (int i = other; i >= 0; i = tile(i).next) tile(i).beside[kOpposite[k]] = index;
+  }
+}
+
+// Removes all floors of the farthest place.
+void SurfaceMap::evict() {
+  int farthest = -1;
+  double most = -1;
+  for (int i = 0; i < size(); ++i) {
+    const Tile& t = tile(i);
+    if (!t.used) continue;
+    const double d =
+        std::hypot((t.tx + 0.5) * kTileSide * kRouteCell - x_, (t.ty + 0.5) * kTileSide * kRouteCell - y_);
+    if (d > most) {
+      most = d;
+      farthest = i;
+    }
+  }
+  const int head = first(tile(farthest).tx, tile(farthest).ty);
+  for (std::size_t k = 0; k < 8; ++k)
+    for (int i = tile(head).beside[k]; i >= 0; i = tile(i).next) tile(i).beside[kOpposite[k]] = -1;
+  heads_.erase(key(tile(head).tx, tile(head).ty));
+  for (int i = head; i >= 0;) {
+    Tile& t = tile(i);
+    t.used = t.dirty = false;
+    free_.push_back(i);
+    --used_;
+    i = t.next;
+  }
+  std::erase_if(queue_, [this](int i) { return !tile(i).used; });
+  last_ = -1;
+}
+
+void SurfaceMap::begin_scan(double x, double y) {
+  if (++scan_ == 0) scan_ = 1;  // 0: no scan has hit a cell yet.
+  x_ = x;
+  y_ = y;
+}
+
+void SurfaceMap::mark_dirty(int index) {
+  if (tile(index).dirty) return;
+  tile(index).dirty = true;
+  queue_.push_back(index);
+}
+
+// An obstacle also reduces the clearance in the neighbouring tiles.
+void SurfaceMap::mark_around(const Tile& t, int ix, int iy) {
+  const int lx = ix & 15, ly = iy & 15;
+  const int dx = lx < kTileHalo ? -1 : lx >= kTileSide - kTileHalo ? 1 : 0;
+  const int dy = ly < kTileHalo ? -1 : ly >= kTileSide - kTileHalo ? 1 : 0;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const bool near_x = kAroundX[k] == 0 || kAroundX[k] == dx, near_y = kAroundY[k] == 0 || kAroundY[k] == dy;
+    if (!near_x || !near_y) continue;
+    for (int i = t.beside[k]; i >= 0; i = tile(i).next)
+      if (std::abs(tile(i).z - t.z) <= 2 * kFloorSeparation) mark_dirty(i);
+  }
+}
+
+bool SurfaceMap::is_near(int ix, int iy) const {
+  constexpr double kNear = 4.0;  // m: from farther away the side of a ramp and a step look alike.
+  const double dx = (ix + 0.5) * kRouteCell - x_, dy = (iy + 0.5) * kRouteCell - y_;
+  return dx * dx + dy * dy < kNear * kNear;
+}
+
+void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
+  const bool certain = seen == Seen::stood_on, measured = seen != Seen::between;
+  const bool sure = seen >= Seen::given || is_near(ix, iy);
+  const int index = surface_layer(ix, iy, z);
+  Tile& t = tile(index);
+  GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  if (!cell.known) {
+    cell = {z, 0, 0, true, measured, false, sure};
+    mark_dirty(index);
+    // A step between two cells is known with the second one; TileBuilder searches it over four cells.
+    if (const int x = ix & 15, y = iy & 15; x < 4 || y < 4 || x > 11 || y > 11) mark_around(t, ix, iy);
+    return;
+  }
+  const float before = cell.z;
+  // From afar stairs look like a ramp: interpolated heights do not change measured ones, and heights seen
+  // from afar do not change those seen from near.
+  const bool counts = sure || !cell.sure;
+  if (counts && measured && !cell.measured) {
+    cell.z = z;
+  } else if (counts && measured == cell.measured) {
+    cell.z += 0.25f * (z - cell.z);
+  }
+  if (sure && !cell.sure && (measured || !cell.measured)) {
+    cell.z = z;
+    cell.sure = true;
+  }
+  cell.measured |= measured && counts;
+  if (std::abs(cell.z - before) > 0.02f) mark_dirty(index);
+  if (std::abs(cell.z - before) > 0.05f) mark_around(t, ix, iy);  // A step may have appeared or disappeared.
+  if (certain) cell.evidence = std::min<std::int8_t>(cell.evidence, 1);
+  if (cell.evidence <= kMinEvidence || (cell.scan == scan_ && !certain)) return;
+  if (cell.blocked && height > static_cast<float>(cell.obstacle_height) * kObstacleHeightUnit + 0.05f) return;
+  cell.evidence = static_cast<std::int8_t>(cell.evidence - kRay);
+  if (!cell.blocked || cell.evidence > kFree) return;
+  cell.blocked = false;
+  cell.sure = sure;  // Its height was measured before the obstacle appeared.
+  cell.obstacle_height = 0;
+  mark_dirty(index);
+  mark_around(t, ix, iy);
+}
+
+void SurfaceMap::see_obstacle(float x, float y, float z, float obstacle_height, bool sure) {
+  const int ix = route_cell(x), iy = route_cell(y);
+  const int index = surface_layer(ix, iy, z);
+  Tile& t = tile(index);
+  GroundCell& cell = t.cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  if (!cell.known) {
+    cell = {z, 0, 0, true, false, false};
+    mark_dirty(index);
+  }
+  cell.sure = cell.sure || sure || is_near(ix, iy);
+  cell.obstacle_height =
+      std::max(cell.obstacle_height,
+               static_cast<std::uint8_t>(std::clamp(obstacle_height / kObstacleHeightUnit, 0.0f, 255.0f)));
+  if (cell.scan == scan_ && !sure) return;
+  cell.scan = scan_;
+  // Averages over the first scans; a certain obstacle keeps its position.
+  if (cell.evidence < kMaxEvidence || sure) {
+    const int before = sure ? 0 : std::max(0, int{cell.evidence}) / kHit;
+    const auto mean = [&](std::int8_t& aside, double at, int i) {
+      const double off = std::clamp((at - (i + 0.5) * kRouteCell) / double{kAsideUnit}, -125.0, 125.0);
+      aside = static_cast<std::int8_t>(std::lround((before * aside + off) / (before + 1)));
+    };
+    mean(cell.aside_x, x, ix);
+    mean(cell.aside_y, y, iy);
+    if (cell.blocked) mark_dirty(index), mark_around(t, ix, iy);
+  }
+  cell.evidence =
+      static_cast<std::int8_t>(sure ? kMaxEvidence : std::min(cell.evidence + kHit, kMaxEvidence));
+  if (cell.blocked || cell.evidence < kBlocked) return;
+  cell.blocked = true;
+  mark_dirty(index);
+  mark_around(t, ix, iy);
+}
+
+void SurfaceMap::mark_place(const BlockedPlace& place) {
+  const int reach = route_cell(place.radius) + 1 + kTileHalo;
+  const int ix = route_cell(place.x), iy = route_cell(place.y);
+  for (int ty = tile_of(iy - reach); ty <= tile_of(iy + reach); ++ty)
+    for (int tx = tile_of(ix - reach); tx <= tile_of(ix + reach); ++tx)
+      for (int i = first(tx, ty); i >= 0; i = tile(i).next) mark_dirty(i);
+}
+
+void SurfaceMap::block(double x, double y, double z, double now) {
+  const auto same = std::find_if(places_.begin(), places_.end(), [&](const BlockedPlace& p) {
+    return std::hypot(p.x - x, p.y - y) < kSamePlace && std::abs(p.z - z) < kFloorSeparation;
+  });
+  BlockedPlace place{x, y, z, params_.block_radius, 0, 1, true};
+  if (same != places_.end()) {
+    place.times = std::min(same->times + 1, kMaxTimes);
+    places_.erase(same);
+  } else if (places_.size() >= kPlaces) {
+    mark_place(places_.front());
+    places_.erase(places_.begin());
+  }
+  place.until = now + params_.block_time * std::exp2(place.times - 1);
+  places_.push_back(place);
+  mark_place(place);
+}
+
+void SurfaceMap::expire(double now) {
+  for (BlockedPlace& place : places_)
+    if (place.active && place.until <= now) {
+      place.active = false;
+      mark_place(place);
+    }
+}
+
+int SurfaceMap::next_dirty() {
+  while (!queue_.empty()) {
+    const int index = queue_.front();
+    queue_.pop_front();
+    if (tile(index).dirty) return index;  // Otherwise it has been rebuilt already.
+  }
+  return -1;
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "nav/routing/route_params.hpp"
+#include "nav/routing/tile.hpp"
+
+namespace adit::nav {
+
+/// A place that was found blocked although the map shows it as free.
+/// m
+struct BlockedPlace {
+  double x, y, z;
+  double radius;  ///< m
+  double until;   ///< Expiry time, s.
+  int times;      ///< Number of times it was found blocked.
+  bool active;    ///< In effect; else only remembered.
+};
+
+/// Map of the ground: tiles of 0.1 m cells with several floors at one place. It stores the evidence and a
+/// queue of tiles whose part of the graph must be rebuilt. Its size is bounded.
+class SurfaceMap {
+ public:
+  /// `same`: heights at one place that differ by at most this belong to one ground, m. It must exceed the
+  /// height error at which a scan may take a return for ground, and be less than the height of a robot.
+  SurfaceMap(const RouteParams& params, float same) : params_(params), same_(same) {}
+
+  /// Source of a ground height: interpolated between returns, measured by a return, given by a map, or the
+  /// robot's own position.
+  enum class Seen : std::uint8_t { between, measured, given, stood_on };
+  /// Records a ray over the ground of a cell. `height`: of the ray above the ground, m; obstacles lower than
+  /// the ray stay.
+  void see_free(int ix, int iy, float z, float height, Seen seen = Seen::measured);
+  /// Records a return at (x, y), `obstacle_height` metres above the ground at z. `sure`: a single one blocks
+  /// the cell.
+  void see_obstacle(float x, float y, float z, float obstacle_height, bool sure = false);
+  /// Starts a scan at this position. If there are too many tiles, the farthest ones are dropped.
+  void begin_scan(double x, double y);
+
+  /// Blocks a place for a while, and longer if it was blocked before.
+  void block(double x, double y, double z, double now);
+  /// Ends expired blocks.
+  void expire(double now);
+  const std::vector<BlockedPlace>& blocked_places() const { return places_; }
+
+  /// First tile at tile coordinates, or -1; the other floors follow by Tile::next.
+  int first(int tx, int ty) const;
+  /// The tile of the floor nearest to z within reach, or -1.
+  int at(int tx, int ty, double z) const;
+  /// The tile of a cell whose ground is nearest to z within reach; if no tile knows the ground there, as
+  /// at().
+  int at_cell(int ix, int iy, double z) const;
+  /// The ground cell in the tile of at_cell(); null if there is no tile.
+  const GroundCell* cell(int ix, int iy, double z) const {
+    const int index = at_cell(ix, iy, z);
+    return index < 0 ? nullptr : &tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  }
+  /// The neighbouring tile at (dx, dy) that continues this tile's floor, or -1.
+  int beside(const Tile& tile, int dx, int dy) const;
+  const Tile& tile(int index) const { return *tiles_[static_cast<std::size_t>(index)]; }
+  Tile& tile(int index) { return *tiles_[static_cast<std::size_t>(index)]; }
+  int size() const { return static_cast<int>(tiles_.size()); }
+  int used() const { return used_; }
+  /// The next tile that needs a rebuild, or -1.
+  int next_dirty();
+  std::size_t dirty() const { return queue_.size(); }
+
+  /// Bounding box of the map, in tiles.
+  struct Extent {
+    int x0{0}, x1{-1}, y0{0}, y1{-1};
+    float z0{0}, z1{0};
+    bool empty() const { return x1 < x0; }
+  };
+  const Extent& extent() const { return extent_; }
+  /// Forgets everything.
+  void clear();
+  /// Copies the ground of another map; all of its graph must be rebuilt.
+  void copy(const SurfaceMap& other);
+
+ private:
+  static std::uint64_t key(int tx, int ty) {
+    return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(tx)) << 32) |
+           static_cast<std::uint32_t>(ty);
+  }
+  int surface_layer(int ix, int iy, float z);
+  int create(int tx, int ty, float z);
+  void link(int index);
+  void evict();
+  bool is_near(int ix, int iy) const;
+  void mark_dirty(int index);
+  void mark_around(const Tile& tile, int ix, int iy);
+  void mark_place(const BlockedPlace& place);
+
+  RouteParams params_;
+  float same_;
+  std::vector<std::unique_ptr<Tile>> tiles_{};
+  std::vector<int> free_{};
+  std::unordered_map<std::uint64_t, int> heads_{};  // Looked up only, never iterated.
+  std::deque<int> queue_{};
+  std::vector<BlockedPlace> places_{};
+  Extent extent_{};
+  int used_{0};
+  std::uint16_t scan_{0};
+  double x_{0}, y_{0};
+  int last_{-1};        // The last tile that was written.
+  int last_first_{-1};  // The first tile at its place.
+};
+
+}  // namespace adit::nav

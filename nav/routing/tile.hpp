@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace adit::nav {
+
+inline constexpr double kRouteCell = 0.1;  ///< m
+inline constexpr float kRouteCellF = static_cast<float>(kRouteCell);
+inline constexpr int kTileSide = 16;  ///< cells
+inline constexpr int kTileArea = kTileSide * kTileSide;
+inline constexpr int kTileHalo = 8;    ///< Clearance is computed up to this many cells.
+inline constexpr int kTileNodes = 16;  ///< Maximum number; the widest openings of a side are kept.
+/// Height difference from which ground belongs to another floor, m.
+inline constexpr float kFloorSeparation = 1.5f;
+inline constexpr float kUnreached = std::numeric_limits<float>::infinity();
+
+/// One cell of one floor.
+/// Height of the ground, m.
+struct GroundCell {
+  float z{0};
+  std::int8_t evidence{0};          ///< Of an obstacle; rises with each hit, falls with each ray through it.
+  std::uint8_t obstacle_height{0};  ///< Height of the obstacle above the ground, kObstacleHeightUnit.
+  bool known : 1 {false};
+  bool measured : 1 {false};  ///< The height was measured; else interpolated between returns.
+  bool blocked : 1 {false};
+  bool sure : 1 {false};  ///< The height was seen from near.
+  /// Position of the obstacle relative to the cell's centre, kAsideUnit.
+  std::int8_t aside_x{0}, aside_y{0};
+  std::uint16_t scan{0};  ///< The last scan with a return from the obstacle.
+};
+inline constexpr float kObstacleHeightUnit = 0.02f;                        ///< m
+inline constexpr float kAsideUnit = static_cast<float>(kRouteCell) / 250;  ///< m
+
+/// The sides of a tile: +x, +y, -x, -y.
+inline constexpr std::array<int, 4> kSideX{1, 0, -1, 0};
+inline constexpr std::array<int, 4> kSideY{0, 1, 0, -1};
+/// Index of the cell at position `i` along a side.
+inline constexpr int side_cell(int side, int i) {
+  constexpr int last = kTileSide - 1;
+  switch (side) {
+    case 0:
+      return i * kTileSide + last;
+    case 1:
+      return last * kTileSide + i;
+    case 2:
+      return i * kTileSide;
+    default:
+      return i;
+  }
+}
+
+/// A node of the graph: a run of passable cells on a side of a tile.
+struct TileNode {
+  std::uint8_t side{0}, first{0}, last{0};
+  std::uint8_t cell{0};    ///< The cell in its middle.
+  float x{0}, y{0}, z{0};  ///< Position of that cell, m.
+};
+
+/// A square piece of one floor with its part of the graph. Several floors at one place are several tiles,
+/// linked by `next`.
+struct Tile {
+  int tx{0}, ty{0};
+  float z{0};    ///< Height of the ground when it was first seen, m.
+  int next{-1};  ///< The tile of another floor at this place.
+  std::array<int, 8> beside{-1, -1, -1, -1, -1, -1, -1, -1};  ///< First tiles of the neighbouring places.
+  bool used{false}, dirty{false};
+  bool built{false};  ///< Costs and nodes are computed.
+  std::array<GroundCell, kTileArea> cells{};
+  std::array<std::uint8_t, kTileArea> cost{};  ///< Of each cell, 1/16 per length; 0: impassable.
+  int node_count{0};
+  std::array<TileNode, kTileNodes> nodes{};
+  std::uint16_t measured{0};  ///< Bit set of the nodes with known distances.
+  /// Distances from each such node to the others within the tile, m.
+  std::array<float, kTileNodes * kTileNodes> distance{};
+
+  double cell_x(int c) const { return (tx * kTileSide + c % kTileSide + 0.5) * kRouteCell; }
+  double cell_y(int c) const { return (ty * kTileSide + c / kTileSide + 0.5) * kRouteCell; }
+  float cell_z(int c) const {
+    const GroundCell& cell = cells[static_cast<std::size_t>(c)];
+    return cell.known ? cell.z : z;
+  }
+};
+
+/// Position of the obstacle in a blocked cell, m.
+inline Eigen::Vector2d obstacle_place(int ix, int iy, const GroundCell& cell) {
+  return {(ix + 0.5) * kRouteCell + cell.aside_x * double{kAsideUnit},
+          (iy + 0.5) * kRouteCell + cell.aside_y * double{kAsideUnit}};
+}
+
+inline int route_cell(double v) { return static_cast<int>(std::floor(v / kRouteCell)); }
+/// Coordinate of the tile that contains a cell, and the cell's index in its tile.
+inline int tile_of(int cell) { return cell >> 4; }
+inline int cell_in_tile(int ix, int iy) { return (iy & 15) * kTileSide + (ix & 15); }
+
+}  // namespace adit::nav

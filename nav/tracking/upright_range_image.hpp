@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "nav/geometry/ray.hpp"
+
+namespace adit::nav {
+
+/// Range image of one scan: the nearest return by direction from the sensor, with the vertical axis upright.
+/// Bins span about 1.2 degrees of bearing (by the diamond angle) and 0.02 of the elevation's tangent.
+///
+/// spread() replaces each bin by the minimum of itself and its neighbours. "Saw past that place" then
+/// requires that all rays around it went past, so edges, the spacing of the rings and small odometry errors
+/// do not count.
+class UprightRangeImage {
+ public:
+  static constexpr int kColumns = 288;
+  static constexpr int kRows = 32;
+  static constexpr int kBins = kColumns * kRows;
+
+  void clear() { bins_.fill(kNothing); }
+  /// Adds a return. Gives the index of its bin (kColumns bins a row) if it is the nearest one there so far,
+  /// else -1.
+  int add(const Ray& ray) {
+    const int row = row_of(ray.tangent);
+    if (row < 0 || row >= kRows) return -1;
+    const int index = row * kColumns + column_of(ray.bearing);
+    std::uint16_t& bin = bins_[static_cast<std::size_t>(index)];
+    const float centimetres = ray.range * 100.0f;
+    const auto value = centimetres < 65000.0f ? static_cast<std::uint16_t>(centimetres) : kFar;
+    if (value >= bin) return -1;
+    bin = value;
+    return index;
+  }
+  /// Whether a bin has a return; valid before spread() only.
+  bool filled(int bin) const { return bins_[static_cast<std::size_t>(bin)] != kNothing; }
+  /// Replaces each bin by the minimum of its neighbourhood. Call it once, after the last add().
+  void spread();
+  /// Whether rays passed the place at the end of `ray` by at least `beyond` metres. Bins without a return
+  /// prove nothing: false.
+  bool saw_past(const Ray& ray, float beyond) const {
+    const int row = row_of(ray.tangent);
+    if (row < 0 || row >= kRows) return false;
+    const std::uint16_t bin = bins_[static_cast<std::size_t>(row * kColumns + column_of(ray.bearing))];
+    return bin != kNothing && bin > (ray.range + beyond) * 100.0f;
+  }
+  static int column_of(float bearing) {
+    const int column = static_cast<int>((bearing + 1.0f) * (kColumns / 4));
+    return column < kColumns ? column : 0;
+  }
+
+ private:
+  static constexpr std::uint16_t kNothing = 0xffff;
+  static constexpr std::uint16_t kFar = 0xfffe;
+  static int row_of(float tangent) { return static_cast<int>(tangent * 50.0f + 116.5f) - 100; }
+
+  std::array<std::uint16_t, kBins> bins_ = [] {
+    std::array<std::uint16_t, kBins> nothing{};
+    nothing.fill(kNothing);
+    return nothing;
+  }();
+};
+
+}  // namespace adit::nav
