@@ -12,8 +12,8 @@ namespace adit::nav {
 /// change of speed does not grow along the convoy (string stability, Swaroop and Hedrick 1996).
 struct Spacing {
   double standstill{1.5};  ///< Gap at rest, m.
-  double headway{0.8};     ///< h, s
-  double gain{0.5};        ///< k, 1/s
+  double headway{0.8};     ///< The h above, s.
+  double gain{0.5};        ///< The k above, 1/s.
 
   double wanted(double speed) const { return standstill + headway * speed; }
   /// The speed for a gap (m) to a predecessor that drives at `predecessor` (m/s, negative: towards the
