@@ -183,6 +183,24 @@ void Agent::CommandComponent::check_goal(const Eigen::Vector3d& goal, bool repla
   });
 }
 
+void Agent::CommandComponent::explore(bool blocked, bool begins,
+                                      std::function<void(const Result<nav::ExploreStep>&)> done) {
+  ExploreQuery query{};
+  query.place = frames_.T_odom_base().position;
+  query.blocked = blocked;
+  query.begins = begins;
+  query.odom_epoch = frames_.odom_epoch();
+  query.made = now();
+  call(context_.router->explore, query, {.deadline = 2s},
+       [this, epoch = query.odom_epoch, done = std::move(done)](const Result<nav::ExploreStep>& found) {
+         if (!found) return done(found);
+         if (epoch != frames_.odom_epoch()) return;
+         nav::ExploreStep step = *found;
+         if (step.goal) step.goal = frames_.to_map(*step.goal);
+         done(step);
+       });
+}
+
 bool Agent::CommandComponent::same_boot() const {
   const auto& snapshot = context_.restored.snapshot;
   return snapshot && snapshot->boot == params_.boot;
@@ -333,6 +351,7 @@ Facts Agent::CommandComponent::sense(Time now) const {
   f.driver_alive = frames_.alive(now);
   f.localised = frames_.initialised();
   f.terrain_fresh = navigation_.terrain_fresh(now);
+  f.map_fresh = navigation_.map_fresh(now);
   return f;
 }
 
@@ -367,6 +386,16 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
     if (!frames_.initialised()) return std::nullopt;
     return frames_.T_map_base();
   };
+  if (context_.router && !params_.platform.flies())
+    inputs.explore = [this](bool blocked, bool begins, auto done) {
+      explore(blocked, begins, std::move(done));
+    };
+  inputs.holder_heard = [this] {
+    constexpr Duration kHeard = 3s;
+    const Authority& authority = commands_.authority();
+    return authority.holder() && now() - authority.heard() < kHeard;
+  };
+  inputs.home = frames_.T_map_start().position();
   inputs.stopping = [this] {
     const double speed = std::hypot(frames_.twist().vx, frames_.twist().vy);
     return speed * (seconds(kBeat) + speed / (2 * params_.platform.max_acceleration));

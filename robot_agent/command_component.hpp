@@ -100,6 +100,8 @@ class Agent::CommandComponent : public Component {
   /// Handles odometry that started again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
   Result<void> set_pose(const Pose2& pose);
+  /// See ModeContext::explore.
+  void explore(bool blocked, bool begins, std::function<void(const Result<nav::ExploreStep>&)> done);
   Result<MapFrame> correct_map(const MapFrame& corrected);
   /// Whether the stamp is slightly newer than the odometry, so that the next sample gives the pose at that
   /// time.

@@ -2,6 +2,7 @@
 #include "basestation/fleet/fleet.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "adit/authority.h"
@@ -49,6 +50,12 @@ const char* to_string(GoalPhase phase) {
       return "reached";
   }
   return "unknown";
+}
+
+const char* to_string(ExplorationPhase phase) {
+  constexpr std::array kNames{"none", "starting", "exploring", "travelling", "reporting", "done", "ended"};
+  const auto index = static_cast<std::size_t>(phase);
+  return index < kNames.size() ? kNames[index] : "unknown";
 }
 
 const char* to_string(Level level) {
@@ -211,6 +218,17 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   for (const std::string& member : sample.convoy())
     if (robot->convoy.size() < command::kMaxConvoy && command::valid_name(member))
       robot->convoy.push_back(member);
+  robot->exploration = {};
+  if (!sample.exploration().empty()) {
+    const auto& e = sample.exploration().front();
+    const auto explores = static_cast<std::uint32_t>(e.phase());
+    robot->exploration = {explores <= 6 ? static_cast<ExplorationPhase>(explores) : ExplorationPhase::none,
+                          static_cast<Reason>(e.reason()),
+                          e.volume(),
+                          e.share(),
+                          e.open(),
+                          e.unreachable()};
+  }
   robot->choices.clear();
   for (const auto& option : sample.modes()) {
     if (robot->choices.size() == 16) break;

@@ -36,6 +36,18 @@ struct ModeChoice {
 
 enum class GoalPhase : std::uint8_t { none, kept, active, blocked, reached };
 
+/// States of an exploration, as in radio::ExplorationPhase.
+enum class ExplorationPhase : std::uint8_t { none, starting, exploring, travelling, reporting, done, ended };
+
+/// What a robot explored, as it reports.
+struct ExplorationView {
+  ExplorationPhase phase{ExplorationPhase::none};  ///< `none`: it did not explore.
+  Reason reason{Reason::none};                     ///< Why it ended.
+  float volume{};                                  ///< Volume that was seen, m3.
+  float share{};                   ///< Share of that in itself and what is expected to be left, [0, 1].
+  unsigned open{}, unreachable{};  ///< Frontiers to which a route leads, and to which none leads.
+};
+
 enum class ComponentPhase : std::uint8_t { starting, up, waiting, failed, hung };
 
 struct ComponentView {
@@ -106,6 +118,7 @@ struct RobotView {
   GoalPhase goal_phase{GoalPhase::none};
   std::uint32_t goal_id{};
   std::array<double, 3> goal{};
+  ExplorationView exploration{};
   std::vector<ModeChoice> choices{};
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
 
@@ -158,6 +171,7 @@ struct TrafficView {
 };
 
 const char* to_string(GoalPhase phase);
+const char* to_string(ExplorationPhase phase);
 const char* to_string(Level level);
 
 }  // namespace adit::station

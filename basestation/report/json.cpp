@@ -71,6 +71,13 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
     if (robot.battery >= 0.0F) out["battery"] = robot.battery;
   }
   if (robot.goal_phase != GoalPhase::none) out["goal"] = robot.goal;
+  if (const ExplorationView& e = robot.exploration; e.phase != ExplorationPhase::none)
+    out["exploration"] = {{"state", to_string(e.phase)},
+                          {"reason", name(e.reason)},
+                          {"volume", e.volume},
+                          {"share", e.share},
+                          {"open", e.open},
+                          {"unreachable", e.unreachable}};
   return out;
 }
 

@@ -69,6 +69,14 @@ std::string goal_text(const RobotView& robot) {
          fixed(robot.goal[1], 1);
 }
 
+std::string exploration_text(const ExplorationView& exploration) {
+  const ExplorationView& e = exploration;
+  return std::string(to_string(e.phase)) +
+         (e.reason == Reason::none ? "" : " (" + std::string(describe(e.reason)) + ")") + ", " +
+         fixed(e.volume, 0) + " m3, about " + fixed(e.share * 100.0, 0) + "%, " + std::to_string(e.open) +
+         " frontiers left, " + std::to_string(e.unreachable) + " out of reach";
+}
+
 std::string stops_text(const RobotView& robot) {
   if (robot.stops.empty()) return robot.stopped ? "stopped" : "-";
   std::vector<std::string> names;
@@ -129,6 +137,8 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   out += "  stops    " + stops_text(robot) + "\n";
   out += "  goal     " + goal_text(robot) + "\n";
   if (!robot.convoy.empty()) out += "  convoy   " + command::joined(robot.convoy, "") + "\n";
+  if (robot.exploration.phase != ExplorationPhase::none)
+    out += "  explored " + exploration_text(robot.exploration) + "\n";
   if (robot.located)
     out += "  pose     x " + fixed(robot.x, 2) + " y " + fixed(robot.y, 2) + " z " + fixed(robot.z, 2) +
            " m, yaw " + fixed(robot.yaw * 180.0 / std::numbers::pi, 1) + " degrees\n  speed    " +

@@ -34,6 +34,8 @@ std::string mode_text(const RobotView& robot);
 std::string pose_text(const RobotView& robot);
 /// The goal: "active 12.0 0.5" (m), or "-".
 std::string goal_text(const RobotView& robot);
+/// "exploring, 1200 m3, about 60%, 4 frontiers left, 0 out of reach".
+std::string exploration_text(const ExplorationView& exploration);
 /// The stops: "none", or the stopping operators.
 std::string stops_text(const RobotView& robot);
 

@@ -53,9 +53,11 @@ enum class Reason : std::uint16_t {
   tree_refused = 226,        ///< The behaviour tree contradicts the mode table; the robot runs in hold.
   odometry_jumped = 227,     ///< The driver's odometry moved farther than the body can.
   name_taken = 228,          ///< Another robot of the same name was present first.
+  map_stale = 230,           ///< The router has not taken a scan into its map for 2 s.
   leader_unknown = 231,      ///< The leader left the convoy, or the robot ahead is not heard.
   not_in_convoy = 232,       ///< The robot has no place in a convoy.
   order_differs = 233,       ///< The robot ahead has another order of the convoy.
+  no_viewpoint = 237,        ///< There is no place from which the robot could see anything new.
   trail_impassable = 239,    ///< The robot cannot drive where the leader drove.
   frame_unknown = 242,       ///< Neither the platform's file nor tf_static knows the frame of a message.
   sensor_times = 243,        ///< The times of a sensor's message cannot be understood.

@@ -21,9 +21,9 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
   for (const ModeRow& row : table().rows()) {
     Mode& mode = modes_.emplace_back(Mode{row});
     if (row.moves())
-      mode.module =
-          row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
-                    inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping, inputs_.convoy});
+      mode.module = row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
+                              inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping,
+                              inputs_.convoy, inputs_.explore, inputs_.holder_heard, inputs_.home});
   }
 }
 
@@ -51,7 +51,9 @@ Result<void> Behaviour::refuse(Reason reason, std::string_view mode) const {
 Reason Behaviour::not_run(const ModeRow& row) const {
   if (&row == &table().hold()) return Reason::none;
   if (!decider_->refusal().empty()) return Reason::tree_refused;
-  return decider_->installed(row) ? Reason::none : Reason::mode_not_installed;
+  const ModeModule* driver = module(row);
+  return decider_->installed(row) && (!driver || driver->installed()) ? Reason::none
+                                                                      : Reason::mode_not_installed;
 }
 
 Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
@@ -74,6 +76,17 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Commander by, 
   if (const Reason reason = guard_.admit(*row, by, f); reason != Reason::none) return refuse(reason, "goto");
   if (by == Commander::holder) ++holder_requests_;
   driver->set_goal(goal);
+  return enter(*row, now);
+}
+
+Result<void> Behaviour::request_explore(const ExploreRequest& request, Time now) {
+  const ModeRow* row = table().find("explore");
+  if (!row) return refuse(Reason::mode_not_installed, "explore");
+  if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, "explore");
+  if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
+    return refuse(reason, "explore");
+  ++holder_requests_;
+  module(*row)->set_exploration(request);
   return enter(*row, now);
 }
 
@@ -229,9 +242,15 @@ void Behaviour::tick(Time now) {
   change_to(*decision_.mode, now);
   const bool passes = decision_.runs && decision_.mode->moves();
   mux_.enable(passes ? decision_.mode->name : std::string_view{}, now);
-  if (ModeModule* current = module(*decision_.mode)) current->tick(passes, now);
+  if (ModeModule* current = module(*decision_.mode)) {
+    current->tick(passes, now);
+    if (current->finished()) return hold(Reason::none, now);
+  }
   watch(now);
-  if (const BehaviourView is = view(); is != told_) {
+  BehaviourView is = view();
+  // The numbers of an exploration change with every scan; they are sent once a second.
+  is.exploration = {.state = is.exploration.state, .reason = is.exploration.reason};
+  if (is != told_) {
     told_ = is;
     outputs_.changed();
   }
@@ -280,6 +299,9 @@ BehaviourView Behaviour::view() const {
   v.goal_id = p.goal_id;
   v.goal = p.goal;
   if (inputs_.convoy) v.convoy = inputs_.convoy->order();
+  for (const Mode& mode : modes_)
+    if (mode.module && v.exploration.state == ExplorationState::none)
+      v.exploration = mode.module->exploration();
   v.reason = stopped_                           ? Reason::stopped
              : p.state == GoalState::blocked    ? p.reason
              : v.moving_allowed                 ? Reason::none

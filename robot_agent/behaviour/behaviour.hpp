@@ -29,6 +29,7 @@ struct BehaviourView {
   std::uint32_t goal_id{};
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
+  ExplorationView exploration{};
   bool operator==(const BehaviourView&) const = default;
 };
 
@@ -53,6 +54,9 @@ class Behaviour : public Requests {
     std::function<Result<void>(const Pose2&)> set_pose{};
     std::function<double()> stopping{};  ///< Metres that the robot needs to stop. Empty: always 0.
     Convoy* convoy{};                    ///< Must outlive the behaviour. Null: the robot has no team.
+    decltype(ModeContext::explore) explore{};
+    decltype(ModeContext::holder_heard) holder_heard{};
+    std::optional<Eigen::Vector2d> home{};
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.
@@ -69,6 +73,7 @@ class Behaviour : public Requests {
   }
   Result<void> request_goal(const Eigen::Vector3d& goal, Commander by, Time now);
   void limit_unknown(double metres) override;
+  Result<void> request_explore(const ExploreRequest& request, Time now) override;
   /// Number of accepted mode and goal requests of holders since the start.
   std::uint64_t holder_requests() const { return holder_requests_; }
   Result<void> set_pose(const Pose2& pose, Time now) override;

@@ -18,6 +18,7 @@ struct Facts {
   bool goal_known{};
   bool goal_free{};      ///< No known obstacle covers the goal.
   bool program_fresh{};  ///< The program that steers in `external` sent a velocity within the last 0.5 s.
+  bool map_fresh{};      ///< The router answered a scan of the last 2 s.
   /// Names of further facts that hold, for conditions of additional modes; the mode's module adds them.
   std::vector<std::string_view> also{};
 

@@ -4,8 +4,10 @@
 #include <functional>
 #include <optional>
 
+#include "nav/explore/explorer.hpp"
 #include "robot_agent/behaviour/facts.hpp"
 #include "robot_agent/command/types.hpp"
+#include "robot_agent/common/exploration.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/state/snapshot.hpp"
 
@@ -39,6 +41,14 @@ struct ModeContext {
   /// Metres that the robot needs to stop.
   std::function<double()> stopping{};
   Convoy* convoy{};  ///< The robot's place in a convoy; null: it has no team.
+  /// Asks the router for the next goal of an exploration and calls `done` once, or never if the robot's
+  /// frames changed meanwhile; the goal is in the map frame. `blocked`: the goal of the last answer cannot be
+  /// reached; `begins`: see ExploreQuery. Empty: the robot has no explorer.
+  std::function<void(bool blocked, bool begins, std::function<void(const Result<nav::ExploreStep>&)> done)>
+      explore{};
+  /// Whether the robot has a holder that was heard within the last 3 s. Empty: never.
+  std::function<bool()> holder_heard{};
+  std::optional<Eigen::Vector2d> home{};  ///< Where the robot started, map frame, m.
 };
 
 /// One mode of the mode table: turns its input into motions for the mux.
@@ -55,6 +65,8 @@ class ModeModule {
   /// Adds the module's facts to the inputs of the conditions. Called in every mode.
   virtual void note(Facts&, Time) const {}
 
+  /// Whether the robot has what the mode needs; it is not installed otherwise.
+  virtual bool installed() const { return true; }
   /// Called when the mode was requested and admitted, also if the mode was already active.
   virtual void enter(Time) {}
   /// Called when the mode ended: another one was requested, or the robot fell to hold. A goal stays stored.
@@ -76,11 +88,18 @@ class ModeModule {
   virtual void set_goal(const Eigen::Vector3d&) {}
   /// See Requests::limit_unknown.
   virtual void limit_unknown(double /*metres*/) {}
+  /// Begins an exploration that was admitted; enter() follows.
+  virtual void set_exploration(const ExploreRequest&) {}
   /// Receives navigation's progress towards the place that the module wrote last.
   virtual void navigated(const Progress&) {}
 
   /// Returns the progress; `passes` as in tick(), false in other modes.
   virtual ModeProgress progress(bool /*passes*/) const { return {}; }
+
+  /// Whether the mode has nothing left to do: the robot changes to hold.
+  virtual bool finished() const { return false; }
+  /// Returns the exploration, if this module explores.
+  virtual ExplorationView exploration() const { return {}; }
 
   /// Writes the state that must survive a restart; equal states write equal bytes.
   virtual void store(KeptBehaviour&) const {}

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "robot_agent/behaviour/modes/convoy_follow.hpp"
+#include "robot_agent/behaviour/modes/explore.hpp"
 #include "robot_agent/behaviour/modes/external.hpp"
 #include "robot_agent/behaviour/modes/manual.hpp"
 #include "robot_agent/behaviour/modes/waypoint.hpp"
@@ -21,6 +22,8 @@ constinit const Condition kLocalised{"Localised", Reason::no_localisation,
                                      [](const Facts& f) { return f.localised; }, Scope::continuous};
 constinit const Condition kTerrainFresh{"TerrainFresh", Reason::terrain_stale,
                                         [](const Facts& f) { return f.terrain_fresh; }, Scope::continuous};
+constinit const Condition kMapFresh{"MapFresh", Reason::map_stale, [](const Facts& f) { return f.map_fresh; },
+                                    Scope::continuous};
 constinit const Condition kStickFresh{"StickFresh", Reason::joystick_stale,
                                       [](const Facts& f) { return f.stick_fresh; }, Scope::on_entry};
 constinit const Condition kStickCentred{"StickCentred", Reason::stick_not_centred,
@@ -72,6 +75,13 @@ std::vector<ModeRow> standard_modes() {
        .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kGoalKnown, kGoalFree},
        .make = WaypointMode::make,
        .output_lifetime = kMaxVelocityAge},
+      {.name = "explore",
+       .commanded_by = kByHolder,
+       .on_failure = OnFailure::pauses,
+       .conditions = {kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kMapFresh},
+       .make = ExploreMode::make,
+       .output_lifetime = kMaxVelocityAge,
+       .optional = true},
       // Changes to hold when its program falls silent. When the program sends again, the robot does not move
       // until the operator requests the mode again (rule 7).
       {.name = "external",
@@ -86,7 +96,7 @@ std::vector<ModeRow> standard_modes() {
 }
 
 /// Modes of the design that have no module yet.
-constexpr std::array<std::string_view, 2> kPlannedModes{"explore", "get_out"};
+constexpr std::array<std::string_view, 1> kPlannedModes{"get_out"};
 
 }  // namespace
 

@@ -34,8 +34,8 @@ struct Condition {
 
 /// The conditions of the shipped modes, for rows of further ones.
 namespace conditions {
-extern const Condition kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kStickFresh, kStickCentred,
-    kStickKept, kGoalKnown, kGoalFree, kProgramFresh;
+extern const Condition kNotStopped, kDriverAlive, kLocalised, kTerrainFresh, kMapFresh, kStickFresh,
+    kStickCentred, kStickKept, kGoalKnown, kGoalFree, kProgramFresh;
 }
 
 /// The party that requests a mode.
@@ -95,8 +95,7 @@ class ModeTable {
   ModeTable(const ModeTable&) = delete;
   ModeTable& operator=(const ModeTable&) = delete;
 
-  /// The modes of this version: hold, manual, smart_joystick, waypoint, external,
-  /// convoy_follow.
+  /// The modes of this version: hold, manual, smart_joystick, waypoint, explore, external, convoy_follow.
   static const ModeTable& shipped();
 
   const std::vector<ModeRow>& rows() const { return rows_; }

@@ -154,6 +154,8 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       return go_to(c, now);
     case verb("home"):
       return asked(c, requests_.request_goal(params_.home, now));
+    case verb("explore"):
+      return explore(c, now);
     case verb("pose"):
       return outcome(
           requests_.set_pose({c.request.number("X"), c.request.number("Y"), c.request.number("YAW")}, now));
@@ -193,6 +195,13 @@ CommandInterface::Outcome CommandInterface::go_to(const Command& c, Time now) {
   notify(c.from.name, unseen ? Severity::warning : Severity::info, unseen ? "goal_unseen" : "goal_moved",
          c.goal->reason, c.goal->text);
   return {Reason::none, c.goal->text};
+}
+
+CommandInterface::Outcome CommandInterface::explore(const Command& c, Time now) {
+  ExploreRequest request{};
+  request.after = after_exploring(c.request.word("--after"));
+  if (c.request.has("--for")) request.limit = c.request.number("--for");
+  return asked(c, requests_.request_explore(request, now));
 }
 
 CommandInterface::Outcome CommandInterface::take(const Command& c, Time now) {

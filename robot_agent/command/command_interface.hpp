@@ -88,6 +88,7 @@ class CommandInterface {
   bool is_meant(const Epoch& epoch) const { return !outputs_.is_meant || outputs_.is_meant(epoch); }
   Outcome perform(const Command& c, Time now);
   Outcome go_to(const Command& c, Time now);
+  Outcome explore(const Command& c, Time now);
   Outcome take(const Command& c, Time now);
   Outcome release(const Command& c, Time now);
   Outcome grant(const Command& c, Time now);

@@ -6,6 +6,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
 #include "core/time/time.hpp"
+#include "robot_agent/common/exploration.hpp"
 
 namespace adit::agent {
 
@@ -23,6 +24,8 @@ class Requests {
   /// Limits the metres that the robot may drive while the ground at the goal, which was just accepted, is not
   /// seen; infinite: no limit; NaN: the larger of 20 m and 1.5 times the straight line.
   virtual void limit_unknown(double metres) = 0;
+  /// Requests an exploration. Errors: as for a mode.
+  virtual Result<void> request_explore(const ExploreRequest& request, Time now) = 0;
   /// Sets the robot's pose, map frame; moves nothing. Errors: wrong_mode outside hold, out_of_range,
   /// no_localisation.
   virtual Result<void> set_pose(const Pose2& pose, Time now) = 0;

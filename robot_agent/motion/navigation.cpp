@@ -54,6 +54,7 @@ void Navigation::clear() {
   monitor_.clear();
   waiting_.reset();
   scanned_.reset();
+  mapped_.reset();
   obstacles_.reset();
 }
 
@@ -225,6 +226,7 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now) {
 void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step) {
   routing_ = false;
   if (!step || job.odom_epoch != frames_.odom_epoch()) return;
+  mapped_ = job.made;
   if (!job.goal || job.generation != goal_generation_ || !std::holds_alternative<GoTo>(motion_)) return;
   const bool unreachable = step->state == nav::RouteStep::State::unreachable;
   if (unreachable && !is_goal(job.goal->head<2>())) return;

@@ -64,6 +64,8 @@ class Navigation : public Component, public NavigationInput {
   void clear();
 
   bool terrain_fresh(Time now) const { return scanned_ && now - *scanned_ < params_.scan_age; }
+  /// Whether the router answered a scan that is not older than `step_age`.
+  bool map_fresh(Time now) const { return mapped_ && now - *mapped_ < params_.step_age; }
   /// Whether the body at that place (map frame, m) would touch no known obstacle.
   bool goal_free(const Eigen::Vector2d& place) const;
 
@@ -115,6 +117,7 @@ class Navigation : public Component, public NavigationInput {
   Time step_made_{};
   bool blocked_{};  // The last plan towards the goal was blocked.
   std::optional<Time> scanned_{};
+  std::optional<Time> mapped_{};  // When the scan was received that the router answered last.
   std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // Odometry frame, m.
 };
 

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "nav/explore/route_ground.hpp"
+
 namespace adit::agent {
 namespace {
 
@@ -15,10 +17,16 @@ constexpr double kRefusedFor = 3.0;  // s: the body cannot stand at a goal for s
 
 struct Router::Maps {
   explicit Maps(const RouterParams& params)
-      : planner(params.platform, params.route), route_follower(params.platform), goals(params.platform) {}
+      : platform(params.platform),
+        planner(params.platform, params.route),
+        route_follower(params.platform),
+        goals(params.platform),
+        explorer(params.platform) {}
+  Platform platform;
   nav::RoutePlanner planner;
   nav::RouteFollower route_follower;
   nav::GoalCheck goals;
+  nav::Explorer explorer;
   std::optional<double> refused_since{};  ///< The body cannot stand at the goal, which it is near, s.
   std::uint32_t odom_epoch{};             ///< Odometry epoch of the points.
 
@@ -41,6 +49,7 @@ struct Router::Maps {
     refused_since.reset();
     planner.clear();
     route_follower.clear();
+    explorer.clear();
   }
 };
 
@@ -53,6 +62,7 @@ Router::Router(RouterParams params, Executor& strand, Log log, RouteServices& se
 Result<void> Router::on_start() {
   offer(services_.step, [this](const auto& job, const auto& reply) { step(job, reply); });
   offer(services_.check, [this](const auto& query, const auto& reply) { check(query, reply); });
+  offer(services_.explore, [this](const auto& query, const auto& reply) { explore(query, reply); });
   offer(services_.find, [this](const auto& query, const auto& reply) { find(query, reply); });
   return {};
 }
@@ -71,7 +81,10 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
       [job, takes, maps = maps_]() -> nav::RouteStep {
         maps->enter(job->odom_epoch);
         const double stamp = seconds(job->made.time_since_epoch());
-        if (takes) maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
+        if (takes) {
+          maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
+          maps->explorer.add_scan(job->scan->points, job->scan->body);
+        }
         if (job->goal) return maps->step(*job, stamp);
         maps->route_follower.clear();
         maps->refused_since.reset();
@@ -100,6 +113,19 @@ void Router::check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply)
         return maps->goals.check(maps->planner, query.from, query.to, query.replace);
       },
       [reply](Result<nav::GoalFinding> found) { reply(std::move(found)); });
+}
+
+void Router::explore(const ExploreQuery& query, const Reply<nav::ExploreStep>& reply) {
+  compute(
+      {.name = "exploration", .modelled = params_.modelled, .lane = "maps"},
+      [query, maps = maps_] {
+        maps->enter(query.odom_epoch);
+        if (query.begins) maps->explorer.begin();
+        nav::RouteGround ground(maps->planner, maps->platform);
+        return maps->explorer.step(ground, query.place, seconds(query.made.time_since_epoch()),
+                                   query.blocked);
+      },
+      [reply](Result<nav::ExploreStep> step) { reply(std::move(step)); });
 }
 
 Reason reason_of(nav::Standing standing) {

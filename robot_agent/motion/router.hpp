@@ -5,6 +5,7 @@
 
 #include "core/component/call.hpp"
 #include "core/component/component.hpp"
+#include "nav/explore/explorer.hpp"
 #include "nav/goals/goal_check.hpp"
 #include "nav/routing/route_follower.hpp"
 #include "robot_agent/common/goal_report.hpp"
@@ -39,12 +40,22 @@ struct GoalQuery {
   std::uint32_t odom_epoch{};  ///< As in RouteJob.
 };
 
-/// The services of the router: the next step of the followed route, and a query for a route that is not
-/// stored.
+/// A request for the next goal of an exploration. Odometry frame, m.
+struct ExploreQuery {
+  Eigen::Vector3d place{0, 0, 0};  ///< Position of the body.
+  bool blocked{};                  ///< The goal of the last answer could not be reached.
+  bool begins{};                   ///< The exploration begins: nothing counts as unreachable any more.
+  std::uint32_t odom_epoch{};      ///< As in RouteJob.
+  Time made{};
+};
+
+/// The services of the router: the next step of the followed route, a query for a route that is not stored,
+/// the judgement of a goal, and the next goal of an exploration.
 struct RouteServices {
   Service<std::shared_ptr<const RouteJob>, nav::RouteStep> step{"route step", 2};
   Service<RouteQuery, nav::Route> find{"route query", 4};
   Service<GoalQuery, nav::GoalFinding> check{"goal check", 4};
+  Service<ExploreQuery, nav::ExploreStep> explore{"exploration", 2};
 };
 
 struct RouterParams {
@@ -69,6 +80,7 @@ class Router : public Component {
   void step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::RouteStep>& reply);
   void find(const RouteQuery& query, const Reply<nav::Route>& reply);
   void check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply);
+  void explore(const ExploreQuery& query, const Reply<nav::ExploreStep>& reply);
 
   RouterParams params_;
   RouteServices& services_;

@@ -177,6 +177,17 @@ radio::AuthorityStatus to_radio(const CommandInterface& commands, const std::str
   return out;
 }
 
+static radio::Exploration to_radio(const ExplorationView& view) {
+  radio::Exploration out;
+  out.phase(static_cast<radio::ExplorationPhase>(view.state));
+  out.reason(static_cast<std::uint16_t>(view.reason));
+  out.volume(view.volume);
+  out.share(view.share);
+  out.open(view.open);
+  out.unreachable(view.unreachable);
+  return out;
+}
+
 radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<ModeOption>& options,
                                const std::string& robot) {
   radio::BehaviourState out;
@@ -189,6 +200,8 @@ radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<Mode
   out.goal_id(view.goal_id);
   out.goal({view.goal.x(), view.goal.y(), view.goal.z()});
   out.convoy(view.convoy);
+  if (view.exploration.state != ExplorationState::none)
+    out.exploration().push_back(to_radio(view.exploration));
   for (const ModeOption& option : options) {
     radio::ModeOption mode;
     mode.mode(std::string(option.mode));

@@ -59,11 +59,13 @@ class NoSurprise : public Rule {
   void on_start(const RobotModel& robot) {
     first_velocity_ = true;
     odometry_.reset();
-    bool goes_on = allowed_ && (robot.mode() == "waypoint" || robot.mode() == "convoy_follow");
+    const auto autonomous = [](const std::string& mode) {
+      return mode == "waypoint" || mode == "explore" || mode == "convoy_follow";
+    };
+    bool goes_on = allowed_ && autonomous(robot.mode());
     for (const RobotModel::Pending& p : robot.unanswered())
       goes_on = goes_on || p.command.verb == Verb::go_to || follows(robot, p.command) ||
-                (p.command.verb == Verb::mode &&
-                 (p.command.text == "waypoint" || p.command.text == "convoy_follow"));
+                (p.command.verb == Verb::mode && autonomous(p.command.text));
     if (!goes_on) revoke("a start of its agent");
   }
 

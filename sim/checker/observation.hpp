@@ -42,7 +42,7 @@ enum class Verb {
   grant,
   stop,
   reset,
-  mode,
+  mode,   ///< Also `explore`, with that mode as the text.
   go_to,  ///< Also `home`, which has no position.
   query,
   restart,  ///< Restarts the component named in the text.
@@ -142,6 +142,7 @@ struct BehaviourSent {
   bool has_goal{};
   std::uint32_t goal_id{};
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order.
+  int exploration{};                  ///< Value of radio::ExplorationPhase.
 };
 struct StateSent {
   std::uint64_t stamp{};  ///< Robot's clock, ns.

@@ -38,6 +38,7 @@ Verb verb_of(radio::CommandKind kind) {
     case radio::CMD_RESET:
       return Verb::reset;
     case radio::CMD_MODE:
+    case radio::CMD_EXPLORE:
       return Verb::mode;
     case radio::CMD_GOTO:
     case radio::CMD_HOME:
@@ -83,6 +84,7 @@ Decoded command(std::span<const std::uint8_t> cdr, const wire::ParticipantId& fr
                      c->options() != 0 || (c->words().size() == 2 && c->words().back() == "auto"),
                      {}};
   heard.words = c->words();
+  if (c->kind() == radio::CMD_EXPLORE) heard.text = "explore";
   if (c->numbers().size() >= 2) heard.position = {c->numbers()[0], c->numbers()[1]};
   return DecodedSample{c->robot(), std::move(heard)};
 }
@@ -186,8 +188,9 @@ Decoded decode_sent(std::string_view topic, std::string_view type, std::span<con
     const auto b = read<radio::BehaviourState>(cdr);
     if (!b) return std::nullopt;
     return DecodedSample{
-        b->robot(), BehaviourSent{b->mode(), b->stopped(), b->goal_state() != radio::GOAL_NONE, b->goal_id(),
-                                  b->convoy()}};
+        b->robot(),
+        BehaviourSent{b->mode(), b->stopped(), b->goal_state() != radio::GOAL_NONE, b->goal_id(), b->convoy(),
+                      b->exploration().empty() ? 0 : static_cast<int>(b->exploration().front().phase())}};
   }
   if (is(topic, topics::kNotification)) {
     const auto n = read<radio::Notification>(cdr);

@@ -54,7 +54,8 @@ class StaleIsZero : public Rule {
     }
     if (velocity.zero() || robot.mode_changed() == robot.now()) return;
     const bool external = robot.mode() == "external";
-    const bool planned = external || robot.mode() == "waypoint" || robot.mode() == "smart_joystick";
+    const bool planned = external || robot.mode() == "waypoint" || robot.mode() == "explore" ||
+                         robot.mode() == "smart_joystick";
     if (planned && (!robot.scanned() || robot.now() - *robot.scanned() > kPlanSilence + kReaction))
       report_violation("sent a velocity in " + robot.mode() + " without a scan for more than 500 ms");
     const auto& program = robot.programmed();

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "robot_agent/common/exploration.hpp"
+
 namespace adit::sim {
 namespace {
 
@@ -33,6 +35,11 @@ std::string mismatch(const StateExpectation& e, const Evidence& evidence) {
   if (e.locked && word.authority.locked != *e.locked)
     say(word.authority.locked ? "it is locked" : "it is not locked");
   if (e.stopped && word.stopped != *e.stopped) say(word.stopped ? "it is stopped" : "it is not stopped");
+  if (e.explore) {
+    const auto state = agent::name(static_cast<agent::ExplorationState>(word.exploration));
+    const bool same = state == *e.explore || (*e.explore == "exploring" && state == "travelling");
+    if (!same) say("its exploration is " + std::string(state));
+  }
   if (e.near)
     if (const std::string where = mismatch(*e.near, evidence); !where.empty()) say(where);
   return out;

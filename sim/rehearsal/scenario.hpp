@@ -82,6 +82,7 @@ struct StateExpectation {
   std::optional<std::string> holder{};  ///< Empty: none.
   std::optional<bool> locked{};
   std::optional<bool> stopped{};
+  std::optional<std::string> explore{};   ///< `exploring` also matches `travelling`.
   std::optional<NearExpectation> near{};  ///< Combined with the others: both must hold.
 };
 struct AnswerExpectation {

@@ -12,9 +12,12 @@ using config::Node;
 const std::vector<std::string> kModeNames{"hold",     "manual",  "smart_joystick", "waypoint",
                                           "external", "explore", "convoy_follow",  "get_out"};
 
+const std::vector<std::string> kExplorationNames{"none",      "starting", "exploring", "travelling",
+                                                 "reporting", "done",     "ended"};
+
 void read_robot_expectation(const Node& node, const Scenario& scenario, Expectation& out) {
   const std::string robot = read_robot(node, "robot", scenario);
-  StateExpectation state{robot, {}, {}, {}, {}, {}};
+  StateExpectation state{.robot = robot};
   if (node.has("near")) {
     const std::vector<double> near = node.numbers("near", 3, 3, config::within(-1e5, 1e5));
     if (near.size() == 3) state.near = NearExpectation{robot, near[0], near[1], near[2]};
@@ -33,9 +36,10 @@ void read_robot_expectation(const Node& node, const Scenario& scenario, Expectat
   }
   if (node.has("locked")) state.locked = node.flag("locked");
   if (node.has("stopped")) state.stopped = node.flag("stopped");
-  const bool says = state.mode || state.holder || state.locked || state.stopped;
+  if (node.has("explore")) state.explore = kExplorationNames[node.choice("explore", kExplorationNames)];
+  const bool says = state.mode || state.holder || state.locked || state.stopped || state.explore;
   if (!says && !node.has("near"))
-    node.fail(Reason::missing_key, "expected near, mode, holder, locked or stopped");
+    node.fail(Reason::missing_key, "expected near, mode, holder, locked, stopped or explore");
   if (!says && state.near)
     out.what = *state.near;
   else

@@ -78,6 +78,7 @@ void Witness::sent(const wire::SampleEvent& frame) {
     said.mode = behaviour->mode;
     said.stopped = behaviour->stopped;
     said.convoy = behaviour->convoy;
+    said.exploration = behaviour->exploration;
     said.heard = true;
   }
   if (const auto* state = std::get_if<StateSent>(&decoded->event)) {

@@ -25,6 +25,7 @@ struct RobotWord {
   std::string mode{};
   Authority authority{};
   bool stopped{};
+  int exploration{};  ///< As in BehaviourSent.
   bool heard{};
   std::optional<Pose3> pose{};        ///< Its own estimate, map frame.
   Duration pose_sent{};               ///< When it sent that, virtual time.

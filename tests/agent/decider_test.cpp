@@ -9,17 +9,8 @@ namespace adit::agent {
 namespace {
 
 const std::string kTree = source_folder() + "/config/trees/robot.xml";
-const Facts kAllGood{false,
-                     true,
-                     true,
-                     true,
-                     true,
-                     true,
-                     true,
-                     true,
-                     true,
-                     true,
-                     {"in_convoy", "leader_known", "order_agrees"}};
+const Facts kAllGood{false, true, true, true, true, true,
+                     true,  true, true, true, true, {"in_convoy", "leader_known", "order_agrees"}};
 
 std::unique_ptr<Decider> load() {
   auto decider = Decider::load(kTree);
@@ -45,9 +36,10 @@ TEST(Decider, FollowsTheTableWhenAConditionFails) {
     Facts f = kAllGood;
     f.stopped = true;
     if (!c.holds(f)) return f;
-    for (bool Facts::*fact : {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh,
-                              &Facts::stick_fresh, &Facts::stick_kept, &Facts::stick_centred,
-                              &Facts::goal_known, &Facts::goal_free, &Facts::program_fresh}) {
+    for (bool Facts::*fact :
+         {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
+          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
+          &Facts::program_fresh, &Facts::map_fresh}) {
       f = kAllGood;
       f.*fact = false;
       if (!c.holds(f)) return f;

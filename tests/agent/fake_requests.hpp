@@ -27,6 +27,11 @@ struct FakeRequests : Requests {
     calls.push_back("pose");
     return {};
   }
+  Result<void> request_explore(const ExploreRequest& request, Time) override {
+    exploration = request;
+    calls.push_back("explore");
+    return {};
+  }
   Result<void> join_convoy(const ConvoyOrder& order, Time) override {
     convoy = order;
     calls.push_back("join");
@@ -54,8 +59,9 @@ struct FakeRequests : Requests {
   double budget{-1.0};                  ///< The last one set, m.
   bool takes_stick{true};
   bool holds{true};
-  ConvoyOrder convoy{};  ///< The last one joined.
-  Pose2 pose{};          ///< The last one set.
+  ExploreRequest exploration{};  ///< The last one requested.
+  ConvoyOrder convoy{};          ///< The last one joined.
+  Pose2 pose{};                  ///< The last one set.
   std::vector<std::string> calls{};
   std::vector<Twist2> sticks{};
   Time stick_at{};  ///< Time of the newest sample.

@@ -8,17 +8,8 @@
 namespace adit::agent {
 namespace {
 
-const Facts kAllMet{false,
-                    true,
-                    true,
-                    true,
-                    true,
-                    true,
-                    true,
-                    true,
-                    true,
-                    true,
-                    {"in_convoy", "leader_known", "order_agrees"}};
+const Facts kAllMet{false, true, true, true, true, true,
+                    true,  true, true, true, true, {"in_convoy", "leader_known", "order_agrees"}};
 
 struct Row {
   const char* mode;
@@ -49,6 +40,7 @@ void walled(Facts& f) { f.goal_free = false; }
 void alone(Facts& f) { std::erase(f.also, "in_convoy"); }
 void leaderless(Facts& f) { std::erase(f.also, "leader_known"); }
 void disordered(Facts& f) { std::erase(f.also, "order_agrees"); }
+void unmapped(Facts& f) { f.map_fresh = false; }
 
 INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
                          testing::Values(Row{"hold", "stop", stop, Reason::none},
@@ -74,6 +66,9 @@ INSTANTIATE_TEST_SUITE_P(Table, ModeConditions,
                                          Row{"convoy_follow", "alone", alone, Reason::not_in_convoy},
                                          Row{"convoy_follow", "leader", leaderless, Reason::leader_unknown},
                                          Row{"convoy_follow", "order", disordered, Reason::order_differs},
+                                         Row{"explore", "stop", stop, Reason::stopped},
+                                         Row{"explore", "terrain", blind, Reason::terrain_stale},
+                                         Row{"explore", "map", unmapped, Reason::map_stale},
                                          Row{"waypoint", "stop", stop, Reason::stopped},
                                          Row{"waypoint", "driver", no_driver, Reason::driver_silent},
                                          Row{"waypoint", "localisation", lost, Reason::no_localisation},
@@ -92,7 +87,7 @@ TEST(ModeTable, HoldIsFirstAndUnconditional) {
 }
 
 TEST(ModeTable, ModesOfTheDesignThatHaveNoModuleAreKnown) {
-  for (const char* mode : {"explore", "get_out"}) {
+  for (const char* mode : {"get_out"}) {
     EXPECT_EQ(ModeTable::shipped().find(mode), nullptr);
     EXPECT_TRUE(is_planned_mode(mode));
   }

@@ -6,17 +6,8 @@
 namespace adit::agent {
 namespace {
 
-const Facts kAllConditions{false,
-                           true,
-                           true,
-                           true,
-                           true,
-                           true,
-                           true,
-                           true,
-                           true,
-                           true,
-                           {"in_convoy", "leader_known", "order_agrees"}};
+const Facts kAllConditions{false, true, true, true, true, true,
+                           true,  true, true, true, true, {"in_convoy", "leader_known", "order_agrees"}};
 
 class Guard : public testing::Test {
  protected:
@@ -61,9 +52,10 @@ TEST_F(Guard, OnlyTheHolderCommandsManualModes) {
 
 TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
   const auto fails = [](const Condition& c) {
-    for (bool Facts::*fact : {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh,
-                              &Facts::stick_fresh, &Facts::stick_kept, &Facts::stick_centred,
-                              &Facts::goal_known, &Facts::goal_free, &Facts::program_fresh}) {
+    for (bool Facts::*fact :
+         {&Facts::driver_alive, &Facts::localised, &Facts::terrain_fresh, &Facts::stick_fresh,
+          &Facts::stick_kept, &Facts::stick_centred, &Facts::goal_known, &Facts::goal_free,
+          &Facts::program_fresh, &Facts::map_fresh}) {
       Facts f = kAllConditions;
       f.*fact = false;
       if (!c.holds(f)) return f;

@@ -40,9 +40,10 @@ TEST(RadioDecoder, CommandsAreDecodedAsWhatTheyAre) {
       {radio::CMD_GOTO, Verb::go_to},      {radio::CMD_QUERY, Verb::query},
       {radio::CMD_RESTART, Verb::restart}, {radio::CMD_POLICY, Verb::policy},
       {radio::CMD_PLAN, Verb::plan},       {radio::CMD_HOME, Verb::go_to},
-      {radio::CMD_POSE, Verb::pose}};
+      {radio::CMD_POSE, Verb::pose},       {radio::CMD_EXPLORE, Verb::mode}};
   for (const auto& [kind, verb] : kinds) EXPECT_EQ(heard(kind).verb, verb) << kind;
   EXPECT_EQ(heard(radio::CMD_RESTART).text, "planner");
+  EXPECT_EQ(heard(radio::CMD_EXPLORE).text, "explore");
   EXPECT_TRUE(heard(radio::CMD_POLICY).flag);
   EXPECT_EQ(heard(static_cast<radio::CommandKind>(99)).verb, Verb::unknown);
 }

@@ -182,6 +182,10 @@ void detail(Page& page, const json& snapshot, const WatchState& state) {
     const std::string reason = text(robot, "reason");
     if (reason != "none" && !reason.empty() && stops.empty())
       cells.push_back({"does not move: " + reason + "  ", kYellow});
+    if (const auto explored = robot.find("exploration"); explored != robot.end())
+      cells.push_back({text(*explored, "state") + " about " + fixed(100.0 * number(*explored, "share"), 0) +
+                           "%, " + fixed(number(*explored, "open"), 0) + " frontiers left  ",
+                       kCyan});
     if (flag(robot, "locked")) {
       const double lease = number(robot, "lock_lease_left");
       cells.push_back({lease >= 0.0 ? "locked, lapses in " + fixed(lease, 0) + " s  " : "locked  "});

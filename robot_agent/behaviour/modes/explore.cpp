@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/behaviour/modes/explore.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/store/pack.hpp"
+
+namespace adit::agent {
+
+std::string_view name(ExplorationState state) {
+  switch (state) {
+    case ExplorationState::none:
+      return "none";
+    case ExplorationState::starting:
+      return "starting";
+    case ExplorationState::exploring:
+      return "exploring";
+    case ExplorationState::travelling:
+      return "travelling";
+    case ExplorationState::reporting:
+      return "reporting";
+    case ExplorationState::done:
+      return "done";
+    case ExplorationState::ended:
+      return "ended";
+  }
+  return "";
+}
+
+void ExploreMode::note(Facts&, Time) const {
+  if (!context_.holder_heard || !context_.holder_heard()) return;
+  if (const auto pose = context_.pose()) heard_at_ = pose->position();
+}
+
+void ExploreMode::set_exploration(const ExploreRequest& request) {
+  request_ = request;
+  begin();
+}
+
+void ExploreMode::begin() {
+  ++run_;
+  view_ = {.state = ExplorationState::starting};
+  goal_.reset();
+  navigated_ = {};
+  asked_.reset();
+  last_asked_.reset();
+  blocked_since_.reset();
+  ends_.reset();
+  begins_ = true;
+  complete_ = false;
+  why_ = Reason::none;
+}
+
+// `mode R explore` goes on with an exploration that was interrupted, and begins one otherwise.
+void ExploreMode::enter(Time now) {
+  if (view_.state == ExplorationState::none || is_over()) {
+    request_ = {};
+    begin();
+  }
+  blocked_since_.reset();
+  if (!ends_ && std::isfinite(request_.limit)) ends_ = now + from_seconds(request_.limit);
+}
+
+void ExploreMode::tick(bool passes, Time now) {
+  active_ = true;
+  if (is_over()) return context_.output.write(Stand{}, now);
+  if (view_.state == ExplorationState::reporting) {
+    if (passes) tick_return(now);
+  } else {
+    if (ends_ && now >= *ends_)
+      conclude(Reason::cancelled, "the time for it is over");
+    else if (passes)
+      ask(now);
+  }
+  if (!is_over() && goal_)
+    context_.output.write(GoTo{{goal_->x(), goal_->y(), goal_->z()}}, now);
+  else
+    context_.output.write(Stand{}, now);
+}
+
+bool ExploreMode::is_given_up(Time now) const {
+  return navigated_.unreachable || navigated_.stuck ||
+         (blocked_since_ && now - *blocked_since_ >= kGivenUpAfter);
+}
+
+void ExploreMode::ask(Time now) {
+  if (!goal_ || !navigated_.blocked)
+    blocked_since_.reset();
+  else if (!blocked_since_)
+    blocked_since_ = now;
+  if (asked_ && now - *asked_ < kAnswerLost) return;
+  if (last_asked_ && now - *last_asked_ < kAskPeriod) return;
+  const bool blocked = goal_ && is_given_up(now);
+  if (blocked) {
+    navigated_ = {};
+    blocked_since_.reset();
+  }
+  asked_ = last_asked_ = now;
+  context_.explore(blocked, begins_, [this, run = run_](const Result<nav::ExploreStep>& step) {
+    if (run != run_) return;
+    asked_.reset();
+    if (step) answered(*step);
+  });
+}
+
+void ExploreMode::answered(const nav::ExploreStep& step) {
+  begins_ = false;
+  view_.volume = static_cast<float>(step.volume);
+  view_.share = static_cast<float>(step.volume > 0 ? step.volume / (step.volume + step.open) : 0);
+  view_.open = static_cast<std::uint16_t>(std::min<std::size_t>(step.frontiers, 65'535));
+  view_.unreachable = static_cast<std::uint16_t>(std::min<std::size_t>(step.unreachable, 65'535));
+  if (step.state == nav::ExploreState::done) return conclude(Reason::none, summary());
+  if (step.state == nav::ExploreState::no_viewpoint)
+    return conclude(Reason::no_viewpoint, std::string(describe(Reason::no_viewpoint)));
+  if (!step.goal) {
+    goal_.reset();
+    return;
+  }
+  if (!goal_ || (*goal_ - *step.goal).norm() > 0.01) {
+    goal_ = *step.goal;
+    navigated_ = {};
+    blocked_since_.reset();
+  }
+  const auto pose = context_.pose();
+  const bool far = pose && (goal_->head<2>() - pose->position()).norm() > kFar;
+  view_.state = far ? ExplorationState::travelling : ExplorationState::exploring;
+}
+
+std::string ExploreMode::summary() const {
+  char text[120];
+  std::snprintf(text, sizeof text, "explored %.0f m3; %u places were not reached", view_.volume,
+                static_cast<unsigned>(view_.unreachable));
+  return text;
+}
+
+void ExploreMode::conclude(Reason reason, const std::string& text) {
+  why_ = reason;
+  complete_ = reason == Reason::none;
+  view_.reason = reason;
+  context_.tell_holder({{},
+                        reason == Reason::no_viewpoint ? Severity::warning : Severity::info,
+                        complete_ ? "explored" : "explore_ended",
+                        reason,
+                        text});
+  ++run_;  // No answer of the router counts any more.
+  asked_.reset();
+  navigated_ = {};
+  blocked_since_.reset();
+  goal_.reset();
+  begin_return();
+}
+
+void ExploreMode::begin_return() {
+  view_.state = ExplorationState::reporting;
+  switch (why_ == Reason::no_viewpoint ? AfterExploring::wait : request_.after) {
+    case AfterExploring::wait:
+      return finish();
+    case AfterExploring::home:
+      return return_to(context_.home);
+    case AfterExploring::report:
+      return return_to(context_.holder_heard && context_.holder_heard() ? std::nullopt : heard_at_);
+  }
+}
+
+void ExploreMode::return_to(std::optional<Eigen::Vector2d> place) {
+  if (!place) return finish();
+  goal_ = Eigen::Vector3d(place->x(), place->y(), std::nan(""));
+}
+
+void ExploreMode::tick_return(Time now) {
+  if (!navigated_.blocked)
+    blocked_since_.reset();
+  else if (!blocked_since_)
+    blocked_since_ = now;
+  const bool heard = request_.after == AfterExploring::report && context_.holder_heard();
+  if (heard || navigated_.arrived) return finish();
+  if (!navigated_.unreachable && !(blocked_since_ && now - *blocked_since_ >= kReturnBlocked)) return;
+  context_.tell_holder({{},
+                        Severity::warning,
+                        "unreachable",
+                        Reason::goal_unreachable,
+                        request_.after == AfterExploring::home
+                            ? "the robot explored, but found no way home"
+                            : "the robot explored, but found no way to where its holder was heard"});
+  finish();
+}
+
+void ExploreMode::finish() {
+  view_.state = complete_ ? ExplorationState::done : ExplorationState::ended;
+  view_.reason = why_;
+  goal_.reset();
+}
+
+void ExploreMode::store(KeptBehaviour& kept) const {
+  if (view_.state == ExplorationState::none) return;
+  kept.modes.push_back({"explore", store::Packer{}
+                                       .put(static_cast<std::uint8_t>(view_.state))
+                                       .put(static_cast<std::uint8_t>(request_.after))
+                                       .flag(complete_)
+                                       .put(static_cast<std::uint16_t>(why_))
+                                       .put(request_.limit)
+                                       .bytes()});
+}
+
+// The map of the router is empty after a restart of the agent: the next scans show that what is around the
+// robot was seen, and it looks at the rest again.
+void ExploreMode::restore(const KeptBehaviour& kept) {
+  const store::Bytes* bytes = kept.of("explore");
+  if (!bytes) return;
+  store::Unpacker in(*bytes);
+  const auto state = in.get<std::uint8_t>();
+  const auto after = in.get<std::uint8_t>();
+  const bool complete = in.flag();
+  const auto why = in.get<std::uint16_t>();
+  const double limit = in.number();
+  if (!in.done() || state > static_cast<std::uint8_t>(ExplorationState::ended) || after > 2 || !(limit > 0))
+    return;
+  request_ = {static_cast<AfterExploring>(after), limit};
+  begin();
+  const auto was = static_cast<ExplorationState>(state);
+  if (was != ExplorationState::done && was != ExplorationState::ended && was != ExplorationState::reporting)
+    return;
+  view_.state = was;
+  complete_ = complete;
+  why_ = view_.reason = static_cast<Reason>(why);
+  if (was == ExplorationState::reporting) begin_return();
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+
+#include "nav/explore/explorer.hpp"
+#include "robot_agent/behaviour/mode_module.hpp"
+#include "robot_agent/common/exploration.hpp"
+
+namespace adit::agent {
+
+/// The mode `explore`: navigation drives to the places that the router's explorer names, one after the other,
+/// until nothing new can be seen from any of them. The mode then ends in `hold`.
+class ExploreMode : public ModeModule {
+ public:
+  static constexpr Duration kAskPeriod = 200ms;    ///< The router takes a scan as often.
+  static constexpr Duration kAnswerLost = 2s;      ///< A later answer is not awaited.
+  static constexpr Duration kGivenUpAfter = 4s;    ///< A goal that is blocked for longer is given up.
+  static constexpr Duration kReturnBlocked = 30s;  ///< The last leg is given up when blocked for longer.
+  static constexpr double kFar = 16.0;             ///< m
+
+  explicit ExploreMode(ModeContext context) : context_(std::move(context)) {}
+  static std::unique_ptr<ModeModule> make(const ModeContext& context) {
+    return std::make_unique<ExploreMode>(context);
+  }
+
+  /// Robots that fly, and those without a router, have no explorer.
+  bool installed() const override { return context_.explore != nullptr; }
+  void note(Facts& facts, Time now) const override;
+  void enter(Time now) override;
+  void leave(Time) override { active_ = false; }
+  void tick(bool passes, Time now) override;
+  void set_exploration(const ExploreRequest& request) override;
+  void navigated(const Progress& progress) override { navigated_ = progress; }
+  bool finished() const override { return is_over(); }
+  ExplorationView exploration() const override { return active_ || is_over() ? view_ : ExplorationView{}; }
+  void store(KeptBehaviour& kept) const override;
+  void restore(const KeptBehaviour& kept) override;
+
+ private:
+  bool is_over() const {
+    return view_.state == ExplorationState::done || view_.state == ExplorationState::ended;
+  }
+  void begin();
+  void ask(Time now);
+  void answered(const nav::ExploreStep& step);
+  /// Whether the goal was found blocked and is to be replaced.
+  bool is_given_up(Time now) const;
+  /// Ends the search for new places and begins the last leg.
+  void conclude(Reason reason, const std::string& text);
+  void begin_return();
+  void finish();
+  void return_to(std::optional<Eigen::Vector2d> place);
+  void tick_return(Time now);
+  std::string summary() const;
+
+  ModeContext context_;
+  ExploreRequest request_{};
+  ExplorationView view_{};
+  bool active_{};                          ///< The mode was not left.
+  std::optional<Eigen::Vector3d> goal_{};  ///< Map frame, m.
+  Progress navigated_{};
+  std::optional<Time> asked_{};  ///< The answer is awaited since.
+  std::optional<Time> last_asked_{};
+  std::uint32_t run_{};  ///< Answers of an earlier exploration are discarded.
+  std::optional<Time> blocked_since_{};
+  std::optional<Time> ends_{};                         ///< Of the request's limit.
+  bool begins_{true};                                  ///< The router does not know of this exploration yet.
+  Reason why_{Reason::none};                           ///< Why the exploration ended, during the last leg.
+  bool complete_{};                                    ///< It ended because everything was seen.
+  mutable std::optional<Eigen::Vector2d> heard_at_{};  ///< Where the robot was when its holder was heard.
+};
+
+}  // namespace adit::agent

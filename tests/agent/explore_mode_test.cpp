@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/behaviour/modes/explore.hpp"
+
+#include <gmock/gmock.h>
+
+#include "robot_agent/behaviour/behaviour.hpp"
+#include "tests/folders/folders.hpp"
+
+namespace adit::agent {
+namespace {
+
+struct ExploreNavigation : NavigationInput {
+  void accept(MuxKey, const Motion& motion, Time) override { last = motion; }
+  Motion last{};
+};
+
+/// A behaviour whose explorer answers what the test says.
+class ExploreModeTest : public testing::Test {
+ protected:
+  void run(Duration time) {
+    for (const Time end = now + time; now < end;) {
+      now += 50ms;
+      behaviour.tick(now);
+      mux.step(now);
+    }
+  }
+  void see(nav::ExploreState state, std::optional<Eigen::Vector3d> goal = std::nullopt) {
+    answer = {
+        .state = state, .goal = goal, .frontiers = goal ? 3u : 0u, .volume = 100, .open = goal ? 100.0 : 0.0};
+    run(500ms);
+  }
+  Eigen::Vector2d target() const {
+    const auto* go = std::get_if<GoTo>(&nav.last);
+    return go ? Eigen::Vector2d(go->goal.head<2>()) : Eigen::Vector2d(-1, -1);
+  }
+  ExplorationState state() const { return behaviour.view().exploration.state; }
+  Behaviour::Inputs inputs() {
+    Behaviour::Inputs in{[this](Time) { return facts; }, [](const Eigen::Vector2d&) { return true; }};
+    in.pose = [this] { return std::optional(at); };
+    in.explore = [this](bool blocked, bool begins, auto done) {
+      blocks += blocked;
+      begun += begins;
+      done(answer);
+    };
+    in.holder_heard = [this] { return heard; };
+    in.home = Eigen::Vector2d(1, 2);
+    return in;
+  }
+
+  Facts facts{.driver_alive = true, .localised = true, .terrain_fresh = true, .map_fresh = true};
+  ExploreNavigation nav{};
+  Mux mux{nav};
+  std::vector<Notice> told{};
+  Pose2 at{5, 5, 0};
+  bool heard{true};
+  int blocks{}, begun{};
+  nav::ExploreStep answer{};
+  Behaviour behaviour{{},
+                      Decider::load(source_folder() + "/config/trees/robot.xml").value(),
+                      mux,
+                      inputs(),
+                      {[this](const Notice& n) { told.push_back(n); }, [] {}}};
+  Time now{Duration{1h}};
+};
+
+TEST_F(ExploreModeTest, DrivesFromPlaceToPlaceAndHoldsWhenNothingIsLeft) {
+  ASSERT_TRUE(behaviour.request_explore({}, now));
+  EXPECT_EQ(state(), ExplorationState::starting);
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  EXPECT_EQ(target(), Eigen::Vector2d(8, 5));
+  EXPECT_EQ(state(), ExplorationState::exploring);
+  EXPECT_FLOAT_EQ(behaviour.view().exploration.share, 0.5f);
+  see(nav::ExploreState::exploring, Eigen::Vector3d(40, 5, 0));
+  EXPECT_EQ(target(), Eigen::Vector2d(40, 5));
+  EXPECT_EQ(state(), ExplorationState::travelling);
+  see(nav::ExploreState::done);
+  EXPECT_EQ(state(), ExplorationState::done);
+  EXPECT_EQ(behaviour.view().mode, "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].code, "explored");
+  EXPECT_EQ(begun, 1) << "only the first question begins an exploration";
+}
+
+TEST_F(ExploreModeTest, WithoutAnyViewpointItIsNeverDone) {
+  ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
+  see(nav::ExploreState::no_viewpoint);
+  EXPECT_EQ(state(), ExplorationState::ended);
+  EXPECT_EQ(behaviour.view().exploration.reason, Reason::no_viewpoint);
+  EXPECT_EQ(behaviour.view().mode, "hold");
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].reason, Reason::no_viewpoint);
+}
+
+TEST_F(ExploreModeTest, DrivesHomeBeforeItHolds) {
+  ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  see(nav::ExploreState::done);
+  EXPECT_EQ(state(), ExplorationState::reporting);
+  EXPECT_EQ(target(), Eigen::Vector2d(1, 2));
+  behaviour.set_progress({.arrived = true});
+  run(100ms);
+  EXPECT_EQ(state(), ExplorationState::done);
+  EXPECT_EQ(behaviour.view().mode, "hold");
+}
+
+TEST_F(ExploreModeTest, ReportsWhereItsHolderWasHeardLast) {
+  ASSERT_TRUE(behaviour.request_explore({}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  heard = false;
+  at = {20, 5, 0};
+  see(nav::ExploreState::done);
+  EXPECT_EQ(state(), ExplorationState::reporting);
+  EXPECT_EQ(target(), Eigen::Vector2d(5, 5));
+  heard = true;
+  run(100ms);
+  EXPECT_EQ(state(), ExplorationState::done);
+}
+
+TEST_F(ExploreModeTest, AStopInterruptsItAndOnlyARequestGoesOn) {
+  ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  behaviour.stop_changed(true, now);
+  behaviour.stop_changed(false, now);
+  run(1s);
+  EXPECT_EQ(behaviour.view().mode, "hold");
+  EXPECT_EQ(nav.last, Motion{Stand{}});
+  ASSERT_TRUE(behaviour.request_mode("explore", now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(9, 5, 0));
+  EXPECT_EQ(target(), Eigen::Vector2d(9, 5));
+  see(nav::ExploreState::done);
+  EXPECT_EQ(target(), Eigen::Vector2d(1, 2)) << "it still drives home afterwards";
+  EXPECT_EQ(begun, 1);
+}
+
+TEST_F(ExploreModeTest, AGoalThatStaysBlockedIsReportedToTheExplorer) {
+  ASSERT_TRUE(behaviour.request_explore({}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  behaviour.set_progress({.blocked = true});
+  run(ExploreMode::kGivenUpAfter - 500ms);
+  EXPECT_EQ(blocks, 0);
+  run(1s);
+  EXPECT_EQ(blocks, 1);
+}
+
+TEST_F(ExploreModeTest, EndsWhenItsTimeIsOver) {
+  ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::wait, .limit = 3.0}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  run(2s);
+  EXPECT_EQ(state(), ExplorationState::exploring);
+  run(1s);
+  EXPECT_EQ(state(), ExplorationState::ended);
+  EXPECT_EQ(behaviour.view().mode, "hold");
+}
+
+TEST_F(ExploreModeTest, GoesOnAfterARestart) {
+  ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::home}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  const KeptBehaviour kept = behaviour.kept();
+  behaviour.restore(kept, false, true);
+  see(nav::ExploreState::exploring, Eigen::Vector3d(9, 5, 0));
+  EXPECT_EQ(target(), Eigen::Vector2d(9, 5));
+  see(nav::ExploreState::done);
+  EXPECT_EQ(target(), Eigen::Vector2d(1, 2));
+  behaviour.set_progress({.arrived = true});
+  run(100ms);
+  const KeptBehaviour done = behaviour.kept();
+  behaviour.restore(done, false, true);
+  run(1s);
+  EXPECT_EQ(state(), ExplorationState::done);
+}
+
+}  // namespace
+}  // namespace adit::agent
