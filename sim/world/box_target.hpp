@@ -29,8 +29,7 @@ inline BoxTarget make_target(const BodyBox& body, const Eigen::Vector3d& sensor)
   const Eigen::Vector2d away(sensor.x() - body.pose.x, sensor.y() - body.pose.y);
   target.half = 0.5 * Eigen::Vector3d(body.length, body.width, body.height);
   target.centre = {body.pose.x, body.pose.y, body.ground + target.half.z()};
-  target.start = {target.axis.dot(away), target.axis.x() * away.y() - target.axis.y() * away.x(),
-                  sensor.z() - body.ground - target.half.z()};
+  target.set_start(sensor);
   const double distance = away.norm(), radius = target.half.head<2>().norm();
   target.cos_spread = distance > radius ? std::sqrt(1.0 - radius * radius / (distance * distance)) : -1.0;
   target.towards = distance > 0.0 ? Eigen::Vector2d(-away / distance) : Eigen::Vector2d(1.0, 0.0);

@@ -7,6 +7,8 @@
 namespace adit::sim {
 namespace {
 
+constexpr int kMostLayers = 15;  // What half a byte counts.
+
 /// `value` brought between two others. Not std::clamp, which GCC 12 compiles to branches.
 int keep(int value, int low, int high) {
   value = value < low ? low : value;
@@ -25,32 +27,43 @@ VoxelGrid::VoxelGrid(const Eigen::Vector2d& origin, double resolution, int nx, i
       open_sides_(open_sides),
       levels_(std::move(levels)),
       strides_{} {
-  strides_[kTowardsBoth].resize(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1), 0);
+  strides_[kTowardsBoth].resize(static_cast<std::size_t>(nx) * ny * (levels_.size() - 1));
 }
 
 void VoxelGrid::build() {
   for (int quadrant = 0; quadrant < kTowardsBoth; ++quadrant) {
-    std::vector<std::uint8_t>& mirrored = strides_[quadrant];
+    std::vector<Stride>& mirrored = strides_[quadrant];
     mirrored.resize(strides_[kTowardsBoth].size());
-    for (int k = 0; k < layers(); ++k)
-      for (int j = 0; j < ny_; ++j)
-        for (int i = 0; i < nx_; ++i)
-          mirrored[index(quadrant & 1 ? i : nx_ - 1 - i, quadrant & 2 ? j : ny_ - 1 - j, k)] =
+    for (int j = 0; j < ny_; ++j)
+      for (int i = 0; i < nx_; ++i)
+        for (int k = 0; k < layers(); ++k)
+          mirrored[index(quadrant & 1 ? i : nx_ - 1 - i, quadrant & 2 ? j : ny_ - 1 - j, k)].edge =
               solid(i, j, k) ? 0 : 1;
   }
-  for (std::vector<std::uint8_t>& strides : strides_)
-    for (int k = 0; k < layers(); ++k)
-      for (int j = ny_ - 1; j >= 0; --j)
-        for (int i = nx_ - 1; i >= 0; --i) {
-          std::uint8_t& here = strides[index(i, j, k)];
-          if (here == 0) continue;
-          // What lies beside the grid counts as solid: no stride leaves it by more than one cell.
-          const bool border = i == nx_ - 1 || j == ny_ - 1;
-          const int ahead = border ? 0
-                                   : std::min({strides[index(i + 1, j, k)], strides[index(i, j + 1, k)],
-                                               strides[index(i + 1, j + 1, k)]});
-          here = static_cast<std::uint8_t>(std::min(255, ahead + 1));
+  for (std::vector<Stride>& strides : strides_)
+    for (int j = ny_ - 1; j >= 0; --j)
+      for (int i = nx_ - 1; i >= 0; --i) {
+        Stride* const column = &strides[index(i, j, 0)];
+        // What lies beside the grid counts as solid: no stride leaves it by more than one cell.
+        if (i < nx_ - 1 && j < ny_ - 1) {
+          const Stride *const right = &strides[index(i + 1, j, 0)],
+                              *const left = &strides[index(i, j + 1, 0)],
+                              *const both = &strides[index(i + 1, j + 1, 0)];
+          for (int k = 0; k < layers(); ++k) {
+            const int ahead = std::min({right[k].edge, left[k].edge, both[k].edge});
+            if (column[k].edge != 0) column[k].edge = static_cast<std::uint8_t>(std::min(255, ahead + 1));
+          }
         }
+        for (int k = 0; k < layers(); ++k) {
+          const auto reach = [&](int step) {
+            int n = 0;
+            for (int at = k + step; n < kMostLayers && at >= 0 && at < layers(); at += step, ++n)
+              if (column[at].edge < column[k].edge) break;
+            return n;
+          };
+          if (column[k].edge != 0) column[k].layers = static_cast<std::uint8_t>(reach(-1) | reach(1) << 4);
+        }
+      }
 }
 
 VoxelGrid::Start VoxelGrid::locate(const Eigen::Vector3d& position) const {
@@ -102,11 +115,11 @@ bool VoxelGrid::enter(Start& start, const Eigen::Vector3d& direction, double& t)
 
 /// A ray under way, in a grid mirrored so that it heads towards +x and +y.
 struct VoxelGrid::Ray {
-  const std::uint8_t* strides;  ///< Strides of that mirrored grid.
-  double gx, gy;                ///< Start, in columns.
-  double sx, sy;                ///< Columns per metre, >= 0.
-  double ax, ay, az;            ///< Metres per column, metres per metre of height.
-  double t;                     ///< m
+  const Stride* strides;  ///< Strides of that mirrored grid.
+  double gx, gy;          ///< Start, in columns.
+  double sx, sy;          ///< Columns per metre, >= 0.
+  double ax, ay, az;      ///< Metres per column, metres per metre of height.
+  double t;               ///< m
   int i, j, k;
   int up, dk;  ///< Upwards: 1 and 1; downwards: 0 and -1.
 };
@@ -149,7 +162,7 @@ bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, dou
 void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
                      std::span<double> ranges) const {
   const double z = from.position.z();
-  const int row = nx_, slice = nx_ * ny_, top = layers();
+  const int top = layers(), row = nx_ * top;
   const double* const levels = levels_.data();
   for (std::size_t n = 0; n < directions.size(); ++n) {
     Ray ray;
@@ -157,33 +170,36 @@ void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directi
     if (!prepare(from, directions[n], max_range, ray, range)) continue;
     int i = ray.i, j = ray.j, k = ray.k;
     double t = ray.t;
-    double tz = (levels[k + ray.up] - z) * ray.az;
+    const auto border = [&](int layer) { return (levels[layer + ray.up] - z) * ray.az; };
     while (true) {
-      const int stride = ray.strides[k * slice + j * row + i];
-      if (stride == 0) {
+      const Stride stride = ray.strides[j * row + i * top + k];
+      if (stride.edge == 0) {
         range = t;
         break;
       }
-      const int next_i = i + stride, next_j = j + stride;
+      const int next_i = i + stride.edge, next_j = j + stride.edge;
       const double tx = (next_i - ray.gx) * ray.ax, ty = (next_j - ray.gy) * ray.ay;
+      const double side = std::min(tx, ty);
+      const int last = k + ray.dk * (ray.up ? stride.layers >> 4 : stride.layers & kMostLayers);
+      const double tz = border(last);
       // The axes that do not cross a border are kept inside the square: rounding cannot lead astray.
-      if (tz < tx && tz < ty) {
+      if (tz < side) {
         t = std::max(t, tz);
         if (t >= max_range) {
           range = kNoHit;
           break;
         }
-        k += ray.dk;
+        k = last + ray.dk;
         if (k < 0 || k >= top) {
           range = t;
           break;
         }
-        tz = (levels[k + ray.up] - z) * ray.az;
         i = keep(static_cast<int>(ray.gx + t * ray.sx), i, next_i - 1);
         j = keep(static_cast<int>(ray.gy + t * ray.sy), j, next_j - 1);
         continue;
       }
-      t = std::max(t, std::min(tx, ty));
+      while (k != last && border(k) < side) k += ray.dk;
+      t = std::max(t, side);
       if (t >= max_range) {
         range = kNoHit;
         break;

@@ -14,7 +14,8 @@ namespace adit::sim {
 /// layers as thick as its cells; a floor plan needs a single one.
 ///
 /// For each of the four ways a ray can head, every open cell keeps the edge of the largest open square of
-/// its layer that begins there and lies that way: a ray crosses open space in a few strides.
+/// its layer that begins there and lies that way, and how many layers above and below leave that square open,
+/// too: a ray crosses open space in a few strides.
 class VoxelGrid {
  public:
   /// Nothing is hit within the range asked for.
@@ -38,9 +39,9 @@ class VoxelGrid {
   bool open_sides() const { return open_sides_; }
 
   bool inside(int i, int j) const { return i >= 0 && i < nx_ && j >= 0 && j < ny_; }
-  bool solid(int i, int j, int k) const { return strides_[kTowardsBoth][index(i, j, k)] == 0; }
+  bool solid(int i, int j, int k) const { return strides_[kTowardsBoth][index(i, j, k)].edge == 0; }
   /// To be followed by build() after the last change.
-  void set(int i, int j, int k, bool solid) { strides_[kTowardsBoth][index(i, j, k)] = solid ? 0 : 1; }
+  void set(int i, int j, int k, bool solid) { strides_[kTowardsBoth][index(i, j, k)].edge = solid ? 0 : 1; }
   /// Computes the strides.
   void build();
 
@@ -68,11 +69,19 @@ class VoxelGrid {
 
  private:
   struct Ray;
+  /// The open box that begins at a cell.
+  struct Stride {
+    std::uint8_t edge;    ///< Of its square, cells; 0: the cell is solid.
+    std::uint8_t layers;  ///< Layers below (low half of the byte) and above (high half) that it reaches.
+  };
   static constexpr int kTowardsBoth = 3;
   /// Puts a ray on its way, or gives its range at once (false).
   bool prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
                double& range) const;
-  std::size_t index(int i, int j, int k) const { return (static_cast<std::size_t>(k) * ny_ + j) * nx_ + i; }
+  /// The cells of a column lie side by side: the rays of a lidar's column cross the same ones.
+  std::size_t index(int i, int j, int k) const {
+    return (static_cast<std::size_t>(j) * nx_ + i) * layers() + k;
+  }
   /// Moves a start that lies beside the grid to the point where the ray enters; false when it never does.
   bool enter(Start& start, const Eigen::Vector3d& direction, double& t) const;
   /// Floor or ceiling of an open world, beside the grid.
@@ -85,9 +94,9 @@ class VoxelGrid {
   int ny_{0};
   bool open_sides_{false};
   std::vector<double> levels_{0.0, 1.0};
-  /// 0 solid, else edge in cells of the open square. Bit 0 of the index: towards +x, bit 1: towards +y; the
-  /// other ways are stored mirrored, so that every ray heads towards + in its own.
-  std::array<std::vector<std::uint8_t>, 4> strides_{};
+  /// Bit 0 of the index: towards +x, bit 1: towards +y; the other ways are stored mirrored, so that every ray
+  /// heads towards + in its own.
+  std::array<std::vector<Stride>, 4> strides_{};
 };
 
 }  // namespace adit::sim
