@@ -132,8 +132,9 @@ void TileBuilder::find_steps() {
     for (int x = 0; x < kWindow; ++x) {
       if (x + 1 < kWindow) compare(in_window(x, y), in_window(x + 1, y));
       if (y + 1 < kWindow) compare(in_window(x, y), in_window(x, y + 1));
-      lowest = std::fmin(lowest, height_[in_window(x, y)]);  // Ignores NaN.
-      highest = std::fmax(highest, height_[in_window(x, y)]);
+      const float height = height_[in_window(x, y)];
+      if (height < lowest) lowest = height;  // False for NaN.
+      if (height > highest) highest = height;
     }
   if (climbs_stairs_ || highest - lowest <= rise_) return;
   for (int cells = 2; cells < (doubting_ ? kLongSteep : kSteep); ++cells)
@@ -167,15 +168,16 @@ void TileBuilder::find_steep(std::size_t from, std::size_t stride, int cells) {
 // Distance from the centre of a cell of the window to the nearest obstacle, with its position in its cell, m.
 double TileBuilder::exact_clearance(int x, int y) const {
   const int reach = static_cast<int>(hard_ / kRouteCell) + 2;
-  double least = kTileHalo * kRouteCell;
+  double least = kTileHalo * kRouteCell * kTileHalo * kRouteCell;  // Squared.
   for (int v = std::max(0, y - reach); v <= std::min(kWindow - 1, y + reach); ++v)
     for (int u = std::max(0, x - reach); u <= std::min(kWindow - 1, x + reach); ++u) {
       if (!solid_[in_window(u, v)]) continue;
       const auto& aside = aside_[in_window(u, v)];
-      least = std::min(least, std::hypot((u - x) * kRouteCell + aside[0] * double{kAsideUnit},
-                                         (v - y) * kRouteCell + aside[1] * double{kAsideUnit}));
+      const double dx = (u - x) * kRouteCell + aside[0] * double{kAsideUnit};
+      const double dy = (v - y) * kRouteCell + aside[1] * double{kAsideUnit};
+      least = std::min(least, dx * dx + dy * dy);
     }
-  return least;
+  return std::sqrt(least);
 }
 
 // Squared distance to the nearest obstacle, exact within the halo: along columns first, then across.

@@ -34,7 +34,7 @@ class Deskew {
     const auto n = std::min(static_cast<std::size_t>(at), knots_.size() - 2);
     const float part = at - static_cast<float>(n);
     const Knot &a = knots_[n], &b = knots_[n + 1];
-    const Eigen::Vector3f first = a.R * point + a.t, second = b.R * point + b.t;
+    const Eigen::Vector3f first = a(point), second = b(point);
     return first + part * (second - first);
   }
 
@@ -42,6 +42,12 @@ class Deskew {
   struct Knot {
     Eigen::Matrix3f R;
     Eigen::Vector3f t;
+    /// R * p + t, which Eigen does not inline here: it runs twice for every return.
+    Eigen::Vector3f operator()(const Eigen::Vector3f& p) const {
+      return {R(0, 0) * p.x() + R(0, 1) * p.y() + R(0, 2) * p.z() + t.x(),
+              R(1, 0) * p.x() + R(1, 1) * p.y() + R(1, 2) * p.z() + t.y(),
+              R(2, 0) * p.x() + R(2, 1) * p.y() + R(2, 2) * p.z() + t.z()};
+    }
   };
   std::vector<Knot> knots_{};
   float per_second_{0}, last_{0};
