@@ -82,8 +82,8 @@ struct StateExpectation {
   std::optional<std::string> holder{};  ///< Empty: none.
   std::optional<bool> locked{};
   std::optional<bool> stopped{};
-  std::optional<std::string> explore{};   ///< `exploring` also matches `travelling`.
   std::optional<NearExpectation> near{};  ///< Combined with the others: both must hold.
+  std::optional<std::string> explore{};   ///< `exploring` also matches `travelling`.
 };
 struct AnswerExpectation {
   std::string by{};
