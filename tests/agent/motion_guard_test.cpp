@@ -105,11 +105,12 @@ TEST_F(Guard, AManualModeCannotPause) {
   EXPECT_EQ(guard.judge(runs("manual"), kAllConditions).mode->name, "hold");
 }
 
-TEST_F(Guard, ManualModesEndWithTheirHolder) {
+TEST_F(Guard, ManualModesAndConvoysEndWithTheirHolder) {
   for (const ModeRow& each : table.rows()) {
     ASSERT_EQ(guard.admit(each, Commander::holder, kAllConditions), Reason::none);
-    EXPECT_EQ(guard.holder_changed(), each.manual()) << each.name;
-    EXPECT_EQ(guard.admitted().name, each.manual() ? "hold" : each.name);
+    const bool ends = each.name == "manual" || each.name == "smart_joystick" || each.name == "convoy_follow";
+    EXPECT_EQ(guard.holder_changed(), ends) << each.name;
+    EXPECT_EQ(guard.admitted().name, ends ? "hold" : each.name);
   }
 }
 
