@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real program, where no robot is present.
 #include <gmock/gmock.h>
+
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -11,6 +12,7 @@
 #include <fstream>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "basestation/cli/process/server.hpp"
@@ -74,7 +76,11 @@ TEST_F(Cli, HelpOfTheProgramAndOfEachCommand) {
   for (const command::CommandInfo& command : command::table()) {
     if (command.runs == command::Runs::nobody) continue;
     EXPECT_THAT(all.out, HasSubstr("  " + std::string(command.name)));
-    const Finished one = run({std::string(command.name), "--help"});
+    std::vector<std::string> words;  // A name may be two of them, as in "convoy start".
+    std::istringstream name{std::string(command.name)};
+    for (std::string word; name >> word;) words.push_back(word);
+    words.push_back("--help");
+    const Finished one = run(words);
     EXPECT_EQ(one.exit_code, 0);
     EXPECT_THAT(one.out, HasSubstr("example: basestation " + std::string(command.example)));
   }
