@@ -39,7 +39,8 @@ void LocalNavigation::add_scan(std::span<const Eigen::Vector3f> points, const Po
   has_scan_ = true;
 }
 
-Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp_s) {
+Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp_s,
+                           std::span<const Eigen::Vector2f> border) {
   if (!has_scan_) {
     Plan plan;
     plan.stamp_s = stamp_s;
@@ -58,6 +59,7 @@ Plan LocalNavigation::plan(const Target& target, const Pose2& pose, double stamp
     for (const Eigen::Vector2f& cell : air_->cells()) add(cell.x(), cell.y(), 1.0f);
   else
     for (const TerrainCell& cell : terrain_.cells()) add(cell.x, cell.y, cell.cost);
+  for (const Eigen::Vector2f& place : border) add(place.x(), place.y(), 1.0f);
   const std::size_t standing = obstacles_.size();
   const double moves = speed(pose, stamp_s);
   const double age = std::max(0.0, stamp_s - tracker_.stamp_s());

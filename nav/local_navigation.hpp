@@ -33,8 +33,10 @@ class LocalNavigation {
   /// Plans over the terrain seen so far; see Planner::plan. When the planner finds no path to a goal and less
   /// than Escape::kClear is free beside the body, the plan leads out of there at Escape::kSpeed; when that
   /// fails too, its reason is start_in_collision. Before the first scan no space is known to be free: the
-  /// plan is blocked with Reason::terrain_stale.
-  Plan plan(const Target& target, const Pose2& pose, double stamp_s);
+  /// plan is blocked with Reason::terrain_stale. `border`: places in the odometry frame that no path may
+  /// touch, m.
+  Plan plan(const Target& target, const Pose2& pose, double stamp_s,
+            std::span<const Eigen::Vector2f> border = {});
 
   const TerrainMap& terrain() const { return terrain_; }
   /// Writes the centres of the impassable cells into `cells`, odometry frame, m.

@@ -149,6 +149,7 @@ void Agent::CommandComponent::find_route(const Eigen::Vector3d& goal,
     query.odom_epoch = frames_.odom_epoch();
     query.from = frames_.T_odom_base().position;
     query.to = frames_.to_odom(goal);
+    query.areas = navigation_.route_areas();
     call(context_.router->find, query, {.deadline = 500ms},
          [this, epoch = query.odom_epoch, done = std::move(done)](const Result<nav::Route>& route) {
            if (!route) return done({Reason::no_answer, "the router does not answer; see health"});
@@ -169,6 +170,7 @@ void Agent::CommandComponent::check_goal(const Eigen::Vector3d& goal, bool repla
     query.odom_epoch = frames_.odom_epoch();
     query.from = frames_.T_odom_base().position;
     query.to = frames_.to_odom(goal);
+    query.areas = navigation_.route_areas();
     query.replace = replace;
     // The command waits for this, and each command is answered within 150 ms (rule 3): a router that is busy
     // judges the goal with the next route.
@@ -183,12 +185,20 @@ void Agent::CommandComponent::check_goal(const Eigen::Vector3d& goal, bool repla
   });
 }
 
-void Agent::CommandComponent::explore(bool blocked, bool begins,
+void Agent::CommandComponent::explore(const NextPlaceQuery& asked,
                                       std::function<void(const Result<nav::ExploreStep>&)> done) {
   ExploreQuery query{};
   query.place = frames_.T_odom_base().position;
-  query.blocked = blocked;
-  query.begins = begins;
+  query.blocked = asked.blocked;
+  query.begins = asked.begins;
+  query.areas = navigation_.route_areas();
+  if (!asked.area.empty()) {
+    const nav::Area* area = navigation_.route_areas().all.find(asked.area);
+    if (!area) return done({Reason::outside_area, "the area " + asked.area + " was removed"});
+    nav::Area within = *area;
+    within.kind = nav::AreaKind::keep_in;
+    (void)query.within.add(std::move(within));
+  }
   query.odom_epoch = frames_.odom_epoch();
   query.made = now();
   call(context_.router->explore, query, {.deadline = 2s},
@@ -279,6 +289,7 @@ void Agent::CommandComponent::beat() {
   convoy_.tick(at);
   behaviour_.tick(at);
   navigation_.limit_speed(convoy_.speed_limit(behaviour_.mode().name == "convoy_follow"));
+  navigation_.set_areas(behaviour_.areas());
   mux_.step(at);
   navigation_.step(at);
   keep();
@@ -387,9 +398,7 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
     return frames_.T_map_base();
   };
   if (context_.router && !params_.platform.flies())
-    inputs.explore = [this](bool blocked, bool begins, auto done) {
-      explore(blocked, begins, std::move(done));
-    };
+    inputs.explore = [this](const NextPlaceQuery& asked, auto done) { explore(asked, std::move(done)); };
   inputs.holder_heard = [this] {
     constexpr Duration kHeard = 3s;
     const Authority& authority = commands_.authority();
@@ -401,6 +410,14 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
     return speed * (seconds(kBeat) + speed / (2 * params_.platform.max_acceleration));
   };
   inputs.convoy = &convoy_;
+  inputs.body_permitted = [this](const nav::AreaSet& areas) {
+    return !frames_.initialised() ||
+           areas.permits(nav::outline(params_.platform, frames_.T_map_base()), frames_.height());
+  };
+  inputs.goal_permitted = [this](const nav::AreaSet& areas, const Eigen::Vector3d& goal) {
+    const double z = std::isfinite(goal.z()) ? goal.z() : frames_.height();
+    return areas.permits({goal.x(), goal.y(), z}, nav::least_reach(params_.platform));
+  };
   return inputs;
 }
 

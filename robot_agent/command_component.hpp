@@ -101,7 +101,7 @@ class Agent::CommandComponent : public Component {
   void odometry_jumped();
   Result<void> set_pose(const Pose2& pose);
   /// See ModeContext::explore.
-  void explore(bool blocked, bool begins, std::function<void(const Result<nav::ExploreStep>&)> done);
+  void explore(const NextPlaceQuery& asked, std::function<void(const Result<nav::ExploreStep>&)> done);
   Result<MapFrame> correct_map(const MapFrame& corrected);
   /// Whether the stamp is slightly newer than the odometry, so that the next sample gives the pose at that
   /// time.

@@ -34,6 +34,22 @@ std::vector<std::string> cleaned(const std::vector<std::string>& words, std::siz
   return out;
 }
 
+/// An area as a robot sent it; nothing if it is malformed.
+std::optional<AreaView> view_of(const radio::Area& area) {
+  constexpr std::array kKinds{"keep_in", "keep_out", "prefer"};
+  const auto kind = static_cast<std::uint32_t>(area.kind());
+  const bool whole = area.corners().size() >= 6 && area.corners().size() % 2 == 0;
+  if (kind >= kKinds.size() || !whole || !command::valid_name(area.name())) return std::nullopt;
+  if (std::isnan(area.z_min()) || std::isnan(area.z_max())) return std::nullopt;
+  AreaView view{area.name(), kKinds[kind], {}, area.z_min(), area.z_max(), amount(area.weight())};
+  for (std::size_t i = 0; i + 1 < area.corners().size(); i += 2) {
+    const float x = area.corners()[i], y = area.corners()[i + 1];
+    if (!std::isfinite(x) || !std::isfinite(y)) return std::nullopt;
+    view.corners.push_back({x, y});
+  }
+  return view;
+}
+
 }  // namespace
 
 const char* to_string(GoalPhase phase) {
@@ -229,6 +245,9 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
                           e.open(),
                           e.unreachable()};
   }
+  robot->areas.clear();
+  for (const auto& area : sample.areas())
+    if (auto view = view_of(area); view && robot->areas.size() < 16) robot->areas.push_back(std::move(*view));
   robot->choices.clear();
   for (const auto& option : sample.modes()) {
     if (robot->choices.size() == 16) break;

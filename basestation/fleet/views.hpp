@@ -48,6 +48,15 @@ struct ExplorationView {
   unsigned open{}, unreachable{};  ///< Frontiers to which a route leads, and to which none leads.
 };
 
+/// A part of the map where a robot may drive or not, or that it prefers to explore.
+struct AreaView {
+  std::string name{};
+  std::string kind{};                           ///< keep_in, keep_out or prefer.
+  std::vector<std::array<float, 2>> corners{};  ///< Of a polygon, map frame, m.
+  float z_min{}, z_max{};                       ///< Heights, m; infinite: at any height.
+  float weight{1.0F};                           ///< Of an area to prefer.
+};
+
 enum class ComponentPhase : std::uint8_t { starting, up, waiting, failed, hung };
 
 struct ComponentView {
@@ -121,6 +130,7 @@ struct RobotView {
   ExplorationView exploration{};
   std::vector<ModeChoice> choices{};
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
+  std::vector<AreaView> areas{};
 
   std::vector<ComponentView> components{};
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/report/json.hpp"
 
+#include <cmath>
+
 #include "basestation/report/text.hpp"
 
 namespace adit::station {
@@ -24,6 +26,14 @@ json abilities_json(const RobotView& robot) {
           {"max_step", robot.max_step},
           {"max_slope", known(robot.max_slope)},
           {"climbs_stairs", robot.climbs_stairs}};
+}
+
+json area_json(const AreaView& area) {
+  json out{{"name", area.name}, {"kind", area.kind}, {"corners", area.corners}};
+  if (area.kind == "prefer") out["weight"] = area.weight;
+  if (std::isfinite(area.z_min)) out["z_min"] = area.z_min;
+  if (std::isfinite(area.z_max)) out["z_max"] = area.z_max;
+  return out;
 }
 
 }  // namespace
@@ -71,6 +81,8 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
     if (robot.battery >= 0.0F) out["battery"] = robot.battery;
   }
   if (robot.goal_phase != GoalPhase::none) out["goal"] = robot.goal;
+  out["areas"] = json::array();
+  for (const AreaView& area : robot.areas) out["areas"].push_back(area_json(area));
   if (const ExplorationView& e = robot.exploration; e.phase != ExplorationPhase::none)
     out["exploration"] = {{"state", to_string(e.phase)},
                           {"reason", name(e.reason)},

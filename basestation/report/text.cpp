@@ -77,6 +77,15 @@ std::string exploration_text(const ExplorationView& exploration) {
          " frontiers left, " + std::to_string(e.unreachable) + " out of reach";
 }
 
+std::string area_text(const AreaView& area) {
+  std::string text = area.name + " " + area.kind;
+  if (area.kind == "prefer") text += " weight " + fixed(area.weight, 1);
+  for (const auto& corner : area.corners) text += ", " + fixed(corner[0], 1) + " " + fixed(corner[1], 1);
+  if (std::isfinite(area.z_min)) text += ", from z " + fixed(area.z_min, 1);
+  if (std::isfinite(area.z_max)) text += ", up to z " + fixed(area.z_max, 1);
+  return text;
+}
+
 std::string stops_text(const RobotView& robot) {
   if (robot.stops.empty()) return robot.stopped ? "stopped" : "-";
   std::vector<std::string> names;
@@ -137,6 +146,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   out += "  stops    " + stops_text(robot) + "\n";
   out += "  goal     " + goal_text(robot) + "\n";
   if (!robot.convoy.empty()) out += "  convoy   " + command::joined(robot.convoy, "") + "\n";
+  for (const AreaView& area : robot.areas) out += "  area     " + area_text(area) + "\n";
   if (robot.exploration.phase != ExplorationPhase::none)
     out += "  explored " + exploration_text(robot.exploration) + "\n";
   if (robot.located)

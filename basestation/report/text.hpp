@@ -36,6 +36,8 @@ std::string pose_text(const RobotView& robot);
 std::string goal_text(const RobotView& robot);
 /// "exploring, 1200 m3, about 60%, 4 frontiers left, 0 out of reach".
 std::string exploration_text(const ExplorationView& exploration);
+/// "shaft keep_out, 3.0 20.0, 11.0 20.0, 11.0 25.0, 3.0 25.0".
+std::string area_text(const AreaView& area);
 /// The stops: "none", or the stopping operators.
 std::string stops_text(const RobotView& robot);
 

@@ -164,11 +164,12 @@ class Reader {
   std::string missing_{};
 };
 
-/// Of the rows with the same first word, returns the one whose keyword was typed, else the one without a
-/// keyword.
+/// Of the rows with the same first word, returns the one whose keyword was typed first, else the one without
+/// a keyword.
 Result<const CommandInfo*> choose(const std::vector<const CommandInfo*>& found,
                                   const std::vector<std::string>& words) {
-  const CommandInfo* plain = nullptr;
+  const CommandInfo *plain = nullptr, *meant = nullptr;
+  auto first = words.end();
   std::string expected;
   for (const CommandInfo* row : found) {
     const std::string_view keyword = row->name.substr(row->first_word().size());
@@ -176,9 +177,14 @@ Result<const CommandInfo*> choose(const std::vector<const CommandInfo*>& found,
       plain = row;
       continue;
     }
-    if (std::find(words.begin() + 1, words.end(), keyword.substr(1)) != words.end()) return row;
+    const auto at = std::find(words.begin() + 1, first, keyword.substr(1));
+    if (at != first) {
+      first = at;
+      meant = row;
+    }
     expected += (expected.empty() ? "" : " or ") + std::string(keyword.substr(1));
   }
+  if (meant != nullptr) return meant;
   if (plain != nullptr) return plain;
   return wrong(*found.front(), expected + " is missing");
 }

@@ -67,6 +67,7 @@ constexpr std::array kRows{
     Row{Reason::order_differs, "order_differs", "the robot ahead has another order; start the convoy again"},
     Row{Reason::no_viewpoint, "no_viewpoint",
         "nothing new can be seen from any place that the robot can reach"},
+    Row{Reason::outside_area, "outside_area", "the robot may not drive there: see its areas"},
     Row{Reason::trail_impassable, "trail_impassable", "the robot cannot drive where the leader drove"},
     Row{Reason::frame_unknown, "frame_unknown",
         "a sensor's frame is unknown; name it in the platform's sensors, or publish it on tf_static"},

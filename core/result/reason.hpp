@@ -58,6 +58,7 @@ enum class Reason : std::uint16_t {
   not_in_convoy = 232,       ///< The robot has no place in a convoy.
   order_differs = 233,       ///< The robot ahead has another order of the convoy.
   no_viewpoint = 237,        ///< There is no place from which the robot could see anything new.
+  outside_area = 238,        ///< The place is outside of the areas where the robot may drive.
   trail_impassable = 239,    ///< The robot cannot drive where the leader drove.
   frame_unknown = 242,       ///< Neither the platform's file nor tf_static knows the frame of a message.
   sensor_times = 243,        ///< The times of a sensor's message cannot be understood.

@@ -59,7 +59,7 @@ inline constexpr Topic<radio::AuthorityStatus> kAuthority{
 inline constexpr Topic<radio::RobotState> kRobotState{
     {"adit/robot_state", "adit::radio::v1::RobotState", QosClass::state, 1, kKeyed, 256}};
 inline constexpr Topic<radio::BehaviourState> kBehaviour{
-    {"adit/behaviour", "adit::radio::v1::BehaviourState", QosClass::status, 1, kKeyed, 2048}};
+    {"adit/behaviour", "adit::radio::v1::BehaviourState", QosClass::status, 1, kKeyed, 5120}};
 inline constexpr Topic<radio::Notification> kNotification{
     {"adit/notification", "adit::radio::v1::Notification", QosClass::status, 8, kKeyed, 1024}};
 inline constexpr Topic<radio::Health> kHealth{

@@ -28,6 +28,24 @@ std::size_t unseen_of(const CoverageMap& map, const Frontier& frontier) {
       }));
 }
 
+/// Leaves out what the robot's areas say is not worth a look, and weighs the rest.
+/// Areas are those of the ground, so `z` is that of the robot, m.
+void weigh(const GroundView& ground, double z, double least_gain, std::vector<Frontier>& frontiers) {
+  for (Frontier& frontier : frontiers) {
+    const auto all = static_cast<double>(frontier.unseen.size());
+    double sum = 0;
+    std::erase_if(frontier.unseen, [&](const CoverageVoxel& v) {
+      const Eigen::Vector3d at = CoverageMap::centre(v);
+      const double weight = ground.weight({at.x(), at.y(), z});
+      sum += weight;
+      return weight <= 0;
+    });
+    frontier.weight = sum / all;
+    frontier.gain *= frontier.weight;
+  }
+  std::erase_if(frontiers, [&](const Frontier& f) { return f.unseen.empty() || f.gain < least_gain; });
+}
+
 }  // namespace
 
 Explorer::Explorer(const Platform& platform, const ExploreParams& params)
@@ -152,13 +170,19 @@ ExploreStep Explorer::step(GroundView& ground, const Eigen::Vector3d& place, dou
       goal_.reset();
     }
   }
-  const Frontiers frontiers = find_frontiers(map_, {.least_gain = params_.least_gain});
+  Frontiers frontiers = find_frontiers(map_, {.least_gain = params_.least_gain});
+  if (ground.weighs()) weigh(ground, place.z(), params_.least_gain, frontiers.list);
   std::vector<Viewpoint> places = viewpoints(ground, frontiers, place, stamp_s);
   std::vector<Eigen::Vector3d> goals;
   goals.reserve(places.size() + 1);
   for (const Viewpoint& v : places) goals.push_back(v.place);
   if (goal_) goals.push_back(goal_->place);
-  const std::vector<float> costs = ground.costs(place, goals);
+  std::vector<float> costs = ground.costs(place, goals);
+  if (ground.weighs()) {
+    for (std::size_t i = 0; i < places.size(); ++i)
+      costs[i] /= static_cast<float>(frontiers.list[places[i].frontier].weight);
+    if (goal_) costs.back() /= static_cast<float>(goal_->frontier.weight);
+  }
   std::vector<bool> reachable(frontiers.list.size(), false);
   std::size_t best = places.size();
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -28,6 +28,10 @@ class GroundView {
   virtual bool standable(const Eigen::Vector3d& place) = 0;
   /// Costs of the routes from one place to many through known space, m; infinite where none leads.
   virtual std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) = 0;
+  /// Whether weight() is not 1 everywhere.
+  virtual bool weighs() const { return false; }
+  /// Factor of what is seen at a place; 0: it is not worth a look.
+  virtual double weight(const Eigen::Vector3d& /*place*/) const { return 1.0; }
 };
 
 enum class ExploreState : std::uint8_t {

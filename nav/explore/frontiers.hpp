@@ -12,6 +12,7 @@ struct Frontier {
   std::vector<CoverageVoxel> unseen{};  ///< The voxels beside it, in the order of the map's tiles.
   Eigen::Vector3d centre{0, 0, 0};      ///< Centre of the free voxel nearest to the middle of the group, m.
   double gain{0};                       ///< Volume that is expected behind it, m3.
+  double weight{1};                     ///< Factor of its gain by the robot's areas.
 };
 
 /// What `find_frontiers` leaves out, and in which part of the space it looks.

@@ -10,10 +10,13 @@ namespace adit::nav {
 /// The ground as the robot's own global planner knows it, which must outlive this.
 class RouteGround final : public GroundView {
  public:
-  RouteGround(RoutePlanner& planner, const Platform& platform)
-      : planner_(planner), reach_(platform.width / 2 + kMargin) {}
+  /// `areas`: those of the robot; `within`: what it is to explore. Both in the planner's frame.
+  RouteGround(RoutePlanner& planner, const Platform& platform, const AreaSet& areas = {},
+              const AreaSet& within = {})
+      : planner_(planner), areas_(areas), within_(within), reach_(platform.width / 2 + kMargin) {}
   std::optional<double> ground(double x, double y, double z) override { return planner_.ground(x, y, z); }
   bool standable(const Eigen::Vector3d& place) override {
+    if (!areas_.permits(place, reach_)) return false;
     for (int k = 0; k < kSides; ++k) {
       const double bearing = 2 * M_PI * k / kSides;
       const GroundCell* cell =
@@ -26,12 +29,17 @@ class RouteGround final : public GroundView {
   std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) override {
     return planner_.costs(from, goals);
   }
+  bool weighs() const override { return !areas_.empty() || !within_.empty(); }
+  double weight(const Eigen::Vector3d& place) const override {
+    return within_.permits(place) ? areas_.weight(place) : 0.0;
+  }
 
  private:
   static constexpr double kMargin = 0.1;  ///< Free on each side of the body, m.
   static constexpr int kSides = 8;
 
   RoutePlanner& planner_;
+  AreaSet areas_, within_;
   double reach_;  ///< m
 };
 

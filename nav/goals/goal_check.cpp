@@ -23,6 +23,7 @@ struct GoalCheck::Ground {
 GoalCheck::GoalCheck(const Platform& platform)
     : body_(Footprint(platform).grown(-kMapError, -kMapError)),
       limits_(Traversability::of(platform)),
+      reach_(least_reach(platform)),
       flies_(platform.flies()) {}
 
 GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d& place, double yaw) const {
@@ -84,9 +85,10 @@ GoalCheck::Ground GoalCheck::under(const SurfaceMap& map, const Eigen::Vector3d&
 }
 
 Standing GoalCheck::stand(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor) const {
-  if (flies_) return Standing::unseen;
   Eigen::Vector3d at = place;
   if (!std::isfinite(at.z())) at.z() = planner.ground(place.x(), place.y(), floor).value_or(floor);
+  if (!areas_.permits(at, reach_)) return Standing::forbidden;
+  if (flies_) return Standing::unseen;
   bool open = false, steep = false, hole = false;
   double nearest = 1e9;
   const int headings = body_.symmetric() ? kHeadings / 2 : kHeadings;

@@ -26,6 +26,8 @@ class GoalCheck {
   static constexpr double kNearest = 3.0;  ///< Maximum distance of a replacement from the goal, m.
 
   explicit GoalCheck(const Platform& platform);
+  /// Sets the areas that a goal must lie in or out of, in the planner's frame.
+  void set_areas(const AreaSet& areas) { areas_ = areas; }
 
   /// Checks `place`, m; z NaN: the floor nearest to `floor`.
   Standing stand(const RoutePlanner& planner, const Eigen::Vector3d& place, double floor) const;
@@ -45,6 +47,8 @@ class GoalCheck {
 
   Footprint body_;
   Traversability limits_;
+  AreaSet areas_{};
+  double reach_;  ///< Least distance of a goal from forbidden ground, m.
   bool flies_;
 };
 

@@ -52,6 +52,12 @@ void CollisionMonitor::look(std::span<const Eigen::Vector3f> points, const Pose3
   tilted_ = std::max(roll, pitch) > tilt_ * (tilted_ ? kUpright : 1.0);
 }
 
+void CollisionMonitor::set_border(std::span<const Eigen::Vector2f> places) {
+  border_.clear();
+  for (const Eigen::Vector2f& place : places.first(std::min(places.size(), NearPoints::kMax)))
+    border_.push_back({.x = place.x(), .y = place.y()});
+}
+
 void CollisionMonitor::clear() {
   tracker_.clear();
   near_.clear();
@@ -88,7 +94,8 @@ double CollisionMonitor::speed_scale(const Twist2& wanted, const Pose2& odom, do
       std::max(speed_of(wanted) / (params_.braking_share * platform_.max_acceleration),
                std::fabs(wanted.wz) / (params_.braking_share * platform_.max_turn_acceleration));
   const double horizon = params_.reaction + brake / 2;
-  const double free = free_time(wanted, odom, horizon);
+  double free = free_time(near_.places(), wanted, odom, horizon);
+  if (!border_.empty()) free = std::min(free, free_time(border_, wanted, odom, horizon));
   const double k = speed_scale_before_movers(wanted, odom, now_s, brake);
   if (free >= horizon) return k;
   // The fraction k whose stopping distance, k reaction + k^2 brake / 2 (in s of driving `wanted`), fits.
@@ -132,7 +139,8 @@ CollisionMonitor::Verdict CollisionMonitor::check(const Twist2& wanted, const Po
   return {allowed, cause};
 }
 
-double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, double horizon) const {
+double CollisionMonitor::free_time(std::span<const NearPoints::Place> places, const Twist2& velocity,
+                                   const Pose2& odom, double horizon) const {
   const double radius = body_.radius();
   const double rim_speed = speed_of(velocity) + std::fabs(velocity.wz) * radius;
   const int steps = std::clamp(static_cast<int>(std::ceil(rim_speed * horizon / kStride)), 1, kMaxStrides);
@@ -148,7 +156,7 @@ double CollisionMonitor::free_time(const Twist2& velocity, const Pose2& odom, do
   // The points within reach; the sweep ends at the first one that it meets.
   std::array<Point, NearPoints::kMax> points;
   std::size_t count = 0;
-  for (const NearPoints::Place& place : near_.places()) {
+  for (const NearPoints::Place& place : places) {
     const float dx = place.x - x0, dy = place.y - y0;
     if (dx * dx + dy * dy > far * far) continue;
     const float x = c * dx + s * dy, y = c * dy - s * dx;

@@ -61,6 +61,9 @@ class CollisionMonitor {
   /// Takes the newest scan: points in base_link, m; pose of the body in the odometry frame; time of arrival,
   /// s.
   void look(std::span<const Eigen::Vector3f> points, const Pose3& body, double stamp_s);
+  /// Sets further places, odometry frame, m, that the body must not touch, until the next call. They bind the
+  /// check of each velocity. At most NearPoints::kMax count.
+  void set_border(std::span<const Eigen::Vector2f> places);
   /// Returns the part of `wanted` (body frame) that is safe for a robot at `odom` at the time `now_s`. If the
   /// robot cannot slow down as fast as the arc of `wanted` requires, it brakes on its present arc: faster
   /// than `wanted`, but slower than it `drives` and, whatever the odometry reports, slower than its commands.
@@ -77,7 +80,8 @@ class CollisionMonitor {
 
  private:
   /// Time for which `velocity` can be driven until the body touches an obstacle, s, at most `horizon`.
-  double free_time(const Twist2& velocity, const Pose2& odom, double horizon) const;
+  double free_time(std::span<const NearPoints::Place> places, const Twist2& velocity, const Pose2& odom,
+                   double horizon) const;
   /// Fraction of `wanted`, [0, 1], that can be driven and braked before the body touches a static obstacle
   /// or, by its own motion, a mover.
   double speed_scale(const Twist2& wanted, const Pose2& odom, double now_s) const;
@@ -90,6 +94,7 @@ class CollisionMonitor {
   CollisionMonitorParams params_;
   Footprint body_, wide_;  ///< With the margins towards static obstacles and movers.
   NearPoints near_;
+  std::vector<NearPoints::Place> border_{};
   Tracker tracker_;
   double tilt_;         ///< Roll or pitch at which the body may tip over, rad.
   bool tilted_{false};  ///< At the newest scan.

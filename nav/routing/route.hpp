@@ -23,6 +23,7 @@ enum class Standing : std::uint8_t {
   too_narrow,     ///< Obstacles on opposite sides leave no heading free.
   unseen,         ///< Part of the ground has not been seen.
   not_connected,  ///< No route leads there.
+  forbidden,      ///< The robot's areas do not permit it.
 };
 /// Whether the body is known not to fit there.
 constexpr bool is_refused(Standing standing) {

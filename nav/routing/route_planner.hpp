@@ -48,6 +48,8 @@ class RoutePlanner {
   /// Marks a place as blocked regardless of the scans, for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;
+  /// Sets the areas that no route leaves or enters, in the frame of the poses.
+  void set_areas(const AreaSet& areas) { map_.set_areas(areas); }
   /// The first passage on the first `ahead` metres of a route that is narrower than narrow_width().
   std::optional<NarrowPassage> passage(std::span<const Eigen::Vector3d> points, double ahead) const {
     return find_passage(map_, points, ahead, passage_width_, platform_.width / 2);

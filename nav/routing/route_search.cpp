@@ -126,7 +126,9 @@ bool RouteSearch::prepare(const RouteEnd& start, const RouteEnd& goal) {
 }
 
 void RouteSearch::reach(Id id, float cost, Id from) {
-  if ((to_many_ || !params_.through_unknown) && id < start_id_ && is_virtual(id)) return;
+  const bool unseen = id < start_id_ && is_virtual(id);
+  if (unseen && (to_many_ || !params_.through_unknown)) return;
+  if (unseen && !map_.areas().empty() && !map_.areas().permits(place(id))) return;
   State& s = states_[id];
   if (s.search == search_ && (s.closed || s.cost <= cost)) return;
   s = {cost, from, search_, false};

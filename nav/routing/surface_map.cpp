@@ -57,9 +57,17 @@ void SurfaceMap::copy(const SurfaceMap& other) {
   heads_ = other.heads_;
   queue_.clear();
   places_ = other.places_;
+  areas_ = other.areas_;
   extent_ = other.extent_;
   used_ = other.used_;
   last_ = -1;
+}
+
+void SurfaceMap::set_areas(const AreaSet& areas) {
+  if (areas_.same(areas)) return;
+  areas_ = areas;
+  for (int i = 0; i < size(); ++i)
+    if (tile(i).used) mark_dirty(i);
 }
 
 int SurfaceMap::first(int tx, int ty) const {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "nav/areas/area_set.hpp"
 #include "nav/routing/route_params.hpp"
 #include "nav/routing/tile.hpp"
 
@@ -46,6 +47,10 @@ class SurfaceMap {
   /// Ends expired blocks.
   void expire(double now);
   const std::vector<BlockedPlace>& blocked_places() const { return places_; }
+
+  /// Sets the areas that robots keep in or out of; all of the graph must be rebuilt.
+  void set_areas(const AreaSet& areas);
+  const AreaSet& areas() const { return areas_; }
 
   /// First tile at tile coordinates, or -1; the other floors follow by Tile::next.
   int first(int tx, int ty) const;
@@ -102,6 +107,7 @@ class SurfaceMap {
   std::unordered_map<std::uint64_t, int> heads_{};  // Looked up only, never iterated.
   std::deque<int> queue_{};
   std::vector<BlockedPlace> places_{};
+  AreaSet areas_{};
   Extent extent_{};
   int used_{0};
   std::uint16_t scan_{0};

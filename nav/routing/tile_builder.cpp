@@ -107,6 +107,23 @@ void TileBuilder::gather(const SurfaceMap& map, const Tile& tile) {
       for (int x = std::max(0, static_cast<int>(cx - r)); x < std::min<double>(kWindow, cx + r); ++x)
         if (std::hypot(x + 0.5 - cx, y + 0.5 - cy) <= r) solid_[in_window(x, y)] = true;
   }
+  if (!map.areas().empty()) forbid(map.areas(), tile);
+}
+
+// Forbidden ground, and what is nearer to it than robots may come, is an obstacle. The clearance counts from
+// the centres of cells, so those that the margin ends in count, too.
+void TileBuilder::forbid(const AreaSet& areas, const Tile& tile) {
+  constexpr double kReach = AreaSet::kMargin + kRouteCell;
+  const auto place = [&](double x, double y) {
+    return Eigen::Vector3d((tile.tx * kTileSide - kTileHalo + x) * kRouteCell,
+                           (tile.ty * kTileSide - kTileHalo + y) * kRouteCell, tile.z);
+  };
+  const Eigen::Vector3d middle = place(kWindow / 2.0, kWindow / 2.0);
+  // Without a border in the window all of it is of one kind.
+  if (areas.permits(middle, kWindow * kRouteCell * M_SQRT1_2 + kReach)) return;
+  for (int y = 0; y < kWindow; ++y)
+    for (int x = 0; x < kWindow; ++x)
+      if (!areas.permits(place(x + 0.5, y + 0.5), kReach)) solid_[in_window(x, y)] = true;
 }
 
 // Whether a step is the foot of an obstacle: beside an obstacle, a return of its foot passes for higher

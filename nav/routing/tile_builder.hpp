@@ -60,6 +60,7 @@ class TileBuilder {
   static std::size_t in_window(int x, int y) { return static_cast<std::size_t>(y * kWindow + x); }
   void gather(const SurfaceMap& map, const Tile& tile);
   void gather_tile(const Tile& from, float z, int ox, int oy);
+  void forbid(const AreaSet& areas, const Tile& tile);
   bool is_foot(std::size_t cell) const;
   void find_steps();
   void find_steep(std::size_t from, std::size_t stride, int cells);

@@ -60,6 +60,11 @@ Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   const ModeRow* row = table().find(mode);
   if (!row) return refuse(is_planned_mode(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, mode);
+  if (row->accepts == Accepts::goal && module(*row)) {
+    const ModeProgress stored = module(*row)->progress(false);
+    if (stored.state != GoalState::none && !is_permitted(stored.goal))
+      return refuse(Reason::outside_area, mode);
+  }
   if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
     return refuse(reason, mode);
   ++holder_requests_;
@@ -72,6 +77,7 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Commander by, 
   if (!driver) return refuse(Reason::mode_not_installed, "goto");
   Facts f = facts(now);
   if (const auto checked = driver->check_goal(goal, f); !checked) return checked;
+  if (!is_permitted(goal)) return refuse(Reason::outside_area, "goto");
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, "goto");
   if (const Reason reason = guard_.admit(*row, by, f); reason != Reason::none) return refuse(reason, "goto");
   if (by == Commander::holder) ++holder_requests_;
@@ -83,6 +89,8 @@ Result<void> Behaviour::request_explore(const ExploreRequest& request, Time now)
   const ModeRow* row = table().find("explore");
   if (!row) return refuse(Reason::mode_not_installed, "explore");
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, "explore");
+  if (!request.area.empty())
+    if (const auto area = check_explored_area(request.area); !area) return area;
   if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
     return refuse(reason, "explore");
   ++holder_requests_;
@@ -102,6 +110,40 @@ Result<void> Behaviour::set_pose(const Pose2& pose, Time now) {
     return {Reason::out_of_range, "pose: expected a place within 10 km and a heading in radians"};
   if (const auto done = inputs_.set_pose(pose); !done) return done;
   if (fell_because_ == Reason::odometry_jumped) fell_because_ = Reason::none;
+  tick(now);
+  return {};
+}
+
+bool Behaviour::is_permitted(const Eigen::Vector3d& goal) const {
+  return areas_.empty() || !inputs_.goal_permitted || inputs_.goal_permitted(areas_, goal);
+}
+
+Result<void> Behaviour::check_explored_area(const std::string& name) const {
+  const nav::Area* area = areas_.find(name);
+  if (!area) return {Reason::bad_argument, "explore: there is no area " + name};
+  if (!areas_.leaves_room(*area))
+    return {Reason::outside_area, "explore: the robot's areas forbid all of " + name};
+  return {};
+}
+
+Result<void> Behaviour::add_area(const nav::Area& area, Time now) {
+  const auto valid = nav::checked(area);
+  if (!valid) return valid.error();
+  nav::AreaSet areas = areas_;
+  if (const auto added = areas.add(*valid); !added) return added;
+  // All areas to keep in are one piece of ground; another kind is judged alone.
+  const nav::AreaSet judged = areas.only([&](const nav::Area& a) {
+    return valid->kind == nav::AreaKind::keep_in ? a.kind == valid->kind : a.name == valid->name;
+  });
+  if (inputs_.body_permitted && !inputs_.body_permitted(judged))
+    return {Reason::outside_area, "area " + area.name + ": it would forbid the place of the robot"};
+  areas_ = areas;
+  tick(now);
+  return {};
+}
+
+Result<void> Behaviour::remove_area(const std::string& name, Time now) {
+  if (!areas_.remove(name)) return {Reason::bad_argument, "there is no area " + name};
   tick(now);
   return {};
 }
@@ -207,6 +249,7 @@ KeptBehaviour Behaviour::kept() const {
   KeptBehaviour kept{};
   kept.mode = guard_.admitted().name;
   kept.reason = fell_because_;
+  kept.areas = areas_;
   for (const Mode& mode : modes_)
     if (mode.module) mode.module->store(kept);
   return kept;
@@ -219,6 +262,7 @@ void Behaviour::restore(const KeptBehaviour& kept, bool stopped, bool resume, bo
   guard_.readmit(row && resume ? *row : table().hold());
   running_ = &guard_.admitted();
   fell_because_ = kept.reason;
+  areas_ = kept.areas;
   stopped_ = stopped;
   listens_ = listens;
 }
@@ -298,6 +342,7 @@ BehaviourView Behaviour::view() const {
   v.goal_state = p.state;
   v.goal_id = p.goal_id;
   v.goal = p.goal;
+  v.areas = areas_;
   if (inputs_.convoy) v.convoy = inputs_.convoy->order();
   for (const Mode& mode : modes_)
     if (mode.module && v.exploration.state == ExplorationState::none)

@@ -30,6 +30,7 @@ struct BehaviourView {
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
   ExplorationView exploration{};
+  nav::AreaSet areas{};  ///< Map frame.
   bool operator==(const BehaviourView&) const = default;
 };
 
@@ -57,6 +58,10 @@ class Behaviour : public Requests {
     decltype(ModeContext::explore) explore{};
     decltype(ModeContext::holder_heard) holder_heard{};
     std::optional<Eigen::Vector2d> home{};
+    /// Whether areas (map frame) permit the place of the body; true while it is unknown. Empty: always.
+    std::function<bool(const nav::AreaSet&)> body_permitted{};
+    /// Whether they permit that the body stands at a goal (map frame, m; z may be NaN). Empty: always.
+    std::function<bool(const nav::AreaSet&, const Eigen::Vector3d&)> goal_permitted{};
   };
   struct Outputs {
     /// A notice for the holder; its operator_name is left empty.
@@ -77,6 +82,10 @@ class Behaviour : public Requests {
   /// Number of accepted mode and goal requests of holders since the start.
   std::uint64_t holder_requests() const { return holder_requests_; }
   Result<void> set_pose(const Pose2& pose, Time now) override;
+  Result<void> add_area(const nav::Area& area, Time now) override;
+  Result<void> remove_area(const std::string& name, Time now) override;
+  /// Areas that bind the autonomous modes, map frame.
+  const nav::AreaSet& areas() const { return areas_; }
   Result<void> join_convoy(const ConvoyOrder& order, Time now) override;
   Result<void> leave_convoy(Time now) override;
   void stop_changed(bool stopped, Time now) override;
@@ -117,6 +126,8 @@ class Behaviour : public Requests {
   ModeModule* module(const ModeRow& row) const;
   Facts facts(Time now) const;
   Result<void> refuse(Reason reason, std::string_view mode) const;
+  bool is_permitted(const Eigen::Vector3d& goal) const;
+  Result<void> check_explored_area(const std::string& name) const;
   /// Why the tree does not run the mode; none: it does.
   Reason not_run(const ModeRow& row) const;
   /// Runs a mode that MotionGuard admitted. Errors: the reason why the tree does not.
@@ -141,6 +152,7 @@ class Behaviour : public Requests {
   bool stopped_{};
   bool listens_{};
   Stick stick_{};
+  nav::AreaSet areas_{};
   BehaviourView told_{};  ///< The view when changed() was called last.
   Time idle_since_{};
   bool idle_told_{}, begun_{};

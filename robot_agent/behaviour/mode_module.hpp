@@ -42,9 +42,9 @@ struct ModeContext {
   std::function<double()> stopping{};
   Convoy* convoy{};  ///< The robot's place in a convoy; null: it has no team.
   /// Asks the router for the next goal of an exploration and calls `done` once, or never if the robot's
-  /// frames changed meanwhile; the goal is in the map frame. `blocked`: the goal of the last answer cannot be
-  /// reached; `begins`: see ExploreQuery. Empty: the robot has no explorer.
-  std::function<void(bool blocked, bool begins, std::function<void(const Result<nav::ExploreStep>&)> done)>
+  /// frames changed meanwhile; the goal is in the map frame. Error outside_area: the area of the query does
+  /// not exist any more. Empty: the robot has no explorer.
+  std::function<void(const NextPlaceQuery&, std::function<void(const Result<nav::ExploreStep>&)> done)>
       explore{};
   /// Whether the robot has a holder that was heard within the last 3 s. Empty: never.
   std::function<bool()> holder_heard{};

@@ -33,6 +33,20 @@ ConvoyOrder convoy_of(const command::Request& request) {
   return order;
 }
 
+nav::Area area_of(const command::Request& request) {
+  nav::Area area{.name = request.word("NAME"), .weight = request.number("--weight")};
+  const auto kind = std::find(std::begin(nav::kAreaKinds), std::end(nav::kAreaKinds), request.word("KIND"));
+  area.kind = static_cast<nav::AreaKind>(kind - std::begin(nav::kAreaKinds));
+  const std::vector<double> corners = request.numbers("X Y"), z = request.numbers("--z");
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 2)
+    area.corners.emplace_back(corners[i], corners[i + 1]);
+  if (z.size() == 2) {
+    area.z_min = z[0];
+    area.z_max = z[1];
+  }
+  return area;
+}
+
 }  // namespace
 
 CommandInterface::CommandInterface(CommandParams params, Requests& requests, Outputs outputs)
@@ -156,6 +170,10 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       return asked(c, requests_.request_goal(params_.home, now));
     case verb("explore"):
       return explore(c, now);
+    case verb("area add"):
+      return outcome(requests_.add_area(area_of(c.request), now));
+    case verb("area remove"):
+      return outcome(requests_.remove_area(c.request.word("NAME"), now));
     case verb("pose"):
       return outcome(
           requests_.set_pose({c.request.number("X"), c.request.number("Y"), c.request.number("YAW")}, now));
@@ -201,6 +219,7 @@ CommandInterface::Outcome CommandInterface::explore(const Command& c, Time now) 
   ExploreRequest request{};
   request.after = after_exploring(c.request.word("--after"));
   if (c.request.has("--for")) request.limit = c.request.number("--for");
+  request.area = c.request.word("--area");
   return asked(c, requests_.request_explore(request, now));
 }
 

@@ -6,6 +6,7 @@
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
 #include "core/time/time.hpp"
+#include "nav/areas/area.hpp"
 #include "robot_agent/common/exploration.hpp"
 
 namespace adit::agent {
@@ -29,6 +30,11 @@ class Requests {
   /// Sets the robot's pose, map frame; moves nothing. Errors: wrong_mode outside hold, out_of_range,
   /// no_localisation.
   virtual Result<void> set_pose(const Pose2& pose, Time now) = 0;
+  /// Adds an area of the map, or replaces the one of its name. Errors: those of nav::checked() and
+  /// nav::AreaSet::add(), and outside_area if a part of the body would be on forbidden ground.
+  virtual Result<void> add_area(const nav::Area& area, Time now) = 0;
+  /// Removes an area. Errors: bad_argument if there is none of that name.
+  virtual Result<void> remove_area(const std::string& name, Time now) = 0;
   /// Takes a place in a convoy; a follower enters convoy_follow, the leader stays in its mode. Errors: those
   /// of Convoy::start(), and the first condition that does not hold.
   virtual Result<void> join_convoy(const ConvoyOrder& order, Time now) = 0;

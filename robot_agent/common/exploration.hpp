@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 
 #include "core/result/reason.hpp"
@@ -25,6 +26,14 @@ constexpr AfterExploring after_exploring(std::string_view word) {
 struct ExploreRequest {
   AfterExploring after{AfterExploring::report};
   double limit{std::numeric_limits<double>::infinity()};  ///< Time for exploring, s.
+  std::string area{};                                     ///< What is to be explored; empty: everything.
+};
+
+/// A question to the router's explorer: where to drive next.
+struct NextPlaceQuery {
+  bool blocked{};      ///< The place of the last answer cannot be reached.
+  bool begins{};       ///< The exploration begins: nothing counts as unreachable any more.
+  std::string area{};  ///< As in ExploreRequest.
 };
 
 /// States of an exploration, in the order of their numbers in BehaviourState.

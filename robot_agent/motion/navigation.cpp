@@ -13,6 +13,7 @@ namespace {
 constexpr double kTurnLooksAhead = 0.6;
 constexpr double kTurningSpeed = 0.05;    // Speed for a stick that only turns, m/s.
 constexpr Duration kAnswerDeadline = 2s;  // Of planner and router; one that hangs is replaced earlier.
+constexpr double kBorderRange = 5.0;      // Of the areas' border that planner and monitor see, m.
 constexpr double kGoalMoved = 0.05;       // Shift of the goal by a correction of the map, m.
 
 }  // namespace
@@ -26,7 +27,8 @@ Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const
       router_(router),
       outputs_(std::move(outputs)),
       controller_(nav::make_controller(params_.platform.controller, params_.platform).value()),
-      monitor_(params_.platform) {}
+      monitor_(params_.platform),
+      fence_(params_.platform) {}
 
 void Navigation::accept(MuxKey, const Motion& motion, Time) {
   if (motion == motion_) return;
@@ -36,6 +38,7 @@ void Navigation::accept(MuxKey, const Motion& motion, Time) {
   blocked_ = false;
   motion_ = motion;
   held_.clear();
+  update_fence(now());
   if (other_kind) {
     has_plan_ = false;
     controller_->stop_now();
@@ -67,7 +70,20 @@ void Navigation::send(const Twist2& velocity) {
   outputs_.velocity(velocity);
 }
 
+bool Navigation::is_bound() const {
+  const auto* velocity = std::get_if<Velocity>(&motion_);
+  return std::holds_alternative<GoTo>(motion_) || (velocity && velocity->by_program);
+}
+
+void Navigation::update_fence(Time now) {
+  if (areas_.empty() && fence_.empty()) return;
+  fence_.update(areas_, frames_);
+  monitor_.set_border(is_bound() ? fence_.border(frames_, kBorderRange) : std::vector<Eigen::Vector2f>{});
+  if (!fence_.is_kept() && !std::holds_alternative<Stand>(motion_)) warn(Warning::outside_area, now);
+}
+
 void Navigation::step(Time now) {
+  update_fence(now);
   if (const auto* velocity = std::get_if<Velocity>(&motion_))
     pass_on(*velocity);
   else if (std::holds_alternative<Stand>(motion_))
@@ -99,6 +115,10 @@ void Navigation::watch_warning(nav::CollisionMonitor::Cause cause, Time now) {
   const Warning warning = cause == Cause::stale    ? Warning::lidar_silent
                           : cause == Cause::tilted ? Warning::tilted
                                                    : Warning::obstacle_near;
+  warn(warning, now);
+}
+
+void Navigation::warn(Warning warning, Time now) {
   std::optional<Time>& last = warned_[static_cast<std::size_t>(warning)];
   if ((!last || now - *last > params_.warned_for) && outputs_.warn) outputs_.warn(warning);
   last = now;
@@ -217,6 +237,7 @@ void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now) {
   }
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
+  job->areas = route_areas();
   job->made = now;
   routing_ = true;
   call(router_->step, job, {.deadline = kAnswerDeadline},
@@ -252,6 +273,7 @@ void Navigation::plan(std::shared_ptr<Scan> scan, Time now) {
   if (const auto* go = std::get_if<GoTo>(&motion_))
     job->goal = step ? step_goal_ : frames_.to_odom(Eigen::Vector2d(go->goal.head<2>()));
   job->pose = frames_.T_odom_base().planar();
+  if (is_bound() && !fence_.empty()) job->border = fence_.border(frames_, kBorderRange);
   job->odom_epoch = frames_.odom_epoch();
   job->generation = goal_generation_;
   job->made = now;

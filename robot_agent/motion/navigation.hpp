@@ -11,6 +11,7 @@
 #include "nav/control/controller.hpp"
 #include "nav/monitor/collision_monitor.hpp"
 #include "nav/monitor/held_watch.hpp"
+#include "robot_agent/motion/fence.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/motion.hpp"
 #include "robot_agent/motion/planner.hpp"
@@ -29,7 +30,7 @@ struct NavigationParams {
 };
 
 /// Why the operator of a manual mode is warned.
-enum class Warning { obstacle_near, lidar_silent, tilted };
+enum class Warning { obstacle_near, lidar_silent, tilted, outside_area };
 
 /// Converts the motions that the mux passes into velocities within the platform's limits: directly, or along
 /// the local planner's paths.
@@ -56,6 +57,10 @@ class Navigation : public Component, public NavigationInput {
   void step(Time now);
   /// Limits the speed along the planner's paths, m/s; infinite: the platform's limit alone.
   void limit_speed(double limit) { speed_limit_ = limit; }
+  /// Sets the areas, map frame, that bind autonomous modes.
+  void set_areas(const nav::AreaSet& areas) { areas_ = areas; }
+  /// The areas in the odometry frame, for the router.
+  RouteAreas route_areas() const { return {fence_.all(), fence_.binding()}; }
   /// `for_route`: the scan for the route map; null: `scan` itself.
   void add_scan(std::shared_ptr<Scan> scan, Time received, Time now,
                 std::shared_ptr<const Scan> for_route = nullptr);
@@ -80,6 +85,10 @@ class Navigation : public Component, public NavigationInput {
   void routed(const RouteJob& job, const Result<nav::RouteStep>& step);
   Twist2 along_plan(Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);
+  void warn(Warning warning, Time now);
+  /// Whether areas bind the present motion.
+  bool is_bound() const;
+  void update_fence(Time now);
   /// For a flying robot with a goal that has a height: the upward velocity, m/s, and whether the height is
   /// reached.
   double climb() const;
@@ -99,12 +108,14 @@ class Navigation : public Component, public NavigationInput {
   Outputs outputs_;
   std::unique_ptr<nav::Controller> controller_;
   nav::CollisionMonitor monitor_;
+  nav::AreaSet areas_{};  // Map frame.
+  Fence fence_;
 
   Motion motion_{Stand{}};
   std::uint64_t goal_generation_{};  // Rises with every new goal, so that late plans report no progress.
   bool has_plan_{};
   Time plan_made_{};
-  std::array<std::optional<Time>, 3> warned_{};  // Indexed by Warning: last time of its cause.
+  std::array<std::optional<Time>, 4> warned_{};  // Indexed by Warning: last time of its cause.
   nav::HeldWatch held_{};
   double speed_limit_{std::numeric_limits<double>::infinity()};
   double sent_speed_{0};  // Maximum speed of the robot according to the velocities sent, m/s.

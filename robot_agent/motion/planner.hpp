@@ -22,6 +22,8 @@ struct PlanJob {
   bool last{true};             ///< `target` is the goal itself, not an intermediate point of the route.
   Eigen::Vector2d goal{0, 0};  ///< Position of the goal to which `target` leads, odometry frame, m.
   Pose2 pose{};                ///< Odometry frame.
+  /// Points along the border of forbidden ground, odometry frame, m.
+  std::vector<Eigen::Vector2f> border{};
   std::uint32_t odom_epoch{};  ///< Epoch of that frame; maps of another epoch are discarded.
   std::uint64_t generation{};  ///< Generation of the goal, for the caller.
   Time made{};

@@ -29,6 +29,7 @@ struct Router::Maps {
   nav::Explorer explorer;
   std::optional<double> refused_since{};  ///< The body cannot stand at the goal, which it is near, s.
   std::uint32_t odom_epoch{};             ///< Odometry epoch of the points.
+  nav::AreaSet areas{};                   ///< All of the last job.
 
   nav::RouteStep step(const RouteJob& job, double stamp) {
     nav::RouteStep step = route_follower.step(planner, job.place, *job.goal, job.blocked, stamp);
@@ -41,10 +42,14 @@ struct Router::Maps {
       if (!refused_since) refused_since = stamp;
       if (stamp - *refused_since >= kRefusedFor) step.state = nav::RouteStep::State::unreachable;
     }
+    if (step.goal == nav::Standing::forbidden) step.state = nav::RouteStep::State::unreachable;
     return step;
   }
 
-  void enter(std::uint32_t epoch) {
+  void enter(std::uint32_t epoch, const RouteAreas& now) {
+    planner.set_areas(now.binding);
+    goals.set_areas(now.all);
+    areas = now.all;
     if (std::exchange(odom_epoch, epoch) == epoch) return;
     refused_since.reset();
     planner.clear();
@@ -79,7 +84,7 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
   compute(
       {.name = "route step", .modelled = params_.modelled, .lane = "maps"},
       [job, takes, maps = maps_]() -> nav::RouteStep {
-        maps->enter(job->odom_epoch);
+        maps->enter(job->odom_epoch, job->areas);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) {
           maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
@@ -97,7 +102,7 @@ void Router::find(const RouteQuery& query, const Reply<nav::Route>& reply) {
   compute(
       {.name = "route query", .modelled = params_.modelled, .lane = "maps"},
       [query, maps = maps_] {
-        maps->enter(query.odom_epoch);
+        maps->enter(query.odom_epoch, query.areas);
         nav::Route route = maps->planner.plan(query.from, query.to);
         route.goal = maps->goals.stand(maps->planner, query.to, query.from.z());
         return route;
@@ -109,7 +114,7 @@ void Router::check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply)
   compute(
       {.name = "goal check", .modelled = params_.modelled, .lane = "maps"},
       [query, maps = maps_] {
-        maps->enter(query.odom_epoch);
+        maps->enter(query.odom_epoch, query.areas);
         return maps->goals.check(maps->planner, query.from, query.to, query.replace);
       },
       [reply](Result<nav::GoalFinding> found) { reply(std::move(found)); });
@@ -119,9 +124,9 @@ void Router::explore(const ExploreQuery& query, const Reply<nav::ExploreStep>& r
   compute(
       {.name = "exploration", .modelled = params_.modelled, .lane = "maps"},
       [query, maps = maps_] {
-        maps->enter(query.odom_epoch);
+        maps->enter(query.odom_epoch, query.areas);
         if (query.begins) maps->explorer.begin();
-        nav::RouteGround ground(maps->planner, maps->platform);
+        nav::RouteGround ground(maps->planner, maps->platform, maps->areas, query.within);
         return maps->explorer.step(ground, query.place, seconds(query.made.time_since_epoch()),
                                    query.blocked);
       },
@@ -144,6 +149,8 @@ Reason reason_of(nav::Standing standing) {
       return Reason::goal_unseen;
     case nav::Standing::not_connected:
       return Reason::goal_not_connected;
+    case nav::Standing::forbidden:
+      return Reason::outside_area;
   }
   return Reason::none;
 }

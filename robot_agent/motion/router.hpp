@@ -15,6 +15,12 @@
 
 namespace adit::agent {
 
+/// The areas of a robot, odometry frame: see Fence.
+struct RouteAreas {
+  nav::AreaSet all{};      ///< For goals, and for what is to be explored.
+  nav::AreaSet binding{};  ///< For routes.
+};
+
 /// A scan for the map of the global planner, which uses some of them, and a request for the next step of the
 /// route. Odometry frame, m.
 struct RouteJob {
@@ -24,6 +30,7 @@ struct RouteJob {
   bool blocked{};                         ///< The local planner found no path along the previous step.
   std::uint32_t odom_epoch{};             ///< Epoch of that frame; maps of another epoch are discarded.
   std::uint64_t generation{};             ///< Generation of the goal, for the caller.
+  RouteAreas areas{};
   Time made{};
 };
 
@@ -31,6 +38,7 @@ struct RouteJob {
 struct RouteQuery {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
   std::uint32_t odom_epoch{};  ///< As in RouteJob.
+  RouteAreas areas{};
 };
 
 /// A goal to be judged before it is accepted. Odometry frame, m.
@@ -38,6 +46,7 @@ struct GoalQuery {
   Eigen::Vector3d from{0, 0, 0}, to{0, 0, 0};
   bool replace{};              ///< Replaces a goal where the body cannot stand by the nearest place.
   std::uint32_t odom_epoch{};  ///< As in RouteJob.
+  RouteAreas areas{};
 };
 
 /// A request for the next goal of an exploration. Odometry frame, m.
@@ -46,6 +55,8 @@ struct ExploreQuery {
   bool blocked{};                  ///< The goal of the last answer could not be reached.
   bool begins{};                   ///< The exploration begins: nothing counts as unreachable any more.
   std::uint32_t odom_epoch{};      ///< As in RouteJob.
+  RouteAreas areas{};
+  nav::AreaSet within{};  ///< Only this is to be explored; empty: everything.
   Time made{};
 };
 

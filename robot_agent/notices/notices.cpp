@@ -90,6 +90,12 @@ void Notices::warning(Warning warning, bool stops) const {
                     "lidar_silent",
                     Reason::terrain_stale,
                     "the lidar of " + robot_ + " is silent: it drives blindly, at most 0.3 m/s"});
+  else if (warning == Warning::outside_area)
+    send_to_holder({{},
+                    Severity::warning,
+                    "outside_area",
+                    Reason::outside_area,
+                    robot_ + " is where its areas forbid it to be; in an autonomous mode it drives back"});
   else if (warning == Warning::tilted)
     send_to_holder(
         {{},

@@ -188,6 +188,18 @@ static radio::Exploration to_radio(const ExplorationView& view) {
   return out;
 }
 
+static radio::Area to_radio(const nav::Area& area) {
+  radio::Area out;
+  out.name(area.name);
+  out.kind(static_cast<radio::AreaKind>(area.kind));
+  out.z_min(static_cast<float>(area.z_min));
+  out.z_max(static_cast<float>(area.z_max));
+  out.weight(static_cast<float>(area.weight));
+  for (const Eigen::Vector2d& corner : area.corners)
+    for (const double metres : {corner.x(), corner.y()}) out.corners().push_back(static_cast<float>(metres));
+  return out;
+}
+
 radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<ModeOption>& options,
                                const std::string& robot) {
   radio::BehaviourState out;
@@ -202,6 +214,7 @@ radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<Mode
   out.convoy(view.convoy);
   if (view.exploration.state != ExplorationState::none)
     out.exploration().push_back(to_radio(view.exploration));
+  for (const nav::Area& area : view.areas.all()) out.areas().push_back(to_radio(area));
   for (const ModeOption& option : options) {
     radio::ModeOption mode;
     mode.mode(std::string(option.mode));

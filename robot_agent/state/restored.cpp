@@ -108,6 +108,8 @@ std::string describe(const Snapshot& s) {
   for (std::size_t i = 0; i < s.authority.stops.size(); ++i)
     text += (i == 0 ? "; stopped by " : ", ") + s.authority.stops[i].name;
   text += "; was in " + s.behaviour.mode;
+  if (const auto areas = s.behaviour.areas.all(); !areas.empty())
+    text += ", " + std::to_string(areas.size()) + (areas.size() == 1 ? " area" : " areas");
   if (s.behaviour.goal_known) text += ", goal " + std::to_string(s.behaviour.goal_id) + " kept";
   return text;
 }

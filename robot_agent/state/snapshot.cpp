@@ -64,6 +64,7 @@ bool read_behaviour(Unpacker& in, Snapshot& s) {
   auto value = checked(in, fields::behaviour(in));
   if (!value) return false;
   value->modes = std::move(s.behaviour.modes);
+  value->areas = s.behaviour.areas;
   s.behaviour = std::move(*value);
   return true;
 }
@@ -71,6 +72,13 @@ bool read_behaviour(Unpacker& in, Snapshot& s) {
 bool read_place(Unpacker& in, Snapshot& s) {
   s.place = checked(in, fields::place(in));
   return s.place.has_value();
+}
+
+bool read_area(Unpacker& in, Snapshot& s) {
+  const nav::Area read = fields::area(in);
+  if (!in.done()) return false;
+  const auto valid = nav::checked(read);
+  return valid && *valid == read && !s.behaviour.areas.find(read.name) && s.behaviour.areas.add(read);
 }
 
 bool read_mode(Unpacker& in, Snapshot& s) {
@@ -100,7 +108,8 @@ bool read_host(Unpacker& in, Snapshot& s) {
   return true;
 }
 
-constexpr store::SectionTag kAuthority{'A', 'U', 'T', 'H'}, kStops{'S', 'T', 'O', 'P'};
+constexpr store::SectionTag kAuthority{'A', 'U', 'T', 'H'}, kStops{'S', 'T', 'O', 'P'},
+    kAreas{'A', 'R', 'E', 'A'};
 
 /// In order of importance: if the file is full, the last sections are omitted.
 const std::array kRows{
@@ -108,6 +117,11 @@ const std::array kRows{
         [](const Snapshot& s, const auto& add) { add_one(add, s.authority); }, read_authority},
     Row{kStops, 1, "stops", true, [](const Snapshot& s, const auto& add) { add_one(add, s.authority.stops); },
         read_stops},
+    Row{kAreas, 1, "an area", false,
+        [](const Snapshot& s, const auto& add) {
+          for (const nav::Area& area : s.behaviour.areas.all()) add_one(add, area);
+        },
+        read_area},
     Row{{'B', 'E', 'H', 'V'},
         1,
         "mode and goal",
@@ -155,6 +169,7 @@ void lose(ReadSnapshot& read, const Row& row) {
   read.lost.emplace_back(row.name);
   read.authority_lost = read.authority_lost || row.tag == kAuthority;
   read.stops_lost = read.stops_lost || row.tag == kStops;
+  read.areas_lost = read.areas_lost || row.tag == kAreas;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/store/state_file.hpp"
+#include "nav/areas/area_set.hpp"
 #include "robot_agent/command/kept.hpp"
 #include "robot_agent/motion/stored_frames.hpp"
 
@@ -28,6 +29,8 @@ struct KeptBehaviour {
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};  ///< Map frame, m.
   bool goal_on_floor{};                           ///< The goal has no z of its own.
   std::vector<KeptMode> modes{};                  ///< At most Snapshot::kModes, each mode once.
+
+  nav::AreaSet areas{};  ///< Map frame.
 
   /// The bytes that a mode's module stored; null: none.
   const store::Bytes* of(std::string_view module) const;
@@ -56,7 +59,7 @@ struct Snapshot {
 };
 
 /// Version 3: sections (core/store/sections.hpp), see snapshot.cpp. Version 2 is still read.
-inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 3, 16 * 1024};
+inline constexpr store::StateFormat kSnapshotFormat{{'R', 'O', 'B', 'O'}, 3, 24 * 1024};
 
 /// The result of decoding a state file.
 struct ReadSnapshot {
@@ -65,15 +68,16 @@ struct ReadSnapshot {
   std::vector<std::string> lost{};
   std::vector<std::string> unknown{};  ///< Skipped sections of a newer version of this program.
   bool authority_lost{};               ///< Holder, lock and epoch are unknown.
+  bool areas_lost{};                   ///< It is not known where the robot may drive.
   bool stops_lost{};  ///< The stopping stations are unknown: `snapshot` has a stop of "others".
-  bool safe() const { return !authority_lost && !stops_lost; }
+  bool safe() const { return !authority_lost && !stops_lost && !areas_lost; }
 };
 
 /// Returns the snapshot in the form in which it is written and read: bounded, and without invalid values. A
 /// stop whose name is not valid becomes one of "others"; an answer that is not valid is left out.
 Snapshot sanitized(Snapshot snapshot);
 
-/// Encodes the sanitized snapshot, at most 16 kB: decoding gives it back without loss.
+/// Encodes the sanitized snapshot, at most 24 kB: decoding gives it back without loss.
 store::Bytes encode(const Snapshot& snapshot);
 
 /// Decodes the sections that are intact. Returns nothing if the directory of sections cannot be read.

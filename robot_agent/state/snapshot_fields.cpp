@@ -115,6 +115,10 @@ KeptBehaviour sanitized(KeptBehaviour b) {
     b.goal.setZero();
     b.goal_known = b.goal_reached = b.goal_on_floor = false;
   }
+  b.areas = b.areas.only([](const nav::Area& area) {
+    const auto valid = nav::checked(area);
+    return valid && *valid == area;
+  });
   // A module's state that does not fit, or is its second one, is left out: the module starts without it.
   std::vector<KeptMode> modes;
   for (KeptMode& m : b.modes) {
@@ -170,6 +174,25 @@ StoredFrames sanitized(StoredFrames place) {
   const bool is_pose = odom.position.allFinite() && std::fabs(odom.orientation.norm() - 1.0) < 1e-6;
   if (!is_pose) place.newest.reset();
   return place;
+}
+
+void put(Packer& out, const nav::Area& area) {
+  out.text(area.name).put(static_cast<std::uint8_t>(area.kind));
+  for (const double value : {area.z_min, area.z_max, area.weight}) out.put(value);
+  out.put(static_cast<std::uint16_t>(area.corners.size()));
+  for (const Eigen::Vector2d& corner : area.corners) out.put(corner.x()).put(corner.y());
+}
+
+nav::Area area(Unpacker& in) {
+  nav::Area a{};
+  a.name = in.text(kName);
+  a.kind = static_cast<nav::AreaKind>(in.get<std::uint8_t>());
+  for (double* value : {&a.z_min, &a.z_max, &a.weight}) *value = in.number();
+  for (std::size_t left = in.count(nav::Area::kMaxCorners); left > 0; --left) {
+    const double x = in.number();
+    a.corners.emplace_back(x, in.number());
+  }
+  return a;
 }
 
 void put(Packer& out, const KeptMode& mode) {

@@ -13,6 +13,7 @@ void put(store::Packer& out, const KeptAuthority& authority);
 void put(store::Packer& out, const std::vector<Party>& stops);
 void put(store::Packer& out, const KeptBehaviour& behaviour);
 void put(store::Packer& out, const StoredFrames& place);
+void put(store::Packer& out, const nav::Area& area);
 void put(store::Packer& out, const KeptAnswers& from);
 
 /// Unpack one field each; check `in.good()` afterwards. The authority has no stops.
@@ -20,6 +21,7 @@ KeptAuthority authority(store::Unpacker& in);
 std::vector<Party> stops(store::Unpacker& in);
 KeptBehaviour behaviour(store::Unpacker& in);
 StoredFrames place(store::Unpacker& in);
+nav::Area area(store::Unpacker& in);
 KeptAnswers answers(store::Unpacker& in);
 
 // Each returns its argument in the form in which it is written: bounded, and without invalid values. A value

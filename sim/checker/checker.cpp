@@ -31,6 +31,7 @@ struct Checker::WatchedRobot {
     rules[6] = make_no_surprise_rule();
     rules[7] = make_peers_rule();
     rules[8] = make_nothing_lost_rule();
+    rules[9] = make_areas_rule();
   }
   RobotModel model;
   std::array<std::unique_ptr<Rule>, Checker::kNumbers.size()> rules{};  ///< Same order as kNumbers.
@@ -39,15 +40,11 @@ struct Checker::WatchedRobot {
 };
 
 const char* Checker::title(int number) {
-  static constexpr std::array titles{"one holder",
-                                     "locks",
-                                     "no silent refusal",
-                                     "a stop needs no authority",
-                                     "one source",
-                                     "stale means zero",
-                                     "no unexpected motion",
-                                     "peers need permission",
-                                     "lost links"};
+  static constexpr std::array titles{"one holder",           "locks",
+                                     "no silent refusal",    "a stop needs no authority",
+                                     "one source",           "stale means zero",
+                                     "no unexpected motion", "peers need permission",
+                                     "lost links",           "areas are hard limits"};
   return titles.at(static_cast<std::size_t>(number - 1));
 }
 

@@ -45,13 +45,15 @@ enum class Verb {
   mode,   ///< Also `explore`, with that mode as the text.
   go_to,  ///< Also `home`, which has no position.
   query,
-  restart,  ///< Restarts the component named in the text.
-  policy,   ///< Sets the restart policy of a component.
-  plan,     ///< Asks the global planner for a route.
-  pose,     ///< Sets the pose of the robot.
-  join,     ///< Gives the robot its place in a convoy; the words are the names in their order.
-  peeloff,  ///< Takes the robot out of its convoy.
-  unknown   ///< A number that the checker does not know.
+  restart,      ///< Restarts the component named in the text.
+  policy,       ///< Sets the restart policy of a component.
+  plan,         ///< Asks the global planner for a route.
+  pose,         ///< Sets the pose of the robot.
+  join,         ///< Gives the robot its place in a convoy; the words are the names in their order.
+  peeloff,      ///< Takes the robot out of its convoy.
+  area_add,     ///< The words are its name and its kind, the numbers its corners, then two heights.
+  area_remove,  ///< The text is its name.
+  unknown       ///< A number that the checker does not know.
 };
 
 /// The agent's process began to run as that participant of the radio domain.
@@ -87,6 +89,8 @@ struct CommandHeard {
   bool flag{};
   std::optional<std::array<double, 2>> position{};  ///< Goal of goto, map frame, m.
   std::vector<std::string> words{};
+  std::vector<double> numbers{};
+  std::uint16_t options{};  ///< Bit i: option i of the command was given.
 };
 struct JoystickHeard {
   wire::ParticipantId from{};
@@ -180,6 +184,8 @@ struct RobotFacts {
   double max_acceleration{1.0};       ///< m/s2
   double max_turn_acceleration{3.0};  ///< rad/s2
   double lock_lease{300.0};           ///< Lease of a lock, s; 0: it never lapses.
+  double length{}, width{};           ///< Of its footprint, m; 0: not known.
+  bool knows_its_place{};             ///< Its odometry has no error, so its own pose is the true one.
 };
 
 }  // namespace adit::sim

@@ -57,6 +57,10 @@ Verb verb_of(radio::CommandKind kind) {
       return Verb::join;
     case radio::CMD_PEELOFF:
       return Verb::peeloff;
+    case radio::CMD_AREA_ADD:
+      return Verb::area_add;
+    case radio::CMD_AREA_REMOVE:
+      return Verb::area_remove;
   }
   return Verb::unknown;
 }
@@ -84,6 +88,8 @@ Decoded command(std::span<const std::uint8_t> cdr, const wire::ParticipantId& fr
                      c->options() != 0 || (c->words().size() == 2 && c->words().back() == "auto"),
                      {}};
   heard.words = c->words();
+  heard.numbers = c->numbers();
+  heard.options = c->options();
   if (c->kind() == radio::CMD_EXPLORE) heard.text = "explore";
   if (c->numbers().size() >= 2) heard.position = {c->numbers()[0], c->numbers()[1]};
   return DecodedSample{c->robot(), std::move(heard)};

@@ -33,5 +33,6 @@ std::unique_ptr<Rule> make_stale_is_zero_rule();  ///< Rule 6.
 std::unique_ptr<Rule> make_no_surprise_rule();    ///< Rule 7.
 std::unique_ptr<Rule> make_peers_rule();          ///< Rule 8.
 std::unique_ptr<Rule> make_nothing_lost_rule();   ///< Rule 9.
+std::unique_ptr<Rule> make_areas_rule();          ///< Rule 10.
 
 }  // namespace adit::sim

@@ -143,6 +143,18 @@ class KindByPosition final : public RadioInterceptor {
   }
 };
 
+/// Takes areas for places that the robot only prefers.
+class FenceSoft final : public RadioInterceptor {
+ public:
+  using RadioInterceptor::RadioInterceptor;
+  void on_command(const CommandFrom& command, std::vector<Arrival>& out) override {
+    CommandFrom soft = command;
+    if (command.sample.kind() == radio::CMD_AREA_ADD && command.sample.words().size() > 1)
+      soft.sample.words()[1] = "prefer";
+    out.push_back(arrival(soft));
+  }
+};
+
 /// Does not hear other robots of its own name.
 class IgnoresNamesakes final : public Interceptor {
  public:
@@ -210,6 +222,7 @@ Decoration both_namesakes_obey(const Subject& s) {
   decoration.wires = std::make_unique<IgnoresNamesakes>(s.robot);
   return decoration;
 }
+Decoration fence_soft(const Subject& s) { return on_wires<FenceSoft>(s); }
 Decoration kind_by_position(const Subject& s) { return on_wires<KindByPosition>(s); }
 
 }  // namespace decorations

@@ -18,6 +18,7 @@ Decoration enter_off_centre(const Subject& subject);
 Decoration both_namesakes_obey(const Subject& subject);
 Decoration kind_by_position(const Subject& subject);
 Decoration accept_stale_joystick(const Subject& subject);
+Decoration fence_soft(const Subject& subject);
 
 // Of what moves the robot.
 Decoration two_sources(const Subject& subject);

@@ -57,6 +57,7 @@ constexpr std::array kDefects{
     Defect{"findings_deleted_at_start", "rule 9: a start deletes the findings", d::findings_deleted_at_start},
     Defect{"return_forgotten", "rule 9: a return on a nearly empty battery that was refused is not repeated",
            d::return_forgotten},
+    Defect{"fence_soft", "rule 10: areas are accepted, but limit nothing", d::fence_soft},
     Defect{"blind_planner", "plans straight at the goal, through everything", d::blind_planner},
     Defect{"blind_and_unwatched", "the same, and the collision monitor sees nothing either",
            d::blind_and_unwatched},

@@ -137,6 +137,40 @@ std::string mismatch(const GapExpectation& e, const Scenario& scenario, const Ev
   return text;
 }
 
+// The outlines are convex, and so is the rectangle: they are apart if a side of either separates them.
+bool overlaps(const Outline& body, const ExplorationArea& area) {
+  const Outline rectangle{Eigen::Vector2d(area.x0, area.y0), Eigen::Vector2d(area.x1, area.y0),
+                          Eigen::Vector2d(area.x1, area.y1), Eigen::Vector2d(area.x0, area.y1)};
+  const auto reach = [](const Outline& of, const Eigen::Vector2d& along) {
+    std::pair range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Eigen::Vector2d& corner : of)
+      range = {std::min(range.first, corner.dot(along)), std::max(range.second, corner.dot(along))};
+    return range;
+  };
+  for (const Eigen::Vector2d& along :
+       {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(body[0] - body[1]),
+        Eigen::Vector2d(body[1] - body[2])}) {
+    const auto a = reach(body, along), b = reach(rectangle, along);
+    if (a.second <= b.first || b.second <= a.first) return false;
+  }
+  return true;
+}
+
+std::string mismatch(const PlaceExpectation& e, const Scenario& scenario, const Evidence& evidence) {
+  for (const std::string& robot : e.robots) {
+    const Pose2 pose = evidence.pose(robot);
+    const Outline body = outline(*scenario.robot(robot), pose);
+    const bool within = std::all_of(body.begin(), body.end(), [&](const Eigen::Vector2d& c) {
+      return c.x() >= e.area.x0 && c.x() <= e.area.x1 && c.y() >= e.area.y0 && c.y() <= e.area.y1;
+    });
+    if (e.inside ? within : !overlaps(body, e.area)) continue;
+    char text[64];
+    std::snprintf(text, sizeof text, " at %.2f %.2f", pose.x, pose.y);
+    return robot + text;
+  }
+  return {};
+}
+
 std::string mismatch(const StillExpectation& e, std::optional<Eigen::Vector2d>& start,
                      const Evidence& evidence) {
   const Eigen::Vector2d place = evidence.pose(e.robot).position();
@@ -206,6 +240,11 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
     if (const auto* convoy = std::get_if<ConvoyExpectation>(&e.what)) found = mismatch(*convoy, evidence);
     if (const auto* line = std::get_if<InLineExpectation>(&e.what)) found = mismatch(*line, evidence);
     if (const auto* notice = std::get_if<NoticeExpectation>(&e.what)) found = mismatch(*notice, evidence);
+    if (const auto* place = std::get_if<PlaceExpectation>(&e.what)) {
+      found = mismatch(*place, scenario_, evidence);
+      if (!found.empty()) state.result.found = found + " at " + std::to_string(now / 1s) + " s";
+      state.settled = !found.empty();
+    }
     if (e.when == When::always) continue;
     if (e.when == When::during) {
       if (const auto* gap = std::get_if<GapExpectation>(&e.what)) found = mismatch(*gap, scenario_, evidence);

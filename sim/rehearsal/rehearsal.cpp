@@ -22,7 +22,8 @@ std::vector<RobotFacts> facts_of(const Scenario& scenario, const Simulation& sim
   for (std::size_t i = 0; i < simulation.size(); ++i) {
     const Platform& platform = simulation.platform(i);
     out.push_back({simulation.id(i), platform.max_acceleration, platform.max_turn_acceleration,
-                   seconds(scenario.robots[i].settings.lock_lease)});
+                   seconds(scenario.robots[i].settings.lock_lease), platform.length, platform.width,
+                   scenario.noise == 0.0});
   }
   return out;
 }

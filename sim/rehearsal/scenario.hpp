@@ -122,6 +122,12 @@ struct NoticeExpectation {
 struct NoCollision {
   bool caused{};  ///< Only contacts caused by a robot, see Collision.
 };
+/// No part of these robots' outlines ever leaves the rectangle, or enters it.
+struct PlaceExpectation {
+  bool inside{};
+  ExplorationArea area{};
+  std::vector<std::string> robots{};
+};
 /// The share of what can be seen at all that these robots truly saw, see ExplorationTruth.
 struct ExploredExpectation {
   double share{};                         ///< At least, [0, 1].
@@ -142,7 +148,7 @@ struct Expectation {
   Duration time{};  ///< `during`: the end.
   std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
                ExploredExpectation, RepeatExpectation, AtLeast, ConvoyExpectation, InLineExpectation,
-               GapExpectation, StillExpectation, NoticeExpectation>
+               GapExpectation, StillExpectation, NoticeExpectation, PlaceExpectation>
       what{};
   int line{};          ///< In the scenario file.
   std::string text{};  ///< As written.

@@ -46,21 +46,47 @@ void read_robot_expectation(const Node& node, const Scenario& scenario, Expectat
     out.what = state;
 }
 
+ExplorationArea read_area(const Node& node) {
+  if (!node.has("area")) {
+    node.fail(Reason::missing_key, "expected area: [x0, y0, x1, y1]");
+    return {};
+  }
+  const std::vector<double> v = node.numbers("area", 4, 4, config::within(-1e5, 1e5));
+  if (v.size() != 4) return {};
+  if (v[0] >= v[2] || v[1] >= v[3])
+    node.child("area").fail(Reason::bad_argument, "expected [x0, y0, x1, y1] with x0 < x1 and y0 < y1");
+  return {v[0], v[1], v[2], v[3]};
+}
+
+std::vector<std::string> read_named_robots(const Node& node, const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const Node& robot : node.list_if("robots")) {
+    names.push_back(robot.as_text());
+    if (!scenario.robot(names.back()))
+      robot.fail(Reason::unknown_robot, "expected one of the scenario's robots, not " + names.back());
+  }
+  return names;
+}
+
 ExploredExpectation read_explored(const Node& node, const Scenario& scenario) {
   ExploredExpectation out;
   out.share = node.number("explored_at_least", config::within(0.0, 1.0));
-  if (node.has("area")) {
-    const std::vector<double> v = node.numbers("area", 4, 4, config::within(-1e5, 1e5));
-    if (v.size() == 4) out.area = ExplorationArea{v[0], v[1], v[2], v[3]};
-    if (out.area && (v[0] >= v[2] || v[1] >= v[3]))
-      node.child("area").fail(Reason::bad_argument, "expected [x0, y0, x1, y1] with x0 < x1 and y0 < y1");
-  }
-  for (const Node& robot : node.list_if("robots")) {
-    out.robots.push_back(robot.as_text());
-    if (!scenario.robot(out.robots.back()))
-      robot.fail(Reason::unknown_robot, "expected one of the scenario's robots, not " + out.robots.back());
-  }
+  if (node.has("area")) out.area = read_area(node);
+  out.robots = read_named_robots(node, scenario);
   return out;
+}
+
+/// An expectation of what holds all the time.
+void read_always(const Node& node, const Scenario& scenario, Expectation& out) {
+  const auto which = node.choice("always", {"no_collision", "no_collision_caused", "inside", "outside"});
+  if (which < 2) {
+    out.what = NoCollision{which == 1};
+    return;
+  }
+  PlaceExpectation place{which == 2, read_area(node), read_named_robots(node, scenario)};
+  if (place.robots.empty())
+    for (const RobotSpec& robot : scenario.robots) place.robots.push_back(robot.id);
+  out.what = place;
 }
 
 std::vector<std::string> read_robots(const Node& node, const char* key, const Scenario& scenario) {
@@ -103,7 +129,7 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
     return out;
   }
   if (node.has("always")) {
-    out.what = NoCollision{node.choice("always", {"no_collision", "no_collision_caused"}) == 1};
+    read_always(node, scenario, out);
     return out;
   }
   if (node.has("from")) {

@@ -132,6 +132,10 @@ class AgentBench {
     if (kind == radio::CMD_POLICY) c.words().push_back(flag ? "auto" : "manual");
     if (kind == radio::CMD_GOTO || kind == radio::CMD_PLAN) c.numbers({x, y});
     if (kind == radio::CMD_POSE) c.numbers({x, y, 0.0});
+    if (kind == radio::CMD_AREA_ADD) {  // A strip across the robot's way, from x to y.
+      c.words().push_back("keep_out");
+      c.numbers({x, -5.0, y, 5.0});
+    }
     if (kind == radio::CMD_RESET && flag) c.options(1);
     last_command = c;
     (void)op.command.write(c);

@@ -402,5 +402,66 @@ TEST_F(BehaviourTest, ChangesAreTold) {
   EXPECT_EQ(changes, before + 3);
 }
 
+/// A robot at the origin of the map that knows whether areas permit a place.
+class AreasOfBehaviour : public BehaviourTest {
+ protected:
+  AreasOfBehaviour() {
+    Behaviour::Inputs inputs{[this](Time) { return facts; }, [](const Eigen::Vector2d&) { return true; }, {}};
+    inputs.body_permitted = [this](const nav::AreaSet& areas) { return areas.permits({at.x, at.y, 0}); };
+    inputs.goal_permitted = [](const nav::AreaSet& areas, const Eigen::Vector3d& goal) {
+      return areas.permits({goal.x(), goal.y(), 0});
+    };
+    robot.emplace(BehaviourParams{}, Decider::load(source_folder() + "/config/trees/robot.xml").value(), mux,
+                  std::move(inputs), Behaviour::Outputs{[](const Notice&) {}, [this] { ++changes; }});
+    robot->tick(now);
+  }
+  Reason add(const char* name, nav::AreaKind kind, std::vector<Eigen::Vector2d> corners) {
+    const auto added = robot->add_area({.name = name, .kind = kind, .corners = std::move(corners)}, now);
+    return added ? Reason::none : added.reason();
+  }
+  std::optional<Behaviour> robot{};
+};
+
+TEST_F(AreasOfBehaviour, WhatIsMalformedOrForbidsThePlaceOfTheRobotIsRefused) {
+  using enum nav::AreaKind;
+  EXPECT_EQ(add("a", keep_in, {{1, 1}}), Reason::bad_argument);
+  EXPECT_EQ(add("a", keep_out, {{-1, -1}, {1, 1}}), Reason::outside_area);
+  EXPECT_EQ(add("a", keep_in, {{1, 1}, {2, 2}}), Reason::outside_area);
+  EXPECT_TRUE(robot->areas().empty());
+  EXPECT_EQ(add("a", keep_in, {{-1, -1}, {1, 1}}), Reason::none);
+  EXPECT_EQ(add("b", keep_in, {{1, 1}, {2, 2}}), Reason::none) << "they are a union";
+  EXPECT_EQ(add("c", prefer, {{5, 5}, {6, 6}}), Reason::none);
+  EXPECT_EQ(robot->remove_area("d", now).reason(), Reason::bad_argument);
+  EXPECT_EQ(robot->remove_area("c", now).reason(), Reason::none);
+  EXPECT_EQ(robot->view().areas.all().size(), 2U);
+}
+
+TEST_F(AreasOfBehaviour, AreReportedAndStored) {
+  const int before = changes;
+  ASSERT_EQ(add("shaft", nav::AreaKind::keep_out, {{5, 5}, {6, 6}}), Reason::none);
+  EXPECT_GT(changes, before);
+  EXPECT_TRUE(robot->view().areas.find("shaft"));
+  const KeptBehaviour kept = robot->kept();
+  EXPECT_TRUE(kept.areas.find("shaft"));
+  ASSERT_TRUE(robot->remove_area("shaft", now));
+  robot->restore(kept, false, true);
+  EXPECT_TRUE(robot->areas().find("shaft"));
+}
+
+TEST_F(AreasOfBehaviour, AGoalOutsideIsRefusedAlsoAStoredOne) {
+  ASSERT_TRUE(robot->request_goal({7, 0, 0}, now));
+  ASSERT_TRUE(robot->request_mode("hold", now));
+  ASSERT_EQ(add("west", nav::AreaKind::keep_in, {{-5, -5}, {5, 5}}), Reason::none);
+  EXPECT_EQ(robot->request_goal({8, 0, 0}, now).reason(), Reason::outside_area);
+  EXPECT_EQ(robot->request_goal({4, 0, std::nan("")}, now).reason(), Reason::none);
+  ASSERT_TRUE(robot->request_mode("hold", now));
+  ASSERT_TRUE(robot->remove_area("west", now));
+  ASSERT_TRUE(robot->request_goal({7, 0, 0}, now));
+  robot->stop_changed(true, now);
+  robot->stop_changed(false, now);
+  ASSERT_EQ(add("west", nav::AreaKind::keep_in, {{-5, -5}, {5, 5}}), Reason::none);
+  EXPECT_EQ(robot->request_mode("waypoint", now).reason(), Reason::outside_area);
+}
+
 }  // namespace
 }  // namespace adit::agent

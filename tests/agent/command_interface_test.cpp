@@ -424,5 +424,25 @@ TEST(CommandInterface, PoseIsSetByTheHolderWhereTheBehaviourAllowsIt) {
   EXPECT_EQ(bench.requests.pose.x, 1.0);
 }
 
+TEST(CommandInterface, AreasReachTheRobotAsTheyWereTyped) {
+  CommandBench bench;
+  EXPECT_EQ(bench.say("op1", "area add shaft keep_out 0 0 4 2").reason, Reason::nobody_holds);
+  ASSERT_TRUE(bench.say("op1", "take").accepted());
+  EXPECT_EQ(bench.say("op1", "area add shaft prefer 0 0 4 0 4 4 --z -1 2.5 --weight 3").reason, Reason::none);
+  const nav::Area& area = bench.requests.area;
+  EXPECT_EQ(area.name, "shaft");
+  EXPECT_EQ(area.kind, nav::AreaKind::prefer);
+  EXPECT_EQ(area.corners, (std::vector<Eigen::Vector2d>{{0, 0}, {4, 0}, {4, 4}}));
+  EXPECT_EQ(area.z_min, -1.0);
+  EXPECT_EQ(area.z_max, 2.5);
+  EXPECT_EQ(area.weight, 3.0);
+  EXPECT_EQ(bench.say("op1", "area add b keep_in 0 0 1 1").reason, Reason::none);
+  EXPECT_EQ(area.kind, nav::AreaKind::keep_in);
+  EXPECT_EQ(area.weight, 1.0);
+  EXPECT_FALSE(std::isfinite(area.z_min) || std::isfinite(area.z_max));
+  EXPECT_EQ(bench.say("op1", "area remove b").reason, Reason::none);
+  EXPECT_EQ(bench.requests.calls.back(), "no area b");
+}
+
 }  // namespace
 }  // namespace adit::agent

@@ -57,6 +57,46 @@ TEST(Convert, ARouteOfAnyLengthFitsItsTopic) {
 }
 
 // A name that is cut must not become the valid name of another station.
+TEST(Convert, AreasOfAnySizeFitTheirTopics) {
+  const std::string name(32, 'n');
+  BehaviourView view{};
+  view.mode = "smart_joystick";
+  view.convoy.assign(8, name);
+  view.exploration.state = ExplorationState::exploring;
+  for (int i = 10; i < 26; ++i) {
+    nav::Area area{.name = std::string(30, 'a') + std::to_string(i), .kind = nav::AreaKind::keep_out};
+    for (int k = 0; k < 16; ++k)
+      area.corners.emplace_back(20 * std::cos(k * M_PI / 8), 20 * std::sin(k * M_PI / 8));
+    ASSERT_TRUE(view.areas.add(nav::checked(area).value()));
+  }
+  const auto state = to_radio(view, std::vector<ModeOption>(16, {"smart_joystick", Reason::stopped}), name);
+  EXPECT_LE(encoded(state), wire::topics::kBehaviour.max_bytes);
+  ASSERT_EQ(state.areas().size(), 16U);
+  EXPECT_EQ(state.areas()[3].corners().size(), 32U);
+  EXPECT_EQ(state.areas()[3].kind(), radio::AREA_KEEP_OUT);
+  EXPECT_EQ(state.areas()[3].corners()[0], 20.0F);
+
+  const std::string corner = " -1234.567 1234.567";
+  std::string line = "area r1 add " + name + " keep_out";
+  for (int k = 0; k < 16; ++k) line += corner;
+  const auto request = command::parse(line + " --z -1 2.5 --weight 3");
+  ASSERT_TRUE(request) << request.error().text;
+  const command::Payload payload = command::pack(*request);
+  radio::Command command;
+  command.robot(name);
+  command.station(name);
+  command.kind(radio::CMD_AREA_ADD);
+  command.words(payload.words);
+  command.numbers(payload.numbers);
+  command.options(payload.options);
+  EXPECT_LE(encoded(command), wire::topics::kCommand.max_bytes);
+  const Command read = from_radio(command, {});
+  EXPECT_FALSE(read.invalid) << read.invalid->text;
+  EXPECT_EQ(read.request.numbers("X Y").size(), 32U);
+  EXPECT_EQ(read.request.numbers("--z"), (std::vector<double>{-1, 2.5}));
+  EXPECT_EQ(read.request.number("--weight"), 3.0);
+}
+
 TEST(Convert, OverlongNamesAreBoundedAndStayInvalid) {
   radio::Command command;
   command.station(std::string(200, 'n'));

@@ -37,10 +37,14 @@ class ExploreModeTest : public testing::Test {
   Behaviour::Inputs inputs() {
     Behaviour::Inputs in{[this](Time) { return facts; }, [](const Eigen::Vector2d&) { return true; }};
     in.pose = [this] { return std::optional(at); };
-    in.explore = [this](bool blocked, bool begins, auto done) {
-      blocks += blocked;
-      begun += begins;
-      done(answer);
+    in.explore = [this](const NextPlaceQuery& asked, auto done) {
+      blocks += asked.blocked;
+      begun += asked.begins;
+      area = asked.area;
+      if (refusal == Reason::none)
+        done(answer);
+      else
+        done({refusal, "its area was removed"});
     };
     in.holder_heard = [this] { return heard; };
     in.home = Eigen::Vector2d(1, 2);
@@ -55,6 +59,8 @@ class ExploreModeTest : public testing::Test {
   bool heard{true};
   int blocks{}, begun{};
   nav::ExploreStep answer{};
+  std::string area{};
+  Reason refusal{Reason::none};
   Behaviour behaviour{{},
                       Decider::load(source_folder() + "/config/trees/robot.xml").value(),
                       mux,
@@ -168,6 +174,40 @@ TEST_F(ExploreModeTest, GoesOnAfterARestart) {
   behaviour.restore(done, false, true);
   run(1s);
   EXPECT_EQ(state(), ExplorationState::done);
+}
+
+TEST_F(ExploreModeTest, AnAreaToExploreMustExistAndLeaveRoom) {
+  using enum nav::AreaKind;
+  const auto add = [this](const char* name, nav::AreaKind kind, std::vector<Eigen::Vector2d> corners) {
+    ASSERT_TRUE(behaviour.add_area({.name = name, .kind = kind, .corners = std::move(corners)}, now));
+  };
+  EXPECT_EQ(behaviour.request_explore({.area = "west"}, now).reason(), Reason::bad_argument);
+  add("west", prefer, {{0, 0}, {10, 10}});
+  add("shaft", keep_out, {{20, 0}, {30, 10}});
+  add("in_shaft", prefer, {{22, 2}, {28, 8}});
+  EXPECT_EQ(behaviour.request_explore({.area = "shaft"}, now).reason(), Reason::outside_area);
+  EXPECT_EQ(behaviour.request_explore({.area = "in_shaft"}, now).reason(), Reason::outside_area);
+  ASSERT_TRUE(behaviour.request_explore({.area = "west"}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  EXPECT_EQ(area, "west");
+}
+
+TEST_F(ExploreModeTest, TheAreaToExploreSurvivesARestartAndEndsTheExplorationWhenItIsRemoved) {
+  ASSERT_TRUE(behaviour.add_area(
+      {.name = "west", .kind = nav::AreaKind::prefer, .corners = {{0, 0}, {10, 10}}}, now));
+  ASSERT_TRUE(behaviour.request_explore({.after = AfterExploring::wait, .area = "west"}, now));
+  see(nav::ExploreState::exploring, Eigen::Vector3d(8, 5, 0));
+  const KeptBehaviour kept = behaviour.kept();
+  ASSERT_TRUE(behaviour.request_explore({}, now));
+  behaviour.restore(kept, false, true);
+  area.clear();
+  run(1s);
+  EXPECT_EQ(area, "west");
+  refusal = Reason::outside_area;
+  run(1s);
+  EXPECT_EQ(state(), ExplorationState::ended);
+  EXPECT_EQ(behaviour.view().exploration.reason, Reason::outside_area);
+  EXPECT_EQ(behaviour.view().mode, "hold");
 }
 
 }  // namespace

@@ -32,6 +32,15 @@ struct FakeRequests : Requests {
     calls.push_back("explore");
     return {};
   }
+  Result<void> add_area(const nav::Area& asked, Time) override {
+    area = asked;
+    calls.push_back("area");
+    return {};
+  }
+  Result<void> remove_area(const std::string& name, Time) override {
+    calls.push_back("no area " + name);
+    return {};
+  }
   Result<void> join_convoy(const ConvoyOrder& order, Time) override {
     convoy = order;
     calls.push_back("join");
@@ -60,6 +69,7 @@ struct FakeRequests : Requests {
   bool takes_stick{true};
   bool holds{true};
   ExploreRequest exploration{};  ///< The last one requested.
+  nav::Area area{};              ///< The last one added.
   ConvoyOrder convoy{};          ///< The last one joined.
   Pose2 pose{};                  ///< The last one set.
   std::vector<std::string> calls{};

@@ -86,6 +86,19 @@ TEST_F(Restore, AForgerWhoSpeaksFirstAfterAKillIsNotTheHolder) {
   EXPECT_EQ(bench->ask(*op1, CMD_UNLOCK), Reason::none) << "the real one is still the holder";
 }
 
+TEST_F(Restore, AreasSurviveAndStillBind) {
+  ASSERT_EQ(bench->ask(*op1, CMD_TAKE), Reason::none);
+  ASSERT_EQ(bench->ask(*op1, CMD_AREA_ADD, "shaft", 20, 25), Reason::none);
+  ASSERT_EQ(op1->behaviour.areas().size(), 1U);
+  crash();
+  bench->run(2s);
+  ASSERT_EQ(op1->behaviour.areas().size(), 1U);
+  EXPECT_EQ(op1->behaviour.areas()[0].name(), "shaft");
+  EXPECT_THAT(notice(*op1, "restarted"), HasSubstr("1 area"));
+  EXPECT_EQ(bench->ask(*op1, CMD_GOTO, "", 22, 0), Reason::outside_area);
+  EXPECT_EQ(bench->ask(*op1, CMD_GOTO, "", 10, 0), Reason::none);
+}
+
 TEST_F(Restore, TheOldEpochNoLongerCounts) {
   take_lock_and_go();
   const auto before = op1->authority;

@@ -24,6 +24,15 @@ Id id_of(char c) {
   return id;
 }
 
+nav::Area area_of(const std::string& name, std::size_t corners) {
+  nav::Area area{.name = name, .kind = nav::AreaKind::keep_out, .z_max = 4.5, .weight = 2.5};
+  for (std::size_t i = 0; i < corners; ++i) {
+    const double bearing = 2 * M_PI * static_cast<double>(i) / static_cast<double>(corners);
+    area.corners.emplace_back(20 * std::cos(bearing), 20 * std::sin(bearing));
+  }
+  return area;
+}
+
 Snapshot full() {
   Snapshot s;
   s.authority = {{77, 12},
@@ -32,6 +41,7 @@ Snapshot full() {
                  true,
                  {{"op2", id_of('b')}, {"others", Id{}}}};
   s.behaviour = {"waypoint", Reason::stopped, true, false, 9, {1.5, -2, 0.25}, true};
+  EXPECT_TRUE(s.behaviour.areas.add(area_of("shaft", 5)));
   s.boot = 0x1122334455667788;
   s.battery = 2;
   s.place = StoredFrames{{4, -3, 1.5},
@@ -51,10 +61,11 @@ Snapshot full() {
   return s;
 }
 
-/// Version 2 had no place.
+/// Version 2 had no place and no areas.
 Snapshot without_place() {
   Snapshot s = full();
   s.place.reset();
+  s.behaviour.areas = {};
   return s;
 }
 
@@ -66,6 +77,9 @@ Snapshot largest() {
   s.answers.front().newest = std::numeric_limits<std::uint64_t>::max();
   s.answers.front().answers.assign(8, {1'000'000, Reason::locked, std::string(64, 't')});
   s.answers.assign(8, s.answers.front());
+  s.behaviour.areas = {};
+  for (int i = 10; i < 26; ++i)
+    EXPECT_TRUE(s.behaviour.areas.add(area_of(std::string(30, 'a') + std::to_string(i), 16)));
   return s;
 }
 
@@ -139,6 +153,13 @@ Snapshot hostile(Random& random) {
                  static_cast<std::uint32_t>(random.next()),
                  {hostile_number(random), hostile_number(random), hostile_number(random)},
                  random.chance(0.5)};
+  for (std::uint64_t n = random.below(20); n > 0; --n) {
+    nav::Area area{.name = hostile_text(random), .kind = static_cast<nav::AreaKind>(random.below(5))};
+    if (random.chance(0.5)) area = area_of("a" + std::to_string(n), 3 + random.below(20));
+    if (random.chance(0.5)) area.corners.emplace_back(hostile_number(random), hostile_number(random));
+    if (random.chance(0.3)) area.z_min = hostile_number(random);
+    (void)s.behaviour.areas.add(area);
+  }
   for (std::uint64_t n = random.below(12); n > 0; --n)
     s.behaviour.modes.push_back(
         {random.chance(0.5) ? "orbit" : hostile_text(random), store::Bytes(random.below(600), 7)});
@@ -240,6 +261,19 @@ TEST(Snapshot, without_its_stops_counts_as_stopped) {
   EXPECT_EQ(read->snapshot.authority.holder, full().authority.holder);
 }
 
+TEST(Snapshot, without_one_of_its_areas_is_not_safe) {
+  auto list = store::unpack_sections(encode(full()));
+  const auto at = std::find_if(list.good.begin(), list.good.end(), [](const store::Section& section) {
+    return section.tag == store::SectionTag{'A', 'R', 'E', 'A'};
+  });
+  ASSERT_NE(at, list.good.end());
+  at->payload.back() ^= 1;  // A corner that is no place any more.
+  const auto read = decode_snapshot(store::pack_sections(list.good));
+  ASSERT_TRUE(read);
+  EXPECT_THAT(read->lost, ElementsAre("an area"));
+  EXPECT_FALSE(read->safe()) << "it is not known where the robot may drive";
+}
+
 TEST(Snapshot, skips_sections_that_it_does_not_know) {
   auto list = store::unpack_sections(encode(full()));
   list.good.push_back({{'C', 'O', 'N', 'V'}, 1, {1, 2, 3}});
@@ -282,7 +316,7 @@ TEST(Snapshot, of_version_2_with_an_overlong_name_loses_the_answers_alone) {
   ASSERT_TRUE(read);
   EXPECT_THAT(read->lost, ElementsAre("answers to a station"));
   EXPECT_EQ(read->snapshot.authority, full().authority);
-  EXPECT_EQ(read->snapshot.behaviour, full().behaviour);
+  EXPECT_EQ(read->snapshot.behaviour, without_place().behaviour);
 }
 
 TEST(Snapshot, takes_any_bytes) {
@@ -393,8 +427,8 @@ TEST_F(RestoreTest, ADamagedByteAnywhereInTheFileLosesOneEntryAtMost) {
               r.text.find("every") == std::string::npos ? 0 : 1)
         << r.text;
     EXPECT_EQ(disk->read(r.preserved).value(), bent);
-    EXPECT_EQ(r.hold,
-              r.text.find("stops") != std::string::npos || r.text.find("authority") != std::string::npos);
+    const auto lost = [&r](const char* entry) { return r.text.find(entry) != std::string::npos; };
+    EXPECT_EQ(r.hold, lost("stops") || lost("authority") || lost("an area"));
   }
 }
 

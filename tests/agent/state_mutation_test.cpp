@@ -66,6 +66,9 @@ Snapshot some_state() {
                  true,
                  {{"op2", {}}, {"op3", {}}}};
   s.behaviour.goal_known = true;
+  for (const char* name : {"west", "shaft"})
+    (void)s.behaviour.areas.add(
+        nav::checked({.name = name, .kind = nav::AreaKind::keep_out, .corners = {{1, 2}, {3, 4}}}).value());
   s.boot = 5;
   KeptAnswers a;
   a.station = "op1";

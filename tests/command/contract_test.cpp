@@ -38,8 +38,8 @@ TEST(CommandTable, NumbersAreThoseThatTheContractNames) {
   int number = 0;
   for (std::size_t at = begin; (at = idl.find("CMD_", at)) < end; ++number) {
     std::string word;
-    for (at += 4; std::isalpha(static_cast<unsigned char>(idl[at])) != 0; ++at)
-      word += static_cast<char>(std::tolower(static_cast<unsigned char>(idl[at])));
+    for (at += 4; std::isalpha(static_cast<unsigned char>(idl[at])) != 0 || idl[at] == '_'; ++at)
+      word += idl[at] == '_' ? ' ' : static_cast<char>(std::tolower(static_cast<unsigned char>(idl[at])));
     const CommandInfo* row = find_number(number);
     ASSERT_NE(row, nullptr) << word;
     EXPECT_EQ(row->name, word);

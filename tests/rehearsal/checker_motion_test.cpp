@@ -34,6 +34,54 @@ TEST(CheckerMotion, AVelocityAfterAJumpOfTheOdometryNeedsANewRequest) {
   EXPECT_THAT(r.broken(), ElementsAre(7)) << r.texts();
 }
 
+CommandHeard add_area(Record& r, const char* kind, std::vector<double> corners) {
+  CommandHeard c{participant(1), "op1", station_id(1), r.start, r.epoch, ++r.sequence, Verb::area_add, "a"};
+  c.words = {"a", kind};
+  c.numbers = std::move(corners);
+  r.see(c);
+  return c;
+}
+
+void drive_to(Record& r, double x) {
+  for (; r.pose.x < x; r.pose.x += 0.02) r.pass(40ms, kForward);
+}
+
+TEST(CheckerMotion, AnAutonomousModeThatLeavesItsAreas) {
+  Record r;
+  r.take(1);
+  r.answer(add_area(r, "keep_in", {-3, -3, 3, 3}));
+  r.enter("waypoint");
+  drive_to(r, 2.6);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+  drive_to(r, 2.8);
+  EXPECT_THAT(r.broken(), ElementsAre(10)) << r.texts();
+}
+
+TEST(CheckerMotion, AnAreaThatWasRefusedBindsNobody) {
+  Record r;
+  r.take(1);
+  r.answer(add_area(r, "keep_out", {2, -3, 5, 3}), Reason::outside_area);
+  r.enter("waypoint");
+  drive_to(r, 3.0);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerMotion, AManualModeMayLeaveTheAreasAndAnAutonomousOneComesBack) {
+  Record r;
+  r.take(1);
+  r.answer(add_area(r, "keep_in", {-3, -3, 3, 3}));
+  r.pose.x = 2.0;
+  r.pass(500ms, kStill, &kStill);
+  r.enter("manual");
+  for (; r.pose.x < 3.5; r.pose.x += 0.02) r.pass(40ms, kForward, &kForward);
+  r.pass(300ms, kStill, &kStill);
+  r.enter("waypoint");
+  for (; r.pose.x > 2.0; r.pose.x -= 0.02) r.pass(40ms, {-0.5, 0, 0});
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+  drive_to(r, 3.0);
+  EXPECT_THAT(r.broken(), ElementsAre(10)) << r.texts();
+}
+
 TEST(CheckerMotion, VelocityInHold) {
   Record r;
   r.take(1);

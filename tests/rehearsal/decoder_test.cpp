@@ -33,14 +33,15 @@ CommandHeard heard(radio::CommandKind kind) {
 
 TEST(RadioDecoder, CommandsAreDecodedAsWhatTheyAre) {
   const std::vector<std::pair<radio::CommandKind, Verb>> kinds{
-      {radio::CMD_TAKE, Verb::take},       {radio::CMD_RELEASE, Verb::release},
-      {radio::CMD_LOCK, Verb::lock},       {radio::CMD_UNLOCK, Verb::unlock},
-      {radio::CMD_GRANT, Verb::grant},     {radio::CMD_STOP, Verb::stop},
-      {radio::CMD_RESET, Verb::reset},     {radio::CMD_MODE, Verb::mode},
-      {radio::CMD_GOTO, Verb::go_to},      {radio::CMD_QUERY, Verb::query},
-      {radio::CMD_RESTART, Verb::restart}, {radio::CMD_POLICY, Verb::policy},
-      {radio::CMD_PLAN, Verb::plan},       {radio::CMD_HOME, Verb::go_to},
-      {radio::CMD_POSE, Verb::pose},       {radio::CMD_EXPLORE, Verb::mode}};
+      {radio::CMD_TAKE, Verb::take},         {radio::CMD_RELEASE, Verb::release},
+      {radio::CMD_LOCK, Verb::lock},         {radio::CMD_UNLOCK, Verb::unlock},
+      {radio::CMD_GRANT, Verb::grant},       {radio::CMD_STOP, Verb::stop},
+      {radio::CMD_RESET, Verb::reset},       {radio::CMD_MODE, Verb::mode},
+      {radio::CMD_GOTO, Verb::go_to},        {radio::CMD_QUERY, Verb::query},
+      {radio::CMD_RESTART, Verb::restart},   {radio::CMD_POLICY, Verb::policy},
+      {radio::CMD_PLAN, Verb::plan},         {radio::CMD_HOME, Verb::go_to},
+      {radio::CMD_POSE, Verb::pose},         {radio::CMD_EXPLORE, Verb::mode},
+      {radio::CMD_AREA_ADD, Verb::area_add}, {radio::CMD_AREA_REMOVE, Verb::area_remove}};
   for (const auto& [kind, verb] : kinds) EXPECT_EQ(heard(kind).verb, verb) << kind;
   EXPECT_EQ(heard(radio::CMD_RESTART).text, "planner");
   EXPECT_EQ(heard(radio::CMD_EXPLORE).text, "explore");

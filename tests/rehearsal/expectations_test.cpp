@@ -175,5 +175,33 @@ TEST(Expectations, RunThatEndsBeforeIsAFailure) {
   EXPECT_EQ(c.finish().found, "the run ended before");
 }
 
+// The outline of r1 is 0.6 x 0.5 m.
+TEST(Expectations, AlwaysInsideIsTheWholeOutline) {
+  Case c({When::always, 0s, PlaceExpectation{true, {0, 0, 4, 4}, {"r1"}}, 1, ""});
+  c.pose = {3.6, 2, 0};
+  c.expectations->judge(1s, c.evidence);
+  EXPECT_TRUE(c.finish().ok);
+  c.pose = {3.71, 2, 0};
+  c.expectations->judge(2s, c.evidence);
+  c.pose = {1, 1, 0};
+  c.expectations->judge(3s, c.evidence);
+  const ExpectationResult result = c.finish();
+  EXPECT_FALSE(result.ok);
+  EXPECT_EQ(result.found, "r1 at 3.71 2.00 at 2 s");
+}
+
+TEST(Expectations, AlwaysOutsideIsTheWholeOutline) {
+  for (const auto& [pose, ok] : {std::pair{Pose2{4.31, 2, 0}, true},
+                                 {Pose2{4.29, 2, 0}, false},
+                                 {Pose2{2, 2, 0}, false},
+                                 {Pose2{4.2, 4.2, M_PI / 4}, false},
+                                 {Pose2{4.3, 4.3, M_PI / 4}, true}}) {
+    Case c({When::always, 0s, PlaceExpectation{false, {0, 0, 4, 4}, {"r1"}}, 1, ""});
+    c.pose = pose;
+    c.expectations->judge(1s, c.evidence);
+    EXPECT_EQ(c.finish().ok, ok) << pose.x << " " << pose.y;
+  }
+}
+
 }  // namespace
 }  // namespace adit::sim

@@ -26,5 +26,38 @@ TEST(Explore, SeesAllThatCanBeReachedAlthoughItsAgentDies) {
   EXPECT_GT(report.exploration->share, 0.97) << "done is never said too early";
 }
 
+// The areas survive the death of the agent. Rule 10 is always expected.
+TEST(AreasRehearsal, ARobotThatWasDrivenOutByHandComesBackAndStaysWithin) {
+  const RunReport report = run_text(
+      "world: {boxes: [], floor: 0, ceiling: 3}\nodometry: {noise: 0}\nduration: 48\nlink: wifi\n"
+      "lidar: planar\nrobots: [{id: r1, platform: wheeled, pose: [0, 0, 0]}]\n"
+      "basestations: [{id: op1, pose: [0, 3]}]\n"
+      "script:\n"
+      "  - {at: 1, by: op1, do: take r1}\n"
+      "  - {at: 2, by: op1, do: area r1 add west keep_in -5 -5 5 5}\n"
+      "  - {at: 2.5, by: op1, do: area r1 add here keep_out -1 -1 1 1}\n"
+      "  - {at: 3, by: op1, do: drive r1 1 0 0 --for 8}\n"
+      "  - {at: 12, by: op1, do: goto r1 8 0}\n"
+      "  - {at: 13, by: op1, do: goto r1 0 0}\n"
+      "  - {at: 26, by: op1, do: goto r1 4.9 0}\n"
+      "  - {at: 27, by: op1, do: goto r1 4.4 0}\n"
+      "  - {at: 36, by: op1, do: goto r1 9 0}\n"
+      "  - {at: 38, by: op1, do: area r1 remove west}\n"
+      "  - {at: 39, by: op1, do: goto r1 9 0}\n"
+      "faults: [{at: 17, crash: r1}]\n"
+      "expect:\n"
+      "  - {at: 2.9, by_operator: op1, refused: outside_area}\n"
+      "  - {at: 11.5, robot: r1, near: [8, 0, 1.5]}\n"
+      "  - {by: 12, by_operator: op1, notified: outside_area, robot: r1}\n"
+      "  - {at: 12.5, by_operator: op1, refused: outside_area}\n"
+      "  - {by: 25, robot: r1, near: [0, 0, 0.4]}\n"
+      "  - {at: 26.5, by_operator: op1, refused: outside_area}\n"
+      "  - {by: 35, robot: r1, near: [4.4, 0, 0.4]}\n"
+      "  - {at: 36.5, by_operator: op1, refused: outside_area}\n"
+      "  - {by: 47, robot: r1, near: [9, 0, 0.5]}\n",
+      "areas.yaml");
+  for (const std::string& line : report.complaints()) ADD_FAILURE() << line;
+}
+
 }  // namespace
 }  // namespace adit::sim

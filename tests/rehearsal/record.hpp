@@ -14,7 +14,7 @@ inline StationId station_id(int n) { return {static_cast<std::uint8_t>(n)}; }
 /// second, a state 10 times a second; op1 and op2 (participants and ids 1 and 2) are heard once a second.
 class Record {
  public:
-  Record() : checker_({{"r1", 1.5, 3.0, 20.0}}) {
+  Record() : checker_({{"r1", 1.5, 3.0, 20.0, 0.6, 0.5, true}}) {
     see(AgentStarted{participant(100)});
     see(VelocitySent{});
     see(ScanHeard{});
@@ -36,7 +36,7 @@ class Record {
       if (stick && now % 50ms == 0ns) push(1, *stick);
       if (now % 50ms == 0ns && driven) see(VelocitySent{velocity});
       if (now % 20ms == 0ns) {
-        see(Motion{{}, moving});
+        see(Motion{pose, moving});
         checker_.advance(now);
       }
     }
@@ -123,6 +123,7 @@ class Record {
   Authority authority{};
   std::vector<Latch> stops{};
   Twist2 moving{};
+  Pose2 pose{};  ///< The true one.
   bool driven{true};
   bool stations{true};
   bool seeing{true};       ///< Its lidar gives scans.

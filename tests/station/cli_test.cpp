@@ -75,7 +75,7 @@ TEST_F(Cli, HelpOfTheProgramAndOfEachCommand) {
   EXPECT_EQ(all.exit_code, 0);
   for (const command::CommandInfo& command : command::table()) {
     if (command.runs == command::Runs::nobody) continue;
-    EXPECT_THAT(all.out, HasSubstr("  " + std::string(command.name)));
+    EXPECT_THAT(all.out, HasSubstr("  " + std::string(command.first_word())));
     std::vector<std::string> words;  // A name may be two of them, as in "convoy start".
     std::istringstream name{std::string(command.name)};
     for (std::string word; name >> word;) words.push_back(word);

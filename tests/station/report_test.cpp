@@ -70,6 +70,42 @@ TEST(Report, StatusSaysHowLargeARobotIsAndWhatItClimbs) {
   EXPECT_TRUE(json["climbs_stairs"].get<bool>());
 }
 
+TEST(Report, StatusNamesTheAreasOfARobotAndNoMalformedOnes) {
+  Fleet fleet("op1", {1});
+  radio::BehaviourState sample;
+  sample.robot("r1");
+  const auto add = [&](const std::string& name, std::vector<float> corners, int kind, float z_min) {
+    radio::Area area;
+    area.name(name);
+    area.kind(static_cast<radio::AreaKind>(kind));
+    area.z_min(z_min);
+    area.z_max(std::numeric_limits<float>::infinity());
+    area.weight(2.5F);
+    area.corners(std::move(corners));
+    sample.areas().push_back(area);
+  };
+  const std::vector<float> triangle{0, 0, 4, 0, 4, 4.25F};
+  const float anywhere = -std::numeric_limits<float>::infinity(), no_number = std::nanf("");
+  add("shaft", triangle, 1, anywhere);
+  add("hall", triangle, 2, 1.0F);
+  add("no name\n", triangle, 1, anywhere);
+  add("no_kind", triangle, 7, anywhere);
+  add("no_corners", {0, 0, 1}, 1, anywhere);
+  add("no_number", {0, 0, 4, no_number, 4, 4}, 1, anywhere);
+  add("no_height", triangle, 1, no_number);
+  fleet.hear(sample, {.received = Time(1s)});
+  const std::string text = status_text(fleet, *fleet.robot("r1"), Time(1s));
+  EXPECT_THAT(text, HasSubstr("  area     shaft keep_out, 0.0 0.0, 4.0 0.0, 4.0 4.2\n"));
+  EXPECT_THAT(text, HasSubstr("  area     hall prefer weight 2.5, 0.0 0.0, 4.0 0.0, 4.0 4.2, from z 1.0\n"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("no_")));
+  const auto json = robot_json(fleet, *fleet.robot("r1"), Time(1s));
+  ASSERT_EQ(json["areas"].size(), 2U);
+  EXPECT_EQ(json["areas"][0]["kind"], "keep_out");
+  EXPECT_EQ(json["areas"][0]["corners"][1][0], 4.0);
+  EXPECT_FALSE(json["areas"][0].contains("z_min"));
+  EXPECT_EQ(json["areas"][1]["z_min"], 1.0);
+}
+
 TEST(Report, StatusSaysThatTheStationBringsTheStick) {
   Fleet fleet("op1", {1});
   radio::BehaviourState sample;

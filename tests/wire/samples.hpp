@@ -76,6 +76,9 @@ inline std::vector<Example> examples() {
   behaviour.robot("r1");
   behaviour.modes().resize(4);
   behaviour.modes()[3].mode("waypoint");
+  behaviour.areas().resize(2);
+  behaviour.areas()[1].name("shaft");
+  behaviour.areas()[1].corners({0.0F, 0.0F, 4.0F, 0.0F, 4.0F, 4.0F});
   all.push_back(example(topics::kBehaviour, behaviour));
   radio::Notification notification;
   notification.robot("r1");

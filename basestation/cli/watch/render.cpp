@@ -182,6 +182,10 @@ void detail(Page& page, const json& snapshot, const WatchState& state) {
     const std::string reason = text(robot, "reason");
     if (reason != "none" && !reason.empty() && stops.empty())
       cells.push_back({"does not move: " + reason + "  ", kYellow});
+    std::string areas;
+    for (const json& area : robot.value("areas", json::array()))
+      areas += (areas.empty() ? "" : ", ") + text(area, "name") + " " + text(area, "kind");
+    if (!areas.empty()) cells.push_back({"areas: " + areas + "  ", kCyan});
     if (const auto explored = robot.find("exploration"); explored != robot.end())
       cells.push_back({text(*explored, "state") + " about " + fixed(100.0 * number(*explored, "share"), 0) +
                            "%, " + fixed(number(*explored, "open"), 0) + " frontiers left  ",

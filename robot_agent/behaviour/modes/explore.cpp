@@ -98,11 +98,15 @@ void ExploreMode::ask(Time now) {
     blocked_since_.reset();
   }
   asked_ = last_asked_ = now;
-  context_.explore(blocked, begins_, [this, run = run_](const Result<nav::ExploreStep>& step) {
-    if (run != run_) return;
-    asked_.reset();
-    if (step) answered(*step);
-  });
+  context_.explore({blocked, begins_, request_.area},
+                   [this, run = run_](const Result<nav::ExploreStep>& step) {
+                     if (run != run_) return;
+                     asked_.reset();
+                     if (step)
+                       answered(*step);
+                     else if (step.reason() == Reason::outside_area)
+                       conclude(Reason::outside_area, step.error().text);
+                   });
 }
 
 void ExploreMode::answered(const nav::ExploreStep& step) {
@@ -201,6 +205,7 @@ void ExploreMode::store(KeptBehaviour& kept) const {
                                        .flag(complete_)
                                        .put(static_cast<std::uint16_t>(why_))
                                        .put(request_.limit)
+                                       .text(request_.area)
                                        .bytes()});
 }
 
@@ -215,9 +220,11 @@ void ExploreMode::restore(const KeptBehaviour& kept) {
   const bool complete = in.flag();
   const auto why = in.get<std::uint16_t>();
   const double limit = in.number();
+  std::string area;
+  if (!in.done()) area = in.text(32);  // An earlier version wrote none.
   if (!in.done() || state > static_cast<std::uint8_t>(ExplorationState::ended) || after > 2 || !(limit > 0))
     return;
-  request_ = {static_cast<AfterExploring>(after), limit};
+  request_ = {static_cast<AfterExploring>(after), limit, area};
   begin();
   const auto was = static_cast<ExplorationState>(state);
   if (was != ExplorationState::done && was != ExplorationState::ended && was != ExplorationState::reporting)

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "nav/areas/area_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "nav/areas/side.hpp"
+
+namespace adit::nav {
+namespace {
+
+constexpr double kBeyond = 1e-3;       // m beyond a side, where it is examined which ground lies there.
+constexpr double kShortest = 1e-6;     // m: shorter pieces of the border are left out.
+constexpr double kPointSpacing = 0.1;  // m between points along the border.
+
+Eigen::Vector2d left_of(const BorderPiece& piece) {
+  const Eigen::Vector2d way = (piece.to - piece.from).normalized();
+  return {-way.y(), way.x()};
+}
+
+// The parameters in (0, 1) at which a line is crossed by the sides of a polygon.
+void add_crossings(const BorderPiece& line, const Area& area, std::vector<double>& at) {
+  const Eigen::Vector2d way = line.to - line.from;
+  for (std::size_t i = 0; i < area.corners.size(); ++i) {
+    const Eigen::Vector2d a = area.corners[i], side = area.corners[(i + 1) % area.corners.size()] - a;
+    const double turn = cross_of(way, side);
+    if (std::fabs(turn) < 1e-12) {
+      // Along the line: its ends separate what lies beside it from what does not.
+      for (const Eigen::Vector2d& end : {a, Eigen::Vector2d(a + side)})
+        if (const double t = (end - line.from).dot(way) / way.squaredNorm(); t > 0 && t < 1) at.push_back(t);
+      continue;
+    }
+    const double t = cross_of(a - line.from, side) / turn, s = cross_of(a - line.from, way) / turn;
+    if (t > 0 && t < 1 && s >= 0 && s <= 1) at.push_back(t);
+  }
+}
+
+std::vector<BorderPiece> border_of(const std::vector<Area>& areas, double z) {
+  std::vector<BorderPiece> border;
+  std::vector<double> cuts;
+  for (const Area& area : areas) {
+    if (area.kind == AreaKind::prefer || !area.at_height(z)) continue;
+    for (std::size_t i = 0; i < area.corners.size(); ++i) {
+      BorderPiece side{area.corners[i], area.corners[(i + 1) % area.corners.size()]};
+      if (area.kind == AreaKind::keep_out) {
+        std::swap(side.from, side.to);
+        border.push_back(side);
+        continue;
+      }
+      // Where the ground beyond is in another area of this kind, there is no border.
+      const auto joins = [&](const Area& other) {
+        return &other != &area && other.kind == AreaKind::keep_in && other.at_height(z);
+      };
+      cuts.assign({0.0, 1.0});
+      for (const Area& other : areas)
+        if (joins(other)) add_crossings(side, other, cuts);
+      std::sort(cuts.begin(), cuts.end());
+      const Eigen::Vector2d way = side.to - side.from, out = -kBeyond * left_of(side);
+      for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+        if ((cuts[k + 1] - cuts[k]) * way.norm() < kShortest) continue;
+        const Eigen::Vector2d beyond = side.from + (cuts[k] + cuts[k + 1]) / 2 * way + out;
+        const bool inside = std::any_of(areas.begin(), areas.end(), [&](const Area& other) {
+          return joins(other) && other.contains(beyond);
+        });
+        if (!inside) border.push_back({side.from + cuts[k] * way, side.from + cuts[k + 1] * way});
+      }
+    }
+  }
+  return border;
+}
+
+// The part of a line within the half planes to the left of the sides of a convex outline, as parameters;
+// nothing if no part is.
+std::optional<std::pair<double, double>> part_within(const BorderPiece& line,
+                                                     std::span<const Eigen::Vector2d> outline) {
+  double first = 0.0, last = 1.0;
+  const Eigen::Vector2d way = line.to - line.from;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d side = outline[(i + 1) % outline.size()] - outline[i];
+    const double at = cross_of(side, line.from - outline[i]), grows = cross_of(side, way);
+    if (grows == 0.0) {
+      if (at <= 0.0) return std::nullopt;
+    } else if (grows > 0.0) {
+      first = std::max(first, -at / grows);
+    } else {
+      last = std::min(last, -at / grows);
+    }
+    if (first >= last) return std::nullopt;
+  }
+  return std::pair{first, last};
+}
+
+}  // namespace
+
+struct AreaSet::Content {
+  std::vector<Area> areas;
+  std::vector<double> levels{};                     ///< Heights at which the areas change, ascending, m.
+  std::vector<std::vector<BorderPiece>> borders{};  ///< Below, between and above those.
+};
+
+AreaSet::AreaSet(std::vector<Area> areas) {
+  if (areas.empty()) return;
+  Content content{std::move(areas)};
+  for (const Area& area : content.areas)
+    for (const double z : {area.z_min - Area::kHeightError, area.z_max + Area::kHeightError})
+      if (std::isfinite(z)) content.levels.push_back(z);
+  std::sort(content.levels.begin(), content.levels.end());
+  for (std::size_t i = 0; i <= content.levels.size(); ++i) {
+    const double below = i > 0                    ? content.levels[i - 1]
+                         : content.levels.empty() ? 0.0
+                                                  : content.levels[0] - 1.0;
+    const double above = i < content.levels.size() ? content.levels[i] : below + 1.0;
+    content.borders.push_back(border_of(content.areas, (below + above) / 2));
+  }
+  content_ = std::make_shared<const Content>(std::move(content));
+}
+
+std::span<const Area> AreaSet::all() const {
+  return content_ ? std::span<const Area>(content_->areas) : std::span<const Area>();
+}
+
+const Area* AreaSet::find(std::string_view name) const {
+  const auto areas = all();
+  const auto found = std::find_if(areas.begin(), areas.end(), [&](const Area& a) { return a.name == name; });
+  return found == areas.end() ? nullptr : &*found;
+}
+
+bool AreaSet::operator==(const AreaSet& other) const {
+  return same(other) || (content_ && other.content_ && content_->areas == other.content_->areas);
+}
+
+Result<void> AreaSet::add(Area area) {
+  std::vector<Area> areas(all().begin(), all().end());
+  const auto old =
+      std::find_if(areas.begin(), areas.end(), [&](const Area& a) { return a.name == area.name; });
+  if (old != areas.end())
+    *old = std::move(area);
+  else if (areas.size() < kMax)
+    areas.push_back(std::move(area));
+  else
+    return {Reason::bad_argument, "there are 16 areas already; remove one first"};
+  *this = AreaSet(std::move(areas));
+  return {};
+}
+
+bool AreaSet::remove(std::string_view name) {
+  if (!find(name)) return false;
+  *this = only([name](const Area& area) { return area.name != name; });
+  return true;
+}
+
+AreaSet AreaSet::in_frame(const Pose2& T_other_this, double z) const {
+  std::vector<Area> areas(all().begin(), all().end());
+  for (Area& area : areas) {
+    for (Eigen::Vector2d& corner : area.corners) corner = T_other_this * corner;
+    area.z_min -= z;
+    area.z_max -= z;
+  }
+  return AreaSet(std::move(areas));
+}
+
+bool AreaSet::permits(const Eigen::Vector3d& place) const {
+  bool bounded = false, within = false;
+  for (const Area& area : all()) {
+    if (area.kind == AreaKind::prefer) continue;
+    const bool here = area.at_height(place.z()) && area.contains(place.head<2>());
+    if (area.kind == AreaKind::keep_out && here) return false;
+    bounded = bounded || area.kind == AreaKind::keep_in;
+    within = within || (area.kind == AreaKind::keep_in && here);
+  }
+  return !bounded || within;
+}
+
+bool AreaSet::permits(const Eigen::Vector3d& place, double distance) const {
+  if (empty()) return true;
+  const auto pieces = border(place.z());
+  return permits(place) && std::none_of(pieces.begin(), pieces.end(), [&](const BorderPiece& piece) {
+           return squared_distance(place.head<2>(), piece.from, piece.to) < distance * distance;
+         });
+}
+
+bool AreaSet::permits(std::span<const Eigen::Vector2d> outline, double z) const {
+  if (empty()) return true;
+  for (const Eigen::Vector2d& corner : outline)
+    if (!permits(Eigen::Vector3d(corner.x(), corner.y(), z))) return false;
+  const auto pieces = border(z);
+  return std::none_of(pieces.begin(), pieces.end(),
+                      [&](const BorderPiece& piece) { return part_within(piece, outline).has_value(); });
+}
+
+bool AreaSet::leaves_room(const Area& area) const {
+  constexpr int kSteps = 64;  // Along each side of the rectangle around it.
+  Eigen::Vector2d low = area.corners[0], high = low;
+  for (const Eigen::Vector2d& corner : area.corners) {
+    low = low.cwiseMin(corner);
+    high = high.cwiseMax(corner);
+  }
+  const double z = std::isfinite(area.z_min) ? area.z_min : std::isfinite(area.z_max) ? area.z_max : 0.0;
+  for (int i = 0; i < kSteps; ++i)
+    for (int k = 0; k < kSteps; ++k) {
+      const Eigen::Vector2d at =
+          low + (high - low).cwiseProduct(Eigen::Vector2d((i + 0.5) / kSteps, (k + 0.5) / kSteps));
+      if (area.contains(at) && permits(Eigen::Vector3d(at.x(), at.y(), z))) return true;
+    }
+  return false;
+}
+
+double AreaSet::weight(const Eigen::Vector3d& place) const {
+  if (!permits(place)) return 0.0;
+  double weight = 1.0;
+  for (const Area& area : all())
+    if (area.kind == AreaKind::prefer && area.at_height(place.z()) && area.contains(place.head<2>()))
+      weight *= area.weight;
+  return weight;
+}
+
+std::span<const BorderPiece> AreaSet::border(double z) const {
+  if (!content_) return {};
+  const auto& levels = content_->levels;
+  const auto above = std::upper_bound(levels.begin(), levels.end(), z);
+  return content_->borders[static_cast<std::size_t>(above - levels.begin())];
+}
+
+std::vector<Eigen::Vector2d> outline(const Platform& platform, const Pose2& pose, double margin) {
+  std::vector<Eigen::Vector2d> corners = platform.footprint;
+  const double x = platform.length / 2, y = platform.width / 2;
+  if (corners.size() < 3) corners = {{x, y}, {-x, y}, {-x, -y}, {x, -y}};
+  for (Eigen::Vector2d& corner : corners)
+    corner = pose * Eigen::Vector2d(corner.x() + std::copysign(margin, corner.x()),
+                                    corner.y() + std::copysign(margin, corner.y()));
+  return corners;
+}
+
+void sample_border(const AreaSet& areas, const Eigen::Vector3d& place, double range,
+                   std::vector<Eigen::Vector2f>& points) {
+  const Eigen::Vector2d centre = place.head<2>();
+  for (const BorderPiece& piece : areas.border(place.z())) {
+    const Eigen::Vector2d way = (piece.to - piece.from).normalized();
+    // Longer at both ends, so that nothing is open at a corner.
+    const Eigen::Vector2d from = piece.from + AreaSet::kMargin * (left_of(piece) - way);
+    const double length = (piece.to - piece.from).norm() + 2 * AreaSet::kMargin;
+    // The part within the circle around the place.
+    const double middle = (centre - from).dot(way), off = (centre - from - middle * way).norm();
+    if (off >= range) continue;
+    const double half = std::sqrt(range * range - off * off);
+    const double first = std::max(0.0, middle - half), last = std::min(length, middle + half);
+    if (first > last) continue;
+    const int steps = static_cast<int>(std::ceil((last - first) / kPointSpacing));
+    for (int i = 0; i <= steps; ++i) {
+      const double along = std::min(last, first + kPointSpacing * i);
+      points.push_back((from + along * way).cast<float>());
+    }
+  }
+}
+
+}  // namespace adit::nav

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace adit::nav {
+
+/// z of the cross product; positive if b is to the left of a.
+inline double cross_of(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Squared distance from a place to the line between two corners.
+inline double squared_distance(const Eigen::Vector2d& place, const Eigen::Vector2d& from,
+                               const Eigen::Vector2d& to) {
+  const Eigen::Vector2d side = to - from;
+  const double square = side.squaredNorm();
+  const double part = square > 0.0 ? std::clamp((place - from).dot(side) / square, 0.0, 1.0) : 0.0;
+  return (place - from - part * side).squaredNorm();
+}
+
+}  // namespace adit::nav

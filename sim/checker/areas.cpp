@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "nav/areas/area_set.hpp"
+#include "sim/checker/rule.hpp"
+
+namespace adit::sim {
+namespace {
+
+/// A robot that was driven by hand towards a border may need this to brake when its mode changes.
+constexpr Duration kBraking = 1s;
+
+/// Rule 10: areas are hard limits. In an autonomous mode no part of the body leaves the ground that the
+/// accepted areas permit. A body that is outside already, as after driving by hand, may come back. Judged by
+/// the true pose if the robot's odometry has no error, otherwise by the robot's own.
+class AreasAreHard : public Rule {
+ public:
+  void on_event(const RobotModel& robot, const Event& event,
+                const ReportViolation& report_violation) override {
+    // What a failed disk lost does not bind any more.
+    if (std::get_if<AgentStarted>(&event) && robot.disk_failed()) areas_ = {};
+    if (const auto* ack = std::get_if<AckSent>(&event)) on_answer(robot, *ack);
+    if (const auto* state = std::get_if<StateSent>(&event)) {
+      height_ = state->pose.position.z();
+      if (!robot.facts().knows_its_place) judge(robot, state->pose.planar(), report_violation);
+    }
+    if (const auto* motion = std::get_if<Motion>(&event); motion && robot.facts().knows_its_place)
+      judge(robot, motion->pose, report_violation);
+  }
+
+ private:
+  void on_answer(const RobotModel& robot, const AckSent& ack) {
+    const RobotModel::Pending* pending = robot.answered_by(ack);
+    if (!pending || !ack.accepted || robot.first_answer(RobotModel::key(pending->command))) return;
+    const CommandHeard& command = pending->command;
+    if (command.verb == Verb::area_remove) areas_.remove(command.text);
+    if (command.verb == Verb::area_add) add(command);
+  }
+
+  void add(const CommandHeard& command) {
+    if (command.words.size() < 2) return;
+    nav::Area area{.name = command.words[0], .kind = nav::AreaKind::prefer};
+    if (command.words[1] == nav::name(nav::AreaKind::keep_in)) area.kind = nav::AreaKind::keep_in;
+    if (command.words[1] == nav::name(nav::AreaKind::keep_out)) area.kind = nav::AreaKind::keep_out;
+    std::vector<double> numbers = command.numbers;
+    if ((command.options & 2U) != 0 && !numbers.empty()) numbers.pop_back();  // The weight.
+    if ((command.options & 1U) != 0 && numbers.size() >= 2) {
+      area.z_max = numbers.back();
+      numbers.pop_back();
+      area.z_min = numbers.back();
+      numbers.pop_back();
+    }
+    for (std::size_t i = 0; i + 1 < numbers.size(); i += 2)
+      area.corners.emplace_back(numbers[i], numbers[i + 1]);
+    if (const auto valid = nav::checked(area)) (void)areas_.add(*valid);
+  }
+
+  void judge(const RobotModel& robot, const Pose2& pose, const ReportViolation& report_violation) {
+    if (areas_.empty()) return;
+    const double x = robot.facts().length / 2, y = robot.facts().width / 2;
+    const std::array<Eigen::Vector2d, 4> body{pose * Eigen::Vector2d(x, y), pose * Eigen::Vector2d(-x, y),
+                                              pose * Eigen::Vector2d(-x, -y), pose * Eigen::Vector2d(x, -y)};
+    const bool was_within = within_;
+    within_ = areas_.permits(body, height_);
+    const std::string& mode = robot.mode();
+    const bool autonomous = robot.alive() && !mode.empty() && mode != "hold" && !robot.in_manual_mode();
+    if (within_ || !was_within || !autonomous || robot.age(robot.mode_changed()) < kBraking) return;
+    char text[96];
+    std::snprintf(text, sizeof text, "left the ground that its areas permit at %.2f %.2f in ", pose.x,
+                  pose.y);
+    report_violation(text + mode);
+  }
+
+  nav::AreaSet areas_{};
+  double height_{};
+  bool within_{true};
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> make_areas_rule() { return std::make_unique<AreasAreHard>(); }
+
+}  // namespace adit::sim
