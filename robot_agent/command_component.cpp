@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/command_component.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/time/random.hpp"
 #include "robot_agent/behaviour/modes/external.hpp"
-#include "robot_agent/convoy/without_members.hpp"
 
 namespace adit::agent {
 namespace {
@@ -34,6 +34,8 @@ constexpr Duration kBeat = 50ms;  // Tree, mux, follower and driver run at 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
 constexpr Duration kPulse = 50ms;
+constexpr double kStands = 0.1;     // m/s: slower is standing.
+constexpr double kBeaconAge = 1.0;  // s: an older beacon of a robot that moves does not say where it is.
 
 }  // namespace
 
@@ -47,6 +49,9 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
                   navigation_outputs()),
       mux_(navigation_),
       convoy_({params.name, params.platform.length, params.platform.max_speed}, convoy_inputs()),
+      right_of_way_({params.name, params.platform.length, params.platform.width, params.platform.max_speed,
+                     context.router && !params.platform.flies()},
+                    context.peers, right_of_way_outputs()),
       behaviour_({}, std::move(decider), mux_, behaviour_inputs(), behaviour_outputs()),
       commands_(command_params(params, frames_, context.instances++), behaviour_, command_outputs()),
       notices_(params.name, *context.notifier, log(), [this] { return commands_.authority().holder_name(); }),
@@ -112,9 +117,7 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
   // The yaw is the odometry's; how the body leans the IMU knows better.
   if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
-  const auto for_route = without_members(scan, frames_.T_map_odom() * scan->body.planar(), convoy_.others(),
-                                         context_.peers, now());
-  navigation_.add_scan(std::move(scan), waiting.received, now(), for_route);
+  navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
 }
 
 void Agent::CommandComponent::battery(float charge) {
@@ -287,8 +290,11 @@ void Agent::CommandComponent::beat() {
   watch_namesakes(at);
   listen_first(at);
   convoy_.tick(at);
+  constexpr std::uint32_t kBeats = 4;  // Beats between two looks at the other robots.
+  if (beats_++ % kBeats == 0) give_way(at);
   behaviour_.tick(at);
-  navigation_.limit_speed(convoy_.speed_limit(behaviour_.mode().name == "convoy_follow"));
+  navigation_.limit_speed(
+      std::min(convoy_.speed_limit(behaviour_.mode().name == "convoy_follow"), right_of_way_.speed_limit()));
   navigation_.set_areas(behaviour_.areas());
   mux_.step(at);
   navigation_.step(at);
@@ -340,8 +346,9 @@ void Agent::CommandComponent::send_findings() {
 void Agent::CommandComponent::send_beacon(Time at) {
   if (!frames_.initialised()) return;
   const wire::LinkProfile* link = context_.wire->sender().link;
-  double rate = BeaconRate::rate(link ? link->bandwidth : 0.0, context_.peers.robots_present(), convoy_.in());
-  if (!convoy_.in()) rate /= context_.rate.stretch();  // A full link.
+  const bool often = convoy_.in() || right_of_way_.in_encounter();
+  double rate = BeaconRate::rate(link ? link->bandwidth : 0.0, context_.peers.robots_present(), often);
+  if (!often) rate /= context_.rate.stretch();  // A full link.
   if (!beacon_rate_.due(rate, at, kStatePeriod)) return;
   TeamBeacon beacon{};
   beacon.robot = params_.name;
@@ -354,6 +361,7 @@ void Agent::CommandComponent::send_beacon(Time at) {
   beacon.stopped = commands_.stops().any();
   beacon.holder = commands_.authority().holder_name();
   beacon.convoy = convoy_.part(beacon.seq);
+  right_of_way_.say(beacon);
   context_.radio->send(beacon);
 }
 
@@ -410,6 +418,7 @@ Behaviour::Inputs Agent::CommandComponent::behaviour_inputs() {
     return speed * (seconds(kBeat) + speed / (2 * params_.platform.max_acceleration));
   };
   inputs.convoy = &convoy_;
+  inputs.right_of_way = &right_of_way_;
   inputs.body_permitted = [this](const nav::AreaSet& areas) {
     return !frames_.initialised() ||
            areas.permits(nav::outline(params_.platform, frames_.T_map_base()), frames_.height());
@@ -429,6 +438,76 @@ Convoy::Inputs Agent::CommandComponent::convoy_inputs() {
             return Eigen::Vector3d(pose.x, pose.y, frames_.height());
           },
           [this](const Notice& notice) { notices_.send_to_holder(notice); }};
+}
+
+RightOfWay::Outputs Agent::CommandComponent::right_of_way_outputs() {
+  return {[this](const nav::Corridor& corridor, const std::string& asker, auto done) {
+            find_clear_place(corridor, asker, std::move(done));
+          },
+          [this](Time at) { return behaviour_.clear_way(at); }, [this](Time at) { behaviour_.resume(at); },
+          [this](const Notice& notice) { notices_.send_to_holder(notice); }};
+}
+
+void Agent::CommandComponent::give_way(Time at) {
+  RightOfWay::Own own{};
+  own.mode = behaviour_.mode().name;
+  own.stopped = commands_.stops().any();
+  if (frames_.initialised()) own.pose = frames_.T_map_base();
+  if (context_.peers.robots_present() > 0) {
+    own.drives = behaviour_.drives();
+    own.members = convoy_.others();
+    own.convoy = convoy_.in();
+    if (own.drives)
+      for (const Eigen::Vector3d& point : navigation_.route_ahead(at))
+        own.route.push_back(frames_.to_map(point).head<2>());
+    const Progress clearing = behaviour_.clearing();
+    own.blocked = clearing.blocked || clearing.unreachable;
+    own.arrived = clearing.arrived;
+  }
+  right_of_way_.tick(own, at);
+}
+
+std::vector<TeamRobot> Agent::CommandComponent::team(Time at) const {
+  std::vector<TeamRobot> robots;
+  if (!frames_.initialised() || context_.peers.robots_present() == 0) return robots;
+  const Pose2 T_odom_map = frames_.T_map_odom().inverse();
+  const std::vector<std::string> members = convoy_.others();
+  for (const Peer& peer : context_.peers.all()) {
+    if (!peer.present || !peer.heard_beacon) continue;
+    const TeamBeacon& beacon = peer.heard_beacon->beacon;
+    const double age = seconds(at - peer.heard_beacon->at);
+    const bool stands = std::hypot(beacon.twist.vx, beacon.twist.vy) < kStands;
+    if (age > (stands ? seconds(RightOfWay::kHeard) : kBeaconAge)) continue;
+    const Pose2 pose = beacon.pose * Pose2{beacon.twist.vx * age, beacon.twist.vy * age, 0.0};
+    const bool member = std::find(members.begin(), members.end(), peer.name) != members.end();
+    robots.push_back({peer.name, T_odom_map * pose,
+                      frames_.to_odom(Eigen::Vector3d(pose.x, pose.y, beacon.z)).z(), peer.length, peer.width,
+                      member ? 0.0 : right_of_way_.cost_of(peer)});
+  }
+  return robots;
+}
+
+void Agent::CommandComponent::find_clear_place(const nav::Corridor& corridor, const std::string& asker,
+                                               std::function<void(std::optional<Eigen::Vector2d>)> done) {
+  if (!context_.router || !frames_.initialised()) return done(std::nullopt);
+  ClearPlaceQuery query{};
+  query.odom_epoch = frames_.odom_epoch();
+  query.query.from = frames_.T_odom_base().position;
+  for (const Eigen::Vector2d& point : corridor.route)
+    query.query.corridor.route.push_back(frames_.to_odom(point));
+  query.query.corridor.width = corridor.width;
+  query.query.radius = std::hypot(params_.platform.length, params_.platform.width) / 2;
+  query.team = team(now());
+  query.areas = navigation_.route_areas();
+  for (TeamRobot& robot : query.team)
+    if (robot.name == asker) robot.cost = nav::kNoWay;
+  call(context_.router->clear, query, {.deadline = 1s},
+       [this, epoch = query.odom_epoch,
+        done = std::move(done)](const Result<std::optional<Eigen::Vector3d>>& found) {
+         if (epoch != frames_.odom_epoch()) return;
+         if (!found || !*found) return done(std::nullopt);
+         done(Eigen::Vector2d(frames_.to_map(**found).head<2>()));
+       });
 }
 
 Behaviour::Outputs Agent::CommandComponent::behaviour_outputs() {

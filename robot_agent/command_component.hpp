@@ -120,6 +120,13 @@ class Agent::CommandComponent : public Component {
   Behaviour::Outputs behaviour_outputs();
   Navigation::Outputs navigation_outputs();
   Convoy::Inputs convoy_inputs();
+  RightOfWay::Outputs right_of_way_outputs();
+  /// Lets RightOfWay look at the other robots.
+  void give_way(Time at);
+  /// The other robots for the router, odometry frame.
+  std::vector<TeamRobot> team(Time at) const;
+  void find_clear_place(const nav::Corridor& corridor, const std::string& asker,
+                        std::function<void(std::optional<Eigen::Vector2d>)> done);
 
   AgentParams params_;
   Context& context_;
@@ -127,6 +134,7 @@ class Agent::CommandComponent : public Component {
   Navigation navigation_;
   Mux mux_;
   Convoy convoy_;
+  RightOfWay right_of_way_;
   Behaviour behaviour_;
   CommandInterface commands_;
   Notices notices_;
@@ -140,6 +148,7 @@ class Agent::CommandComponent : public Component {
   bool gives_way_{};                     ///< It gives way to another robot of its name.
   RateLimit<bool> namesakes_told_{10s};  // The key is `gives_way_`.
   BeaconRate beacon_rate_{};
+  std::uint32_t beats_{};    ///< Number of calls of beat().
   std::uint32_t beacons_{};  ///< Number of beacons sent.
   std::vector<Timer> timers_{};
 };

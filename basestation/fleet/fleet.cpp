@@ -230,6 +230,8 @@ void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& in
   robot->goal_phase = phase <= 4 ? static_cast<GoalPhase>(phase) : GoalPhase::none;
   robot->goal_id = sample.goal_id();
   robot->goal = {sample.goal()[0], sample.goal()[1], sample.goal()[2]};
+  robot->yields = sample.yields();
+  robot->yields_to = command::valid_name(sample.yields_to()) ? sample.yields_to() : std::string{};
   robot->convoy.clear();
   for (const std::string& member : sample.convoy())
     if (robot->convoy.size() < command::kMaxConvoy && command::valid_name(member))

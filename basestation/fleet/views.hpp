@@ -129,6 +129,8 @@ struct RobotView {
   std::array<double, 3> goal{};
   ExplorationView exploration{};
   std::vector<ModeChoice> choices{};
+  bool yields{};                      ///< It may make way for other robots.
+  std::string yields_to{};            ///< The robot for which it makes way; empty: none.
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
   std::vector<AreaView> areas{};
 

@@ -73,6 +73,8 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
            {"goal_id", robot.goal_id},
            {"modes", modes},
            {"convoy", robot.convoy},
+           {"yields", robot.yields},
+           {"yields_to", robot.yields_to},
            {"troubles", troubles}};
   if (robot.described) out.update(abilities_json(robot));
   if (robot.located) {

@@ -146,6 +146,10 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   out += "  stops    " + stops_text(robot) + "\n";
   out += "  goal     " + goal_text(robot) + "\n";
   if (!robot.convoy.empty()) out += "  convoy   " + command::joined(robot.convoy, "") + "\n";
+  if (!robot.yields_to.empty())
+    out += "  yields   makes way for " + robot.yields_to + "\n";
+  else if (robot.yields)
+    out += "  yields   to robots with right of way\n";
   for (const AreaView& area : robot.areas) out += "  area     " + area_text(area) + "\n";
   if (robot.exploration.phase != ExplorationPhase::none)
     out += "  explored " + exploration_text(robot.exploration) + "\n";

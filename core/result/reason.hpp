@@ -57,6 +57,9 @@ enum class Reason : std::uint16_t {
   leader_unknown = 231,      ///< The leader left the convoy, or the robot ahead is not heard.
   not_in_convoy = 232,       ///< The robot has no place in a convoy.
   order_differs = 233,       ///< The robot ahead has another order of the convoy.
+  yield_off = 234,           ///< The holder did not allow the robot to make way for others.
+  yield_refused = 235,       ///< A robot in the way does not make way.
+  yield_deadlock = 236,      ///< Neither of two robots that meet can make way.
   no_viewpoint = 237,        ///< There is no place from which the robot could see anything new.
   outside_area = 238,        ///< The place is outside of the areas where the robot may drive.
   trail_impassable = 239,    ///< The robot cannot drive where the leader drove.

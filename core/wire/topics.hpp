@@ -73,7 +73,7 @@ inline constexpr Topic<radio::FindingsAck> kFindingsAck{
 
 /// Robots to robots: position, motion, and their parts in what several robots do together.
 inline constexpr Topic<radio::TeamBeacon> kTeam{
-    {"adit/team", "adit::radio::v1::TeamBeacon", QosClass::state, 1, kKeyed, 512}};
+    {"adit/team", "adit::radio::v1::TeamBeacon", QosClass::state, 1, kKeyed, 1024}};
 
 /// Topics of the robot domain: ROS 2 names and types, for drivers.
 inline constexpr Topic<geometry_msgs::msg::Twist> kCmdVel{

@@ -39,6 +39,8 @@ struct RouteStep {
   bool last{true};                         ///< `target` is the goal.
   Standing goal{Standing::standable};      ///< Of the goal itself: `unseen` while its ground is unknown.
   std::optional<NarrowPassage> passage{};  ///< The next passage on the route to `target`.
+  /// Corners of the route ahead, from the robot on, for right of way; empty unless asked for.
+  std::vector<Eigen::Vector3d> ahead{};
   bool stuck{false};  ///< No progress along the route for a long time: see ProgressChecker.
 };
 

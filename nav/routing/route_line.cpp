@@ -68,6 +68,7 @@ LineCost RouteLine::line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
     }
     before = cell.known ? &cell : nullptr;
   }
+  if (map_.has_team()) result.cost += map_.team_cost(from, to);
   result.passable = std::abs(z - to.z()) <= kFloorSeparation + 0.1;
   return result;
 }

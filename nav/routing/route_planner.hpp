@@ -45,6 +45,10 @@ class RoutePlanner {
   std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) {
     return graph_.costs(from, goals);
   }
+  /// Sets the other robots of the team, which cost a route that leads through them.
+  void set_team(std::vector<TeamPlace> team) { map_.set_team(std::move(team)); }
+  /// Forgets an obstacle: a robot was seen there.
+  void clear_obstacle(const Eigen::Vector3d& place) { map_.clear_obstacle(place.x(), place.y(), place.z()); }
   /// Marks a place as blocked regardless of the scans, for RouteParams::block_time.
   void block(const Eigen::Vector3d& place, double stamp_s);
   bool has_blocked_places() const;

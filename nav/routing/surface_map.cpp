@@ -40,6 +40,7 @@ void SurfaceMap::clear() {
   heads_.clear();
   queue_.clear();
   places_.clear();
+  team_.clear();
   extent_ = {};
   used_ = 0;
   last_ = -1;
@@ -57,6 +58,7 @@ void SurfaceMap::copy(const SurfaceMap& other) {
   heads_ = other.heads_;
   queue_.clear();
   places_ = other.places_;
+  team_ = other.team_;
   areas_ = other.areas_;
   extent_ = other.extent_;
   used_ = other.used_;
@@ -304,6 +306,19 @@ void SurfaceMap::see_free(int ix, int iy, float z, float height, Seen seen) {
   cell.obstacle_height = 0;
   mark_dirty(index);
   mark_around(t, ix, iy);
+}
+
+void SurfaceMap::clear_obstacle(double x, double y, double z) {
+  const int ix = route_cell(x), iy = route_cell(y);
+  const int index = at_cell(ix, iy, z);
+  if (index < 0) return;
+  GroundCell& cell = tile(index).cells[static_cast<std::size_t>(cell_in_tile(ix, iy))];
+  if (!cell.blocked) return;
+  cell.blocked = false;
+  cell.evidence = 0;
+  cell.obstacle_height = 0;
+  mark_dirty(index);
+  mark_around(tile(index), ix, iy);
 }
 
 void SurfaceMap::see_obstacle(float x, float y, float z, float obstacle_height, bool sure) {

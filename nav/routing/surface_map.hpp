@@ -8,6 +8,7 @@
 
 #include "nav/areas/area_set.hpp"
 #include "nav/routing/route_params.hpp"
+#include "nav/routing/team_place.hpp"
 #include "nav/routing/tile.hpp"
 
 namespace adit::nav {
@@ -48,6 +49,14 @@ class SurfaceMap {
   void expire(double now);
   const std::vector<BlockedPlace>& blocked_places() const { return places_; }
 
+  /// The other robots of the team; searches and lines charge for crossing them.
+  void set_team(std::vector<TeamPlace> team) { team_ = std::move(team); }
+  bool has_team() const { return !team_.empty(); }
+  double team_cost(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+    return nav::team_cost(team_, from, to);
+  }
+  /// Forgets the obstacles at a place: what was seen there was a robot.
+  void clear_obstacle(double x, double y, double z);
   /// Sets the areas that robots keep in or out of; all of the graph must be rebuilt.
   void set_areas(const AreaSet& areas);
   const AreaSet& areas() const { return areas_; }
@@ -107,6 +116,7 @@ class SurfaceMap {
   std::unordered_map<std::uint64_t, int> heads_{};  // Looked up only, never iterated.
   std::deque<int> queue_{};
   std::vector<BlockedPlace> places_{};
+  std::vector<TeamPlace> team_{};
   AreaSet areas_{};
   Extent extent_{};
   int used_{0};

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace adit::agent {
+namespace {
+
+constexpr const char* kGetOut = "get_out";
+
+}  // namespace
 
 Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, Mux& mux, Inputs inputs,
                      Outputs outputs)
@@ -14,16 +19,18 @@ Behaviour::Behaviour(BehaviourParams params, std::unique_ptr<Decider> decider, M
       outputs_(std::move(outputs)),
       guard_(table()),
       decision_{&guard_.admitted(), false, Reason::none},
-      running_(decision_.mode) {
+      running_(decision_.mode),
+      interrupted_(decision_.mode) {
   // Modules may ask for the pose at any time.
   if (!inputs_.pose) inputs_.pose = [] { return std::optional<Pose2>{}; };
   if (!inputs_.stopping) inputs_.stopping = [] { return 0.0; };
   for (const ModeRow& row : table().rows()) {
     Mode& mode = modes_.emplace_back(Mode{row});
     if (row.moves())
-      mode.module = row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
-                              inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping,
-                              inputs_.convoy, inputs_.explore, inputs_.holder_heard, inputs_.home});
+      mode.module =
+          row.make({mux_.connect(std::string(row.name), row.output_lifetime), outputs_.tell_holder,
+                    inputs_.goal_free, inputs_.height, inputs_.pose, inputs_.stopping, inputs_.convoy,
+                    inputs_.right_of_way, inputs_.explore, inputs_.holder_heard, inputs_.home});
   }
 }
 
@@ -58,7 +65,7 @@ Reason Behaviour::not_run(const ModeRow& row) const {
 
 Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   const ModeRow* row = table().find(mode);
-  if (!row) return refuse(is_planned_mode(mode) ? Reason::mode_not_installed : Reason::mode_unknown, mode);
+  if (!row) return refuse(Reason::mode_unknown, mode);
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, mode);
   if (row->accepts == Accepts::goal && module(*row)) {
     const ModeProgress stored = module(*row)->progress(false);
@@ -67,7 +74,7 @@ Result<void> Behaviour::request_mode(const std::string& mode, Time now) {
   }
   if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
     return refuse(reason, mode);
-  ++holder_requests_;
+  count_request();
   return enter(*row, now);
 }
 
@@ -80,7 +87,7 @@ Result<void> Behaviour::request_goal(const Eigen::Vector3d& goal, Commander by, 
   if (!is_permitted(goal)) return refuse(Reason::outside_area, "goto");
   if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, "goto");
   if (const Reason reason = guard_.admit(*row, by, f); reason != Reason::none) return refuse(reason, "goto");
-  if (by == Commander::holder) ++holder_requests_;
+  if (by == Commander::holder) count_request();
   driver->set_goal(goal);
   return enter(*row, now);
 }
@@ -93,7 +100,7 @@ Result<void> Behaviour::request_explore(const ExploreRequest& request, Time now)
     if (const auto area = check_explored_area(request.area); !area) return area;
   if (const Reason reason = guard_.admit(*row, Commander::holder, facts(now)); reason != Reason::none)
     return refuse(reason, "explore");
-  ++holder_requests_;
+  count_request();
   module(*row)->set_exploration(request);
   return enter(*row, now);
 }
@@ -167,8 +174,58 @@ void Behaviour::change_to(const ModeRow& row, Time now) {
   running_ = &row;
 }
 
+void Behaviour::count_request() {
+  ++holder_requests_;
+  if (inputs_.right_of_way) inputs_.right_of_way->holder_requested();
+}
+
+Result<void> Behaviour::allow_yield(bool allowed, Time now) {
+  const ModeRow* row = table().find(kGetOut);
+  if (!inputs_.right_of_way || !row) return refuse(Reason::mode_not_installed, "yield");
+  if (const Reason reason = not_run(*row); allowed && reason != Reason::none) return refuse(reason, "yield");
+  if (const auto done = inputs_.right_of_way->allow(allowed, now); !done) return done;
+  tick(now);
+  return {};
+}
+
+Result<void> Behaviour::clear_way(Time now) {
+  const ModeRow* row = table().find(kGetOut);
+  if (!row) return refuse(Reason::mode_not_installed, kGetOut);
+  const ModeRow& before = guard_.admitted();
+  if (const Reason reason = not_run(*row); reason != Reason::none) return refuse(reason, kGetOut);
+  if (const Reason reason = guard_.admit(*row, Commander::agent, facts(now)); reason != Reason::none)
+    return refuse(reason, kGetOut);
+  if (&before != row) interrupted_ = &before;
+  change_to(*row, now);  // The goals of the other modes stay.
+  module(*row)->enter(now);
+  tick(now);
+  return {};
+}
+
+void Behaviour::resume(Time now) {
+  if (guard_.admitted().name != kGetOut) return;
+  guard_.readmit(*interrupted_);
+  const ModeRow& row = guard_.admitted();
+  change_to(row, now);
+  if (ModeModule* entered = module(row)) entered->enter(now);
+  idle_since_ = now;
+  tick(now);
+}
+
+bool Behaviour::drives() const {
+  if (!decision_.runs || !decision_.mode->autonomous()) return false;
+  return decision_.mode->accepts != Accepts::goal || progress().state != GoalState::reached;
+}
+
+Progress Behaviour::clearing() const {
+  const ModeRow* row = table().find(kGetOut);
+  const ModeModule* driver = row ? module(*row) : nullptr;
+  return driver && decision_.mode == row ? driver->navigation() : Progress{};
+}
+
 void Behaviour::stop_changed(bool stopped, Time now) {
   stopped_ = stopped;
+  if (stopped && inputs_.right_of_way) inputs_.right_of_way->stopped();
   if (!stopped && fell_because_ == Reason::stopped) fell_because_ = Reason::none;
   tick(now);
 }
@@ -189,7 +246,7 @@ Result<void> Behaviour::join_convoy(const ConvoyOrder& order, Time now) {
     inputs_.convoy->set_role(before);
     return refuse(reason, "convoy");
   }
-  ++holder_requests_;
+  count_request();
   if (!leads) return enter(*row, now);
   tick(now);  // The leader stays in its mode.
   return {};
@@ -207,6 +264,7 @@ Result<void> Behaviour::leave_convoy(Time now) {
 void Behaviour::holder_changed(Time now) {
   // The order to follow was the former holder's (rule 8).
   if (inputs_.convoy) (void)inputs_.convoy->leave();
+  if (inputs_.right_of_way) inputs_.right_of_way->holder_changed();
   stick_.forget();
   idle_since_ = now;
   idle_told_ = false;
@@ -247,7 +305,8 @@ void Behaviour::hold(Reason reason, Time now) {
 
 KeptBehaviour Behaviour::kept() const {
   KeptBehaviour kept{};
-  kept.mode = guard_.admitted().name;
+  const ModeRow& admitted = guard_.admitted();
+  kept.mode = admitted.name == kGetOut ? interrupted_->name : admitted.name;
   kept.reason = fell_because_;
   kept.areas = areas_;
   for (const Mode& mode : modes_)
@@ -344,6 +403,10 @@ BehaviourView Behaviour::view() const {
   v.goal = p.goal;
   v.areas = areas_;
   if (inputs_.convoy) v.convoy = inputs_.convoy->order();
+  if (const RightOfWay* way = inputs_.right_of_way) {
+    v.yields = way->allowed();
+    v.yields_to = way->yields_to();
+  }
   for (const Mode& mode : modes_)
     if (mode.module && v.exploration.state == ExplorationState::none)
       v.exploration = mode.module->exploration();

@@ -10,6 +10,7 @@
 #include "robot_agent/behaviour/stick.hpp"
 #include "robot_agent/command/requests.hpp"
 #include "robot_agent/convoy/convoy.hpp"
+#include "robot_agent/right_of_way/right_of_way.hpp"
 
 namespace adit::agent {
 
@@ -29,6 +30,8 @@ struct BehaviourView {
   std::uint32_t goal_id{};
   Eigen::Vector3d goal{Eigen::Vector3d::Zero()};
   std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
+  bool yields{};                      ///< The holder allowed the robot to make way.
+  std::string yields_to{};            ///< The robot for which it makes way; empty: none.
   ExplorationView exploration{};
   nav::AreaSet areas{};  ///< Map frame.
   bool operator==(const BehaviourView&) const = default;
@@ -55,6 +58,7 @@ class Behaviour : public Requests {
     std::function<Result<void>(const Pose2&)> set_pose{};
     std::function<double()> stopping{};  ///< Metres that the robot needs to stop. Empty: always 0.
     Convoy* convoy{};                    ///< Must outlive the behaviour. Null: the robot has no team.
+    RightOfWay* right_of_way{};          ///< As `convoy`. Null: the robot makes way for no other.
     decltype(ModeContext::explore) explore{};
     decltype(ModeContext::holder_heard) holder_heard{};
     std::optional<Eigen::Vector2d> home{};
@@ -88,6 +92,15 @@ class Behaviour : public Requests {
   const nav::AreaSet& areas() const { return areas_; }
   Result<void> join_convoy(const ConvoyOrder& order, Time now) override;
   Result<void> leave_convoy(Time now) override;
+  Result<void> allow_yield(bool allowed, Time now) override;
+  /// Enters `get_out`; the mode before it is resumed later. Errors: the first condition that does not hold.
+  Result<void> clear_way(Time now);
+  /// Leaves `get_out` for the mode before it, with its goal. In another mode: no effect.
+  void resume(Time now);
+  /// Whether the mode runs and has a place to drive to that is not reached.
+  bool drives() const;
+  /// Navigation's progress in `get_out`.
+  Progress clearing() const;
   void stop_changed(bool stopped, Time now) override;
   void holder_changed(Time now) override;
   void holder_restarted(Time now) override;
@@ -136,6 +149,7 @@ class Behaviour : public Requests {
   void change_to(const ModeRow& row, Time now);
   void fall(const ModeRow& from, Reason reason);
   void watch(Time now);
+  void count_request();
   ModeProgress progress() const;
 
   BehaviourParams params_;
@@ -148,6 +162,7 @@ class Behaviour : public Requests {
   MotionGuard guard_;
   Decision decision_;
   const ModeRow* running_;             ///< The mode whose module was not left.
+  const ModeRow* interrupted_;         ///< The mode to resume after `get_out`.
   Reason fell_because_{Reason::none};  ///< Reason of the last fall to hold, until the next request.
   bool stopped_{};
   bool listens_{};

@@ -14,6 +14,7 @@
 namespace adit::agent {
 
 class Convoy;
+class RightOfWay;
 
 /// Maximum distance of goals and robot poses from the map's origin, m.
 inline constexpr double kFarthestPlace = 10'000.0;
@@ -40,7 +41,8 @@ struct ModeContext {
   std::function<std::optional<Pose2>()> pose{};
   /// Metres that the robot needs to stop.
   std::function<double()> stopping{};
-  Convoy* convoy{};  ///< The robot's place in a convoy; null: it has no team.
+  Convoy* convoy{};            ///< The robot's place in a convoy; null: it has no team.
+  RightOfWay* right_of_way{};  ///< Null: it makes way for no robot.
   /// Asks the router for the next goal of an exploration and calls `done` once, or never if the robot's
   /// frames changed meanwhile; the goal is in the map frame. Error outside_area: the area of the query does
   /// not exist any more. Empty: the robot has no explorer.
@@ -93,6 +95,8 @@ class ModeModule {
   /// Receives navigation's progress towards the place that the module wrote last.
   virtual void navigated(const Progress&) {}
 
+  /// Returns navigation's progress, if the module keeps it.
+  virtual Progress navigation() const { return {}; }
   /// Returns the progress; `passes` as in tick(), false in other modes.
   virtual ModeProgress progress(bool /*passes*/) const { return {}; }
 

@@ -2,11 +2,11 @@
 #include "robot_agent/behaviour/mode_table.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "robot_agent/behaviour/modes/convoy_follow.hpp"
 #include "robot_agent/behaviour/modes/explore.hpp"
 #include "robot_agent/behaviour/modes/external.hpp"
+#include "robot_agent/behaviour/modes/get_out.hpp"
 #include "robot_agent/behaviour/modes/manual.hpp"
 #include "robot_agent/behaviour/modes/waypoint.hpp"
 #include "robot_agent/behaviour/stick.hpp"
@@ -92,11 +92,9 @@ std::vector<ModeRow> standard_modes() {
        .output_lifetime = kMaxVelocityAge,
        .optional = true},
       ConvoyFollowMode::row(),
+      GetOutMode::row(),
   };
 }
-
-/// Modes of the design that have no module yet.
-constexpr std::array<std::string_view, 1> kPlannedModes{"get_out"};
 
 }  // namespace
 
@@ -124,10 +122,6 @@ const ModeRow* ModeTable::find_by_input(Accepts input) const {
   const auto row =
       std::find_if(rows_.begin(), rows_.end(), [&](const ModeRow& r) { return r.accepts == input; });
   return row == rows_.end() ? nullptr : &*row;
-}
-
-bool is_planned_mode(std::string_view name) {
-  return std::find(kPlannedModes.begin(), kPlannedModes.end(), name) != kPlannedModes.end();
 }
 
 Reason entry_refusal(const ModeRow& row, const Facts& facts) {

@@ -95,7 +95,8 @@ class ModeTable {
   ModeTable(const ModeTable&) = delete;
   ModeTable& operator=(const ModeTable&) = delete;
 
-  /// The modes of this version: hold, manual, smart_joystick, waypoint, explore, external, convoy_follow.
+  /// The modes of this version: hold, manual, smart_joystick, waypoint, explore, external, convoy_follow,
+  /// get_out.
   static const ModeTable& shipped();
 
   const std::vector<ModeRow>& rows() const { return rows_; }
@@ -112,8 +113,6 @@ class ModeTable {
   std::vector<Condition> conditions_{};
 };
 
-/// Whether the mode is part of the design, but this version has no module for it.
-bool is_planned_mode(std::string_view name);
 /// Why the mode cannot be entered now; `none` if it can.
 Reason entry_refusal(const ModeRow& row, const Facts& facts);
 

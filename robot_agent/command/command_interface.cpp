@@ -181,6 +181,8 @@ CommandInterface::Outcome CommandInterface::perform(const Command& c, Time now) 
       return asked(c, requests_.join_convoy(convoy_of(c.request), now));
     case verb("peeloff"):
       return outcome(requests_.leave_convoy(now));
+    case verb("yield"):
+      return outcome(requests_.allow_yield(c.request.word("WAY") == "on", now));
     case verb("lock"):
       authority_.lock();
       outputs_.changed();

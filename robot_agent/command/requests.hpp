@@ -40,6 +40,9 @@ class Requests {
   virtual Result<void> join_convoy(const ConvoyOrder& order, Time now) = 0;
   /// Leaves the convoy; a follower falls to hold. Errors: not_in_convoy.
   virtual Result<void> leave_convoy(Time now) = 0;
+  /// Allows the robot to make way for others, or no longer; it then stays where it is. Errors:
+  /// mode_not_installed, where the robot has no router.
+  virtual Result<void> allow_yield(bool allowed, Time now) = 0;
   virtual void stop_changed(bool stopped, Time now) = 0;
   /// Called when the holder changed, also when it released the robot.
   virtual void holder_changed(Time now) = 0;

@@ -207,15 +207,19 @@ Twist2 Navigation::limited(const Twist2& wanted) const {
   return t;
 }
 
-void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now,
-                          std::shared_ptr<const Scan> for_route) {
+void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now, std::vector<TeamRobot> team) {
   scanned_ = received;
   monitor_.look(scan->points, scan->body, seconds(now.time_since_epoch()));
   if (planning_)
     waiting_ = scan;
   else
     plan(scan, now);
-  ask_route(for_route ? std::move(for_route) : std::move(scan), now);
+  ask_route(scan, now, std::move(team));
+}
+
+std::span<const Eigen::Vector3d> Navigation::route_ahead(Time now) const {
+  const nav::RouteStep* step = std::holds_alternative<GoTo>(motion_) ? step_on(now) : nullptr;
+  return step ? std::span<const Eigen::Vector3d>(step->ahead) : std::span<const Eigen::Vector3d>{};
 }
 
 const nav::RouteStep* Navigation::step_on(Time now) const {
@@ -226,10 +230,11 @@ const nav::RouteStep* Navigation::step_on(Time now) const {
   return outdated ? nullptr : &*step_;
 }
 
-void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now) {
+void Navigation::ask_route(const std::shared_ptr<const Scan>& scan, Time now, std::vector<TeamRobot> team) {
   if (!router_ || routing_) return;
   auto job = std::make_shared<RouteJob>();
   job->scan = scan;
+  job->team = std::move(team);
   job->place = frames_.T_odom_base().position;
   if (const auto* go = std::get_if<GoTo>(&motion_)) {
     job->goal = frames_.to_odom(go->goal);

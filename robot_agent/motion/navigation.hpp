@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/component/component.hpp"
@@ -61,9 +62,10 @@ class Navigation : public Component, public NavigationInput {
   void set_areas(const nav::AreaSet& areas) { areas_ = areas; }
   /// The areas in the odometry frame, for the router.
   RouteAreas route_areas() const { return {fence_.all(), fence_.binding()}; }
-  /// `for_route`: the scan for the route map; null: `scan` itself.
-  void add_scan(std::shared_ptr<Scan> scan, Time received, Time now,
-                std::shared_ptr<const Scan> for_route = nullptr);
+  /// `team`: the other robots, for the route map.
+  void add_scan(std::shared_ptr<Scan> scan, Time received, Time now, std::vector<TeamRobot> team = {});
+  /// Corners of the route ahead, from the robot on, odometry frame, m; empty: there is no route, or no team.
+  std::span<const Eigen::Vector3d> route_ahead(Time now) const;
   /// Discards points and plans, because the odometry frame has changed. Until the next scan the terrain is
   /// not fresh.
   void clear();
@@ -81,7 +83,7 @@ class Navigation : public Component, public NavigationInput {
   nav::Target target() const;
   /// The next step of the route; null if there is none.
   const nav::RouteStep* step_on(Time now) const;
-  void ask_route(const std::shared_ptr<const Scan>& scan, Time now);
+  void ask_route(const std::shared_ptr<const Scan>& scan, Time now, std::vector<TeamRobot> team);
   void routed(const RouteJob& job, const Result<nav::RouteStep>& step);
   Twist2 along_plan(Time now);
   void watch_warning(nav::CollisionMonitor::Cause cause, Time now);

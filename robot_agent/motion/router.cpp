@@ -10,6 +10,7 @@ namespace adit::agent {
 namespace {
 
 constexpr double kMoved = 0.1;       // m
+constexpr double kAhead = 20.0;      // m: the route ahead that right of way looks at
 constexpr double kJudged = 3.0;      // m: a goal this near is in sight
 constexpr double kRefusedFor = 3.0;  // s: the body cannot stand at a goal for so long before the robot stops
 
@@ -33,6 +34,7 @@ struct Router::Maps {
 
   nav::RouteStep step(const RouteJob& job, double stamp) {
     nav::RouteStep step = route_follower.step(planner, job.place, *job.goal, job.blocked, stamp);
+    if (!job.team.empty() && step.state == nav::RouteStep::State::along) step.ahead = ahead();
     step.goal = goals.stand(planner, *job.goal, job.place.z());
     // From afar the map may show what was there a while ago, and a person who passes is no reason to stop.
     const bool near = (*job.goal - job.place).head<2>().norm() < kJudged;
@@ -44,6 +46,22 @@ struct Router::Maps {
     }
     if (step.goal == nav::Standing::forbidden) step.state = nav::RouteStep::State::unreachable;
     return step;
+  }
+
+  /// The corners of the first kAhead metres of the route, from the robot on.
+  std::vector<Eigen::Vector3d> ahead() const {
+    std::vector<Eigen::Vector3d> corners;
+    double passed = 0.0;
+    for (const Eigen::Vector3d& point : route_follower.route().points) {
+      if (!corners.empty()) passed += (point - corners.back()).norm();
+      if (passed > kAhead) {
+        const Eigen::Vector3d way = point - corners.back();
+        corners.push_back(point - way * ((passed - kAhead) / way.norm()));
+        break;
+      }
+      corners.push_back(point);
+    }
+    return corners;
   }
 
   void enter(std::uint32_t epoch, const RouteAreas& now) {
@@ -68,6 +86,7 @@ Result<void> Router::on_start() {
   offer(services_.step, [this](const auto& job, const auto& reply) { step(job, reply); });
   offer(services_.check, [this](const auto& query, const auto& reply) { check(query, reply); });
   offer(services_.explore, [this](const auto& query, const auto& reply) { explore(query, reply); });
+  offer(services_.clear, [this](const auto& query, const auto& reply) { clear(query, reply); });
   offer(services_.find, [this](const auto& query, const auto& reply) { find(query, reply); });
   return {};
 }
@@ -87,9 +106,11 @@ void Router::step(const std::shared_ptr<const RouteJob>& job, const Reply<nav::R
         maps->enter(job->odom_epoch, job->areas);
         const double stamp = seconds(job->made.time_since_epoch());
         if (takes) {
-          maps->planner.add_scan(job->scan->points, job->scan->body, stamp, job->goal.has_value());
-          maps->explorer.add_scan(job->scan->points, job->scan->body);
+          const auto scan = without_team(job->scan, job->team);
+          maps->planner.add_scan(scan->points, scan->body, stamp, job->goal.has_value());
+          maps->explorer.add_scan(scan->points, scan->body);
         }
+        set_team(maps->planner, job->team, maps->platform.width / 2);
         if (job->goal) return maps->step(*job, stamp);
         maps->route_follower.clear();
         maps->refused_since.reset();
@@ -131,6 +152,17 @@ void Router::explore(const ExploreQuery& query, const Reply<nav::ExploreStep>& r
                                    query.blocked);
       },
       [reply](Result<nav::ExploreStep> step) { reply(std::move(step)); });
+}
+
+void Router::clear(const ClearPlaceQuery& query, const Reply<std::optional<Eigen::Vector3d>>& reply) {
+  compute(
+      {.name = "clear place", .modelled = params_.modelled, .lane = "maps"},
+      [query, maps = maps_] {
+        maps->enter(query.odom_epoch, query.areas);
+        set_team(maps->planner, query.team, maps->platform.width / 2);
+        return nav::find_clear_place(maps->planner, query.query);
+      },
+      [reply](Result<std::optional<Eigen::Vector3d>> found) { reply(std::move(found)); });
 }
 
 Reason reason_of(nav::Standing standing) {

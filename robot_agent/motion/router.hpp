@@ -7,11 +7,13 @@
 #include "core/component/component.hpp"
 #include "nav/explore/explorer.hpp"
 #include "nav/goals/goal_check.hpp"
+#include "nav/right_of_way/place_search.hpp"
 #include "nav/routing/route_follower.hpp"
 #include "robot_agent/common/goal_report.hpp"
 #include "robot_agent/common/planned_route.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/planner.hpp"
+#include "robot_agent/motion/team_robot.hpp"
 
 namespace adit::agent {
 
@@ -28,6 +30,7 @@ struct RouteJob {
   std::optional<Eigen::Vector3d> goal{};  ///< Unset: the scan enters the map, and no route is requested.
   Eigen::Vector3d place{0, 0, 0};         ///< Position of the body.
   bool blocked{};                         ///< The local planner found no path along the previous step.
+  std::vector<TeamRobot> team{};          ///< The other robots; with any, the answer has the route ahead.
   std::uint32_t odom_epoch{};             ///< Epoch of that frame; maps of another epoch are discarded.
   std::uint64_t generation{};             ///< Generation of the goal, for the caller.
   RouteAreas areas{};
@@ -60,13 +63,22 @@ struct ExploreQuery {
   Time made{};
 };
 
+/// A request for a place out of another robot's way. Odometry frame, m.
+struct ClearPlaceQuery {
+  nav::ClearQuery query{};
+  std::vector<TeamRobot> team{};  ///< As in RouteJob; those that do not make way cost nav::kNoWay.
+  RouteAreas areas{};
+  std::uint32_t odom_epoch{};  ///< As in RouteJob.
+};
+
 /// The services of the router: the next step of the followed route, a query for a route that is not stored,
-/// the judgement of a goal, and the next goal of an exploration.
+/// the judgement of a goal, the next goal of an exploration, and a place out of another robot's way.
 struct RouteServices {
   Service<std::shared_ptr<const RouteJob>, nav::RouteStep> step{"route step", 2};
   Service<RouteQuery, nav::Route> find{"route query", 4};
   Service<GoalQuery, nav::GoalFinding> check{"goal check", 4};
   Service<ExploreQuery, nav::ExploreStep> explore{"exploration", 2};
+  Service<ClearPlaceQuery, std::optional<Eigen::Vector3d>> clear{"clear place", 2};
 };
 
 struct RouterParams {
@@ -92,6 +104,7 @@ class Router : public Component {
   void find(const RouteQuery& query, const Reply<nav::Route>& reply);
   void check(const GoalQuery& query, const Reply<nav::GoalFinding>& reply);
   void explore(const ExploreQuery& query, const Reply<nav::ExploreStep>& reply);
+  void clear(const ClearPlaceQuery& query, const Reply<std::optional<Eigen::Vector3d>>& reply);
 
   RouterParams params_;
   RouteServices& services_;

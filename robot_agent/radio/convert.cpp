@@ -212,6 +212,8 @@ radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<Mode
   out.goal_id(view.goal_id);
   out.goal({view.goal.x(), view.goal.y(), view.goal.z()});
   out.convoy(view.convoy);
+  out.yields(view.yields);
+  out.yields_to(view.yields_to);
   if (view.exploration.state != ExplorationState::none)
     out.exploration().push_back(to_radio(view.exploration));
   for (const nav::Area& area : view.areas.all()) out.areas().push_back(to_radio(area));

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
+#include "core/result/reason.hpp"
 #include "core/time/time.hpp"
 
 namespace adit::agent {
@@ -28,6 +30,29 @@ struct ConvoyPart {
   bool operator==(const ConvoyPart&) const = default;
 };
 
+/// A robot asks others to make way. Map frame, m.
+struct YieldAsk {
+  static constexpr std::size_t kRobots = 4, kPoints = 12;
+
+  std::vector<std::string> to{};  ///< The robots that are asked, at most kRobots.
+  /// The robot that wants to pass: the sender, or one for which the sender makes way itself.
+  std::string root{};
+  double width{};                        ///< Of the corridor that must be free, m.
+  std::vector<Eigen::Vector2d> route{};  ///< The way ahead, at most kPoints corners.
+  bool operator==(const YieldAsk&) const = default;
+
+  bool names(const std::string& robot) const { return std::find(to.begin(), to.end(), robot) != to.end(); }
+};
+
+/// A robot's answer to one that asked it to make way.
+struct YieldAnswer {
+  std::string root{};               ///< For which it makes way, or cannot.
+  bool clears{};                    ///< False: it cannot.
+  Reason reason{Reason::none};      ///< Why it cannot.
+  Eigen::Vector2d place{0.0, 0.0};  ///< To which it drives, map frame, m.
+  bool operator==(const YieldAnswer&) const = default;
+};
+
 /// The state of a robot as it sends it to the other robots.
 struct TeamBeacon {
   std::string robot{};
@@ -40,6 +65,11 @@ struct TeamBeacon {
   bool stopped{};
   std::string holder{};  ///< Empty: no holder.
   std::optional<ConvoyPart> convoy{};
+  /// Its right of way, or that of the robot for which it makes way; the higher one passes.
+  std::uint8_t rank{};
+  bool yields{};  ///< Its holder allowed it to make way, and it could now.
+  std::optional<YieldAsk> ask{};
+  std::optional<YieldAnswer> answer{};
   bool operator==(const TeamBeacon&) const = default;
 };
 

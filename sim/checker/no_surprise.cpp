@@ -35,9 +35,9 @@ class NoSurprise : public Rule {
   }
 
   void on_time(const RobotModel& robot, const ReportViolation& report_violation) override {
-    // The holder changed, or his station came back: a manual mode that was on falls to hold, and
-    // convoy_follow when the holder changed.
-    const bool on = robot.in_manual_mode() || robot.mode() == "convoy_follow";
+    // The holder changed, or his station came back: a manual mode that was on falls to hold; convoy_follow
+    // and get_out when the holder changed.
+    const bool on = ends_with_holder(robot);
     const bool overdue = manual_must_end_ && on && robot.now() - *manual_must_end_ > kReaction;
     if (overdue)
       report_violation("stayed in " + robot.mode() + " when its holder changed or was started again");
@@ -50,6 +50,11 @@ class NoSurprise : public Rule {
     why_not_ = why;
   }
 
+  /// Whether the robot's mode ends with the authority of its holder.
+  static bool ends_with_holder(const RobotModel& robot) {
+    return robot.in_manual_mode() || robot.mode() == "convoy_follow" || robot.mode() == "get_out";
+  }
+
   /// Whether the command makes the robot follow in a convoy; the first of an order leads it.
   static bool follows(const RobotModel& robot, const CommandHeard& command) {
     return command.verb == Verb::join && command.text != robot.facts().name;
@@ -60,7 +65,7 @@ class NoSurprise : public Rule {
     first_velocity_ = true;
     odometry_.reset();
     const auto autonomous = [](const std::string& mode) {
-      return mode == "waypoint" || mode == "explore" || mode == "convoy_follow";
+      return mode == "waypoint" || mode == "explore" || mode == "convoy_follow" || mode == "get_out";
     };
     bool goes_on = allowed_ && autonomous(robot.mode());
     for (const RobotModel::Pending& p : robot.unanswered())
@@ -112,7 +117,7 @@ class NoSurprise : public Rule {
                                  (command.station != before.holder || command.id != before.holder_id)) ||
                                 command.verb == Verb::release ||
                                 (command.verb == Verb::grant && command.text != before.holder);
-    if (holder_changes && (robot.in_manual_mode() || robot.mode() == "convoy_follow")) {
+    if (holder_changes && (ends_with_holder(robot))) {
       manual_must_end_ = robot.now();
       revoke("a change of holder");
     }
@@ -143,7 +148,8 @@ class NoSurprise : public Rule {
   void on_velocity(const RobotModel& robot, const Twist2& velocity, const ReportViolation& report_violation) {
     if (robot.alive() && std::exchange(first_velocity_, false) && !velocity.zero())
       report_violation("its first velocity after a start was not zero");
-    if (velocity.zero() || !robot.alive()) {
+    // Rule 8 judges get_out, which no operator requests.
+    if (velocity.zero() || !robot.alive() || robot.mode() == "get_out") {
       told_ = false;
       return;
     }

@@ -51,6 +51,7 @@ enum class Verb {
   pose,         ///< Sets the pose of the robot.
   join,         ///< Gives the robot its place in a convoy; the words are the names in their order.
   peeloff,      ///< Takes the robot out of its convoy.
+  yield,        ///< Allows the robot to make way; the text is on or off.
   area_add,     ///< The words are its name and its kind, the numbers its corners, then two heights.
   area_remove,  ///< The text is its name.
   unknown       ///< A number that the checker does not know.
@@ -105,6 +106,7 @@ struct JoystickHeard {
 /// A beacon of another robot reached the robot.
 struct BeaconHeard {
   std::string robot{};
+  std::vector<std::string> asks{};  ///< The robots that it asks to make way.
 };
 
 /// A scan of its lidar reached the robot.

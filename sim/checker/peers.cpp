@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "sim/checker/rule.hpp"
@@ -10,16 +11,26 @@ namespace {
 
 /// A follower's predecessor was heard within this, and a reaction.
 constexpr Duration kPredecessorTimeout = 12s;
+/// A robot that made way stops when it was not asked for this long, and a reaction.
+constexpr Duration kAskKept = 5s;
 
 /// Rule 8: peers need permission. A robot moves in convoy_follow only by a place in a convoy that its present
-/// holder gave it, and while it hears a robot that the holder named before it.
+/// holder gave it, and while it hears a robot that the holder named before it; in get_out only while its
+/// present holder allows it, not after a stop, and while a robot asks it to make way.
 class PeersNeedPermission : public Rule {
  public:
   void on_event(const RobotModel& robot, const Event& event,
                 const ReportViolation& report_violation) override {
-    if (const auto* beacon = std::get_if<BeaconHeard>(&event)) heard_[beacon->robot] = robot.now();
+    if (const auto* beacon = std::get_if<BeaconHeard>(&event)) {
+      heard_[beacon->robot] = robot.now();
+      const auto& asks = beacon->asks;
+      if (std::find(asks.begin(), asks.end(), robot.facts().name) != asks.end()) asked_ = robot.now();
+    }
     if (const auto* ack = std::get_if<AckSent>(&event)) on_answer(robot, *ack);
-    if (const auto* sent = std::get_if<VelocitySent>(&event)) on_velocity(robot, *sent, report_violation);
+    if (const auto* sent = std::get_if<VelocitySent>(&event)) {
+      on_velocity(robot, *sent, report_violation);
+      watch_yield(robot, *sent, report_violation);
+    }
   }
 
  private:
@@ -36,6 +47,28 @@ class PeersNeedPermission : public Rule {
     else if (other_mode || other_holder || command.verb == Verb::go_to || command.verb == Verb::peeloff ||
              command.verb == Verb::release || command.verb == Verb::grant)
       ahead_.clear();
+    const bool no_holder = other_holder || command.verb == Verb::release || command.verb == Verb::grant;
+    if (command.verb == Verb::yield) yields_ = command.text == "on";
+    if (no_holder) yields_ = false;
+    if (command.verb == Verb::stop) asleep_ = true;
+    if (command.verb == Verb::yield || command.verb == Verb::mode || command.verb == Verb::go_to ||
+        command.verb == Verb::join)
+      asleep_ = false;
+  }
+
+  void watch_yield(const RobotModel& robot, const VelocitySent& sent,
+                   const ReportViolation& report_violation) {
+    const bool clears = robot.alive() && robot.mode() == "get_out" && !sent.velocity.zero();
+    if (!clears) {
+      yield_told_ = false;
+      return;
+    }
+    const bool pending = RobotModel::asked(robot.pending(), {Verb::yield, Verb::mode, Verb::go_to});
+    const bool allowed = (yields_ && !asleep_) || pending;
+    const bool asked = asked_ && robot.age(*asked_) <= kAskKept + kReaction;
+    if ((allowed && asked) || std::exchange(yield_told_, true)) return;
+    report_violation(allowed ? "moved in get_out and no robot asks it to make way"
+                             : "moved in get_out without the permission of its holder");
   }
 
   /// The robots that an order names before this one.
@@ -67,6 +100,9 @@ class PeersNeedPermission : public Rule {
   std::map<std::string, Duration> heard_{};  ///< Last beacon of each robot.
   std::vector<std::string> ahead_{};         ///< Robots before this one; empty: it has no place.
   bool told_{};
+  bool yields_{}, asleep_{};         ///< Its holder's permission, which sleeps after a stop.
+  std::optional<Duration> asked_{};  ///< A robot asked it last.
+  bool yield_told_{};
 };
 
 }  // namespace

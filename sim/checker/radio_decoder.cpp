@@ -57,6 +57,8 @@ Verb verb_of(radio::CommandKind kind) {
       return Verb::join;
     case radio::CMD_PEELOFF:
       return Verb::peeloff;
+    case radio::CMD_YIELD:
+      return Verb::yield;
     case radio::CMD_AREA_ADD:
       return Verb::area_add;
     case radio::CMD_AREA_REMOVE:
@@ -161,7 +163,8 @@ Decoded decode_received(std::string_view topic, std::span<const std::uint8_t> cd
   if (is(topic, topics::kTeam)) {
     const auto b = read<radio::TeamBeacon>(cdr);
     if (!b) return std::nullopt;
-    return DecodedSample{{}, BeaconHeard{b->robot()}};
+    return DecodedSample{
+        {}, BeaconHeard{b->robot(), b->ask().empty() ? std::vector<std::string>{} : b->ask().front().to()}};
   }
   if (is(topic, topics::kPoints)) return DecodedSample{{}, ScanHeard{}};
   if (is(topic, topics::kOdom)) {

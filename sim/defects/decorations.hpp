@@ -43,6 +43,7 @@ Decoration blind_planner(const Subject& subject);
 Decoration blind_and_unwatched(const Subject& subject);
 Decoration drives_through_stop(const Subject& subject);
 Decoration follows_nobody(const Subject& subject);
+Decoration yields_unasked(const Subject& subject);
 
 // Of its parent process.
 Decoration none(const Subject& subject);

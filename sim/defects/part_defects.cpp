@@ -77,6 +77,20 @@ std::shared_ptr<const agent::ModeTable> modes_that_follow_nobody() {
   return std::make_shared<const agent::ModeTable>(std::move(rows));
 }
 
+/// A get_out that operators may request, and that drives ahead without being asked by any robot.
+std::shared_ptr<const agent::ModeTable> modes_that_yield_unasked() {
+  std::vector<agent::ModeRow> rows = agent::ModeTable::shipped().rows();
+  for (agent::ModeRow& row : rows) {
+    if (row.name != "get_out") continue;
+    row.make = FollowsNobody::make;
+    row.commanded_by.holder = true;
+    for (agent::Condition& condition : row.conditions)
+      if (condition.leaf == "YieldAllowed" || condition.leaf == "InTheWay")
+        condition.holds = [](const agent::Facts&) { return true; };
+  }
+  return std::make_shared<const agent::ModeTable>(std::move(rows));
+}
+
 /// Takes out of every scan what stands on the ground.
 class SeesGroundAlone final : public Interceptor {
  public:
@@ -130,6 +144,12 @@ Decoration blind_and_unwatched(const Subject& subject) {
 Decoration follows_nobody(const Subject&) {
   Decoration decoration;
   decoration.parameters = [](agent::AgentParams& params) { params.modes = modes_that_follow_nobody(); };
+  return decoration;
+}
+
+Decoration yields_unasked(const Subject&) {
+  Decoration decoration;
+  decoration.parameters = [](agent::AgentParams& params) { params.modes = modes_that_yield_unasked(); };
   return decoration;
 }
 

@@ -125,6 +125,10 @@ TeamBeacon a_beacon() {
   beacon.holder = "op1";
   beacon.convoy = ConvoyPart{7, 8, 1, false, true, 3.25, 1.5, 4, 9, {}};
   for (int i = 0; i < 8; ++i) beacon.convoy->points.push_back({300 + 0.5 * i, -200.0, 0.5});
+  beacon.rank = 3;
+  beacon.yields = true;
+  beacon.ask = YieldAsk{{"r3", "r4"}, "r2", 0.8, {{300, -200}, {303, -200}, {303, -190}}};
+  beacon.answer = YieldAnswer{"r1", true, Reason::none, {301, -202}};
   return beacon;
 }
 
@@ -137,10 +141,22 @@ TEST(Convert, ABeaconArrivesAsItWasSentAndFitsItsTopic) {
   ASSERT_EQ(read->convoy->points.size(), 8u);
   for (std::size_t i = 0; i < 8; ++i)
     EXPECT_LT((read->convoy->points[i] - sent.convoy->points[i]).norm(), 0.01);
+  EXPECT_EQ(read->answer, sent.answer);
+  EXPECT_EQ(read->rank, 3);
+  EXPECT_TRUE(read->yields);
+  ASSERT_TRUE(read->ask);
+  EXPECT_EQ(read->ask->to, sent.ask->to);
+  EXPECT_LT((read->ask->route.back() - sent.ask->route.back()).norm(), 0.01);
   TeamBeacon longest = sent;
+  longest.ask->to.assign(YieldAsk::kRobots, std::string(32, 'n'));
+  longest.ask->root = longest.answer->root = std::string(32, 'n');
+  longest.ask->route.assign(YieldAsk::kPoints, {300, -200});
   longest.robot = longest.holder = longest.mode = std::string(32, 'n');
   EXPECT_LE(encoded(to_radio(longest)), wire::topics::kTeam.max_bytes);
-  EXPECT_LE(encoded(to_radio(sent)), 220u) << "what BeaconRate counts on, less the headers";
+  TeamBeacon usual = sent;
+  usual.ask.reset();
+  usual.answer.reset();
+  EXPECT_LE(encoded(to_radio(usual)), 220u) << "what BeaconRate counts on, less the headers";
   TeamBeacon far = sent;
   far.convoy->points[3].x() += 400.0;
   EXPECT_EQ(from_radio(to_radio(far))->convoy->points.size(), 3u) << "the rest would be misnumbered";
@@ -166,6 +182,16 @@ TEST(Convert, MalformedBeaconsAreRefused) {
   EXPECT_TRUE(refused([&](auto& b) { b.convoy().resize(64, b.convoy()[0]); }));
   EXPECT_TRUE(refused([&](auto& b) { b.convoy()[0].points().resize(27); }));
   EXPECT_TRUE(refused([&](auto& b) { b.convoy()[0].points().resize(4); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask()[0].to().resize(64, "r3"); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask()[0].to().clear(); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask()[0].root("r 1"); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask()[0].width(nan); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask()[0].width(0.0f); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask()[0].route().resize(3); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask()[0].route().resize(26); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.ask().resize(2, b.ask()[0]); }));
+  EXPECT_TRUE(refused([&](auto& b) { b.answer()[0].place()[1] = nan; }));
+  EXPECT_TRUE(refused([&](auto& b) { b.answer()[0].root(""); }));
 }
 
 TEST(Convert, CommandsAreReadByTheCommandTable) {

@@ -9,8 +9,10 @@ namespace adit::agent {
 namespace {
 
 const std::string kTree = source_folder() + "/config/trees/robot.xml";
-const Facts kAllGood{false, true, true, true, true, true,
-                     true,  true, true, true, true, {"in_convoy", "leader_known", "order_agrees"}};
+const Facts kAllGood{
+    false, true, true, true,
+    true,  true, true, true,
+    true,  true, true, {"in_convoy", "leader_known", "order_agrees", "yield_allowed", "in_the_way"}};
 
 std::unique_ptr<Decider> load() {
   auto decider = Decider::load(kTree);

@@ -50,6 +50,10 @@ struct FakeRequests : Requests {
     calls.push_back("peeloff");
     return {};
   }
+  Result<void> allow_yield(bool allowed, Time) override {
+    calls.push_back(allowed ? "yield on" : "yield off");
+    return {};
+  }
   void stop_changed(bool on, Time) override {
     stopped = on;
     calls.push_back(on ? "stopped" : "reset");

@@ -86,14 +86,6 @@ TEST(ModeTable, HoldIsFirstAndUnconditional) {
   EXPECT_EQ(entry_refusal(ModeTable::shipped().hold(), Facts{}), Reason::none);
 }
 
-TEST(ModeTable, ModesOfTheDesignThatHaveNoModuleAreKnown) {
-  for (const char* mode : {"get_out"}) {
-    EXPECT_EQ(ModeTable::shipped().find(mode), nullptr);
-    EXPECT_TRUE(is_planned_mode(mode));
-  }
-  EXPECT_FALSE(is_planned_mode("fly"));
-}
-
 TEST(ModeTable, EveryConditionOfARowIsALeaf) {
   for (const ModeRow& row : ModeTable::shipped().rows())
     for (const Condition& c : row.conditions)

@@ -6,8 +6,15 @@
 namespace adit::agent {
 namespace {
 
-const Facts kAllConditions{false, true, true, true, true, true,
-                           true,  true, true, true, true, {"in_convoy", "leader_known", "order_agrees"}};
+const Facts kAllConditions{
+    false, true, true, true,
+    true,  true, true, true,
+    true,  true, true, {"in_convoy", "leader_known", "order_agrees", "yield_allowed", "in_the_way"}};
+
+/// A party that may request the mode.
+Commander requester(const ModeRow& row) {
+  return row.commanded_by.holder ? Commander::holder : Commander::agent;
+}
 
 class Guard : public testing::Test {
  protected:
@@ -28,7 +35,7 @@ TEST_F(Guard, PassesNothingThatWasNotAdmitted) {
 
 TEST_F(Guard, AdmitsWhenEveryConditionHolds) {
   for (const ModeRow& each : table.rows()) {
-    EXPECT_EQ(guard.admit(each, Commander::holder, kAllConditions), Reason::none);
+    EXPECT_EQ(guard.admit(each, requester(each), kAllConditions), Reason::none);
     EXPECT_EQ(&guard.admitted(), &each);
     EXPECT_TRUE(guard.judge(runs(each.name), kAllConditions).runs);
   }
@@ -73,7 +80,7 @@ TEST_F(Guard, EveryLastingConditionIsAskedInEveryTick) {
     for (const Condition& c : each.conditions) {
       if (c.entry_only()) continue;
       guard.hold();
-      ASSERT_EQ(guard.admit(each, Commander::holder, kAllConditions), Reason::none);
+      ASSERT_EQ(guard.admit(each, requester(each), kAllConditions), Reason::none);
       const Decision d = guard.judge(runs(each.name), fails(c));
       EXPECT_FALSE(d.runs) << each.name << " " << c.leaf;
       EXPECT_EQ(d.reason, c.reason);
@@ -107,8 +114,9 @@ TEST_F(Guard, AManualModeCannotPause) {
 
 TEST_F(Guard, ManualModesAndConvoysEndWithTheirHolder) {
   for (const ModeRow& each : table.rows()) {
-    ASSERT_EQ(guard.admit(each, Commander::holder, kAllConditions), Reason::none);
-    const bool ends = each.name == "manual" || each.name == "smart_joystick" || each.name == "convoy_follow";
+    ASSERT_EQ(guard.admit(each, requester(each), kAllConditions), Reason::none);
+    const bool ends = each.name == "manual" || each.name == "smart_joystick" ||
+                      each.name == "convoy_follow" || each.name == "get_out";
     EXPECT_EQ(guard.holder_changed(), ends) << each.name;
     EXPECT_EQ(guard.admitted().name, ends ? "hold" : each.name);
   }

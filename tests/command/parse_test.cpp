@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, ParseBad,
     testing::Values(Bad{"", Reason::syntax, "no command"},
                     Bad{"tkae r1", Reason::unknown_command, "did you mean take?"},
-                    Bad{"yield r1 on", Reason::unknown_command, "unknown command 'yield'"},
+                    Bad{"relay r1 on", Reason::unknown_command, "unknown command 'relay'"},
                     Bad{"convoy start r1", Reason::bad_argument, "a follower is missing"},
                     Bad{"convoy start r1 r2 r2", Reason::bad_argument, "r2 is named twice"},
                     Bad{"convoy start r1 r2 --gap 0.1", Reason::out_of_range, "at least 0.5"},

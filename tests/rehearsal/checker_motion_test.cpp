@@ -359,5 +359,43 @@ TEST(CheckerMotion, AFollowerGoesOnUnderAnotherHolder) {
   EXPECT_THAT(r.broken(), ElementsAre(7, 8)) << r.texts();
 }
 
+/// op1 allows r1 to make way, or no longer.
+void allow(Record& r, const char* word) {
+  CommandHeard c{participant(1), "op1", station_id(1), r.start, r.epoch, ++r.sequence, Verb::yield, word};
+  r.see(c);
+  r.answer(c);
+}
+
+TEST(CheckerMotion, ARobotThatMakesWayBreaksNothing) {
+  Record r;
+  r.take(1);
+  allow(r, "on");
+  r.see(BeaconHeard{"r0", {"r1"}});
+  r.behave("get_out");
+  r.pass(4s, kForward);
+  EXPECT_THAT(r.broken(), IsEmpty()) << r.texts();
+}
+
+TEST(CheckerMotion, ARobotThatMakesWayAndIsNotAsked) {
+  Record r;
+  r.take(1);
+  allow(r, "on");
+  r.see(BeaconHeard{"r0", {"r2"}});
+  r.behave("get_out");
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), ElementsAre(8)) << r.texts();
+}
+
+TEST(CheckerMotion, ARobotThatMakesWayWithoutPermission) {
+  Record r;
+  r.take(1);
+  allow(r, "on");
+  allow(r, "off");
+  r.see(BeaconHeard{"r0", {"r1"}});
+  r.behave("get_out");
+  r.pass(1s, kForward);
+  EXPECT_THAT(r.broken(), ElementsAre(8)) << r.texts();
+}
+
 }  // namespace
 }  // namespace adit::sim

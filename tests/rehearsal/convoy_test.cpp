@@ -32,6 +32,16 @@ TEST(Convoy, TheShippedScenariosHold) {
   }
 }
 
+TEST(RightOfWay, ARobotClearsACorridorOnceItsHolderAllowsIt) {
+  const Scenario scenario = load_shipped("yield_pocket.yaml");
+  RunParams params;
+  params.make_agent = *make_agent_factory("");
+  params.seed = 1;
+  const auto outcome = rehearse(scenario, *make_world(scenario.world), params);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().text;
+  holds(outcome->report);
+}
+
 TEST(Convoy, IsAllOrNone) {
   holds(run_text(in_a_row(R"(duration: 14
 script:

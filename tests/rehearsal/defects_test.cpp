@@ -88,6 +88,7 @@ const std::vector<Broken>& table() {
       {"enter_off_centre", 7, 1, "  - {at: 6.03, by: op1, do: mode r1 manual}\n",
        "faults:\n  - {at: 4, stuck: [op1, r1], for: 5}\n"},
       {"follows_nobody", 8, 1, "  - {at: 3, by: op1, do: mode r1 convoy_follow}\n"},
+      {"yields_unasked", 8, 1, "  - {at: 3, by: op1, do: mode r1 get_out}\n"},
       {"fence_soft", 10, 1,
        "  - {at: 2, by: op1, do: area r1 add wall keep_out 4 -2 5 2}\n  - {at: 3, by: op1, do: goto r1 8 "
        "0}\n",

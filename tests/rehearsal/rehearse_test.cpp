@@ -159,7 +159,7 @@ TEST(Rehearse, ReportHasEveryField) {
   for (const char* key : {"digest", "seed", "ok", "virtual_s", "wall_s", "speedup", "expectations", "rules",
                           "robots", "topics", "commands"})
     EXPECT_TRUE(json.contains(key)) << key;
-  EXPECT_EQ(json["rules"].size(), 9U);
+  EXPECT_EQ(json["rules"].size(), 10U);
   for (const char* key : {"distance", "collisions", "min_clearance", "modes"})
     EXPECT_TRUE(json["robots"]["r1"].contains(key)) << key;
   EXPECT_EQ(json["commands"]["sent"],

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "robot_agent/behaviour/mode_module.hpp"
+#include "robot_agent/behaviour/mode_table.hpp"
+
+namespace adit::agent {
+
+/// The mode `get_out`: drives to a place out of another robot's way, and waits there. RightOfWay decides
+/// when, and for whom; no operator requests it.
+class GetOutMode : public ModeModule {
+ public:
+  explicit GetOutMode(const ModeContext& context) : context_(context) {}
+  static std::unique_ptr<ModeModule> make(const ModeContext& context) {
+    return std::make_unique<GetOutMode>(context);
+  }
+  static ModeRow row();
+
+  void note(Facts& facts, Time now) const override;
+  void enter(Time) override { navigated_ = {}; }
+  void tick(bool passes, Time now) override;
+  void navigated(const Progress& progress) override { navigated_ = progress; }
+  Progress navigation() const override { return navigated_; }
+  void store(KeptBehaviour& kept) const override;
+  void restore(const KeptBehaviour& kept) override;
+
+ private:
+  ModeContext context_;
+  Progress navigated_{};
+};
+
+}  // namespace adit::agent

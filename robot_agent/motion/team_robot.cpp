@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/motion/team_robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::agent {
+namespace {
+
+constexpr double kPoseErrors = 0.3;  // m: errors of both poses.
+constexpr double kReach = 20.0;      // m: the route map takes in nothing from farther away.
+constexpr double kOutline = 0.1;     // m: cells of the map around a robot's outline that are its own.
+
+/// The outline of a robot, body frame of this one.
+struct Box {
+  Pose2 T_box_body{};
+  double length{}, width{};  ///< Half of them, with the margin, m.
+};
+
+}  // namespace
+
+std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan,
+                                         const std::vector<TeamRobot>& team) {
+  const Pose2 body = scan->body.planar();
+  std::vector<Box> boxes;
+  for (const TeamRobot& robot : team)
+    if ((robot.pose.position() - body.position()).norm() <= kReach)
+      boxes.push_back(
+          {robot.pose.inverse() * body, robot.length / 2 + kPoseErrors, robot.width / 2 + kPoseErrors});
+  if (boxes.empty()) return scan;
+  auto rest = std::make_shared<Scan>();
+  rest->body = scan->body;
+  rest->points.reserve(scan->points.size());
+  for (const Eigen::Vector3f& point : scan->points) {
+    const Eigen::Vector2d place = point.head<2>().cast<double>();
+    const bool inside = std::any_of(boxes.begin(), boxes.end(), [&](const Box& box) {
+      const Eigen::Vector2d in_box = box.T_box_body * place;
+      return std::fabs(in_box.x()) < box.length && std::fabs(in_box.y()) < box.width;
+    });
+    if (!inside) rest->points.push_back(point);
+  }
+  return rest;
+}
+
+void set_team(nav::RoutePlanner& planner, const std::vector<TeamRobot>& team, double half_width) {
+  std::vector<nav::TeamPlace> places;
+  for (const TeamRobot& robot : team) {
+    const double length = robot.length / 2 + kOutline, width = robot.width / 2 + kOutline;
+    for (double x = -length; x <= length; x += nav::kRouteCell / 2)
+      for (double y = -width; y <= width; y += nav::kRouteCell / 2) {
+        const Eigen::Vector2d at = robot.pose * Eigen::Vector2d(x, y);
+        planner.clear_obstacle({at.x(), at.y(), robot.z});
+      }
+    if (robot.cost > 0.0)
+      places.push_back({{robot.pose.x, robot.pose.y, robot.z},
+                        std::max(robot.length, robot.width) / 2 + half_width,
+                        robot.cost});
+  }
+  planner.set_team(std::move(places));
+}
+
+}  // namespace adit::agent
