@@ -437,7 +437,8 @@ Convoy::Inputs Agent::CommandComponent::convoy_inputs() {
             const Pose2 pose = frames_.T_map_base();
             return Eigen::Vector3d(pose.x, pose.y, frames_.height());
           },
-          [this](const Notice& notice) { notices_.send_to_holder(notice); }};
+          [this](const Notice& notice) { notices_.send_to_holder(notice); },
+          [this](const Eigen::Vector2d& place) { return navigation_.goal_free(place); }};
 }
 
 RightOfWay::Outputs Agent::CommandComponent::right_of_way_outputs() {

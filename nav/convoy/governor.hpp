@@ -22,14 +22,21 @@ class Governor {
     double silent_after{5.0};  ///< A member silent for longer may be lost, s.
     double silent_speed{0.3};  ///< Speed while a member is silent, m/s.
     double silent_wait{20.0};  ///< Longest time at that speed, s.
+    double splice_share{0.5};  ///< Share of its speed while others close up to one that left, (0, 1].
+    double splice_wait{10.0};  ///< Longest time at that speed, s.
+    double spliced{0.8};       ///< They have closed up when each gap is less than that wider than at rest, m.
   };
   struct Verdict {
     double limit{std::numeric_limits<double>::infinity()};  ///< m/s
+    double share{1.0};                                      ///< Of the speed that is set for the convoy.
     bool split{};                                           ///< The waiting time ended.
   };
 
   Governor() : Governor(Params{}) {}
   explicit Governor(Params params) : params_(params) {}
+
+  /// A member left between two others.
+  void member_left() { splice_left_ = params_.splice_wait; }
 
   /// @param gap  The gap at rest, m.
   /// @param period  Time since the last call, s.
@@ -42,6 +49,12 @@ class Governor {
     if (too_long && long_for_ <= params_.gap_wait) verdict.limit = members.slowest;
     if (silent && silent_for_ <= params_.silent_wait)
       verdict.limit = std::min(verdict.limit, params_.silent_speed);
+    // The member behind the one that left reports its new gap only after it heard of that.
+    constexpr double kReported = 2.0;  // s
+    splice_left_ = std::max(0.0, splice_left_ - period);
+    const bool reported = splice_left_ < params_.splice_wait - kReported;
+    if (reported && members.longest_gap < gap + params_.spliced) splice_left_ = 0.0;
+    if (splice_left_ > 0.0) verdict.share = params_.splice_share;
     verdict.split = long_for_ > params_.gap_wait || silent_for_ > params_.silent_wait;
     return verdict;
   }
@@ -49,6 +62,7 @@ class Governor {
  private:
   Params params_;
   double long_for_{}, silent_for_{};  // How long it has been so, s.
+  double splice_left_{};              // The leader still drives slowly for that long, s.
 };
 
 }  // namespace adit::nav

@@ -31,6 +31,8 @@ class Trail {
   double length() const { return kSpacing * (end() - 1); }
   const Eigen::Vector3d& point(std::uint32_t number) const { return points_[number - first_]; }
 
+  /// Gives the first point of an empty path a number.
+  void begin(std::uint32_t first) { first_ = first; }
   /// Extends the path to the leader's place. A leader that drives back along the path adds nothing.
   void record(const Eigen::Vector3d& place);
   /// The position of the leader, which falls when it drives back along its path.

@@ -218,6 +218,7 @@ RouteStep RouteFollower::step(RoutePlanner& planner, const Eigen::Vector3d& plac
     double left = 0;
     for (std::size_t i = 0; i + 1 < route_.points.size(); ++i)
       left += (route_.points[i + 1] - route_.points[i]).norm();
+    step.length = left;
     step.stuck = progress_.stuck(left, longer, stamp_s);
     return step;
   }

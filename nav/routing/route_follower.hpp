@@ -42,6 +42,7 @@ struct RouteStep {
   /// Corners of the route ahead, from the robot on, for right of way; empty unless asked for.
   std::vector<Eigen::Vector3d> ahead{};
   bool stuck{false};  ///< No progress along the route for a long time: see ProgressChecker.
+  double length{0};   ///< Length of the rest of the route, m; 0 without a route.
 };
 
 /// Follows a route with hysteresis: replaces the current route only when a new one is clearly better or the

@@ -53,6 +53,8 @@ class Convoy {
     /// Position of this robot, map frame, m; nothing while localisation is not initialised.
     std::function<std::optional<Eigen::Vector3d>()> place{};
     std::function<void(const Notice&)> tell_holder{};
+    /// Whether no known obstacle covers a place, map frame, m. Empty: each is free.
+    std::function<bool(const Eigen::Vector2d&)> free{};
   };
   enum class State : std::uint8_t {
     forming,    ///< The predecessor has not spoken for this convoy yet, or the path is not known up to here.
@@ -98,6 +100,10 @@ class Convoy {
   /// Takes in what the other members said, and the robot's own motion. Call it at 20 Hz.
   void tick(Time now);
   State state() const { return state_; }
+  /// What keeps a follower from following at all, as text for its operator; empty: nothing does.
+  std::string hindrance(Time now) const;
+  /// The robot cannot stand at the place: another one beside it is next.
+  void target_refused();
   /// The place to drive to, map frame, m; nothing: stand.
   const std::optional<Eigen::Vector3d>& target() const { return target_; }
   /// Limit of the robot's speed, m/s: the leader's in every mode but manual, and a follower's.
@@ -118,11 +124,22 @@ class Convoy {
     Duration period{1s};
   };
   void hear(Member& member);
+  /// Takes in points of the path.
+  void learn(const Member& member, Time now);
+  void record(const Eigen::Vector3d& place, Time now);
+  /// Finds this robot on the path; false: it is far away from it.
+  bool locate(const Eigen::Vector3d& place);
+  bool halts(const Member& ahead, Time now) const;
+  bool misses_path(const Member& ahead) const;
   const Member* predecessor() const;
   void lead(Time now);
   void follow(Time now);
-  void choose_target(double stop, double limit);
-  double gap_to(const Member& ahead) const;
+  /// Chooses the next place before `reach`; the robot is to stop at `stop`, both along the path, m. `stands`:
+  /// neither of them moves.
+  void choose_target(double stop, double reach, bool stands);
+  double gap_to(const Member& ahead, Time now) const;
+  /// A place of the path, or one beside it where the path leads through an obstacle.
+  Eigen::Vector3d beside(const Eigen::Vector3d& place);
   std::uint32_t wanted() const;
   void tell(Severity severity, const char* code, Reason reason, std::string text) const;
 
@@ -132,12 +149,17 @@ class Convoy {
   std::vector<Member> members_{};  ///< In the order; this robot's own entry is not used.
   nav::Trail trail_{};
   nav::Governor governor_{};
-  bool rejoins_{};                 ///< A leader that was restarted learns the path from its followers.
-  std::optional<double> along_{};  ///< Position of this robot on the path, m.
+  std::optional<Time> joined_{};  ///< First tick with this place.
+  bool rejoins_{};                ///< A leader that was restarted learns the path from its followers.
+  std::vector<Eigen::Vector3d> unrecorded_{};  ///< Where it was meanwhile.
+  std::optional<Time> misfit_since_{};         ///< The predecessor sends points that do not fit.
+  std::optional<double> along_{};              ///< Position of this robot on the path, m.
   double gap_{-1.0};
   State state_{State::forming};
   std::optional<double> target_along_{};
   std::optional<Eigen::Vector3d> target_{};
+  std::size_t aside_{};                 ///< First of kAside to try.
+  std::optional<double> refused_at_{};  ///< Its position when a place was refused, m.
   double follow_speed_{std::numeric_limits<double>::infinity()};
   double leader_limit_{std::numeric_limits<double>::infinity()};
   bool lost_told_{}, split_told_{};

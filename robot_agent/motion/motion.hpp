@@ -31,10 +31,15 @@ struct Guidance {
 /// A place to drive to: map frame, m; z NaN: the floor that the robot is on.
 struct GoTo {
   Eigen::Vector3d goal{0.0, 0.0, std::numeric_limits<double>::quiet_NaN()};
+  /// A longer route is none: the place counts as unreachable while there is no shorter one, m.
+  double max_route{std::numeric_limits<double>::infinity()};
+  /// The place lies farther along the same path as the one before: until its route is known, the robot heads
+  /// for that one.
+  bool continues{false};
   bool operator==(const GoTo& other) const {
     const bool same_floor =
         goal.z() == other.goal.z() || (std::isnan(goal.z()) && std::isnan(other.goal.z()));
-    return goal.head<2>() == other.goal.head<2>() && same_floor;
+    return goal.head<2>() == other.goal.head<2>() && same_floor && max_route == other.max_route;
   }
 };
 

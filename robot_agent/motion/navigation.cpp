@@ -30,15 +30,21 @@ Navigation::Navigation(NavigationParams params, Executor& strand, Log log, const
       monitor_(params_.platform),
       fence_(params_.platform) {}
 
-void Navigation::accept(MuxKey, const Motion& motion, Time) {
+void Navigation::accept(MuxKey, const Motion& motion, Time now) {
   if (motion == motion_) return;
   const bool other_kind = motion.index() != motion_.index();
-  if (std::holds_alternative<GoTo>(motion)) ++goal_generation_;
-  step_.reset();
+  const auto* go = std::get_if<GoTo>(&motion);
+  if (go) ++goal_generation_;
+  const bool continues =
+      go && go->continues && !other_kind && step_on(now) && target().kind == nav::Target::Kind::goal;
+  if (continues)
+    continued_ = now;
+  else
+    step_.reset();
   blocked_ = false;
   motion_ = motion;
   held_.clear();
-  update_fence(now());
+  update_fence(now);
   if (other_kind) {
     has_plan_ = false;
     controller_->stop_now();
@@ -225,8 +231,10 @@ std::span<const Eigen::Vector3d> Navigation::route_ahead(Time now) const {
 const nav::RouteStep* Navigation::step_on(Time now) const {
   if (!step_ || now - step_made_ >= params_.step_age) return nullptr;
   // The goal has moved in the odometry frame since.
+  const auto* go = std::get_if<GoTo>(&motion_);
+  const bool passes = go && go->continues && now - continued_ < params_.passed_age;
   const bool outdated =
-      step_->last && step_->state != nav::RouteStep::State::unreachable && !is_goal(step_goal_);
+      step_->last && step_->state != nav::RouteStep::State::unreachable && !passes && !is_goal(step_goal_);
   return outdated ? nullptr : &*step_;
 }
 
@@ -253,10 +261,13 @@ void Navigation::routed(const RouteJob& job, const Result<nav::RouteStep>& step)
   routing_ = false;
   if (!step || job.odom_epoch != frames_.odom_epoch()) return;
   mapped_ = job.made;
-  if (!job.goal || job.generation != goal_generation_ || !std::holds_alternative<GoTo>(motion_)) return;
-  const bool unreachable = step->state == nav::RouteStep::State::unreachable;
+  const auto* go = std::get_if<GoTo>(&motion_);
+  if (!job.goal || job.generation != goal_generation_ || !go) return;
+  const bool too_long = step->length > go->max_route;
+  const bool unreachable = too_long || step->state == nav::RouteStep::State::unreachable;
   if (unreachable && !is_goal(job.goal->head<2>())) return;
   step_ = *step;
+  if (too_long) step_->state = nav::RouteStep::State::unreachable;
   step_goal_ = job.goal->head<2>();
   step_made_ = job.made;
   if (!unreachable) return;

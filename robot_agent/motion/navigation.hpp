@@ -26,6 +26,7 @@ struct NavigationParams {
   Duration plan_age{500ms};     ///< An older plan is not followed.
   Duration step_age{2s};        ///< With an older step of the route, the robot waits for the next one.
   Duration scan_age{500ms};     ///< With older points the terrain is unknown.
+  Duration passed_age{500ms};   ///< A robot heads for the place before its goal, see GoTo, for so long.
   Duration held_after{1500ms};  ///< A robot that its collision monitor stops for this long is blocked.
   Duration warned_for{2s};      ///< A warning is repeated if its cause was absent for longer.
 };
@@ -128,7 +129,8 @@ class Navigation : public Component, public NavigationInput {
   std::optional<nav::RouteStep> step_{};  // Of the goal requested last.
   Eigen::Vector2d step_goal_{0, 0};       // Position of that goal then, odometry frame, m.
   Time step_made_{};
-  bool blocked_{};  // The last plan towards the goal was blocked.
+  Time continued_{};  // When the goal that continues `step_goal_` was requested.
+  bool blocked_{};    // The last plan towards the goal was blocked.
   std::optional<Time> scanned_{};
   std::optional<Time> mapped_{};  // When the scan was received that the router answered last.
   std::shared_ptr<const std::vector<Eigen::Vector2f>> obstacles_{};  // Odometry frame, m.

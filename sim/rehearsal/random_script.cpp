@@ -9,8 +9,8 @@
 namespace adit::sim {
 namespace {
 
-constexpr std::array kVerbs{"take", "release", "lock", "unlock", "grant",
-                            "goto", "drive",   "stop", "reset",  "mode"};
+constexpr std::array kVerbs{"take",  "release", "lock",  "unlock", "grant",  "goto",
+                            "drive", "stop",    "reset", "mode",   "convoy", "peeloff"};
 
 std::string number(double value) {
   char text[32];
@@ -41,6 +41,15 @@ std::string draw_command(const RandomScript& spec, const Scenario& scenario, con
   if (verb == "drive")
     return head + " " + number(random.uniform(-0.5, 1.0)) + " 0 " + number(random.uniform(-0.8, 0.8)) +
            " --for " + number(random.uniform(0.3, 2.0));
+  if (verb == "convoy") {
+    const double kind = random.uniform(0.0, 1.0);
+    if (kind < 0.2) return "convoy stop " + robot;
+    if (kind < 0.4) return "mode " + robot + " convoy_follow";
+    std::string followers;
+    for (const std::string& other : spec.robots)
+      if (other != robot && (followers.empty() || random.chance(0.5))) followers += " " + other;
+    return followers.empty() ? "convoy stop " + robot : "convoy start " + robot + followers;
+  }
   if (verb == "reset") return random.chance(0.4) ? head + " --override" : head;
   if (verb == "mode") {
     static constexpr std::array modes{"hold", "waypoint", "manual", "smart_joystick", "explore"};

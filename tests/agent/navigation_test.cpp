@@ -173,6 +173,32 @@ TEST_F(NavigationTest, WaitsForARouteUntilTheRouterAnswers) {
   EXPECT_GT(velocity.vx, 0.3);
 }
 
+TEST_F(NavigationTest, ARouteThatIsTooLongIsNotDriven) {
+  router.tells = nav::RouteStep{
+      .state = nav::RouteStep::State::along, .target = {3, -2, 0}, .last = false, .length = 9.0};
+  goal_writer.write(GoTo{{6, 0, 0}, 8.0}, strand->now());
+  for (int i = 0; i < 30; ++i) cycle({}, {});
+  EXPECT_TRUE(velocity.zero());
+  EXPECT_TRUE(progress.unreachable);
+  router.tells->length = 7.0;
+  for (int i = 0; i < 30; ++i) cycle({}, {});
+  EXPECT_GT(velocity.vx, 0.3) << "it became shorter";
+}
+
+TEST_F(NavigationTest, APlaceFartherAlongTheSamePathDoesNotStopTheRobot) {
+  goal_writer.write(GoTo{.goal = {6, 0, 0}, .continues = true}, strand->now());
+  for (int i = 0; i < 10; ++i) cycle({}, {});
+  ASSERT_GT(velocity.vx, 0.3);
+  router.answers = false;  // It answers for no other place.
+  goal_writer.write(GoTo{.goal = {6.5, 0, 0}, .continues = true}, strand->now());
+  for (int i = 0; i < 4; ++i) {
+    cycle({}, {});
+    EXPECT_GT(velocity.vx, 0.3);
+  }
+  for (int i = 0; i < 12; ++i) cycle({}, {});
+  EXPECT_TRUE(velocity.zero()) << "for a moment only";
+}
+
 TEST_F(NavigationTest, AJumpOfTheOdometryEmptiesEveryMap) {
   for (int i = 0; i < 10; ++i) cycle({}, {});
   ASSERT_FALSE(navigation.goal_free({2, 0}));

@@ -119,6 +119,35 @@ TEST(ConvoySpacing, AStepOfSpeedDoesNotGrowAlongTheConvoy) {
   }
 }
 
+// The last of six is stationary 3 s after the leader (wanted: 2 s), and none is too near.
+TEST(ConvoySpacing, AConvoyThatHaltsClosesUpAtOnce) {
+  const Spacing spacing{};
+  constexpr int kRobots = 6;
+  constexpr double kTick = 0.05, kSpeed = 0.7, kDeadBand = 0.4;
+  std::vector<double> x(kRobots), v(kRobots, kSpeed);
+  for (std::size_t i = 0; i < kRobots; ++i) x[i] = -static_cast<double>(i) * spacing.wanted(kSpeed);
+  double leader_stands = 0.0, last_stands = 0.0;
+  for (double t = 0.0; t < 20.0; t += kTick) {
+    const std::vector<double> before = v, at = x;
+    v[0] = std::max(0.0, v[0] - kTick);
+    if (before[0] > 0.0) leader_stands = t;
+    for (std::size_t i = 1; i < kRobots; ++i) {
+      const double gap = at[i - 1] - at[i];
+      double wanted = before[0] > 0.0 ? spacing.speed(gap, before[i - 1], 1.0)
+                                      : spacing.halting_speed(gap, before[i - 1], 1.0);
+      if (before[i - 1] == 0.0 && gap - spacing.standstill < kDeadBand) wanted = 0.0;
+      v[i] += std::clamp(wanted - v[i], -1.0 * kTick, 1.0 * kTick);
+      if (v[i] > 0.0) last_stands = t;
+    }
+    for (std::size_t i = 0; i < kRobots; ++i) x[i] += v[i] * kTick;
+  }
+  EXPECT_LE(last_stands - leader_stands, 3.0);
+  for (std::size_t i = 1; i < kRobots; ++i) {
+    EXPECT_GT(x[i - 1] - x[i], spacing.standstill - 0.1) << i;
+    EXPECT_LT(x[i - 1] - x[i], spacing.standstill + kDeadBand) << i;
+  }
+}
+
 TEST(ConvoyGovernor, TheLeaderSlowsToTheLastOneAndWaitsForABoundedTime) {
   Governor governor;
   EXPECT_TRUE(std::isinf(governor.step({5.9, 0.2, 0.0}, 1.5, 0.1).limit));
@@ -139,6 +168,19 @@ TEST(ConvoyGovernor, ASilentMemberSlowsTheLeaderForABoundedTime) {
   for (int i = 0; i < 210; ++i) last = governor.step({2.0, 0.5, 9.0}, 1.5, 0.1);
   EXPECT_TRUE(last.split);
   EXPECT_TRUE(std::isinf(last.limit));
+}
+
+TEST(ConvoyGovernor, TheLeaderDrivesSlowlyWhileOthersCloseUpToOneThatLeft) {
+  Governor governor;
+  EXPECT_EQ(governor.step({2.1, 0.7, 0.0}, 1.5, 0.1).share, 1.0);
+  governor.member_left();
+  EXPECT_EQ(governor.step({2.1, 0.7, 0.0}, 1.5, 0.1).share, 0.5) << "the new gap was not reported yet";
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(governor.step({4.8, 0.7, 0.0}, 1.5, 0.1).share, 0.5);
+  EXPECT_EQ(governor.step({2.2, 0.7, 0.0}, 1.5, 0.1).share, 1.0) << "closed up";
+  governor.member_left();
+  Governor::Verdict last{};
+  for (int i = 0; i < 110; ++i) last = governor.step({4.8, 0.7, 0.0}, 1.5, 0.1);
+  EXPECT_EQ(last.share, 1.0) << "for a bounded time";
 }
 
 }  // namespace

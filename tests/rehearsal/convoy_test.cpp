@@ -21,7 +21,7 @@ void holds(const RunReport& report) {
 }
 
 TEST(Convoy, TheShippedScenariosHold) {
-  for (const char* file : {"convoy_two.yaml", "convoy_peel.yaml"}) {
+  for (const char* file : {"convoy_two.yaml", "convoy_peel.yaml", "convoy_cut.yaml"}) {
     const Scenario scenario = load_shipped(file);
     RunParams params;
     params.make_agent = *make_agent_factory("");
@@ -102,6 +102,52 @@ expect:
   - {always: no_collision}
 )"),
                  "cut.yaml"));
+}
+
+TEST(Convoy, AFollowerThatHearsNobodySaysSoAndComesLater) {
+  holds(run_text(in_a_row(R"(duration: 50
+script:
+  - {at: 1, by: op1, do: take r1 r2}
+  - {at: 3, by: op1, do: convoy start r1 r2 --speed 0.6}
+  - {at: 22, by: op1, do: goto r1 14 0}
+faults: [{at: 1.5, cut: [r1, r2], for: 18}]
+expect:
+  - {at: 5, robot: r2, mode: convoy_follow}
+  - {from: 3, to: 20, robot: r2, still: 0.05}
+  - {by: 16, by_operator: op1, notified: convoy_waits, robot: r2}
+  - {by: 48, robot: r2, near: [11.9, 0, 1.0]}
+  - {always: no_collision}
+)"),
+                 "unheard.yaml"));
+}
+
+// The leader is narrower than the gap in the wall, and its follower is not; the way round is 20 m longer.
+TEST(Convoy, AFollowerDoesNotLeaveThePathForALongWayRound) {
+  holds(run_text(R"(
+world:
+  boxes: [[-4, 20, 6, 6.3, 0, 3], [-4, 20, -3.3, -3, 0, 3], [-4.3, -4, -3.3, 6.3, 0, 3], [20, 20.3, -3.3, 6.3, 0, 3],
+          [6, 6.3, 0.31, 4.5, 0, 3], [6, 6.3, -3, -0.31, 0, 3]]
+  floor: 0
+  ceiling: 3
+odometry: {noise: 0}
+duration: 65
+link: wifi
+lidar: planar
+robots:
+  - {id: r1, platform: legged, pose: [2, 0, 0]}
+  - {id: r2, platform: tracked, pose: [-0.4, 0, 0]}
+basestations: [{id: op1, pose: [0, 2]}]
+script:
+  - {at: 1, by: op1, do: take r1 r2}
+  - {at: 3, by: op1, do: convoy start r1 r2}
+  - {at: 5, by: op1, do: goto r1 14 0}
+expect:
+  - {by: 58, robot: r1, near: [14, 0, 0.6]}
+  - {by: 55, by_operator: op1, notified: trail_impassable, robot: r2}
+  - {at: 64, robot: r2, near: [4.5, 0, 1.8], mode: convoy_follow}
+  - {always: no_collision}
+)",
+                 "narrow.yaml"));
 }
 
 }  // namespace

@@ -48,6 +48,21 @@ TEST(RandomScript, EveryLineIsOneThatAnOperatorCanType) {
   }
 }
 
+TEST(RandomScript, ConvoysAreStartedStoppedAndLeft) {
+  RandomScript convoys = spec();
+  convoys.verbs = {"convoy", "peeloff"};
+  convoys.robots = {"r1", "r2", "r3"};
+  std::set<std::string> seen;
+  for (const ScriptLine& line : draw_script(convoys, scenario(), Random(8))) {
+    const auto request = command::parse(line.command);
+    EXPECT_TRUE(request.ok()) << line.command << ": " << (request ? "" : request.error().text);
+    for (const char* text :
+         {"convoy start r2 r1 r3", "convoy start r1 r2", "convoy stop", "peeloff", "mode r3 convoy_follow"})
+      if (line.command.starts_with(text)) seen.insert(text);
+  }
+  EXPECT_EQ(seen.size(), 5U);
+}
+
 TEST(RandomScript, KeepsToItsTimesAndUsesEveryVerb) {
   std::set<std::string> verbs;
   Duration last{};

@@ -2,6 +2,7 @@
 #include "robot_agent/behaviour/modes/convoy_follow.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 #include "core/store/pack.hpp"
 #include "robot_agent/common/identity.hpp"
@@ -13,6 +14,13 @@ namespace {
 constexpr std::string_view kInConvoy = "in_convoy", kLeaderKnown = "leader_known",
                            kOrderAgrees = "order_agrees";
 constexpr std::size_t kMaxName = 32;
+constexpr double kMoved = 0.3;      // m: less is no motion along the path.
+constexpr double kSlow = 0.1;       // m/s: at a lower limit the robot may stand.
+constexpr double kSamePlace = 1.0;  // m
+
+/// The longest route to a place of the path that is `straight` metres away, m: another robot's path is not
+/// followed by a detour through other rooms.
+double max_route(double straight) { return 5.0 + 1.5 * straight; }
 
 }  // namespace
 
@@ -50,28 +58,76 @@ void ConvoyFollowMode::clear() {
   if (context_.convoy && context_.convoy->follows()) (void)context_.convoy->leave();
 }
 
+void ConvoyFollowMode::enter(Time now) {
+  free_since_ = moved_since_ = now;
+  moved_at_.reset();
+  told_at_.reset();
+}
+
 void ConvoyFollowMode::tick(bool passes, Time now) {
   if (!context_.convoy) return;
   const auto& target = context_.convoy->target();
-  if (target)
-    context_.output.write(GoTo{{target->x(), target->y(), std::nan("")}}, now);
-  else
+  const auto pose = context_.pose();
+  if (target) {
+    // Each change begins a new route.
+    if (pose && target->head<2>() != next_.goal.head<2>())
+      next_ = {{target->x(), target->y(), std::nan("")},
+               max_route((target->head<2>() - pose->position()).norm()),
+               true};
+    context_.output.write(next_, now);
+  } else {
     context_.output.write(Stand{}, now);
-  if (!passes || !target || !(navigated_.blocked || navigated_.unreachable)) free_since_ = now;
-  const bool impassable = now - free_since_ >= kImpassableAfter;
-  if (impassable && !impassable_)
+  }
+  if (!passes || !target || !navigated_.unreachable) tried_ = now;
+  if (now - tried_ >= kTriesAfter) {
+    tried_ = now;
+    context_.convoy->target_refused();
+  }
+  reason_ = watch(passes, now);
+  if (reason_ == Reason::none || !pose) return;
+  // Once for each place and matter.
+  if (told_at_ && told_ == reason_ && (*told_at_ - pose->position()).norm() < kSamePlace) return;
+  told_at_ = pose->position();
+  told_ = reason_;
+  const std::string hindrance = context_.convoy->hindrance(now);
+  char place[64];
+  std::snprintf(place, sizeof place, " at %.1f %.1f", pose->x, pose->y);
+  if (reason_ == Reason::trail_impassable)
     context_.tell_holder({{},
                           Severity::warning,
                           "trail_impassable",
-                          Reason::trail_impassable,
-                          std::string(describe(Reason::trail_impassable))});
-  impassable_ = impassable;
+                          reason_,
+                          std::string(describe(reason_)) + ", and waits" + place});
+  else
+    context_.tell_holder(
+        {{}, Severity::warning, "convoy_waits", reason_, hindrance + ", and it waits" + place});
+}
+
+Reason ConvoyFollowMode::watch(bool passes, Time now) {
+  const auto& target = context_.convoy->target();
+  const auto pose = context_.pose();
+  const std::string hindrance = context_.convoy->hindrance(now);
+  const bool drives = passes && target && !navigated_.arrived && context_.convoy->speed_limit(true) > kSlow;
+  if (!passes || !target || !(navigated_.blocked || navigated_.unreachable)) free_since_ = now;
+  const bool moved = pose && (!moved_at_ || (*moved_at_ - pose->position()).norm() > kMoved);
+  if (moved) moved_at_ = pose->position();
+  if (moved || (!drives && hindrance.empty())) moved_since_ = now;
+  if (now - free_since_ >= kImpassableAfter) return Reason::trail_impassable;
+  if (now - moved_since_ < kStandsAfter) return Reason::none;
+  if (hindrance.empty()) return Reason::trail_impassable;
+  return context_.convoy->order_agrees() ? Reason::leader_unknown : Reason::order_differs;
 }
 
 ModeProgress ConvoyFollowMode::progress(bool passes) const {
-  if (!passes || !impassable_ || !context_.convoy->target()) return {};
-  return {
-      .state = GoalState::blocked, .goal = *context_.convoy->target(), .reason = Reason::trail_impassable};
+  if (!passes || reason_ == Reason::none) return {};
+  const auto pose = context_.pose();
+  const auto& target = context_.convoy->target();
+  ModeProgress blocked{.state = GoalState::blocked, .reason = reason_};
+  if (target)
+    blocked.goal = *target;
+  else if (pose)
+    blocked.goal.head<2>() = pose->position();
+  return blocked;
 }
 
 void ConvoyFollowMode::store(KeptBehaviour& kept) const {

@@ -11,6 +11,10 @@ class ConvoyFollowMode : public ModeModule {
  public:
   /// Time without a path to the next place until the leader's path counts as impassable for this robot.
   static constexpr Duration kImpassableAfter = 5s;
+  /// Another place beside the path is tried after so long.
+  static constexpr Duration kTriesAfter = 2s;
+  /// Time without motion, although it should move, until the operator is notified.
+  static constexpr Duration kStandsAfter = 10s;
 
   explicit ConvoyFollowMode(const ModeContext& context) : context_(context) {}
   static std::unique_ptr<ModeModule> make(const ModeContext& context) {
@@ -19,7 +23,7 @@ class ConvoyFollowMode : public ModeModule {
   static ModeRow row();
 
   void note(Facts& facts, Time now) const override;
-  void enter(Time now) override { free_since_ = now; }
+  void enter(Time now) override;
   /// Another mode was requested: the robot leaves the convoy.
   void clear() override;
   void tick(bool passes, Time now) override;
@@ -29,10 +33,19 @@ class ConvoyFollowMode : public ModeModule {
   void restore(const KeptBehaviour& kept) override;
 
  private:
+  /// Why the robot does not follow; none: it does, or has no reason to move.
+  Reason watch(bool passes, Time now);
+
   ModeContext context_;
   Progress navigated_{};
-  Time free_since_{};
-  bool impassable_{};
+  GoTo next_{};
+  Time tried_{};        ///< When another place was tried last.
+  Time free_since_{};   ///< When there was a path to the next place.
+  Time moved_since_{};  ///< When the robot moved, or had no reason to.
+  std::optional<Eigen::Vector2d> moved_at_{};
+  Reason reason_{Reason::none};               ///< Why it does not follow.
+  std::optional<Eigen::Vector2d> told_at_{};  ///< Where its operator was notified of that.
+  Reason told_{Reason::none};
 };
 
 }  // namespace adit::agent
