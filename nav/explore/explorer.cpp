@@ -9,15 +9,18 @@
 namespace adit::nav {
 namespace {
 
-constexpr double kArrived = 0.5;      // m
-constexpr int kLooks = 1;             // Scans at a viewpoint before what it does not show is given up.
-constexpr double kSettled = 3.0;      // s without a frontier before the exploration is done.
-constexpr double kFirstPause = 60.0;  // s before a place that was blocked is tried again; doubles each time.
-constexpr double kSamePlace = 1.0;    // m
-constexpr std::size_t kViewpoints = 6;  // Of a frontier, the nearest to the robot.
+constexpr double kArrived = 0.5;       // m
+constexpr int kLooks = 1;              // Scans at a viewpoint before what it does not show is given up.
+constexpr double kSettled = 3.0;       // s without a frontier before the exploration is done.
+constexpr double kFirstPause = 60.0;   // s before a place that was blocked is tried again; doubles each time.
+constexpr double kSamePlace = 1.0;     // m
+constexpr double kSameFrontier = 3.0;  // m between the centres: the width of a group.
+constexpr double kAlong = 1.0;         // Between places on the straight line to a frontier, m.
+constexpr double kReplaced = 4.0;      // A goal is replaced when it is nearer, m: twice the braking distance.
+constexpr std::size_t kViewpoints = 6;  // Of a frontier, the nearest to the robot, besides the goal.
 constexpr std::size_t kSamples = 8;     // Voxels of a frontier that are looked at for a viewpoint.
 constexpr std::array kAway{2.0, 4.0, 6.0, 8.0, 10.0};  // Of a viewpoint from its frontier, m.
-constexpr int kDirections = 8;
+constexpr int kDirections = 16;
 constexpr std::size_t kMaxDeferred = 64;
 
 std::size_t unseen_of(const CoverageMap& map, const Frontier& frontier) {
@@ -49,7 +52,10 @@ void weigh(const GroundView& ground, double z, double least_gain, std::vector<Fr
 }  // namespace
 
 Explorer::Explorer(const Platform& platform, const ExploreParams& params)
-    : params_(params), sensor_(0, 0, platform.lidar().mounting.z), map_(params.range) {
+    : params_(params),
+      sensor_(0, 0, platform.lidar().mounting.z),
+      braking_(platform.max_acceleration),
+      map_(params.range) {
   const LidarConfig lidar = platform.lidar();
   sensor_.head<2>() = Eigen::Vector2d(lidar.mounting.x, lidar.mounting.y);
   steepest_ = std::tan(lidar.highest * M_PI / 180.0);
@@ -60,6 +66,7 @@ void Explorer::begin() {
   goal_.reset();
   deferred_.clear();
   nothing_since_.reset();
+  before_.reset();
   scans_ = 0;
 }
 
@@ -110,93 +117,163 @@ bool Explorer::is_deferred(const Eigen::Vector3d& place, double stamp_s) const {
 
 void Explorer::give_up_unseen(const Goal& goal) {
   for (const CoverageVoxel& v : goal.frontier.unseen)
-    if (!map_.seen(v) && in_view(goal.place, CoverageMap::centre(v))) map_.set_tried(v);
+    if (!map_.seen(v) && (!goal.shows || in_view(goal.place, CoverageMap::centre(v)))) map_.set_tried(v);
+}
+
+// Places around a frontier and on the straight line to the robot, those near the frontier first.
+std::vector<Eigen::Vector3d> Explorer::places_around(GroundView& ground, const Frontier& frontier,
+                                                     const Eigen::Vector3d& place, double stamp_s) const {
+  std::vector<Eigen::Vector3d> places;
+  const Eigen::Vector2d centre = frontier.centre.head<2>(), to_robot = place.head<2>() - centre;
+  const auto offer = [&](const Eigen::Vector2d& p) {
+    const auto z = ground.ground(p.x(), p.y(), std::min(place.z(), frontier.centre.z()));
+    if (z && !is_deferred({p.x(), p.y(), *z}, stamp_s)) places.emplace_back(p.x(), p.y(), *z);
+  };
+  offer(centre);
+  for (const double away : kAway)
+    for (int k = 0; k < kDirections; ++k) {
+      const double bearing = 2 * M_PI * k / kDirections;
+      offer(centre + away * Eigen::Vector2d(std::cos(bearing), std::sin(bearing)));
+    }
+  for (double away = kAlong; away < std::min(to_robot.norm(), params_.range); away += kAlong)
+    offer(centre + away * to_robot.normalized());
+  const auto off = [&centre](const Eigen::Vector3d& p) { return (p.head<2>() - centre).squaredNorm(); };
+  std::sort(places.begin(), places.end(),
+            [&off](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return off(a) < off(b); });
+  return places;
+}
+
+// Whether at least half of a frontier is seen from a place.
+bool Explorer::shows(const Eigen::Vector3d& viewpoint, const Frontier& frontier) const {
+  const std::size_t stride = std::max<std::size_t>(1, frontier.unseen.size() / kSamples);
+  std::size_t looked = 0, shown = 0;
+  for (std::size_t k = 0; k < frontier.unseen.size(); k += stride) {
+    ++looked;
+    shown += in_view(viewpoint, CoverageMap::centre(frontier.unseen[k]));
+  }
+  return 2 * shown >= looked;
 }
 
 std::vector<Explorer::Viewpoint> Explorer::viewpoints(GroundView& ground, const Frontiers& frontiers,
                                                       const Eigen::Vector3d& place, double stamp_s) const {
   std::vector<Viewpoint> all;
-  std::vector<Eigen::Vector3d> places;
   for (std::size_t i = 0; i < frontiers.list.size(); ++i) {
     const Frontier& frontier = frontiers.list[i];
-    const std::size_t stride = std::max<std::size_t>(1, frontier.unseen.size() / kSamples);
-    const auto shows = [&](const Eigen::Vector3d& viewpoint) {
-      std::size_t looked = 0, shown = 0;
-      for (std::size_t k = 0; k < frontier.unseen.size(); k += stride) {
-        ++looked;
-        shown += in_view(viewpoint, CoverageMap::centre(frontier.unseen[k]));
-      }
-      return 2 * shown >= looked;
+    std::vector<Eigen::Vector3d> places = places_around(ground, frontier, place, stamp_s);
+    std::size_t kept = 0;
+    const auto keep = [&](const Eigen::Vector3d& p) {
+      if (!shows(p, frontier) || !ground.standable(p)) return false;
+      all.push_back({p, i, kept == 0, true});
+      ++kept;
+      return true;
     };
-    places.clear();
-    const auto offer = [&](double x, double y) {
-      const auto z = ground.ground(x, y, std::min(place.z(), frontier.centre.z()));
-      if (z && !is_deferred({x, y, *z}, stamp_s)) places.emplace_back(x, y, *z);
-    };
-    offer(frontier.centre.x(), frontier.centre.y());
-    for (const double away : kAway)
-      for (int k = 0; k < kDirections; ++k) {
-        const double bearing = 2 * M_PI * k / kDirections;
-        offer(frontier.centre.x() + away * std::cos(bearing), frontier.centre.y() + away * std::sin(bearing));
-      }
+    const auto beside = std::find_if(places.begin(), places.end(), keep);
+    if (beside == places.end()) {
+      // The ground from where it could be seen may become known from nearer.
+      const auto near = std::find_if(places.begin(), places.end(),
+                                     [&](const Eigen::Vector3d& p) { return ground.standable(p); });
+      if (near != places.end()) all.push_back({*near, i, true, false});
+      continue;
+    }
+    places.erase(places.begin(), beside + 1);
     std::sort(places.begin(), places.end(), [&place](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
       return (a - place).squaredNorm() < (b - place).squaredNorm();
     });
-    std::size_t kept = 0;
     for (const Eigen::Vector3d& p : places) {
-      if (kept == kViewpoints) break;
-      if (!shows(p) || !ground.standable(p)) continue;
-      all.push_back({p, i});
-      ++kept;
+      if (kept > kViewpoints) break;
+      keep(p);
     }
   }
   return all;
 }
 
-ExploreStep Explorer::step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {
-  if (goal_) {
-    const bool here = (goal_->place - place).head<2>().norm() < kArrived;
-    if (here && !goal_->arrived) {
-      goal_->arrived = true;
-      scans_ = 0;
-    }
-    if (satisfied(*goal_)) {
-      goal_.reset();
-    } else if (goal_->arrived && scans_ >= kLooks) {
-      give_up_unseen(*goal_);
-      goal_.reset();
-    } else if (blocked) {
-      defer(goal_->place, stamp_s);
-      goal_.reset();
-    }
+Eigen::Vector3d Explorer::stopping_place(GroundView& ground, const Eigen::Vector3d& place, double stamp_s) {
+  constexpr double kShortest = 0.05, kLongest = 1.0;  // s: outside of this interval the speed is unknown.
+  const double dt = stamp_s - before_s_;
+  Eigen::Vector3d ahead = place;
+  if (before_ && dt > kShortest && dt < kLongest) {
+    const Eigen::Vector3d velocity = (place - *before_) / dt;
+    const Eigen::Vector3d there = place + velocity * (velocity.norm() / (2 * braking_));
+    if (ground.standable(there)) ahead = there;
   }
-  Frontiers frontiers = find_frontiers(map_, {.least_gain = params_.least_gain});
-  if (ground.weighs()) weigh(ground, place.z(), params_.least_gain, frontiers.list);
-  std::vector<Viewpoint> places = viewpoints(ground, frontiers, place, stamp_s);
+  before_ = place;
+  before_s_ = stamp_s;
+  return ahead;
+}
+
+void Explorer::end_goal(const Eigen::Vector3d& place, double stamp_s, bool blocked) {
+  const bool here = (goal_->place - place).head<2>().norm() < kArrived;
+  if (here && !goal_->arrived) {
+    goal_->arrived = true;
+    scans_ = 0;
+  }
+  const bool looked = goal_->arrived && scans_ >= kLooks;
+  if (!looked && !blocked) return;
+  if (looked || !goal_->shows) give_up_unseen(*goal_);
+  if (!looked) defer(goal_->place, stamp_s);
+  goal_.reset();
+}
+
+bool Explorer::continues(const Frontier& frontier) const {
+  return goal_ && (frontier.centre - goal_->frontier.centre).norm() < kSameFrontier;
+}
+
+// Chooses the frontier of the cheapest viewpoint. The goal is the place beside the frontier, beyond most
+// viewpoints: the robot has its next goal before it has to brake for this one.
+std::vector<bool> Explorer::choose(GroundView& ground, const Frontiers& frontiers,
+                                   const Eigen::Vector3d& place, double stamp_s) {
+  const std::vector<Viewpoint> places = viewpoints(ground, frontiers, place, stamp_s);
   std::vector<Eigen::Vector3d> goals;
   goals.reserve(places.size() + 1);
   for (const Viewpoint& v : places) goals.push_back(v.place);
   if (goal_) goals.push_back(goal_->place);
-  std::vector<float> costs = ground.costs(place, goals);
+  std::vector<float> costs = ground.costs(stopping_place(ground, place, stamp_s), goals);
+  const bool routes = std::any_of(costs.begin(), costs.end(), [](float cost) { return std::isfinite(cost); });
+  // Without any route through known space the global planner has to prove that there is none at all.
+  for (std::size_t i = 0; !routes && i < goals.size(); ++i)
+    costs[i] = static_cast<float>((goals[i] - place).norm());
   if (ground.weighs()) {
     for (std::size_t i = 0; i < places.size(); ++i)
       costs[i] /= static_cast<float>(frontiers.list[places[i].frontier].weight);
     if (goal_) costs.back() /= static_cast<float>(goal_->frontier.weight);
   }
+  // A frontier that was seen is no reason to go on in its direction.
+  const bool open = goal_ && !satisfied(*goal_);
   std::vector<bool> reachable(frontiers.list.size(), false);
-  std::size_t best = places.size();
+  std::size_t best = places.size(), to = places.size(), beside = places.size();
+  double best_cost = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i].beside) beside = i;
     if (!std::isfinite(costs[i])) continue;
     reachable[places[i].frontier] = true;
-    if (best == places.size() || costs[i] < costs[best]) best = i;
+    const Frontier& frontier = frontiers.list[places[i].frontier];
+    const double rest = places[i].shows ? 0 : (frontier.centre - places[i].place).norm();
+    double cost = costs[i] + rest;
+    if (open && continues(frontier)) cost = params_.keep_cost * cost - params_.keep_gain;
+    if (cost >= best_cost) continue;
+    best_cost = cost;
+    best = i;
+    to = std::isfinite(costs[beside]) ? beside : i;
   }
-  if (goal_) {
-    const double present = costs.back();
-    const bool better = best < places.size() && costs[best] < params_.keep_cost * present &&
-                        costs[best] < present - params_.keep_gain;
-    if (better || !std::isfinite(present)) goal_.reset();
+  if (goal_ && !std::isfinite(costs.back())) goal_.reset();
+  if (best == places.size()) {
+    goal_.reset();
+    return reachable;
   }
-  if (!goal_ && best < places.size()) goal_ = Goal{places[best].place, frontiers.list[places[best].frontier]};
+  const Frontier& frontier = frontiers.list[places[best].frontier];
+  const bool keeps = continues(frontier) && (goal_->arrived || (goal_->place - place).norm() > kReplaced);
+  if (keeps)
+    goal_->frontier = frontier;
+  else
+    goal_ = Goal{places[to].place, frontier, routes && places[to].shows};
+  return reachable;
+}
+
+ExploreStep Explorer::step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {
+  if (goal_) end_goal(place, stamp_s, blocked);
+  Frontiers frontiers = find_frontiers(map_, {.least_gain = params_.least_gain});
+  if (ground.weighs()) weigh(ground, place.z(), params_.least_gain, frontiers.list);
+  const std::vector<bool> reachable = choose(ground, frontiers, place, stamp_s);
 
   ExploreStep step;
   step.frontiers = static_cast<std::size_t>(std::count(reachable.begin(), reachable.end(), true));

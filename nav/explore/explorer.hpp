@@ -52,9 +52,10 @@ struct ExploreStep {
   double dropped{0};           ///< Volume behind frontiers that were left out, m3.
 };
 
-/// Explores by driving to the nearest place from which something unseen can be seen, and goes on as soon as
-/// that was seen. Has no thread and no clock: the same scans and steps give the same goals. Frame: that of
-/// the poses, z up, m.
+/// Explores by driving to the frontier whose nearest viewpoint costs least: the route to it from where the
+/// robot could be at rest. Goes on as soon as that frontier was seen. The goal is a place beside
+/// the frontier, beyond most viewpoints, so that the robot does not brake at each of them. Has no thread and
+/// no clock: the same scans and steps give the same goals. Frame: that of the poses, z up, m.
 class Explorer {
  public:
   explicit Explorer(const Platform& platform, const ExploreParams& params = {});
@@ -75,6 +76,7 @@ class Explorer {
   struct Goal {
     Eigen::Vector3d place;
     Frontier frontier;
+    bool shows;  ///< As in Viewpoint.
     bool arrived{false};
   };
   /// A place that was found blocked: it is no goal until a time that doubles with each block.
@@ -85,6 +87,8 @@ class Explorer {
   struct Viewpoint {
     Eigen::Vector3d place;
     std::size_t frontier;
+    bool beside;  ///< The one nearest to its frontier, to drive to; others are only driven past.
+    bool shows;   ///< It shows the frontier; else no known place does, and this is the nearest one.
   };
 
   bool in_view(const Eigen::Vector3d& viewpoint, const Eigen::Vector3d& target) const;
@@ -92,19 +96,34 @@ class Explorer {
   void defer(const Eigen::Vector3d& place, double stamp_s);
   bool is_deferred(const Eigen::Vector3d& place, double stamp_s) const;
   void give_up_unseen(const Goal& goal);
+  bool shows(const Eigen::Vector3d& viewpoint, const Frontier& frontier) const;
+  std::vector<Eigen::Vector3d> places_around(GroundView& ground, const Frontier& frontier,
+                                             const Eigen::Vector3d& place, double stamp_s) const;
   std::vector<Viewpoint> viewpoints(GroundView& ground, const Frontiers& frontiers,
                                     const Eigen::Vector3d& place, double stamp_s) const;
+  /// The place where the robot can be at rest at the earliest, if it is free; else the robot's own.
+  Eigen::Vector3d stopping_place(GroundView& ground, const Eigen::Vector3d& place, double stamp_s);
+  /// Ends the goal if the robot arrived and looked, or is blocked.
+  void end_goal(const Eigen::Vector3d& place, double stamp_s, bool blocked);
+  /// Whether a frontier is about where that of the goal is.
+  bool continues(const Frontier& frontier) const;
+  /// Chooses the goal. Returns which frontiers can be reached.
+  std::vector<bool> choose(GroundView& ground, const Frontiers& frontiers, const Eigen::Vector3d& place,
+                           double stamp_s);
 
   ExploreParams params_;
   Eigen::Vector3d sensor_;  ///< The lidar in base_link, m.
   double steepest_;         ///< Tangent of the highest elevation that the lidar sees.
   double lowest_;           ///< Tangent of the lowest one.
+  double braking_;          ///< m/s2
   CoverageMap map_;
   std::optional<Goal> goal_{};
   std::vector<Deferred> deferred_{};
   int scans_{0};      ///< Since the robot arrived at the goal, or since nothing was left.
   bool ever_{false};  ///< A plan had a goal.
   std::optional<double> nothing_since_{};
+  std::optional<Eigen::Vector3d> before_{};  ///< The robot's place at the last step.
+  double before_s_{0};
 };
 
 }  // namespace adit::nav

@@ -41,10 +41,8 @@ class RoutePlanner {
   Route plan(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
   /// Costs of the routes from one place to many through known space, m; infinite where there is none. One
   /// search serves all goals. The costs are those along the graph before straightening, so plan()'s are lower
-  /// by some per cent. `goals`: as for plan().
-  std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals) {
-    return graph_.costs(from, goals);
-  }
+  /// by some per cent. `goals`: as for plan(). A goal without any other route has the cost of a doubtful one.
+  std::vector<float> costs(const Eigen::Vector3d& from, std::span<const Eigen::Vector3d> goals);
   /// Sets the other robots of the team, which cost a route that leads through them.
   void set_team(std::vector<TeamPlace> team) { map_.set_team(std::move(team)); }
   /// Forgets an obstacle: a robot was seen there.
@@ -86,6 +84,9 @@ class RoutePlanner {
     Doubts(const Platform& platform, const RouteParams& params)
         : map(params, ScanProfile::most_wrong(platform)), graph(map, platform, params, true) {}
   };
+
+  /// The graph without doubtful steps, of the present map.
+  RouteGraph& doubtful_graph();
 
   Platform platform_;
   RouteParams params_;

@@ -15,8 +15,6 @@ constexpr float kRun = 0.8f;         // m: the ground cannot be extrapolated ove
 constexpr float kWallGap = 1.5f;     // m
 constexpr float kStraight = 0.1f;    // m
 constexpr float kGap = 0.5f;         // m
-// m: the returns of 16 rings on a wall that is nearer are less than 9 cm above each other.
-constexpr float kNearWall = 2.5f;
 constexpr float kFirst = 1.5f;  // m: the ground is unknown within this distance of a lidar with few rings.
 
 // Approximates std::atan2 within 1e-5 rad by an odd minimax polynomial of degree 11; runs for every return.
@@ -121,9 +119,8 @@ bool ScanProfile::is_obstacle(std::span<const Return> returns, std::size_t which
 void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hit) {
   hit = {};
   const std::size_t first = pieces_.size();
-  float z = ground_, at = 0.0f;                // The last ground.
-  float stack_at = 0.0f;                       // Range of the first return of the stack to which it belongs.
-  float z_before = ground_, at_before = 0.0f;  // The ground before that stack.
+  float z = ground_, at = 0.0f;  // The last ground.
+  float z_before = ground_;      // The ground before it.
   const Return* last_ground = nullptr;
   bool ended = false;
   for (const Return& r : returns) {
@@ -134,27 +131,20 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
     if (const float on = ground_at(r.x, r.y); begins)
       z = std::abs(r.z - on) <= step_ && !is_obstacle(returns, which) ? on : ground_;
     const float rise = r.z - z;
-    // The foot of an obstacle was taken for rising ground: the next return is right above it. The returns of
-    // a wall nearby are only centimetres above each other.
-    const bool above = z - z_before > step_ && rise > step_;
-    // A robot that climbs stairs may take two risers for a wall.
-    const bool near = r.range < kNearWall && !platform_.stairs;
-    const bool climbs = near && r.z - z_before > step_ + slope_ * std::min(r.range - at_before, kRun);
-    const bool foot = !ended && last_ground && r.range - stack_at < kStack && rise < kNextReturn &&
-                      rise > 0.0f && (above || climbs);
+    // The foot of an obstacle was taken for rising ground: the next return is right above it.
+    const bool foot = !ended && last_ground && r.range - at < kStack && z - z_before > step_ &&
+                      rise > step_ && rise < kNextReturn;
     if (!foot && rise > clear_ + (ended ? 0.0f : slope_ * run)) continue;
     if (ended) {
       if (rise > step_ && is_face(returns, which)) map.see_obstacle(r.x, r.y, z, rise);
       continue;
     }
-    const bool face = begins && near && rise > step_ && is_obstacle(returns, which);
-    if (foot || face || rise > step_ + slope_ * run) {
+    if (foot || rise > step_ + slope_ * run) {
       float base = z;
       if (foot) {
         base = z_before;
         map.see_obstacle(last_ground->x, last_ground->y, base, z - base);
-        for (std::size_t i = pieces_.size(); i > first && pieces_[i - 1].to >= stack_at; --i)
-          pieces_[i - 1].z_from = pieces_[i - 1].z_to = base;
+        if (pieces_.size() > first) pieces_.back().z_to = base;
       }
       map.see_obstacle(r.x, r.y, base, r.z - base);
       pieces_.push_back({at, r.range - kRouteCellF, begins ? ground_ : base, base, r.z});
@@ -172,11 +162,7 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
       return;
     } else {
       pieces_.push_back({at, r.range, begins ? ground_ : z, r.z, r.z});
-      if (r.range - stack_at >= kStack) {
-        z_before = begins ? ground_ : z;
-        at_before = at;
-        stack_at = r.range;
-      }
+      z_before = z;
       z = r.z;
       at = r.range;
       last_ground = &r;

@@ -45,6 +45,7 @@ struct ExploreRun {
   Pose2 pose{};
   double speed{2.0}, stamp{0}, metres{0};
   ExploreStep last{};
+  int steps{0}, braking{0};  ///< Those with a goal; of these, so near to it that a robot would brake.
   std::mt19937 random{1};
 
   ExploreRun(BoxWorld w, const Pose2& start) : world(std::move(w)), pose(start) {}
@@ -74,6 +75,10 @@ struct ExploreRun {
       look();
       last = explorer.step(ground, {pose.x, pose.y, 0}, stamp, false);
       if (last.state == ExploreState::done) return true;
+      if (last.goal) {
+        ++steps;
+        braking += (last.goal->head<2>() - Eigen::Vector2d(pose.x, pose.y)).norm() < 2.0;
+      }
       drive(speed * 0.2);
     }
     return false;
@@ -111,6 +116,13 @@ TEST(Explorer, SeesTheBlocksAndSaysDone) {
   run.stamp += 1;
   EXPECT_FALSE(run.explorer.step(run.ground, {run.pose.x, run.pose.y, 0}, run.stamp, false).goal)
       << "what was seen stays seen";
+}
+
+TEST(Explorer, HandsOverTheNextGoalBeforeTheRobotBrakes) {
+  ExploreRun run(blocks(2), {1.6, 1.6, 0});
+  EXPECT_TRUE(run.run(120));
+  EXPECT_GT(share_of_streets(run.explorer.coverage(), 2), 0.97);
+  EXPECT_LT(run.braking, run.steps / 4);
 }
 
 // A closed room of 3 x 3 m, which one scan shows.

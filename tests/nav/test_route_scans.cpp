@@ -2,7 +2,6 @@
 // The global planner over scans, and the robot that follows it.
 #include <gtest/gtest.h>
 
-#include "core/config/platform_file.hpp"
 #include "tests/nav/height_world.hpp"
 #include "tests/nav/route_drive.hpp"
 #include "tests/nav/route_world.hpp"
@@ -26,23 +25,6 @@ TEST(RouteScans, SeesWallsAndGround) {
     const LineCost free = planner.line({0, 2, 0}, {5.5, 2, 0});
     EXPECT_TRUE(free.passable) << rings;
     EXPECT_LT(free.unknown, 1.0) << rings;
-  }
-}
-
-// The returns of a wall beside the robot are a few centimetres above each other: it is no ground that rises.
-TEST(RouteScans, WallsBesideTheRobotAreObstacles) {
-  const BoxWorld corridor{{{-8, 8, 0.6, 0.9}, {-8, 8, -0.9, -0.6}}};
-  std::mt19937 random(1);
-  for (const char* name : {"wheeled", "tracked"}) {
-    const Platform platform = config::load_platform(name).value();
-    RoutePlanner planner(platform);
-    for (int i = 0; i < 6; ++i)
-      planner.add_scan(corridor.scan({0, 0, 0}, platform.lidar_height, 16, 720, 0.01, random),
-                       Pose3::level({0, 0, 0}, 0), 0.1 * i);
-    planner.finish();
-    for (double x = -4.0; x <= 4.0; x += 0.5)
-      for (const double side : {-1.0, 1.0})
-        EXPECT_FALSE(planner.line({x, 0, 0}, {x, 2 * side, 0}).passable) << name << " at " << x;
   }
 }
 

@@ -33,6 +33,10 @@ TEST(RouteSteps, AStepThatWasOnlySeenFromAfarProvesNothing) {
       for (float z = 0; z < 1.5f; z += 0.1f) points.emplace_back(-1.0f, y, z);
     for (int scan = 0; scan < 5; ++scan) planner.add_scan(points, Pose3::level({robot, 0, 0}, 0), 0.1 * scan);
     EXPECT_EQ(planner.plan({robot, 0, 0}, {10, 0, 0.35}).found(), robot == 0.0);
+    const std::vector<Eigen::Vector3d> goals{{robot + 1, 0, 0}, {10, 0, 0.35}};
+    const std::vector<float> costs = planner.costs({robot, 0, 0}, goals);
+    EXPECT_TRUE(std::isfinite(costs[0]));
+    EXPECT_EQ(std::isfinite(costs[1]), robot == 0.0) << "the cost of a doubtful route is one";
   }
 }
 
