@@ -34,7 +34,6 @@ constexpr Duration kBeat = 50ms;  // Tree, mux, follower and driver run at 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
 constexpr Duration kPulse = 50ms;
-constexpr double kStands = 0.1;     // m/s: slower is standing.
 constexpr double kBeaconAge = 1.0;  // s: an older beacon of a robot that moves does not say where it is.
 
 }  // namespace
@@ -477,7 +476,7 @@ std::vector<TeamRobot> Agent::CommandComponent::team(Time at) const {
     if (!peer.present || !peer.heard_beacon) continue;
     const TeamBeacon& beacon = peer.heard_beacon->beacon;
     const double age = seconds(at - peer.heard_beacon->at);
-    const bool stands = std::hypot(beacon.twist.vx, beacon.twist.vy) < kStands;
+    const bool stands = std::hypot(beacon.twist.vx, beacon.twist.vy) < RightOfWay::kStands;
     if (age > (stands ? seconds(RightOfWay::kHeard) : kBeaconAge)) continue;
     const Pose2 pose = beacon.pose * Pose2{beacon.twist.vx * age, beacon.twist.vy * age, 0.0};
     const bool member = std::find(members.begin(), members.end(), peer.name) != members.end();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include "nav/right_of_way/place_search.hpp"
 
@@ -11,7 +13,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTouch = 0.05;       // m: a route that passes at a greater distance leads around the robot.
-constexpr double kStands = 0.1;       // m/s: slower is standing.
 constexpr double kThere = 0.5;        // m: a robot this near its place has arrived.
 constexpr double kBesidePlace = 1.5;  // m: free for a robot that drives to a place.
 constexpr double kPassed = 1.0;       // m behind the robot: a place was passed.
@@ -39,7 +40,7 @@ Result<void> RightOfWay::allow(bool allowed, Time now) {
   allowed_ = allowed;
   asleep_ = false;
   refusals_.clear();
-  if (!allowed && clearing_) end(true, now);
+  if (!allowed && clearing_) end(now);
   return {};
 }
 
@@ -272,7 +273,7 @@ void RightOfWay::found_again(const std::optional<Eigen::Vector2d>& place, const 
   if (!place && !way.must_change) return;
   if (!place) {
     const std::string root = way.root;
-    end(true, now);
+    end(now);
     return refuse(root, Reason::yield_refused, now);
   }
   const bool nearer = (*place - from).norm() < kNearer * (way.place - from).norm();
@@ -292,7 +293,7 @@ void RightOfWay::clear(const Own& own, Time now) {
     way.blocked_since.reset();
   else if (!way.blocked_since)
     way.blocked_since = now;
-  if (now - way.heard > kAskKept || now - way.since > kLongest) return end(true, now);
+  if (now - way.heard > kAskKept || now - way.since > kLongest) return end(now);
   if (!renewed || (searches_since_ && now - *searches_since_ < kSearchLost)) return;
   // The way is blocked, or the robot stands at its place and the corridor has moved there: another place.
   const bool needs = (way.blocked_since && now - *way.blocked_since > kBlocked) ||
@@ -304,11 +305,11 @@ void RightOfWay::clear(const Own& own, Time now) {
   find(own, *asker, now);
 }
 
-void RightOfWay::end(bool resumes, Time now) {
+void RightOfWay::end(Time now) {
   const Clearing way = *std::exchange(clearing_, std::nullopt);
   ++search_;
   searches_since_.reset();
-  if (resumes) outputs_.resume(now);
+  outputs_.resume(now);
   if (!way.held) return;
   char text[96];
   std::snprintf(text, sizeof text, "%s made way for %s and stays %.1f m from where it was",

@@ -43,6 +43,7 @@ class RightOfWay {
   static constexpr Duration kPersists = 1s;     ///< A robot must be in the way for so long.
   static constexpr Duration kTellAfter = 3s;    ///< And so long until the operator is notified.
   static constexpr Duration kWaits = 10s;       ///< Longest wait for the answer of a robot that may make way.
+  static constexpr double kStands = 0.1;        ///< Slower is standing, m/s.
   static constexpr double kLookAhead = 20.0;    ///< m
   static constexpr double kMargin = 0.3;        ///< Between two robots that pass each other, m.
   static constexpr double kDistance = 2.0;      ///< From a robot that makes way, outline to outline, m.
@@ -155,7 +156,7 @@ class RightOfWay {
   void clear(const Own& own, Time now);
   void refuse(const std::string& root, Reason reason, Time now);
   bool has_refused(const std::string& root) const;
-  void end(bool resumes, Time now);
+  void end(Time now);
   /// Whether the outline of this robot is within `margin` metres of the asked corridor.
   bool in_corridor(const Own& own, const YieldAsk& ask, double margin) const;
 

@@ -34,7 +34,6 @@ class RightOfWayTest : public testing::Test {
                          done(clear_place);
                        },
                        [this](Time) -> Result<void> {
-                         if (refuses_mode) return {Reason::terrain_stale, ""};
                          own.mode = "get_out";
                          return {};
                        },
@@ -81,7 +80,6 @@ class RightOfWayTest : public testing::Test {
   Time now{Duration{1h}};
   RightOfWay::Own own{};
   std::optional<Eigen::Vector2d> clear_place{Eigen::Vector2d(3.0, 2.0)};
-  bool refuses_mode{};
   int resumed{};
   double asked_width{};
   std::uint32_t seq{};
