@@ -134,6 +134,7 @@ void Station::Impl::run(std::uint64_t handle, const Request& request, Done done)
 }
 
 void Station::Impl::answer_query(const Request& request, const Done& done) {
+  if (request.info->first_word() == "map") return answer_map(request, done);
   if (request.verb == verb("findings")) {  // Findings stay available when their robot is lost.
     for (const std::string& robot : request.robots) {
       const auto& all = desk_.all();
@@ -409,8 +410,12 @@ void Station::Impl::stick(std::uint64_t handle, const StickVelocity& velocity) {
 void Station::Impl::tick() {
   fleet_.check(strand_.now());
   for (const auto& [name, robot] : fleet_.robots())
-    if (robot.located) radio_.set_place(robot.participant, {robot.x, robot.y, robot.z});
+    if (robot.located) {
+      radio_.set_place(robot.participant, {robot.x, robot.y, robot.z});
+      trails_.add(name, {robot.x, robot.y, robot.yaw});
+    }
   desk_.tick();
+  acknowledge_pieces();
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
   for (Waiting& next : std::exchange(waiting_, {})) {
     const bool behind = std::any_of(waiting_.begin(), waiting_.end(), [&](const Waiting& earlier) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "adit/authority.h"
+#include "adit/bulk.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/link.h"
@@ -24,6 +25,7 @@ constexpr std::uint16_t kProtocol = 1;
 constexpr Duration kReportPeriod = 2s;
 constexpr Duration kTickPeriod = 100ms;
 constexpr std::size_t kMaxReportTopics = 16;
+constexpr std::uint64_t kStartSalt = 1;  // Beside the sequence of the phases.
 }  // namespace
 
 struct Station::Impl::Radio {
@@ -31,6 +33,7 @@ struct Station::Impl::Radio {
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> report{};
   wire::Writer<radio::FindingsAck> findings{};
+  wire::Writer<radio::BulkAck> bulk_ack{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
 };
 
@@ -46,6 +49,7 @@ Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire
       started_(strand.now()),
       random_(params_.seed),
       desk_({}, params_.disk, strand, desk_outputs()),
+      start_(static_cast<std::uint32_t>(Random(params_.seed).fork(kStartSalt).next())),
       topics_(std::make_unique<Radio>()) {}
 
 Station::Impl::~Impl() = default;
@@ -70,6 +74,7 @@ Result<void> Station::Impl::start() {
   };
   fleet_.on_robot = [this](const RobotView& robot) {
     sender_.prepare(robot.name);
+    map_.greet();
     announce_often();
   };
   sender_.on_sent = [this](const RobotCommand& robot_command, std::uint64_t seq) {
@@ -111,6 +116,7 @@ Result<void> Station::Impl::start() {
         read(wire::topics::kAuthority), read(wire::topics::kBehaviour), read(wire::topics::kNotification),
         read(wire::topics::kHealth), read(wire::topics::kLinkReport)})
     if (!opened) return opened.error();
+  if (auto opened = open_map(); !opened) return opened.error();
 
   radio::Capabilities self;
   self.name(params_.name);
@@ -146,6 +152,48 @@ Result<void> Station::Impl::start() {
   }));
   timers_.push_back(strand_.every(kTickPeriod, [this] { tick(); }));
   return {};
+}
+
+Result<void> Station::Impl::open_map() {
+  auto ack = wire::Writer<radio::BulkAck>::make(radio_, wire::topics::kBulkAck);
+  if (!ack) return ack.error();
+  topics_->bulk_ack = std::move(*ack);
+  auto pieces = wire::make_reader(
+      radio_, wire::topics::kBulk, strand_,
+      [this](const radio::BulkPiece& sample, const wire::SampleInfo& info) { heard_piece(sample, info); });
+  if (!pieces) return pieces.error();
+  topics_->readers.push_back(std::move(*pieces));
+  return {};
+}
+
+void Station::Impl::heard_piece(const radio::BulkPiece& sample, const wire::SampleInfo& info) {
+  // Only the robot itself adds to its map: Fleet::speaks_for would also take a participant that is not known
+  // yet.
+  const RobotView* robot = fleet_.robot(sample.robot());
+  if (closed_ || !robot || robot->participant != info.sender) return;
+  (void)map_.take(sample.robot(), sample.session(), sample.id(), sample.kind(), sample.waiting(),
+                  sample.data(),
+                  strand_.now());  // `map status` counts what was refused.
+}
+
+void Station::Impl::acknowledge_pieces() {
+  if (closed_ || fleet_.robots().empty()) return;
+  const wire::LinkProfile* link = radio_.sender().link;
+  const auto receipts = map_.due(strand_.now(), link ? link->bandwidth : 0.0);
+  if (!receipts) return;
+  radio::BulkAck ack;
+  ack.station(params_.name);
+  ack.station_id(params_.id);
+  ack.start(start_);
+  for (const auto& [robot, receipt] : *receipts) {
+    radio::BulkReceipt out;
+    out.robot(robot);
+    out.session(receipt.session);
+    out.newest(receipt.newest);
+    out.received(receipt.received);
+    ack.receipts().push_back(out);
+  }
+  (void)topics_->bulk_ack.write(ack);  // Best effort: a receipt has what those before it had.
 }
 
 FindingDesk::Outputs Station::Impl::desk_outputs() {
@@ -258,6 +306,7 @@ const Fleet& Station::fleet() const { return impl_->fleet_; }
 const StationParams& Station::params() const { return impl_->params_; }
 Time Station::now() const { return impl_->now(); }
 const Counts& Station::counts() const { return impl_->sender_.counts(); }
+const ChunkStore& Station::map() const { return impl_->chunks(); }
 const std::optional<Answer>& Station::last_answer() const { return impl_->last_answer_; }
 std::size_t Station::findings() const { return impl_->findings(); }
 bool Station::closed() const { return impl_->closed_; }

@@ -18,6 +18,8 @@
 
 namespace adit::station {
 
+class ChunkStore;
+
 /// Parameters of a station: identity and rates.
 struct StationParams {
   std::string name{"op1"};  ///< Name of the operator: 1 to 32 characters of [A-Za-z0-9_-].
@@ -70,6 +72,8 @@ class Station {
   const Counts& counts() const;
   /// The newest answer to this operator, from a robot or from the station itself.
   const std::optional<Answer>& last_answer() const;
+  /// The map of all robots as this station received it.
+  const ChunkStore& map() const;
   /// Number of stored findings of all robots.
   std::size_t findings() const;
   /// True after `down`, until `up`.

@@ -9,8 +9,14 @@
 #include "basestation/fleet/traffic.hpp"
 #include "basestation/flow/arrival.hpp"
 #include "basestation/flow/steer.hpp"
+#include "basestation/map/map_receiver.hpp"
+#include "basestation/map/trails.hpp"
 #include "basestation/station.hpp"
 #include "core/time/random.hpp"
+
+namespace adit::perception {
+class VoxelImage;
+}
 
 namespace adit::station {
 
@@ -36,6 +42,7 @@ class Station::Impl {
   void stick(std::uint64_t handle, const StickVelocity& velocity);
   Time now() const { return strand_.now(); }
   std::size_t findings() const { return desk_.all().size(); }
+  const ChunkStore& chunks() const { return map_.chunks(); }
 
   Station& owner_;
   StationParams params_;
@@ -68,6 +75,9 @@ class Station::Impl {
   void report_traffic();
   FindingDesk::Outputs desk_outputs();
   void tick();
+  Result<void> open_map();
+  void heard_piece(const radio::BulkPiece& sample, const wire::SampleInfo& info);
+  void acknowledge_pieces();
   void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
 
   // Defined in execute.cpp: command lines.
@@ -77,6 +87,11 @@ class Station::Impl {
   bool complete() const;
   void run(std::uint64_t handle, const command::Request& request, Done done);
   void answer_query(const command::Request& request, const Done& done);
+  // Defined in map_commands.cpp.
+  void answer_map(const command::Request& request, const Done& done);
+  void save_map(const command::Request& request, const Done& done);
+  void load_map(const command::Request& request, const Done& done);
+  void draw_map(const command::Request& request, const Done& done);
   void command_robots(std::uint64_t handle, const command::Request& request, Done done);
   /// Sends the gather's command to every robot of its request.
   void send_to_all(std::uint64_t handle, const std::shared_ptr<Gather>& gather);
@@ -108,6 +123,10 @@ class Station::Impl {
   Random random_;
   TrafficMeter meter_{};
   FindingDesk desk_;
+  MapReceiver map_{};
+  Trails trails_{};
+  std::shared_ptr<const perception::VoxelImage> prior_{};  ///< What the crew had; null: nothing.
+  std::uint32_t start_{};                                  ///< Drawn at this start; see transfer::Ack.
   std::uint64_t next_handle_{1};
   std::uint32_t presence_seq_{};
   std::uint64_t report_seq_{};

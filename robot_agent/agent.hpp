@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/component/fault.hpp"
+#include "core/config/perception_level.hpp"
 #include "core/config/platform.hpp"
 #include "core/exec/executor.hpp"
 #include "core/findings/finding.hpp"
@@ -32,6 +33,7 @@ class ModeTable;
 struct AgentParams {
   std::string name{"r1"};  ///< 1 to 32 characters of [A-Za-z0-9_-].
   Platform platform{};
+  PerceptionLevel perception{PerceptionLevel::off};
   Id id{};                ///< Stored on the robot's disk; all zero: drawn from the seed.
   std::uint64_t seed{1};  ///< Of the epoch; differs at each start of the agent.
   Pose2 start{};          ///< Map frame; the pose where odometry begins.

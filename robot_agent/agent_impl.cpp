@@ -36,11 +36,12 @@ Agent::Impl::Impl(const AgentParams& agent_params, Runtime& agent_runtime)
       planner(agent_runtime, planner_unit()),
       router(agent_runtime, router_unit()),
       sensors(agent_runtime, sensors_unit()),
+      map(agent_runtime, map_unit()),
       watch_strand(agent_runtime.strand("supervisor")) {}
 
 Agent::Impl::~Impl() {
   watch_strand->end();
-  for (Unit* unit : {&command, &sensors, &planner, &router}) unit->end();
+  for (Unit* unit : {&command, &sensors, &planner, &router, &map}) unit->end();
   end_disk();
   if (watch) watch->stop();
   if (context && context->radio) context->radio->close();
@@ -90,13 +91,25 @@ UnitParams Agent::Impl::router_unit() {
   return unit;
 }
 
+UnitParams Agent::Impl::map_unit() {
+  UnitParams unit{};
+  unit.name = "map";
+  unit.dedicated = true;
+  unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
+    return std::unique_ptr<Component>(
+        std::make_unique<MapPart>(MapParams{}, strand, Log(params.log, params.name), context->map_insertion));
+  };
+  return unit;
+}
+
 UnitParams Agent::Impl::sensors_unit() {
   UnitParams unit{};
   unit.name = "sensors";
   unit.make = [this](Executor& strand) -> Result<std::unique_ptr<Component>> {
     return std::unique_ptr<Component>(std::make_unique<Scans>(
         strand, Log(params.log, params.name), params.name, params.platform, context->scans,
-        [notifier = context->notifier.get()](const Notice& notice) { notifier->send(notice); }));
+        [notifier = context->notifier.get()](const Notice& notice) { notifier->send(notice); },
+        params.perception == PerceptionLevel::off ? 0 : ++context->odometries));
   };
   unit.open_io = [this](const std::shared_ptr<ComponentSlot>& slot) -> Result<std::shared_ptr<void>> {
     auto readers =
@@ -160,9 +173,15 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   e.driver = std::move(*driver);
 
   const bool routes_it = params.platform.router != "none";
-  for (Unit* unit : {&planner, &router, &sensors})
-    if (unit != &router || routes_it)
+  const bool maps_it = params.perception == PerceptionLevel::slam;
+  for (Unit* unit : {&planner, &router, &sensors, &map})
+    if ((unit != &router || routes_it) && (unit != &map || maps_it))
       if (const auto opened = unit->open(); !opened) return opened.error();
+  if (maps_it)
+    e.map = std::make_unique<MapKeeper>(
+        MapKeeperParams{.robot = params.name,
+                        .seed = Random(params.seed).fork(kMapSalt).next(),
+                        .origin = params.platform.lidar().mounting.position().cast<float>()});
   if (routes_it) e.router = std::make_unique<RouteServices>();
   auto opened = AgentSupervisor::open({params.name, params.supervision, Log(params.log, params.name),
                                        params.end, params.alive, params.velocity},
@@ -174,7 +193,21 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   watch->watch(planner, {.name = "planner"});
   if (routes_it) watch->watch(router, {.name = "router"});
   watch->watch(sensors, {.name = "sensors"});
+  if (maps_it) watch->watch(map, {.name = "map"});
   if (params.disk) watch->note({.name = "store"});
+  std::function<void(const std::string&, const transfer::Ack&, const wire::ParticipantId&)> acknowledged{};
+  if (maps_it)
+    acknowledged = [&e, &strand, with_command](const std::string& station, const transfer::Ack& ack,
+                                               const wire::ParticipantId& from) {
+      with_command([&](CommandComponent& component) {
+        component.commands([&](CommandInterface& interface) {
+          // Only the participant that is bound to the station speaks for it.
+          const Station* known = interface.stations().by_participant(from);
+          if (known && known->name == station && known->id == ack.peer)
+            e.map->acknowledged(ack, strand.now());
+        });
+      });
+    };
   return e.radio->listen(
       {e.directory, e.namesakes,
        [with_command](const std::function<void(CommandInterface&)>& use) {
@@ -198,7 +231,8 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
            e.peers.hear_beacon(*beacon, from, strand.now());
          else
            e.peers.refuse_beacon(BeaconFault::malformed);
-       }});
+       },
+       std::move(acknowledged)});
 }
 
 std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {
@@ -245,8 +279,9 @@ FindingSync::Outputs Agent::Impl::findings_outputs() {
 }
 
 Unit* Agent::Impl::find(const std::string& component) {
-  for (Unit* unit : {&command, &planner, &router, &sensors})
-    if (unit->name() == component && (unit != &router || context->router)) return unit;
+  for (Unit* unit : {&command, &planner, &router, &sensors, &map})
+    if (unit->name() == component && (unit != &router || context->router) && (unit != &map || context->map))
+      return unit;
   return nullptr;
 }
 

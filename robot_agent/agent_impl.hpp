@@ -10,8 +10,9 @@ namespace adit::agent {
 // Random sequences drawn from the seed beside the epoch's.
 inline constexpr std::uint64_t kIdentitySalt = 1;
 inline constexpr std::uint64_t kFindingsSalt = 2;
+inline constexpr std::uint64_t kMapSalt = 3;
 
-/// The implementation of Agent: four units, each on a strand of its own, their shared context, and the
+/// The implementation of Agent: its units, each on a strand of its own, their shared context, and the
 /// supervisor. Private to agent.cpp.
 struct Agent::Impl {
   Impl(const AgentParams& agent_params, Runtime& agent_runtime);
@@ -28,7 +29,7 @@ struct Agent::Impl {
   Runtime& runtime;
   wire::Participant* robot_wire{};
   std::unique_ptr<Context> context{};
-  Unit command, planner, router, sensors;
+  Unit command, planner, router, sensors, map;
   std::shared_ptr<Strand> watch_strand;
   std::shared_ptr<Strand> disk_strand{};  ///< Null: there is no disk, or its writes take no time.
   std::unique_ptr<AgentSupervisor> watch{};
@@ -46,6 +47,7 @@ struct Agent::Impl {
   UnitParams planner_unit();
   UnitParams router_unit();
   UnitParams sensors_unit();
+  UnitParams map_unit();
 };
 
 }  // namespace adit::agent

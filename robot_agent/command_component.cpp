@@ -63,7 +63,11 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
 void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
                                        Time received) {
   protect([&] {
-    if (!frames_.update(odom, twist, stamp, received)) odometry_jumped();
+    const Pose3 T_odom_base = localises() ? correction_.apply(odom, stamp) : odom;
+    if (!frames_.update(T_odom_base, twist, stamp, received)) {
+      correction_.begin_frame(stamp);
+      odometry_jumped();
+    }
     if (waiting_scan_ && !is_ahead(waiting_scan_->stamp)) add_waiting_scan();
   });
 }
@@ -109,6 +113,7 @@ bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
 
 void Agent::CommandComponent::add_waiting_scan() {
   const LidarScan waiting = *std::exchange(waiting_scan_, std::nullopt);
+  if (waiting.odometry) correction_.take(*waiting.odometry, now());
   auto scan = std::make_shared<Scan>();
   scan->points = std::move(*waiting.points);
   const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
@@ -116,7 +121,23 @@ void Agent::CommandComponent::add_waiting_scan() {
   scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
   // The yaw is the odometry's; how the body leans the IMU knows better.
   if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
+  add_to_map(scan);
   navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
+}
+
+void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan) {
+  if (!context_.map) return;
+  auto job = context_.map->job(scan, team(now()), frames_.odom_epoch(), now());
+  if (!job) return;
+  call(context_.map_insertion, std::move(job), {.deadline = 2s},
+       [this](const Result<MapStep>& step) { context_.map->taken(step, frames_.map_frame()); });
+}
+
+void Agent::CommandComponent::send_map() {
+  if (!context_.map) return;
+  if (frames_.initialised()) context_.map->follow(frames_.map_frame());
+  for (const transfer::Piece& piece : context_.map->due(now(), context_.wire->sender()))
+    context_.radio->send(piece, context_.map->session());
 }
 
 void Agent::CommandComponent::battery(float charge) {
@@ -228,6 +249,7 @@ void Agent::CommandComponent::restore() {
                     started_);  // listen_first() checks which stations were heard since.
   note_holder();
   if (s.place) frames_.restore(*s.place);
+  if (s.place && localises()) correction_.restore(s.place->T_odom_driver);
   // Without a stored pose it is unknown whether the odometry frame is still the same. With one, the first
   // odometry sample decides.
   const bool comparable = s.place && s.place->newest;
@@ -263,7 +285,8 @@ Result<void> Agent::CommandComponent::on_start() {
   telemetry_.start(now(), started_);
   timers_.push_back(every(kBeat, [this] { beat(); }));
   timers_.push_back(every(kStatePeriod, [this] {
-    telemetry_.send_state(now(), safeguards_.charge());
+    const double sigma = localises() ? correction_.sigma() : 0.0;
+    telemetry_.send_state(now(), safeguards_.charge(), localisation(now()), sigma);
     context_.directory.tick(now());
     send_beacon(now());
   }));
@@ -286,6 +309,7 @@ void Agent::CommandComponent::on_stop() {
 void Agent::CommandComponent::beat() {
   const Time at = now();
   watch_driver();
+  watch_localisation(now());
   watch_namesakes(at);
   listen_first(at);
   convoy_.tick(at);
@@ -299,6 +323,7 @@ void Agent::CommandComponent::beat() {
   navigation_.step(at);
   keep();
   context_.keeper->tick();
+  send_map();
 }
 
 // A mode that resumes after a restart must not move before a stop from the meantime arrives; stations repeat
@@ -314,8 +339,29 @@ void Agent::CommandComponent::listen_first(Time at) {
 
 void Agent::CommandComponent::keep() {
   context_.keeper->save(
-      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), frames_.stored(), {}},
+      {commands_.kept(), behaviour_.kept(), params_.boot, safeguards_.kept(), stored_place(), {}},
       [this] { return commands_.kept_answers(); }, commands_.accepted());
+}
+
+StoredFrames Agent::CommandComponent::stored_place() const {
+  StoredFrames place = frames_.stored();
+  if (localises()) place.T_odom_driver = correction_.T_odom_driver();
+  return place;
+}
+
+void Agent::CommandComponent::watch_localisation(Time at) {
+  // A robot that passes a smooth wall is weak for a moment, which the operator need not know.
+  constexpr Duration kWeakFor = 3s;
+  const Localisation health = localisation(at);
+  if (health == reported_localisation_ || health == Localisation::starting || health == Localisation::off) {
+    localisation_since_ = at;
+    return;
+  }
+  if (health != Localisation::lost && at - localisation_since_ < kWeakFor) return;
+  const bool first = reported_localisation_ == Localisation::starting;
+  reported_localisation_ = health;
+  localisation_since_ = at;
+  if (!(first && health == Localisation::ok)) notices_.localisation(health, correction_.sigma());
 }
 
 void Agent::CommandComponent::watch_driver() {
@@ -367,7 +413,7 @@ void Agent::CommandComponent::send_beacon(Time at) {
 Facts Agent::CommandComponent::sense(Time now) const {
   Facts f{};
   f.driver_alive = frames_.alive(now);
-  f.localised = frames_.initialised();
+  f.localised = frames_.initialised() && localisation(now) != Localisation::lost;
   f.terrain_fresh = navigation_.terrain_fresh(now);
   f.map_fresh = navigation_.map_fresh(now);
   return f;

@@ -19,9 +19,11 @@
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/mux.hpp"
 #include "robot_agent/motion/navigation.hpp"
+#include "robot_agent/motion/pose_correction.hpp"
 #include "robot_agent/motion/rival.hpp"
 #include "robot_agent/motion/scans.hpp"
 #include "robot_agent/notices/notices.hpp"
+#include "robot_agent/perception/map_keeper.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/safeguard/safeguards.hpp"
@@ -52,7 +54,10 @@ struct Agent::Context {
   PlanService planner{"planner", 2};        ///< The services are callable from any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};
+  std::uint32_t odometries{};  ///< Instances of the odometry so far; by the sensors component only.
   FrameServices frames{};
+  std::unique_ptr<MapKeeper> map{};  ///< Null: this robot makes no map.
+  MapService map_insertion{"map insertion", 2};
   AgentSupervisor* watch{};               ///< From any thread.
   CommandComponent* command_component{};  ///< Null while the command component is not running.
   std::uint32_t instances{};              ///< Number of instances of the command component so far.
@@ -96,6 +101,14 @@ class Agent::CommandComponent : public Component {
   bool same_boot() const;
   void beat();
   void listen_first(Time at);
+  /// Whether the robot has an odometry of its own beside the driver's.
+  bool localises() const { return params_.perception != PerceptionLevel::off; }
+  Localisation localisation(Time at) const {
+    return localises() ? correction_.health(at) : Localisation::off;
+  }
+  /// Notifies the holder when the odometry becomes weak or lost, and when it is well again.
+  void watch_localisation(Time at);
+  StoredFrames stored_place() const;
   void watch_driver();
   /// Handles odometry that started again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
@@ -110,6 +123,9 @@ class Agent::CommandComponent : public Component {
   /// Keeps the robot in hold while it gives way to another one of its name.
   void watch_namesakes(Time at);
   void send_findings();
+  /// Offers a scan to the map, in the odometry frame.
+  void add_to_map(const std::shared_ptr<const Scan>& scan);
+  void send_map();
   /// Sends this robot's state to the other robots, when the link allows.
   void send_beacon(Time at);
   Facts sense(Time now) const;
@@ -140,6 +156,9 @@ class Agent::CommandComponent : public Component {
   Notices notices_;
   Safeguards safeguards_;
   Telemetry telemetry_;
+  PoseCorrection correction_{};
+  Localisation reported_localisation_{Localisation::starting};
+  Time localisation_since_{};                ///< Since then the odometry has a health that was not reported.
   std::optional<LidarScan> waiting_scan_{};  ///< Waits for odometry as new as its stamp.
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.

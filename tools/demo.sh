@@ -81,7 +81,7 @@ number=0
 while read -r name platform x y yaw; do
   number=$((number + 1))
   printf '  %-14s %s, at %s %s\n' "robot $name" "$platform" "$x" "$y"
-  printf 'name: %s\nplatform: %s\npose: [%s, %s, %s]\nradio: {domain: %s}\nrobot_domain: %s\ntree: trees/robot.xml\n' \
+  printf 'name: %s\nplatform: %s\npose: [%s, %s, %s]\nradio: {domain: %s}\nrobot_domain: %s\ntree: trees/robot.xml\nperception: slam\n' \
     "$name" "$platform" "$x" "$y" "$yaw" "$domain" "$((domain + number))" > "$home/$name.yaml"
   "$bin/robot_agent" --supervised --config "$home/$name.yaml" > "$home/$name.log" 2>&1 &
   pids+=("$!")
@@ -121,6 +121,9 @@ else
   "$bin/basestation" --name op1 --domain "$domain" run "$scenario" --all | tee "$out/narration.log" || play=$?
 fi
 
+"$bin/basestation" --name op1 --domain "$domain" map status > "$out/map.txt" 2>&1 || true
+map=yes
+"$bin/basestation" --name op1 --domain "$domain" map picture "$out/map.png" > "$home/map.log" 2>&1 || map=no
 kill -INT "$simulator"
 verdict=0
 wait "$simulator" || verdict=$?
@@ -129,6 +132,9 @@ say "What was true in the simulated building"
 grep -v -e "simulate: ready" -e "on domain" "$home/simulate.log" | sed 's/^/  /'
 echo "  picture        ${out#"$root"/}/demo.png"
 echo "  report         ${out#"$root"/}/report.json"
+say "The map that the station of op1 holds"
+sed 's/^/  /' "$out/map.txt"
+if [ "$map" = yes ]; then echo "  map            ${out#"$root"/}/map.png"; else sed 's/^/  /' "$home/map.log"; fi
 if [ "$verdict" = 0 ]; then
   say "Everything that was expected came true, and nothing was touched."
 else

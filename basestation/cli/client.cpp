@@ -8,9 +8,12 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include "basestation/cli/interrupt.hpp"
+#include "core/command/parse.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station::cli {
 
@@ -22,7 +25,7 @@ void Client::send(const json& object) {
 }
 
 std::int64_t Client::execute(const std::string& line) {
-  send({{"id", next_}, {"do", line}});
+  send({{"id", next_}, {"do", with_absolute_files(line)}});
   return next_++;
 }
 
@@ -155,6 +158,18 @@ std::string quoted(const std::vector<std::string>& words) {
     line += '\'';
   }
   return line;
+}
+
+std::string with_absolute_files(const std::string& line) {
+  const auto request = command::parse(line);
+  auto words = command::split_words(line);
+  if (!request || !words || request->word("FILE").empty()) return line;
+  const auto file = std::find(words->begin() + 1, words->end(), request->word("FILE"));
+  std::error_code failed;
+  const auto absolute = std::filesystem::absolute(*file, failed).lexically_normal();
+  if (failed) return line;
+  *file = absolute.string();
+  return quoted(*words);
 }
 
 }  // namespace adit::station::cli

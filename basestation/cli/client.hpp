@@ -63,6 +63,9 @@ int fail(const Options& options, int exit_code, const Error& error);
 /// Describes an ended command of another front end, e.g. "watch: take r1: r1: taken"; empty for all other
 /// events.
 std::string command_of_another(const nlohmann::json& event);
+/// Makes the path of a command's file absolute: the station, which opens it, runs in another folder. A line
+/// without a file, or that is wrong, is returned unchanged.
+std::string with_absolute_files(const std::string& line);
 /// Joins words into one line that splits into the same words.
 std::string quoted(const std::vector<std::string>& words);
 

@@ -68,6 +68,22 @@ const char* to_string(GoalPhase phase) {
   return "unknown";
 }
 
+const char* to_string(Localisation localisation) {
+  switch (localisation) {
+    case Localisation::off:
+      return "off";
+    case Localisation::starting:
+      return "starting";
+    case Localisation::ok:
+      return "ok";
+    case Localisation::weak:
+      return "weak";
+    case Localisation::lost:
+      return "lost";
+  }
+  return "off";
+}
+
 const char* to_string(ExplorationPhase phase) {
   constexpr std::array kNames{"none", "starting", "exploring", "travelling", "reporting", "done", "ended"};
   const auto index = static_cast<std::size_t>(phase);
@@ -193,6 +209,9 @@ void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) 
   robot->vy = sample.vy();
   robot->wz = sample.wz();
   robot->battery = sample.battery();
+  robot->sigma = sample.sigma() * 1e-3;
+  const auto lost = static_cast<std::uint8_t>(Localisation::lost);
+  robot->localisation = static_cast<Localisation>(std::min(sample.localisation(), lost));
   if (!robot->lost) return;
   robot->lost = false;
   notice(

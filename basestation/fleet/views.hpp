@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "basestation/fleet/links.hpp"
+#include "core/config/perception_level.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/participant.hpp"
@@ -110,6 +111,8 @@ struct RobotView {
   float x{}, y{}, z{}, yaw{};
   float vx{}, vy{}, wz{};
   float battery{-1.0F};  ///< State of charge, [0, 1]; negative: unknown.
+  Localisation localisation{Localisation::off};
+  double sigma{};  ///< Standard deviation of the position as the robot states it, m.
 
   bool owned{false};  ///< An AuthorityStatus was received.
   Epoch epoch{};
@@ -183,6 +186,7 @@ struct TrafficView {
 };
 
 const char* to_string(GoalPhase phase);
+const char* to_string(Localisation localisation);
 const char* to_string(ExplorationPhase phase);
 const char* to_string(Level level);
 

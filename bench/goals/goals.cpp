@@ -116,7 +116,7 @@ struct Row {
 
 int main(int argc, char** argv) {
   CLI::App app{"Random goals in closed loop: generated worlds, every platform, noisy odometry and lidar."};
-  std::vector<std::string> kinds(sim::world_kinds().begin(), sim::world_kinds().end());
+  std::vector<std::string> kinds(sim::navigation_kinds().begin(), sim::navigation_kinds().end());
   std::vector<std::string> platforms{"wheeled", "tracked", "legged", "car"};
   int goals = 500;
   std::uint64_t first = 1;

@@ -9,7 +9,8 @@
 #include "bench/nav_real/rows.hpp"
 #include "core/config/platform_file.hpp"
 #include "core/time/random.hpp"
-#include "sim/navtool/cloud_file.hpp"
+#include "sim/cloud/cloud_file.hpp"
+#include "sim/cloud/tum_file.hpp"
 #include "sim/navtool/terrain_survey.hpp"
 #include "sim/world/noise.hpp"
 

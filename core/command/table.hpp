@@ -20,6 +20,7 @@ inline constexpr Argument kRobots{
 inline constexpr Argument kMaybeRobot{.name = "R", .type = Type::robots, .what = "a robot", .min_count = 0};
 inline constexpr Argument kMaybeRobots{
     .name = "R", .type = Type::robots, .what = "a robot", .min_count = 0, .max_count = kMaxRobots};
+inline constexpr Argument kFile{.name = "FILE", .type = Type::file, .what = "a file"};
 inline constexpr Argument kOperator{.name = "OPERATOR", .type = Type::name, .what = "an operator"};
 
 constexpr Argument coordinate(std::string_view name, std::uint8_t least = 1) {
@@ -93,13 +94,46 @@ inline constexpr std::array kTable{
                 .summary = "what robots found, most important first",
                 .details = "findings stay when their robot is gone",
                 .example = "findings r1"},
+    CommandInfo{
+        .name = "map save",
+        .arguments = {Argument{.name = "save", .type = Type::keyword}, kFile},
+        .options = {Option{.name = "--robot",
+                           .values = {Argument{.name = "R", .type = Type::name, .what = "a robot"}}},
+                    Option{
+                        .name = "--floor",
+                        .values = {Argument{.name = "N", .type = Type::number, .minimum = 0, .maximum = 99}}},
+                    Option{
+                        .name = "--resolution",
+                        .values = {Argument{
+                            .name = "M", .type = Type::number, .minimum = 0.05, .maximum = 5.0, .unit = "m"}},
+                        .preset = 0.2}},
+        .runs = Runs::query,
+        .summary = "write the map of all robots: .bt, .ot, .pcd, .ply or .pgm with .yaml",
+        .details = "see [map.md](map.md)",
+        .example = "map save site.bt"},
+    CommandInfo{.name = "map load",
+                .arguments = {Argument{.name = "load", .type = Type::keyword}, kFile},
+                .runs = Runs::query,
+                .summary = "read a map that the crew already has, .bt or .ot",
+                .details = "what robots see replaces it",
+                .example = "map load before.bt"},
+    CommandInfo{.name = "map picture",
+                .arguments = {Argument{.name = "picture", .type = Type::keyword}, kFile},
+                .runs = Runs::query,
+                .summary = "draw the map and the robots from above, .png",
+                .example = "map picture map.png"},
+    CommandInfo{.name = "map status",
+                .arguments = {Argument{.name = "status", .type = Type::keyword}},
+                .runs = Runs::query,
+                .summary = "what this station has of each robot's map: area, bytes, age",
+                .example = "map status"},
     CommandInfo{.name = "actions",
                 .arguments = {kRobots},
                 .runs = Runs::query,
                 .summary = "which commands are valid now, and why the others are not",
                 .example = "actions r1 r2"},
     CommandInfo{.name = "run",
-                .arguments = {Argument{.name = "FILE", .type = Type::file, .what = "a file"}},
+                .arguments = {kFile},
                 .options = {Option{.name = "--all", .local = true}},
                 .runs = Runs::terminal,
                 .danger = Danger::high,
@@ -368,7 +402,7 @@ inline constexpr std::array kTable{
                 .example = "yield r2 on",
                 .done = "yield {WAY}"},
     CommandInfo{.name = "restart",
-                .arguments = {kRobot, component("agent|command|planner|router|sensors")},
+                .arguments = {kRobot, component("agent|command|planner|router|sensors|map")},
                 .number = 10,
                 .danger = Danger::high,
                 .conditions = {.holder = true},
@@ -377,7 +411,7 @@ inline constexpr std::array kTable{
                 .example = "restart r1 planner",
                 .done = "{COMPONENT} is restarted"},
     CommandInfo{.name = "policy",
-                .arguments = {kRobot, component("planner|router|sensors"),
+                .arguments = {kRobot, component("planner|router|sensors|map"),
                               Argument{.name = "POLICY", .type = Type::choice, .choices = "auto|manual"}},
                 .number = 11,
                 .danger = Danger::high,

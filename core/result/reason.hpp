@@ -53,23 +53,27 @@ enum class Reason : std::uint16_t {
   tree_refused = 226,        ///< The behaviour tree contradicts the mode table; the robot runs in hold.
   odometry_jumped = 227,     ///< The driver's odometry moved farther than the body can.
   name_taken = 228,          ///< Another robot of the same name was present first.
-  map_stale = 230,           ///< The router has not taken a scan into its map for 2 s.
-  leader_unknown = 231,      ///< The leader left the convoy, or the robot ahead is not heard.
-  not_in_convoy = 232,       ///< The robot has no place in a convoy.
-  order_differs = 233,       ///< The robot ahead has another order of the convoy.
-  yield_off = 234,           ///< The holder did not allow the robot to make way for others.
-  yield_refused = 235,       ///< A robot in the way does not make way.
-  yield_deadlock = 236,      ///< Neither of two robots that meet can make way.
-  no_viewpoint = 237,        ///< There is no place from which the robot could see anything new.
-  outside_area = 238,        ///< The place is outside of the areas where the robot may drive.
-  trail_impassable = 239,    ///< The robot cannot drive where the leader drove.
-  frame_unknown = 242,       ///< Neither the platform's file nor tf_static knows the frame of a message.
-  sensor_times = 243,        ///< The times of a sensor's message cannot be understood.
-  imu_mounting = 244,        ///< The IMU does not measure gravity where its mounting says.
-  tilted = 245,              ///< The body leans so far that it may tip over.
-  scan_empty = 246,          ///< A scan without any return.
-  lidar_mounting = 247,      ///< The lidar cannot be where its mounting says.
-  sensor_silent = 248,       ///< A sensor of the platform's file sends nothing, or has another clock.
+  /// After a restart the robot does not find its place in its map: `pose R X Y YAW`.
+  not_localised_here = 229,
+  map_stale = 230,          ///< The router has not taken a scan into its map for 2 s.
+  leader_unknown = 231,     ///< The leader left the convoy, or the robot ahead is not heard.
+  not_in_convoy = 232,      ///< The robot has no place in a convoy.
+  order_differs = 233,      ///< The robot ahead has another order of the convoy.
+  yield_off = 234,          ///< The holder did not allow the robot to make way for others.
+  yield_refused = 235,      ///< A robot in the way does not make way.
+  yield_deadlock = 236,     ///< Neither of two robots that meet can make way.
+  no_viewpoint = 237,       ///< There is no place from which the robot could see anything new.
+  outside_area = 238,       ///< The place is outside of the areas where the robot may drive.
+  trail_impassable = 239,   ///< The robot cannot drive where the leader drove.
+  map_empty = 241,          ///< There is no map yet.
+  frame_unknown = 242,      ///< Neither the platform's file nor tf_static knows the frame of a message.
+  sensor_times = 243,       ///< The times of a sensor's message cannot be understood.
+  imu_mounting = 244,       ///< The IMU does not measure gravity where its mounting says.
+  tilted = 245,             ///< The body leans so far that it may tip over.
+  scan_empty = 246,         ///< A scan without any return.
+  lidar_mounting = 247,     ///< The lidar cannot be where its mounting says.
+  sensor_silent = 248,      ///< A sensor of the platform's file sends nothing, or has another clock.
+  localisation_lost = 249,  ///< The odometry does not know where the robot is.
 
   // Input that was typed or sent.
   bad_argument = 301,

@@ -18,7 +18,7 @@ namespace adit::wire {
 std::string to_string(const ParticipantId& id);
 
 /// Purpose of a topic, which sets its QoS; docs/architecture.md has the table.
-enum class QosClass : std::uint8_t { urgent, stream, state, status, bulk, video, sensor };
+enum class QosClass : std::uint8_t { urgent, stream, state, status, bulk, video, sensor, pieces };
 
 /// Description of a topic without its type, as both adapters need it.
 struct TopicInfo {

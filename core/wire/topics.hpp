@@ -17,6 +17,8 @@ class Health;
 class LinkReport;
 class Finding;
 class FindingsAck;
+class BulkPiece;
+class BulkAck;
 class TeamBeacon;
 }  // namespace adit::radio
 namespace geometry_msgs::msg {
@@ -70,6 +72,12 @@ inline constexpr Topic<radio::Finding> kFinding{
     {"adit/finding", "adit::radio::v1::Finding", QosClass::bulk, 8, kUnkeyed, 1024}};
 inline constexpr Topic<radio::FindingsAck> kFindingsAck{
     {"adit/findings_ack", "adit::radio::v1::FindingsAck", QosClass::bulk, 8, kUnkeyed, 1024}};
+
+/// Pieces of content (core/transfer) and their acknowledgements.
+inline constexpr Topic<radio::BulkPiece> kBulk{
+    {"adit/bulk", "adit::radio::v1::BulkPiece", QosClass::pieces, 32, kUnkeyed, 1400}};
+inline constexpr Topic<radio::BulkAck> kBulkAck{
+    {"adit/bulk_ack", "adit::radio::v1::BulkAck", QosClass::pieces, 4, kUnkeyed, 1400}};
 
 /// Robots to robots: position, motion, and their parts in what several robots do together.
 inline constexpr Topic<radio::TeamBeacon> kTeam{

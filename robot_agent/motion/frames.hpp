@@ -45,7 +45,7 @@ class Frames {
   void set_pose(const Pose2& T_map_base);
 
   /// The state to store for restore() after a restart.
-  StoredFrames stored() const { return {T_map_odom_, odom_epoch_, newest_, height_, map_epoch_}; }
+  StoredFrames stored() const { return {T_map_odom_, odom_epoch_, newest_, height_, map_epoch_, {}}; }
   /// Restores the stored state after a restart, before the first sample, which is then compared with the
   /// stored one.
   void restore(const StoredFrames& stored);

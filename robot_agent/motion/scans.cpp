@@ -18,19 +18,22 @@ namespace {
 
 constexpr Duration kScanDeadline = 500ms;            // an older scan says nothing of the terrain
 constexpr std::uint64_t kLongestWait = 200'000'000;  // ns; farther ahead, the lidar has another clock
+constexpr std::uint64_t kImuWait = 60'000'000;       // ns; a longer gap is bridged by the driver's odometry
 constexpr double kJump = 1.0;                        // m between two samples: another odometry frame
 constexpr int kMaxNotDeskewed = 5;                   // consecutive scans before the operator is warned
 
 }  // namespace
 
 Scans::Scans(Executor& strand, Log log, std::string robot, const Platform& platform,
-             const ScanService& output, Notify notify)
+             const ScanService& output, Notify notify, std::uint32_t instance)
     : Component("sensors", strand, std::move(log), {.beat = 100ms}),
       robot_(std::move(robot)),
       lidars_(platform.all_lidars()),
       output_(output),
       notify_(std::move(notify)),
       input_(platform),
+      platform_(platform),
+      instance_(instance),
       waiting_(lidars_.size()) {}
 
 void Scans::take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received) {
@@ -53,6 +56,15 @@ void Scans::take(const sensor_msgs::msg::Imu& imu, Time) {
   protect([&] {
     const auto added = input_.add(imu_sample_of(imu), imu.header().frame_id());
     if (!added) refuse(added.error());
+    if (added && odometry_) {
+      // In the axes of base_link, in m/s2.
+      const auto mount = input_.find(imu.header().frame_id());
+      perception::ImuSample sample = imu_sample_of(imu);
+      if (input_.imu_in_g()) sample.accel *= perception::kStandardGravity;
+      if (mount)
+        odometry_->add(perception::ImuSample{sample.stamp, mount->orientation * sample.gyro,
+                                             mount->orientation * sample.accel});
+    }
     if (!input_.imu_in_g() || std::exchange(in_g_reported_, true)) return;
     notice(Severity::warning, "imu_in_g", Reason::none,
            "the IMU measures in g instead of m/s2; its values are scaled");
@@ -68,8 +80,12 @@ void Scans::take(const nav_msgs::msg::Odometry& odometry, Time) {
     const std::uint64_t stamp = nanoseconds_of(odometry.header());
     const auto last = history_.at(history_.newest());
     const bool set_back = stamp < history_.newest() && history_.newest() - stamp > 500'000'000;
-    if (set_back || (last && (last->position - at).norm() > kJump)) history_.clear();
+    if (set_back || (last && (last->position - at).norm() > kJump)) {
+      history_.clear();
+      if (odometry_) odometry_->forget_wheels();
+    }
     history_.add(stamp, {at, q.normalized()});
+    if (odometry_) odometry_->add(perception::BodyMotion{stamp, {at, q.normalized()}});
     input_.add_odometry(stamp, vector_of(odometry.twist().twist().linear()), Pose3{at, q.normalized()}.yaw());
     for (std::size_t n = 0; n < waiting_.size(); ++n)
       if (waiting_[n] && !is_ahead(waiting_[n]->sweep)) pass_on(n);
@@ -96,15 +112,38 @@ void Scans::take(Result<perception::Sweep> sweep, std::size_t lidar, const std::
 }
 
 bool Scans::is_ahead(const perception::Sweep& sweep) const {
-  if (!sweep.timed || history_.newest() == 0) return false;
+  if ((!sweep.timed && instance_ == 0) || history_.newest() == 0) return false;
   const std::uint64_t end = perception::ScanInput::end_of(sweep);
-  return end > history_.newest() && end - history_.newest() <= kLongestWait;
+  if (end > history_.newest()) return end - history_.newest() <= kLongestWait;
+  // The odometry of its own also waits for the IMU, which may have a gap.
+  return odometry_ && !odometry_->covers(end) && history_.newest() - end < kImuWait;
+}
+
+bool Scans::advance_odometry(const perception::Sweep& sweep) {
+  if (instance_ == 0) return false;
+  if (!odometry_) {
+    auto params = perception::LidarOdometryParams::of(platform_);
+    params.planar = sweep.planar;
+    odometry_.emplace(params);
+  }
+  return odometry_->advance(perception::ScanInput::end_of(sweep));
+}
+
+std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
+  const perception::OdometryState& state = odometry_->update(scan.points);
+  const auto T_driver_base = history_.at(scan.stamp);
+  if (!T_driver_base) return std::nullopt;  // The driver's frame began again.
+  return OdometryReport{scan.stamp, state.pose * T_driver_base->inverse(), instance_, state.health,
+                        state.sigma()};
 }
 
 void Scans::pass_on(std::size_t lidar) {
   const Waiting waiting = *std::exchange(waiting_[lidar], std::nullopt);
-  auto scan = input_.add(waiting.sweep, lidar, waiting.frame,
-                         [this](std::uint64_t stamp) { return history_.at(stamp); });
+  // One clock for all, as without it nothing can be deskewed.
+  const bool located = lidar == 0 && waiting.sweep.stamp != 0 && advance_odometry(waiting.sweep);
+  auto scan = input_.add(waiting.sweep, lidar, waiting.frame, [&](std::uint64_t stamp) {
+    return located ? odometry_->at(stamp) : history_.at(stamp);
+  });
   if (!scan) return refuse(scan.error());
   if (!*scan) return;  // A scan is made when the first lidar's sweep comes.
   perception::Scan& whole = **scan;
@@ -116,8 +155,13 @@ void Scans::pass_on(std::size_t lidar) {
            "lidar and odometry use one clock?");
   for (const perception::ScanWarning& warning : whole.warnings)
     notice(Severity::warning, warning.code, warning.reason, warning.text);
+  std::optional<OdometryReport> report;
+  if (located && whole.stamp != 0) report = locate(whole);
+  // The odometry knows roll and pitch better than a filter of the IMU alone.
+  const auto attitude = report && report->health != Localisation::lost ? std::nullopt : whole.attitude;
   call(output_,
-       {std::make_shared<PointCloud>(std::move(whole.points)), whole.stamp, whole.attitude, waiting.received},
+       {std::make_shared<PointCloud>(std::move(whole.points)), whole.stamp, attitude, waiting.received,
+        report},
        {.deadline = kScanDeadline}, [](const Result<void>&) {});
 }
 

@@ -11,8 +11,10 @@
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
 #include "perception/input/scan_input.hpp"
+#include "perception/odometry/lidar_odometry.hpp"
 #include "robot_agent/common/notice.hpp"
 #include "robot_agent/common/rate_limit.hpp"
+#include "robot_agent/motion/pose_correction.hpp"
 #include "robot_agent/motion/pose_history.hpp"
 
 namespace sensor_msgs::msg {
@@ -36,6 +38,8 @@ struct LidarScan {
   /// R_level_base: roll and pitch by the IMU. Nothing: they are the odometry's.
   std::optional<Eigen::Quaterniond> attitude{};
   Time received{};  ///< When the sample arrived, by our clock.
+  /// With `perception: odometry` and higher.
+  std::optional<OdometryReport> odometry{};
 };
 /// Takes scans; offered by the component that uses them.
 using ScanService = Service<LidarScan, void>;
@@ -50,8 +54,10 @@ class Scans : public Component {
  public:
   using Notify = std::function<void(const Notice&)>;
 
+  /// `instance`: number of this instance since the start of the agent, from 1; 0: without odometry of its
+  /// own.
   Scans(Executor& strand, Log log, std::string robot, const Platform& platform, const ScanService& output,
-        Notify notify);
+        Notify notify, std::uint32_t instance = 0);
 
   /// On its strand; nothing when it does not run. `lidar`: index of Platform::all_lidars().
   void take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received);
@@ -70,6 +76,9 @@ class Scans : public Component {
   /// Whether the next odometry brings the poses of the sweep's end.
   bool is_ahead(const perception::Sweep& sweep) const;
   void pass_on(std::size_t lidar);
+  /// Moves the odometry to the end of a sweep of the first lidar; makes it when it is the first sweep.
+  bool advance_odometry(const perception::Sweep& sweep);
+  std::optional<OdometryReport> locate(const perception::Scan& scan);
   void refuse(const Error& error);
   void notice(Severity severity, const char* code, Reason reason, const std::string& text);
 
@@ -79,7 +88,10 @@ class Scans : public Component {
   Notify notify_;
   perception::ScanInput input_;
   PoseHistory history_{};
-  std::vector<std::optional<Waiting>> waiting_;  ///< For odometry as new as the sweep, by lidar.
+  Platform platform_;
+  std::uint32_t instance_;
+  std::optional<perception::LidarOdometry> odometry_{};  ///< Made with the first sweep.
+  std::vector<std::optional<Waiting>> waiting_;          ///< For odometry as new as the sweep, by lidar.
   RateLimit<std::string> reported_{5s};
   bool in_g_reported_{false};
   int not_deskewed_{0};  ///< Consecutive scans that were not corrected for motion.

@@ -29,11 +29,17 @@ struct StoredFrames {
   std::optional<double> height{};
   /// Rises with each change of T_map_odom; also 0 if written by a version without this field.
   std::uint32_t map_epoch{};
+  /// The driver's odometry in the odometry frame; the identity with `perception: off`.
+  Pose3 T_odom_driver{};
   bool same_frame(const StoredFrames& other) const {
     return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch &&
            map_epoch == other.map_epoch;
   }
-  bool operator==(const StoredFrames&) const = default;
+  bool operator==(const StoredFrames& other) const {
+    return same_frame(other) && newest == other.newest &&
+           T_odom_driver.position == other.T_odom_driver.position &&
+           T_odom_driver.orientation.coeffs() == other.T_odom_driver.orientation.coeffs();
+  }
 };
 
 }  // namespace adit::agent

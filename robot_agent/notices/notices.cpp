@@ -78,6 +78,35 @@ void Notices::odometry_jumped(const Pose2& guess) const {
             "; check that, and set it by: pose " + robot_ + " X Y YAW"});
 }
 
+void Notices::localisation(Localisation health, double sigma) const {
+  char known[48];
+  std::snprintf(known, sizeof known, "%.2f m", sigma);
+  if (health == Localisation::lost)
+    send_to_holder({{},
+                    Severity::error,
+                    "localisation_lost",
+                    Reason::localisation_lost,
+                    robot_ +
+                        " is lost: what its lidar sees does not fit what it saw before; only its wheels or "
+                        "legs carry its pose on"});
+  else if (health == Localisation::weak)
+    send_to_holder(
+        {{},
+         Severity::warning,
+         "localisation_weak",
+         Reason::none,
+         robot_ +
+             " sees nothing that tells its place along its way, and relies on its wheels or legs; its "
+             "place is known to " +
+             known});
+  else
+    send_to_holder({{},
+                    Severity::info,
+                    "localisation_ok",
+                    Reason::none,
+                    robot_ + " knows its place again, to " + known});
+}
+
 void Notices::driver_lost() const {
   send_to_holder(
       {{}, Severity::error, "driver_lost", Reason::driver_silent, "the driver of " + robot_ + " is silent"});

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 
+#include "core/config/perception_level.hpp"
 #include "core/log/log.hpp"
 #include "robot_agent/common/notice.hpp"
 #include "robot_agent/motion/navigation.hpp"
@@ -33,6 +34,8 @@ class Notices {
   void rival(const wire::ParticipantId& writer) const;
   /// Reports a jump of the odometry. `guess`: the assumed pose of the robot, map frame.
   void odometry_jumped(const Pose2& guess) const;
+  /// `sigma`: standard deviation of the position, m.
+  void localisation(Localisation health, double sigma) const;
   void driver_lost() const;
   /// Reports a warning. `stops`: the collision monitor stops the robot in its present mode; otherwise it only
   /// slows the robot down.

@@ -134,6 +134,8 @@ void read_robot_keys(const config::Node& node, const std::string& file, RobotCon
     if (velocity != "twist" && velocity != "twist_stamped")
       node.child("cmd_vel").fail(Reason::out_of_range, "expected twist or twist_stamped");
   }
+  if (node.has("perception"))
+    c.perception = static_cast<PerceptionLevel>(node.choice("perception", {"off", "odometry", "slam"}));
   if (node.has("start_height")) c.start_height = node.number("start_height", config::within(-1e5, 1e5));
   c.lock_lease = from_seconds(node.number("lock_lease", config::within(0.0, 1e6), seconds(c.lock_lease)));
   if (node.has("tree")) c.tree = find_tree(node.text("tree"), file);
@@ -157,6 +159,7 @@ AgentParams agent_params(const RobotConfig& config) {
   params.tree = config.tree;
   params.safeguards = config.safeguards;
   params.velocity = config.velocity;
+  params.perception = config.perception;
   params.resume_after_restart = config.resume_after_restart;
   return params;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/config/perception_level.hpp"
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/log/log.hpp"
@@ -36,7 +37,8 @@ struct RobotConfig {
   wire::FastDdsParams radio{};    ///< Radio domain.
   std::uint32_t robot_domain{0};  ///< Domain of the driver, [0, 232].
   RobotInterfaces robot_interfaces{};
-  VelocityType velocity{};    ///< `cmd_vel: twist` or `twist_stamped`
+  VelocityType velocity{};  ///< `cmd_vel: twist` or `twist_stamped`
+  PerceptionLevel perception{PerceptionLevel::off};
   Duration lock_lease{300s};  ///< 0: never
   std::string tree{"trees/robot.xml"};
   std::string state{};  ///< Folder of the state that survives a restart; empty: the default folder; "none":
@@ -54,9 +56,9 @@ struct RobotConfig {
 std::string state_folder(const RobotConfig& config);
 
 /// Reads the keys that a robot's file and a scenario have in common: cmd_vel, lock_lease,
-/// start_height, tree, on_link_loss, link_loss_after, battery, after_restart. A missing key leaves `config`
-/// as it is; a wrong one is noted at `node`. The tree is searched first in the folder of `file`, and becomes
-/// an absolute path.
+/// perception, start_height, tree, on_link_loss, link_loss_after, battery, after_restart. A missing key
+/// leaves `config` as it is; a wrong one is noted at `node`. The tree is searched first in the folder of
+/// `file`, and becomes an absolute path.
 void read_robot_keys(const config::Node& node, const std::string& file, RobotConfig& config);
 
 /// IPv4 addresses of the named interfaces, 127.0.0.1 first. Errors: bad_argument with file and line, for an

@@ -255,4 +255,11 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   return out;
 }
 
+transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot) {
+  transfer::Ack out{in.station_id(), in.start(), {}};
+  for (const radio::BulkReceipt& receipt : in.receipts())
+    if (receipt.robot() == robot) out.receipt = {receipt.session(), receipt.newest(), receipt.received()};
+  return out;
+}
+
 }  // namespace adit::agent

@@ -2,6 +2,7 @@
 #pragma once
 // Conversions between the radio contract's generated types and the agent's. Included by .cpp files only.
 #include "adit/authority.h"
+#include "adit/bulk.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/findings.h"
@@ -9,6 +10,7 @@
 #include "adit/robot.h"
 #include "adit/team.h"
 #include "core/config/platform.hpp"
+#include "core/transfer/piece.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/discovery/directory.hpp"
@@ -34,6 +36,8 @@ StickSample from_radio(const radio::Joystick& in, const wire::ParticipantId& sen
 Peer from_radio(const radio::Capabilities& in, const wire::ParticipantId& sender);
 /// Returns nothing if the beacon is malformed.
 std::optional<TeamBeacon> from_radio(const radio::TeamBeacon& in);
+/// What the station has of `robot`: without a receipt for it, nothing.
+transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot);
 radio::TeamBeacon to_radio(const TeamBeacon& beacon);
 
 radio::PlannedRoute to_radio(const PlannedRoute& route);

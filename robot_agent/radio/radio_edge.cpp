@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/radio/radio_edge.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/wire/component_io.hpp"
@@ -33,6 +35,7 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::Presence> presence{};
   wire::Writer<radio::Finding> finding{};
   wire::Writer<radio::TeamBeacon> team{};
+  wire::Writer<radio::BulkPiece> bulk{};
   radio::Presence presence_sample{};
   radio::Capabilities capabilities_sample{};
   wire::PeerMeter stations{};  // Quality of the link from each station.
@@ -218,7 +221,13 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                }),
        })
     if (!made) return made.error();
-  return {};
+  if (!dependencies.pieces_acknowledged) return {};
+  // Endpoints cost discovery traffic: only a robot that has content opens them.
+  if (const auto made = e.io.open(e.bulk, topics::kBulk); !made) return made.error();
+  return e.read(topics::kBulkAck, [&e, taken = dependencies.pieces_acknowledged](
+                                      const radio::BulkAck& a, const wire::SampleInfo& info) {
+    taken(a.station(), from_radio(a, e.robot), info.sender);
+  });
 }
 
 void RadioEdge::close() {
@@ -246,6 +255,18 @@ void RadioEdge::send(const TeamBeacon& beacon) {
   (void)endpoints_->team.write(to_radio(beacon));  // Best effort: the next one replaces it.
 }
 
+void RadioEdge::send(const transfer::Piece& piece, std::uint32_t session) {
+  if (!endpoints_->bulk) return;
+  radio::BulkPiece out;
+  out.robot(endpoints_->robot);
+  out.session(session);
+  out.id(piece.id);
+  out.kind(static_cast<std::uint8_t>(piece.kind));
+  out.waiting(piece.waiting);
+  out.data(piece.data);
+  (void)endpoints_->bulk.write(out);  // Best effort: core/transfer repairs what is lost.
+}
+
 void RadioEdge::send_authority(const CommandInterface& commands, Time now) {
   endpoints_->send(endpoints_->authority, to_radio(commands, endpoints_->robot, now));
 }
@@ -266,6 +287,9 @@ void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
   s.vy(static_cast<float>(report.twist.vy));
   s.wz(static_cast<float>(report.twist.wz));
   s.battery(report.battery);
+  constexpr double kMaxSigma = 65.535;  // m
+  s.sigma(static_cast<std::uint16_t>(std::lround(std::clamp(report.sigma, 0.0, kMaxSigma) * 1000.0)));
+  s.localisation(static_cast<std::uint8_t>(report.localisation));
   (void)endpoints_->state.write(s);
 }
 

@@ -5,8 +5,10 @@
 #include <span>
 #include <string>
 
+#include "core/config/perception_level.hpp"
 #include "core/config/platform.hpp"
 #include "core/findings/finding.hpp"
+#include "core/transfer/piece.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/discovery/directory.hpp"
@@ -24,6 +26,8 @@ struct RobotReport {
   double z{};           ///< m
   Twist2 twist{};       ///< Body frame.
   float battery{-1.0};  ///< State of charge, [0, 1]; negative: unknown.
+  double sigma{};       ///< Standard deviation of the position, m; 0 with Localisation::off.
+  Localisation localisation{Localisation::off};
 };
 
 /// The agent's readers and writers on the radio domain. Passes received messages to the command interface and
@@ -50,6 +54,9 @@ class RadioEdge {
     std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};
     /// Takes what another robot said of itself; nothing: the beacon was malformed.
     std::function<void(const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from)> beacon{};
+    /// Takes what a station has of this robot's pieces. Empty: this robot sends none, and no topic is opened.
+    std::function<void(const std::string& station, const transfer::Ack& ack, const wire::ParticipantId& from)>
+        pieces_acknowledged{};
   };
 
   /// `io`: the command component's, on the radio domain. Errors: those of the participant.
@@ -73,6 +80,8 @@ class RadioEdge {
   void send_state(const RobotReport& report, std::uint64_t stamp);
   /// Sends a beacon to the other robots.
   void send(const TeamBeacon& beacon);
+  /// Sends a piece of content to the stations. `session`: of the sender.
+  void send(const transfer::Piece& piece, std::uint32_t session);
   /// Sends the capabilities, and from now on a heartbeat once a second and when a participant appears.
   void send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
                          const ModeTable& modes = ModeTable::shipped());

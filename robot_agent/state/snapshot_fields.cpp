@@ -131,18 +131,29 @@ KeptBehaviour sanitized(KeptBehaviour b) {
   return b;
 }
 
+void put(Packer& out, const Pose3& pose) {
+  const Eigen::Vector3d& p = pose.position;
+  const Eigen::Quaterniond& q = pose.orientation;
+  for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) out.put(value);
+}
+
+void get(Unpacker& in, Pose3& pose) {
+  for (double& value : pose.position) value = in.number();
+  auto& q = pose.orientation;
+  for (double* value : {&q.w(), &q.x(), &q.y(), &q.z()}) *value = in.number();
+}
+
 void put(Packer& out, const StoredFrames& place) {
   for (const double value : {place.T_map_odom.x, place.T_map_odom.y, place.T_map_odom.yaw}) out.put(value);
   out.put(place.odom_epoch).flag(place.newest.has_value());
   if (place.newest) {
-    const Eigen::Vector3d& p = place.newest->T_odom_base.position;
-    const Eigen::Quaterniond& q = place.newest->T_odom_base.orientation;
-    for (const double value : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) out.put(value);
+    put(out, place.newest->T_odom_base);
     out.put(place.newest->stamp).put(to_stamp(place.newest->received));
   }
   out.flag(place.height.has_value());
   if (place.height) out.put(*place.height);
   out.put(place.map_epoch);
+  put(out, place.T_odom_driver);
 }
 
 StoredFrames place(Unpacker& in) {
@@ -151,9 +162,7 @@ StoredFrames place(Unpacker& in) {
   kept.odom_epoch = in.get<std::uint32_t>();
   if (in.flag()) {
     OdometrySample& newest = kept.newest.emplace();
-    for (double& value : newest.T_odom_base.position) value = in.number();
-    auto& q = newest.T_odom_base.orientation;
-    for (double* value : {&q.w(), &q.x(), &q.y(), &q.z()}) *value = in.number();
+    get(in, newest.T_odom_base);
     newest.stamp = in.get<std::uint64_t>();
     newest.received = from_stamp(in.get<std::uint64_t>());
   }
@@ -161,6 +170,8 @@ StoredFrames place(Unpacker& in) {
   if (in.flag()) kept.height = in.number();
   if (in.done()) return kept;  // Version 2 of the section ends here.
   kept.map_epoch = in.get<std::uint32_t>();
+  if (in.done()) return kept;  // Version 3 of the section ends here.
+  get(in, kept.T_odom_driver);
   return kept;
 }
 
@@ -169,10 +180,15 @@ StoredFrames sanitized(StoredFrames place) {
   const Pose2& frame = place.T_map_odom;
   if (!std::isfinite(frame.x) || !std::isfinite(frame.y) || !std::isfinite(frame.yaw)) return {};
   if (place.height && !std::isfinite(*place.height)) return {};
-  if (!place.newest) return place;
-  const Pose3& odom = place.newest->T_odom_base;
-  const bool is_pose = odom.position.allFinite() && std::fabs(odom.orientation.norm() - 1.0) < 1e-6;
-  if (!is_pose) place.newest.reset();
+  const auto is_pose = [](const Pose3& pose) {
+    return pose.position.allFinite() && std::fabs(pose.orientation.norm() - 1.0) < 1e-6;
+  };
+  if (!is_pose(place.T_odom_driver)) {
+    // Without the correction the poses are of another frame.
+    place.T_odom_driver = {};
+    place.newest.reset();
+  }
+  if (place.newest && !is_pose(place.newest->T_odom_base)) place.newest.reset();
   return place;
 }
 

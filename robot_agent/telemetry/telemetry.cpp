@@ -21,14 +21,15 @@ void Telemetry::follow_link(Time now) {
                                  {at.T_map_base().x, at.T_map_base().y, at.height()});
 }
 
-void Telemetry::send_state(Time now, float charge) {
+void Telemetry::send_state(Time now, float charge, Localisation localisation, double sigma) {
   follow_link(now);
   if (!dependencies_.rate.due(now)) return;
   const std::uint64_t stamp = to_stamp(now);
   dependencies_.commands.sent_stamp(stamp);
   const Frames& at = dependencies_.frames;
   dependencies_.radio.send_state(
-      {at.T_map_base(), at.height(), at.initialised() ? at.twist() : Twist2{}, charge}, stamp);
+      {at.T_map_base(), at.height(), at.initialised() ? at.twist() : Twist2{}, charge, sigma, localisation},
+      stamp);
 }
 
 void Telemetry::send_periodic(Time now) {

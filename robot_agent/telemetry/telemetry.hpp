@@ -34,8 +34,8 @@ class Telemetry {
   /// Sends authority, behaviour and the driver's health. `started`: start of the command component.
   void start(Time now, Time started);
   /// Adapts the rate to the link, and sends RobotState when it is due. At 10 Hz. `charge`: of the battery,
-  /// [0, 1], negative while unknown.
-  void send_state(Time now, float charge);
+  /// [0, 1], negative while unknown; `sigma`: of the position, m.
+  void send_state(Time now, float charge, Localisation localisation, double sigma);
   /// Repeats the status for stations that joined late, and reports on the link. Once a second.
   void send_periodic(Time now);
   void send_authority(Time now);

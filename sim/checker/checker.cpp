@@ -32,6 +32,7 @@ struct Checker::WatchedRobot {
     rules[7] = make_peers_rule();
     rules[8] = make_nothing_lost_rule();
     rules[9] = make_areas_rule();
+    rules[10] = make_honest_pose_rule();
   }
   RobotModel model;
   std::array<std::unique_ptr<Rule>, Checker::kNumbers.size()> rules{};  ///< Same order as kNumbers.
@@ -44,7 +45,8 @@ const char* Checker::title(int number) {
                                      "no silent refusal",    "a stop needs no authority",
                                      "one source",           "stale means zero",
                                      "no unexpected motion", "peers need permission",
-                                     "lost links",           "areas are hard limits"};
+                                     "lost links",           "areas are hard limits",
+                                     "honest poses"};
   return titles.at(static_cast<std::size_t>(number - 1));
 }
 

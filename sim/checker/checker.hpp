@@ -20,7 +20,7 @@ struct Violation {
 class Checker {
  public:
   /// The rules that are checked.
-  static constexpr std::array kNumbers{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  static constexpr std::array kNumbers{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
   /// Title of rule `number` in docs/architecture.md.
   static const char* title(int number);
 
@@ -45,7 +45,7 @@ class Checker {
 
   std::map<std::string, std::unique_ptr<WatchedRobot>> robots_;
   std::vector<Violation> violations_{};
-  std::array<std::uint64_t, 11> counts_{};  ///< Violations by rule number.
+  std::array<std::uint64_t, 12> counts_{};  ///< Violations by rule number.
 };
 
 }  // namespace adit::sim

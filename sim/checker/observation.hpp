@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/config/perception_level.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
@@ -153,6 +154,8 @@ struct BehaviourSent {
 struct StateSent {
   std::uint64_t stamp{};  ///< Robot's clock, ns.
   Pose3 pose{};           ///< Its own estimate, map frame, level.
+  double sigma{};         ///< Standard deviation of its position as it states it, m; infinite: none.
+  Localisation localisation{Localisation::off};
 };
 struct NotificationSent {
   std::string code{};

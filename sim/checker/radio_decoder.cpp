@@ -2,6 +2,7 @@
 #include "sim/checker/radio_decoder.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "adit/authority.h"
 #include "adit/command.h"
@@ -189,7 +190,15 @@ Decoded decode_sent(std::string_view topic, std::string_view type, std::span<con
   if (is(topic, topics::kRobotState)) {
     const auto s = read<radio::RobotState>(cdr);
     if (!s) return std::nullopt;
-    return DecodedSample{s->robot(), StateSent{s->stamp(), Pose3::level({s->x(), s->y(), s->yaw()}, s->z())}};
+    constexpr std::uint16_t kNoSigma = 65535;
+    const double sigma = s->sigma() == kNoSigma ? std::numeric_limits<double>::infinity()
+                                                : 1e-3 * static_cast<double>(s->sigma());
+    // A number that this program does not know promises nothing.
+    const auto localisation = s->localisation() > static_cast<std::uint8_t>(Localisation::lost)
+                                  ? Localisation::lost
+                                  : static_cast<Localisation>(s->localisation());
+    return DecodedSample{s->robot(), StateSent{s->stamp(), Pose3::level({s->x(), s->y(), s->yaw()}, s->z()),
+                                               sigma, localisation}};
   }
   if (is(topic, topics::kAcknowledgement)) return acknowledgement(cdr);
   if (is(topic, topics::kAuthority)) return authority(cdr);

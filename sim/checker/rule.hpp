@@ -34,5 +34,6 @@ std::unique_ptr<Rule> make_no_surprise_rule();    ///< Rule 7.
 std::unique_ptr<Rule> make_peers_rule();          ///< Rule 8.
 std::unique_ptr<Rule> make_nothing_lost_rule();   ///< Rule 9.
 std::unique_ptr<Rule> make_areas_rule();          ///< Rule 10.
+std::unique_ptr<Rule> make_honest_pose_rule();    ///< Rule 11.
 
 }  // namespace adit::sim

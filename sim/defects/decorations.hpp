@@ -26,6 +26,9 @@ Decoration change_without_zero(const Subject& subject);
 Decoration no_zero_on_stale(const Subject& subject);
 Decoration manual_survives_handover(const Subject& subject);
 
+// Of where it says it is.
+Decoration sigma_small(const Subject& subject);
+
 // Defects of its sensor input.
 Decoration age_at_handling(const Subject& subject);
 Decoration odometry_jump_accepted(const Subject& subject);

@@ -59,6 +59,8 @@ constexpr std::array kDefects{
     Defect{"return_forgotten", "rule 9: a return on a nearly empty battery that was refused is not repeated",
            d::return_forgotten},
     Defect{"fence_soft", "rule 10: areas are accepted, but limit nothing", d::fence_soft},
+    Defect{"sigma_small", "rule 11: its pose drifts by 5 cm a second, and it states a deviation of 1 cm",
+           d::sigma_small},
     Defect{"blind_planner", "plans straight at the goal, through everything", d::blind_planner},
     Defect{"blind_and_unwatched", "the same, and the collision monitor sees nothing either",
            d::blind_and_unwatched},

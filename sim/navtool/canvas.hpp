@@ -7,7 +7,7 @@
 #include "core/config/platform.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/result/result.hpp"
-#include "sim/picture/sketch.hpp"
+#include "core/sketch/sketch.hpp"
 
 namespace adit::sim::navtool {
 

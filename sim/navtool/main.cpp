@@ -34,13 +34,14 @@ int main(int argc, char** argv) {
   CLI::App* plans =
       app.add_subcommand("plan", "terrain and local plan for each cloud of a folder, in name order");
   plans->footer(
-      "Each .pcd file is one cycle, 0.1 s after the one before; VIEWPOINT is where its sensor was. With "
+      "Each cloud is one cycle, 0.1 s after the one before; VIEWPOINT (of a .pcd) is where its sensor was. "
+      "With "
       "--json one\n"
       "line a cycle: {\"cycle\":0,\"terrain_ms\":..,\"plan_ms\":..,\"blocked\":false,\"path\":[[x,y],..]}, "
       "thread CPU\n"
       "milliseconds, path in the frame of VIEWPOINT.\n"
       "Example: navtool plan --clouds clouds/ --goal 10 0.5 --json");
-  plans->add_option("--clouds", plan_options.clouds, "folder of PCD files")->required();
+  plans->add_option("--clouds", plan_options.clouds, "folder of clouds")->required();
   plans->add_option("--goal", goal, "X Y, m, in the frame of VIEWPOINT")->required()->expected(2);
   plans->add_option("--platform", plan_options.platform, "its name, or a YAML file")->capture_default_str();
   plans
@@ -54,7 +55,7 @@ int main(int argc, char** argv) {
   TerrainOptions terrain_options;
   CLI::App* terrains = app.add_subcommand("terrain", "what the ground is to a platform, from clouds");
   terrains->footer(
-      "Clouds are .pcd files or KITTI's .bin, in the lidar's frame; those of a folder are accumulated in "
+      "Clouds are .pcd, .ply or KITTI's .bin, in the lidar's frame; those of a folder are accumulated in "
       "name "
       "order, 0.1 s\n"
       "apart. A cell within the range of a pose of which nothing is known counts as unknown. With --json one "

@@ -6,24 +6,24 @@
 
 #include "core/config/platform_file.hpp"
 #include "nav/local_navigation.hpp"
+#include "sim/cloud/cloud_file.hpp"
 #include "sim/navtool/canvas.hpp"
 #include "sim/navtool/commands.hpp"
 #include "sim/navtool/cpu_time.hpp"
-#include "sim/navtool/pcd.hpp"
 #include "sim/rehearsal/program/report_error.hpp"
 
 namespace adit::sim::navtool {
 namespace {
 
-constexpr double kPeriod = 0.1;  // s: from one cloud to the next
-constexpr double kNear = 6.0;    // m: where the ground is looked for
+constexpr double kNear = 6.0;  // m: where the ground is looked for
 
 /// How far the lowest points around the sensor are from where the ground must be, m; a point of the cloud by
 /// `in_sensor` is in the sensor's frame.
 template <class Convert>
-double ground_error(const PcdFile& cloud, double lidar_height, const Convert& in_sensor) {
+double ground_error(const CloudFile& cloud, double lidar_height, const Convert& in_sensor) {
   std::vector<double> heights;
-  for (const Eigen::Vector3f& p : cloud.points) {
+  for (const perception::TimedPoint& point : cloud.sweep.points) {
+    const Eigen::Vector3f& p = point.position;
     if (!p.allFinite()) continue;
     const Eigen::Vector3d q = in_sensor(p.cast<double>());
     if (q.head<2>().norm() < kNear) heights.push_back((cloud.viewpoint.orientation * q).z());
@@ -35,7 +35,7 @@ double ground_error(const PcdFile& cloud, double lidar_height, const Convert& in
 }
 
 /// Whether the points are in the map's frame: the ground then lies where the lidar's height says.
-bool in_map_frame(const PlanOptions& options, const PcdFile& cloud, double lidar_height) {
+bool in_map_frame(const PlanOptions& options, const CloudFile& cloud, double lidar_height) {
   if (options.frame != "auto") return options.frame == "map";
   const Pose3 to_sensor = cloud.viewpoint.inverse();
   return ground_error(cloud, lidar_height, [&](const Eigen::Vector3d& p) { return to_sensor * p; }) <=
@@ -86,12 +86,12 @@ void draw_terrain(Canvas& canvas, std::span<const nav::TerrainCell> cells, const
 }
 
 Result<void> draw(const PlanOptions& options, const Platform& platform, const nav::Plan& plan,
-                  std::span<const nav::TerrainCell> terrain, const PcdFile& cloud, const Pose3& to_map,
+                  std::span<const nav::TerrainCell> terrain, const CloudFile& cloud, const Pose3& to_map,
                   const Pose3& body) {
   const Eigen::Vector2d at = body.position.head<2>();
   Canvas canvas(at - Eigen::Vector2d(6, 5), at + Eigen::Vector2d(6, 5), "Local plan: " + options.clouds);
   constexpr Colour points{0.6, 0.64, 0.68}, path{0.0, 0.45, 0.7}, goal{0.84, 0.37, 0.0};
-  for (const Eigen::Vector3f& p : cloud.points) {
+  for (const Eigen::Vector3f& p : points_of(cloud.sweep)) {
     if (!p.allFinite()) continue;
     const Eigen::Vector2d q = (to_map * p.cast<double>()).head<2>();
     if ((q - at).cwiseAbs().maxCoeff() < 5.0) canvas.dot(q, 1.0, points);
@@ -113,22 +113,22 @@ Result<void> draw(const PlanOptions& options, const Platform& platform, const na
 int plan(const PlanOptions& options) {
   const auto platform = config::load_platform(options.platform);
   if (!platform) return report_error("navtool", platform.error());
-  const auto files = pcd_files(options.clouds);
+  const auto files = cloud_files(options.clouds);
   if (!files) return report_error("navtool", files.error());
   nav::LocalNavigation local_navigation(*platform);
   const Pose3 sensor_in_body{{0, 0, platform->lidar_height}, Eigen::Quaterniond::Identity()};
   bool registered = false;
   for (std::size_t cycle = 0; cycle < files->size(); ++cycle) {
-    const auto cloud = read_pcd((*files)[cycle]);
+    const auto cloud = read_cloud_file((*files)[cycle]);
     if (!cloud) return report_error("navtool", cloud.error());
     if (cycle == 0) registered = in_map_frame(options, *cloud, platform->lidar_height);
     const Pose3 body = cloud->viewpoint * sensor_in_body.inverse();
     const Pose3 to_body = registered ? body.inverse() : sensor_in_body;
     PointCloud points;
-    points.reserve(cloud->points.size());
-    for (const Eigen::Vector3f& p : cloud->points)
+    points.reserve(cloud->sweep.points.size());
+    for (const Eigen::Vector3f& p : points_of(cloud->sweep))
       if (p.allFinite()) points.push_back((to_body * p.cast<double>()).cast<float>());
-    const double stamp = kPeriod * static_cast<double>(cycle);
+    const double stamp = kCloudPeriod * static_cast<double>(cycle);
     const double t0 = cpu_ms();
     local_navigation.add_scan(points, body, stamp);
     const double t1 = cpu_ms();

@@ -6,8 +6,9 @@
 
 #include "core/config/platform_file.hpp"
 #include "core/config/sensors_file.hpp"
+#include "sim/cloud/cloud_file.hpp"
+#include "sim/cloud/tum_file.hpp"
 #include "sim/navtool/canvas.hpp"
-#include "sim/navtool/cloud_file.hpp"
 #include "sim/navtool/commands.hpp"
 #include "sim/navtool/cpu_time.hpp"
 #include "sim/navtool/terrain_survey.hpp"
@@ -15,8 +16,6 @@
 
 namespace adit::sim::navtool {
 namespace {
-
-constexpr double kCloudPeriod = 0.1;  // s: from one cloud to the next where no stamps say it
 
 void print(const TerrainOptions& options, const TerrainSurvey& survey, std::size_t clouds, double ms) {
   const TerrainCounts counts = survey.counts();

@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/sketch/sketch.hpp"
 #include "sim/picture/ground_plan.hpp"
-#include "sim/picture/sketch.hpp"
 
 namespace adit::sim {
 namespace {

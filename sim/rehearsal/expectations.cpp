@@ -14,6 +14,8 @@ namespace {
 
 using When = Expectation::When;
 
+constexpr Duration kMapPeriod = 5s;  // Between two judgements of a map, which take long.
+
 std::string quoted(const std::string& text) { return text.empty() ? "nobody" : text; }
 
 // Each overload gives what is there instead; empty: as expected.
@@ -71,6 +73,24 @@ std::string mismatch(const ExploredExpectation& e, const Evidence& evidence) {
   const ExplorationTruth& truth = evidence.exploration->truth();
   const double share = e.area || !robots.empty() ? truth.share(e.area, robots) : truth.share();
   return share >= e.share ? std::string() : percent("explored", share);
+}
+
+std::string mismatch(const MapExpectation& e, const Evidence& evidence) {
+  const std::optional<MapJudgement> map = evidence.map ? evidence.map(e.by) : std::nullopt;
+  if (!map) return e.by + " has no map";
+  if (e.share && map->share < *e.share) return percent("the map holds", map->share);
+  if (e.wrong && map->wrong() > *e.wrong)
+    return percent("wrong are", map->wrong_occupied) + percent(" of the occupied and", map->wrong_free) +
+           " of the free voxels";
+  return {};
+}
+
+/// Distance of a point from the way between two others: a pose was stated within the last 20 ms.
+double off_way(const Eigen::Vector2d& point, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
+  const Eigen::Vector2d way = to - from;
+  const double length = way.squaredNorm();
+  const double part = length > 0.0 ? std::clamp((point - from).dot(way) / length, 0.0, 1.0) : 0.0;
+  return (point - from - part * way).norm();
 }
 
 std::string mismatch(const RepeatExpectation& e, const Evidence& evidence) {
@@ -240,6 +260,28 @@ void Expectations::judge(Duration now, const Evidence& evidence) {
     if (const auto* convoy = std::get_if<ConvoyExpectation>(&e.what)) found = mismatch(*convoy, evidence);
     if (const auto* line = std::get_if<InLineExpectation>(&e.what)) found = mismatch(*line, evidence);
     if (const auto* notice = std::get_if<NoticeExpectation>(&e.what)) found = mismatch(*notice, evidence);
+    if (const auto* map = std::get_if<MapExpectation>(&e.what)) {
+      if (now < e.time && (e.when == When::at || !map->share || now % kMapPeriod != 0ns)) continue;
+      found = mismatch(*map, evidence);
+    }
+    if (const auto* within = std::get_if<PoseWithinExpectation>(&e.what)) {
+      for (const std::string& robot : within->robots) {
+        PoseSeen& seen = state.poses[robot];
+        const Eigen::Vector2d truth = evidence.pose(robot).position();
+        const RobotWord& word = evidence.word(robot);
+        const Eigen::Vector2d before = seen.judged < 0ns ? truth : seen.truth;
+        seen.truth = truth;
+        if (!word.pose || word.pose_sent == seen.judged) continue;
+        seen.judged = word.pose_sent;
+        const double off = off_way(word.pose->position.head<2>(), before, truth);
+        if (off <= within->distance) continue;
+        char text[64];
+        std::snprintf(text, sizeof text, " was %.2f m from where it said at ", off);
+        state.result.found = robot + text + std::to_string(now / 1s) + " s";
+        state.settled = true;
+        break;
+      }
+    }
     if (const auto* place = std::get_if<PlaceExpectation>(&e.what)) {
       found = mismatch(*place, scenario_, evidence);
       if (!found.empty()) state.result.found = found + " at " + std::to_string(now / 1s) + " s";

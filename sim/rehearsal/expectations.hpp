@@ -7,6 +7,7 @@
 #include "sim/rehearsal/scenario.hpp"
 #include "sim/rehearsal/witness.hpp"
 #include "sim/truth/exploration_record.hpp"
+#include "sim/truth/map_truth.hpp"
 
 namespace adit::sim {
 
@@ -20,6 +21,8 @@ struct Evidence {
   std::function<std::size_t(const std::string& robot)> index{};
   /// Whether a robot notified an operator of a matter.
   std::function<bool(const std::string& by, const std::string& code, const std::string& robot)> notified{};
+  /// How right the map of that operator's station is; nothing while it has none.
+  std::function<std::optional<MapJudgement>(const std::string& by)> map{};
   std::map<std::string, Reason> last_answer{};    ///< By operator.
   std::map<std::string, std::size_t> findings{};  ///< By operator whose station runs.
 };
@@ -37,10 +40,16 @@ class Expectations {
   std::vector<ExpectationResult> finish(const Evidence& evidence, const RunReport& report);
 
  private:
+  /// A robot's pose at the last instant.
+  struct PoseSeen {
+    Eigen::Vector2d truth{0, 0};
+    Duration judged{-1};  ///< When it sent what it had said of it.
+  };
   struct State {
     bool settled{};
     ExpectationResult result{};
-    std::optional<Eigen::Vector2d> start{};  ///< Where the robot was when the time began.
+    std::optional<Eigen::Vector2d> start{};   ///< Where the robot was when the time began.
+    std::map<std::string, PoseSeen> poses{};  ///< By robot.
   };
   const Scenario& scenario_;
   std::vector<State> states_;

@@ -8,9 +8,13 @@ namespace adit::sim {
 namespace {
 
 /// Components that can be drawn: robots without a router there are, too.
-const std::vector<std::string>& of_every_robot() {
-  static const std::vector<std::string> names{"command", "planner", "router", "sensors"};
-  return names;
+const std::vector<std::string>& of_every_robot(const Scenario& scenario) {
+  static const std::vector<std::string> names{"command", "planner", "router", "sensors"},
+      with_map{"command", "planner", "router", "sensors", "map"};
+  const bool maps = std::all_of(scenario.robots.begin(), scenario.robots.end(), [](const RobotSpec& robot) {
+    return robot.settings.perception == PerceptionLevel::slam;
+  });
+  return maps ? with_map : names;
 }
 
 // Written with three decimals, and read as the same again.
@@ -74,9 +78,9 @@ class Draw {
     if (kind == "crash") {
       out.what = Crash{random_.chance(0.7) ? robot() : station(), {}};
     } else if (kind == "crash_component") {
-      out.what = Crash{robot(), pick(of_every_robot(), random_)};
+      out.what = Crash{robot(), pick(of_every_robot(scenario_), random_)};
     } else if (kind == "hang") {
-      out.what = Hang{robot(), pick(of_every_robot(), random_)};
+      out.what = Hang{robot(), pick(of_every_robot(scenario_), random_)};
     } else if (kind == "cut") {
       const auto [a, b] = two();
       const bool turned = random_.chance(0.5);
@@ -126,7 +130,7 @@ const std::vector<std::string>& random_fault_kinds() {
 }
 
 const std::vector<std::string>& component_names() {
-  static const std::vector<std::string> names{"command", "planner", "router", "sensors"};
+  static const std::vector<std::string> names{"command", "planner", "router", "sensors", "map"};
   return names;
 }
 

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 
+#include "basestation/map/chunk_store.hpp"
 #include "core/record/frame_recorder.hpp"
+#include "core/wire/topics.hpp"
 #include "sim/rehearsal/expectations.hpp"
 #include "sim/rehearsal/fault_player.hpp"
 #include "sim/rehearsal/radio_walls.hpp"
@@ -118,9 +120,15 @@ class Run {
       if (!truth) return truth.error();
       exploration_ = std::make_unique<ExplorationRecord>(std::move(*truth), scenario_.robots.size());
     }
+    if (scenario_.judges_maps()) {
+      std::vector<Platform> platforms;
+      for (std::size_t i = 0; i < simulation_.size(); ++i) platforms.push_back(simulation_.platform(i));
+      surface_ = std::make_unique<SeenSurfaceRecord>(SeenSurface(simulation_.shared_world(), platforms));
+    }
     network_.set_tap([this](const wire::SampleEvent& frame) {
       witness_.see(frame);
       if (recorder_) recorder_->see(frame);
+      if (params_.on_frame) params_.on_frame(frame);
     });
     if (scenario_.link.wall > 0.0)
       network_.set_attenuation(
@@ -164,6 +172,14 @@ class Run {
     exploration_->add(seconds(now), poses);
   }
 
+  std::optional<MapJudgement> judged_map(const std::string& by) const {
+    const auto station = stations_.find(by);
+    if (!surface_ || station == stations_.end()) return std::nullopt;
+    const std::optional<MapVoxels> map = station->second->map();
+    if (!map) return std::nullopt;
+    return judge_map(*map, surface_->surface().points(), simulation_.world());
+  }
+
   void schedule(const std::vector<ScriptLine>& lines) {
     for (const ScriptLine& line : lines)
       scheduler_.at(line.at, [this, line] { stations_.at(line.by)->type(line.command); });
@@ -194,7 +210,11 @@ class Run {
     }
     if (now % Trail::kPeriod == 0ns) add_people(simulation_, people_);
     checker_.advance(now);
+    if (params_.on_truth && now % kTruthPeriod == 0ns) params_.on_truth(now, simulation_);
     if (trajectories_ && now % kTruthPeriod == 0ns) trajectories_->add(simulation_, witness_, now);
+    if (surface_ && now % SeenSurfaceRecord::kPeriod == 0ns) {
+      for (std::size_t i = 0; i < simulation_.size(); ++i) surface_->look(i, simulation_.truth(i).pose);
+    }
     if (exploration_ && now % from_seconds(ExplorationRecord::kPeriod) == 0ns) explore(now);
     expectations_.judge(now, evidence());
     observed_ = now;
@@ -212,6 +232,7 @@ class Run {
     out.notified = [this](const std::string& by, const std::string& code, const std::string& robot) {
       return witness_.notified(by, code, robot);
     };
+    out.map = [this](const std::string& by) { return judged_map(by); };
     for (const auto& [id, station] : stations_) {
       if (const auto answer = station->last_answer()) out.last_answer[id] = *answer;
       if (const auto findings = station->findings()) out.findings[id] = *findings;
@@ -229,6 +250,20 @@ class Run {
     for (const auto& [id, station] : stations_)
       if (!station->health()) return station->health();
     return faults_.health();
+  }
+
+  std::optional<MapResult> map_result() const {
+    const bool any = std::any_of(
+        scenario_.robots.begin(), scenario_.robots.end(),
+        [](const RobotSpec& robot) { return robot.settings.perception == PerceptionLevel::slam; });
+    if (!any) return std::nullopt;
+    MapResult out;
+    for (const std::string_view topic : {wire::topics::kBulk.name, wire::topics::kBulkAck.name})
+      if (const auto found = witness_.topics().find(topic); found != witness_.topics().end())
+        out.bytes += found->second.bytes;
+    for (const auto& [id, station] : stations_)
+      if (const station::ChunkStore* map = station->chunks()) out.m2 = std::max(out.m2, map->area());
+    return out;
   }
 
   RunReport report(double wall) {
@@ -260,6 +295,11 @@ class Run {
     }
     if (exploration_) out.exploration = exploration_->result();
     out.trajectories = trajectory_files_;
+    out.map = map_result();
+    for (const auto& [id, station] : stations_) {
+      if (!out.map || out.map->judged) break;
+      if ((out.map->judged = judged_map(id))) out.map->by = id;
+    }
     out.expectations = expectations_.finish(evidence(), out);
     return out;
   }
@@ -282,6 +322,7 @@ class Run {
   StationMachines stations_{};
   FaultPlayer faults_{stage_, robots_, stations_};
   std::unique_ptr<ExplorationRecord> exploration_{};
+  std::unique_ptr<SeenSurfaceRecord> surface_{};
   std::unique_ptr<Trajectories> trajectories_{};
   std::map<std::string, TrajectoryFiles> trajectory_files_{};
   std::map<std::string, Trail> trails_{};
@@ -334,6 +375,8 @@ SimulationParams make_simulation_params(const Scenario& scenario, std::uint64_t 
   if (scenario.lidar == LidarKind::planar) out.lidar = LidarParams::planar();
   out.realistic = scenario.lidar == LidarKind::full;
   out.noise = scenario.noise;
+  out.dust = scenario.dust;
+  out.dropouts = scenario.dropouts;
   out.odometry = (out.realistic ? OdometryParams::realistic() : OdometryParams{}).scaled(scenario.noise);
   if (!out.realistic) out.lidar.range_noise *= scenario.noise;  // A sweep scales its noise itself.
   out.seed = seed;

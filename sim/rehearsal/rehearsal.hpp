@@ -31,6 +31,10 @@ struct RunParams {
   /// Ends the run before its duration; asked every Trail::kPeriod. Empty: never.
   std::function<bool(const RunState&)> ended{};
   std::string record{};  ///< MCAP file for all messages; empty: none.
+  /// Called for every frame of the radio and the inner networks. Empty: never.
+  std::function<void(const wire::SampleEvent&)> on_frame{};
+  /// Called at 50 Hz. Empty: never.
+  std::function<void(Duration, const Simulation&)> on_truth{};
 };
 
 /// The path of a robot or a person, for the picture.

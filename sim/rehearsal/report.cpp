@@ -132,6 +132,17 @@ std::string to_json(const RunReport& report) {
       {"events", events},
   };
   if (report.exploration) out["exploration"] = exploration_json(*report.exploration);
+  if (report.map) {
+    const MapResult& map = *report.map;
+    out["map"] = {{"bytes", map.bytes}, {"m2", map.m2}, {"bytes_per_m2", map.bytes_per_m2()}};
+    if (map.judged)
+      out["map"].update({{"by", map.by},
+                         {"share", map.judged->share},
+                         {"wrong", map.judged->wrong()},
+                         {"wrong_occupied", map.judged->wrong_occupied},
+                         {"wrong_free", map.judged->wrong_free},
+                         {"seen_m2", map.judged->area}});
+  }
   return out.dump(2);
 }
 

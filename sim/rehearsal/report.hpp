@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result/result.hpp"
 #include "sim/checker/checker.hpp"
 #include "sim/truth/exploration_record.hpp"
+#include "sim/truth/map_truth.hpp"
 
 namespace adit::sim {
 
@@ -49,6 +51,16 @@ struct CommandResult {
   std::map<std::string, std::uint64_t> reasons{};  ///< Refusals by reason.
 };
 
+/// The map that reached the stations.
+struct MapResult {
+  std::uint64_t bytes{};                 ///< Payload of pieces and their acknowledgements written.
+  double m2{};                           ///< Ground in the map of the station that has most.
+  std::optional<MapJudgement> judged{};  ///< Of a scenario that judges_maps().
+  std::string by{};  ///< Operator whose map was judged: the first, by name, whose station has a map.
+
+  double bytes_per_m2() const { return m2 > 0.0 ? static_cast<double>(bytes) / m2 : 0.0; }
+};
+
 /// An event on the time line: for the picture and for people.
 struct TimedEvent {
   Duration at{};
@@ -73,6 +85,7 @@ struct RunReport {
   std::vector<RuleResult> rules{};
   std::map<std::string, RobotResult> robots{};
   std::optional<ExplorationResult> exploration{};         ///< Of a scenario that explores().
+  std::optional<MapResult> map{};                         ///< Of a scenario with `perception: slam`.
   std::map<std::string, TrajectoryFiles> trajectories{};  ///< By robot; empty unless they were asked for.
   std::map<std::string, TopicResult, std::less<>> topics{};
   CommandResult commands{};

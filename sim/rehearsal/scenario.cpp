@@ -24,4 +24,9 @@ bool Scenario::explores() const {
   return std::any_of(expectations.begin(), expectations.end(), judged);
 }
 
+bool Scenario::judges_maps() const {
+  return std::any_of(expectations.begin(), expectations.end(),
+                     [](const Expectation& e) { return std::holds_alternative<MapExpectation>(e.what); });
+}
+
 }  // namespace adit::sim

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/config/perception_level.hpp"
 #include "core/geometry/pose.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
@@ -134,6 +135,17 @@ struct ExploredExpectation {
   std::optional<ExplorationArea> area{};  ///< Nothing: everywhere.
   std::vector<std::string> robots{};      ///< Empty: any.
 };
+/// What a station's map holds of the truly seen surface, and how much of the map is wrong, see judge_map().
+struct MapExpectation {
+  std::string by{};
+  std::optional<double> share{};  ///< At least, [0, 1].
+  std::optional<double> wrong{};  ///< At most, [0, 1].
+};
+/// The robots' stated poses are never farther than this from the true ones, m.
+struct PoseWithinExpectation {
+  double distance{};
+  std::vector<std::string> robots{};
+};
 /// The share of their way that all robots drove again, see RepeatedWay.
 struct RepeatExpectation {
   double share{};  ///< At most, [0, 1].
@@ -148,7 +160,8 @@ struct Expectation {
   Duration time{};  ///< `during`: the end.
   std::variant<StateExpectation, NearExpectation, AnswerExpectation, FindingsExpectation, NoCollision,
                ExploredExpectation, RepeatExpectation, AtLeast, ConvoyExpectation, InLineExpectation,
-               GapExpectation, StillExpectation, NoticeExpectation, PlaceExpectation>
+               GapExpectation, StillExpectation, NoticeExpectation, PlaceExpectation, MapExpectation,
+               PoseWithinExpectation>
       what{};
   int line{};          ///< In the scenario file.
   std::string text{};  ///< As written.
@@ -164,7 +177,10 @@ struct Scenario {
   std::uint64_t seed{1};  ///< Used when the command line names none.
   wire::LinkProfile link{};
   LidarKind lidar{LidarKind::full};
-  double noise{1.0};  ///< Scale of the errors of odometry and sensors, [0, 10]; 0: the truth.
+  PerceptionLevel perception{PerceptionLevel::off};  ///< Of robots that do not name their own.
+  double noise{1.0};                 ///< Scale of the errors of odometry and sensors, [0, 10]; 0: the truth.
+  double dust{0.0};                  ///< LidarErrors::dust, [0, 0.5].
+  std::optional<double> dropouts{};  ///< LidarErrors::dropouts, unless its default, [0, 1].
   std::vector<RobotSpec> robots{};
   std::vector<StationSpec> stations{};
   std::vector<PersonSpec> people{};
@@ -178,6 +194,8 @@ struct Scenario {
   const StationSpec* station(const std::string& id) const;
   /// Whether its exploration is judged.
   bool explores() const;
+  /// Whether a station's map is judged.
+  bool judges_maps() const;
 };
 
 }  // namespace adit::sim

@@ -78,9 +78,18 @@ ExploredExpectation read_explored(const Node& node, const Scenario& scenario) {
 
 /// An expectation of what holds all the time.
 void read_always(const Node& node, const Scenario& scenario, Expectation& out) {
-  const auto which = node.choice("always", {"no_collision", "no_collision_caused", "inside", "outside"});
+  const auto which =
+      node.choice("always", {"no_collision", "no_collision_caused", "inside", "outside", "pose_within"});
   if (which < 2) {
     out.what = NoCollision{which == 1};
+    return;
+  }
+  if (which == 4) {
+    PoseWithinExpectation within{node.number("m", config::positive_up_to(1e4)),
+                                 read_named_robots(node, scenario)};
+    if (within.robots.empty())
+      for (const RobotSpec& robot : scenario.robots) within.robots.push_back(robot.id);
+    out.what = within;
     return;
   }
   PlaceExpectation place{which == 2, read_area(node), read_named_robots(node, scenario)};
@@ -151,6 +160,11 @@ Expectation read_expectation(const Node& node, const Scenario& scenario) {
   } else if (node.has("by_operator") && node.has("findings")) {
     out.what = FindingsExpectation{read_station(node, "by_operator", scenario),
                                    static_cast<std::size_t>(node.integer("findings", 0, 65536))};
+  } else if (node.has("map_at_least") || node.has("map_wrong_at_most")) {
+    MapExpectation map{.by = read_station(node, "by_operator", scenario)};
+    if (node.has("map_at_least")) map.share = node.number("map_at_least", config::within(0.0, 1.0));
+    if (node.has("map_wrong_at_most")) map.wrong = node.number("map_wrong_at_most", config::within(0.0, 1.0));
+    out.what = map;
   } else if (node.has("by_operator") && node.has("notified")) {
     out.what = NoticeExpectation{read_station(node, "by_operator", scenario), node.text("notified"),
                                  read_robot(node, "robot", scenario)};

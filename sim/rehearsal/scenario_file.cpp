@@ -49,11 +49,16 @@ WorldSpec read_world(const Node& world, const std::string& file) {
     const std::vector<std::string> words(world_kinds().begin(), world_kinds().end());
     const std::string& kind = words[world.choice("generate", words)];
     const bool sized = world.has("size");
-    if (sized && kind != "blocks")
-      world.child("size").fail(Reason::bad_argument, "expected no size: only blocks have one");
-    const auto size = static_cast<int>(world.integer("size", kLeastBlocks, kMostBlocks, kLeastBlocks));
-    const auto seed = static_cast<std::uint64_t>(world.integer("seed", 0, kMaxSeed, sized ? 0 : 1));
-    out.boxes = sized ? generate_blocks(size, seed).boxes : generate_world(kind, seed).value().boxes;
+    const bool tunnel = kind == "tunnel";
+    if (sized && kind != "blocks" && !tunnel)
+      world.child("size").fail(Reason::bad_argument, "expected no size: only blocks and tunnel have one");
+    const int least = tunnel ? kShortestTunnel : kLeastBlocks, most = tunnel ? kLongestTunnel : kMostBlocks;
+    const auto size = static_cast<int>(world.integer("size", least, most, least));
+    const auto seed =
+        static_cast<std::uint64_t>(world.integer("seed", 0, kMaxSeed, sized && !tunnel ? 0 : 1));
+    out.boxes = !sized   ? generate_world(kind, seed).value().boxes
+                : tunnel ? generate_tunnel(size).boxes
+                         : generate_blocks(size, seed).boxes;
     out.ceiling = 3.0;
   }
   if (world.has("boxes")) {
@@ -146,10 +151,17 @@ Result<Scenario> read(const Node& root, const std::string& text, const std::stri
   out.world = read_world(root.child("world"), file);
   out.link = read_link(root.child_if("link"), file);
   out.lidar = root.choice("lidar", {"full", "planar"}, 0) == 0 ? LidarKind::full : LidarKind::planar;
+  out.perception = static_cast<PerceptionLevel>(root.choice("perception", {"off", "odometry", "slam"}, 0));
   if (root.has("odometry")) {
     const Node odometry = root.child("odometry");
     out.noise = odometry.number("noise", config::within(0.0, 10.0), 1.0);
   }
+  out.dust = root.number("dust", config::within(0.0, 0.5), 0.0);
+  if (root.has("dropouts")) out.dropouts = root.number("dropouts", config::within(0.0, 1.0));
+  for (const char* key : {"dust", "dropouts"})
+    if (root.has(key) && out.lidar != LidarKind::full)
+      root.child(key).fail(Reason::bad_argument,
+                           "expected lidar: full, whose beams are simulated one by one");
   read_machines(root, out);
   read_people(root, out);
   out.script = read_script(root, out);

@@ -65,6 +65,7 @@ void check_tree(const Node& robot, const Scenario& scenario, const RobotSpec& sp
 RobotSpec read_spec(const Node& robot, const Scenario& scenario, Duration lock_lease) {
   RobotSpec spec;
   spec.settings.lock_lease = lock_lease;
+  spec.settings.perception = scenario.perception;
   const bool has_file = robot.has("file");
   if (has_file) read_robot_file(robot, scenario, spec);
   if (!has_file || robot.has("id")) spec.id = read_name(robot, "id");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/rehearsal/station_machine.hpp"
 
+#include "basestation/map/merged_map.hpp"
 #include "sim/rehearsal/stick_stream.hpp"
 
 namespace adit::sim {
@@ -97,6 +98,23 @@ void StationMachine::jump_clock(Duration by) {
 std::optional<std::size_t> StationMachine::findings() const {
   if (!process_) return std::nullopt;
   return process_->station->findings();
+}
+
+const station::ChunkStore* StationMachine::chunks() const {
+  return process_ ? &process_->station->map() : nullptr;
+}
+
+std::optional<MapVoxels> StationMachine::map() const {
+  const station::ChunkStore* store = chunks();
+  if (!store || store->empty()) return std::nullopt;
+  const perception::VoxelImage image =
+      station::merged(station::parts_of(*store), nullptr, perception::CoarseBlock::kVoxel);
+  MapVoxels voxels{.edge = image.resolution(), .occupied = {}, .free = {}};
+  image.for_each([&](const perception::VoxelIndex& index, perception::Voxel voxel) {
+    (voxel == perception::Voxel::occupied ? voxels.occupied : voxels.free)
+        .push_back(image.centre(index).cast<float>());
+  });
+  return voxels;
 }
 
 std::optional<Reason> StationMachine::last_answer() const {

@@ -6,6 +6,7 @@
 #include "basestation/station.hpp"
 #include "core/time/random.hpp"
 #include "sim/rehearsal/robot_machine.hpp"
+#include "sim/truth/map_truth.hpp"
 
 namespace adit::sim {
 
@@ -30,6 +31,10 @@ class StationMachine {
   const station::Id& id() const { return id_; }
   /// What his station has of all robots; nothing while it is dead.
   std::optional<std::size_t> findings() const;
+  /// The map that his station has; null while it is dead.
+  const station::ChunkStore* chunks() const;
+  /// The map that his station holds of all robots, map frame; nothing while it is dead or knows none.
+  std::optional<MapVoxels> map() const;
 
  private:
   struct Process;

@@ -349,6 +349,27 @@ GeneratedWorld maze(Random random) {
   return b.take();
 }
 
+GeneratedWorld tunnel(Random) { return generate_tunnel(kUsualTunnel); }
+
+/// Four corridors of 40 m x 3 m around a square block, which look the same but for one box in each: at a
+/// random place, of the same size. A lap is about 148 m.
+GeneratedWorld loop(Random random) {
+  constexpr double side = 40.0, width = 3.0;
+  constexpr double box = 0.5, box_height = 0.9, free_end = 6.0;
+  Builder b(side, side, {width / 2, width / 2});
+  b.add_wall(width, side - width, width, side - width);
+  for (int corridor = 0; corridor < 4; ++corridor) {
+    // Along the block, so that 1.9 m stay free beside it.
+    const double along = random.uniform(free_end, side - free_end), across = width - 0.35;
+    const double other = side - across;
+    if (corridor == 0) b.add_obstacle(along, across, box, box, box_height);
+    if (corridor == 1) b.add_obstacle(other, along, box, box, box_height);
+    if (corridor == 2) b.add_obstacle(along, other, box, box, box_height);
+    if (corridor == 3) b.add_obstacle(across, along, box, box, box_height);
+  }
+  return b.take();
+}
+
 struct Kind {
   std::string_view name;
   GeneratedWorld (*make)(Random);
@@ -356,7 +377,7 @@ struct Kind {
 constexpr std::array kKinds{Kind{"corridor", corridor}, Kind{"blocks", blocks}, Kind{"car_park", car_park},
                             Kind{"cave", cave},         Kind{"stairs", stairs}, Kind{"dead_ends", dead_ends},
                             Kind{"gaps", gaps},         Kind{"rubble", rubble}, Kind{"rooms", rooms},
-                            Kind{"maze", maze}};
+                            Kind{"maze", maze},         Kind{"tunnel", tunnel}, Kind{"loop", loop}};
 
 constexpr auto kNames = [] {
   std::array<std::string_view, kKinds.size()> out{};
@@ -368,10 +389,20 @@ constexpr auto kNames = [] {
 
 std::span<const std::string_view> world_kinds() { return kNames; }
 
+std::span<const std::string_view> navigation_kinds() {
+  constexpr std::size_t for_perception = 2;  // The last ones.
+  return std::span(kNames).first(kNames.size() - for_perception);
+}
+
 Result<GeneratedWorld> generate_world(std::string_view kind, std::uint64_t seed) {
   for (const Kind& each : kKinds)
     if (each.name == kind) return each.make(Random(seed));
   return {Reason::bad_argument, "no world is called " + std::string(kind)};
+}
+
+GeneratedWorld generate_tunnel(int length) {
+  constexpr double width = 3.0;
+  return Builder(length, width, {2.0, width / 2}).take();
 }
 
 GeneratedWorld generate_blocks(int size, std::uint64_t seed) {

@@ -19,10 +19,18 @@ struct GeneratedWorld {
 
 /// Every kind, in the order of the documentation (docs/rehearsal.md).
 std::span<const std::string_view> world_kinds();
+/// Those of them that try navigation: all but `tunnel` and `loop`, which try perception.
+std::span<const std::string_view> navigation_kinds();
 
 /// The world of that kind; the same seed gives the same world on every machine. Reason::bad_argument for a
 /// kind that is none of world_kinds().
 Result<GeneratedWorld> generate_world(std::string_view kind, std::uint64_t seed);
+
+constexpr int kShortestTunnel = 20, kLongestTunnel = 300, kUsualTunnel = 120;  ///< m
+
+/// A smooth tunnel along x, `length` m long ([kShortestTunnel, kLongestTunnel]) and 3 m wide and high, with
+/// closed ends and nothing in it: along it a lidar sees no motion.
+GeneratedWorld generate_tunnel(int length);
 
 constexpr int kLeastBlocks = 2, kMostBlocks = 9;
 

@@ -31,7 +31,9 @@ struct SimulationParams {
   /// Scale of the errors of tracks, swept lidars, inertial sensors, mounts and clocks, [0, 10]; 0: the truth.
   /// `odometry` and the noise of `lidar` are scaled by the caller.
   double noise{1.0};
-  ImuParams imu{};  ///< Realistic.
+  ImuParams imu{};                   ///< Realistic.
+  double dust{0.0};                  ///< Realistic: LidarErrors::dust, [0, 0.5].
+  std::optional<double> dropouts{};  ///< Realistic: LidarErrors::dropouts, unless its default, [0, 1].
 };
 
 /// A robot to be put into the world.

@@ -21,6 +21,8 @@ void Simulation::equip(const RobotStart& start) {
   const std::uint64_t seed = derive_seed(params_.seed, kSensorParts + robots_.size());
   robot.real.emplace(platform, params_.imu, params_.noise, seed);
   Realism& real = *robot.real;
+  real.lidar.dust = params_.dust;
+  if (params_.dropouts) real.lidar.dropouts = *params_.dropouts;
   Truth& truth = robot.truth;
   real.ground = {truth.pose.position.z(), 0.0, 0.0};
   if (const auto ground =

@@ -16,6 +16,9 @@ constexpr double kBrightest = 0.9;     // albedo
 constexpr double kDark = 0.15;         // albedo below which far returns get lost
 constexpr double kGrazing = 0.995;     // squared sine of the incidence beyond which returns get lost
 constexpr double kEdge = 0.3;          // m: neighbouring beams that differ by more see an edge
+constexpr double kDustReach = 8.0;     // m: farther dust returns too little light
+constexpr std::uint64_t kDustSeed = 0x2545f4914f6cdd1dULL;
+constexpr double kDustAlbedo = 0.1;  // of what is left of a beam
 
 /// Albedo of the surface at a place: a fixed pattern of patches.
 double albedo_at(const Eigen::Vector3d& place) {
@@ -53,6 +56,8 @@ class Receiver {
   Return measure(const Neighbours& beam, const Eigen::Vector3d& sensor, const Eigen::Vector3d& direction) {
     const double deviate = gaussian(random_);
     const double r = beam.range;
+    if (errors_.dust > 0.0)
+      if (const Return speck = dust(r); !std::isnan(speck.range)) return speck;
     if (!(r <= params_.max_range)) return {std::nan(""), 0.0};
     const double albedo = albedo_at(sensor + r * direction);
     // Squared sine of the incidence, from what the beams beside and below met.
@@ -79,6 +84,17 @@ class Receiver {
   }
 
  private:
+  /// A particle before `range`, or NaN. Particles are spread evenly (Poisson), but returns become fewer with
+  /// the square of the distance, and nearer than the wall they must be.
+  Return dust(double range) const {
+    Random event(random_peek() ^ kDustSeed);
+    if (!event.chance(errors_.noise * errors_.dust)) return {std::nan(""), 0.0};
+    const double draw = event.uniform();
+    const double at = params_.min_range + draw * draw * (kDustReach - params_.min_range);
+    if (!(at < range)) return {std::nan(""), 0.0};
+    return {at, 255.0 * kDustAlbedo * (1.0 - 0.5 * draw)};
+  }
+
   /// A seed for rare events that leaves the sequence of draws alone.
   std::uint64_t random_peek() const {
     Random copy = random_;

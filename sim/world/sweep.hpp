@@ -27,6 +27,9 @@ struct LidarErrors {
   double dropouts{0.003};  ///< Share of the beams without return on bright ground, [0, 1].
   /// Ranges deviate up to this many times more on surfaces far away or seen at a grazing angle.
   double grazing{2.5};
+  /// Share of the beams that meet a dust particle, [0, 0.5]: it takes the place of a farther return, or of
+  /// none.
+  double dust{0.0};
 };
 
 /// All that one sweep of a lidar depends on, by value: trace() may run on another thread, later.

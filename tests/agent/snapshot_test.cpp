@@ -227,10 +227,13 @@ TEST(Snapshot, of_a_place_that_is_none_has_no_odometry) {
 TEST(Snapshot, of_older_places_is_read) {
   struct Older {
     std::uint16_t version;
-    std::size_t missing;  ///< Bytes at the end: of the map's epoch, and of the height.
+    std::size_t
+        missing;  ///< Bytes at the end: of the driver's odometry, of the map's epoch, and of the height.
     std::optional<double> height;
   };
-  for (const Older& older : {Older{2, 4, 3.5}, Older{1, 4 + 9, std::nullopt}}) {
+  constexpr std::size_t kPose = 7 * 8;
+  for (const Older& older :
+       {Older{3, kPose, 3.5}, Older{2, kPose + 4, 3.5}, Older{1, kPose + 4 + 9, std::nullopt}}) {
     auto list = store::unpack_sections(encode(full()));
     for (store::Section& section : list.good) {
       if (store::tag_text(section.tag) != "PLAC") continue;
@@ -242,7 +245,8 @@ TEST(Snapshot, of_older_places_is_read) {
     EXPECT_THAT(read->lost, IsEmpty()) << older.version;
     Snapshot expected = full();
     expected.place->height = older.height;
-    expected.place->map_epoch = 0;
+    if (older.version < 3) expected.place->map_epoch = 0;
+    expected.place->T_odom_driver = {};
     EXPECT_EQ(read->snapshot, expected) << older.version;
   }
 }

@@ -25,7 +25,7 @@ TEST(Complete, CommandsThenRobotsThenArguments) {
   EXPECT_THAT(complete({"mode", "r1", ""}, kRobots), Contains("waypoint"));
   EXPECT_THAT(complete({"mode", "r1", ""}, kRobots), Contains("r2"));
   EXPECT_THAT(complete({"mode", ""}, kRobots), ElementsAre("r1", "r2"));
-  EXPECT_THAT(complete({"policy", "r1", ""}, kRobots), ElementsAre("planner", "router", "sensors"));
+  EXPECT_THAT(complete({"policy", "r1", ""}, kRobots), ElementsAre("planner", "router", "sensors", "map"));
   EXPECT_THAT(complete({"policy", "r1", "planner", ""}, kRobots), ElementsAre("auto", "manual"));
   EXPECT_THAT(complete({"help", ""}, kRobots), Contains("goto"));
   EXPECT_THAT(complete({"completion", ""}, kRobots), ElementsAre("bash", "zsh", "fish"));

@@ -45,5 +45,19 @@ TEST(CrewLive, AnAgentAndAStationDriveAndStop) {
   EXPECT_TRUE(net->until([&] { return op.view("r1").holder.empty(); })) << "nothing is kept without a disk";
 }
 
+TEST(CrewLive, TheMapReachesTheStationAndAgainAfterItsRestart) {
+  const auto net = make_live_net();
+  agent::AgentParams params{};
+  params.perception = PerceptionLevel::slam;
+  Robot robot(*net, params);
+  PlainDriver driver(*net);
+  Operator op(*net, "op1");
+  const auto seen = [&] { return op.ask("map status").json.at("m2").get<double>(); };
+  EXPECT_TRUE(net->until([&] { return seen() > 1.0; }, 15s));
+  op.kill();
+  op.start();
+  EXPECT_TRUE(net->until([&] { return seen() > 1.0; }, 15s)) << "a new process has nothing yet";
+}
+
 }  // namespace
 }  // namespace adit::live

@@ -93,6 +93,7 @@ const std::vector<Broken>& table() {
        "  - {at: 2, by: op1, do: area r1 add wall keep_out 4 -2 5 2}\n  - {at: 3, by: op1, do: goto r1 8 "
        "0}\n",
        "odometry: {noise: 0}\n"},
+      {"sigma_small", 11, 1, ""},
       {"lock_forgotten", 9, 1, kLock, kCrash},
       {"acknowledged_lost", 9, 1, kGo, kCrash},
       {"state_lost_whole", 9, 1, kLock, kCrash},

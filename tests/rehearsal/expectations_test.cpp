@@ -140,6 +140,48 @@ TEST(Expectations, ExploredAndDrivenAgainAreThoseOfTheTruth) {
   EXPECT_TRUE(again.finish().ok);
 }
 
+TEST(Expectations, AMapIsJudgedByItsShareAndByWhatIsWrong) {
+  Case both({When::by, 10s, MapExpectation{"op1", 0.9, 0.03}, 1, ""});
+  both.expectations->judge(5s, both.evidence);
+  EXPECT_EQ(both.finish().found, "op1 has no map");
+  MapJudgement map{.share = 0.95, .wrong_occupied = 0.01, .wrong_free = 0.05};
+  both.evidence.map = [&map](const std::string&) { return map; };
+  both.expectations->judge(6s, both.evidence);
+  EXPECT_EQ(both.finish().found, "op1 has no map") << "judging takes long: every 5 s";
+  both.expectations->judge(10s, both.evidence);
+  EXPECT_EQ(both.finish().found, "wrong are 1.0 % of the occupied and 5.0 % of the free voxels");
+  map.wrong_free = 0.0;
+  Case better({When::by, 10s, MapExpectation{"op1", 0.9, 0.03}, 1, ""});
+  better.evidence.map = both.evidence.map;
+  better.expectations->judge(5s, better.evidence);
+  EXPECT_TRUE(better.finish().ok) << better.finish().found;
+  // Of an empty map nothing is wrong: that is judged at the end alone.
+  Case wrong({When::by, 10s, MapExpectation{"op1", {}, 0.03}, 1, ""});
+  wrong.evidence.map = both.evidence.map;
+  wrong.expectations->judge(5s, wrong.evidence);
+  EXPECT_FALSE(wrong.finish().ok);
+  wrong.expectations->judge(10s, wrong.evidence);
+  EXPECT_TRUE(wrong.finish().ok);
+}
+
+TEST(Expectations, StatedPosesAreWithinTheirLimit) {
+  Case c({When::always, 0s, PoseWithinExpectation{0.3, {"r1"}}, 1, ""});
+  Pose2 truth{1, 0, 0};
+  RobotWord word;
+  word.pose = Pose3::level({1.2, 0, 0}, 0.0);
+  word.pose_sent = 1s;
+  c.evidence.pose = [&truth](const std::string&) { return truth; };
+  c.evidence.word = [&word](const std::string&) -> const RobotWord& { return word; };
+  c.expectations->judge(1s, c.evidence);
+  truth.x = 2.0;
+  c.expectations->judge(2s, c.evidence);
+  EXPECT_TRUE(c.finish().ok) << "said before it drove on: " << c.finish().found;
+  word.pose_sent = 3s;
+  truth.x = 2.01;
+  c.expectations->judge(3s, c.evidence);
+  EXPECT_EQ(c.finish().found, "r1 was 0.80 m from where it said at 3 s");
+}
+
 TEST(Expectations, CollisionFailsAtTheEnd) {
   Case c({When::always, 0s, NoCollision{}, 1, ""});
   EXPECT_TRUE(c.finish().ok);

@@ -30,7 +30,7 @@ class Record {
     const Duration end = now + how_long;
     while (now < end) {
       now += 10ms;
-      if (now % 100ms == 0ns) see(StateSent{static_cast<std::uint64_t>(now.count())});
+      if (now % 100ms == 0ns) see(state());
       if (now % 100ms == 0ns && seeing) see(ScanHeard{});
       if (now % 1s == 0ns && stations) hear_stations();
       if (stick && now % 50ms == 0ns) push(1, *stick);
@@ -42,6 +42,11 @@ class Record {
     }
   }
 
+  /// What the robot says of its place.
+  StateSent state() const {
+    const Pose2 said{pose.x + error.x(), pose.y + error.y(), pose.yaw};
+    return {static_cast<std::uint64_t>(now.count()), Pose3::level(said, 0.0), sigma, localisation};
+  }
   void hear_stations() {
     for (int n : {1, 2}) see(PresenceHeard{participant(n), "op" + std::to_string(n), station_id(n)});
   }
@@ -123,7 +128,10 @@ class Record {
   Authority authority{};
   std::vector<Latch> stops{};
   Twist2 moving{};
-  Pose2 pose{};  ///< The true one.
+  Pose2 pose{};                 ///< The true one.
+  Eigen::Vector2d error{0, 0};  ///< Of what the robot says, m.
+  double sigma{};               ///< As it says, m.
+  Localisation localisation{Localisation::off};
   bool driven{true};
   bool stations{true};
   bool seeing{true};       ///< Its lidar gives scans.

@@ -292,6 +292,12 @@ INSTANTIATE_TEST_SUITE_P(
             23, "x0 < x1"},
         Bad{"explored_by_whom", "{always: no_collision}", "{by: 9, explored_at_least: 1, robots: [r9]}", 23,
             "r9"},
+        Bad{"map_of_nobody", "{always: no_collision}", "{by: 9, by_operator: op9, map_at_least: 0.9}", 23,
+            "op9"},
+        Bad{"map_too_right", "{always: no_collision}", "{by: 9, by_operator: op1, map_wrong_at_most: 2}", 23,
+            "[0, 1]"},
+        Bad{"pose_without_limit", "{always: no_collision}", "{always: pose_within}", 23, "m"},
+        Bad{"dust_of_half", "duration: 120", "dust: 0.6\nduration: 120", 2, "[0, 0.5]"},
         Bad{"always_what", "no_collision", "happy", 23, "no_collision"},
         Bad{"no_yaml", "robots:", "robots: [", 6, ""}),
     [](const auto& bad_case) { return std::string(bad_case.param.name); });

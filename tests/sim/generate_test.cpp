@@ -50,10 +50,24 @@ TEST_P(Generated, IsTheSameForASeedAndGivesAWay) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Generated, testing::ValuesIn(world_kinds().begin(), world_kinds().end()),
                          [](const auto& each) { return std::string(each.param); });
 
-TEST(GeneratedWorlds, AreTen) { EXPECT_EQ(world_kinds().size(), 10u); }
+TEST(GeneratedWorlds, AreTenForNavigationAndTwoForPerception) {
+  EXPECT_EQ(world_kinds().size(), 12u);
+  EXPECT_EQ(navigation_kinds().size(), 10u);
+}
+
+TEST(GeneratedWorlds, TunnelIsSmoothFromEndToEnd) {
+  const World world = make_box_world(generate_tunnel(120).boxes, 0.0, 3.0).value();
+  const VoxelGrid& grid = world.grid();
+  for (double x = 0.1; x < 119.9; x += 0.1)
+    for (const double y : {1.0, -1.0}) {
+      const double range = grid.cast(grid.locate({x, 1.5, 1.0}), {0.0, y, 0.0}, 10.0);
+      ASSERT_NEAR(range, 1.5, 0.06) << x;
+    }
+  EXPECT_NEAR(grid.cast(grid.locate({2.0, 1.5, 1.0}), {1.0, 0.0, 0.0}, 200.0), 118.0, 0.06);
+}
 
 TEST(GeneratedWorlds, SeedsDiffer) {
-  for (const char* kind : {"corridor", "cave", "rubble", "maze", "rooms", "gaps"})
+  for (const char* kind : {"corridor", "cave", "rubble", "maze", "rooms", "gaps", "loop"})
     EXPECT_NE(generate_world(kind, 1)->boxes, generate_world(kind, 2)->boxes) << kind;
 }
 

@@ -33,6 +33,12 @@ FakeRobot::FakeRobot(VirtualScheduler& scheduler, wire::SimulatedNetwork& networ
                          },
                          name_)
                          .value());
+  bulk_ = wire::Writer<radio::BulkPiece>::make(*wire_, wire::topics::kBulk).value();
+  readers_.push_back(wire::make_reader(*wire_, wire::topics::kBulkAck, *strand_,
+                                       [this](const radio::BulkAck& ack, const wire::SampleInfo&) {
+                                         piece_acks_.push_back(ack);
+                                       })
+                         .value());
   behaviour.robot(name_);
   behaviour.mode("hold");
   timers_.push_back(strand_->every(100ms, [this] {

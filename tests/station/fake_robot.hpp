@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "adit/authority.h"
+#include "adit/bulk.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
 #include "adit/robot.h"
@@ -53,6 +54,9 @@ class FakeRobot {
   void describe(float max_speed, float max_turn, bool holonomic);
   /// A refused stream.
   void refuse_stream(const std::string& station, Id kId, Reason reason);
+  /// Sends a piece of content as the robot, or as the one named in it.
+  void send(const radio::BulkPiece& piece) { (void)bulk_.write(piece); }
+  const std::vector<radio::BulkAck>& piece_acks() const { return piece_acks_; }
   const std::vector<Heard>& commands() const { return commands_; }
   /// Distinct sequence numbers heard, in the order first heard.
   std::vector<std::uint64_t> numbers() const;
@@ -74,6 +78,8 @@ class FakeRobot {
   wire::Writer<radio::Capabilities> capabilities_{};
   std::vector<std::unique_ptr<wire::RawReader>> readers_{};
   std::vector<Timer> timers_{};
+  wire::Writer<radio::BulkPiece> bulk_{};
+  std::vector<radio::BulkAck> piece_acks_{};
   std::vector<Heard> commands_{};
   std::vector<HeardStick> sticks_{};
   std::map<std::uint64_t, radio::Acknowledgement> answered_{};

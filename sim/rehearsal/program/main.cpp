@@ -61,6 +61,9 @@ int run_one(const Scenario& scenario, const std::shared_ptr<const World>& world,
         std::printf(" %s %.1f s", ExplorationResult::name(n).c_str(), reached->time_s);
     std::printf("\n");
   }
+  if (report.map)
+    std::printf("  the map at the station: %.0f m2, %llu bytes on the air, %.1f per m2\n", report.map->m2,
+                static_cast<unsigned long long>(report.map->bytes), report.map->bytes_per_m2());
   std::printf("  commands: %llu sent, %llu accepted, %llu refused\n",
               static_cast<unsigned long long>(report.commands.sent),
               static_cast<unsigned long long>(report.commands.accepted),
@@ -107,6 +110,13 @@ std::string defect_list() {
   return list;
 }
 
+void set_perception(Scenario& scenario, const std::string& level) {
+  scenario.perception = level == "slam"       ? PerceptionLevel::slam
+                        : level == "odometry" ? PerceptionLevel::odometry
+                                              : PerceptionLevel::off;
+  for (RobotSpec& robot : scenario.robots) robot.settings.perception = scenario.perception;
+}
+
 // Chaos needs something to draw: what a scenario does not say is as in team_chaos.yaml.
 void add_chaos(Scenario& scenario) {
   const Duration from = scenario.duration / 20, to = scenario.duration * 19 / 20;
@@ -129,7 +139,7 @@ int main(int argc, char** argv) {
   std::uint64_t seed = 1;
   RunParams params;
   bool chaos = false, until_failure = false;
-  std::string shrink_to, defect;
+  std::string shrink_to, defect, perception;
   app.add_option("scenario", file, "the scenario, SCENARIO.yaml (with --chaos: scenarios/team_chaos.yaml)");
   auto* seed_option =
       app.add_option("--seed", seed, "of everything that is random (default: the scenario's, or 1)")
@@ -164,6 +174,8 @@ int main(int argc, char** argv) {
       ->excludes(threads_option);
   app.add_option("--shrink-to", shrink_to, "the file it is written to (default NAME-seedN-ruleM.yaml)")
       ->needs(chaos_option);
+  app.add_option("--perception", perception, "of all robots, in place of what the scenario says")
+      ->check(CLI::IsMember({"off", "odometry", "slam"}));
   app.add_flag("--until-failure", until_failure, "begin no further seed once one has failed");
   app.add_option("--defect", defect, "break a rule on purpose, to see who finds it; one of:" + defect_list());
   try {
@@ -185,6 +197,7 @@ int main(int argc, char** argv) {
   auto factory = make_agent_factory(defect);
   if (!factory) return report_error("rehearse", factory.error());
   if (chaos) add_chaos(*scenario);
+  if (!perception.empty()) set_perception(*scenario, perception);
   params.seed = seed_option->count() > 0 ? seed : scenario->seed;
   params.make_agent = *factory;
   params.parent_wire = make_parent_decorator(defect);

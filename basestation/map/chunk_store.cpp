@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/map/chunk_store.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::station {
+namespace {
+
+using perception::BlockIndex;
+using perception::CoarseBlock;
+
+}  // namespace
+
+ChunkStore::Submap* ChunkStore::submap(const std::string& robot, const perception::SubmapKey& key) {
+  const auto found = robots_.find(robot);
+  if (key.robot != robot || found == robots_.end()) return nullptr;
+  auto& submaps = found->second.submaps;
+  if (const auto known = submaps.find(key); known != submaps.end()) return &known->second;
+  if (submaps.size() >= params_.max_submaps) return nullptr;
+  return &submaps[key];
+}
+
+bool ChunkStore::count(const std::string& robot, std::size_t bytes, std::uint32_t waiting, Time now) {
+  if (!robots_.contains(robot) && robots_.size() >= params_.max_robots) return false;
+  Robot& from = robots_[robot];
+  from.bytes += bytes;
+  ++from.pieces;
+  from.waiting = waiting;
+  from.heard = now;
+  return true;
+}
+
+bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piece) {
+  Submap* into = submap(robot, piece.key);
+  if (into == nullptr) {
+    refused_ += piece.blocks.size();
+    return false;
+  }
+  bool complete = true;
+  for (const perception::BlockUpdate& update : piece.blocks) {
+    const auto known = into->blocks.find(update.block.index);
+    if (known == into->blocks.end()) {
+      if (blocks_ >= params_.max_blocks) {
+        ++refused_;
+        complete = false;
+        continue;
+      }
+      ++blocks_;
+      ++robots_.at(robot).blocks;
+    } else if (update.revision <= known->second.revision) {
+      continue;
+    }
+    into->blocks[update.block.index] = {update.block.known, update.block.occupied, update.revision};
+  }
+  return complete;
+}
+
+bool ChunkStore::take(const std::string& robot, const perception::SubmapPoses& poses) {
+  bool complete = true;
+  for (const perception::SubmapPose& pose : poses.poses) {
+    Submap* into = submap(robot, pose.key);
+    if (into == nullptr) {
+      ++refused_;
+      complete = false;
+    } else if (!into->T_map_submap || pose.revision > into->pose_revision) {
+      into->T_map_submap = pose.T_map_submap;
+      into->pose_revision = pose.revision;
+    }
+  }
+  return complete;
+}
+
+double ChunkStore::area(const std::string& robot) const {
+  constexpr double kCell = CoarseBlock::kVoxel;
+  std::vector<std::pair<std::int32_t, std::int32_t>> cells;
+  for (const auto& [name, from] : robots_) {
+    if (!robot.empty() && name != robot) continue;
+    for (const auto& [key, submap] : from.submaps) {
+      if (!submap.T_map_submap) continue;
+      for (const auto& [index, block] : submap.blocks) {
+        std::uint64_t columns = block.known;
+        columns = (columns | columns >> 32 | columns >> 16 | columns >> 48) & 0xffff;
+        for (int column = 0; column < 16; ++column) {
+          if ((columns >> column & 1) == 0) continue;
+          const Eigen::Vector3d centre((index.x * 4 + column % 4 + 0.5) * kCell,
+                                       (index.y * 4 + column / 4 + 0.5) * kCell, (index.z * 4 + 2) * kCell);
+          const Eigen::Vector3d at = *submap.T_map_submap * centre;
+          cells.emplace_back(static_cast<std::int32_t>(std::floor(at.x() / kCell)),
+                             static_cast<std::int32_t>(std::floor(at.y() / kCell)));
+        }
+      }
+      // Heights of one submap repeat its columns: what is known twice is dropped before it grows.
+      if (cells.size() > 1'000'000) {
+        std::sort(cells.begin(), cells.end());
+        cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+      }
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return static_cast<double>(cells.size()) * kCell * kCell;
+}
+
+}  // namespace adit::station

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace adit::transfer {
+
+/// Kind of content; the values travel on the wire.
+enum class Kind : std::uint8_t { map_blocks = 1, map_poses = 2 };
+
+/// 128 random bits stored on a station's disk.
+using PeerId = std::array<std::uint8_t, 16>;
+
+inline constexpr std::size_t kMaxPieceBytes = 1200;  ///< Largest content of a piece, bytes.
+/// Bytes of a piece beside its content: headers of the message and of the network.
+inline constexpr std::size_t kPieceOverhead = 144;
+
+/// One message with content that is usable alone.
+struct Piece {
+  Kind kind{};
+  std::uint32_t id{};       ///< From 1, rises with each piece of a session.
+  std::uint32_t waiting{};  ///< Parts that the peer that lacks most still lacks, beside this piece.
+  std::vector<std::uint8_t> data{};
+};
+
+/// The pieces of one session of a sender that arrived at a peer.
+struct Receipt {
+  static constexpr std::uint32_t kSpan = 128;  ///< Number of pieces that it covers, back from `newest`.
+  std::uint32_t session{};
+  std::uint32_t newest{};                   ///< Largest id that arrived; 0: none.
+  std::array<std::uint64_t, 2> received{};  ///< Bit i of word w: piece newest - 64 w - i arrived.
+
+  bool has(std::uint32_t id) const {
+    if (id == 0 || id > newest || newest - id >= kSpan) return false;
+    const std::uint32_t back = newest - id;
+    return (received[back / 64] >> (back % 64) & 1) != 0;
+  }
+  bool operator==(const Receipt&) const = default;
+};
+
+/// A peer's acknowledgement of one sender's pieces.
+struct Ack {
+  PeerId peer{};
+  std::uint32_t start{};  ///< Drawn at each start of the peer: a new one has nothing yet.
+  Receipt receipt{};      ///< Of a session 0: the peer has no piece of this sender.
+};
+
+}  // namespace adit::transfer

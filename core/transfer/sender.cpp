@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/transfer/sender.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::transfer {
+namespace {
+
+/// A piece that is so many ids older than the newest one that arrived was lost, not overtaken.
+constexpr std::uint32_t kOvertaken = 8;
+
+}  // namespace
+
+Sender::Peer* Sender::admit(const Ack& ack, Time now) {
+  const auto found = peers_.find(ack.peer);
+  if (found == peers_.end()) {
+    if (peers_.size() >= params_.max_peers) {
+      const auto oldest = std::min_element(peers_.begin(), peers_.end(), [](const auto& a, const auto& b) {
+        return a.second.heard < b.second.heard;
+      });
+      if (now - oldest->second.heard < params_.silence) return nullptr;
+      for (Source* source : sources_) source->leave(oldest->first);
+      for (Flight& flight : flights_) std::erase(flight.awaited, oldest->first);
+      peers_.erase(oldest);
+    }
+    Peer& peer = peers_[ack.peer];
+    peer = {ack.start, {}, now, now};
+    for (Source* source : sources_) source->join(ack.peer);
+    return &peer;
+  }
+  Peer& peer = found->second;
+  const auto& earlier = peer.earlier;
+  if (std::find(earlier.begin(), earlier.end(), ack.start) != earlier.end()) return nullptr;
+  if (peer.start != ack.start && now - peer.joined < params_.min_rejoin) return nullptr;
+  peer.heard = now;
+  if (peer.start == ack.start) return &peer;
+  peer.joined = now;
+  // The station was started again and has nothing; what is on its way was for the one before.
+  peer.earlier.push_back(peer.start);
+  if (peer.earlier.size() > kStarts) peer.earlier.pop_front();
+  peer.start = ack.start;
+  for (Flight& flight : flights_) std::erase(flight.awaited, ack.peer);
+  for (Source* source : sources_) source->join(ack.peer);
+  return &peer;
+}
+
+void Sender::acknowledged(const Ack& ack, Time now) {
+  if (admit(ack, now) == nullptr) return;
+  if (ack.receipt.session == params_.session && ack.receipt.newest <= last_id_)
+    settle(ack.peer, ack.receipt, now);
+}
+
+void Sender::settle(const PeerId& peer, const Receipt& receipt, Time now) {
+  for (Flight& flight : flights_) {
+    const auto awaited = std::find(flight.awaited.begin(), flight.awaited.end(), peer);
+    if (awaited == flight.awaited.end()) continue;
+    if (receipt.has(flight.id)) {
+      measure(now - flight.sent);
+      flight.source->acknowledged(peer, flight.token);
+      pacer_.settled(true);
+    } else if (receipt.newest >= flight.id + kOvertaken) {
+      flight.source->lost(peer, flight.token);
+      pacer_.settled(false);
+    } else {
+      continue;
+    }
+    flight.awaited.erase(awaited);
+  }
+  expire(now);
+}
+
+void Sender::expire(Time now) {
+  const Duration limit = timeout();
+  for (Flight& flight : flights_) {
+    if (now - flight.sent >= limit) {
+      for (const PeerId& peer : flight.awaited) {
+        flight.source->lost(peer, flight.token);
+        pacer_.settled(false);
+      }
+      flight.awaited.clear();
+    }
+    if (flight.awaited.empty()) flight.source->settled(flight.token);
+  }
+  std::erase_if(flights_, [](const Flight& flight) { return flight.awaited.empty(); });
+}
+
+void Sender::measure(Duration delay) {
+  const double sample = seconds(delay);
+  if (!measured_) {
+    delay_ = sample;
+    deviation_ = sample / 2;
+  } else {
+    deviation_ += (std::abs(sample - delay_) - deviation_) / 4;
+    delay_ += (sample - delay_) / 8;
+  }
+  measured_ = true;
+}
+
+Duration Sender::timeout() const {
+  if (!measured_) return std::min<Duration>(2 * params_.min_timeout, params_.max_timeout);
+  return std::clamp(from_seconds(delay_ + 4 * deviation_), params_.min_timeout, params_.max_timeout);
+}
+
+std::vector<PeerId> Sender::served(const Source& source, Time now) const {
+  std::vector<PeerId> out;
+  std::size_t most = 0;
+  for (const auto& [id, peer] : peers_) {
+    if (now - peer.heard >= params_.silence) continue;
+    out.push_back(id);
+    if (const std::size_t missing = source.missing(id); missing > most) {
+      most = missing;
+      std::swap(out.front(), out.back());
+    }
+  }
+  if (most == 0) out.clear();
+  return out;
+}
+
+std::vector<Piece> Sender::due(Time now, const wire::SenderState& link) {
+  expire(now);
+  std::vector<Piece> out;
+  const auto heard =
+      static_cast<std::size_t>(std::count_if(peers_.begin(), peers_.end(), [&](const auto& entry) {
+        return now - entry.second.heard < params_.silence;
+      }));
+  if (heard == 0) return out;
+  pacer_.observe(now, link, heard);
+  for (Source* source : sources_) {
+    while (pacer_.allows() && out.size() < params_.pieces_at_once &&
+           flights_.size() < params_.max_in_flight) {
+      std::vector<PeerId> peers = served(*source, now);
+      if (peers.empty()) break;
+      auto content = source->next(peers, pacer_.piece_bytes(), now);
+      if (!content) break;
+      pacer_.sent(content->data.size());
+      std::size_t waiting = 0;
+      for (const PeerId& peer : peers) waiting = std::max(waiting, source->missing(peer));
+      out.push_back({source->kind(), ++last_id_,
+                     static_cast<std::uint32_t>(std::min<std::size_t>(waiting, UINT32_MAX)),
+                     std::move(content->data)});
+      flights_.push_back({last_id_, content->token, source, now, std::move(peers)});
+    }
+  }
+  return out;
+}
+
+}  // namespace adit::transfer

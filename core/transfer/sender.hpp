@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <deque>
+#include <map>
+#include <vector>
+
+#include "core/transfer/pacer.hpp"
+#include "core/transfer/source.hpp"
+
+namespace adit::transfer {
+
+struct SenderParams {
+  std::uint32_t session{1};       ///< Drawn at each start of the sender, not 0.
+  std::size_t max_peers{16};      ///< Peers whose content is remembered, [1, 16].
+  std::size_t max_in_flight{96};  ///< Pieces that are neither acknowledged nor lost, [1, Receipt::kSpan).
+  Duration silence{12s};          ///< A peer whose acknowledgement is older is sent nothing.
+  Duration min_rejoin{
+      2s};  ///< Shortest time between two starts of a peer, as each costs a round over all content.
+  Duration min_timeout{1500ms};  ///< Bounds of the time after which a piece counts as lost.
+  Duration max_timeout{8s};
+  std::size_t pieces_at_once{4};  ///< Largest number of pieces of one call of due().
+  PacerParams pacing{};
+};
+
+/// Sends the content of its sources to every peer that acknowledges, as the link allows. A piece goes to all
+/// peers at once and is chosen for the one that lacks most. A piece that is not acknowledged within a time
+/// measured from the delay of acknowledgements (as RFC 6298 does) counts as lost: its content is missing
+/// again, and the source gives its newest state later.
+///
+/// A pure state machine, bounded in all that others can make it store. Sources must outlive it.
+class Sender {
+ public:
+  explicit Sender(SenderParams params) : params_(params), pacer_(params.pacing) {}
+
+  /// Adds a source; those added first go first.
+  void add(Source& source) { sources_.push_back(&source); }
+  /// Takes an acknowledgement, genuine or not: it must come from a known station.
+  void acknowledged(const Ack& ack, Time now);
+  /// The pieces to send now. Call it at 10 to 50 Hz.
+  std::vector<Piece> due(Time now, const wire::SenderState& link);
+
+  std::uint32_t session() const { return params_.session; }
+  std::size_t peers() const { return peers_.size(); }
+  std::size_t in_flight() const { return flights_.size(); }
+  /// Time without an acknowledgement after which a piece counts as lost.
+  Duration timeout() const;
+
+ private:
+  static constexpr std::size_t kStarts = 4;  ///< Earlier starts of a peer that are remembered.
+  struct Peer {
+    std::uint32_t start{};
+    std::deque<std::uint32_t> earlier{};  ///< Starts that ended: their acknowledgements come late.
+    Time heard{};
+    Time joined{};  ///< When its present start was taken.
+  };
+  /// A piece on its way.
+  struct Flight {
+    std::uint32_t id{};
+    std::uint64_t token{};
+    Source* source{};
+    Time sent{};
+    std::vector<PeerId> awaited{};  ///< Peers that have not acknowledged it.
+  };
+  Peer* admit(const Ack& ack, Time now);
+  void settle(const PeerId& peer, const Receipt& receipt, Time now);
+  void expire(Time now);
+  void measure(Duration delay);
+  /// Peers to send to; the first one is the one that lacks most of the source's content.
+  std::vector<PeerId> served(const Source& source, Time now) const;
+
+  SenderParams params_;
+  Pacer pacer_;
+  std::vector<Source*> sources_{};
+  std::map<PeerId, Peer> peers_{};
+  std::deque<Flight> flights_{};
+  std::uint32_t last_id_{};
+  bool measured_{};
+  double delay_{}, deviation_{};  ///< Of acknowledgements, s.
+};
+
+}  // namespace adit::transfer

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+
+#include "core/time/time.hpp"
+#include "core/transfer/piece.hpp"
+
+namespace adit::transfer {
+
+/// Content of one kind that peers are to have. It knows what each peer has, and gives on demand the newest
+/// state of what a peer lacks. Called by one Sender, on its strand.
+class Source {
+ public:
+  /// Content of one piece, on its way until acknowledged() or lost() is called for each of its peers.
+  struct Content {
+    std::uint64_t token{};  ///< The source's own name of it.
+    std::vector<std::uint8_t> data{};
+  };
+
+  virtual ~Source() = default;
+
+  virtual Kind kind() const = 0;
+  /// A peer that has nothing. A peer that joined before has nothing any more.
+  virtual void join(const PeerId& peer) = 0;
+  /// A peer that is forgotten.
+  virtual void leave(const PeerId& peer) = 0;
+  /// Number of parts that the peer lacks and that are not on their way to it.
+  virtual std::size_t missing(const PeerId& peer) const = 0;
+  /// Content that `peers.front()` lacks, of at most `max_bytes`, on its way to all `peers`. Nothing: there is
+  /// none now.
+  virtual std::optional<Content> next(std::span<const PeerId> peers, std::size_t max_bytes, Time now) = 0;
+  virtual void acknowledged(const PeerId& peer, std::uint64_t token) = 0;
+  virtual void lost(const PeerId& peer, std::uint64_t token) = 0;
+  /// The content arrived at or was lost on its way to each of its peers.
+  virtual void settled(std::uint64_t token) = 0;
+};
+
+}  // namespace adit::transfer

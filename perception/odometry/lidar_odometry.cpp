@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/odometry/lidar_odometry.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace adit::perception {
+namespace {
+
+using S = MotionState;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+constexpr std::size_t kLeastMatches = 40;  ///< Points with a plane nearby; fewer say nothing.
+constexpr double kLeastShare = 0.25;       ///< Of the points with a plane nearby that match it.
+constexpr int kBadForLost = 5;             ///< Clouds in a row that do not fit.
+constexpr int kBadForNewMap = 50;          ///< Clouds in a row after which it begins a new map.
+constexpr int kGoodForFound = 3;           ///< Clouds in a row that fit again.
+constexpr double kMaxInnovation = 30.0;    ///< Squared standard deviations for each of six numbers.
+constexpr double kFirstWindow = 0.3, kLeastWindow = 0.05, kMaxWindow = 1.0;  ///< m
+constexpr double kInsertWay = 0.2,
+                 kInsertTurn = 0.05;    ///< Motion after which a cloud enters the map, m, rad.
+constexpr int kFirstClouds = 10;        ///< All of them enter the map.
+constexpr double kPlanarHeight = 0.15;  ///< A planar lidar's point stands for a wall of twice this, m.
+constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad/s.
+constexpr double kLevelSigma = 0.0035;  ///< Gravity is known well enough to level by, rad.
+constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
+
+Eigen::Matrix3d rotation_of(const Pose3& pose) { return pose.orientation.toRotationMatrix(); }
+
+}  // namespace
+
+double OdometryState::sigma() const {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> horizontal(covariance.topLeftCorner<2, 2>());
+  return std::sqrt(std::max(0.0, horizontal.eigenvalues()[1]));
+}
+
+LidarOdometryParams LidarOdometryParams::of(const Platform& platform, bool wheels) {
+  LidarOdometryParams p;
+  const LidarConfig lidar = platform.lidar();
+  p.motion.has_imu = platform.imu.has_value();
+  p.motion.has_wheels = wheels;
+  p.motion.sideways = platform.sideways();
+  p.motion.flies = platform.flies();
+  if (platform.imu) p.motion.imu_position = platform.imu->mounting.position();
+  if (platform.drive == Drive::tracked) p.motion.wheel_slip = 0.05;
+  p.motion.max_acceleration = 2 * platform.max_acceleration;
+  p.motion.max_turn_acceleration = 2 * platform.max_turn_acceleration;
+  p.registration.range_noise = std::max(0.005, lidar.noise);
+  p.map.noise = static_cast<float>(p.registration.range_noise);
+  p.dense.min_range = p.thin.min_range = static_cast<float>(std::max(lidar.min_range, 0.3));
+  p.dense.max_range = p.thin.max_range = static_cast<float>(lidar.max_range);
+  p.max_speed = platform.max_speed;
+  return p;
+}
+
+LidarOdometryParams LidarOdometryParams::clouds_only(double noise, double min_range, double max_range) {
+  LidarOdometryParams p;
+  p.motion.has_imu = p.motion.has_wheels = false;
+  p.motion.sideways = p.motion.flies = true;
+  p.registration.range_noise = noise;
+  p.registration.max_iterations = 10;
+  p.registration.has_prior = false;
+  p.map.line_clouds = 1;
+  p.map.wide = 0.0f;
+  p.dense.wanted = 20000;
+  p.map.noise = static_cast<float>(noise);
+  p.dense.min_range = p.thin.min_range = static_cast<float>(min_range);
+  p.dense.max_range = p.thin.max_range = static_cast<float>(max_range);
+  return p;
+}
+
+LidarOdometry::LidarOdometry(const LidarOdometryParams& params)
+    : params_(params),
+      filter_(params.motion),
+      registration_(params.registration),
+      map_(params.map),
+      dense_(params.dense),
+      thinner_(params.thin),
+      window_(kFirstWindow) {}
+
+void LidarOdometry::add(const ImuSample& sample) {
+  if (!params_.motion.has_imu) return;
+  if (!filter_.started()) watch_.add(sample);
+  filter_.add(sample);
+}
+
+void LidarOdometry::add(const BodyMotion& sample) {
+  if (!params_.motion.has_wheels) return;
+  if (!filter_.started()) watch_.add(sample);
+  if (!newest_wheels_ || sample.stamp > newest_wheels_->stamp) newest_wheels_ = sample;
+  filter_.add(sample);
+}
+
+bool LidarOdometry::start(std::uint64_t stamp) {
+  if (params_.motion.has_wheels && !newest_wheels_) return false;
+  if (first_imu_wait_ == 0) first_imu_wait_ = stamp;
+  Pose3 at = origin_;
+  // The heading is the wheels', so that both frames begin alike.
+  if (newest_wheels_) at = origin_ * newest_wheels_->pose;
+  StartAttitude attitude{at.orientation, {0, 0, 0}, false};
+  const auto judged = params_.motion.has_imu ? watch_.judge(stamp) : std::nullopt;
+  const bool waits = params_.motion.has_imu && !judged;
+  if (waits && stamp - first_imu_wait_ < kImuPatience) return false;
+  double tilt_sigma = 0.02;
+  if (judged) {
+    attitude = *judged;
+    // The body's heading after it is levelled by its accelerometer.
+    const double yaw = at.yaw() - Pose3{{0, 0, 0}, attitude.level_from_base}.yaw();
+    at.orientation = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * attitude.level_from_base;
+    tilt_sigma = attitude.at_rest ? params_.motion.accel_bias / kStandardGravity : 0.05;
+  }
+  filter_.start(stamp, at, attitude.gyro_bias, attitude.at_rest, tilt_sigma);
+  return true;
+}
+
+bool LidarOdometry::advance(std::uint64_t stamp) {
+  if (!filter_.started()) return start(stamp);
+  filter_.advance(stamp);
+  return true;
+}
+
+Result<Pose3> LidarOdometry::at(std::uint64_t stamp) const {
+  auto local = filter_.at(stamp);
+  if (!local) return local;
+  return odom_pose(*local);
+}
+
+const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> points,
+                                           std::span<const std::uint8_t> moving) {
+  if (!filter_.started()) return state_;
+  std::span<const Eigen::Vector3f> used = points;
+  if (moving.size() == points.size() && !points.empty()) {
+    static_points_.clear();
+    for (std::size_t n = 0; n < points.size(); ++n)
+      if (moving[n] == 0) static_points_.push_back(points[n]);
+    used = static_points_;
+  }
+  const std::vector<Eigen::Vector3f>& dense = dense_.thin(used);
+  const std::vector<Eigen::Vector3f>& thinned = thinner_.thin(dense);
+  body_points_.clear();
+  const Eigen::Vector3f shift = params_.motion.imu_position.cast<float>();
+  double range = 0;
+  for (const Eigen::Vector3f& p : thinned) {
+    body_points_.push_back(p - shift);
+    range += p.norm();
+  }
+  if (!thinned.empty()) reach_ += 0.1 * (range / static_cast<double>(thinned.size()) - reach_);
+
+  ++clouds_;
+  Registered found;
+  const bool first = map_.size() == 0;
+  if (!first) {
+    const Pose3 prior{filter_.state().position, filter_.state().rotation};
+    const Matrix6 information = filter_.state().P.topLeftCorner<6, 6>().inverse();
+    found = registration_.align(map_, body_points_, prior, information, window_);
+  }
+  if (first) {
+    state_.health = thinned.size() < kLeastMatches ? Localisation::weak : Localisation::ok;
+  } else {
+    judge(found);
+  }
+  state_.matched = found.matched;
+  state_.used = thinned.size();
+  state_.iterations = found.iterations;
+  report();
+  if (state_.health == Localisation::lost || (bad_ > 0 && !first)) return state_;
+  const Pose3 moved = inserted_at_ ? inserted_at_->inverse() * filter_.pose() : Pose3{};
+  if (clouds_ <= kFirstClouds || !inserted_at_ || moved.position.norm() > kInsertWay ||
+      log_so3(moved.orientation).norm() > kInsertTurn)
+    insert(dense);
+  return state_;
+}
+
+void LidarOdometry::judge(const Registered& found) {
+  const S& prior = filter_.state();
+  Vector6 innovation;
+  innovation.head<3>() = found.pose.position - prior.position;
+  innovation.tail<3>() = log_so3(prior.rotation.conjugate() * found.pose.orientation);
+  const Matrix6 P = prior.P.topLeftCorner<6, 6>();
+  const double distance = innovation.dot(P.ldlt().solve(innovation)) / 6.0;
+  const double share =
+      static_cast<double>(found.matched) / static_cast<double>(std::max<std::size_t>(1, found.near));
+  const bool fits = share >= kLeastShare && distance < kMaxInnovation;
+  const double dt = last_stamp_ != 0 ? static_cast<double>(prior.stamp - last_stamp_) * 1e-9 : 0.0;
+  const bool too_fast =
+      params_.max_speed > 0 && dt > 0 && last_pose_ &&
+      (found.pose.position - prior.rotation * params_.motion.imu_position - last_pose_->position).norm() >
+          1.5 * params_.max_speed * dt + 0.2;
+  if (found.near < kLeastMatches) {
+    // An open place: there is nothing to compare with, and nothing that contradicts the other sensors.
+    state_.localizability = {};
+    filter_.learn_scale(false);
+    good_ = 0;
+    if (state_.health != Localisation::lost) state_.health = Localisation::weak;
+    return;
+  }
+  if (!fits || too_fast) {
+    ++bad_;
+    good_ = 0;
+    // KISS-ICP's rule alone never opens again after a bad start.
+    if (bad_ % 5 == 0) window_ = std::min(1.5 * window_, kMaxWindow);
+    if (bad_ >= kBadForLost) state_.health = Localisation::lost;
+    state_.localizability = {};
+    filter_.learn_scale(false);
+    if (bad_ >= kBadForNewMap) {
+      // What it saw before does not come back: the pose by the other sensors is the best there is.
+      map_.clear();
+      inserted_at_.reset();
+      bad_ = 0;
+    }
+    return;
+  }
+  bad_ = 0;
+  ++good_;
+  // What the prediction was off by at the distance of the points, as in KISS-ICP (Vizzo et al. 2023).
+  const double off = innovation.head<3>().norm() + innovation.tail<3>().norm() * reach_;
+  window_ = std::clamp(0.9 * window_ + 0.1 * 3.0 * off, std::max(kLeastWindow, std::min(off, kMaxWindow)),
+                       kMaxWindow);
+  apply(found);
+  if (state_.health == Localisation::lost && good_ < kGoodForFound) return;
+  bool strong = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto n = static_cast<std::size_t>(axis);
+    const bool horizontal = std::abs(found.localizability.axes_t(2, axis)) < 0.7;
+    const bool yaw = std::abs(found.localizability.axes_r(2, axis)) > 0.7;
+    if (horizontal && found.localizability.t[n] != Observability::strong) strong = false;
+    if (yaw && found.localizability.r[n] != Observability::strong) strong = false;
+  }
+  state_.health = strong ? Localisation::ok : Localisation::weak;
+}
+
+void LidarOdometry::apply(const Registered& found) {
+  S next = filter_.state();
+  const Matrix6 P = next.P.topLeftCorner<6, 6>();
+  Vector6 innovation;
+  innovation.head<3>() = found.pose.position - next.position;
+  innovation.tail<3>() = log_so3(next.rotation.conjugate() * found.pose.orientation);
+  // The scale of the wheels is learned from directions that the lidar determines, and only there.
+  const Eigen::Vector3d v = filter_.velocity();
+  bool seen = true;
+  for (int axis = 0; axis < 3 && v.norm() > 0.05; ++axis)
+    if (found.localizability.t[static_cast<std::size_t>(axis)] != Observability::strong &&
+        std::abs(found.localizability.axes_t.col(axis).dot(v)) > 0.3 * v.norm())
+      seen = false;
+  filter_.learn_scale(seen);
+  Eigen::Matrix<double, S::kSize, 6> K = next.P.leftCols<6>() * P.inverse();
+  if (!seen) K.row(S::kS).setZero();
+  next.add(K * innovation);
+  next.position = found.pose.position;
+  next.rotation = found.pose.orientation;
+  // The covariance of the pose falls by D; what the gain carries over falls with it.
+  const Matrix6 D = P * found.information * (Matrix6::Identity() + P * found.information).inverse() * P;
+  next.P -= (K * D * K.transpose()).eval();
+  next.P = (0.5 * (next.P + next.P.transpose())).eval();
+  filter_.correct(next);
+  state_.localizability = found.localizability;
+}
+
+void LidarOdometry::insert(std::span<const Eigen::Vector3f> points) {
+  const Eigen::Matrix3d R = filter_.state().rotation.toRotationMatrix();
+  const Eigen::Vector3d t = filter_.state().position;
+  map_points_.clear();
+  for (const Eigen::Vector3f& p : points) {
+    const Eigen::Vector3d at = R * (p.cast<double>() - params_.motion.imu_position) + t;
+    map_points_.push_back(at);
+    if (!params_.planar) continue;
+    map_points_.push_back(at + Eigen::Vector3d(0, 0, kPlanarHeight));
+    map_points_.push_back(at - Eigen::Vector3d(0, 0, kPlanarHeight));
+  }
+  map_.insert(map_points_, travelled_);
+  map_.forget(travelled_);
+  inserted_at_ = filter_.pose();
+}
+
+void LidarOdometry::report() {
+  const S& s = filter_.state();
+  const Pose3 local = filter_.pose();
+  const double dt = last_stamp_ != 0 ? static_cast<double>(s.stamp - last_stamp_) * 1e-9 : 0.0;
+  // Of position and rotation in the axes of odom.
+  Matrix6 turn = Matrix6::Identity();
+  turn.block<3, 3>(3, 3) = rotation_of(local);
+  const Matrix6 now = turn * s.P.topLeftCorner<6, 6>() * turn.transpose();
+  if (last_pose_ && dt > 0) {
+    const Pose3 moved = last_pose_->inverse() * local;
+    const Eigen::Vector3d turned = log_so3(moved.orientation);
+    travelled_ += moved.position.norm();
+    drift_.add(local.position - last_pose_->position, turned.norm(), reach_, state_.localizability,
+               pose_covariance_, now);
+    if (!params_.motion.has_imu && !params_.motion.has_wheels)
+      filter_.set_rates((local.position - last_pose_->position) / dt, turned / dt);
+  }
+  pose_covariance_ = now;
+  last_pose_ = local;
+  last_stamp_ = s.stamp;
+  if (dt > 0) level(dt);
+  state_.stamp = s.stamp;
+  state_.pose = odom_pose(local);
+  state_.velocity = T_odom_local_.orientation * filter_.velocity();
+  state_.gyro_bias = s.gyro_bias;
+  state_.accel_bias = s.accel_bias;
+  state_.wheel_scale = s.wheel_scale;
+  state_.covariance = drift_.covariance() + now;
+}
+
+void LidarOdometry::level(double dt) {
+  if (!params_.motion.has_imu) return;
+  const S& s = filter_.state();
+  const double sigma = std::sqrt(s.P.diagonal().segment<2>(S::kG).maxCoeff()) / kStandardGravity;
+  if (sigma > kLevelSigma) return;
+  const Eigen::Vector3d up = T_odom_local_.orientation * -s.gravity_vector() / kStandardGravity;
+  const Eigen::Vector3d off = up.cross(Eigen::Vector3d::UnitZ());
+  const double angle = off.norm();
+  if (angle < 1e-6) return;
+  const Eigen::Quaterniond turn = exp_so3(off * std::min(1.0, kLevelRate * dt / angle));
+  const Eigen::Vector3d here = odom_pose(filter_.pose()).position;
+  T_odom_local_ = Pose3{here - turn * here, turn} * T_odom_local_;
+  T_odom_local_.orientation.normalize();
+}
+
+}  // namespace adit::perception

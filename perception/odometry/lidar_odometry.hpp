@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/config/platform.hpp"
+#include "perception/odometry/drift.hpp"
+#include "perception/odometry/motion_filter.hpp"
+#include "perception/odometry/odometry_state.hpp"
+#include "perception/odometry/registration.hpp"
+#include "perception/odometry/start.hpp"
+#include "perception/voxel/thin.hpp"
+#include "perception/voxel/voxel_planes.hpp"
+
+namespace adit::perception {
+
+struct LidarOdometryParams {
+  MotionParams motion{};
+  RegistrationParams registration{};
+  VoxelPlanes::Params map{};
+  Thinner::Params dense{.wanted = 12000, .min_edge = 0.05f};  ///< Of the points that enter the map.
+  Thinner::Params thin{};                                     ///< Of those that are compared with it.
+  bool planar{false};     ///< One horizontal ring: walls count as vertical, and height and tilt are not seen.
+  double max_speed{0.0};  ///< A body that is faster than 1.5 times this is lost, m/s; 0: no limit.
+
+  /// For a robot; without a lidar's or an IMU's entry, standard ones. `wheels`: its driver sends odometry.
+  static LidarOdometryParams of(const Platform& platform, bool wheels = true);
+  /// For clouds alone, of a lidar whose noise is `noise`, m.
+  static LidarOdometryParams clouds_only(double noise, double min_range, double max_range);
+};
+
+/// Lidar-inertial odometry: an error-state Kalman filter that IMU and wheels carry on, corrected by each
+/// cloud on a map of planes (direct registration as in FAST-LIO2, Xu et al. 2022; planes in voxels as in
+/// VoxelMap, Yuan et al. 2022), in which wheels rule the directions that the lidar does not determine.
+///
+/// Pure: samples and clouds in, poses out; no clock. A missing sensor only removes its term. Calls for each
+/// cloud, in this order: advance() to its instant; at() for deskewing it; update().
+class LidarOdometry {
+ public:
+  explicit LidarOdometry(const LidarOdometryParams& params);
+
+  /// Where the odometry begins: with wheels T_odom_wheels, else T_odom_base. Call it before the first
+  /// advance().
+  void begin_at(const Pose3& origin) { origin_ = origin; }
+  /// A sample in the axes of base_link, m/s2.
+  void add(const ImuSample& sample);
+  void add(const BodyMotion& sample);
+  /// Whether the sensors of motion were heard up to `stamp`, as far as they speak at all.
+  bool covers(std::uint64_t stamp) const { return filter_.covers(stamp); }
+
+  /// Moves the state to `stamp`; false while it cannot start yet.
+  bool advance(std::uint64_t stamp);
+  /// T_odom_base at a stamp of the last 0.6 s, or up to 0.3 s ahead. Errors: out_of_range.
+  Result<Pose3> at(std::uint64_t stamp) const;
+  /// Corrects the state by a cloud at the stamp of the last advance().
+  ///
+  /// @param points  In base_link at that instant, m.
+  /// @param moving  One per point, not 0: on something that moves, which does not enter the map. Empty: none.
+  const OdometryState& update(std::span<const Eigen::Vector3f> points,
+                              std::span<const std::uint8_t> moving = {});
+  const OdometryState& state() const { return state_; }
+  /// The wheels' frame began again elsewhere.
+  void forget_wheels() { filter_.forget_wheels(); }
+  std::size_t map_bytes() const { return map_.bytes(); }
+
+ private:
+  bool start(std::uint64_t stamp);
+  void apply(const Registered& found);
+  void judge(const Registered& found);
+  void insert(std::span<const Eigen::Vector3f> points);
+  void report();
+  /// Turns the frame of the odometry slowly until gravity is vertical in it.
+  void level(double dt);
+  /// Frame in which the filter works to odom.
+  Pose3 odom_pose(const Pose3& local) const { return T_odom_local_ * local; }
+
+  LidarOdometryParams params_;
+  MotionFilter filter_;
+  Registration registration_;
+  VoxelPlanes map_;
+  Thinner dense_, thinner_;
+  StartWatch watch_{};
+  DriftAccount drift_{};
+  std::optional<BodyMotion> newest_wheels_{};
+  Pose3 origin_{}, T_odom_local_{};
+  OdometryState state_{};
+  Eigen::Matrix<double, 6, 6> pose_covariance_{
+      Eigen::Matrix<double, 6, 6>::Zero()};  ///< After the last cloud.
+  std::optional<Pose3> last_pose_{};         ///< Of the last cloud, local.
+  std::uint64_t last_stamp_{};
+  std::optional<Pose3> inserted_at_{};
+  std::uint64_t first_imu_wait_{};
+  double travelled_{}, reach_{5.0}, window_{};
+  int clouds_{}, bad_{}, good_{};
+  std::vector<Eigen::Vector3f> body_points_{}, static_points_{};
+  std::vector<Eigen::Vector3d> map_points_{};
+};
+
+}  // namespace adit::perception

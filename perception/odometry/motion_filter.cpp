@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/odometry/motion_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace adit::perception {
+namespace {
+
+using S = MotionState;
+
+constexpr std::uint64_t kStep = 10'000'000;               ///< ns
+constexpr std::uint64_t kMaxImuGap = 50'000'000;          ///< A longer gap between samples is bridged, ns.
+constexpr std::uint64_t kWheelPeriod = 40'000'000;        ///< Between two corrections by the wheels, ns.
+constexpr double kSlipGate = 12.0;                        ///< Squared standard deviations.
+constexpr double kMaxSlip = 1.5;                          ///< A slip that lasts longer is believed, s.
+constexpr double kStillSpeed = 0.005, kStillTurn = 0.01;  ///< Slower is rest, m/s, rad/s.
+constexpr double kStillGyro = 0.03;                       ///< With its bias removed, rad/s.
+constexpr double kRestSpeed = 0.005, kRestTurn = 0.002;   ///< Standard deviations at rest, m/s, rad/s.
+constexpr double kForgetScale = 200.0;                    ///< Way over which the scale may change, m.
+
+double to_seconds(std::uint64_t later, std::uint64_t earlier) {
+  return static_cast<double>(static_cast<std::int64_t>(later - earlier)) * 1e-9;
+}
+
+template <class Sample>
+void insert_sorted(std::deque<Sample>& samples, const Sample& sample, std::size_t most) {
+  auto at = samples.end();
+  while (at != samples.begin() && std::prev(at)->stamp > sample.stamp) --at;
+  if (at != samples.begin() && std::prev(at)->stamp == sample.stamp) return;
+  samples.insert(at, sample);
+  if (samples.size() > most) samples.pop_front();
+}
+
+}  // namespace
+
+void MotionFilter::start(std::uint64_t stamp, const Pose3& T_odom_base, const Eigen::Vector3d& gyro_bias,
+                         bool at_rest, double tilt_sigma) {
+  state_ = {};
+  state_.stamp = stamp;
+  state_.rotation = T_odom_base.orientation.normalized();
+  state_.position = T_odom_base * params_.imu_position;
+  state_.gyro_bias = gyro_bias;
+  // The frame begins here: position and heading are certain. A tilt of the frame is a tilt of gravity in it.
+  const auto set = [&](int at, int count, double sigma) {
+    state_.P.diagonal().segment(at, count).setConstant(sigma * sigma);
+  };
+  set(S::kP, 3, 1e-3);
+  set(S::kR, 3, 1e-3);
+  set(S::kV, 3, at_rest ? 0.01 : 1.0);
+  set(S::kBg, 3, at_rest ? 5e-4 : params_.gyro_bias);
+  set(S::kBa, 3, params_.accel_bias);
+  set(S::kG, 2, tilt_sigma * kStandardGravity);
+  set(S::kS, 1, params_.wheel_scale);
+  pending_ = {};
+  wheels_used_ = stamp;
+  still_for_ = at_rest ? 1.0 : 0.0;
+  slipping_for_ = 0.0;
+  gyro_.setZero();
+  history_.assign(1, {stamp, T_odom_base});
+}
+
+void MotionFilter::add(const ImuSample& sample) { insert_sorted(imu_, sample, kMaxSamples); }
+void MotionFilter::add(const BodyMotion& sample) { insert_sorted(wheels_, sample, kMaxSamples); }
+
+bool MotionFilter::covers(std::uint64_t stamp) const {
+  if (params_.has_imu && (imu_.empty() || imu_.back().stamp < stamp)) return false;
+  return !params_.has_wheels || (!wheels_.empty() && wheels_.back().stamp >= stamp);
+}
+
+Pose3 MotionFilter::base_pose(const MotionState& state) const {
+  return {state.position - state.rotation * params_.imu_position, state.rotation};
+}
+
+Eigen::Vector3d MotionFilter::velocity() const {
+  return state_.velocity - state_.rotation * gyro_.cross(params_.imu_position);
+}
+
+void MotionFilter::advance(std::uint64_t stamp) {
+  while (state_.stamp < stamp) step(std::min(stamp, state_.stamp + kStep));
+  propagate_covariance();
+  // Samples are needed until the next advance() for interpolation, and no longer.
+  while (imu_.size() > 1 && imu_[1].stamp <= state_.stamp) imu_.pop_front();
+  while (wheels_.size() > 1 && wheels_[1].stamp <= std::min(wheels_used_, state_.stamp)) wheels_.pop_front();
+}
+
+std::optional<ImuSample> MotionFilter::imu_mean(std::uint64_t from, std::uint64_t to) const {
+  if (!params_.has_imu || imu_.empty()) return std::nullopt;
+  ImuSample mean;
+  int count = 0;
+  const ImuSample *before = nullptr, *after = nullptr;
+  for (const ImuSample& s : imu_) {
+    if (s.stamp <= from) {
+      before = &s;
+      continue;
+    }
+    if (s.stamp > to) {
+      after = &s;
+      break;
+    }
+    mean.gyro += s.gyro;
+    mean.accel += s.accel;
+    ++count;
+  }
+  if (count > 0) {
+    mean.gyro /= count;
+    mean.accel /= count;
+    return mean;
+  }
+  if (before && after && after->stamp - before->stamp <= kMaxImuGap) {
+    const double part = to_seconds((from + to) / 2, before->stamp) / to_seconds(after->stamp, before->stamp);
+    mean.gyro = before->gyro + part * (after->gyro - before->gyro);
+    mean.accel = before->accel + part * (after->accel - before->accel);
+    return mean;
+  }
+  if (before && !after && to - before->stamp <= kMaxImuGap) return *before;
+  return std::nullopt;
+}
+
+std::optional<Pose3> MotionFilter::wheels_at(std::uint64_t stamp) const {
+  const auto after =
+      std::find_if(wheels_.begin(), wheels_.end(), [&](const auto& w) { return w.stamp >= stamp; });
+  if (after == wheels_.end()) return std::nullopt;
+  if (after->stamp == stamp) return after->pose;
+  if (after == wheels_.begin()) return std::nullopt;
+  const auto before = std::prev(after);
+  if (after->stamp - before->stamp > kHistory) return std::nullopt;
+  const double part = to_seconds(stamp, before->stamp) / to_seconds(after->stamp, before->stamp);
+  return Pose3{before->pose.position + part * (after->pose.position - before->pose.position),
+               before->pose.orientation.slerp(part, after->pose.orientation)};
+}
+
+void MotionFilter::step(std::uint64_t stamp) {
+  const double dt = to_seconds(stamp, state_.stamp);
+  const std::uint64_t from = state_.stamp;
+  const auto mean = imu_mean(from, stamp);
+  std::optional<Pose3> a, b;
+  if (!mean && params_.has_wheels) {
+    a = wheels_at(from);
+    b = wheels_at(stamp);
+  }
+  if (mean)
+    step_by_imu(dt, *mean);
+  else if (a && b)
+    step_by_wheels(dt, *a, *b);
+  else
+    step_free(dt);
+  state_.stamp = stamp;
+  if (mean && params_.has_wheels && stamp - wheels_used_ >= kWheelPeriod) use_wheels(wheels_used_, stamp);
+  if (!mean) wheels_used_ = stamp;
+  history_.push_back({stamp, base_pose(state_)});
+  while (history_.size() > 1 && stamp - history_[1].stamp > kHistory) history_.pop_front();
+}
+
+void MotionFilter::step_by_imu(double dt, const ImuSample& mean) {
+  const Eigen::Vector3d gyro = mean.gyro - state_.gyro_bias, accel = mean.accel - state_.accel_bias;
+  const Eigen::Quaterniond half = state_.rotation * exp_so3(0.5 * dt * gyro);
+  const Eigen::Vector3d acceleration = half * accel + state_.gravity_vector();
+  state_.position += dt * state_.velocity + 0.5 * dt * dt * acceleration;
+  state_.velocity += dt * acceleration;
+  state_.rotation = (state_.rotation * exp_so3(dt * gyro)).normalized();
+  gyro_ = gyro;
+  pending_.velocity += dt * (pending_.rotation * accel);
+  pending_.rotation = (pending_.rotation * exp_so3(dt * gyro)).normalized();
+  pending_.dt += dt;
+  pending_.turned += dt * gyro.norm();
+}
+
+void MotionFilter::step_by_wheels(double dt, const Pose3& from, const Pose3& to) {
+  const Pose3 moved = from.inverse() * to;
+  // The state's point is the IMU's, which a turn moves.
+  const Eigen::Vector3d& r = params_.imu_position;
+  const Eigen::Vector3d way = state_.wheel_scale * moved.position + moved.orientation * r - r;
+  state_.position += state_.rotation * way;
+  state_.velocity = state_.rotation * way / dt;
+  state_.rotation = (state_.rotation * moved.orientation).normalized();
+  gyro_ = log_so3(moved.orientation) / dt;
+  pending_.rolled += pending_.rotation * moved.position;
+  pending_.rotation = (pending_.rotation * moved.orientation).normalized();
+  pending_.blind_dt += dt;
+  pending_.turned += dt * gyro_.norm();
+  pending_.way += moved.position.norm();
+  const bool still = moved.position.norm() < kStillSpeed * dt && gyro_.norm() < kStillTurn;
+  still_for_ = still ? still_for_ + dt : 0.0;
+}
+
+void MotionFilter::step_free(double dt) {
+  state_.position += dt * state_.velocity;
+  state_.rotation = (state_.rotation * exp_so3(dt * gyro_)).normalized();
+  pending_.rotation = (pending_.rotation * exp_so3(dt * gyro_)).normalized();
+  pending_.blind_dt += dt;
+  pending_.turned += dt * gyro_.norm();
+}
+
+void MotionFilter::propagate_covariance() {
+  const double dt = pending_.dt + pending_.blind_dt;
+  if (dt <= 0) return;
+  // Rotation at the beginning of the pending motion.
+  const Eigen::Matrix3d R = (state_.rotation * pending_.rotation.conjugate()).toRotationMatrix();
+  const Eigen::Matrix3d Dt = pending_.rotation.conjugate().toRotationMatrix();
+  const bool wheels = pending_.way > 0 || (pending_.blind_dt > 0 && params_.has_wheels && !wheels_.empty());
+  S::Matrix F = S::Matrix::Identity();
+  F.block<3, 3>(S::kR, S::kR) = Dt;
+  const double imu = pending_.dt;
+  if (imu > 0) {
+    F.block<3, 3>(S::kR, S::kBg) = -imu * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d turned = -R * skew(pending_.velocity);
+    F.block<3, 3>(S::kV, S::kR) = turned;
+    F.block<3, 3>(S::kV, S::kBa) = -imu * R;
+    F.block<2, 2>(S::kV, S::kG) = imu * Eigen::Matrix2d::Identity();
+    F.block<3, 3>(S::kP, S::kR) = 0.5 * imu * turned;
+    F.block<3, 3>(S::kP, S::kBa) = -0.5 * imu * imu * R;
+    F.block<2, 2>(S::kP, S::kG) = 0.5 * imu * imu * Eigen::Matrix2d::Identity();
+  }
+  if (wheels) {
+    F.block<3, 3>(S::kP, S::kR) -= R * skew(state_.wheel_scale * pending_.rolled);
+    F.block<3, 1>(S::kP, S::kS) = R * pending_.rolled;
+    if (imu == 0) F.block<3, 3>(S::kP, S::kV).setZero();
+  }
+  if (imu > 0 || !wheels) F.block<3, 3>(S::kP, S::kV) = dt * Eigen::Matrix3d::Identity();
+  state_.P = (F * state_.P * F.transpose()).eval();
+
+  auto diagonal = state_.P.diagonal();
+  const auto square = [](double v) { return v * v; };
+  const double turn = square(params_.gyro_scale * pending_.turned);
+  if (imu > 0) {
+    diagonal.segment<3>(S::kR).array() += square(params_.gyro_noise) * imu + turn;
+    diagonal.segment<3>(S::kV).array() += square(params_.accel_noise) * imu;
+    diagonal.segment<3>(S::kP).array() += square(params_.accel_noise) * imu * imu * imu / 3;
+    diagonal.segment<3>(S::kBg).array() += square(params_.gyro_walk) * imu;
+    diagonal.segment<3>(S::kBa).array() += square(params_.accel_walk) * imu;
+  }
+  if (pending_.blind_dt > 0) {
+    const double blind = pending_.blind_dt;
+    if (wheels) {
+      // Tilt of an attitude filter: 0.5 degrees over 2 s. Heading: skid and drift, 20 % of a turn.
+      diagonal.segment<2>(S::kR).array() += square(0.009) * blind;
+      diagonal[S::kR + 2] +=
+          square(0.02 * pending_.way) + square(0.2 * pending_.turned) + square(0.002) * blind;
+      const double slip = square(std::max(params_.wheel_slip, 0.1) * pending_.way) + square(0.01) * blind;
+      diagonal.segment<3>(S::kP).array() += slip;
+      diagonal.segment<3>(S::kV).array() += square(params_.max_acceleration * blind);
+    } else {
+      diagonal.segment<3>(S::kR).array() +=
+          square(params_.max_turn_acceleration * blind * blind) + square(0.01) * blind;
+      diagonal.segment<3>(S::kV).array() += square(params_.max_acceleration * blind);
+      diagonal.segment<3>(S::kP).array() += square(0.5 * params_.max_acceleration * blind * blind);
+    }
+  }
+  pending_ = {};
+}
+
+void MotionFilter::use_wheels(std::uint64_t from, std::uint64_t to) {
+  const auto a = wheels_at(from), b = wheels_at(to);
+  wheels_used_ = to;
+  if (!a || !b) return;
+  const double dt = to_seconds(to, from);
+  const Pose3 moved = a->inverse() * *b;
+  const Eigen::Vector3d rolled = moved.position / dt;
+  const double wheel_turn = std::abs(log_so3(moved.orientation).z()) / dt;
+  // The driver's tilt may wander at rest; only its heading counts.
+  const bool still = rolled.norm() < kStillSpeed && wheel_turn < kStillTurn && gyro_.norm() < kStillGyro;
+  still_for_ = still ? still_for_ + dt : 0.0;
+  propagate_covariance();
+
+  const Eigen::Matrix3d R_inverse = state_.rotation.conjugate().toRotationMatrix();
+  const Eigen::Vector3d lever = gyro_.cross(params_.imu_position);
+  const Eigen::Vector3d in_body = R_inverse * state_.velocity;
+  Eigen::Matrix<double, 3, S::kSize> H = Eigen::Matrix<double, 3, S::kSize>::Zero();
+  H.block<3, 3>(0, S::kV) = R_inverse;
+  H.block<3, 3>(0, S::kR) = skew(in_body);
+  if (at_rest()) {
+    const Eigen::Vector3d rest = Eigen::Vector3d::Constant(kRestSpeed * kRestSpeed);
+    if (!update(H, -in_body, rest, 1e9)) return;
+    Eigen::Matrix<double, 3, S::kSize> G = Eigen::Matrix<double, 3, S::kSize>::Zero();
+    G.block<3, 3>(0, S::kBg).setIdentity();
+    update(G, gyro_, Eigen::Vector3d::Constant(kRestTurn * kRestTurn / dt), 1e9);
+    return;
+  }
+  const bool has_scale = rolled.head<2>().norm() > 0.05;
+  if (has_scale) H.block<3, 1>(0, S::kS) = -rolled;
+  state_.P(S::kS, S::kS) += std::pow(params_.wheel_scale, 2) * rolled.norm() * dt / kForgetScale;
+  // rolled * scale = R^T v - w x r; a body that cannot drive sideways slips so in turns.
+  const Eigen::Vector3d expected = in_body - lever;
+  Eigen::Vector3d measured = state_.wheel_scale * rolled;
+  const double speed = rolled.norm(), slip = params_.wheel_slip * speed + 0.01;
+  const double turn_slip = slip + 0.05 * gyro_.norm();
+  Eigen::Vector3d sigma(turn_slip, params_.sideways ? turn_slip : turn_slip + 0.02 * speed,
+                        0.1 + 0.05 * speed);
+  if (params_.flies) sigma.setConstant(0.1 + 0.05 * speed);
+  if (!params_.flies) measured.z() = 0.0;
+  const double gate = slipping_for_ < kMaxSlip ? kSlipGate : 1e9;
+  slipping_for_ = update(H, measured - expected, sigma.cwiseAbs2(), gate) ? 0.0 : slipping_for_ + dt;
+}
+
+bool MotionFilter::update(const Eigen::Matrix<double, 3, S::kSize>& H, const Eigen::Vector3d& residual,
+                          const Eigen::Vector3d& variance, double gate) {
+  const Eigen::Matrix<double, S::kSize, 3> PHt = state_.P * H.transpose();
+  const Eigen::Matrix3d expected = H * PHt + Eigen::Matrix3d(variance.asDiagonal());
+  if ((residual.array().square() / expected.diagonal().array()).maxCoeff() > gate) return false;
+  Eigen::Matrix<double, S::kSize, 3> K = PHt * expected.inverse();
+  if (!learn_scale_) K.row(S::kS).setZero();
+  state_.add(K * residual);
+  // Joseph's form also holds for the gain without its last row.
+  const S::Matrix A = S::Matrix::Identity() - K * H;
+  state_.P = (A * state_.P * A.transpose() + K * variance.asDiagonal() * K.transpose()).eval();
+  return true;
+}
+
+Result<Pose3> MotionFilter::at(std::uint64_t stamp) const {
+  if (history_.empty() || stamp < history_.front().stamp)
+    return {Reason::out_of_range, "the odometry has no pose at that time"};
+  if (stamp > history_.back().stamp) {
+    if (stamp - history_.back().stamp > kMaxExtrapolation)
+      return {Reason::out_of_range, "the odometry has no pose yet at that time"};
+    const double dt = to_seconds(stamp, history_.back().stamp);
+    return Pose3{history_.back().pose.position + dt * velocity(),
+                 (history_.back().pose.orientation * exp_so3(dt * gyro_)).normalized()};
+  }
+  const auto after =
+      std::find_if(history_.begin(), history_.end(), [&](const Stamped& s) { return s.stamp >= stamp; });
+  if (after->stamp == stamp) return after->pose;
+  const auto before = std::prev(after);
+  const double part = to_seconds(stamp, before->stamp) / to_seconds(after->stamp, before->stamp);
+  return Pose3{before->pose.position + part * (after->pose.position - before->pose.position),
+               before->pose.orientation.slerp(part, after->pose.orientation)};
+}
+
+void MotionFilter::correct(const MotionState& state) {
+  const Pose3 before = base_pose(state_);
+  state_ = state;
+  // The poses on the way keep their shape and end at the corrected one.
+  const Pose3 correction = base_pose(state_) * before.inverse();
+  for (Stamped& each : history_) each.pose = correction * each.pose;
+}
+
+}  // namespace adit::perception

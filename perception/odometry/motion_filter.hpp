@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "core/geometry/pose.hpp"
+#include "core/result/result.hpp"
+#include "perception/odometry/motion_state.hpp"
+#include "perception/types/body_motion.hpp"
+#include "perception/types/imu_sample.hpp"
+
+namespace adit::perception {
+
+/// How a body moves, and how good its sensors of motion are. Defaults: a good MEMS sensor on a vibrating
+/// drive, and worn wheels.
+struct MotionParams {
+  bool has_imu{true};
+  bool has_wheels{true};                  ///< Or legs, or another source of BodyMotion.
+  bool sideways{false};                   ///< It also moves sideways; else its sideways speed is about zero.
+  bool flies{false};                      ///< It also moves up and down.
+  Eigen::Vector3d imu_position{0, 0, 0};  ///< In base_link, m.
+  double gyro_noise{0.002};               ///< White noise, rad/s/sqrt(Hz), (0, 1].
+  double accel_noise{0.05};               ///< White noise, m/s2/sqrt(Hz), (0, 10].
+  double gyro_walk{2e-5};                 ///< Random walk of the bias, rad/s/sqrt(s), [0, 1].
+  double accel_walk{5e-4};                ///< Random walk of the bias, m/s2/sqrt(s), [0, 1].
+  double gyro_bias{0.005};            ///< Standard deviation of the bias at a start in motion, rad/s, (0, 1].
+  double accel_bias{0.06};            ///< Standard deviation of the bias at the start, m/s2, (0, 10].
+  double gyro_scale{0.003};           ///< Standard deviation of the scale of a turn rate, (0, 0.5].
+  double wheel_scale{0.02};           ///< Standard deviation of the wheels' scale at the start, (0, 0.5].
+  double wheel_slip{0.03};            ///< Standard deviation of a speed by the wheels, share, (0, 1].
+  double max_acceleration{3.0};       ///< Of a body without IMU and wheels, m/s2, (0, 100].
+  double max_turn_acceleration{3.0};  ///< The same, rad/s2, (0, 100].
+};
+
+/// Carries a body's state from sensor to sensor: an error-state Kalman filter (Sola 2017).
+///
+/// The IMU moves the state; where it is missing or has a gap, the wheels do, and without both the body keeps
+/// its velocity. With an IMU, the speed by the wheels corrects the velocity, unless it contradicts it (slip),
+/// and a body at rest has no velocity. Samples may come in any order; advance() uses those up to its stamp.
+class MotionFilter {
+ public:
+  static constexpr std::size_t kMaxSamples = 1024;        ///< Of each sensor; the oldest are dropped.
+  static constexpr std::uint64_t kHistory = 600'000'000;  ///< Of at(), ns.
+  static constexpr std::uint64_t kMaxExtrapolation = 300'000'000;  ///< Of at(), ns.
+
+  explicit MotionFilter(const MotionParams& params) : params_(params) {}
+
+  /// Begins at a pose of base_link (odom). `gyro_bias`: as measured at rest; `tilt_sigma`: of roll and pitch,
+  /// rad.
+  void start(std::uint64_t stamp, const Pose3& T_odom_base, const Eigen::Vector3d& gyro_bias, bool at_rest,
+             double tilt_sigma);
+  bool started() const { return state_.stamp != 0; }
+
+  /// A sample in the axes of base_link.
+  void add(const ImuSample& sample);
+  void add(const BodyMotion& sample);
+  /// Whether the sensors of motion were heard up to `stamp`.
+  bool covers(std::uint64_t stamp) const;
+
+  /// Moves the state to `stamp`, with all samples until then.
+  void advance(std::uint64_t stamp);
+  /// T_odom_base on the way, extrapolated for a short time. Errors: out_of_range.
+  Result<Pose3> at(std::uint64_t stamp) const;
+  /// Replaces the state by its correction at the same stamp.
+  void correct(const MotionState& state);
+
+  /// Without IMU and wheels: what the body is assumed to keep. In odom, m/s; body axes, rad/s.
+  void set_rates(const Eigen::Vector3d& velocity, const Eigen::Vector3d& turn_rate) {
+    state_.velocity = velocity;
+    gyro_ = turn_rate;
+  }
+  /// The frame of the wheels began again elsewhere.
+  void forget_wheels() { wheels_.clear(); }
+
+  const MotionState& state() const { return state_; }
+  Pose3 pose() const { return base_pose(state_); }
+  /// Of base_link, in odom, m/s.
+  Eigen::Vector3d velocity() const;
+  /// The body is at rest, by its wheels and its gyro.
+  bool at_rest() const { return still_for_ > 0.3; }
+  /// Whether the scale of the wheels may be learned now: the lidar determines the direction of travel.
+  void learn_scale(bool learn) { learn_scale_ = learn; }
+  const MotionParams& params() const { return params_; }
+
+ private:
+  struct Stamped {
+    std::uint64_t stamp{};
+    Pose3 pose{};
+  };
+  Pose3 base_pose(const MotionState& state) const;
+  /// Moves the state to `stamp`, at most a few milliseconds on.
+  void step(std::uint64_t stamp);
+  void step_by_imu(double dt, const ImuSample& mean);
+  void step_by_wheels(double dt, const Pose3& from, const Pose3& to);
+  void step_free(double dt);
+  /// Moves the covariance to the state.
+  void propagate_covariance();
+  std::optional<ImuSample> imu_mean(std::uint64_t from, std::uint64_t to) const;
+  std::optional<Pose3> wheels_at(std::uint64_t stamp) const;
+  void use_wheels(std::uint64_t from, std::uint64_t to);
+  /// Corrects the state by three measured numbers. False, and nothing is done: farther than `gate` (squared
+  /// standard deviations in any of them) from what is expected.
+  bool update(const Eigen::Matrix<double, 3, MotionState::kSize>& H, const Eigen::Vector3d& residual,
+              const Eigen::Vector3d& variance, double gate);
+
+  MotionParams params_;
+  MotionState state_{};
+  bool learn_scale_{true};
+  std::deque<ImuSample> imu_{};
+  std::deque<BodyMotion> wheels_{};
+  Eigen::Vector3d gyro_{0, 0, 0};  ///< Turn rate over the last step, body axes, rad/s.
+  std::uint64_t wheels_used_{};    ///< Until then the wheels corrected the velocity.
+  double still_for_{};             ///< s
+  double slipping_for_{};          ///< s
+  /// The motion by which the covariance has not been moved yet.
+  struct Pending {
+    double dt{}, blind_dt{};
+    Eigen::Quaterniond rotation{Eigen::Quaterniond::Identity()};
+    Eigen::Vector3d velocity{0, 0, 0};  ///< Change of the velocity by the specific force, body axes at first.
+    Eigen::Vector3d rolled{0, 0, 0};    ///< Way by the wheels, body axes at first.
+    double turned{}, way{};
+  } pending_{};
+  std::deque<Stamped> history_{};
+};
+
+}  // namespace adit::perception

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "core/config/perception_level.hpp"
+#include "core/geometry/pose.hpp"
+
+namespace adit::perception {
+
+/// How well the lidar determines a direction.
+enum class Observability : std::uint8_t { none, weak, strong };
+
+/// How well the lidar determines the three directions of translation and the three axes of rotation, in the
+/// frame of the odometry.
+struct Localizability {
+  Eigen::Matrix3d axes_t{Eigen::Matrix3d::Identity()};  ///< Columns: directions, the least known first.
+  Eigen::Matrix3d axes_r{Eigen::Matrix3d::Identity()};  ///< Columns: axes of rotation.
+  std::array<Observability, 3> t{}, r{};
+  Eigen::Vector3d sigma_t{0, 0, 0};  ///< Standard deviation along each direction by the lidar alone, m.
+  Eigen::Vector3d sigma_r{0, 0, 0};  ///< The same about each axis, rad.
+
+  bool all_strong() const {
+    for (const auto each : t)
+      if (each != Observability::strong) return false;
+    for (const auto each : r)
+      if (each != Observability::strong) return false;
+    return true;
+  }
+};
+
+/// What the odometry says after a sweep.
+struct OdometryState {
+  std::uint64_t stamp{};                                    ///< End of the sweep, driver's clock, ns.
+  Pose3 pose{};                                             ///< T_odom_base.
+  Eigen::Vector3d velocity{0, 0, 0};                        ///< Of base_link in odom, m/s.
+  Eigen::Vector3d gyro_bias{0, 0, 0}, accel_bias{0, 0, 0};  ///< In rad/s and m/s2.
+  double wheel_scale{1.0};                                  ///< True distance per distance by the wheels.
+  /// Of the pose since the start: position (odom, m), then rotation (odom axes, rad).
+  Eigen::Matrix<double, 6, 6> covariance{Eigen::Matrix<double, 6, 6>::Zero()};
+  Localizability localizability{};
+  Localisation health{Localisation::starting};
+  std::size_t matched{};  ///< Points that lie on a known plane.
+  std::size_t used{};     ///< Points that were compared.
+  int iterations{};
+
+  /// Standard deviation of the horizontal position in its worst direction, m.
+  double sigma() const;
+};
+
+}  // namespace adit::perception

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/voxel/thin.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "perception/voxel/flat_hash.hpp"
+
+namespace adit::perception {
+
+const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3f> points) {
+  // At most half full.
+  const std::size_t slots = std::bit_ceil(std::max<std::size_t>(1024, 2 * points.size()));
+  if (seen_.size() < slots) {
+    seen_.assign(slots, 0);
+    cloud_.assign(slots, 0);
+    number_ = 0;
+  }
+  const std::size_t mask = seen_.size() - 1;
+  const float nearest = params_.min_range * params_.min_range,
+              farthest = params_.max_range * params_.max_range;
+  const bool first = edge_ == 0.0f;
+  if (first) edge_ = 4 * params_.min_edge;
+  // The first cloud finds its edge; later ones follow with one step each.
+  for (int round = 0; round < (first ? 4 : 1); ++round) {
+    ++number_;
+    kept_.clear();
+    const float scale = 1.0f / edge_;
+    for (const Eigen::Vector3f& p : points) {
+      const float range = p.squaredNorm();
+      // Negated, so that points that are not finite are left out.
+      if (!(range >= nearest && range <= farthest)) continue;
+      const auto index = [&](float v) { return static_cast<std::int32_t>(std::floor(v * scale)); };
+      const std::uint64_t key = voxel_key(index(p.x()), index(p.y()), index(p.z()));
+      std::uint64_t hash = (key ^ key >> 32) * 0x9e3779b97f4a7c15ULL;
+      std::size_t at = (hash ^ hash >> 29) & mask;
+      while (cloud_[at] == number_ && seen_[at] != key) at = (at + 1) & mask;
+      if (cloud_[at] == number_) continue;
+      cloud_[at] = number_;
+      seen_[at] = key;
+      kept_.push_back(p);
+    }
+    if (round + 1 == (first ? 4 : 1)) break;
+    const float ratio = static_cast<float>(kept_.size()) / static_cast<float>(params_.wanted);
+    edge_ = std::clamp(edge_ * std::sqrt(ratio), params_.min_edge, params_.max_edge);
+  }
+  // Surfaces: the number of voxels falls with the square of the edge. Bounded, as one cloud may be odd.
+  const float ratio = static_cast<float>(kept_.size()) / static_cast<float>(params_.wanted);
+  edge_ = std::clamp(edge_ * std::clamp(std::sqrt(ratio), 0.8f, 1.25f), params_.min_edge, params_.max_edge);
+  return kept_;
+}
+
+}  // namespace adit::perception

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "perception/voxel/flat_hash.hpp"
+
+namespace adit::perception {
+
+/// What the points of one voxel lie on: a plane, or an upright line such as a pole or the edge of a door.
+struct PlanePatch {
+  Eigen::Vector3d centre;  ///< Mean of the points, m.
+  Eigen::Vector3f normal;  ///< Unit vector across it; its sign has no meaning.
+  Eigen::Vector3f
+      along;             ///< Unit vector: in a plane that of its smaller extent; the other one across a line.
+  float variance{};      ///< Of the points in the direction `normal`, m2.
+  float extent_along{};  ///< Of the points in the direction `along`, m2.
+  float count{};         ///< Points.
+  bool line{};
+};
+
+/// A map of planes in voxels of several sizes, for registering clouds (after VoxelMap, Yuan et al. 2022).
+///
+/// Each voxel has the running moments of its first points, and a plane as soon as they lie on one. A lookup
+/// takes the coarsest voxel whose points lie on a plane: on a wall that is the largest one, which averages
+/// most noise; beside edges a smaller one. Voxels that were not touched while the body travelled
+/// `keep_distance` are erased, a few slots at a time.
+class VoxelPlanes {
+ public:
+  static constexpr int kLevels = 3;
+  struct Params {
+    float finest{0.25f};         ///< Edge of the smallest voxels, m; each further level doubles it.
+    float noise{0.02f};          ///< Standard deviation of a range, m.
+    double keep_distance{60.0};  ///< m
+    /// Clouds that an upright line must be seen in: from one place, a wall at grazing incidence looks like
+    /// lines, too.
+    std::uint8_t line_clouds{3};
+    float wide{0.10f};               ///< Smaller extent of a plane, standard deviation per edge of the voxel.
+    std::size_t max_voxels{60'000};  ///< Of each level; further ones are not made.
+  };
+  explicit VoxelPlanes(const Params& params) : params_(params) {}
+
+  /// Adds points (frame of the map, m). `travelled`: distance that the body moved so far, m.
+  void insert(std::span<const Eigen::Vector3d> points, double travelled);
+  /// The plane at a place, or just beside the largest voxel there; nothing: no points lie on one.
+  std::optional<PlanePatch> find(const Eigen::Vector3d& place) const;
+  /// Erases what was not touched lately; a bounded part of the table in each call.
+  void forget(double travelled);
+  void clear();
+
+  std::size_t size() const;  ///< Voxels of all levels.
+  std::size_t bytes() const;
+
+ private:
+  struct Cell {
+    Eigen::Vector3f mean{0, 0, 0};  ///< Relative to the voxel's corner, m.
+    std::array<float, 6> m2{};      ///< Sums of products of deviations: xx, xy, xz, yy, yz, zz.
+    Eigen::Vector3f normal{0, 0, 0}, along{0, 0, 0};
+    float variance{}, extent_along{};
+    float touched{};  ///< Travelled distance when a point was added, m.
+    std::uint16_t count{};
+    std::uint16_t fitted{};  ///< Points when the plane was fitted.
+    std::uint8_t clouds{};   ///< From how many clouds the points are, at most 255.
+    bool plane{}, line{};
+  };
+  float edge(int level) const { return params_.finest * static_cast<float>(1 << level); }
+  void fit(Cell& cell, float voxel_edge) const;
+  std::optional<PlanePatch> find_in(const Eigen::Vector3d& place) const;
+
+  Params params_;
+  std::array<FlatHash<Cell>, kLevels> levels_{};
+  std::array<std::size_t, kLevels> sweep_{};
+};
+
+}  // namespace adit::perception

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/geometry/pose.hpp"
+#include "core/transfer/source.hpp"
+
+namespace adit::agent {
+
+/// The poses of a robot's submaps in the map, and which stations have them. The newest submaps go first.
+class PoseSource final : public transfer::Source {
+ public:
+  PoseSource(std::string robot, std::uint64_t start) : robot_(std::move(robot)), start_(start) {}
+
+  /// Sets the pose of a submap, from now on wanted by every station.
+  void update(std::uint32_t submap, const Pose3& T_map_submap);
+
+  transfer::Kind kind() const override { return transfer::Kind::map_poses; }
+  void join(const transfer::PeerId& peer) override;
+  void leave(const transfer::PeerId& peer) override { peers_.erase(peer); }
+  std::size_t missing(const transfer::PeerId& peer) const override;
+  std::optional<Content> next(std::span<const transfer::PeerId> peers, std::size_t max_bytes,
+                              Time now) override;
+  void acknowledged(const transfer::PeerId&, std::uint64_t) override {}
+  void lost(const transfer::PeerId& peer, std::uint64_t token) override;
+  void settled(std::uint64_t token) override { flights_.erase(token); }
+
+ private:
+  struct Entry {
+    Pose3 T_map_submap{};
+    std::uint32_t revision{};
+  };
+  struct Part {
+    std::uint32_t submap{};
+    std::uint32_t revision{};
+  };
+  std::string robot_;
+  std::uint64_t start_;
+  std::map<std::uint32_t, Entry> poses_{};
+  std::map<transfer::PeerId, std::set<std::uint32_t>> peers_{};  ///< Submaps whose pose each lacks.
+  std::map<std::uint64_t, std::vector<Part>> flights_{};
+  std::uint32_t revisions_{};
+  std::uint64_t tokens_{};
+};
+
+}  // namespace adit::agent

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/perception/block_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/time/random.hpp"
+#include "perception/stream/piece.hpp"
+#include "robot_agent/perception/pose_source.hpp"
+
+namespace adit::agent {
+namespace {
+
+using perception::BlockIndex;
+using perception::CoarseBlock;
+using transfer::PeerId;
+
+constexpr PeerId kOne{1}, kTwo{2};
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+class BlockSourceTest : public testing::Test {
+ protected:
+  perception::MapPiece next(const std::vector<PeerId>& peers, std::uint64_t& taken,
+                            std::size_t bytes = 1200) {
+    const auto content = source.next(peers, bytes, now);
+    if (!content) return {};
+    EXPECT_LE(content->data.size(), bytes);
+    taken = content->token;
+    const auto piece = perception::decode(content->data);
+    EXPECT_TRUE(piece.ok());
+    return piece ? *piece : perception::MapPiece{};
+  }
+  void put(int x, std::uint64_t known = kAll, std::uint32_t submap = 0) {
+    source.update(submap, {{x, 0, 0}, known, known & 1});
+  }
+
+  BlockSource source{{.robot = "r1", .start = 5, .max_blocks = 1000}};
+  Time now{100s};
+  std::uint64_t token{};
+};
+
+TEST_F(BlockSourceTest, SendsTheNewestFirstAndNothingTwice) {
+  source.join(kOne);
+  for (int x = 0; x < 100; ++x) put(x);
+  std::set<int> sent;
+  for (bool first = true; source.missing(kOne) > 0; first = false) {
+    const auto piece = next({kOne}, token);
+    ASSERT_FALSE(piece.blocks.empty());
+    EXPECT_EQ(piece.key, (perception::SubmapKey{"r1", 5, 0}));
+    if (first) {
+      EXPECT_TRUE(std::any_of(piece.blocks.begin(), piece.blocks.end(),
+                              [](const auto& b) { return b.block.index.x == 99; }));
+    }
+    for (const auto& update : piece.blocks) EXPECT_TRUE(sent.insert(update.block.index.x).second);
+    source.acknowledged(kOne, token);
+    source.settled(token);
+  }
+  EXPECT_EQ(sent.size(), 100U);
+  EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now));
+}
+
+TEST_F(BlockSourceTest, ALostPieceIsMissingAgainInItsNewestState) {
+  source.join(kOne);
+  put(0, 1);
+  (void)next({kOne}, token);
+  EXPECT_EQ(source.missing(kOne), 0U);
+  put(0, 3);
+  source.lost(kOne, token);
+  source.settled(token);
+  EXPECT_EQ(source.missing(kOne), 1U);
+  const auto piece = next({kOne}, token);
+  ASSERT_EQ(piece.blocks.size(), 1U);
+  EXPECT_EQ(piece.blocks[0].block.known, 3U);
+}
+
+TEST_F(BlockSourceTest, ABlockThatChangesOnItsWayIsSentAgainLater) {
+  source.join(kOne);
+  put(0, 1);
+  (void)next({kOne}, token);
+  put(0, 3);
+  source.acknowledged(kOne, token);
+  EXPECT_EQ(source.missing(kOne), 1U);
+  EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << "it was sent just now";
+  now += 4s;
+  EXPECT_EQ(next({kOne}, token).blocks.size(), 1U);
+}
+
+TEST_F(BlockSourceTest, KnowsWhatEachPeerHas) {
+  source.join(kOne);
+  source.join(kTwo);
+  put(0);
+  (void)next({kOne, kTwo}, token);
+  source.acknowledged(kOne, token);
+  source.lost(kTwo, token);
+  EXPECT_EQ(source.missing(kOne), 0U);
+  EXPECT_EQ(source.missing(kTwo), 1U);
+  source.join(kOne);  // It was started again.
+  EXPECT_EQ(source.missing(kOne), 1U);
+}
+
+TEST_F(BlockSourceTest, AnUnchangedBlockIsNotSentAgain) {
+  source.join(kOne);
+  put(0);
+  (void)next({kOne}, token);
+  source.acknowledged(kOne, token);
+  put(0);
+  EXPECT_EQ(source.missing(kOne), 0U);
+}
+
+TEST_F(BlockSourceTest, DropsTheOldestSubmapWhenItIsFull) {
+  source.join(kOne);
+  for (int x = 0; x < 600; ++x) put(x, kAll, 0);
+  for (int x = 0; x < 600; ++x) put(x, kAll, 1);
+  EXPECT_LE(source.size(), 1000U);
+  EXPECT_EQ(source.missing(kOne), source.size());
+  EXPECT_EQ(source.dropped(), 600U);
+  for (int x = 0; x < 2000; ++x) put(x, kAll, 1);
+  EXPECT_LE(source.size(), 1000U);
+  while (source.missing(kOne) > 0) EXPECT_FALSE(next({kOne}, token).blocks.empty());
+}
+
+TEST_F(BlockSourceTest, ReachesEveryPeerWhateverIsLost) {
+  Random random(3);
+  source.join(kOne);
+  source.join(kTwo);
+  std::map<PeerId, std::map<BlockIndex, perception::BlockUpdate>> has;
+  for (int round = 0; round < 3000; ++round, now += 100ms) {
+    if (round < 1500)
+      for (int n = 0; n < 3; ++n)
+        source.update(static_cast<std::uint32_t>(round / 500),
+                      {{static_cast<int>(random.below(60)), round / 500, 0}, random.next() | 1, 1});
+    const std::vector<PeerId> peers =
+        source.missing(kTwo) > source.missing(kOne) ? std::vector{kTwo, kOne} : std::vector{kOne, kTwo};
+    if (source.missing(peers.front()) == 0) continue;
+    const auto piece = next(peers, token, 350);
+    for (const PeerId& peer : peers) {
+      if (random.chance(0.3)) {
+        source.lost(peer, token);
+        continue;
+      }
+      for (const auto& update : piece.blocks) {
+        auto& known = has[peer][update.block.index];
+        if (update.revision > known.revision) known = update;
+      }
+      source.acknowledged(peer, token);
+    }
+    source.settled(token);
+  }
+  EXPECT_EQ(source.missing(kOne), 0U);
+  EXPECT_EQ(source.missing(kTwo), 0U);
+  EXPECT_EQ(has[kOne].size(), source.size());
+  ASSERT_EQ(has[kTwo].size(), source.size());
+  for (const auto& [index, update] : has[kOne]) EXPECT_EQ(update.block, has[kTwo].at(index).block);
+}
+
+TEST(PoseSource, SendsEachPoseUntilItArrives) {
+  PoseSource source("r1", 5);
+  source.join(kOne);
+  for (std::uint32_t i = 0; i < 50; ++i) source.update(i, Pose3::level({1.0 * i, 2, 0.5}, 0.1));
+  std::map<std::uint32_t, Pose3> has;
+  for (int round = 0; source.missing(kOne) > 0; ++round) {
+    ASSERT_LT(round, 100);
+    const auto content = source.next(std::vector{kOne}, 350, Time{});
+    ASSERT_TRUE(content);
+    EXPECT_LE(content->data.size(), 350U);
+    if (round % 3 == 0) {
+      source.lost(kOne, content->token);
+    } else {
+      const auto poses = perception::decode_poses(content->data);
+      ASSERT_TRUE(poses.ok());
+      for (const auto& pose : poses->poses) has[pose.key.index] = pose.T_map_submap;
+      source.acknowledged(kOne, content->token);
+    }
+    source.settled(content->token);
+  }
+  ASSERT_EQ(has.size(), 50U);
+  EXPECT_NEAR(has.at(49).position.x(), 49.0, 0.01);
+  EXPECT_NEAR(has.at(49).yaw(), 0.5, 0.001);
+}
+
+}  // namespace
+}  // namespace adit::agent

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/perception/map_keeper.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/exec/virtual_runtime.hpp"
+#include "core/transfer/receiver.hpp"
+#include "perception/stream/piece.hpp"
+
+namespace adit::agent {
+namespace {
+
+/// A map component and its keeper, beside a wall 3 m in front of the start.
+class MapKeeperTest : public testing::Test {
+ protected:
+  MapKeeperTest() { restart(); }
+  ~MapKeeperTest() override { stop(); }
+  void stop() {
+    if (part) part->stop();
+    part.reset();
+  }
+  void restart() {
+    stop();
+    part = std::make_unique<MapPart>(MapParams{}, *strand, Log{}, service);
+    EXPECT_TRUE(part->start().ok());
+  }
+  /// Offers a scan at x; returns whether it enters the map.
+  bool scan(double x, std::uint32_t odom_epoch = 0) {
+    auto points = std::make_shared<Scan>();
+    points->body = Pose3::level({x, 0, 0}, 0);
+    for (double y = -2; y <= 2; y += 0.05)
+      for (double z = 0; z <= 1; z += 0.1)
+        points->points.emplace_back(static_cast<float>(3 + std::floor(x / 5) * 5 - x), static_cast<float>(y),
+                                    static_cast<float>(z));
+    const auto job = keeper.job(points, {}, odom_epoch, strand->now());
+    if (!job) return false;
+    frame.odom_epoch = odom_epoch;
+    service.call(*strand, job, {.deadline = 2s},
+                 [this](const Result<MapStep>& step) { keeper.taken(step, frame); });
+    run(100ms);
+    return true;
+  }
+  void run(Duration span) { scheduler.run_until(scheduler.elapsed() + span); }
+
+  VirtualScheduler scheduler{1};
+  std::unique_ptr<Runtime> machine{scheduler.machine("r1", 5s)};
+  std::shared_ptr<Strand> strand{machine->strand("map")};
+  MapService service{"map insertion", 2};
+  MapKeeper keeper{{.robot = "r1", .seed = 3, .origin = {0, 0, 0.5}}};
+  MapFrame frame{};
+  std::unique_ptr<MapPart> part{};
+};
+
+TEST_F(MapKeeperTest, ScansEnterTheMapByMotion) {
+  EXPECT_TRUE(scan(0.0));
+  EXPECT_GT(keeper.blocks(), 10U);
+  EXPECT_FALSE(scan(0.1));
+  EXPECT_TRUE(scan(0.25));
+  run(1s);
+  EXPECT_TRUE(scan(0.25)) << "once a second without motion";
+  EXPECT_TRUE(scan(0.25, 1)) << "another odometry frame";
+}
+
+TEST_F(MapKeeperTest, ALongWayMakesSeveralSubmaps) {
+  for (double x = 0; x < 40; x += 0.5) EXPECT_TRUE(scan(x));
+  EXPECT_EQ(keeper.submaps(), 3U);
+}
+
+TEST_F(MapKeeperTest, AnOdometryFrameHasSubmapsOfItsOwn) {
+  EXPECT_TRUE(scan(0.0));
+  EXPECT_TRUE(scan(0.5, 1));
+  EXPECT_EQ(keeper.submaps(), 2U);
+}
+
+TEST_F(MapKeeperTest, TheMapSurvivesARestartOfTheComponent) {
+  EXPECT_TRUE(scan(0.0));
+  const std::size_t blocks = keeper.blocks();
+  restart();
+  EXPECT_TRUE(scan(0.5));
+  EXPECT_EQ(keeper.submaps(), 2U);
+  EXPECT_GT(keeper.blocks(), blocks);
+}
+
+TEST_F(MapKeeperTest, GoesOnWhenTheComponentDoesNotAnswer) {
+  stop();
+  EXPECT_TRUE(scan(0.0));
+  run(1s);
+  restart();
+  EXPECT_TRUE(scan(0.5));
+  EXPECT_EQ(keeper.submaps(), 1U);
+  EXPECT_GT(keeper.blocks(), 0U);
+}
+
+TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection) {
+  EXPECT_TRUE(scan(0.0));
+  transfer::Receiver receiver;
+  std::map<std::uint32_t, Pose3> poses;
+  std::set<perception::BlockIndex> blocks;
+  const auto exchange = [&](Duration span) {
+    for (const Time end = strand->now() + span; strand->now() < end; run(50ms)) {
+      keeper.follow(frame);
+      for (const transfer::Piece& piece : keeper.due(strand->now(), {})) {
+        receiver.take("r1", keeper.session(), piece.id, strand->now());
+        if (piece.kind == transfer::Kind::map_poses) {
+          const auto decoded = perception::decode_poses(piece.data);
+          for (const auto& pose : decoded.value().poses) poses[pose.key.index] = pose.T_map_submap;
+        } else {
+          const auto decoded = perception::decode(piece.data);
+          for (const auto& update : decoded.value().blocks) blocks.insert(update.block.index);
+        }
+      }
+      if (const auto due = receiver.due(strand->now(), 20e6)) {
+        transfer::Ack ack{{1}, 1, {}};
+        if (!due->empty()) ack.receipt = due->front().second;
+        keeper.acknowledged(ack, strand->now());
+      }
+    }
+  };
+  exchange(5s);
+  EXPECT_EQ(blocks.size(), keeper.blocks());
+  ASSERT_EQ(poses.size(), 1U);
+  EXPECT_NEAR(poses.at(0).position.x(), 0.0, 0.01);
+  frame.T_map_odom = Pose3::level({7, 1, 0.2}, 0.5);
+  ++frame.map_epoch;
+  exchange(5s);
+  EXPECT_NEAR(poses.at(0).position.x(), 7.0, 0.01);
+  EXPECT_NEAR(poses.at(0).position.z(), 0.5, 0.01);
+  EXPECT_NEAR(poses.at(0).yaw(), 0.2, 0.001);
+}
+
+}  // namespace
+}  // namespace adit::agent

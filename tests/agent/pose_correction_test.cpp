@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/motion/pose_correction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace adit::agent {
+namespace {
+
+constexpr std::uint64_t kMs = 1'000'000;
+const Time kNow{100s};
+
+/// Samples of a driver whose odometry counts 10 % too much, every 20 ms, and the true pose.
+struct Drive {
+  std::uint64_t stamp{1'000'000 * kMs};
+  double x{};
+  Pose3 driver() const { return Pose3::level({1.1 * x, 0, 0}, 0); }
+  Pose3 truth() const { return Pose3::level({x, 0, 0}, 0); }
+  void step() {
+    stamp += 20 * kMs;
+    x += 0.02;
+  }
+  OdometryReport report(const Pose3& T_local_truth, std::uint32_t instance) const {
+    return {stamp, T_local_truth * truth() * driver().inverse(), instance, Localisation::ok, 0.02};
+  }
+};
+
+double jump(const Pose3& a, const Pose3& b) { return (a.position - b.position).norm(); }
+
+TEST(PoseCorrection, FollowsTheReportsWithoutAJump) {
+  PoseCorrection correction;
+  Drive drive;
+  Pose3 last = correction.apply(drive.driver(), drive.stamp);
+  for (int n = 1; n <= 500; ++n) {
+    drive.step();
+    const Pose3 now = correction.apply(drive.driver(), drive.stamp);
+    ASSERT_LT(jump(now, last), 0.04) << n;
+    last = now;
+    if (n % 5 == 0) correction.take(drive.report(Pose3{}, 1), kNow);
+  }
+  EXPECT_NEAR(last.position.x(), drive.x, 0.02);
+  EXPECT_EQ(correction.health(kNow), Localisation::ok);
+}
+
+TEST(PoseCorrection, AnotherInstanceContinuesFromThePresentPose) {
+  PoseCorrection correction;
+  Drive drive;
+  Pose3 last{};
+  for (int n = 0; n < 400; ++n) {
+    drive.step();
+    const Pose3 now = correction.apply(drive.driver(), drive.stamp);
+    if (n > 0) {
+      ASSERT_LT(jump(now, last), 0.04) << n;
+    }
+    last = now;
+    // The second instance has a frame that begins elsewhere, and turned.
+    const Pose3 T_local_truth = n < 200 ? Pose3{} : Pose3::level({-7, 3, 2}, 1);
+    if (n % 5 == 0) correction.take(drive.report(T_local_truth, n < 200 ? 1 : 2), kNow);
+  }
+  EXPECT_NEAR(last.position.x(), drive.x, 0.1);
+  EXPECT_NEAR(last.position.y(), 0, 0.02);
+}
+
+TEST(PoseCorrection, ALargeErrorIsMadeUpForAtAWalkingPace) {
+  PoseCorrection correction;
+  Drive drive;
+  correction.apply(drive.driver(), drive.stamp);
+  correction.take(drive.report(Pose3{}, 1), kNow);
+  OdometryReport far = drive.report(Pose3{}, 1);
+  far.T_local_driver.position.y() += 1.0;
+  correction.take(far, kNow);
+  Pose3 last = correction.apply(drive.driver(), drive.stamp);
+  for (int n = 0; n < 150; ++n) {
+    drive.stamp += 20 * kMs;
+    const Pose3 now = correction.apply(drive.driver(), drive.stamp);
+    ASSERT_LE(jump(now, last), PoseCorrection::kMaxSpeed * 0.02 + 1e-9);
+    last = now;
+  }
+  EXPECT_NEAR(last.position.y(), 1.0, 1e-6);
+}
+
+TEST(PoseCorrection, ADriverThatBeginsAgainIsFollowedFromThePresentCorrection) {
+  PoseCorrection correction;
+  Drive drive;
+  for (int n = 0; n < 100; ++n) {
+    drive.step();
+    correction.apply(drive.driver(), drive.stamp);
+    if (n % 5 == 0) correction.take(drive.report(Pose3{}, 1), kNow);
+  }
+  const OdometryReport old = drive.report(Pose3{}, 1);
+  // The driver begins at zero again.
+  const Pose3 T_new_old = drive.driver().inverse();
+  drive.stamp += 20 * kMs;
+  correction.begin_frame(drive.stamp);
+  const Pose3 first = correction.apply(T_new_old * drive.driver(), drive.stamp);
+  correction.take(old, kNow);  // Of the previous frame.
+  EXPECT_LT(jump(correction.apply(T_new_old * drive.driver(), drive.stamp + kMs), first), 1e-9);
+  OdometryReport next = old;
+  next.stamp = drive.stamp;
+  next.T_local_driver = old.T_local_driver * T_new_old.inverse();
+  correction.take(next, kNow);
+  EXPECT_LT(jump(correction.apply(T_new_old * drive.driver(), drive.stamp + 2 * kMs), first), 1e-6);
+}
+
+TEST(PoseCorrection, IgnoresReportsThatAreNoPoses) {
+  PoseCorrection correction;
+  Drive drive;
+  correction.apply(drive.driver(), drive.stamp);
+  OdometryReport broken = drive.report(Pose3{}, 1);
+  broken.T_local_driver.position.x() = std::numeric_limits<double>::quiet_NaN();
+  correction.take(broken, kNow);
+  broken = drive.report(Pose3{}, 1);
+  broken.T_local_driver.orientation.coeffs().setZero();
+  correction.take(broken, kNow);
+  EXPECT_TRUE(correction.apply(drive.driver(), drive.stamp).position.allFinite());
+  EXPECT_EQ(correction.health(kNow), Localisation::starting);
+}
+
+TEST(PoseCorrection, SilenceIsNoHealth) {
+  PoseCorrection correction;
+  Drive drive;
+  correction.apply(drive.driver(), drive.stamp);
+  correction.take(drive.report(Pose3{}, 1), kNow);
+  EXPECT_EQ(correction.health(kNow + 900ms), Localisation::ok);
+  EXPECT_EQ(correction.health(kNow + 1100ms), Localisation::starting);
+}
+
+}  // namespace
+}  // namespace adit::agent

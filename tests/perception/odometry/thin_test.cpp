@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/voxel/thin.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "core/time/random.hpp"
+
+namespace adit::perception {
+namespace {
+
+std::vector<Eigen::Vector3f> room(double size, std::size_t count) {
+  Random random(3);
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t n = 0; n < count; ++n) {
+    Eigen::Vector3d p(random.uniform(-size, size), random.uniform(-size, size), random.uniform(-1, 2));
+    p[static_cast<Eigen::Index>(random.below(2))] = random.chance(0.5) ? size : -size;
+    points.push_back(p.cast<float>());
+  }
+  return points;
+}
+
+TEST(Thinner, LeavesAboutAsManyPointsWhateverTheRoom) {
+  for (const double size : {2.0, 8.0, 25.0}) {
+    Thinner thinner({.wanted = 1500});
+    std::size_t left = 0;
+    for (int n = 0; n < 10; ++n) left = thinner.thin(room(size, 14'000)).size();
+    EXPECT_GE(left, 1000u) << size;
+    EXPECT_LE(left, 2000u) << size;
+  }
+}
+
+TEST(Thinner, LeavesOutPointsThatAreNoReturns) {
+  std::vector<Eigen::Vector3f> points = room(5, 2000);
+  const float nan = std::numeric_limits<float>::quiet_NaN(),
+              infinite = std::numeric_limits<float>::infinity();
+  points.push_back({nan, 0, 0});
+  points.push_back({infinite, 1, 1});
+  points.push_back({0.1f, 0, 0});
+  points.push_back({500, 0, 0});
+  Thinner thinner({});
+  for (const Eigen::Vector3f& p : thinner.thin(points)) {
+    ASSERT_TRUE(p.allFinite());
+    ASSERT_GT(p.norm(), 0.4f);
+    ASSERT_LT(p.norm(), 100.0f);
+  }
+  EXPECT_TRUE(Thinner({}).thin({}).empty());
+}
+
+}  // namespace
+}  // namespace adit::perception

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/voxel/voxel_planes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/time/random.hpp"
+
+namespace adit::perception {
+namespace {
+
+using Points = std::vector<Eigen::Vector3d>;
+
+/// Points of a wall x + 0.2 y = 4 with 2 cm of noise.
+Points wall(Random& random, std::size_t count) {
+  Points points;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double y = random.uniform(-3, 3), noise = 0.035 * (random.uniform() + random.uniform() - 1.0);
+    points.push_back({4 - 0.2 * y + noise, y, random.uniform(0, 2)});
+  }
+  return points;
+}
+
+TEST(VoxelPlanes, FindsAWallAndItsNormal) {
+  VoxelPlanes map({});
+  Random random(1);
+  for (int cloud = 1; cloud <= 5; ++cloud) map.insert(wall(random, 1000), cloud);
+  const Eigen::Vector3f normal = Eigen::Vector3f(1, 0.2f, 0).normalized();
+  int found = 0;
+  for (double y = -2.5; y < 2.6; y += 0.25) {
+    const auto plane = map.find({4 - 0.2 * y, y, 1.0});
+    if (!plane || plane->line) continue;
+    ++found;
+    EXPECT_GT(std::abs(plane->normal.dot(normal)), 0.995f);
+    EXPECT_LT(plane->variance, 0.03f * 0.03f);
+  }
+  EXPECT_GE(found, 18);
+  EXPECT_FALSE(map.find({1, 0, 1}));
+}
+
+TEST(VoxelPlanes, FindsAWallOnTheBorderOfTwoVoxelsFromBothSides) {
+  VoxelPlanes map({});
+  Random random(7);
+  Points points;
+  for (int n = 0; n < 2000; ++n) points.push_back({4.0, random.uniform(-2, 2), random.uniform(0, 2)});
+  map.insert(points, 1);
+  EXPECT_TRUE(map.find({4.05, 0.5, 1.5}));
+  EXPECT_TRUE(map.find({3.95, 0.5, 1.5}));
+  EXPECT_FALSE(map.find({3.8, 0.5, 1.5}));
+}
+
+TEST(VoxelPlanes, OneRingOnAWallIsNoPlane) {
+  VoxelPlanes map({});
+  Random random(2);
+  Points ring;
+  for (int n = 0; n < 400; ++n) ring.push_back({4.0 + 0.01 * random.uniform(), -2 + 0.01 * n, 1.0});
+  for (int cloud = 1; cloud <= 5; ++cloud) map.insert(ring, cloud);
+  for (double y = -1.9; y < 1.9; y += 0.1) EXPECT_FALSE(map.find({4, y, 1.0}));
+}
+
+TEST(VoxelPlanes, AnUprightPoleIsALine) {
+  VoxelPlanes map({});
+  Random random(3);
+  for (int cloud = 1; cloud <= 5; ++cloud) {
+    Points pole;
+    for (int n = 0; n < 60; ++n)
+      pole.push_back(
+          {2.4 + random.uniform(-0.05, 0.05), 1.4 + random.uniform(-0.05, 0.05), random.uniform(0.05, 0.95)});
+    map.insert(pole, cloud);
+  }
+  const auto line = map.find({2.4, 1.4, 0.5});
+  ASSERT_TRUE(line);
+  EXPECT_TRUE(line->line);
+  EXPECT_LT(std::abs(line->normal.z()), 0.3f);
+  EXPECT_LT(std::abs(line->along.z()), 0.3f);
+}
+
+TEST(VoxelPlanes, ForgetsWhatItLeftBehindAndStaysBounded) {
+  VoxelPlanes map({.keep_distance = 30.0, .max_voxels = 4000});
+  Random random(4);
+  for (int step = 0; step < 600; ++step) {
+    Points here;
+    for (int n = 0; n < 300; ++n)
+      here.push_back(
+          {0.5 * step + random.uniform(-4, 4), random.chance(0.5) ? 3.0 : -3.0, random.uniform(0, 2)});
+    map.insert(here, 0.5 * step);
+    map.forget(0.5 * step);
+    ASSERT_LE(map.size(), 3u * 4000u);
+  }
+  EXPECT_FALSE(map.find({10, 3, 1}));
+  EXPECT_TRUE(map.find({297, 3, 1}));
+  EXPECT_LT(map.bytes(), 4'000'000u);
+}
+
+}  // namespace
+}  // namespace adit::perception

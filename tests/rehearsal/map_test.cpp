@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Robots' maps on their way to the stations, in rehearsal.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/rehearsal/run_text.hpp"
+
+namespace adit::sim {
+namespace {
+
+/// Two robots drive through a room of 16 x 8 m, with two stations.
+std::string room(const std::string& more, const std::string& link = "mesh_500k") {
+  return "world: {boxes: [[-1, 16, -4, -3.8, 0, 2.5], [-1, 16, 3.8, 4, 0, 2.5], [-1.2, -1, -4, 4, 0, 2.5], "
+         "[15, 15.2, -4, 4, 0, 2.5], [6, 6.4, -1, 1, 0, 2.5]], floor: 0, ceiling: 3}\n"
+         "duration: 40\nlink: " +
+         link +
+         "\nlidar: full\nperception: slam\n"
+         "robots:\n  - {id: r1, platform: wheeled, pose: [0, 2, 0]}\n  - {id: r2, platform: wheeled, pose: "
+         "[0, -2, 0]}\n"
+         "basestations:\n  - {id: op1, pose: [0, 0]}\n  - {id: op2, pose: [14, 0]}\n"
+         "script:\n  - {at: 1, by: op1, do: take r1 r2}\n  - {at: 2, by: op1, do: goto r1 12 2}\n"
+         "  - {at: 2, by: op1, do: goto r2 12 -2}\n" +
+         more;
+}
+
+double seen(const RunReport& report) {
+  EXPECT_TRUE(report.map.has_value());
+  return report.map ? report.map->m2 : 0.0;
+}
+
+TEST(MapRehearsal, TheMapReachesTheStation) {
+  const RunReport report = run_text(room(""), "map.yaml");
+  EXPECT_TRUE(report.ok()) << (report.complaints().empty() ? "" : report.complaints().front());
+  EXPECT_GT(seen(report), 110.0);
+  EXPECT_LT(report.map->bytes_per_m2(), 3000.0);
+}
+
+TEST(MapRehearsal, SurvivesComponentsThatCrashAndHang) {
+  const RunReport report = run_text(
+      room(
+          "faults:\n  - {at: 4, crash: r1/map}\n  - {at: 6, hang: r2/map}\n  - {at: 8, crash: r1}\n"
+          "  - {at: 9, crash: r2/command}\n  - {at: 12, crash: op1}\n  - {at: 14, cut: [op2, r1], for: 5}\n"),
+      "map.yaml");
+  EXPECT_TRUE(report.ok()) << (report.complaints().empty() ? "" : report.complaints().front());
+  EXPECT_GT(seen(report), 110.0);
+  EXPECT_EQ(report.failures, 0U);
+}
+
+TEST(MapRehearsal, OffCostsNothing) {
+  std::string text = room("");
+  text.replace(text.find("perception: slam"), 16, "perception: off ");
+  const RunReport report = run_text(text, "map.yaml");
+  EXPECT_FALSE(report.map.has_value());
+  EXPECT_FALSE(report.topics.contains("adit/bulk"));
+}
+
+}  // namespace
+}  // namespace adit::sim

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/map/chunk_store.hpp"
+
+#include <gtest/gtest.h>
+
+#include "basestation/map/merged_map.hpp"
+
+namespace adit::station {
+namespace {
+
+using perception::BlockIndex;
+using perception::MapPiece;
+using perception::SubmapKey;
+using perception::SubmapPoses;
+
+constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+MapPiece piece_of(const SubmapKey& key, BlockIndex index, std::uint64_t known, std::uint64_t occupied,
+                  std::uint32_t revision) {
+  return {key, {{{index, known, occupied}, revision}}};
+}
+SubmapPoses pose_of(const SubmapKey& key, const Pose3& pose, std::uint32_t revision) {
+  return {{{key, pose, revision}}};
+}
+
+class ChunkStoreTest : public testing::Test {
+ protected:
+  ChunkStoreTest() { EXPECT_TRUE(chunks.count("r1", 100, 7, Time{})); }
+  ChunkStore chunks{};
+  SubmapKey key{"r1", 5, 0};
+};
+
+TEST_F(ChunkStoreTest, TheHigherRevisionWinsInAnyOrder) {
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 0}, 3, 1, 9)));
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 0}, kAll, 0, 8)));
+  const auto& block = chunks.robots().at("r1").submaps.at(key).blocks.at({0, 0, 0});
+  EXPECT_EQ(block.known, 3U);
+  EXPECT_EQ(block.revision, 9U);
+  EXPECT_TRUE(chunks.take("r1", piece_of(key, {0, 0, 0}, kAll, 1, 10)));
+  EXPECT_EQ(block.known, kAll);
+  EXPECT_EQ(chunks.blocks(), 1U);
+}
+
+TEST_F(ChunkStoreTest, AnOlderPoseChangesNothing) {
+  EXPECT_TRUE(chunks.take("r1", pose_of(key, Pose3::level({1, 0, 0}, 0), 4)));
+  EXPECT_TRUE(chunks.take("r1", pose_of(key, Pose3::level({2, 0, 0}, 0), 3)));
+  EXPECT_EQ(chunks.robots().at("r1").submaps.at(key).T_map_submap->position.x(), 1.0);
+}
+
+TEST_F(ChunkStoreTest, OnlyTheRobotItselfAddsToItsMap) {
+  EXPECT_FALSE(chunks.take("r1", piece_of({"r2", 5, 0}, {0, 0, 0}, 1, 1, 1)));
+  EXPECT_FALSE(chunks.take("r1", pose_of({"r2", 5, 0}, {}, 1)));
+  EXPECT_TRUE(chunks.empty());
+  EXPECT_EQ(chunks.refused(), 2U);
+}
+
+TEST_F(ChunkStoreTest, StaysBounded) {
+  ChunkStore small({.max_robots = 2, .max_submaps = 3, .max_blocks = 10});
+  EXPECT_TRUE(small.count("r1", 1, 0, Time{}));
+  for (std::uint32_t n = 0; n < 10; ++n)
+    for (int x = 0; x < 10; ++x) (void)small.take("r1", piece_of({"r1", 5, n}, {x, 0, 0}, 1, 0, 1));
+  EXPECT_EQ(small.blocks(), 10U);
+  EXPECT_EQ(small.robots().at("r1").submaps.size(), 3U);
+  EXPECT_EQ(small.refused(), 90U);
+  EXPECT_TRUE(small.count("r2", 1, 0, Time{}));
+  EXPECT_FALSE(small.count("r3", 1, 0, Time{}));
+}
+
+TEST_F(ChunkStoreTest, AreaCountsWhatTwoSubmapsSawOnce) {
+  EXPECT_EQ(chunks.area(), 0.0);
+  chunks.take("r1", piece_of(key, {0, 0, 0}, kAll, 0, 1));
+  chunks.take("r1", piece_of(key, {0, 0, 1}, kAll, 0, 1));
+  EXPECT_EQ(chunks.area(), 0.0) << "where the submap is is not known yet";
+  chunks.take("r1", pose_of(key, {}, 1));
+  EXPECT_NEAR(chunks.area(), 0.64, 1e-6);
+  const SubmapKey other{"r1", 5, 1};
+  chunks.take("r1", piece_of(other, {0, 0, 0}, kAll, 0, 1));
+  chunks.take("r1", pose_of(other, {}, 1));
+  EXPECT_NEAR(chunks.area(), 0.64, 1e-6);
+  chunks.take("r1", pose_of(other, Pose3::level({8.0, 0, 0}, 0), 2));
+  EXPECT_NEAR(chunks.area("r1"), 1.28, 1e-6);
+  EXPECT_EQ(chunks.area("r2"), 0.0);
+}
+
+TEST_F(ChunkStoreTest, PartsHaveWhatIsPlaced) {
+  chunks.take("r1", piece_of(key, {0, 0, 0}, kAll, 1, 1));
+  EXPECT_TRUE(parts_of(chunks).empty());
+  chunks.take("r1", pose_of(key, {}, 1));
+  EXPECT_EQ(parts_of(chunks).size(), 1U);
+  EXPECT_EQ(parts_of(chunks, "r1").size(), 1U);
+  EXPECT_TRUE(parts_of(chunks, "r2").empty());
+  EXPECT_FALSE(merged(parts_of(chunks), nullptr, 0.2).empty());
+}
+
+}  // namespace
+}  // namespace adit::station

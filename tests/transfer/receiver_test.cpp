@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/transfer/receiver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/time/random.hpp"
+
+namespace adit::transfer {
+namespace {
+
+constexpr double kThin = 100e3, kWide = 20e6;
+
+TEST(Receiver, ReceiptHasExactlyWhatArrivedInAnyOrder) {
+  Random random(7);
+  for (int run = 0; run < 50; ++run) {
+    Receiver receiver;
+    std::set<std::uint32_t> arrived;
+    std::uint32_t base = 1;
+    for (int i = 0; i < 200; ++i) {
+      const auto id = base + static_cast<std::uint32_t>(random.below(20));
+      EXPECT_EQ(receiver.take("r1", 5, id, Time{}), arrived.insert(id).second) << "id " << id;
+      if (random.chance(0.3)) ++base;
+    }
+    const auto due = receiver.due(Time{}, kThin);
+    ASSERT_TRUE(due);
+    ASSERT_EQ(due->size(), 1U);
+    const Receipt& receipt = due->front().second;
+    EXPECT_EQ(receipt.newest, *arrived.rbegin());
+    for (std::uint32_t id = 0; id < receipt.newest + 10; ++id)
+      EXPECT_EQ(receipt.has(id), arrived.contains(id) && receipt.newest - id < Receipt::kSpan) << "id " << id;
+  }
+}
+
+TEST(Receiver, AcknowledgesOnceASecondOnAThinLinkAndFasterOnOthers) {
+  for (const auto& [bandwidth, most, least] : {std::tuple{kThin, 11, 9}, std::tuple{kWide, 41, 35}}) {
+    Receiver receiver;
+    int sent = 0;
+    for (std::uint32_t i = 0; i < 200; ++i) {
+      const Time now{i * 50ms};
+      receiver.take("r1", 5, i + 1, now);
+      sent += receiver.due(now, bandwidth) ? 1 : 0;
+    }
+    EXPECT_LE(sent, most);
+    EXPECT_GE(sent, least);
+  }
+}
+
+TEST(Receiver, ShowsNowAndThenThatItIsThere) {
+  Receiver receiver;
+  ASSERT_TRUE(receiver.due(Time{}, kThin));
+  int sent = 0;
+  for (int i = 1; i <= 200; ++i) sent += receiver.due(Time{i * 100ms}, kThin) ? 1 : 0;
+  EXPECT_EQ(sent, 5);
+}
+
+TEST(Receiver, AnotherSessionBeginsAnew) {
+  Receiver receiver;
+  receiver.take("r1", 5, 90, Time{});
+  EXPECT_TRUE(receiver.take("r1", 6, 1, Time{}));
+  const auto due = receiver.due(Time{}, kThin);
+  ASSERT_TRUE(due);
+  EXPECT_EQ(due->front().second, (Receipt{6, 1, {1, 0}}));
+}
+
+TEST(Receiver, StaysBoundedWithManySenders) {
+  Receiver receiver;
+  for (int i = 0; i < 1000; ++i) receiver.take("robot" + std::to_string(i), 1, 1, Time{i * 1ms});
+  std::size_t receipts = 0;
+  for (int i = 0; i < 20; ++i)
+    if (const auto due = receiver.due(Time{2s + i * 1s}, kThin)) {
+      EXPECT_LE(due->size(), 16U);
+      receipts += due->size();
+    }
+  EXPECT_GE(receipts, 64U);
+}
+
+}  // namespace
+}  // namespace adit::transfer
