@@ -28,6 +28,14 @@ constexpr double kLevelRate = 0.003;    ///< How fast the frame is levelled, rad
 constexpr double kLevelSigma = 0.0035;  ///< Gravity is known well enough to level by, rad.
 constexpr std::uint64_t kImuPatience = 2'000'000'000;  ///< Wait for the first sample of an IMU, ns.
 
+/// Position and rotation by which the registered pose differs from the state.
+Vector6 innovation_of(const S& state, const Pose3& registered) {
+  Vector6 innovation;
+  innovation.head<3>() = registered.position - state.position;
+  innovation.tail<3>() = log_so3(state.rotation.conjugate() * registered.orientation);
+  return innovation;
+}
+
 Eigen::Matrix3d rotation_of(const Pose3& pose) { return pose.orientation.toRotationMatrix(); }
 
 }  // namespace
@@ -152,14 +160,12 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
   ++clouds_;
   Registered found;
   const bool first = map_.size() == 0;
-  if (!first) {
-    const Pose3 prior{filter_.state().position, filter_.state().rotation};
-    const Matrix6 information = filter_.state().P.topLeftCorner<6, 6>().inverse();
-    found = registration_.align(map_, body_points_, prior, information, window_);
-  }
   if (first) {
     state_.health = thinned.size() < kLeastMatches ? Localisation::weak : Localisation::ok;
   } else {
+    const Pose3 prior{filter_.state().position, filter_.state().rotation};
+    const Matrix6 information = filter_.state().P.topLeftCorner<6, 6>().inverse();
+    found = registration_.align(map_, body_points_, prior, information, window_);
     judge(found);
   }
   state_.matched = found.matched;
@@ -176,9 +182,7 @@ const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> poin
 
 void LidarOdometry::judge(const Registered& found) {
   const S& prior = filter_.state();
-  Vector6 innovation;
-  innovation.head<3>() = found.pose.position - prior.position;
-  innovation.tail<3>() = log_so3(prior.rotation.conjugate() * found.pose.orientation);
+  const Vector6 innovation = innovation_of(prior, found.pose);
   const Matrix6 P = prior.P.topLeftCorner<6, 6>();
   const double distance = innovation.dot(P.ldlt().solve(innovation)) / 6.0;
   const double share =
@@ -235,9 +239,7 @@ void LidarOdometry::judge(const Registered& found) {
 void LidarOdometry::apply(const Registered& found) {
   S next = filter_.state();
   const Matrix6 P = next.P.topLeftCorner<6, 6>();
-  Vector6 innovation;
-  innovation.head<3>() = found.pose.position - next.position;
-  innovation.tail<3>() = log_so3(next.rotation.conjugate() * found.pose.orientation);
+  const Vector6 innovation = innovation_of(next, found.pose);
   // The scale of the wheels is learned from directions that the lidar determines, and only there.
   const Eigen::Vector3d v = filter_.velocity();
   bool seen = true;

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "sim/truth/lidar_turn.hpp"
 #include "sim/world/standing_map.hpp"
 
 namespace adit::sim {
@@ -94,21 +95,11 @@ Result<ExplorationTruth> ExplorationTruth::create(std::shared_ptr<const World> w
 template <class Mark, class End>
 void ExplorationTruth::turn(const LidarPattern& lidar, const Pose3& sensor, const Mark& mark,
                             const End& end) const {
-  const Eigen::Matrix3d R = sensor.orientation.toRotationMatrix();
-  const VoxelGrid::Start start = world_->grid().locate(sensor.position);
-  std::vector<Eigen::Vector3d> directions(lidar.elevations().size());
-  std::vector<double> ranges(directions.size());
-  for (const Eigen::Vector2d& azimuth : lidar.azimuths()) {
-    const Eigen::Vector3d ahead = R.col(0) * azimuth.x() + R.col(1) * azimuth.y();
-    for (std::size_t n = 0; n < directions.size(); ++n)
-      directions[n] = ahead * lidar.elevations()[n].x() + R.col(2) * lidar.elevations()[n].y();
-    world_->grid().cast(start, directions, kRange, ranges);
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      const double length = std::min(ranges[n], kRange) - kBefore;
-      cells_.for_each_on(sensor.position, directions[n], length, mark);
-      end(sensor.position + length * directions[n]);
-    }
-  }
+  for_each_beam(*world_, lidar, sensor, kRange, [&](const Eigen::Vector3d& direction, double range) {
+    const double length = std::min(range, kRange) - kBefore;
+    cells_.for_each_on(sensor.position, direction, length, mark);
+    end(sensor.position + length * direction);
+  });
 }
 
 void ExplorationTruth::find_possible() {

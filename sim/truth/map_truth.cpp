@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sim/truth/lidar_turn.hpp"
+
 namespace adit::sim {
 namespace {
 
@@ -139,22 +141,12 @@ SeenSurface::SeenSurface(std::shared_ptr<const World> world, std::span<const Pla
 
 void SeenSurface::look(std::size_t robot, const Pose3& base) {
   const Pose3 sensor = base * robots_[robot].lidar().mounting.pose();
-  const LidarPattern& lidar = lidars_[robot];
-  const Eigen::Matrix3d R = sensor.orientation.toRotationMatrix();
-  const VoxelGrid::Start start = world_->grid().locate(sensor.position);
-  std::vector<Eigen::Vector3d> directions(lidar.elevations().size());
-  std::vector<double> ranges(directions.size());
-  for (const Eigen::Vector2d& azimuth : lidar.azimuths()) {
-    const Eigen::Vector3d ahead = R.col(0) * azimuth.x() + R.col(1) * azimuth.y();
-    for (std::size_t n = 0; n < directions.size(); ++n)
-      directions[n] = ahead * lidar.elevations()[n].x() + R.col(2) * lidar.elevations()[n].y();
-    world_->grid().cast(start, directions, kRange, ranges);
-    for (std::size_t n = 0; n < directions.size(); ++n) {
-      if (!(ranges[n] < kRange)) continue;
-      const Eigen::Vector3d hit = sensor.position + ranges[n] * directions[n];
-      if (known_.insert(key_of(hit, kPatch)).second) points_.push_back(hit.cast<float>());
-    }
-  }
+  for_each_beam(*world_, lidars_[robot], sensor, kRange,
+                [&](const Eigen::Vector3d& direction, double length) {
+                  if (!(length < kRange)) return;
+                  const Eigen::Vector3d hit = sensor.position + length * direction;
+                  if (known_.insert(key_of(hit, kPatch)).second) points_.push_back(hit.cast<float>());
+                });
 }
 
 void SeenSurfaceRecord::look(std::size_t robot, const Pose3& base) {
