@@ -53,6 +53,7 @@ void Agent::Impl::end_disk() {
   if (context && context->driver) context->driver->write({});  // The disk must not delay the zero velocity.
   if (context && context->keeper) context->keeper->flush();
   if (context && context->findings) context->findings->flush();
+  if (context && context->map) context->map->flush();
   disk_strand->drain(kDiskDrain);  // A disk that does not answer must not prevent the end of the process.
 }
 
@@ -151,6 +152,11 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
     e.notifier->send(
         {{}, Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost});
 
+  if (params.perception != PerceptionLevel::off) {
+    e.keyframes = std::make_unique<KeyframeStore>(params.disk, strand, disk_strand);
+    e.keyframes->load();
+  }
+
   const auto with_command = [&e](const auto& use) {
     if (e.command_component) use(*e.command_component);
   };
@@ -177,11 +183,7 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   for (Unit* unit : {&planner, &router, &sensors, &map})
     if ((unit != &router || routes_it) && (unit != &map || maps_it))
       if (const auto opened = unit->open(); !opened) return opened.error();
-  if (maps_it)
-    e.map = std::make_unique<MapKeeper>(
-        MapKeeperParams{.robot = params.name,
-                        .seed = Random(params.seed).fork(kMapSalt).next(),
-                        .origin = params.platform.lidar().mounting.position().cast<float>()});
+  if (maps_it) open_map();
   if (routes_it) e.router = std::make_unique<RouteServices>();
   auto opened = AgentSupervisor::open({params.name, params.supervision, Log(params.log, params.name),
                                        params.end, params.alive, params.velocity},
@@ -233,6 +235,33 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
            e.peers.refuse_beacon(BeaconFault::malformed);
        },
        std::move(acknowledged)});
+}
+
+void Agent::Impl::open_map() {
+  Context& e = *context;
+  std::unique_ptr<MapDisk> disk{};
+  if (params.disk)
+    disk = std::make_unique<MapDisk>(
+        MapDiskParams{.robot = params.name}, params.disk, command_strand(), disk_strand,
+        [this](bool failing, const std::string& text) {
+          if (failing)
+            context->notifier->send({{},
+                                     Severity::error,
+                                     "map_not_stored",
+                                     Reason::cannot_write,
+                                     params.name + " cannot keep its map over a restart: " + text});
+          else
+            context->notifier->send(
+                {{}, Severity::info, "map_stored", Reason::none, params.name + ": " + text});
+        });
+  e.map = std::make_unique<MapKeeper>(
+      MapKeeperParams{.robot = params.name,
+                      .seed = Random(params.seed).fork(kMapSalt).next(),
+                      .origin = params.platform.lidar().mounting.position().cast<float>()},
+      std::move(disk));
+  const LoadedMap loaded = e.map->load();
+  if (const std::string lost = loaded.text(); !lost.empty())
+    e.notifier->send({{}, Severity::error, "map_damaged", loaded.reason, params.name + ": " + lost});
 }
 
 std::shared_ptr<const nav::PlannerLibrary> Agent::Impl::library() {

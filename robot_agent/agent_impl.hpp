@@ -37,6 +37,8 @@ struct Agent::Impl {
  private:
   /// Completes queued disk writes, for a bounded time.
   void end_disk();
+  /// Makes the robot's map, with what the disk has of it.
+  void open_map();
   std::mutex mutex_{};  // Guards library_: a planner that hangs may still be computing it.
   std::shared_ptr<const nav::PlannerLibrary> library_{};
 

@@ -60,86 +60,6 @@ Agent::CommandComponent::CommandComponent(const AgentParams& params, Executor& c
                   commands_, behaviour_}),
       rivals_(now()) {}
 
-void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
-                                       Time received) {
-  protect([&] {
-    const Pose3 T_odom_base = localises() ? correction_.apply(odom, stamp) : odom;
-    if (!frames_.update(T_odom_base, twist, stamp, received)) {
-      correction_.begin_frame(stamp);
-      odometry_jumped();
-    }
-    if (waiting_scan_ && !is_ahead(waiting_scan_->stamp)) add_waiting_scan();
-  });
-}
-
-Result<MapFrame> Agent::CommandComponent::correct_map(const MapFrame& corrected) {
-  if (const auto taken = frames_.correct(corrected); !taken) return taken.error();
-  keep();  // Stores at once: the next instance must not use the same epoch for another place.
-  return frames_.map_frame();
-}
-
-void Agent::CommandComponent::odometry_jumped() {
-  constexpr Duration kTellAgain = 5s;  // Two drivers that write alternately cause a jump with every sample.
-  navigation_.clear();
-  waiting_scan_.reset();  // It was taken in the previous odometry frame.
-  behaviour_.hold(Reason::odometry_jumped, now());
-  keep();  // As in correct_map().
-  if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
-  jump_told_ = now();
-  notices_.odometry_jumped(frames_.T_map_base());
-}
-
-Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
-  if (!frames_.initialised())
-    return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
-  frames_.set_pose(pose);
-  return {};
-}
-
-void Agent::CommandComponent::scan(LidarScan lidar) {
-  protect([&] {
-    if (!frames_.initialised()) return;
-    if (waiting_scan_) add_waiting_scan();
-    waiting_scan_ = std::move(lidar);
-    if (!is_ahead(waiting_scan_->stamp)) add_waiting_scan();
-  });
-}
-
-bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
-  constexpr std::uint64_t kLongest = 200'000'000;  // In ns; a stamp farther ahead is from another clock.
-  const std::uint64_t newest = frames_.newest_stamp();
-  return newest != 0 && stamp > newest && stamp - newest <= kLongest;
-}
-
-void Agent::CommandComponent::add_waiting_scan() {
-  const LidarScan waiting = *std::exchange(waiting_scan_, std::nullopt);
-  if (waiting.odometry) correction_.take(*waiting.odometry, now());
-  auto scan = std::make_shared<Scan>();
-  scan->points = std::move(*waiting.points);
-  const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
-  // Without a common clock the newest pose is the best guess.
-  scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
-  // The yaw is the odometry's; how the body leans the IMU knows better.
-  if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
-  add_to_map(scan);
-  navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
-}
-
-void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan) {
-  if (!context_.map) return;
-  auto job = context_.map->job(scan, team(now()), frames_.odom_epoch(), now());
-  if (!job) return;
-  call(context_.map_insertion, std::move(job), {.deadline = 2s},
-       [this](const Result<MapStep>& step) { context_.map->taken(step, frames_.map_frame()); });
-}
-
-void Agent::CommandComponent::send_map() {
-  if (!context_.map) return;
-  if (frames_.initialised()) context_.map->follow(frames_.map_frame());
-  for (const transfer::Piece& piece : context_.map->due(now(), context_.wire->sender()))
-    context_.radio->send(piece, context_.map->session());
-}
-
 void Agent::CommandComponent::battery(float charge) {
   protect([&] { safeguards_.battery(charge, now()); });
 }
@@ -248,8 +168,7 @@ void Agent::CommandComponent::restore() {
   commands_.restore(s.authority, s.answers,
                     started_);  // listen_first() checks which stations were heard since.
   note_holder();
-  if (s.place) frames_.restore(*s.place);
-  if (s.place && localises()) correction_.restore(s.place->T_odom_driver);
+  if (s.place) restore_place(*s.place);
   // Without a stored pose it is unknown whether the odometry frame is still the same. With one, the first
   // odometry sample decides.
   const bool comparable = s.place && s.place->newest;
@@ -285,8 +204,7 @@ Result<void> Agent::CommandComponent::on_start() {
   telemetry_.start(now(), started_);
   timers_.push_back(every(kBeat, [this] { beat(); }));
   timers_.push_back(every(kStatePeriod, [this] {
-    const double sigma = localises() ? correction_.sigma() : 0.0;
-    telemetry_.send_state(now(), safeguards_.charge(), localisation(now()), sigma);
+    telemetry_.send_state(now(), safeguards_.charge(), localisation(now()), place_sigma());
     context_.directory.tick(now());
     send_beacon(now());
   }));
@@ -343,27 +261,6 @@ void Agent::CommandComponent::keep() {
       [this] { return commands_.kept_answers(); }, commands_.accepted());
 }
 
-StoredFrames Agent::CommandComponent::stored_place() const {
-  StoredFrames place = frames_.stored();
-  if (localises()) place.T_odom_driver = correction_.T_odom_driver();
-  return place;
-}
-
-void Agent::CommandComponent::watch_localisation(Time at) {
-  // A robot that passes a smooth wall is weak for a moment, which the operator need not know.
-  constexpr Duration kWeakFor = 3s;
-  const Localisation health = localisation(at);
-  if (health == reported_localisation_ || health == Localisation::starting || health == Localisation::off) {
-    localisation_since_ = at;
-    return;
-  }
-  if (health != Localisation::lost && at - localisation_since_ < kWeakFor) return;
-  const bool first = reported_localisation_ == Localisation::starting;
-  reported_localisation_ = health;
-  localisation_since_ = at;
-  if (!(first && health == Localisation::ok)) notices_.localisation(health, correction_.sigma());
-}
-
 void Agent::CommandComponent::watch_driver() {
   if (telemetry_.driver_fell_silent(now())) notices_.driver_lost();
 }
@@ -413,7 +310,11 @@ void Agent::CommandComponent::send_beacon(Time at) {
 Facts Agent::CommandComponent::sense(Time now) const {
   Facts f{};
   f.driver_alive = frames_.alive(now);
-  f.localised = frames_.initialised() && localisation(now) != Localisation::lost;
+  f.localised = frames_.initialised() && localisation(now) != Localisation::lost && context_.place.known();
+  if (!context_.place.known())
+    f.unlocalised = context_.place.why();
+  else if (localisation(now) == Localisation::lost)
+    f.unlocalised = Reason::localisation_lost;
   f.terrain_fresh = navigation_.terrain_fresh(now);
   f.map_fresh = navigation_.map_fresh(now);
   return f;

@@ -23,7 +23,9 @@
 #include "robot_agent/motion/rival.hpp"
 #include "robot_agent/motion/scans.hpp"
 #include "robot_agent/notices/notices.hpp"
+#include "robot_agent/perception/keyframe_store.hpp"
 #include "robot_agent/perception/map_keeper.hpp"
+#include "robot_agent/perception/place_check.hpp"
 #include "robot_agent/radio/notifier.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/safeguard/safeguards.hpp"
@@ -32,6 +34,10 @@
 #include "robot_agent/supervisor/agent_supervisor.hpp"
 #include "robot_agent/team/beacon_rate.hpp"
 #include "robot_agent/telemetry/telemetry.hpp"
+
+namespace adit::perception {
+struct RecognisedPlace;
+}
 
 namespace adit::agent {
 
@@ -54,6 +60,9 @@ struct Agent::Context {
   PlanService planner{"planner", 2};        ///< The services are callable from any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};
+  /// Null with `perception: off`.
+  std::unique_ptr<KeyframeStore> keyframes{};
+  PlaceCheck place{};
   std::uint32_t odometries{};  ///< Instances of the odometry so far; by the sensors component only.
   FrameServices frames{};
   std::unique_ptr<MapKeeper> map{};  ///< Null: this robot makes no map.
@@ -103,12 +112,19 @@ class Agent::CommandComponent : public Component {
   void listen_first(Time at);
   /// Whether the robot has an odometry of its own beside the driver's.
   bool localises() const { return params_.perception != PerceptionLevel::off; }
-  Localisation localisation(Time at) const {
-    return localises() ? correction_.health(at) : Localisation::off;
-  }
+  Localisation localisation(Time at) const;
+  /// Standard deviation of the position, m; infinite: the robot does not know where it is.
+  double place_sigma() const;
   /// Notifies the holder when the odometry becomes weak or lost, and when it is well again.
   void watch_localisation(Time at);
   StoredFrames stored_place() const;
+  /// Restores frames and odometry after a restart; the robot then recognises its surroundings, or holds.
+  void restore_place(const StoredFrames& stored);
+  /// Compares a scan with the stored keyframes.
+  void compare_place(const std::shared_ptr<const Scan>& scan);
+  void place_compared(const Result<perception::RecognisedPlace>& found);
+  /// Zero and hold until an operator sets the pose.
+  void place_unknown(const std::string& why);
   void watch_driver();
   /// Handles odometry that started again elsewhere: zero, hold, and a new local map.
   void odometry_jumped();
@@ -163,6 +179,7 @@ class Agent::CommandComponent : public Component {
   Time started_{};
   std::optional<Time> holder_heard_{};  ///< First heartbeat of the holder since the start.
   std::optional<Time> jump_told_{};
+  int comparisons_{};  ///< Scans that did not fit the stored keyframes.
   RivalWatch rivals_;
   bool gives_way_{};                     ///< It gives way to another robot of its name.
   RateLimit<bool> namesakes_told_{10s};  // The key is `gives_way_`.

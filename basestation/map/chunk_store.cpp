@@ -51,6 +51,7 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
     } else if (update.revision <= known->second.revision) {
       continue;
     }
+    ++revision_;
     into->blocks[update.block.index] = {update.block.known, update.block.occupied, update.revision};
   }
   return complete;
@@ -66,6 +67,7 @@ bool ChunkStore::take(const std::string& robot, const perception::SubmapPoses& p
     } else if (!into->T_map_submap || pose.revision > into->pose_revision) {
       into->T_map_submap = pose.T_map_submap;
       into->pose_revision = pose.revision;
+      ++revision_;
     }
   }
   return complete;

@@ -57,6 +57,8 @@ class ChunkStore {
   /// Number of blocks and poses that did not fit, or were not the sender's.
   std::uint64_t refused() const { return refused_; }
   bool empty() const { return blocks_ == 0; }
+  /// Rises with each block or pose that changed.
+  std::uint64_t revision() const { return revision_; }
   /// Area of the ground seen, by robot; "" for all: columns of 0.2 m of which anything is known, m2.
   double area(const std::string& robot = {}) const;
 
@@ -67,6 +69,7 @@ class ChunkStore {
   std::map<std::string, Robot> robots_{};
   std::size_t blocks_{};
   std::uint64_t refused_{};
+  std::uint64_t revision_{};
 };
 
 }  // namespace adit::station

@@ -10,6 +10,9 @@
 namespace adit::station {
 namespace {
 
+/// A robot that does not know where it is states this standard deviation, the largest there is, m.
+constexpr double kUnknownPlace = 65.0;
+
 std::string or_dash(const std::string& text) { return text.empty() ? "-" : text; }
 
 std::string battery_text(const RobotView& robot) {
@@ -158,8 +161,8 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
            " m, yaw " + fixed(robot.yaw * 180.0 / std::numbers::pi, 1) + " degrees\n  speed    " +
            fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
   if (robot.located && robot.localisation != Localisation::off)
-    out += "  place    " + std::string(to_string(robot.localisation)) + ", known to " +
-           fixed(robot.sigma, 2) + " m\n";
+    out += "  place    " + std::string(to_string(robot.localisation)) +
+           (robot.sigma < kUnknownPlace ? ", known to " + fixed(robot.sigma, 2) + " m\n" : ", unknown\n");
   if (robot.described)
     out += "  size     " + size_text(robot.size) + "\n  limits   " + limits_text(robot) + "\n  sensors  " +
            command::joined(robot.sensors, "-") + "\n  services " + command::joined(robot.services, "-") +

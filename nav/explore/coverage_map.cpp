@@ -55,10 +55,20 @@ void CoverageMap::add_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& to
   const bool ends = length <= range_;
   const Eigen::Vector3d end = ends ? to : Eigen::Vector3d(from + way * (range_ / length));
   walk_voxels(from, end, [&](const CoverageVoxel& v, bool last) {
+    const bool hits = last && ends;
+    // Most voxels that a ray passes were passed by another ray of the same scan.
+    if (std::uint64_t* const noted = window_.find(v, hits)) {
+      const std::uint64_t bit = window_.bit(v);
+      if ((*noted & bit) != 0) return true;
+      *noted |= bit;
+    }
     Column* column = column_to_write(v);
-    if (column == nullptr) return false;
+    if (column == nullptr) {
+      window_.clear();  // What has no place is tried again.
+      return false;
+    }
     const auto mask = static_cast<std::uint16_t>(1u << (v.z & 15));
-    std::uint16_t& kind = last && ends ? column->hit : column->free;
+    std::uint16_t& kind = hits ? column->hit : column->free;
     kind = static_cast<std::uint16_t>(kind | mask);
     return true;
   });
@@ -68,6 +78,7 @@ void CoverageMap::add_scan(std::span<const Eigen::Vector3f> points, const Eigen:
                            const Pose3& body) {
   const Eigen::Matrix3d turn = body.orientation.toRotationMatrix();
   const Eigen::Vector3d from = body.position + turn * sensor;
+  window_.begin(voxel_at(from));
   for (const Eigen::Vector3f& p : points)
     if (p.allFinite()) add_ray(from, body.position + turn * p.cast<double>());
 }

@@ -75,6 +75,31 @@ class CoverageMap {
   static bool bit(std::uint16_t mask, int z) { return (mask >> (z & 15)) & 1u; }
 
  private:
+  /// The voxels around the sensor that a ray of the current scan has noted: one bit each.
+  class Window {
+   public:
+    /// Begins a scan of a sensor in this voxel.
+    void begin(const CoverageVoxel& sensor) {
+      corner_ = {sensor.x - kEdge / 2, sensor.y - kEdge / 2, sensor.z - kEdge / 2};
+      clear();
+    }
+    void clear() { noted_.assign(2 * kEdge * kEdge, 0); }
+    /// The bits of a voxel's column, for rays that end in it or pass; null outside of the window.
+    std::uint64_t* find(const CoverageVoxel& v, bool hits) {
+      const auto x = static_cast<std::uint32_t>(v.x - corner_.x),
+                 y = static_cast<std::uint32_t>(v.y - corner_.y),
+                 z = static_cast<std::uint32_t>(v.z - corner_.z);
+      if (x >= kEdge || y >= kEdge || z >= kEdge) return nullptr;
+      return &noted_[2 * (y * kEdge + x) + hits];
+    }
+    std::uint64_t bit(const CoverageVoxel& v) const { return std::uint64_t{1} << (v.z - corner_.z); }
+
+   private:
+    static constexpr int kEdge = 64;  ///< Voxels.
+    CoverageVoxel corner_{};
+    std::vector<std::uint64_t> noted_{};
+  };
+
   static std::uint64_t key(int tx, int ty, int band);
   int find(int tx, int ty, int band) const;
   Column* column_to_write(const CoverageVoxel& v);
@@ -85,6 +110,7 @@ class CoverageMap {
   std::vector<Tile> tiles_{};
   std::unordered_map<std::uint64_t, int> index_{};  ///< Looked up only.
   int last_{-1};                                    ///< Tile that was written last.
+  Window window_{};
 };
 
 }  // namespace adit::nav

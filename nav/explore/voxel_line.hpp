@@ -9,12 +9,22 @@
 
 namespace adit::nav {
 
+/// CoverageMap::voxel_at() without calls of std::floor, as it runs for every ray.
+inline CoverageVoxel voxel_around(const Eigen::Vector3d& place) {
+  const auto floor_of = [](double v) {
+    const int i = static_cast<int>(v);
+    return i - (v < static_cast<double>(i));
+  };
+  return {floor_of(place.x() / CoverageMap::kVoxel), floor_of(place.y() / CoverageMap::kVoxel),
+          floor_of(place.z() / CoverageMap::kVoxel)};
+}
+
 /// Visits the voxels along a line from its begin to its end, both included (Amanatides and Woo: *A fast voxel
 /// traversal algorithm for ray tracing*, 1987).
 /// `visit(voxel, last)`: returns false to end; `last`: the voxel holds the end of the line.
 template <class Visit>
 void walk_voxels(const Eigen::Vector3d& from, const Eigen::Vector3d& to, Visit&& visit) {
-  const CoverageVoxel first = CoverageMap::voxel_at(from), end = CoverageMap::voxel_at(to);
+  const CoverageVoxel first = voxel_around(from), end = voxel_around(to);
   std::array<int, 3> at{first.x, first.y, first.z};
   const std::array<int, 3> goal{end.x, end.y, end.z};
   std::array<int, 3> step{};

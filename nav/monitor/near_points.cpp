@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nav/geometry/planar_transform.hpp"
+
 namespace adit::nav {
 namespace {
 
@@ -25,6 +27,7 @@ constexpr int kTail = 2;
 constexpr int kMinReturns = 2;
 constexpr double kKink = 0.35;     ///< Maximum change of the ground's gradient where level ground ends.
 constexpr double kSteeper = 0.05;  ///< A ramp may get steeper than under the body by this much.
+constexpr double kOutside = 0.01;  ///< Nothing this far outside of the circumscribed circle is inside, m.
 constexpr double kBelow = 0.1;     ///< A flying robot must be at least this far above an object, m.
 
 /// Limits for obstacles. A flying robot has no ground: everything in the height band of its body is an
@@ -147,6 +150,7 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
   }
   for (const std::uint32_t i : used_) cells_[i] = {};
   used_.clear();
+  const auto body2 = static_cast<float>(std::pow(body_.radius() + kOutside, 2));
   for (const Eigen::Vector3f& raw : points) {
     const Eigen::Vector3f p = R * raw;
     const float below = std::min(0.0f, plane_height(p));
@@ -156,15 +160,22 @@ NearPoints::Fan NearPoints::sort_in(std::span<const Eigen::Vector3f> points, con
     // A wall as seen from below is a riser when the tread before it is visible.
     const auto index = static_cast<std::uint32_t>(fine(p.x(), p.y()));
     if (!led_to) highest_[index] = std::max(highest_[index], p.z() - below);
-    if (body_.depth(raw.x(), raw.y()) > 0.0f) continue;
-    const float depth = body_.depth(p.x(), p.y());
-    // A robot that climbs stairs has its centre on them, and they rise from there. A return as high as the
-    // lidar comes from a level ray: there need be no ground below it, unless the tread before it is visible.
-    const bool riser = platform_.stairs && (p.z() < lidar - kLevelRay || led_to);
-    // On a ramp the ground follows the body's plane up to the edge of the footprint and continues from there.
-    const float edge = std::max(0.0f, plane_height(p) * (1 + std::min(0.0f, depth) / std::max(range, 0.1f)));
-    const float ground = edge + (riser ? step + stairs * range : step - slope * depth);
-    if (p.z() <= ground && p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) continue;
+    const float from_body2 = raw.x() * raw.x() + raw.y() * raw.y();
+    if (from_body2 < body2 && body_.depth(raw.x(), raw.y()) > 0.0f) continue;
+    // Most returns of walls are far above the lowest one of their cell.
+    if (p.z() <= lowest_[coarse(p.x(), p.y())] + step + within) {
+      const float depth = body_.depth(p.x(), p.y());
+      // A robot that climbs stairs has its centre on them, and they rise from there. A return as high as the
+      // lidar comes from a level ray: there need be no ground below it, unless the tread before it is
+      // visible.
+      const bool riser = platform_.stairs && (p.z() < lidar - kLevelRay || led_to);
+      // On a ramp the ground follows the body's plane up to the edge of the footprint and continues from
+      // there.
+      const float edge =
+          std::max(0.0f, plane_height(p) * (1 + std::min(0.0f, depth) / std::max(range, 0.1f)));
+      const float ground = edge + (riser ? step + stairs * range : step - slope * depth);
+      if (p.z() <= ground) continue;
+    }
     Cell& cell = cells_[index];
     if (cell.count == 0) used_.push_back(index);
     if (cell.count == 60000) continue;
@@ -195,7 +206,7 @@ bool NearPoints::seen_past(const Eigen::Vector3d& local, const Pose3& body,
 void NearPoints::remember(const Pose3& body, const Tilt& tilt, const Fan& fan, double stamp_s,
                           const UprightRangeImage& seen) {
   kept_.clear();
-  const Pose2 back = body.planar().inverse();
+  const PlanarTransform back(body.planar().inverse());
   for (Place& place : places_) {
     if (stamp_s - place.seen > params_.memory) continue;
     const Eigen::Vector2d at = back * Eigen::Vector2d(place.x, place.y);
@@ -244,6 +255,7 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
     const float own = static_cast<float>(cell.count) / static_cast<float>(cell.count + most->count);
     return own * at + (1 - own) * Eigen::Vector2f(most->x, most->y);
   };
+  const PlanarTransform to_odom(body.planar());
   const std::size_t room = kMax - places_.size();
   if (used_.size() > room)
     std::sort(used_.begin(), used_.end(), [&](auto a, auto b) { return rank(a) < rank(b); });
@@ -261,7 +273,7 @@ void NearPoints::take(std::span<const Eigen::Vector3f> points, const Pose3& body
         std::min(params_.max_uncertainty, 3 * params_.noise / std::sqrt(static_cast<double>(around)));
     const bool certain = uncertainty < params_.noise / 2;
     const Eigen::Vector2f place = certain ? surface(i) : Eigen::Vector2f(cells_[i].x, cells_[i].y);
-    const Eigen::Vector2d at = body.planar() * place.cast<double>();
+    const Eigen::Vector2d at = to_odom * place.cast<double>();
     places_.push_back({static_cast<float>(at.x()), static_cast<float>(at.y()),
                        cells_[i].z + static_cast<float>(body.position.z()), static_cast<float>(uncertainty),
                        stamp_s});

@@ -11,7 +11,7 @@
 namespace adit::perception {
 namespace {
 
-constexpr std::uint8_t kFloat32 = 7, kFloat64 = 8;
+constexpr std::uint8_t kUint16 = 4, kFloat32 = 7, kFloat64 = 8;
 constexpr std::array<std::uint32_t, 9> kSizes{0, 1, 1, 2, 2, 4, 4, 4, 8};
 constexpr std::array kTimeNames{"t", "time", "timestamp", "offset_time", "time_stamp"};
 constexpr std::array kRingNames{"ring", "line", "channel"};
@@ -40,7 +40,7 @@ double read(const std::uint8_t* at, std::uint8_t datatype) {
       return as<std::uint8_t>(at);
     case 3:
       return as<std::int16_t>(at);
-    case 4:
+    case kUint16:
       return as<std::uint16_t>(at);
     case 5:
       return as<std::int32_t>(at);
@@ -95,24 +95,36 @@ Result<Sweep> PointLayout::unpack(std::span<const std::uint8_t> data, std::uint6
   sweep.points.resize(count);
   const double first = sweep.timed ? read(data.data() + time_->offset, time_->datatype) : 0.0;
   double least = std::numeric_limits<double>::infinity(), most = -least;
-  const std::uint8_t* at = data.data();
-  for (TimedPoint& point : sweep.points) {
-    std::memcpy(&point.position.x(), at + x_, 4);
-    std::memcpy(&point.position.y(), at + y_, 4);
-    std::memcpy(&point.position.z(), at + z_, 4);
-    point.time = 0;
-    if (time_) {
-      const double time = read(at + time_->offset, time_->datatype) - first;
-      point.time = static_cast<float>(time);
-      if (time < least) least = time;  // False for what is not a number.
-      if (time > most) most = time;
+  // `read_time` and the others read a field that exists; compiled once for any types, and once for usual
+  // ones.
+  const auto unpack_points = [&](auto read_time, auto read_ring, auto read_intensity) {
+    const std::uint8_t* at = data.data();
+    for (TimedPoint& point : sweep.points) {
+      std::memcpy(&point.position.x(), at + x_, 4);
+      std::memcpy(&point.position.y(), at + y_, 4);
+      std::memcpy(&point.position.z(), at + z_, 4);
+      point.time = 0;
+      if (time_) {
+        const double time = read_time(at + time_->offset) - first;
+        point.time = static_cast<float>(time);
+        if (time < least) least = time;  // False for what is not a number.
+        if (time > most) most = time;
+      }
+      point.ring = ring_ ? static_cast<std::uint16_t>(read_ring(at + ring_->offset)) : std::uint16_t{0};
+      point.intensity = intensity_ ? static_cast<float>(read_intensity(at + intensity_->offset)) : 0.0f;
+      at += step_;
     }
-    point.ring =
-        ring_ ? static_cast<std::uint16_t>(read(at + ring_->offset, ring_->datatype)) : std::uint16_t{0};
-    point.intensity =
-        intensity_ ? static_cast<float>(read(at + intensity_->offset, intensity_->datatype)) : 0.0f;
-    at += step_;
-  }
+  };
+  const bool usual = time_ && time_->datatype == kFloat32 && ring_ && ring_->datatype == kUint16 &&
+                     intensity_ && intensity_->datatype == kFloat32;
+  if (usual)
+    unpack_points([](const std::uint8_t* at) { return as<float>(at); },
+                  [](const std::uint8_t* at) { return as<std::uint16_t>(at); },
+                  [](const std::uint8_t* at) { return as<float>(at); });
+  else
+    unpack_points([this](const std::uint8_t* at) { return read(at, time_->datatype); },
+                  [this](const std::uint8_t* at) { return read(at, ring_->datatype); },
+                  [this](const std::uint8_t* at) { return read(at, intensity_->datatype); });
   if (sweep.timed)
     if (const auto scaled = scale_times(sweep, first, least, most, duration); !scaled) return scaled.error();
   return sweep;

@@ -193,6 +193,9 @@ Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index
   const Eigen::Vector3f origin = moved ? scan.origin : Eigen::Vector3f(0, 0, 0);
   scan.points.reserve(sweep.points.size());
   std::size_t below = 0;
+  const std::vector<std::uint8_t>* isolated =
+      marks_isolated_ && index == 0 && !moved ? &isolated_.find(sweep) : nullptr;
+  if (isolated && isolated->empty()) isolated = nullptr;
   for (const TimedPoint& point : sweep.points) {
     const float range2 = (point.position - origin).squaredNorm();
     if (!std::isfinite(range2)) {
@@ -211,6 +214,8 @@ Result<std::optional<Scan>> ScanInput::add(const Sweep& sweep, std::size_t index
     const float fall = scan.origin.z() - at.z();
     below += fall > 0 && fall * fall > kFalls * kFalls * range2;
     scan.points.push_back(at);
+    if (isolated)
+      scan.isolated.push_back((*isolated)[static_cast<std::size_t>(&point - sweep.points.data())]);
   }
   scan.counts.used = scan.points.size();
   if (const auto fits = plausible(source, sweep, scan, below); !fits) return fits.error();
@@ -244,6 +249,7 @@ void ScanInput::merge(Source& other, const PoseFunction& pose, Scan& scan) {
     T.translation() = T_now_then.position.cast<float>();
   }
   for (const Eigen::Vector3f& p : other.points) scan.points.push_back(T * p);
+  if (!scan.isolated.empty()) scan.isolated.resize(scan.points.size(), 0);
   scan.counts.used = scan.points.size();
 }
 

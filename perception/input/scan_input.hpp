@@ -10,6 +10,7 @@
 #include "perception/input/body_filter.hpp"
 #include "perception/input/deskew.hpp"
 #include "perception/input/frame_tree.hpp"
+#include "perception/input/isolated_returns.hpp"
 #include "perception/input/tilt_filter.hpp"
 #include "perception/types/sweep.hpp"
 
@@ -34,6 +35,8 @@ struct ScanWarning {
 struct Scan {
   std::uint64_t stamp{};  ///< The instant of all points, driver's clock, ns; 0: the driver sends none.
   PointCloud points{};    ///< In base_link at `stamp`, m.
+  /// One for each point, not 0: without a neighbour, as dust. Empty unless asked for by mark_isolated().
+  std::vector<std::uint8_t> isolated{};
   Eigen::Vector3f origin{0, 0, 0};  ///< Of the rays: the first lidar in base_link, m.
   /// R_level_base: roll and pitch of the body by its IMU. Nothing: the attitude is the odometry's.
   std::optional<Eigen::Quaterniond> attitude{};
@@ -79,6 +82,9 @@ class ScanInput {
   Result<std::optional<Scan>> add(const Sweep& sweep, std::size_t index, const std::string& frame,
                                   const PoseFunction& pose);
 
+  /// Whether scans say which points of the first lidar are isolated; see IsolatedReturns.
+  void mark_isolated(bool mark) { marks_isolated_ = mark; }
+
   /// The filter of the IMU; null: the platform has none.
   const TiltFilter* tilt() const { return tilt_ ? &*tilt_ : nullptr; }
   /// The samples of the IMU are in g and are scaled.
@@ -111,6 +117,8 @@ class ScanInput {
 
   Platform platform_;
   BodyFilter body_;
+  IsolatedReturns isolated_{};
+  bool marks_isolated_{false};
   FrameTree tree_{};
   std::vector<Source> sources_{};
   std::optional<TiltFilter> tilt_{};

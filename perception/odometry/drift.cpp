@@ -10,8 +10,9 @@ namespace adit::perception {
 namespace {
 
 // Errors of a registration that its residuals do not show: bias of the lidar, of its mounting and of its
-// times, as the simulator's and the drivers' documentation state them (1 cm; 0.05 degrees).
-constexpr double kBiasT = 0.01, kBiasR = 0.0009;
+// times. The simulator's and the drivers' documentation bound them (1 cm, 0.05 degrees); the standard
+// deviation of what lies anywhere within a bound is that bound by the square root of three.
+constexpr double kBiasT = 0.0058, kBiasR = 0.0005;
 constexpr double kFullTurn = 1.5;  ///< A turn by so much also replaces what is in view, rad.
 
 }  // namespace
@@ -24,19 +25,23 @@ void DriftAccount::add(const Eigen::Vector3d& moved, double turned, double reach
   sum_ = (carry * sum_ * carry.transpose()).eval();
 
   const double replaced = moved.norm() / std::max(1.0, reach) + turned / kFullTurn;
+  Matrix6 open = Matrix6::Zero();  // Projects onto the directions that the lidar leaves open.
   for (int axis = 0; axis < 3; ++axis) {
     const auto n = static_cast<std::size_t>(axis);
     const auto grow = [&](int block, const Eigen::Vector3d& v, Observability degree, double sigma,
                           double bias) {
-      if (degree == Observability::none) return;
-      const double variance = (sigma * sigma + bias * bias) * replaced;
-      sum_.block<3, 3>(block, block) += variance * v * v.transpose();
+      if (degree == Observability::strong)
+        sum_.block<3, 3>(block, block) += (sigma * sigma + bias * bias) * replaced * v * v.transpose();
+      else
+        open.block<3, 3>(block, block) += v * v.transpose();
     };
     grow(0, found.axes_t.col(axis), found.t[n], found.sigma_t[axis], kBiasT);
     grow(3, found.axes_r.col(axis), found.r[n], found.sigma_r[axis], kBiasR);
   }
-  // What the filter's own variance grew by; where it fell, the drift until then remains.
-  const Eigen::SelfAdjointEigenSolver<Matrix6> grown(after - before);
+  if (open.isZero()) return;
+  // What the filter's own variance grew by there; where it fell, the drift until then remains. Along the
+  // other directions it only breathes with the number of matches, which is no drift.
+  const Eigen::SelfAdjointEigenSolver<Matrix6> grown(open * (after - before) * open);
   sum_ += grown.eigenvectors() * grown.eigenvalues().cwiseMax(0.0).asDiagonal() *
           grown.eigenvectors().transpose();
 }

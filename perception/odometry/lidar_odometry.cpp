@@ -19,7 +19,8 @@ constexpr int kBadForLost = 5;             ///< Clouds in a row that do not fit.
 constexpr int kBadForNewMap = 50;          ///< Clouds in a row after which it begins a new map.
 constexpr int kGoodForFound = 3;           ///< Clouds in a row that fit again.
 constexpr double kMaxInnovation = 30.0;    ///< Squared standard deviations for each of six numbers.
-constexpr double kFirstWindow = 0.3, kLeastWindow = 0.05, kMaxWindow = 1.0;  ///< m
+constexpr int kFirstMotion = 5;            ///< Clouds in a row that fit, after which the motion is known.
+constexpr double kLeastWindow = 0.05, kMaxWindow = 1.0;  ///< m
 constexpr double kInsertWay = 0.2,
                  kInsertTurn = 0.05;    ///< Motion after which a cloud enters the map, m, rad.
 constexpr int kFirstClouds = 10;        ///< All of them enter the map.
@@ -69,11 +70,17 @@ LidarOdometryParams LidarOdometryParams::clouds_only(double noise, double min_ra
   p.motion.has_imu = p.motion.has_wheels = false;
   p.motion.sideways = p.motion.flies = true;
   p.registration.range_noise = noise;
+  // Poses are the lidar's own, so there is no error of a mounting or of a clock; what is left is the width of
+  // the beam.
+  p.registration.bearing_noise = 0.001;
   p.registration.max_iterations = 10;
   p.registration.has_prior = false;
   p.map.line_clouds = 1;
   p.map.wide = 0.0f;
+  // Nothing else holds the pose, so the cloud's own noise has to average out.
+  p.thin.wanted = 3000;
   p.dense.wanted = 20000;
+  p.first_window = kMaxWindow;
   p.map.noise = static_cast<float>(noise);
   p.dense.min_range = p.thin.min_range = static_cast<float>(min_range);
   p.dense.max_range = p.thin.max_range = static_cast<float>(max_range);
@@ -87,7 +94,7 @@ LidarOdometry::LidarOdometry(const LidarOdometryParams& params)
       map_(params.map),
       dense_(params.dense),
       thinner_(params.thin),
-      window_(kFirstWindow) {}
+      window_(params.first_window) {}
 
 void LidarOdometry::add(const ImuSample& sample) {
   if (!params_.motion.has_imu) return;
@@ -105,9 +112,9 @@ void LidarOdometry::add(const BodyMotion& sample) {
 bool LidarOdometry::start(std::uint64_t stamp) {
   if (params_.motion.has_wheels && !newest_wheels_) return false;
   if (first_imu_wait_ == 0) first_imu_wait_ = stamp;
-  Pose3 at = origin_;
+  Pose3 at;
   // The heading is the wheels', so that both frames begin alike.
-  if (newest_wheels_) at = origin_ * newest_wheels_->pose;
+  if (newest_wheels_) at = newest_wheels_->pose;
   StartAttitude attitude{at.orientation, {0, 0, 0}, false};
   const auto judged = params_.motion.has_imu ? watch_.judge(stamp) : std::nullopt;
   const bool waits = params_.motion.has_imu && !judged;
@@ -137,13 +144,13 @@ Result<Pose3> LidarOdometry::at(std::uint64_t stamp) const {
 }
 
 const OdometryState& LidarOdometry::update(std::span<const Eigen::Vector3f> points,
-                                           std::span<const std::uint8_t> moving) {
+                                           std::span<const std::uint8_t> skipped) {
   if (!filter_.started()) return state_;
   std::span<const Eigen::Vector3f> used = points;
-  if (moving.size() == points.size() && !points.empty()) {
+  if (skipped.size() == points.size() && !points.empty()) {
     static_points_.clear();
     for (std::size_t n = 0; n < points.size(); ++n)
-      if (moving[n] == 0) static_points_.push_back(points[n]);
+      if (skipped[n] == 0) static_points_.push_back(points[n]);
     used = static_points_;
   }
   const std::vector<Eigen::Vector3f>& dense = dense_.thin(used);
@@ -223,6 +230,8 @@ void LidarOdometry::judge(const Registered& found) {
   const double off = innovation.head<3>().norm() + innovation.tail<3>().norm() * reach_;
   window_ = std::clamp(0.9 * window_ + 0.1 * 3.0 * off, std::max(kLeastWindow, std::min(off, kMaxWindow)),
                        kMaxWindow);
+  // By then the first motion is known, and clouds that do not fit must not slip in.
+  if (good_ == kFirstMotion) window_ = std::max(kLeastWindow, std::min(window_, 3.0 * off));
   apply(found);
   if (state_.health == Localisation::lost && good_ < kGoodForFound) return;
   bool strong = true;

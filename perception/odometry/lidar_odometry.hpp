@@ -23,7 +23,9 @@ struct LidarOdometryParams {
   VoxelPlanes::Params map{};
   Thinner::Params dense{.wanted = 12000, .min_edge = 0.05f};  ///< Of the points that enter the map.
   Thinner::Params thin{};                                     ///< Of those that are compared with it.
-  bool planar{false};     ///< One horizontal ring: walls count as vertical, and height and tilt are not seen.
+  bool planar{false};  ///< One horizontal ring: walls count as vertical, and height and tilt are not seen.
+  /// A point so far from its plane matches it at first, where sensors of motion predict the pose, m, (0, 1].
+  double first_window{0.3};
   double max_speed{0.0};  ///< A body that is faster than 1.5 times this is lost, m/s; 0: no limit.
 
   /// For a robot; without a lidar's or an IMU's entry, standard ones. `wheels`: its driver sends odometry.
@@ -42,9 +44,6 @@ class LidarOdometry {
  public:
   explicit LidarOdometry(const LidarOdometryParams& params);
 
-  /// Where the odometry begins: with wheels T_odom_wheels, else T_odom_base. Call it before the first
-  /// advance().
-  void begin_at(const Pose3& origin) { origin_ = origin; }
   /// A sample in the axes of base_link, m/s2.
   void add(const ImuSample& sample);
   void add(const BodyMotion& sample);
@@ -58,9 +57,10 @@ class LidarOdometry {
   /// Corrects the state by a cloud at the stamp of the last advance().
   ///
   /// @param points  In base_link at that instant, m.
-  /// @param moving  One per point, not 0: on something that moves, which does not enter the map. Empty: none.
+  /// @param skipped  One per point, not 0: on something that moves, or no surface at all, as dust (see
+  ///     Scan::isolated). Such a point is neither compared nor enters the map. Empty: none.
   const OdometryState& update(std::span<const Eigen::Vector3f> points,
-                              std::span<const std::uint8_t> moving = {});
+                              std::span<const std::uint8_t> skipped = {});
   const OdometryState& state() const { return state_; }
   /// The wheels' frame began again elsewhere.
   void forget_wheels() { filter_.forget_wheels(); }
@@ -85,7 +85,7 @@ class LidarOdometry {
   StartWatch watch_{};
   DriftAccount drift_{};
   std::optional<BodyMotion> newest_wheels_{};
-  Pose3 origin_{}, T_odom_local_{};
+  Pose3 T_odom_local_{};
   OdometryState state_{};
   Eigen::Matrix<double, 6, 6> pose_covariance_{
       Eigen::Matrix<double, 6, 6>::Zero()};  ///< After the last cloud.

@@ -33,14 +33,14 @@ Matrix6 remap(const Localizability& found, const Eigen::Matrix3d& R) {
 }  // namespace
 
 void Registration::match(const VoxelPlanes& target, std::span<const Eigen::Vector3f> points,
-                         const Pose3& pose, double window) {
+                         const Pose3& pose, double window, int top) {
   matches_.clear();
   near_ = 0;
   const Eigen::Matrix3d R = pose.orientation.toRotationMatrix();
   for (const Eigen::Vector3f& each : points) {
     const Eigen::Vector3d p = each.cast<double>();
     const Eigen::Vector3d place = R * p + pose.position;
-    const auto plane = target.find(place);
+    const auto plane = target.find(place, top);
     if (!plane) continue;
     ++near_;
     const Eigen::Vector3d d = place - plane->centre;
@@ -72,18 +72,17 @@ double Registration::inflation(const Pose3& pose) {
 }
 
 Registered Registration::align(const VoxelPlanes& target, std::span<const Eigen::Vector3f> points,
-                               const Pose3& prior, const Matrix6& prior_information, double window) {
+                               const Pose3& prior, const Matrix6& prior_information, double window, int top) {
   Registered out;
   out.pose = prior;
   Pose3 matched_at = prior;
   double inflated = 1.0;
   Matrix6 keep = Matrix6::Identity();
-  match(target, points, prior, window);
+  match(target, points, prior, window, top);
   for (out.iterations = 1; out.iterations <= params_.max_iterations; ++out.iterations) {
     const Eigen::Matrix3d R = out.pose.orientation.toRotationMatrix();
     Matrix6 A = Matrix6::Zero();
     Vector6 b = Vector6::Zero();
-    double squares = 0, normalised = 0;
     const bool first = out.iterations == 1;
     if (first) directions_.clear();
     for (const Match& m : matches_) {
@@ -98,15 +97,10 @@ Registered Registration::align(const VoxelPlanes& target, std::span<const Eigen:
       for (int row = 0; row < 6; ++row)
         for (int column = row; column < 6; ++column) A(row, column) += wJ[row] * J[column];
       b -= r * wJ;
-      squares += r * r;
-      normalised += std::min(size * size, 9.0);
       if (first)
         directions_.push_back({m.normal.cast<float>(), arm.cast<float>(), static_cast<float>(weight)});
     }
     A = A.selfadjointView<Eigen::Upper>();
-    const auto count = static_cast<double>(std::max<std::size_t>(1, matches_.size()));
-    out.rms = std::sqrt(squares / count);
-    out.normalised = std::sqrt(normalised / count);
     if (first) {
       inflated = inflation(out.pose);
       Matrix6 turn = Matrix6::Identity();
@@ -131,7 +125,7 @@ Registered Registration::align(const VoxelPlanes& target, std::span<const Eigen:
     }
     const Pose3 moved = matched_at.inverse() * out.pose;
     if (moved.position.norm() > kMoved || log_so3(moved.orientation).norm() > kTurned) {
-      match(target, points, out.pose, window);
+      match(target, points, out.pose, window, top);
       matched_at = out.pose;
     }
   }

@@ -31,8 +31,6 @@ struct Registered {
   Localizability localizability{};
   std::size_t matched{};  ///< Points on a plane.
   std::size_t near{};     ///< Points where there is a plane.
-  double rms{};           ///< Of the matched points' distances, m.
-  double normalised{};    ///< The same in standard deviations.
   int iterations{};
   bool converged{};
 };
@@ -48,8 +46,13 @@ class Registration {
   /// @param prior   Pose from which the search begins.
   /// @param prior_information  Of the prior, as Registered::information; zero: none.
   /// @param window  A point this much farther than the gate from its plane still matches, m.
+  /// @param top     Size of the largest voxels whose planes count, as in VoxelPlanes::find.
   Registered align(const VoxelPlanes& target, std::span<const Eigen::Vector3f> points, const Pose3& prior,
-                   const Eigen::Matrix<double, 6, 6>& prior_information, double window);
+                   const Eigen::Matrix<double, 6, 6>& prior_information, double window, int top);
+  Registered align(const VoxelPlanes& target, std::span<const Eigen::Vector3f> points, const Pose3& prior,
+                   const Eigen::Matrix<double, 6, 6>& prior_information, double window) {
+    return align(target, points, prior, prior_information, window, target.levels() - 1);
+  }
 
  private:
   struct Match {
@@ -59,7 +62,7 @@ class Registration {
     double variance;
   };
   void match(const VoxelPlanes& target, std::span<const Eigen::Vector3f> points, const Pose3& pose,
-             double window);
+             double window, int top);
   double inflation(const Pose3& pose);
 
   RegistrationParams params_;

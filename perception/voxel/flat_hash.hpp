@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Core>
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -17,6 +20,15 @@ inline std::uint64_t voxel_key(std::int32_t x, std::int32_t y, std::int32_t z) {
          (static_cast<std::uint64_t>(z + kOffset) & kMask) << 42;
 }
 
+/// The indices of the voxel of a key.
+inline Eigen::Vector3i voxel_of(std::uint64_t key) {
+  constexpr std::int32_t kOffset = 1 << 20;
+  const auto index = [&](int shift) {
+    return static_cast<std::int32_t>(key >> shift & ((std::uint64_t{1} << 21) - 1)) - kOffset;
+  };
+  return {index(0), index(21), index(42)};
+}
+
 /// Hash table from voxel keys to values: open addressing with linear probing, at most 5/8 full. Erasing moves
 /// the entries behind back, so that no tombstones accumulate. The order of the slots depends on the keys and
 /// the order of insertion only.
@@ -30,6 +42,8 @@ class FlatHash {
   };
 
   FlatHash() : slots_(1024) {}
+  /// With room for `count` values.
+  explicit FlatHash(std::size_t count) : slots_(std::bit_ceil(std::max<std::size_t>(1024, 2 * count))) {}
 
   Value* find(std::uint64_t key) { return const_cast<Value*>(std::as_const(*this).find(key)); }
   const Value* find(std::uint64_t key) const {
@@ -68,6 +82,8 @@ class FlatHash {
   }
 
   std::size_t size() const { return size_; }
+  /// All slots, the empty ones too; their keys must not be changed.
+  std::vector<Slot>& values() { return slots_; }
   const std::vector<Slot>& slots() const { return slots_; }
   std::size_t bytes() const { return slots_.size() * sizeof(Slot); }
 

@@ -8,18 +8,34 @@
 namespace adit::perception {
 namespace {
 
-constexpr std::uint16_t kFirstFit = 6;    ///< Points of the first plane.
-constexpr std::uint16_t kMaxPoints = 60;  ///< Further points do not change a voxel.
-constexpr float kPlanar = 9.0f;           ///< A plane's second extent is at least 3 times its thickness.
-constexpr float kLineWidth = 0.12f;       ///< Standard deviation across the thickest line, m.
-constexpr double kSlack = 0.1;            ///< How far beside an empty voxel a plane is still found, m.
-constexpr float kUpright = 0.9f;          ///< Vertical part of a line's direction.
-constexpr std::size_t kSweepPart = 64;    ///< Calls of forget() that visit the whole table.
+constexpr std::uint16_t kFirstFit = 6;     ///< Points of the first plane.
+constexpr std::uint16_t kMaxPoints = 60;   ///< Further points do not change a voxel.
+constexpr float kPlanar = 9.0f;            ///< A plane's second extent is at least 3 times its thickness.
+constexpr float kLineWidth = 0.12f;        ///< Standard deviation across the thickest line, m.
+constexpr double kSlack = 0.1;             ///< How far beside an empty voxel a plane is still found, m.
+constexpr float kFacing = 0.7f;            ///< Of a plane's normal, towards the border of its voxel.
+constexpr float kUpright = 0.9f;           ///< Vertical part of a line's direction.
+constexpr std::size_t kPointsInVoxel = 8;  ///< At least so many of a dense cloud share the smallest voxel.
+constexpr float kMaxIndex = 1e6f;          ///< Of a voxel along an axis.
+constexpr std::size_t kSweepPart = 64;     ///< Calls of forget() that visit the whole table.
 
 }  // namespace
 
+void VoxelPlanes::add(Cell& cell, const Eigen::Vector3f& point) {
+  const auto n = static_cast<float>(++cell.count);
+  const Eigen::Vector3f d = point - cell.mean;
+  cell.mean += d / n;
+  const Eigen::Vector3f e = point - cell.mean;
+  cell.m2[0] += d.x() * e.x();
+  cell.m2[1] += d.x() * e.y();
+  cell.m2[2] += d.x() * e.z();
+  cell.m2[3] += d.y() * e.y();
+  cell.m2[4] += d.y() * e.z();
+  cell.m2[5] += d.z() * e.z();
+}
+
 void VoxelPlanes::insert(std::span<const Eigen::Vector3d> points, double travelled) {
-  for (int level = 0; level < kLevels; ++level) {
+  for (int level = 0; level < params_.levels; ++level) {
     FlatHash<Cell>& cells = levels_[static_cast<std::size_t>(level)];
     const float size = edge(level);
     const double scale = 1.0 / size;
@@ -32,31 +48,74 @@ void VoxelPlanes::insert(std::span<const Eigen::Vector3d> points, double travell
         ++cell->clouds;
       cell->touched = static_cast<float>(travelled);
       if (cell->count >= kMaxPoints) continue;
-      const Eigen::Vector3f q = (p - at.cast<double>() * static_cast<double>(size)).cast<float>();
-      const auto n = static_cast<float>(++cell->count);
-      const Eigen::Vector3f d = q - cell->mean;
-      cell->mean += d / n;
-      const Eigen::Vector3f e = q - cell->mean;
-      cell->m2[0] += d.x() * e.x();
-      cell->m2[1] += d.x() * e.y();
-      cell->m2[2] += d.x() * e.z();
-      cell->m2[3] += d.y() * e.y();
-      cell->m2[4] += d.y() * e.z();
-      cell->m2[5] += d.z() * e.z();
-      if (cell->count >= kFirstFit && cell->count >= cell->fitted + cell->fitted / 2) fit(*cell, size);
+      add(*cell, (p - at.cast<double>() * static_cast<double>(size)).cast<float>());
+      if (cell->count >= kFirstFit && cell->count >= std::uint32_t{cell->fitted} + cell->fitted / 2)
+        fit(*cell, size);
     }
   }
 }
 
+VoxelPlanes VoxelPlanes::of(std::span<const Eigen::Vector3f> points, const Params& params) {
+  VoxelPlanes out(params);
+  const float finest = params.finest, scale = 1.0f / finest;
+  FlatHash<Cell>& smallest = out.levels_[0] = FlatHash<Cell>(points.size() / kPointsInVoxel);
+  std::uint64_t last_key = FlatHash<Cell>::kEmpty;
+  Cell* last = nullptr;  // Points that were measured one after another often share their voxel.
+  for (const Eigen::Vector3f& p : points) {
+    const Eigen::Vector3f index = (p * scale).array().floor();
+    if (!(index.cwiseAbs().maxCoeff() < kMaxIndex)) continue;  // Also of NaN.
+    const auto key = voxel_key(static_cast<std::int32_t>(index.x()), static_cast<std::int32_t>(index.y()),
+                               static_cast<std::int32_t>(index.z()));
+    if (key != last_key) {
+      last = smallest.size() < params.max_voxels ? &smallest.at(key) : smallest.find(key);
+      last_key = key;
+    }
+    if (last) add(*last, p - finest * index);
+  }
+  for (int level = 0; level < params.levels; ++level) {
+    const auto n = static_cast<std::size_t>(level);
+    const float size = out.edge(level);
+    for (auto& slot : out.levels_[n].values()) {
+      Cell& cell = slot.value;
+      if (slot.key == FlatHash<Cell>::kEmpty) continue;
+      cell.clouds = 1;
+      if (level + 1 < params.levels) {
+        const Eigen::Vector3i at = voxel_of(slot.key),
+                              above = at.array().unaryExpr([](int v) { return v >> 1; });
+        // The table above grows at most to the size of this one.
+        join(out.levels_[n + 1].at(voxel_key(above.x(), above.y(), above.z())), cell,
+             size * (at - 2 * above).cast<float>());
+      }
+      if (cell.count >= kFirstFit) out.fit(cell, size);
+    }
+  }
+  return out;
+}
+
+void VoxelPlanes::join(Cell& cell, const Cell& part, const Eigen::Vector3f& shift) {
+  // Chan et al. 1979: moments of two sets about their common mean.
+  const auto a = static_cast<float>(cell.count), b = static_cast<float>(part.count);
+  const Eigen::Vector3f d = part.mean + shift - cell.mean;
+  cell.count += part.count;
+  cell.mean += (b / (a + b)) * d;
+  const float w = a * b / (a + b);
+  cell.m2[0] += part.m2[0] + w * d.x() * d.x();
+  cell.m2[1] += part.m2[1] + w * d.x() * d.y();
+  cell.m2[2] += part.m2[2] + w * d.x() * d.z();
+  cell.m2[3] += part.m2[3] + w * d.y() * d.y();
+  cell.m2[4] += part.m2[4] + w * d.y() * d.z();
+  cell.m2[5] += part.m2[5] + w * d.z() * d.z();
+}
+
 void VoxelPlanes::fit(Cell& cell, float voxel_edge) const {
-  const float n = cell.count;
+  const auto n = static_cast<float>(cell.count);
   Eigen::Matrix3f covariance;
   covariance << cell.m2[0], cell.m2[1], cell.m2[2], cell.m2[1], cell.m2[3], cell.m2[4], cell.m2[2],
       cell.m2[4], cell.m2[5];
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(covariance / (n - 1));
   const Eigen::Vector3f spread = solver.eigenvalues().cwiseMax(0.0f);
-  cell.fitted = cell.count;
+  cell.fitted = static_cast<std::uint16_t>(std::min<std::uint32_t>(cell.count, 65535));
   cell.normal = solver.eigenvectors().col(0);
   cell.along = solver.eigenvectors().col(1);
   // Few points have little spread by chance.
@@ -73,23 +132,26 @@ void VoxelPlanes::fit(Cell& cell, float voxel_edge) const {
               std::abs(solver.eigenvectors()(2, 2)) > kUpright;
 }
 
-std::optional<PlanePatch> VoxelPlanes::find(const Eigen::Vector3d& place) const {
-  const double size = edge(kLevels - 1);
+std::optional<PlanePatch> VoxelPlanes::find(const Eigen::Vector3d& place, int top) const {
+  if (auto here = find_in(place, top)) return here;
+  // A wall on the border of two voxels may have its points on the other side.
+  const double size = edge(top);
   const Eigen::Vector3d index = (place / size).array().floor();
-  const Eigen::Vector3i at = index.cast<int>();
-  if (levels_.back().find(voxel_key(at.x(), at.y(), at.z()))) return find_in(place);
-  // No point was ever here: the other side of a wall on the border of two voxels.
   const Eigen::Vector3d inside = place - index * size;
-  Eigen::Index axis = 0;
-  const double depth = inside.cwiseMin(Eigen::Vector3d::Constant(size) - inside).minCoeff(&axis);
-  if (depth > kSlack) return std::nullopt;
-  Eigen::Vector3d beside = place;
-  beside[axis] += inside[axis] < 0.5 * size ? -2 * depth - 1e-6 : 2 * depth + 1e-6;
-  return find_in(beside);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double depth = std::min(inside[axis], size - inside[axis]);
+    if (depth > kSlack) continue;
+    Eigen::Vector3d beside = place;
+    beside[axis] += inside[axis] < 0.5 * size ? -2 * depth - 1e-6 : 2 * depth + 1e-6;
+    // Only what faces the border: a floor beyond it is another one's.
+    const auto found = find_in(beside, top);
+    if (found && std::abs(found->normal[axis]) > kFacing) return found;
+  }
+  return std::nullopt;
 }
 
-std::optional<PlanePatch> VoxelPlanes::find_in(const Eigen::Vector3d& place) const {
-  for (int level = kLevels - 1; level >= 0; --level) {
+std::optional<PlanePatch> VoxelPlanes::find_in(const Eigen::Vector3d& place, int top) const {
+  for (int level = top; level >= 0; --level) {
     const double size = edge(level);
     const Eigen::Vector3i at = (place / size).array().floor().cast<int>();
     const Cell* cell = levels_[static_cast<std::size_t>(level)].find(voxel_key(at.x(), at.y(), at.z()));
@@ -109,7 +171,7 @@ std::optional<PlanePatch> VoxelPlanes::find_in(const Eigen::Vector3d& place) con
 
 void VoxelPlanes::forget(double travelled) {
   const auto limit = static_cast<float>(travelled - params_.keep_distance);
-  for (std::size_t level = 0; level < kLevels; ++level)
+  for (std::size_t level = 0; level < levels_.size(); ++level)
     sweep_[level] = levels_[level].sweep(sweep_[level], levels_[level].slots().size() / kSweepPart,
                                          [&](const Cell& cell) { return cell.touched < limit; });
 }

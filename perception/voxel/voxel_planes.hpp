@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "perception/voxel/flat_hash.hpp"
 
@@ -30,9 +31,10 @@ struct PlanePatch {
 /// `keep_distance` are erased, a few slots at a time.
 class VoxelPlanes {
  public:
-  static constexpr int kLevels = 3;
+  static constexpr int kMaxLevels = 5;
   struct Params {
     float finest{0.25f};         ///< Edge of the smallest voxels, m; each further level doubles it.
+    int levels{3};               ///< Sizes of voxels, [1, kMaxLevels].
     float noise{0.02f};          ///< Standard deviation of a range, m.
     double keep_distance{60.0};  ///< m
     /// Clouds that an upright line must be seen in: from one place, a wall at grazing incidence looks like
@@ -42,11 +44,19 @@ class VoxelPlanes {
     std::size_t max_voxels{60'000};  ///< Of each level; further ones are not made.
   };
   explicit VoxelPlanes(const Params& params) : params_(params) {}
+  /// The planes of clouds that are known as a whole (frame of the map, m). All points count, and a larger
+  /// voxel is the sum of the smaller ones in it, so that this takes a fraction of the time of insert().
+  static VoxelPlanes of(std::span<const Eigen::Vector3f> points, const Params& params);
 
   /// Adds points (frame of the map, m). `travelled`: distance that the body moved so far, m.
   void insert(std::span<const Eigen::Vector3d> points, double travelled);
   /// The plane at a place, or just beside the largest voxel there; nothing: no points lie on one.
-  std::optional<PlanePatch> find(const Eigen::Vector3d& place) const;
+  std::optional<PlanePatch> find(const Eigen::Vector3d& place) const {
+    return find(place, params_.levels - 1);
+  }
+  /// The same among voxels of the sizes 0 (the smallest) to `top`.
+  std::optional<PlanePatch> find(const Eigen::Vector3d& place, int top) const;
+  int levels() const { return params_.levels; }
   /// Erases what was not touched lately; a bounded part of the table in each call.
   void forget(double travelled);
   void clear();
@@ -61,18 +71,22 @@ class VoxelPlanes {
     Eigen::Vector3f normal{0, 0, 0}, along{0, 0, 0};
     float variance{}, extent_along{};
     float touched{};  ///< Travelled distance when a point was added, m.
-    std::uint16_t count{};
+    std::uint32_t count{};
     std::uint16_t fitted{};  ///< Points when the plane was fitted.
     std::uint8_t clouds{};   ///< From how many clouds the points are, at most 255.
     bool plane{}, line{};
   };
   float edge(int level) const { return params_.finest * static_cast<float>(1 << level); }
   void fit(Cell& cell, float voxel_edge) const;
-  std::optional<PlanePatch> find_in(const Eigen::Vector3d& place) const;
+  /// Adds a point relative to the voxel's corner.
+  static void add(Cell& cell, const Eigen::Vector3f& point);
+  /// Adds the points of a smaller voxel, whose corner lies `shift` from this one's.
+  static void join(Cell& cell, const Cell& part, const Eigen::Vector3f& shift);
+  std::optional<PlanePatch> find_in(const Eigen::Vector3d& place, int top) const;
 
   Params params_;
-  std::array<FlatHash<Cell>, kLevels> levels_{};
-  std::array<std::size_t, kLevels> sweep_{};
+  std::array<FlatHash<Cell>, kMaxLevels> levels_{};
+  std::array<std::size_t, kMaxLevels> sweep_{};
 };
 
 }  // namespace adit::perception

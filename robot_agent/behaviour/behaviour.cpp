@@ -116,7 +116,8 @@ Result<void> Behaviour::set_pose(const Pose2& pose, Time now) {
   if (!std::isfinite(pose.yaw) || !(std::hypot(pose.x, pose.y) <= kFarthestPlace))
     return {Reason::out_of_range, "pose: expected a place within 10 km and a heading in radians"};
   if (const auto done = inputs_.set_pose(pose); !done) return done;
-  if (fell_because_ == Reason::odometry_jumped) fell_because_ = Reason::none;
+  if (fell_because_ == Reason::odometry_jumped || fell_because_ == Reason::not_localised_here)
+    fell_because_ = Reason::none;
   tick(now);
   return {};
 }
@@ -238,9 +239,7 @@ Result<void> Behaviour::join_convoy(const ConvoyOrder& order, Time now) {
   if (const auto started = inputs_.convoy->start(order); !started) return started;
   const bool leads = inputs_.convoy->leads();
   const Facts f = facts(now);
-  const Reason leader_reason = f.stopped     ? Reason::stopped
-                               : f.localised ? Reason::none
-                                             : Reason::no_localisation;
+  const Reason leader_reason = f.stopped ? Reason::stopped : f.localised ? Reason::none : f.unlocalised;
   const Reason reason = leads ? leader_reason : guard_.admit(*row, Commander::holder, f);
   if (reason != Reason::none) {
     inputs_.convoy->set_role(before);

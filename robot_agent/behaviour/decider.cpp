@@ -16,7 +16,7 @@ Result<bt::Registry> Decider::registry() {
   for (const Condition& condition : table_.conditions()) {
     const auto added = leaves.add_condition(std::string(condition.leaf), [this, condition](bt::Leaf&) {
       const bool holds = condition.holds(facts_);
-      if (!holds && decision_.reason == Reason::none) decision_.reason = condition.reason;
+      if (!holds && decision_.reason == Reason::none) decision_.reason = condition.failure(facts_);
       return status(holds);
     });
     if (!added) return added.error();

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/result/reason.hpp"
+
 namespace adit::agent {
 
 /// What the robot knows about itself when the conditions of its modes are evaluated.
@@ -21,6 +23,7 @@ struct Facts {
   bool map_fresh{};      ///< The router answered a scan of the last 2 s.
   /// Names of further facts that hold, for conditions of additional modes; the mode's module adds them.
   std::vector<std::string_view> also{};
+  Reason unlocalised{Reason::no_localisation};  ///< Why the robot is not localised, if it is not.
 
   bool has(std::string_view fact) const { return std::find(also.begin(), also.end(), fact) != also.end(); }
 };

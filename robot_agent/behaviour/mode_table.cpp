@@ -126,7 +126,7 @@ const ModeRow* ModeTable::find_by_input(Accepts input) const {
 
 Reason entry_refusal(const ModeRow& row, const Facts& facts) {
   for (const Condition& condition : row.conditions)
-    if (!condition.holds(facts)) return condition.reason;
+    if (!condition.holds(facts)) return condition.failure(facts);
   return Reason::none;
 }
 

@@ -30,6 +30,10 @@ struct Condition {
   Scope scope{};
 
   bool entry_only() const { return scope == Scope::on_entry; }
+  /// The reason when it fails: a robot that is not localised says why.
+  Reason failure(const Facts& facts) const {
+    return reason == Reason::no_localisation ? facts.unlocalised : reason;
+  }
 };
 
 /// The conditions of the shipped modes, for rows of further ones.

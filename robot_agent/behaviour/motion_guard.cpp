@@ -29,11 +29,11 @@ Decision MotionGuard::judge(const Decision& wanted, const Facts& facts) {
   const bool pauses = admitted_->on_failure == OnFailure::pauses;
   for (const Condition& c : admitted_->conditions)
     if ((c.scope == Scope::terminal || (c.scope == Scope::continuous && !pauses)) && !c.holds(facts))
-      return fall(c.reason);
+      return fall(c.failure(facts));
   if (wanted.mode != admitted_ || (!wanted.runs && !pauses))
     return fall(wanted.mode == hold_ && wanted.reason != Reason::none ? wanted.reason : Reason::tree_refused);
   for (const Condition& c : admitted_->conditions)
-    if (c.scope == Scope::continuous && !c.holds(facts)) return {admitted_, false, c.reason};
+    if (c.scope == Scope::continuous && !c.holds(facts)) return {admitted_, false, c.failure(facts)};
   return {admitted_, wanted.runs, wanted.reason};
 }
 

@@ -44,6 +44,13 @@ class Frames {
   /// Sets the robot's pose in the map to `T_map_base`, on an operator's request. The height stays unchanged.
   void set_pose(const Pose2& T_map_base);
 
+  /// Makes all coordinates in `odom` invalid: the robot may have been carried elsewhere, unseen by its
+  /// odometry. Its pose in the map stays until it is set.
+  void begin_frame() {
+    ++odom_epoch_;
+    ++map_epoch_;
+  }
+
   /// The state to store for restore() after a restart.
   StoredFrames stored() const { return {T_map_odom_, odom_epoch_, newest_, height_, map_epoch_, {}}; }
   /// Restores the stored state after a restart, before the first sample, which is then compared with the

@@ -25,13 +25,19 @@ void PoseCorrection::begin_frame(std::uint64_t stamp) {
   frame_began_ = stamp;
 }
 
+void PoseCorrection::shift(const Pose3& correction) {
+  wanted_ = correction * wanted_;
+  wanted_.orientation.normalize();
+  if (T_odom_local_) T_odom_local_ = correction * *T_odom_local_;
+}
+
 void PoseCorrection::take(const OdometryReport& report, Time now) {
   if (!is_pose(report.T_local_driver) || !std::isfinite(report.sigma) || report.stamp < frame_began_) return;
   heard_ = now;
   health_ = report.health;
   if (report.health == Localisation::starting || !T_driver_base_) return;
   if (!T_odom_local_ || report.instance != instance_) {
-    const Pose3 here = T_odom_driver_ * *T_driver_base_, local = report.T_local_driver * *T_driver_base_;
+    const Pose3 here = wanted_ * *T_driver_base_, local = report.T_local_driver * *T_driver_base_;
     const Eigen::Quaterniond turn(
         Eigen::AngleAxisd(wrap_angle(here.yaw() - local.yaw()), Eigen::Vector3d::UnitZ()));
     T_odom_local_ = Pose3{here.position - turn * local.position, turn};

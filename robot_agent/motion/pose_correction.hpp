@@ -34,6 +34,8 @@ class PoseCorrection {
   void restore(const Pose3& T_odom_driver) { T_odom_driver_ = wanted_ = T_odom_driver; }
   /// The driver's frame began again; reports about scans before `stamp` are of the previous one.
   void begin_frame(std::uint64_t stamp);
+  /// Moves the pose by `correction` in odom, as it was found by other means; level.
+  void shift(const Pose3& correction);
   /// Takes a report. Ignored: one that is not finite, or of a previous frame.
   void take(const OdometryReport& report, Time now);
   /// T_odom_base for a pose of the driver.

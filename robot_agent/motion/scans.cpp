@@ -34,7 +34,9 @@ Scans::Scans(Executor& strand, Log log, std::string robot, const Platform& platf
       input_(platform),
       platform_(platform),
       instance_(instance),
-      waiting_(lidars_.size()) {}
+      waiting_(lidars_.size()) {
+  input_.mark_isolated(instance_ > 0);
+}
 
 void Scans::take(const sensor_msgs::msg::PointCloud2& cloud, std::size_t lidar, Time received) {
   protect([&] {
@@ -130,7 +132,7 @@ bool Scans::advance_odometry(const perception::Sweep& sweep) {
 }
 
 std::optional<OdometryReport> Scans::locate(const perception::Scan& scan) {
-  const perception::OdometryState& state = odometry_->update(scan.points);
+  const perception::OdometryState& state = odometry_->update(scan.points, scan.isolated);
   const auto T_driver_base = history_.at(scan.stamp);
   if (!T_driver_base) return std::nullopt;  // The driver's frame began again.
   return OdometryReport{scan.stamp, state.pose * T_driver_base->inverse(), instance_, state.health,

@@ -31,9 +31,11 @@ struct StoredFrames {
   std::uint32_t map_epoch{};
   /// The driver's odometry in the odometry frame; the identity with `perception: off`.
   Pose3 T_odom_driver{};
+  /// False: after a restart the robot did not recognise its surroundings, and waits for its pose.
+  bool recognised{true};
   bool same_frame(const StoredFrames& other) const {
     return T_map_odom == other.T_map_odom && height == other.height && odom_epoch == other.odom_epoch &&
-           map_epoch == other.map_epoch;
+           map_epoch == other.map_epoch && recognised == other.recognised;
   }
   bool operator==(const StoredFrames& other) const {
     return same_frame(other) && newest == other.newest &&

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nav/geometry/planar_transform.hpp"
+
 namespace adit::agent {
 namespace {
 
@@ -13,7 +15,7 @@ constexpr double kOutline = 0.1;     // m: cells of the map around a robot's out
 
 /// The outline of a robot, body frame of this one.
 struct Box {
-  Pose2 T_box_body{};
+  nav::PlanarTransform T_box_body;
   double length{}, width{};  ///< Half of them, with the margin, m.
 };
 
@@ -25,8 +27,8 @@ std::shared_ptr<const Scan> without_team(const std::shared_ptr<const Scan>& scan
   std::vector<Box> boxes;
   for (const TeamRobot& robot : team)
     if ((robot.pose.position() - body.position()).norm() <= kReach)
-      boxes.push_back(
-          {robot.pose.inverse() * body, robot.length / 2 + kPoseErrors, robot.width / 2 + kPoseErrors});
+      boxes.push_back({nav::PlanarTransform(robot.pose.inverse() * body), robot.length / 2 + kPoseErrors,
+                       robot.width / 2 + kPoseErrors});
   if (boxes.empty()) return scan;
   auto rest = std::make_shared<Scan>();
   rest->body = scan->body;

@@ -78,6 +78,17 @@ void Notices::odometry_jumped(const Pose2& guess) const {
             "; check that, and set it by: pose " + robot_ + " X Y YAW"});
 }
 
+void Notices::not_localised_here(const Pose2& guess, const std::string& why) const {
+  char place[64];
+  std::snprintf(place, sizeof place, "%.1f %.1f %.2f", guess.x, guess.y, guess.yaw);
+  send({{},
+        Severity::error,
+        "not_localised_here",
+        Reason::not_localised_here,
+        robot_ + " was started again and does not recognise its surroundings (" + why +
+            "): it holds; it was at " + place + "; set where it is by: pose " + robot_ + " X Y YAW"});
+}
+
 void Notices::localisation(Localisation health, double sigma) const {
   char known[48];
   std::snprintf(known, sizeof known, "%.2f m", sigma);

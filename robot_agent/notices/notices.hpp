@@ -34,6 +34,7 @@ class Notices {
   void rival(const wire::ParticipantId& writer) const;
   /// Reports a jump of the odometry. `guess`: the assumed pose of the robot, map frame.
   void odometry_jumped(const Pose2& guess) const;
+  void not_localised_here(const Pose2& guess, const std::string& why) const;
   /// `sigma`: standard deviation of the position, m.
   void localisation(Localisation health, double sigma) const;
   void driver_lost() const;

@@ -1,37 +1,77 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/transfer/source.hpp"
 #include "perception/map/block.hpp"
 #include "perception/types/submap_key.hpp"
+#include "robot_agent/perception/block_votes.hpp"
 
 namespace adit::agent {
 
 struct BlockSourceParams {
   std::string robot{};
-  std::uint64_t start{};            ///< SubmapKey::start of all submaps.
-  std::size_t max_blocks{200'000};  ///< Blocks that are stored; the oldest submap's are dropped, [64, 10^7].
-  Duration hold{3s};  ///< A block that peers have is sent again at most this often, however it changes.
+  std::uint64_t start{};            ///< SubmapKey::start of submaps that are not named by open().
+  std::size_t max_blocks{200'000};  ///< Blocks that are stored, [64, 10^7]; see BlockSource::update.
+  /// A block that peers have is sent again at most this often, however it changes; twice as long after each
+  /// time, up to `max_hold`.
+  Duration hold{5s};
+  Duration max_hold{40s};
 };
 
-/// The blocks of a robot's map as stations see them (0.2 m masks), and what each station has of them. Blocks
-/// that a station never had go first, the newest of them first; every fourth piece is for blocks that
-/// changed. All blocks of a piece are of one submap. The map outlives the component that makes it.
+/// Name and place of a submap. Submaps of one group lie in one lattice of blocks: they move together, and
+/// block i of a submap covers the same place as block i + offset of the group.
+struct SubmapPlace {
+  std::uint64_t start{};
+  std::uint32_t index{};
+  std::uint64_t group{};
+  perception::BlockIndex offset{};
+};
+
+/// The blocks of a robot's map as stations see them (0.2 m masks), and what each station has of them.
+///
+/// Blocks of places that a station never saw go first, the newest of them first; every fourth piece is for
+/// what changed. All blocks of a piece are of one submap. Where several submaps of one group saw a place, a
+/// block is sent only if the merge of what the station has would show anything else than the merge of all
+/// of them; a station that joins gets the fewest blocks that show the same, from the newest on. The map
+/// outlives the component that makes it. Submaps are numbered by age.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
 
   explicit BlockSource(BlockSourceParams params) : params_(std::move(params)) {}
 
-  /// Sets the newest state of a block; one that is equal to the stored one changes nothing.
-  void update(std::uint32_t submap, const perception::CoarseBlock& block);
+  /// Names a submap before its first block.
+  void open(std::uint32_t submap, const SubmapPlace& place) { names_[submap] = place; }
+  /// Sets the newest state of a block; one that is equal to the stored one changes nothing. When there is no
+  /// room, a submap is dropped: the oldest one that newer ones cover, or the oldest one.
+  void update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision = 0);
+  /// Notes that a peer has all blocks of a submap in their present state, before anything was sent to it.
+  void has(const transfer::PeerId& peer, std::uint32_t submap);
+  bool knows(const transfer::PeerId& peer) const { return peers_.contains(peer); }
+  /// Whether a peer needs no block of a submap.
+  bool complete(const transfer::PeerId& peer, std::uint32_t submap) const;
   std::size_t size() const { return blocks_.size(); }
   /// Number of blocks that were dropped for lack of space.
   std::uint64_t dropped() const { return dropped_; }
+  /// Blocks of a submap, by index, with the revision that peers know.
+  void for_each(
+      std::uint32_t submap,
+      const std::function<void(const perception::CoarseBlock&, std::uint32_t revision)>& visit) const;
+  /// Number of blocks of a submap that were erased since the last call because newer ones outvote them.
+  std::size_t take_pruned(std::uint32_t submap);
+  /// Whether newer submaps of its group show more than 90 % of a submap's blocks.
+  bool is_covered(std::uint32_t submap) const;
+  /// The submap that is worth least: one of the oldest that is covered, or the oldest. Nothing: there is but
+  /// the newest one.
+  std::optional<std::uint32_t> oldest_to_drop() const;
+  /// Forgets a submap; peers that have it are not notified.
+  void drop(std::uint32_t submap);
 
   transfer::Kind kind() const override { return transfer::Kind::map_blocks; }
   void join(const transfer::PeerId& peer) override;
@@ -49,29 +89,67 @@ class BlockSource final : public transfer::Source {
     perception::BlockIndex index{};
     auto operator<=>(const Ref&) const = default;
   };
+  static constexpr Ref first_of(std::uint32_t submap) { return {submap, {INT32_MIN, INT32_MIN, INT32_MIN}}; }
+  /// A cell of a group's lattice.
+  struct Cell {
+    std::uint64_t group{};
+    perception::BlockIndex index{};
+    auto operator<=>(const Cell&) const = default;
+  };
   struct Entry {
     std::uint64_t known{}, occupied{};
-    std::uint64_t change{};      ///< Number of the last change; rises over all blocks.
+    std::uint64_t sent_known{}, sent_occupied{};  ///< As it was sent last.
+    std::uint64_t change{};                       ///< Number of the last change; rises over all blocks.
+    std::uint64_t sent_change{};
     std::uint16_t had_by{};      ///< Bit of each peer that acknowledged some state of it.
-    Time sent{Duration::min()};  ///< When it was part of a piece last.
+    std::uint16_t chosen_for{};  ///< Bit of each peer that is to have it.
+    std::uint16_t up_to_date{};  ///< Bit of each peer to which the last sent state went, unless it was lost.
+    std::uint8_t sends{};
+    std::optional<Time> held_since{};  ///< When it was part of a piece last, or began to wait.
   };
   /// What one peer lacks, by number of the change.
   struct Peer {
     std::uint16_t bit{};
-    std::map<std::uint64_t, Ref> unseen{};   ///< It never had them.
-    std::map<std::uint64_t, Ref> changed{};  ///< It has an older state.
+    std::map<std::uint64_t, Ref> unseen{};   ///< Of places of which it has nothing.
+    std::map<std::uint64_t, Ref> changed{};  ///< Of others.
+    std::optional<Time> rests_until{};       ///< Nothing in `changed` was due when it was looked at last.
   };
   struct Part {
     Ref ref{};
     std::uint64_t change{};
   };
-  void add_missing(Peer& peer, const Ref& ref, const Entry& entry);
+  SubmapPlace place_of(std::uint32_t submap) const;
+  Cell cell_of(const Ref& ref) const;
+  /// The block of a submap in a cell.
+  Ref ref_in(const Cell& cell, std::uint32_t submap) const;
+  void add_missing(Peer& peer, const Ref& ref, Entry& entry);
+  /// Queues what a peer may lack of a cell.
+  void queue(Peer& peer, const Cell& cell);
+  /// Whether a peer must get this block so that its merge shows what ours does.
+  bool is_needed(const Peer& peer, const Ref& ref) const;
+  /// The blocks of a cell from the newest on that show what all of it do.
+  std::vector<Ref> fewest(const Cell& cell, const std::vector<std::uint32_t>& submaps) const;
+  void choose_fewest(Peer& peer, const Cell& cell, const std::vector<std::uint32_t>& submaps);
+  Duration hold(const Entry& entry) const;
   /// Candidates for a piece, all of the submap of the first one.
-  std::vector<Ref> choose(const Peer& peer, Time now);
-  void drop_oldest_submap();
+  std::vector<Ref> choose(Peer& peer, Time now);
+  void erase(const Ref& ref);
+  /// Erases a block, and queues for the peers what shows its place now.
+  void remove(const Ref& ref);
+  /// Erases blocks that show nothing any more, whatever comes: three newer ones know each of their voxels. So
+  /// a place takes the space of a few submaps, however often the robot comes there.
+  void prune(const Cell& cell);
+  /// Whether three newer blocks of a cell than that at `position` know each of these voxels; `peer`: of those
+  /// that this peer has, 0 for all.
+  bool is_outvoted(std::uint64_t known, const Cell& cell, const std::vector<std::uint32_t>& submaps,
+                   std::size_t position, std::uint16_t peer) const;
+  void make_room();
 
   BlockSourceParams params_;
+  std::map<std::uint32_t, SubmapPlace> names_{};
   std::map<Ref, Entry> blocks_{};
+  std::map<Cell, std::vector<std::uint32_t>> cells_{};  ///< Submaps that saw each, by age.
+  std::map<std::uint32_t, std::size_t> pruned_{};
   std::map<transfer::PeerId, Peer> peers_{};
   std::map<std::uint64_t, std::vector<Part>> flights_{};
   std::uint64_t changes_{};

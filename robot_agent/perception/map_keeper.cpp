@@ -1,26 +1,198 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/perception/map_keeper.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/time/random.hpp"
 
 namespace adit::agent {
 namespace {
 
 constexpr Duration kMaxInsertion = 3s;
+constexpr int kRandomBits = 48;  // Of SubmapKey::start; the bits above count the starts.
+constexpr std::uint64_t kRandomPart = (std::uint64_t{1} << kRandomBits) - 1;
+constexpr std::uint64_t kStoredGroup = std::uint64_t{1} << 62;  // Groups of submaps of earlier starts.
+constexpr int kMaxDropped = 8;                                  // Submaps, each time that the map is stored.
+constexpr std::size_t kLookedAtOnce = 3;                        // Less than 1 ms each.
+constexpr std::uint32_t kPrunedAtOnce = 4;
 
 std::uint32_t drawn_session(std::uint64_t seed) {
   return static_cast<std::uint32_t>(Random(seed).fork(2).next()) | 1U;
 }
 
+/// Index of the block of the odometry frame's lattice at a submap's origin.
+perception::BlockIndex lattice(const Pose3& T_odom_submap) {
+  const Eigen::Vector3d at = T_odom_submap.position / perception::BlockIndex::kSize;
+  const auto part = [](double v) { return static_cast<std::int32_t>(std::clamp(std::round(v), -1e9, 1e9)); };
+  return {part(at.x()), part(at.y()), part(at.z())};
+}
+
 }  // namespace
 
-MapKeeper::MapKeeper(MapKeeperParams params)
+MapKeeper::MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk)
     : params_(std::move(params)),
+      disk_(std::move(disk)),
       poses_(params_.robot, Random(params_.seed).fork(1).next()),
       blocks_({.robot = params_.robot, .start = Random(params_.seed).fork(1).next()}),
+      start_(Random(params_.seed).fork(1).next() & kRandomPart),
       sender_({.session = drawn_session(params_.seed)}) {
   sender_.add(poses_);
   sender_.add(blocks_);
+}
+
+LoadedMap MapKeeper::load() {
+  if (!disk_) return {};
+  LoadedMap loaded = disk_->load();
+  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint64_t> groups;
+  std::uint64_t newest = 0;
+  for (perception::StoredSubmap& stored : loaded.submaps) {
+    const auto number = static_cast<std::uint32_t>(submaps_.size());
+    // Poses of different moments may differ by a correction: then no two submaps share a lattice.
+    const std::uint64_t next = kStoredGroup + number;
+    const std::uint64_t group =
+        loaded.places ? groups.try_emplace({stored.key.start, stored.odom_epoch}, next).first->second : next;
+    const SubmapPlace place{stored.key.start, stored.key.index, group, stored.offset};
+    submaps_.push_back({{}, stored.odom_epoch, place, true});
+    blocks_.open(number, place);
+    poses_.open(number, place.start, place.index, stored.pose_revision);
+    if (stored.placed) poses_.update(number, stored.T_map_submap);
+    std::sort(stored.blocks.begin(), stored.blocks.end(),
+              [](const auto& a, const auto& b) { return a.revision < b.revision; });
+    for (const perception::BlockUpdate& update : stored.blocks)
+      blocks_.update(number, update.block, update.revision);
+    newest = std::max(newest, place.start >> kRandomBits);
+  }
+  for (const perception::StoredPlaces::Peer& peer : loaded.peers)
+    stored_stations_[peer.id] = {peer.start, {peer.has.begin(), peer.has.end()}, 0};
+  first_ = static_cast<std::uint32_t>(submaps_.size());
+  // Stations merge submaps by key: those of a later start must come later.
+  start_ = (newest + 1) << kRandomBits | start_;
+  loaded.submaps.clear();
+  return loaded;
+}
+
+void MapKeeper::anchor() {
+  for (Submap& submap : submaps_) submap.fixed = true;
+}
+
+void MapKeeper::acknowledged(const transfer::Ack& ack, Time now) {
+  sender_.acknowledged(ack, now);
+  if (!blocks_.knows(ack.peer)) {
+    stations_.erase(ack.peer);
+    return;
+  }
+  const auto known = stations_.find(ack.peer);
+  if (known != stations_.end() && known->second.start == ack.start) return;
+  if (stations_.size() >= BlockSource::kMaxPeers)
+    std::erase_if(stations_, [this](const auto& station) { return !blocks_.knows(station.first); });
+  Station& station = stations_[ack.peer] = {ack.start, {}, 0};
+  const auto stored = stored_stations_.find(ack.peer);
+  if (stored == stored_stations_.end()) return;
+  // It was not started again since, and still has what it had.
+  if (stored->second.start == ack.start)
+    for (const std::uint32_t submap : station.has = stored->second.has) blocks_.has(ack.peer, submap);
+  stored_stations_.erase(stored);
+}
+
+std::vector<transfer::Piece> MapKeeper::due(Time now, const wire::SenderState& link) {
+  if (disk_) save_due(now);
+  return sender_.due(now, link);
+}
+
+void MapKeeper::save_submap(std::uint32_t number) {
+  const Submap& submap = submaps_[number];
+  perception::StoredSubmap stored{.key = {params_.robot, submap.place.start, submap.place.index},
+                                  .odom_epoch = submap.odom_epoch,
+                                  .offset = submap.place.offset};
+  if (const auto pose = poses_.pose(number)) {
+    stored.T_map_submap = pose->T_map_submap;
+    stored.placed = true;
+    stored.pose_revision = pose->revision;
+  }
+  blocks_.for_each(number, [&](const perception::CoarseBlock& block, std::uint32_t revision) {
+    if (stored.blocks.size() < perception::kMaxStoredBlocks) stored.blocks.push_back({block, revision});
+  });
+  disk_->save(std::move(stored));
+}
+
+void MapKeeper::save_places() {
+  perception::StoredPlaces places;
+  std::map<std::uint32_t, std::uint32_t> positions;  // By number of the submap.
+  for (auto& [submap, pose] : poses_.poses()) {
+    positions[submap] = static_cast<std::uint32_t>(places.poses.size());
+    places.poses.push_back(std::move(pose));
+  }
+  const auto add = [&](const transfer::PeerId& id, const Station& station) {
+    perception::StoredPlaces::Peer peer{id, station.start, {}};
+    for (const std::uint32_t submap : station.has)
+      if (const auto at = positions.find(submap); at != positions.end()) peer.has.push_back(at->second);
+    if (places.peers.size() < perception::kMaxStoredPeers) places.peers.push_back(std::move(peer));
+  };
+  for (const auto& [id, station] : stations_) add(id, station);
+  for (const auto& [id, station] : stored_stations_) add(id, station);
+  disk_->save(std::move(places));
+}
+
+void MapKeeper::make_room() {
+  for (int dropped = 0; disk_->is_full() && dropped < kMaxDropped; ++dropped) {
+    const auto submap = blocks_.oldest_to_drop();
+    if (!submap) return;
+    const SubmapPlace& place = submaps_[*submap].place;
+    disk_->remove({params_.robot, place.start, place.index});
+    blocks_.drop(*submap);
+    ++dropped_submaps_;
+    poses_.drop(*submap);
+    for (auto& [id, station] : stations_) station.has.erase(*submap);
+    for (auto& [id, station] : stored_stations_) station.has.erase(*submap);
+    places_changed_ = true;
+  }
+}
+
+void MapKeeper::save_pruned() {
+  const auto closed = static_cast<std::uint32_t>(submaps_.empty() ? 0 : submaps_.size() - 1);
+  for (std::uint32_t looked = 0; looked < std::min(kPrunedAtOnce, closed); ++looked) {
+    next_pruned_ = (next_pruned_ + 1) % closed;
+    if (blocks_.take_pruned(next_pruned_) > 0 && poses_.pose(next_pruned_)) save_submap(next_pruned_);
+  }
+}
+
+void MapKeeper::note_complete() {
+  // A closed submap does not change: what a station has of it stays complete. The open one is looked at, too.
+  const auto count = static_cast<std::uint32_t>(submaps_.size());
+  for (auto& [id, station] : stations_) {
+    std::size_t looked = 0;
+    for (std::uint32_t i = 0; i < count && looked < kLookedAtOnce; ++i) {
+      station.next = station.next > 0 && station.next <= count ? station.next - 1 : count - 1;
+      if (station.has.contains(station.next)) continue;
+      ++looked;
+      if (!blocks_.complete(id, station.next)) continue;
+      station.has.insert(station.next);
+      places_changed_ = true;
+    }
+  }
+}
+
+void MapKeeper::save_due(Time now) {
+  disk_->tick();
+  if (saved_ && now - *saved_ < params_.save_period) return;
+  const bool first = !saved_;
+  saved_ = now;
+  if (first) return;
+  make_room();
+  save_pruned();
+  note_complete();
+  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
+  if (places_changed_) save_places();
+  open_changed_ = places_changed_ = false;
+}
+
+void MapKeeper::flush() {
+  if (!disk_) return;
+  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
+  if (places_changed_) save_places();
+  open_changed_ = places_changed_ = false;
+  disk_->flush();
 }
 
 std::shared_ptr<const MapJob> MapKeeper::job(const std::shared_ptr<const Scan>& scan,
@@ -48,16 +220,28 @@ std::shared_ptr<const MapJob> MapKeeper::job(const std::shared_ptr<const Scan>& 
   return job;
 }
 
+void MapKeeper::open_submap(const MapStep& step, const MapFrame& frame) {
+  // The one before is closed: it is written a last time.
+  if (disk_ && open_changed_ && submaps_.size() > first_)
+    save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
+  const SubmapPlace place{start_, step.submap - first_, step.odom_epoch, lattice(step.T_odom_submap)};
+  submaps_.push_back({step.T_odom_submap, step.odom_epoch, place, false});
+  blocks_.open(step.submap, place);
+  poses_.open(step.submap, place.start, place.index, 0);
+  if (step.odom_epoch == frame.odom_epoch) poses_.update(step.submap, frame.T_map_odom * step.T_odom_submap);
+  places_changed_ = true;
+  if (!frame_) frame_ = frame;
+}
+
 void MapKeeper::taken(const Result<MapStep>& step, const MapFrame& frame) {
   busy_ = false;
-  if (!step || step->submap > submaps_.size()) return;
-  if (step->submap == submaps_.size()) {
-    submaps_.push_back({step->T_odom_submap, step->odom_epoch});
-    if (step->odom_epoch == frame.odom_epoch)
-      poses_.update(step->submap, frame.T_map_odom * step->T_odom_submap);
-    if (!frame_) frame_ = frame;
-  }
+  if (!step || step->submap > submaps_.size() || step->submap < first_) return;
+  if (step->submap == submaps_.size()) open_submap(*step, frame);
   for (const perception::CoarseBlock& block : step->blocks) blocks_.update(step->submap, block);
+  if (!step->blocks.empty()) {
+    open_changed_ = true;
+    for (auto& [id, station] : stations_) station.has.erase(step->submap);
+  }
   if (step->submap + 1 == submaps_.size()) revision_ = step->revision;
 }
 
@@ -65,9 +249,11 @@ void MapKeeper::follow(const MapFrame& frame) {
   if (!frame_ || (frame_->map_epoch == frame.map_epoch && frame_->odom_epoch == frame.odom_epoch)) return;
   frame_ = frame;
   // Submaps of an earlier odometry frame stay where they were in the map.
-  for (std::size_t i = 0; i < submaps_.size(); ++i)
-    if (submaps_[i].odom_epoch == frame.odom_epoch)
-      poses_.update(static_cast<std::uint32_t>(i), frame.T_map_odom * submaps_[i].T_odom_submap);
+  for (std::size_t i = 0; i < submaps_.size(); ++i) {
+    if (submaps_[i].fixed || submaps_[i].odom_epoch != frame.odom_epoch) continue;
+    places_changed_ = true;
+    poses_.update(static_cast<std::uint32_t>(i), frame.T_map_odom * submaps_[i].T_odom_submap);
+  }
 }
 
 }  // namespace adit::agent

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/transfer/sender.hpp"
 #include "robot_agent/motion/map_frame.hpp"
 #include "robot_agent/perception/block_source.hpp"
+#include "robot_agent/perception/map_disk.hpp"
 #include "robot_agent/perception/map_part.hpp"
 #include "robot_agent/perception/pose_source.hpp"
 
@@ -19,15 +23,21 @@ struct MapKeeperParams {
   double min_move{0.2};             ///< Way between two scans that enter the map, m.
   double min_turn{0.087};           ///< The same, rad.
   Duration min_period{1s};          ///< The same while the robot does neither.
+  Duration save_period{10s};        ///< Between two writes of the open submap, and of the poses.
 };
 
 /// What a robot knows of its map beside the open submap's grid: the submaps, their blocks at 0.2 m, and what
 /// each station has of them. It chooses the scans that enter the map and sends the map to the stations. It
-/// belongs to the agent's context, so that a restart of a component loses nothing; on the disk it is not yet.
-/// Runs on the command strand.
+/// belongs to the agent's context, so that a restart of a component loses nothing, and is stored on the disk,
+/// so that a restart of the agent loses at most what the last seconds changed. Submaps of earlier starts have
+/// their names and poses from then; they never move again. Runs on the command strand.
 class MapKeeper {
  public:
-  explicit MapKeeper(MapKeeperParams params);
+  /// `disk` null: the map ends with this process.
+  explicit MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk = nullptr);
+
+  /// Takes the map from the disk, before anything else; returns what could not be used, without its content.
+  LoadedMap load();
 
   /// The job for a scan that should enter the map. Nothing: it should not, or the last one is being inserted.
   std::shared_ptr<const MapJob> job(const std::shared_ptr<const Scan>& scan, std::vector<TeamRobot> team,
@@ -37,24 +47,60 @@ class MapKeeper {
   /// Updates the poses of the submaps when the robot's pose in the map was corrected.
   void follow(const MapFrame& frame);
 
-  void acknowledged(const transfer::Ack& ack, Time now) { sender_.acknowledged(ack, now); }
-  /// The pieces to send now.
-  std::vector<transfer::Piece> due(Time now, const wire::SenderState& link) { return sender_.due(now, link); }
+  /// Leaves the submaps of now where they are in the map from now on, whatever corrections come: a pose that
+  /// was found in them must not move them.
+  void anchor();
+
+  void acknowledged(const transfer::Ack& ack, Time now);
+  /// The pieces to send now. Call it at 10 to 50 Hz; it also writes to the disk what is due.
+  std::vector<transfer::Piece> due(Time now, const wire::SenderState& link);
+  /// Hands what is not on the disk yet to its strand, at a clean end after the command strand has ended.
+  void flush();
   std::uint32_t session() const { return sender_.session(); }
   std::size_t blocks() const { return blocks_.size(); }
   std::size_t submaps() const { return submaps_.size(); }
+  /// Submaps that were not dropped for lack of space.
+  std::size_t stored_submaps() const { return submaps_.size() - dropped_submaps_; }
 
  private:
   struct Submap {
     Pose3 T_odom_submap{};
     std::uint32_t odom_epoch{};
+    SubmapPlace place{};
+    bool fixed{false};  ///< It stays where it is in the map.
   };
+  /// A station, and which submaps it has complete.
+  struct Station {
+    std::uint32_t start{};
+    std::set<std::uint32_t> has{};
+    std::uint32_t next{};  ///< The submap before it is the next one that is looked at.
+  };
+  void open_submap(const MapStep& step, const MapFrame& frame);
+  void save_submap(std::uint32_t submap);
+  void save_places();
+  /// Notes which submaps stations have complete, a few at a time.
+  void note_complete();
+  void save_due(Time now);
+  /// Writes some of the submaps again of which blocks are not needed any more.
+  void save_pruned();
+  /// Drops submaps until the disk has room again.
+  void make_room();
+
   MapKeeperParams params_;
+  std::unique_ptr<MapDisk> disk_;
   std::vector<Submap> submaps_{};
   std::uint32_t revision_{};  ///< Of the newest submap, up to which its blocks are here.
   std::optional<MapFrame> frame_{};
   PoseSource poses_;
   BlockSource blocks_;
+  std::uint64_t start_;    ///< SubmapKey::start of the submaps of this process.
+  std::uint32_t first_{};  ///< Number of its first submap; those before are from the disk.
+  std::map<transfer::PeerId, Station> stations_{};
+  std::map<transfer::PeerId, Station> stored_stations_{};  ///< Of the disk, not heard since.
+  std::optional<Time> saved_{};
+  std::size_t dropped_submaps_{};
+  std::uint32_t next_pruned_{};
+  bool open_changed_{false}, places_changed_{false};
   transfer::Sender sender_;
   bool busy_{false};
   std::optional<Time> inserted_{};

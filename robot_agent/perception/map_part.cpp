@@ -25,6 +25,13 @@ MapStep inserted(const MapJob& job, MapStep step, perception::SubmapGrid& grid, 
   return step;
 }
 
+/// The corner of a block next to a position: the blocks of all submaps of an odometry frame lie in one
+/// lattice.
+Eigen::Vector3d anchor(const Eigen::Vector3d& position) {
+  constexpr double kSize = perception::BlockIndex::kSize;
+  return (position / kSize).array().round() * kSize;
+}
+
 }  // namespace
 
 MapPart::MapPart(MapParams params, Executor& strand, Log log, MapService& service)
@@ -38,7 +45,7 @@ Result<void> MapPart::on_start() {
 bool MapPart::is_full(const MapJob& job) const {
   if (!open_ || open_->odom_epoch != job.odom_epoch) return true;
   const double length = open_->length + (job.scan->body.position - open_->last).norm();
-  const double height = std::abs(job.scan->body.position.z() - open_->T_odom_submap.position.z());
+  const double height = std::abs(job.scan->body.position.z() - open_->height);
   return length > params_.submap_length || height > params_.submap_height ||
          (job.made - open_->began > params_.submap_time && length > params_.submap_min_length);
 }
@@ -46,10 +53,11 @@ bool MapPart::is_full(const MapJob& job) const {
 void MapPart::insert(const std::shared_ptr<const MapJob>& job, const Reply<MapStep>& reply) {
   if (is_full(*job))
     open_ = Open{.index = job->next_submap,
-                 .T_odom_submap = {job->scan->body.position, Eigen::Quaterniond::Identity()},
+                 .T_odom_submap = {anchor(job->scan->body.position), Eigen::Quaterniond::Identity()},
                  .odom_epoch = job->odom_epoch,
                  .began = job->made,
                  .last = job->scan->body.position,
+                 .height = job->scan->body.position.z(),
                  .grid = std::make_shared<perception::SubmapGrid>()};
   open_->length += (job->scan->body.position - open_->last).norm();
   open_->last = job->scan->body.position;

@@ -28,7 +28,8 @@ struct MapJob {
 /// What a scan changed in the map.
 struct MapStep {
   std::uint32_t submap{};  ///< The open one.
-  Pose3 T_odom_submap{};   ///< Gravity-aligned; fixed since the submap was opened.
+  /// Level, at a multiple of a block's edge on each axis; fixed since the submap was opened.
+  Pose3 T_odom_submap{};
   std::uint32_t odom_epoch{};
   std::uint32_t revision{};
   std::vector<perception::CoarseBlock> blocks{};  ///< Changed since MapJob::known_revision.
@@ -64,6 +65,7 @@ class MapPart : public Component {
     std::uint32_t odom_epoch{};
     Time began{};
     Eigen::Vector3d last{0, 0, 0};  ///< Position of the body at the last scan, odometry frame.
+    double height{};                ///< Of the body when it began, odometry frame, m.
     double length{};                ///< Way since it began, m.
     std::shared_ptr<perception::SubmapGrid> grid{};
   };

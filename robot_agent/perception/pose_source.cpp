@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/perception/pose_source.hpp"
 
-#include "perception/stream/piece.hpp"
-
 namespace adit::agent {
 namespace {
 
@@ -12,8 +10,42 @@ constexpr std::size_t kHeadBytes = 64;  // Of a piece beside them.
 
 }  // namespace
 
+void PoseSource::open(std::uint32_t submap, std::uint64_t start, std::uint32_t index,
+                      std::uint32_t revision) {
+  names_[submap] = {start, index, revision};
+}
+
+perception::SubmapPose PoseSource::content(std::uint32_t submap, const Entry& entry) const {
+  const auto named = names_.find(submap);
+  if (named == names_.end()) return {{robot_, start_, submap}, entry.T_map_submap, entry.revision};
+  const Name& name = named->second;
+  return {{robot_, name.start, name.index}, entry.T_map_submap, entry.revision};
+}
+
+std::vector<std::pair<std::uint32_t, perception::SubmapPose>> PoseSource::poses() const {
+  std::vector<std::pair<std::uint32_t, perception::SubmapPose>> out;
+  for (const auto& [submap, entry] : poses_) out.emplace_back(submap, content(submap, entry));
+  return out;
+}
+
+std::optional<perception::SubmapPose> PoseSource::pose(std::uint32_t submap) const {
+  const auto found = poses_.find(submap);
+  if (found == poses_.end()) return std::nullopt;
+  return content(submap, found->second);
+}
+
+void PoseSource::drop(std::uint32_t submap) {
+  poses_.erase(submap);
+  names_.erase(submap);
+  for (auto& [id, lacks] : peers_) lacks.erase(submap);
+}
+
 void PoseSource::update(std::uint32_t submap, const Pose3& T_map_submap) {
-  poses_[submap] = {T_map_submap, ++revisions_};
+  const auto [found, added] = poses_.try_emplace(submap);
+  const auto named = names_.find(submap);
+  if (added && named != names_.end()) found->second.revision = named->second.revision;
+  found->second.T_map_submap = T_map_submap;
+  ++found->second.revision;
   for (auto& [id, lacks] : peers_) lacks.insert(submap);
 }
 
@@ -37,7 +69,7 @@ std::optional<transfer::Source::Content> PoseSource::next(std::span<const transf
   std::vector<Part>& parts = flights_[++tokens_];
   for (auto it = first->second.rbegin(); it != first->second.rend() && parts.size() < room; ++it) {
     const Entry& entry = poses_.at(*it);
-    piece.poses.push_back({{robot_, start_, *it}, entry.T_map_submap, entry.revision});
+    piece.poses.push_back(content(*it, entry));
     parts.push_back({*it, entry.revision});
   }
   for (const Part& part : parts)
@@ -50,8 +82,10 @@ void PoseSource::lost(const transfer::PeerId& peer, std::uint64_t token) {
   const auto found = peers_.find(peer);
   const auto flight = flights_.find(token);
   if (found == peers_.end() || flight == flights_.end()) return;
-  for (const Part& part : flight->second)
-    if (poses_.at(part.submap).revision == part.revision) found->second.insert(part.submap);
+  for (const Part& part : flight->second) {
+    const auto pose = poses_.find(part.submap);
+    if (pose != poses_.end() && pose->second.revision == part.revision) found->second.insert(part.submap);
+  }
 }
 
 }  // namespace adit::agent

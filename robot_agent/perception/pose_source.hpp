@@ -2,12 +2,15 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/pose.hpp"
 #include "core/transfer/source.hpp"
+#include "perception/stream/piece.hpp"
 
 namespace adit::agent {
 
@@ -16,8 +19,16 @@ class PoseSource final : public transfer::Source {
  public:
   PoseSource(std::string robot, std::uint64_t start) : robot_(std::move(robot)), start_(start) {}
 
+  /// Names a submap that is not {start, submap}, and the revision of its pose that stations may have.
+  void open(std::uint32_t submap, std::uint64_t start, std::uint32_t index, std::uint32_t revision);
   /// Sets the pose of a submap, from now on wanted by every station.
   void update(std::uint32_t submap, const Pose3& T_map_submap);
+  /// Forgets a submap.
+  void drop(std::uint32_t submap);
+  /// Poses of all submaps by number; the key, and the revision that stations know.
+  std::vector<std::pair<std::uint32_t, perception::SubmapPose>> poses() const;
+  /// The pose of one submap; nothing: unknown.
+  std::optional<perception::SubmapPose> pose(std::uint32_t submap) const;
 
   transfer::Kind kind() const override { return transfer::Kind::map_poses; }
   void join(const transfer::PeerId& peer) override;
@@ -34,6 +45,13 @@ class PoseSource final : public transfer::Source {
     Pose3 T_map_submap{};
     std::uint32_t revision{};
   };
+  struct Name {
+    std::uint64_t start{};
+    std::uint32_t index{};
+    std::uint32_t revision{};
+  };
+  perception::SubmapPose content(std::uint32_t submap, const Entry& entry) const;
+
   struct Part {
     std::uint32_t submap{};
     std::uint32_t revision{};
@@ -41,9 +59,9 @@ class PoseSource final : public transfer::Source {
   std::string robot_;
   std::uint64_t start_;
   std::map<std::uint32_t, Entry> poses_{};
+  std::map<std::uint32_t, Name> names_{};
   std::map<transfer::PeerId, std::set<std::uint32_t>> peers_{};  ///< Submaps whose pose each lacks.
   std::map<std::uint64_t, std::vector<Part>> flights_{};
-  std::uint32_t revisions_{};
   std::uint64_t tokens_{};
 };
 

@@ -130,7 +130,7 @@ const std::array kRows{
         read_behaviour},
     Row{{'H', 'O', 'S', 'T'}, 2, "boot and battery", true, write_host, read_host},
     Row{{'P', 'L', 'A', 'C'},
-        4,
+        5,
         "place",
         false,
         [](const Snapshot& s, const auto& add) {

@@ -154,6 +154,7 @@ void put(Packer& out, const StoredFrames& place) {
   if (place.height) out.put(*place.height);
   out.put(place.map_epoch);
   put(out, place.T_odom_driver);
+  out.flag(place.recognised);
 }
 
 StoredFrames place(Unpacker& in) {
@@ -172,6 +173,8 @@ StoredFrames place(Unpacker& in) {
   kept.map_epoch = in.get<std::uint32_t>();
   if (in.done()) return kept;  // Version 3 of the section ends here.
   get(in, kept.T_odom_driver);
+  if (in.done()) return kept;  // Version 4 of the section ends here.
+  kept.recognised = in.flag();
   return kept;
 }
 

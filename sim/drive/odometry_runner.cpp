@@ -62,7 +62,10 @@ void OdometryRunner::correct(const perception::Sweep& sweep, std::uint64_t end) 
   }
   const auto low = static_cast<float>(lidar_.min_range), high = static_cast<float>(lidar_.max_range);
   points_.clear();
-  for (const perception::TimedPoint& p : sweep.points) {
+  const std::vector<std::uint8_t>& isolated = isolated_.find(sweep);
+  for (std::size_t n = 0; n < sweep.points.size(); ++n) {
+    const perception::TimedPoint& p = sweep.points[n];
+    if (!isolated.empty() && isolated[n] != 0) continue;
     const float squared = p.position.squaredNorm();  // Of NaN all comparisons are false.
     if (squared >= low * low && squared <= high * high) points_.push_back(deskew(p.position, p.time));
   }

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/config/platform.hpp"
+#include "perception/input/isolated_returns.hpp"
 #include "perception/odometry/lidar_odometry.hpp"
 #include "perception/types/sweep.hpp"
 
@@ -43,6 +44,7 @@ class OdometryRunner {
   Eigen::Quaterniond R_base_imu_;
   bool moves_;
   OnStep on_step_;
+  perception::IsolatedReturns isolated_{};
   perception::LidarOdometry odometry_;
   std::deque<perception::Sweep> waiting_{};
   PointCloud points_{};

@@ -40,11 +40,17 @@ std::vector<std::uint8_t> encode_cloud(std::span<const Point> points, std::span<
   }
   cloud.point_step(sizeof(Point));
   cloud.row_step(cloud.point_step() * cloud.width());
-  cloud.data().resize(points.size_bytes());
-  if (!points.empty()) std::memcpy(cloud.data().data(), points.data(), points.size_bytes());
   cloud.is_dense(true);
   std::vector<std::uint8_t> out;
   wire::encode(cloud, out);
+  // The data, the last member but one, are put in afterwards, so that they are copied once: after their
+  // number, which is 0 so far, and before `is_dense`.
+  constexpr std::ptrdiff_t kDense = 1;
+  const auto bytes = static_cast<std::uint32_t>(points.size_bytes());
+  std::memcpy(out.data() + out.size() - kDense - sizeof bytes, &bytes, sizeof bytes);
+  const auto* data = reinterpret_cast<const std::uint8_t*>(points.data());
+  out.reserve(out.size() + bytes);
+  out.insert(out.end() - kDense, data, data + bytes);
   return out;
 }
 

@@ -175,7 +175,7 @@ class Run {
   std::optional<MapJudgement> judged_map(const std::string& by) const {
     const auto station = stations_.find(by);
     if (!surface_ || station == stations_.end()) return std::nullopt;
-    const std::optional<MapVoxels> map = station->second->map();
+    const std::shared_ptr<const MapVoxels> map = station->second->map();
     if (!map) return std::nullopt;
     return judge_map(*map, surface_->surface().points(), simulation_.world());
   }

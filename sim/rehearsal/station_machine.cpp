@@ -87,6 +87,7 @@ void StationMachine::crash() {
   process_->stuck.reset();
   process_->station.reset();
   process_.reset();
+  merged_.reset();
   stage_.scheduler.at(stage_.scheduler.elapsed() + kRestartAfter, [this] { health_ = start_process(); });
 }
 
@@ -104,9 +105,10 @@ const station::ChunkStore* StationMachine::chunks() const {
   return process_ ? &process_->station->map() : nullptr;
 }
 
-std::optional<MapVoxels> StationMachine::map() const {
+std::shared_ptr<const MapVoxels> StationMachine::map() const {
   const station::ChunkStore* store = chunks();
-  if (!store || store->empty()) return std::nullopt;
+  if (!store || store->empty()) return nullptr;
+  if (merged_ && merged_revision_ == store->revision()) return merged_;
   const perception::VoxelImage image =
       station::merged(station::parts_of(*store), nullptr, perception::CoarseBlock::kVoxel);
   MapVoxels voxels{.edge = image.resolution(), .occupied = {}, .free = {}};
@@ -114,7 +116,9 @@ std::optional<MapVoxels> StationMachine::map() const {
     (voxel == perception::Voxel::occupied ? voxels.occupied : voxels.free)
         .push_back(image.centre(index).cast<float>());
   });
-  return voxels;
+  merged_ = std::make_shared<const MapVoxels>(std::move(voxels));
+  merged_revision_ = store->revision();
+  return merged_;
 }
 
 std::optional<Reason> StationMachine::last_answer() const {

@@ -33,8 +33,9 @@ class StationMachine {
   std::optional<std::size_t> findings() const;
   /// The map that his station has; null while it is dead.
   const station::ChunkStore* chunks() const;
-  /// The map that his station holds of all robots, map frame; nothing while it is dead or knows none.
-  std::optional<MapVoxels> map() const;
+  /// The map that his station holds of all robots, map frame, merged once for each revision of it; null while
+  /// it is dead or knows none.
+  std::shared_ptr<const MapVoxels> map() const;
 
  private:
   struct Process;
@@ -50,6 +51,8 @@ class StationMachine {
   std::optional<Reason> answer_before_crash_{};
   std::unique_ptr<Process> process_{};
   Result<void> health_{};
+  mutable std::shared_ptr<const MapVoxels> merged_{};
+  mutable std::uint64_t merged_revision_{};
 };
 
 }  // namespace adit::sim

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/world/voxel_lanes.hpp"
+
 namespace adit::sim {
 namespace {
 
@@ -13,6 +15,17 @@ constexpr int kMostLayers = 15;  // What half a byte counts.
 int keep(int value, int low, int high) {
   value = value < low ? low : value;
   return value > high ? high : value;
+}
+
+/// 0: layers have different thickness. Asked for every column of a scan; it is exact enough to look at three
+/// of the borders.
+double layers_per_metre(const std::vector<double>& levels) {
+  const std::size_t layers = levels.size() - 1;
+  const double thickness = (levels.back() - levels.front()) / static_cast<double>(layers);
+  const auto in_place = [&](std::size_t n) {
+    return std::abs(levels[n] - levels.front() - static_cast<double>(n) * thickness) < 0.1 * thickness;
+  };
+  return in_place(1) && in_place(layers / 2) && in_place(layers - 1) ? 1.0 / thickness : 0.0;
 }
 
 }  // namespace
@@ -159,8 +172,78 @@ bool VoxelGrid::prepare(const Start& from, const Eigen::Vector3d& direction, dou
   return true;
 }
 
+bool VoxelGrid::cast_together(const Start& from, std::span<const Eigen::Vector3d> directions,
+                              double max_range, std::span<double> ranges) const {
+  VoxelLanes lanes;
+  std::array<std::size_t, VoxelLanes::kMax> which;
+  const Stride* strides = nullptr;
+  Ray last{};
+  const auto put = [&](const Ray& ray, int at) {
+    lanes.gx[at] = ray.gx;
+    lanes.gy[at] = ray.gy;
+    lanes.sx[at] = ray.sx;
+    lanes.sy[at] = ray.sy;
+    lanes.ax[at] = ray.ax;
+    lanes.ay[at] = ray.ay;
+    lanes.az[at] = ray.az;
+    lanes.t[at] = ray.t;
+    lanes.i[at] = ray.i;
+    lanes.j[at] = ray.j;
+    lanes.k[at] = ray.k;
+    lanes.up[at] = ray.up;
+  };
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    Ray ray;
+    if (!prepare(from, directions[n], max_range, ray, ranges[n])) continue;
+    if (strides && strides != ray.strides) return false;
+    strides = ray.strides;
+    which[static_cast<std::size_t>(lanes.count)] = n;
+    put(last = ray, lanes.count++);
+  }
+  if (lanes.count == 0) return true;
+  for (int at = lanes.count; at % VoxelLanes::kWide != 0; ++at) put(last, at);
+  static_assert(sizeof(Stride) == 2);
+  lanes.strides = &strides->edge;
+  lanes.levels = levels_.data();
+  lanes.nx = nx_;
+  lanes.ny = ny_;
+  lanes.layers = layers();
+  lanes.layers_per_metre = layers_per_metre(levels_);
+  lanes.z = from.position.z();
+  lanes.max_range = max_range;
+  std::array<LaneEnd, VoxelLanes::kMax> ends;
+  cast_lanes(lanes, ends.data());
+  for (int at = 0; at < lanes.count; ++at) {
+    const std::size_t n = which[static_cast<std::size_t>(at)];
+    switch (ends[static_cast<std::size_t>(at)]) {
+      case LaneEnd::met:
+        ranges[n] = lanes.t[at];
+        break;
+      case LaneEnd::far:
+        ranges[n] = kNoHit;
+        break;
+      case LaneEnd::outside:
+        ranges[n] = open_sides_ ? cast_beside(from, directions[n], max_range) : lanes.t[at];
+        break;
+    }
+  }
+  return true;
+}
+
 void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
                      std::span<double> ranges) const {
+  constexpr std::size_t kFew = 3;  // Not worth it.
+  if (directions.size() <= kFew || !has_voxel_lanes()) return cast_each(from, directions, max_range, ranges);
+  for (std::size_t first = 0; first < directions.size(); first += VoxelLanes::kMax) {
+    const std::size_t count = std::min<std::size_t>(VoxelLanes::kMax, directions.size() - first);
+    const auto some = directions.subspan(first, count);
+    const auto into = ranges.subspan(first, count);
+    if (!cast_together(from, some, max_range, into)) cast_each(from, some, max_range, into);
+  }
+}
+
+void VoxelGrid::cast_each(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
+                          std::span<double> ranges) const {
   const double z = from.position.z();
   const int top = layers(), row = nx_ * top;
   const double* const levels = levels_.data();
@@ -218,7 +301,7 @@ void VoxelGrid::cast(const Start& from, std::span<const Eigen::Vector3d> directi
 
 double VoxelGrid::cast(const Start& start, const Eigen::Vector3d& direction, double max_range) const {
   double range = kNoHit;
-  cast(start, std::span(&direction, 1), max_range, std::span(&range, 1));
+  cast_each(start, std::span(&direction, 1), max_range, std::span(&range, 1));
   return range;
 }
 

@@ -63,9 +63,13 @@ class VoxelGrid {
   /// Distance along `direction` (unit vector) to the first solid cell, m, 0 when the start is solid; no_hit
   /// beyond `max_range`. Voxel traversal after Amanatides and Woo (1987), with strides over empty squares.
   double cast(const Start& start, const Eigen::Vector3d& direction, double max_range) const;
-  /// The same for many rays from one start, into `ranges` (as many as directions).
+  /// The same for many rays from one start, into `ranges` (as many as directions). Several at once where the
+  /// processor can, with equal results.
   void cast(const Start& start, std::span<const Eigen::Vector3d> directions, double max_range,
             std::span<double> ranges) const;
+  /// The same, one after the other.
+  void cast_each(const Start& start, std::span<const Eigen::Vector3d> directions, double max_range,
+                 std::span<double> ranges) const;
 
  private:
   struct Ray;
@@ -78,6 +82,9 @@ class VoxelGrid {
   /// Puts a ray on its way, or gives its range at once (false).
   bool prepare(const Start& from, const Eigen::Vector3d& direction, double max_range, Ray& ray,
                double& range) const;
+  /// Casts up to VoxelLanes::kMax rays at once; false: they do not all head the same way.
+  bool cast_together(const Start& from, std::span<const Eigen::Vector3d> directions, double max_range,
+                     std::span<double> ranges) const;
   /// The cells of a column lie side by side: the rays of a lidar's column cross the same ones.
   std::size_t index(int i, int j, int k) const {
     return (static_cast<std::size_t>(j) * nx_ + i) * layers() + k;

@@ -80,7 +80,7 @@ TEST_F(BlockSourceTest, ABlockThatChangesOnItsWayIsSentAgainLater) {
   source.acknowledged(kOne, token);
   EXPECT_EQ(source.missing(kOne), 1U);
   EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << "it was sent just now";
-  now += 4s;
+  now += 6s;
   EXPECT_EQ(next({kOne}, token).blocks.size(), 1U);
 }
 

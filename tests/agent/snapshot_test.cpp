@@ -44,11 +44,10 @@ Snapshot full() {
   EXPECT_TRUE(s.behaviour.areas.add(area_of("shaft", 5)));
   s.boot = 0x1122334455667788;
   s.battery = 2;
-  s.place = StoredFrames{{4, -3, 1.5},
-                         2,
-                         OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
-                         3.5,
-                         41};
+  s.place = StoredFrames{
+      {4, -3, 1.5}, 2,  OdometrySample{Pose3::level({7, 8, -2}, 0.5), 1234567890123, from_stamp(987654321)},
+      3.5,          41, Pose3::level({0.1, -0.2, 0.01}, 0),
+      false};
   KeptAnswers a;
   a.participant[3] = 4;
   a.station = "op1";
@@ -227,13 +226,13 @@ TEST(Snapshot, of_a_place_that_is_none_has_no_odometry) {
 TEST(Snapshot, of_older_places_is_read) {
   struct Older {
     std::uint16_t version;
-    std::size_t
-        missing;  ///< Bytes at the end: of the driver's odometry, of the map's epoch, and of the height.
+    std::size_t missing;  ///< Bytes at the end: of `recognised`, of the driver's odometry, of the map's
+                          ///< epoch, and of the height.
     std::optional<double> height;
   };
   constexpr std::size_t kPose = 7 * 8;
-  for (const Older& older :
-       {Older{3, kPose, 3.5}, Older{2, kPose + 4, 3.5}, Older{1, kPose + 4 + 9, std::nullopt}}) {
+  for (const Older& older : {Older{4, 1, 3.5}, Older{3, kPose + 1, 3.5}, Older{2, kPose + 5, 3.5},
+                             Older{1, kPose + 14, std::nullopt}}) {
     auto list = store::unpack_sections(encode(full()));
     for (store::Section& section : list.good) {
       if (store::tag_text(section.tag) != "PLAC") continue;
@@ -246,7 +245,8 @@ TEST(Snapshot, of_older_places_is_read) {
     Snapshot expected = full();
     expected.place->height = older.height;
     if (older.version < 3) expected.place->map_epoch = 0;
-    expected.place->T_odom_driver = {};
+    if (older.version < 4) expected.place->T_odom_driver = {};
+    expected.place->recognised = true;
     EXPECT_EQ(read->snapshot, expected) << older.version;
   }
 }

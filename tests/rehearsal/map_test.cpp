@@ -2,7 +2,10 @@
 // Robots' maps on their way to the stations, in rehearsal.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <iostream>
 
 #include "tests/rehearsal/run_text.hpp"
 
@@ -45,6 +48,51 @@ TEST(MapRehearsal, SurvivesComponentsThatCrashAndHang) {
   EXPECT_TRUE(report.ok()) << (report.complaints().empty() ? "" : report.complaints().front());
   EXPECT_GT(seen(report), 110.0);
   EXPECT_EQ(report.failures, 0U);
+}
+
+TEST(MapRehearsal, ARestartedAgentHasItsMapForAStationThatComesLater) {
+  // The agent ends after it has driven; the stations are restarted after that and have nothing.
+  const RunReport report = run_text(room("faults:\n  - {at: 28, crash: r1}\n  - {at: 28, crash: r2}\n"
+                                         "  - {at: 32, crash: op1}\n  - {at: 32, crash: op2}\n"),
+                                    "map.yaml");
+  EXPECT_TRUE(report.ok()) << (report.complaints().empty() ? "" : report.complaints().front());
+  EXPECT_GT(seen(report), 110.0);
+}
+
+/// Megabytes of memory that this process uses.
+double resident() {
+  std::ifstream status("/proc/self/statm");
+  double size = 0, pages = 0;
+  status >> size >> pages;
+  return pages * 4096 / 1e6;
+}
+
+/// Two robots drive to and fro for so long, with a planar lidar.
+RunReport patrol(int seconds) {
+  std::string text = room("", "wifi");
+  text.replace(text.find("lidar: full"), 11, "lidar: planar");
+  text.replace(text.find("duration: 40"), 12, "duration: " + std::to_string(seconds));
+  for (int at = 40, to = 0; at < seconds; at += 40, to = 12 - to)
+    for (const char* robot : {"r1", "r2"})
+      text += "  - {at: " + std::to_string(at) + ", by: op1, do: goto " + robot + " " + std::to_string(to) +
+              (robot[1] == '1' ? " 2}\n" : " -2}\n");
+  return run_text(text, "patrol.yaml");
+}
+
+TEST(MapRehearsal, MemoryIsFlatOverAnHour) {
+  const char* wanted = std::getenv("ADIT_MAP_HOUR");
+  if (wanted == nullptr) GTEST_SKIP() << "long: set ADIT_MAP_HOUR to the seconds of a quarter";
+  const int unit = std::max(30, std::atoi(wanted));  // s
+  (void)patrol(unit);                                // What is allocated once.
+  const double before = resident();
+  const RunReport quarter = patrol(unit);
+  const double after_quarter = resident();
+  const RunReport hour = patrol(4 * unit);
+  const double after_hour = resident();
+  std::cout << "resident, MB: " << before << ", " << after_quarter << ", " << after_hour
+            << "; bytes on the air: " << quarter.map->bytes << ", " << hour.map->bytes << "\n";
+  EXPECT_LT(after_hour - before, 60.0);
+  EXPECT_LT(static_cast<double>(hour.map->bytes), 3.0 * static_cast<double>(quarter.map->bytes));
 }
 
 TEST(MapRehearsal, OffCostsNothing) {

@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "sim/world/noise.hpp"
 
 namespace adit::sim {
 namespace {
 
-VoxelGrid random_grid(Random& random, bool open_sides, double density) {
-  VoxelGrid grid({-1.0, 2.0}, 0.1, 40, 30, {0.0, 0.3, 0.4, 1.0, 1.7}, open_sides);
+VoxelGrid random_grid(Random& random, bool open_sides, double density,
+                      std::vector<double> levels = {0.0, 0.3, 0.4, 1.0, 1.7}) {
+  VoxelGrid grid({-1.0, 2.0}, 0.1, 40, 30, std::move(levels), open_sides);
   for (int k = 0; k < grid.layers(); ++k)
     for (int j = 0; j < grid.ny(); ++j)
       for (int i = 0; i < grid.nx(); ++i) grid.set(i, j, k, random.uniform() < density);
@@ -61,6 +64,33 @@ TEST(VoxelGrid, cast_agrees_with_marching) {
     hits += !std::isinf(range);
   }
   EXPECT_GT(hits, 300);
+}
+
+TEST(VoxelGrid, rays_cast_together_have_the_ranges_of_rays_cast_one_by_one) {
+  Random random(11);
+  std::vector<double> even;
+  for (int n = 0; n <= 17; ++n) even.push_back(0.1 * n);
+  for (int round = 0; round < 300; ++round) {
+    const double density = round % 3 == 0 ? 0.1 : 0.002;
+    const VoxelGrid grid = round % 4 < 2 ? random_grid(random, round % 2 == 0, density)
+                                         : random_grid(random, round % 2 == 0, density, even);
+    const Eigen::Vector3d start(-2.0 + 6.0 * random.uniform(), 1.0 + 5.0 * random.uniform(),
+                                -0.1 + 1.9 * random.uniform());
+    // A column of a lidar; in some rounds tilted, so that its rays do not all head the same way.
+    const double azimuth = round % 7 == 0 ? M_PI / 2 * (round % 4) : 2 * M_PI * random.uniform();
+    const double tilt = round % 5 == 0 ? 0.3 : 0.0;
+    std::vector<Eigen::Vector3d> directions(1 + random.below(40));
+    for (std::size_t n = 0; n < directions.size(); ++n) {
+      const double rise = -1.0 + 0.05 * static_cast<double>(n), aside = tilt * rise;
+      directions[n] = Eigen::Vector3d(std::cos(azimuth) - aside * std::sin(azimuth),
+                                      std::sin(azimuth) + aside * std::cos(azimuth), rise)
+                          .normalized();
+    }
+    std::vector<double> together(directions.size(), -1.0), each(directions.size(), -2.0);
+    grid.cast(grid.locate(start), directions, 4.0, together);
+    grid.cast_each(grid.locate(start), directions, 4.0, each);
+    ASSERT_EQ(together, each) << "round " << round;
+  }
 }
 
 TEST(VoxelGrid, range_to_a_wall_is_exact) {

@@ -39,6 +39,17 @@ TEST(OdometryInput, FollowsCloudsAlone) {
   EXPECT_EQ(odometry.state().health, Localisation::ok);
 }
 
+TEST(OdometryInput, FollowsCloudsAloneThatBeginInMotion) {
+  LidarOdometry odometry = clouds_only();
+  Random random(6);
+  for (int n = 0; n < 20; ++n) {
+    odometry.advance(kFirst + static_cast<std::uint64_t>(n) * kPeriod);
+    odometry.update(room({0.15 * n - 1.5, 0, 0}, random));
+  }
+  EXPECT_NEAR(odometry.state().pose.position.x(), 0.15 * 19, 0.05);
+  EXPECT_EQ(odometry.state().health, Localisation::ok);
+}
+
 TEST(OdometryInput, EmptyAndBrokenCloudsAreSurvived) {
   LidarOdometry odometry = clouds_only();
   Random random(2);

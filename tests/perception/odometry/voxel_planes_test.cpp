@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/time/random.hpp"
 
@@ -48,6 +49,39 @@ TEST(VoxelPlanes, FindsAWallOnTheBorderOfTwoVoxelsFromBothSides) {
   EXPECT_TRUE(map.find({4.05, 0.5, 1.5}));
   EXPECT_TRUE(map.find({3.95, 0.5, 1.5}));
   EXPECT_FALSE(map.find({3.8, 0.5, 1.5}));
+}
+
+TEST(VoxelPlanes, SinglePointsBeyondTheBorderDoNotHideAWall) {
+  VoxelPlanes map({});
+  Random random(8);
+  Points points;
+  for (int n = 0; n < 2000; ++n)
+    points.push_back({3.99 + random.uniform(-0.009, 0.009), random.uniform(-2, 2), random.uniform(0, 2)});
+  // A few of them were measured just behind it.
+  for (int n = 0; n < 12; ++n) points.push_back({4.005, -1.9 + 0.3 * n, random.uniform(0, 2)});
+  map.insert(points, 1);
+  int found = 0;
+  for (double y = -1.95; y < 2; y += 0.1) found += map.find({4.03, y, 1.0}).has_value();
+  EXPECT_EQ(found, 40);
+}
+
+TEST(VoxelPlanes, OfAWholeCloudFindsTheSameWallInVoxelsOfAllSizes) {
+  VoxelPlanes::Params params;
+  params.levels = VoxelPlanes::kMaxLevels;
+  Random random(9);
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3d& p : wall(random, 20000)) points.push_back(p.cast<float>());
+  points.push_back(Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  points.push_back(Eigen::Vector3f::Constant(1e30f));
+  const VoxelPlanes map = VoxelPlanes::of(points, params);
+  const Eigen::Vector3f normal = Eigen::Vector3f(1, 0.2f, 0).normalized();
+  for (int top = 0; top < VoxelPlanes::kMaxLevels; ++top) {
+    const auto plane = map.find({3.9, 0.5, 0.9}, top);
+    ASSERT_TRUE(plane) << top;
+    EXPECT_GT(std::abs(plane->normal.dot(normal)), 0.99f) << top;
+    EXPECT_NEAR(plane->normal.cast<double>().dot(Eigen::Vector3d(3.9, 0.5, 0.9) - plane->centre), 0.0, 0.02)
+        << top;
+  }
 }
 
 TEST(VoxelPlanes, OneRingOnAWallIsNoPlane) {

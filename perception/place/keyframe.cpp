@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/place/keyframe.hpp"
+
+#include <bit>
+#include <cmath>
+
+#include "perception/stream/byte_stream.hpp"
+#include "perception/voxel/thin.hpp"
+
+namespace adit::perception {
+namespace {
+
+constexpr float kMillimetre = 0.001f;  // m
+
+std::int64_t packed(float metres) { return std::lround(metres / kMillimetre); }
+float unpacked(std::int64_t value) { return static_cast<float>(value) * kMillimetre; }
+
+}  // namespace
+
+Keyframe make_keyframe(std::span<const Eigen::Vector3f> points, const Pose3& T_odom_base,
+                       std::uint32_t odom_epoch) {
+  Keyframe keyframe{T_odom_base, odom_epoch, {}};
+  Thinner thinner({.wanted = Keyframe::kMaxPoints * 3 / 4,
+                   .min_edge = 0.05f,
+                   .min_range = 0.3f,
+                   .max_range = Keyframe::kReach});
+  for (const Eigen::Vector3f& p : thinner.thin(points)) {
+    if (keyframe.points.size() == Keyframe::kMaxPoints) break;
+    if (p.cwiseAbs().maxCoeff() < Keyframe::kReach) keyframe.points.push_back(p);
+  }
+  return keyframe;
+}
+
+std::vector<std::uint8_t> encode(const Keyframe& keyframe) {
+  ByteWriter out;
+  out.u32(keyframe.odom_epoch);
+  const Pose3& pose = keyframe.T_odom_base;
+  for (int axis = 0; axis < 3; ++axis) out.u64(std::bit_cast<std::uint64_t>(pose.position[axis]));
+  for (int part = 0; part < 4; ++part) out.u64(std::bit_cast<std::uint64_t>(pose.orientation.coeffs()[part]));
+  out.varint(keyframe.points.size());
+  for (const Eigen::Vector3f& p : keyframe.points)
+    for (int axis = 0; axis < 3; ++axis) out.zigzag(packed(p[axis]));
+  return out.bytes();
+}
+
+Result<Keyframe> decode_keyframe(std::span<const std::uint8_t> bytes) {
+  ByteReader in(bytes);
+  Keyframe keyframe;
+  keyframe.odom_epoch = in.u32();
+  for (int axis = 0; axis < 3; ++axis) keyframe.T_odom_base.position[axis] = std::bit_cast<double>(in.u64());
+  for (int part = 0; part < 4; ++part)
+    keyframe.T_odom_base.orientation.coeffs()[part] = std::bit_cast<double>(in.u64());
+  const std::uint64_t count = in.varint();
+  if (count > Keyframe::kMaxPoints) return Error{Reason::malformed, "a keyframe has fewer points"};
+  for (std::uint64_t left = count; left > 0 && !in.failed(); --left) {
+    Eigen::Vector3f point;
+    for (int axis = 0; axis < 3; ++axis) point[axis] = unpacked(in.zigzag());
+    if (!(point.cwiseAbs().maxCoeff() <= Keyframe::kReach))
+      return Error{Reason::malformed, "a point of a keyframe is too far away"};
+    keyframe.points.push_back(point);
+  }
+  const Pose3& pose = keyframe.T_odom_base;
+  constexpr double kFarthest = 1e5;  // m
+  if (in.failed() || !in.at_end() || !(pose.position.norm() < kFarthest) ||
+      !(std::fabs(pose.orientation.norm() - 1.0) < 1e-3))
+    return Error{Reason::malformed, "it is no keyframe"};
+  return keyframe;
+}
+
+}  // namespace adit::perception

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the robot is: odometry, scans, the map, and the pose after a restart.
+#include <algorithm>
+#include <limits>
+
+#include "perception/place/recognise.hpp"
+#include "robot_agent/command_component.hpp"
+
+namespace adit::agent {
+namespace {
+
+constexpr Duration kRecognition = 150ms;  // Duration in rehearsal.
+
+}  // namespace
+
+void Agent::CommandComponent::odometry(const Pose3& odom, const Twist2& twist, std::uint64_t stamp,
+                                       Time received) {
+  protect([&] {
+    const Pose3 T_odom_base = localises() ? correction_.apply(odom, stamp) : odom;
+    if (!frames_.update(T_odom_base, twist, stamp, received)) {
+      correction_.begin_frame(stamp);
+      odometry_jumped();
+    }
+    if (waiting_scan_ && !is_ahead(waiting_scan_->stamp)) add_waiting_scan();
+  });
+}
+
+Result<MapFrame> Agent::CommandComponent::correct_map(const MapFrame& corrected) {
+  if (const auto taken = frames_.correct(corrected); !taken) return taken.error();
+  keep();  // Stores at once: the next instance must not use the same epoch for another place.
+  return frames_.map_frame();
+}
+
+void Agent::CommandComponent::odometry_jumped() {
+  constexpr Duration kTellAgain = 5s;  // Two drivers that write alternately cause a jump with every sample.
+  // Nothing says what the robot did while the agent was away.
+  if (context_.place.pending()) return place_unknown("its odometry began again, too");
+  navigation_.clear();
+  waiting_scan_.reset();  // It was taken in the previous odometry frame.
+  behaviour_.hold(Reason::odometry_jumped, now());
+  keep();  // As in correct_map().
+  if (jump_told_ && now() - *jump_told_ < kTellAgain) return;
+  jump_told_ = now();
+  notices_.odometry_jumped(frames_.T_map_base());
+}
+
+Result<void> Agent::CommandComponent::set_pose(const Pose2& pose) {
+  if (!frames_.initialised())
+    return {Reason::no_localisation, "pose: the driver has not sent any odometry yet"};
+  frames_.set_pose(pose);
+  context_.place.confirm();
+  keep();  // As in correct_map().
+  return {};
+}
+
+void Agent::CommandComponent::restore_place(const StoredFrames& stored) {
+  frames_.restore(stored);
+  if (!localises()) return;
+  correction_.restore(stored.T_odom_driver);
+  if (!stored.recognised)
+    context_.place.refuse();
+  else if (context_.place.pending() || (context_.instances == 1 && stored.newest))
+    context_.place.begin();
+}
+
+void Agent::CommandComponent::compare_place(const std::shared_ptr<const Scan>& scan) {
+  auto keyframes = context_.keyframes->of(frames_.odom_epoch());
+  if (keyframes.empty() && context_.keyframes->damaged() > 0)
+    return place_unknown("what it saw before cannot be read from its disk");
+  context_.place.compare();
+  perception::RecogniseParams recognise{};
+  recognise.noise = std::max(recognise.noise, params_.platform.lidar().noise);
+  compute(
+      {.name = "place", .modelled = kRecognition, .deadline = 5s},
+      [scan, keyframes = std::move(keyframes), recognise] {
+        return perception::recognise(keyframes, scan->points, scan->body, recognise);
+      },
+      [this, epoch = frames_.odom_epoch()](const Result<perception::RecognisedPlace>& found) {
+        if (context_.place.pending() && epoch == frames_.odom_epoch()) place_compared(found);
+      });
+}
+
+void Agent::CommandComponent::place_compared(const Result<perception::RecognisedPlace>& found) {
+  constexpr int kComparisons = 3;
+  if (!found && (found.reason() != Reason::not_localised_here || ++comparisons_ < kComparisons))
+    return context_.place.begin();  // The next scan may show more.
+  if (!found) return place_unknown(found.error().text);
+  context_.place.confirm();
+  if (found->compared) correction_.shift(found->correction);
+  if (found->compared && log().on(LogLevel::info)) log().info("the surroundings are as before the restart");
+}
+
+void Agent::CommandComponent::place_unknown(const std::string& why) {
+  context_.place.refuse();
+  frames_.begin_frame();  // What was stored in the odometry frame may be elsewhere now.
+  navigation_.clear();
+  waiting_scan_.reset();
+  behaviour_.hold(Reason::not_localised_here, now());
+  keep();
+  notices_.not_localised_here(frames_.T_map_base(), why);
+}
+
+void Agent::CommandComponent::scan(LidarScan lidar) {
+  protect([&] {
+    if (!frames_.initialised()) return;
+    if (waiting_scan_) add_waiting_scan();
+    waiting_scan_ = std::move(lidar);
+    if (!is_ahead(waiting_scan_->stamp)) add_waiting_scan();
+  });
+}
+
+bool Agent::CommandComponent::is_ahead(std::uint64_t stamp) const {
+  constexpr std::uint64_t kLongest = 200'000'000;  // In ns; a stamp farther ahead is from another clock.
+  const std::uint64_t newest = frames_.newest_stamp();
+  return newest != 0 && stamp > newest && stamp - newest <= kLongest;
+}
+
+void Agent::CommandComponent::add_waiting_scan() {
+  const LidarScan waiting = *std::exchange(waiting_scan_, std::nullopt);
+  if (waiting.odometry) correction_.take(*waiting.odometry, now());
+  auto scan = std::make_shared<Scan>();
+  scan->points = std::move(*waiting.points);
+  const auto T_odom_base = frames_.T_odom_base_at(waiting.stamp);
+  // Without a common clock the newest pose is the best guess.
+  scan->body = T_odom_base ? *T_odom_base : frames_.T_odom_base();
+  // The yaw is the odometry's; how the body leans the IMU knows better.
+  if (waiting.attitude) scan->body = perception::with_attitude(scan->body, *waiting.attitude);
+  if (context_.place.waits() && T_odom_base) compare_place(scan);
+  if (context_.place.known()) add_to_map(scan);
+  navigation_.add_scan(std::move(scan), waiting.received, now(), team(now()));
+}
+
+void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan) {
+  if (localisation(now()) == Localisation::ok)
+    context_.keyframes->offer(scan->points, scan->body, frames_.odom_epoch());
+  if (!context_.map) return;
+  auto job = context_.map->job(scan, team(now()), frames_.odom_epoch(), now());
+  if (!job) return;
+  call(context_.map_insertion, std::move(job), {.deadline = 2s},
+       [this](const Result<MapStep>& step) { context_.map->taken(step, frames_.map_frame()); });
+}
+
+void Agent::CommandComponent::send_map() {
+  if (!context_.map) return;
+  if (frames_.initialised()) context_.map->follow(frames_.map_frame());
+  for (const transfer::Piece& piece : context_.map->due(now(), context_.wire->sender()))
+    context_.radio->send(piece, context_.map->session());
+}
+
+StoredFrames Agent::CommandComponent::stored_place() const {
+  StoredFrames place = frames_.stored();
+  if (localises()) place.T_odom_driver = correction_.T_odom_driver();
+  place.recognised = !context_.place.refused();
+  return place;
+}
+
+Localisation Agent::CommandComponent::localisation(Time at) const {
+  if (!localises()) return Localisation::off;
+  if (context_.place.known()) return correction_.health(at);
+  return context_.place.refused() ? Localisation::lost : Localisation::starting;
+}
+
+double Agent::CommandComponent::place_sigma() const {
+  if (context_.place.refused()) return std::numeric_limits<double>::infinity();
+  return localises() ? correction_.sigma() : 0.0;
+}
+
+void Agent::CommandComponent::watch_localisation(Time at) {
+  if (!context_.place.known()) return;  // That was reported.
+  // A robot that passes a smooth wall is weak for a moment, which the operator need not know.
+  constexpr Duration kWeakFor = 3s;
+  const Localisation health = localisation(at);
+  if (health == reported_localisation_ || health == Localisation::starting || health == Localisation::off) {
+    localisation_since_ = at;
+    return;
+  }
+  if (health != Localisation::lost && at - localisation_since_ < kWeakFor) return;
+  const bool first = reported_localisation_ == Localisation::starting;
+  reported_localisation_ = health;
+  localisation_since_ = at;
+  if (!(first && health == Localisation::ok)) notices_.localisation(health, correction_.sigma());
+}
+
+}  // namespace adit::agent

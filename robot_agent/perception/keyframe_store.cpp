@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/perception/keyframe_store.hpp"
+
+#include <cstdio>
+#include <string>
+#include <utility>
+
+#include "core/store/state_file.hpp"
+
+namespace adit::agent {
+namespace {
+
+constexpr store::StateFormat kFormat{{'K', 'E', 'Y', 'F'}, 1, 64 * 1024};
+
+std::string file_of(std::size_t slot) {
+  char name[24];
+  std::snprintf(name, sizeof name, "keyframe-%02zu", slot);
+  return name;
+}
+
+}  // namespace
+
+KeyframeStore::KeyframeStore(std::shared_ptr<store::Disk> disk, Executor& home,
+                             std::shared_ptr<Executor> writer)
+    : disk_(std::move(disk)), home_(home), writer_(std::move(writer)), slots_(kMax) {}
+
+void KeyframeStore::load() {
+  if (!disk_) return;
+  std::uint64_t newest = 0;
+  for (std::size_t slot = 0; slot < kMax; ++slot) {
+    const store::State state = store::StateFile(disk_, file_of(slot), kFormat).load();
+    if (state.found == store::LoadStatus::nothing) continue;
+    auto keyframe = state.found == store::LoadStatus::good
+                        ? perception::decode_keyframe(state.payload)
+                        : Result<perception::Keyframe>(Error{Reason::cannot_read, state.text});
+    if (!keyframe) {
+      ++damaged_;
+      (void)disk_->remove(file_of(slot));
+      continue;
+    }
+    slots_[slot] = std::move(*keyframe);
+    if (state.generation < newest) continue;
+    newest = state.generation;
+    next_ = (slot + 1) % kMax;
+  }
+  generation_ = newest;
+}
+
+void KeyframeStore::offer(std::span<const Eigen::Vector3f> points, const Pose3& T_odom_base,
+                          std::uint32_t odom_epoch) {
+  const Eigen::Vector3d& here = T_odom_base.position;
+  if (last_ && last_epoch_ == odom_epoch && (here - *last_).norm() < kSpacing) return;
+  perception::Keyframe keyframe = perception::make_keyframe(points, T_odom_base, odom_epoch);
+  if (keyframe.points.empty()) return;
+  last_ = here;
+  last_epoch_ = odom_epoch;
+  // A robot that comes back replaces what it saw there.
+  std::size_t slot = next_;
+  for (std::size_t n = 0; n < kMax; ++n)
+    if (slots_[n] && slots_[n]->odom_epoch == odom_epoch &&
+        (slots_[n]->T_odom_base.position - here).norm() < kSpacing / 2)
+      slot = n;
+  if (slot == next_) next_ = (next_ + 1) % kMax;
+  slots_[slot] = std::move(keyframe);
+  write(slot);
+}
+
+void KeyframeStore::write(std::size_t slot) {
+  if (!disk_) return;
+  auto save = [file = store::StateFile(disk_, file_of(slot), kFormat), generation = ++generation_,
+               bytes = perception::encode(*slots_[slot])] { (void)file.save(generation, bytes); };
+  run(std::move(save));
+}
+
+void KeyframeStore::run(Task task) {
+  if (disk_->instant())
+    task();
+  else if (writer_)
+    writer_->post(std::move(task));
+  else
+    home_.compute({.name = "keyframe", .modelled = 3ms, .pool = PoolKind::io, .lane = "keyframe"},
+                  std::move(task), [](const Result<void>&) {});
+}
+
+std::vector<perception::Keyframe> KeyframeStore::of(std::uint32_t odom_epoch) const {
+  std::vector<perception::Keyframe> found;
+  for (const auto& slot : slots_)
+    if (slot && slot->odom_epoch == odom_epoch) found.push_back(*slot);
+  return found;
+}
+
+}  // namespace adit::agent

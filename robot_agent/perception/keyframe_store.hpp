@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/exec/executor.hpp"
+#include "core/store/disk.hpp"
+#include "perception/place/keyframe.hpp"
+
+namespace adit::agent {
+
+/// The robot's last keyframes, in memory and on the disk, by which an agent that starts again recognises
+/// where the robot is. One is kept for each metre of the way, at most kMax, each in a file of its own (12
+/// kB), so that a write is short. A disk that fails costs nothing but this. Runs on the command strand; the
+/// disk is written on another one.
+class KeyframeStore {
+ public:
+  static constexpr std::size_t kMax = 64;
+  static constexpr double kSpacing = 1.0;  ///< m
+
+  /// `disk` null: nothing survives this process. `writer`: strand on which a slow disk is written.
+  KeyframeStore(std::shared_ptr<store::Disk> disk, Executor& home, std::shared_ptr<Executor> writer);
+
+  /// Reads the files. Those that are damaged are removed and counted.
+  void load();
+  std::size_t damaged() const { return damaged_; }
+  /// Keeps the scan when the robot moved by kSpacing since the last keyframe.
+  void offer(std::span<const Eigen::Vector3f> points, const Pose3& T_odom_base, std::uint32_t odom_epoch);
+  /// The keyframes of an odometry frame.
+  std::vector<perception::Keyframe> of(std::uint32_t odom_epoch) const;
+
+ private:
+  void write(std::size_t slot);
+  /// Runs a task that accesses the disk.
+  void run(Task task);
+
+  std::shared_ptr<store::Disk> disk_;
+  Executor& home_;
+  std::shared_ptr<Executor> writer_;
+  std::vector<std::optional<perception::Keyframe>> slots_;
+  std::size_t damaged_{};
+  std::size_t next_{};  ///< Slot of the next keyframe.
+  std::optional<Eigen::Vector3d> last_{};
+  std::uint32_t last_epoch_{};
+  std::uint64_t generation_{};  ///< Of the last keyframe written.
+};
+
+}  // namespace adit::agent

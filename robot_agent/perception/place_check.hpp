@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "core/result/reason.hpp"
+
+namespace adit::agent {
+
+/// Whether a robot whose agent was started again knows that it is where it was (rule 7).
+///
+/// Until a scan was compared with the stored keyframes, and after one that does not fit them, autonomous
+/// modes do not run. A robot that does not recognise its surroundings waits for `pose R X Y YAW`.
+class PlaceCheck {
+ public:
+  /// The agent was started again: a scan must be compared.
+  void begin() { state_ = State::waiting; }
+  /// A comparison begins.
+  void compare() { state_ = State::comparing; }
+  /// The surroundings are known, or there is nothing to compare with, or an operator set the pose.
+  void confirm() { state_ = State::known; }
+  void refuse() { state_ = State::unknown; }
+
+  bool known() const { return state_ == State::known; }
+  bool waits() const { return state_ == State::waiting; }
+  /// Whether a comparison is pending or has begun.
+  bool pending() const { return waits() || state_ == State::comparing; }
+  bool refused() const { return state_ == State::unknown; }
+  /// Why autonomous modes do not run; none: they do.
+  Reason why() const {
+    return known() ? Reason::none : refused() ? Reason::not_localised_here : Reason::just_restarted;
+  }
+
+ private:
+  enum class State { known, waiting, comparing, unknown };
+  State state_{State::known};
+};
+
+}  // namespace adit::agent
