@@ -5,18 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/round_down.hpp"
 #include "nav/explore/coverage_map.hpp"
 
 namespace adit::nav {
 
 /// CoverageMap::voxel_at() without calls of std::floor, as it runs for every ray.
 inline CoverageVoxel voxel_around(const Eigen::Vector3d& place) {
-  const auto floor_of = [](double v) {
-    const int i = static_cast<int>(v);
-    return i - (v < static_cast<double>(i));
-  };
-  return {floor_of(place.x() / CoverageMap::kVoxel), floor_of(place.y() / CoverageMap::kVoxel),
-          floor_of(place.z() / CoverageMap::kVoxel)};
+  return {round_down(place.x() / CoverageMap::kVoxel), round_down(place.y() / CoverageMap::kVoxel),
+          round_down(place.z() / CoverageMap::kVoxel)};
 }
 
 /// Visits the voxels along a line from its begin to its end, both included (Amanatides and Woo: *A fast voxel

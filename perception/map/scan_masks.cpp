@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/round_down.hpp"
 #include "perception/map/block_hash.hpp"
 
 namespace adit::perception {
@@ -17,13 +18,8 @@ constexpr float kGrazingRise = 0.35f;
 /// Voxels from the end of a grazing ray that it does not free: 1.5 edges from the surface.
 constexpr int kGrazingSteps = 1;
 
-/// Rounds down. std::floor is a function call without SSE 4.1, and this runs several times for every ray.
-int floor_of(float v) {
-  const int i = static_cast<int>(v);
-  return i - (v < static_cast<float>(i));
-}
 Eigen::Vector3i floor_of(const Eigen::Vector3f& at) {
-  return {floor_of(at.x()), floor_of(at.y()), floor_of(at.z())};
+  return {round_down(at.x()), round_down(at.y()), round_down(at.z())};
 }
 
 }  // namespace

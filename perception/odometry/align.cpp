@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometry/round_down.hpp"
 #include "perception/odometry/registration.hpp"
 
 namespace adit::perception {
@@ -33,27 +34,24 @@ Points some_of(const Points& points, std::size_t wanted) {
 
 /// The mean of the points in each voxel, in the order in which the voxels were met.
 Points means(std::span<const Eigen::Vector3f> points, float edge) {
-  constexpr float kFar = 1e5f;  // m
-  struct Sum {
-    std::uint32_t at{};  ///< In `sums`, from 1 on.
-  };
-  FlatHash<Sum> voxels(points.size() / 8);
+  constexpr float kFar = 1e5f;                        // m
+  FlatHash<std::uint32_t> voxels(points.size() / 8);  // Positions in `sums`, from 1 on.
   std::vector<Eigen::Vector4f> sums;
   const float scale = 1.0f / edge;
-  std::uint64_t last_key = FlatHash<Sum>::kEmpty;
+  std::uint64_t last_key = FlatHash<std::uint32_t>::kEmpty;
   std::uint32_t last = 0;
   for (const Eigen::Vector3f& p : points) {
     if (!(p.cwiseAbs().maxCoeff() < kFar)) continue;  // Also of NaN.
-    const auto index = [&](float v) { return static_cast<std::int32_t>(std::floor(v * scale)); };
+    const auto index = [scale](float v) { return round_down(v * scale); };
     const std::uint64_t key = voxel_key(index(p.x()), index(p.y()), index(p.z()));
     if (key != last_key) {
-      Sum& sum = voxels.at(key);
-      if (sum.at == 0) {
+      std::uint32_t& at = voxels.at(key);
+      if (at == 0) {
         sums.push_back(Eigen::Vector4f::Zero());
-        sum.at = static_cast<std::uint32_t>(sums.size());
+        at = static_cast<std::uint32_t>(sums.size());
       }
       last_key = key;
-      last = sum.at - 1;
+      last = at - 1;
     }
     sums[last] += Eigen::Vector4f(p.x(), p.y(), p.z(), 1.0f);
   }

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/geometry/round_down.hpp"
 #include "perception/voxel/flat_hash.hpp"
 
 namespace adit::perception {
@@ -31,12 +32,7 @@ const std::vector<Eigen::Vector3f>& Thinner::thin(std::span<const Eigen::Vector3
       const float range = p.squaredNorm();
       // Negated, so that points that are not finite are left out.
       if (!(range >= nearest && range <= farthest)) continue;
-      // Rounds down; std::floor is a function call without SSE 4.1.
-      const auto index = [scale](float v) {
-        const float scaled = v * scale;
-        const auto i = static_cast<std::int32_t>(scaled);
-        return i - (scaled < static_cast<float>(i));
-      };
+      const auto index = [scale](float v) { return round_down(v * scale); };
       const std::uint64_t key = voxel_key(index(p.x()), index(p.y()), index(p.z()));
       std::uint64_t hash = (key ^ key >> 32) * 0x9e3779b97f4a7c15ULL;
       std::size_t at = (hash ^ hash >> 29) & mask;

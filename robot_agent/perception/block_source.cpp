@@ -177,13 +177,18 @@ void BlockSource::for_each(
           static_cast<std::uint32_t>(it->second.change));
 }
 
-std::vector<BlockSource::Ref> BlockSource::fewest(const Cell& cell,
-                                                  const std::vector<std::uint32_t>& submaps) const {
+BlockVotes BlockSource::votes_of(const Cell& cell, const std::vector<std::uint32_t>& submaps) const {
   BlockVotes all;
   for (const std::uint32_t submap : submaps) {
     const Entry& entry = blocks_.at(ref_in(cell, submap));
     all.add(entry.known, entry.occupied);
   }
+  return all;
+}
+
+std::vector<BlockSource::Ref> BlockSource::fewest(const Cell& cell,
+                                                  const std::vector<std::uint32_t>& submaps) const {
+  const BlockVotes all = votes_of(cell, submaps);
   std::vector<Ref> out;
   for (std::size_t first = submaps.size(); first-- > 0;) {
     out.push_back(ref_in(cell, submaps[first]));
@@ -290,11 +295,7 @@ bool BlockSource::is_needed(const Peer& peer, const Ref& ref) const {
   if ((asked.chosen_for & peer.bit) != 0 && (asked.up_to_date & peer.bit) == 0) return true;
   const Cell cell = cell_of(ref);
   const std::vector<std::uint32_t>& submaps = cells_.at(cell);
-  BlockVotes all;
-  for (const std::uint32_t submap : submaps) {
-    const Entry& entry = blocks_.at(ref_in(cell, submap));
-    all.add(entry.known, entry.occupied);
-  }
+  const BlockVotes all = votes_of(cell, submaps);
   // The newer ones are brought up to date first; this one is needed if that does not suffice.
   for (std::size_t renewed = submaps.size();; --renewed) {
     BlockVotes shown;

@@ -127,6 +127,8 @@ class BlockSource final : public transfer::Source {
   void queue(Peer& peer, const Cell& cell);
   /// Whether a peer must get this block so that its merge shows what ours does.
   bool is_needed(const Peer& peer, const Ref& ref) const;
+  /// What the merge of these submaps shows of a cell.
+  BlockVotes votes_of(const Cell& cell, const std::vector<std::uint32_t>& submaps) const;
   /// The blocks of a cell from the newest on that show what all of it do.
   std::vector<Ref> fewest(const Cell& cell, const std::vector<std::uint32_t>& submaps) const;
   void choose_fewest(Peer& peer, const Cell& cell, const std::vector<std::uint32_t>& submaps);

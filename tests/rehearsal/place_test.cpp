@@ -8,8 +8,9 @@ namespace adit::sim {
 namespace {
 
 /// A robot drives through a furnished hall, and its agent is killed at `at`, s.
-std::string killed(double at, const std::string& more) {
-  return "world: {boxes: [[-1, 16, -4, -3.8, 0, 2.5], [-1, 16, 3.8, 4, 0, 2.5], [-1.2, -1, -4, 4, 0, 2.5], "
+std::string killed(std::uint64_t seed, double at, const std::string& more) {
+  return "seed: " + std::to_string(seed) +
+         "\nworld: {boxes: [[-1, 16, -4, -3.8, 0, 2.5], [-1, 16, 3.8, 4, 0, 2.5], [-1.2, -1, -4, 4, 0, 2.5], "
          "[15, 15.2, -4, 4, 0, 2.5], [6, 6.4, -1, 1, 0, 2.5], [9, 10, -3.8, -3, 0, 1.5]], floor: 0, ceiling: "
          "3}\n"
          "duration: 35\nlink: wifi\nlidar: full\nperception: odometry\n"
@@ -18,17 +19,6 @@ std::string killed(double at, const std::string& more) {
          "script:\n  - {at: 1, by: op1, do: take r1}\n  - {at: 2, by: op1, do: goto r1 12 2}\n"
          "faults:\n  - {at: " +
          std::to_string(at) + ", crash: r1}\n" + more;
-}
-
-RunReport run_killed(const std::string& yaml, std::uint64_t seed) {
-  auto scenario = parse_scenario(yaml, "killed.yaml");
-  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().text);
-  RunParams params;
-  params.make_agent = *make_agent_factory("");
-  params.seed = seed;
-  auto outcome = rehearse(*scenario, *make_world(scenario->world), params);
-  EXPECT_TRUE(outcome.ok()) << (outcome ? "" : outcome.error().text);
-  return outcome->report;
 }
 
 std::uint64_t restart_seeds() {
@@ -40,10 +30,10 @@ TEST(PlaceAfterARestart, IsTheSameAndTheRobotGoesOn) {
   for (std::uint64_t seed = 1; seed <= restart_seeds(); ++seed) {
     const double at = 3.0 + 0.05 * static_cast<double>(seed * 37 % 160);
     const RunReport report =
-        run_killed(killed(at,
-                          "expect:\n  - {always: pose_within, m: 0.3}\n  - {always: no_collision}\n"
-                          "  - {by: 34, robot: r1, near: [12, 2, 0.6]}\n"),
-                   seed);
+        run_text(killed(seed, at,
+                        "expect:\n  - {always: pose_within, m: 0.3}\n  - {always: no_collision}\n"
+                        "  - {by: 34, robot: r1, near: [12, 2, 0.6]}\n"),
+                 "killed.yaml");
     EXPECT_EQ(report.complaints(), std::vector<std::string>{})
         << "seed " << seed << ", killed at " << at << " s";
   }
@@ -52,30 +42,30 @@ TEST(PlaceAfterARestart, IsTheSameAndTheRobotGoesOn) {
 TEST(PlaceAfterARestart, IsCorrectedWhenTheOdometryBeganAgainNearby) {
   // Rule 11 sees an error that stays.
   for (std::uint64_t seed = 1; seed <= restart_seeds(); ++seed) {
-    const RunReport report = run_killed(
-        killed(2.7,
-               "  - {at: 2.8, odometry_reset: r1}\n"
-               "expect:\n  - {always: no_collision}\n  - {by: 34, robot: r1, near: [12, 2, 0.6]}\n"),
-        seed);
+    const RunReport report =
+        run_text(killed(seed, 2.7,
+                        "  - {at: 2.8, odometry_reset: r1}\n"
+                        "expect:\n  - {always: no_collision}\n  - {by: 34, robot: r1, near: [12, 2, 0.6]}\n"),
+                 "killed.yaml");
     EXPECT_EQ(report.complaints(), std::vector<std::string>{}) << "seed " << seed;
   }
 }
 
 TEST(PlaceAfterARestart, IsUnknownWhenTheOdometryBeganAgainAsWell) {
   for (std::uint64_t seed = 1; seed <= restart_seeds(); ++seed) {
-    const RunReport report = run_killed(
+    const RunReport report = run_text(
         killed(
-            8.0,
+            seed, 8.0,
             "  - {at: 8.2, odometry_reset: r1}\n"
             "expect:\n  - {at: 12, robot: r1, mode: hold}\n  - {at: 34, robot: r1, mode: hold, holder: op1}\n"
             "  - {always: no_collision}\n"),
-        seed);
+        "killed.yaml");
     EXPECT_EQ(report.complaints(), std::vector<std::string>{}) << "seed " << seed;
   }
 }
 
 TEST(PlaceAfterARestart, IsKnownAgainWhenTheOperatorSetsIt) {
-  std::string text = killed(8.0,
+  std::string text = killed(1, 8.0,
                             "  - {at: 8.2, odometry_reset: r1}\n  - {at: 14, crash: r1}\n"
                             "expect:\n  - {at: 13, by_operator: op1, refused: not_localised_here}\n"
                             "  - {at: 17, by_operator: op1, refused: not_localised_here}\n"
@@ -83,7 +73,7 @@ TEST(PlaceAfterARestart, IsKnownAgainWhenTheOperatorSetsIt) {
   text.insert(text.find("faults:"),
               "  - {at: 12, by: op1, do: goto r1 12 2}\n  - {at: 16, by: op1, do: goto r1 12 2}\n"
               "  - {at: 20, by: op1, do: pose r1 6 2 0}\n  - {at: 22, by: op1, do: goto r1 12 2}\n");
-  EXPECT_EQ(run_killed(text, 1).complaints(), std::vector<std::string>{});
+  EXPECT_EQ(run_text(text, "killed.yaml").complaints(), std::vector<std::string>{});
 }
 
 }  // namespace
