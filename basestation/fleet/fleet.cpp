@@ -68,22 +68,6 @@ const char* to_string(GoalPhase phase) {
   return "unknown";
 }
 
-const char* to_string(Localisation localisation) {
-  switch (localisation) {
-    case Localisation::off:
-      return "off";
-    case Localisation::starting:
-      return "starting";
-    case Localisation::ok:
-      return "ok";
-    case Localisation::weak:
-      return "weak";
-    case Localisation::lost:
-      return "lost";
-  }
-  return "off";
-}
-
 const char* to_string(ExplorationPhase phase) {
   constexpr std::array kNames{"none", "starting", "exploring", "travelling", "reporting", "done", "ended"};
   const auto index = static_cast<std::size_t>(phase);

@@ -186,7 +186,6 @@ struct TrafficView {
 };
 
 const char* to_string(GoalPhase phase);
-const char* to_string(Localisation localisation);
 const char* to_string(ExplorationPhase phase);
 const char* to_string(Level level);
 

@@ -81,7 +81,7 @@ json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
     out["pose"] = {robot.x, robot.y, robot.z, robot.yaw};
     out["velocity"] = {robot.vx, robot.vy, robot.wz};
     if (robot.battery >= 0.0F) out["battery"] = robot.battery;
-    out["localisation"] = to_string(robot.localisation);
+    out["localisation"] = name(robot.localisation);
     if (robot.localisation != Localisation::off) out["sigma"] = robot.sigma;
   }
   if (robot.goal_phase != GoalPhase::none) out["goal"] = robot.goal;

@@ -161,7 +161,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
            " m, yaw " + fixed(robot.yaw * 180.0 / std::numbers::pi, 1) + " degrees\n  speed    " +
            fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
   if (robot.located && robot.localisation != Localisation::off)
-    out += "  place    " + std::string(to_string(robot.localisation)) +
+    out += "  place    " + std::string(name(robot.localisation)) +
            (robot.sigma < kUnknownPlace ? ", known to " + fixed(robot.sigma, 2) + " m\n" : ", unknown\n");
   if (robot.described)
     out += "  size     " + size_text(robot.size) + "\n  limits   " + limits_text(robot) + "\n  sensors  " +

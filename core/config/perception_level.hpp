@@ -21,4 +21,20 @@ enum class Localisation : std::uint8_t {
   lost = 4,  ///< The lidar does not fit the map: only wheels or inertia carry the pose on.
 };
 
+constexpr const char* name(Localisation localisation) {
+  switch (localisation) {
+    case Localisation::off:
+      return "off";
+    case Localisation::starting:
+      return "starting";
+    case Localisation::ok:
+      return "ok";
+    case Localisation::weak:
+      return "weak";
+    case Localisation::lost:
+      return "lost";
+  }
+  return "off";  // A value of another version.
+}
+
 }  // namespace adit

@@ -12,22 +12,6 @@
 namespace adit::sim::perctool {
 namespace {
 
-const char* name_of(Localisation health) {
-  switch (health) {
-    case Localisation::off:
-      return "off";
-    case Localisation::starting:
-      return "starting";
-    case Localisation::ok:
-      return "ok";
-    case Localisation::weak:
-      return "weak";
-    case Localisation::lost:
-      break;
-  }
-  return "lost";
-}
-
 /// Runs the odometry over recorded data; a line for each sweep.
 class OdometryRun : public SensorSink {
  public:
@@ -64,7 +48,7 @@ class OdometryRun : public SensorSink {
     ms_.add(step.ms);
     if (!options_.json) return;
     const nlohmann::ordered_json line{
-        {"sweep", poses_.size() - 1},         {"ms", step.ms},         {"health", name_of(health_)},
+        {"sweep", poses_.size() - 1},         {"ms", step.ms},         {"health", name(health_)},
         {"points", step.sweep.points.size()}, {"used", state.used},    {"matched", state.matched},
         {"iterations", state.iterations},     {"sigma", state.sigma()}};
     std::printf("%s\n", line.dump().c_str());
@@ -142,11 +126,11 @@ int odometry(const OdometryOptions& options) {
                                       {"ms_median", run.ms().median()},
                                       {"ms_p99", run.ms().quantile(0.99)},
                                       {"length", length},
-                                      {"health", name_of(run.health())}};
+                                      {"health", name(run.health())}};
     std::printf("%s\n", last.dump().c_str());
   } else {
     std::printf("%zu sweeps, %.2f m, %.2f ms each (p99 %.2f), %s\n", run.poses().size(), length,
-                run.ms().median(), run.ms().quantile(0.99), name_of(run.health()));
+                run.ms().median(), run.ms().quantile(0.99), name(run.health()));
   }
   return run.health() == Localisation::lost ? kExitFailed : 0;
 }
