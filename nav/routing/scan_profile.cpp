@@ -152,7 +152,9 @@ void ScanProfile::walk(std::span<const Return> returns, SurfaceMap& map, Hit& hi
       z = base;
       ended = true;
     } else if (rise < -(drop_ + slope_ * run)) {
-      // There is no ground where the ray passed the ground's height.
+      // There is no ground where the ray passed the ground's height. A ray over ground that rose above the
+      // lidar never does.
+      if (z >= sensor_.z()) return;
       const float share = (sensor_.z() - z) / (sensor_.z() - r.z);
       const float there = share * r.range;
       if (there > std::max(at, kFirst)) {

@@ -28,6 +28,20 @@ TEST(RouteScans, SeesWallsAndGround) {
   }
 }
 
+// Ground that rises above the lidar, and behind it a return just above the lidar: no ray passes from the
+// lidar through the ground's height between them. The edge of a drop once lay 1 km away there, and the map
+// with it.
+TEST(RouteScans, ADropBehindGroundAboveTheLidarEndsWhereItWasSeen) {
+  RoutePlanner planner(wheeled());
+  std::vector<Eigen::Vector3f> points;
+  for (const auto& [x, z] :
+       {std::pair{1.5f, 0.05f}, std::pair{2.3f, 0.3f}, std::pair{3.1f, 0.55f}, std::pair{3.9f, 0.8f},
+        std::pair{4.7f, 1.05f}, std::pair{5.5f, 1.2f}, std::pair{7.0f, 0.501f}})
+    points.emplace_back(x, 0.01f, z);
+  for (int i = 0; i < 3; ++i) planner.add_scan(points, Pose3::level({0, 0, 0}, 0), 0.1 * i);
+  EXPECT_LT(planner.map().extent().x1, 10);
+}
+
 TEST(RouteScans, ObstacleThatWentAwayIsFreed) {
   BoxWorld empty{{{-5, 10, 1, 1.2}, {-5, 10, -1.2, -1}, {10, 10.2, -1, 1}, {-5.2, -5, -1, 1}}};
   BoxWorld person = empty;
