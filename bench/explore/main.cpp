@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "How fast one robot explores: times from the request until shares of what can be seen were seen."};
   std::vector<std::string> worlds{"blocks3"};
-  std::string platform = "wheeled", trajectories;
+  std::string platform = "wheeled", perception = "off", trajectories;
   int seeds = 5;
   std::uint64_t first = 0;
   double noise = 0, limit = 300;
@@ -83,6 +83,8 @@ int main(int argc, char** argv) {
   app.add_option("--first", first, "the first seed (default 0: the worlds and the start of TARE)");
   app.add_option("--platform", platform, "of the robot (default wheeled)");
   app.add_option("--noise", noise, "scale of the errors of odometry and sensors (default 0)");
+  app.add_option("--perception", perception, "of the robot: off (the default), odometry or slam")
+      ->check(CLI::IsMember({"off", "odometry", "slam"}));
   app.add_option("--limit", limit, "end of a run, s (default 300)");
   app.add_option("--jobs", jobs, "runs at a time (default: one a processor)")->check(CLI::Range(1, 64));
   app.add_option("--trajectories", trajectories, "folder for the ways: files of \"time x y yaw\"");
@@ -100,7 +102,7 @@ int main(int argc, char** argv) {
         const std::uint64_t seed = first + n;
         const std::string file =
             trajectories.empty() ? "" : fmt::format("{}/{}_{}.txt", trajectories, world, seed);
-        outcomes[n] = run({world, platform, seed, noise, limit}, *agents, file);
+        outcomes[n] = run({world, platform, seed, noise, perception, limit}, *agents, file);
       }
     };
     std::vector<std::thread> workers;

@@ -75,13 +75,13 @@ Result<sim::Scenario> scenario_of(const ExploreCourse& course) {
   if (!place) return place.error();
   return sim::parse_scenario(
       fmt::format(
-          "world: {}\nodometry: {{noise: {}}}\nduration: {:.0f}\nlink: wifi\n"
+          "world: {}\nodometry: {{noise: {}}}\nperception: {}\nduration: {:.0f}\nlink: wifi\n"
           "robots: [{{id: r1, platform: {}, pose: [{:.3f}, {:.3f}, {:.3f}]}}]\n"
           "basestations: [{{id: op1, pose: [{:.3f}, {:.3f}]}}]\n"
           "script: [{{at: 1, by: op1, do: take r1}}, {{at: {}, by: op1, do: explore r1 --after wait}}]\n"
           "expect: [{{by: 1, explored_at_least: 0}}]\n",
-          place->world, course.noise, course.limit + kAsked, course.platform, place->start.x, place->start.y,
-          place->start.yaw, place->start.x, place->start.y, kAsked),
+          place->world, course.noise, course.perception, course.limit + kAsked, course.platform,
+          place->start.x, place->start.y, place->start.yaw, place->start.x, place->start.y, kAsked),
       course.world + ".yaml");
 }
 

@@ -12,9 +12,10 @@ namespace adit::bench {
 struct ExploreCourse {
   std::string world{};  ///< `blocks2` to `blocks9`, a kind of generated world, or `geb079`.
   std::string platform{};
-  std::uint64_t seed{};  ///< Draws start, heading and boxes; 0: those of TARE.
-  double noise{0};       ///< Scale of the errors of odometry and sensors.
-  double limit{};        ///< The run ends after so long, s.
+  std::uint64_t seed{};           ///< Draws start, heading and boxes; 0: those of TARE.
+  double noise{0};                ///< Scale of the errors of odometry and sensors.
+  std::string perception{"off"};  ///< `off`, `odometry` or `slam`.
+  double limit{};                 ///< The run ends after so long, s.
 };
 
 /// What an exploration achieved. Times count from the request to explore, s.

@@ -22,6 +22,12 @@ constexpr std::size_t kSamples = 8;     // Voxels of a frontier that are looked 
 constexpr std::array kAway{2.0, 4.0, 6.0, 8.0, 10.0};  // Of a viewpoint from its frontier, m.
 constexpr int kDirections = 16;
 constexpr std::size_t kMaxDeferred = 64;
+// Least volume behind a frontier that is left to the end, m3: that of an opening which the robot fits through
+// with its margin, two voxels wide and 2.5 m high, to the depth of 1.5 m that counts.
+constexpr double kSmallGain = 3.75;
+// Small frontiers are not worth a way when all of them together promise less than this share of what was
+// seen.
+constexpr double kWorth = 0.01;
 
 std::size_t unseen_of(const CoverageMap& map, const Frontier& frontier) {
   return static_cast<std::size_t>(
@@ -239,14 +245,22 @@ std::vector<bool> Explorer::choose(GroundView& ground, const Frontiers& frontier
   }
   // A frontier that was seen is no reason to go on in its direction.
   const bool open = goal_ && !satisfied(*goal_);
+  const auto is_small = [this](const Frontier& f) { return f.gain < params_.least_gain; };
   std::vector<bool> reachable(frontiers.list.size(), false);
+  bool large = false;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!std::isfinite(costs[i])) continue;
+    reachable[places[i].frontier] = true;
+    large = large || !is_small(frontiers.list[places[i].frontier]);
+  }
+  // Small frontiers that cost about the same would replace one another before any of them is reached.
+  if (open && !large && goal_->shows && std::isfinite(costs.back())) return reachable;
   std::size_t best = places.size(), to = places.size(), beside = places.size();
   double best_cost = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (places[i].beside) beside = i;
-    if (!std::isfinite(costs[i])) continue;
-    reachable[places[i].frontier] = true;
     const Frontier& frontier = frontiers.list[places[i].frontier];
+    if (!std::isfinite(costs[i]) || (large && is_small(frontier))) continue;
     const double rest = places[i].shows ? 0 : (frontier.centre - places[i].place).norm();
     double cost = costs[i] + rest;
     if (open && continues(frontier)) cost = params_.keep_cost * cost - params_.keep_gain;
@@ -269,10 +283,20 @@ std::vector<bool> Explorer::choose(GroundView& ground, const Frontiers& frontier
   return reachable;
 }
 
+void Explorer::leave_small(std::vector<Frontier>& frontiers) const {
+  const auto is_small = [this](const Frontier& f) { return f.gain < params_.least_gain; };
+  double gain = 0;
+  for (const Frontier& frontier : frontiers)
+    if (is_small(frontier)) gain += frontier.gain;
+  if (gain < kWorth * map_.seen_volume()) std::erase_if(frontiers, is_small);
+}
+
 ExploreStep Explorer::step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {
   if (goal_) end_goal(place, stamp_s, blocked);
-  Frontiers frontiers = find_frontiers(map_, {.least_gain = params_.least_gain});
-  if (ground.weighs()) weigh(ground, place.z(), params_.least_gain, frontiers.list);
+  const double least_gain = std::min(kSmallGain, params_.least_gain);
+  Frontiers frontiers = find_frontiers(map_, {.least_gain = least_gain});
+  if (ground.weighs()) weigh(ground, place.z(), least_gain, frontiers.list);
+  leave_small(frontiers.list);
   const std::vector<bool> reachable = choose(ground, frontiers, place, stamp_s);
 
   ExploreStep step;

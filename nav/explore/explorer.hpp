@@ -12,7 +12,8 @@ namespace adit::nav {
 
 struct ExploreParams {
   double range{12.0};  ///< Space farther from the lidar does not count as seen, m, (0, 60].
-  /// Frontiers with less unseen volume behind them are ignored, m3, [0, 100]. Chosen with test_explore.
+  /// Frontiers with less unseen volume behind them are left to the end, m3, [0, 100]. Chosen with
+  /// test_explore.
   double least_gain{8.0};
   double keep_cost{0.9};  ///< Another frontier must cost less than this fraction of the present one, (0, 1].
   double keep_gain{2.0};  ///< Another frontier must cost this much less than the present one, m, [0, 20].
@@ -107,6 +108,8 @@ class Explorer {
   void end_goal(const Eigen::Vector3d& place, double stamp_s, bool blocked);
   /// Whether a frontier is about where that of the goal is.
   bool continues(const Frontier& frontier) const;
+  /// Drops the small frontiers if all of them together are not worth a way.
+  void leave_small(std::vector<Frontier>& frontiers) const;
   /// Chooses the goal. Returns which frontiers can be reached.
   std::vector<bool> choose(GroundView& ground, const Frontiers& frontiers, const Eigen::Vector3d& place,
                            double stamp_s);

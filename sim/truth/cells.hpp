@@ -37,6 +37,20 @@ class ExplorationCells {
     return kSize * Eigen::Vector3d(first_[0] + i + 0.5, first_[1] + j + 0.5, first_[2] + k + 0.5);
   }
 
+  /// Calls `use` for each of the up to 26 cells around one.
+  template <class Use>
+  void for_each_around(std::size_t cell, const Use& use) const {
+    const auto i = static_cast<int>(cell % count_[0]);
+    const auto j = static_cast<int>(cell / count_[0] % count_[1]);
+    const auto k = static_cast<int>(cell / count_[0] / count_[1]);
+    for (int c = std::max(0, k - 1); c <= std::min(count_[2] - 1, k + 1); ++c)
+      for (int b = std::max(0, j - 1); b <= std::min(count_[1] - 1, j + 1); ++b)
+        for (int a = std::max(0, i - 1); a <= std::min(count_[0] - 1, i + 1); ++a) {
+          const std::size_t other = (static_cast<std::size_t>(c) * count_[1] + b) * count_[0] + a;
+          if (other != cell) use(other);
+        }
+  }
+
   /// Calls `use` for each cell on the straight way of that length from `from` along the unit vector
   /// `direction`. Voxel traversal after Amanatides and Woo (1987).
   template <class Use>

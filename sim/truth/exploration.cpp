@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "sim/truth/lidar_turn.hpp"
 #include "sim/world/standing_map.hpp"
@@ -17,7 +19,8 @@ constexpr double kWay = 0.2;      ///< Between the points of the search for thes
 constexpr double kMargin = 0.05;  ///< Distance that a body keeps from obstacles beside half its width, m.
 constexpr double kBefore =
     1e-4;  ///< A ray ends so far before the surface that it meets, in the cell before it, m.
-constexpr double kAside = 1e-3;      ///< Places lie so much beside the multiples of kPlaces, m.
+constexpr double kAside = 1e-3;  ///< Places lie so much beside the multiples of kPlaces, m.
+constexpr std::uint16_t kMostPlaces = std::numeric_limits<std::uint16_t>::max();
 constexpr int kColumns = 900;        ///< Of a lidar's turn.
 constexpr int kSparseColumns = 300;  ///< 0.25 m apart at kRange: enough to meet every cell from some place.
 
@@ -106,6 +109,8 @@ void ExplorationTruth::find_possible() {
   constexpr int kEvery = 4;
   static_assert(kEvery * kWay == kPlaces);
   Eigen::AlignedBox3d seen;
+  std::vector<std::uint32_t> counted(possible_.size(), 0);  // By cell: the last place that it counts.
+  std::uint32_t place = 0;
   for (const ExplorationRobot& robot : robots_) {
     const double headroom = std::max(robot.platform.height, robot.platform.lidar_height);
     const StandingMap map(*world_, headroom, robot.platform.step);
@@ -115,14 +120,18 @@ void ExplorationTruth::find_possible() {
       // A ray along the face of a wall would be neither in front of it nor behind.
       const Eigen::Vector2d p = kWay * at.cast<double>() + Eigen::Vector2d::Constant(kAside);
       const Pose3 base = Pose3::level({p.x(), p.y(), 0}, map.ground(p.x(), p.y()));
-      turn(
-          lidar, sensor_of(robot.platform, base), [this](std::size_t cell) { possible_[cell] = 1; },
-          [&seen](const Eigen::Vector3d& point) { seen.extend(point); });
+      ++place;
+      const auto count = [&](std::size_t cell) {
+        if (std::exchange(counted[cell], place) != place && possible_[cell] < kMostPlaces) ++possible_[cell];
+      };
+      turn(lidar, sensor_of(robot.platform, base), count,
+           [&seen](const Eigen::Vector3d& point) { seen.extend(point); });
     }
   }
   for (std::size_t cell = 0; cell < possible_.size(); ++cell)
     if (!seen.contains(cells_.centre(cell))) possible_[cell] = 0;
-  possible_count_ = static_cast<std::size_t>(std::count(possible_.begin(), possible_.end(), 1));
+  possible_count_ =
+      possible_.size() - static_cast<std::size_t>(std::count(possible_.begin(), possible_.end(), 0));
 }
 
 void ExplorationTruth::look(std::size_t robot, const Pose3& base) {
@@ -150,6 +159,34 @@ double ExplorationTruth::share(const std::optional<ExplorationArea>& area,
     if ((seen_[cell] & of) != 0) ++seen;
   }
   return possible == 0 ? 1.0 : static_cast<double>(seen) / static_cast<double>(possible);
+}
+
+std::vector<UnseenPatch> ExplorationTruth::unseen() const {
+  std::vector<bool> listed(possible_.size(), false);
+  std::vector<std::size_t> group;
+  std::vector<UnseenPatch> out;
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(ExplorationCells::kSize / 2);
+  const auto add = [&](std::size_t cell) {
+    if (possible_[cell] == 0 || seen_[cell] != 0 || listed[cell]) return;
+    listed[cell] = true;
+    group.push_back(cell);
+  };
+  for (std::size_t first = 0; first < possible_.size(); ++first) {
+    group.clear();
+    add(first);
+    UnseenPatch patch;
+    for (std::size_t n = 0; n < group.size(); ++n) {
+      const Eigen::Vector3d centre = cells_.centre(group[n]);
+      patch.box.extend(Eigen::AlignedBox3d(centre - half, centre + half));
+      patch.places = std::max(patch.places, int{possible_[group[n]]});
+      cells_.for_each_around(group[n], add);
+    }
+    patch.cells = group.size();
+    if (patch.cells > 0) out.push_back(patch);
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const UnseenPatch& a, const UnseenPatch& b) { return a.cells > b.cells; });
+  return out;
 }
 
 double ExplorationTruth::overlap() const {

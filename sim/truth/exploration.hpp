@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -21,6 +22,13 @@ struct ExplorationRobot {
 /// A rectangle of the floor plan, world frame, m.
 struct ExplorationArea {
   double x0{}, y0{}, x1{}, y1{};
+};
+
+/// Connected cells that can be seen, and were not.
+struct UnseenPatch {
+  std::size_t cells{};
+  Eigen::AlignedBox3d box{};  ///< World frame, m.
+  int places{};               ///< The most places from which one of its cells can be seen.
 };
 
 /// How much of a world the lidars of robots truly saw, whatever the robots believe: the share of the cells of
@@ -52,6 +60,8 @@ class ExplorationTruth {
   /// The share of the cells whose centre is in `area`, seen by any of `robots` (empty: by any at all), [0,
   /// 1]; 1 when none can be seen there.
   double share(const std::optional<ExplorationArea>& area, std::span<const std::size_t> robots) const;
+  /// What the robots did not see, the largest patch first.
+  std::vector<UnseenPatch> unseen() const;
   /// Share of the seen cells that more than one robot saw, [0, 1].
   double overlap() const;
   /// Volume that the robots have seen, m3.
@@ -68,8 +78,8 @@ class ExplorationTruth {
   std::vector<ExplorationRobot> robots_;
   std::vector<LidarPattern> lidars_{};
   ExplorationCells cells_;
-  std::vector<std::uint8_t> possible_;
-  std::vector<std::uint64_t> seen_{};  ///< By cell, bit n: robot n saw it.
+  std::vector<std::uint16_t> possible_;  ///< By cell: from how many places it can be seen.
+  std::vector<std::uint64_t> seen_{};    ///< By cell, bit n: robot n saw it.
   std::size_t possible_count_{}, seen_count_{};
 };
 

@@ -125,6 +125,31 @@ TEST(Explorer, HandsOverTheNextGoalBeforeTheRobotBrakes) {
   EXPECT_LT(run.braking, run.steps / 4);
 }
 
+/// A corridor of 20 x 3.2 m with a bay of 2 x 4 m, and beside the end of the bay a pocket of 2.3 x 1.2 m that
+/// the corridor hardly shows.
+BoxWorld corridor_with_pocket() {
+  BoxWorld world;
+  world.ceiling = 3.0;
+  world.boxes = {{-0.3, 0, 0, 3.2, 0, 3},    {20, 20.3, 0, 3.2, 0, 3},   {0, 20, -0.3, 0, 0, 3},
+                 {0, 10, 3.2, 3.5, 0, 3},    {12, 20, 3.2, 3.5, 0, 3},   {9.7, 10, 3.5, 7.2, 0, 3},
+                 {12, 12.3, 3.5, 6, 0, 3},   {12.3, 14.3, 5.7, 6, 0, 3}, {14.3, 14.6, 5.7, 7.5, 0, 3},
+                 {9.7, 14.3, 7.2, 7.5, 0, 3}};
+  return world;
+}
+
+TEST(Explorer, LooksIntoAPocketThatIsSmallerThanARoom) {
+  ExploreRun run(corridor_with_pocket(), {1.6, 1.6, 0});
+  EXPECT_TRUE(run.run(120));
+  int all = 0, seen = 0;
+  for (double x = 13.25; x < 14.2; x += CoverageMap::kVoxel)
+    for (double y = 6.25; y < 7; y += CoverageMap::kVoxel)
+      for (double z = 0.25; z < 1.5; z += CoverageMap::kVoxel) {
+        ++all;
+        seen += run.explorer.coverage().seen(CoverageMap::voxel_at({x, y, z}));
+      }
+  EXPECT_GT(seen, 0.9 * all) << all;
+}
+
 // A closed room of 3 x 3 m, which one scan shows.
 TEST(Explorer, WithoutAnythingToSeeItIsNeverDone) {
   BoxWorld room;

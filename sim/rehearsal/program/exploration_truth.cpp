@@ -23,6 +23,7 @@ struct Options {
   double height{0};      ///< Of the lidar, m; 0: the platform's.
   bool of_lidar{false};  ///< The poses are the lidar's, not base_link's.
   bool json{false};
+  int unseen{0};  ///< So many of the largest patches that were not seen are listed.
 };
 
 struct Recorded {
@@ -58,6 +59,14 @@ Result<Recorded> read_poses(const std::string& file) {
   return out;
 }
 
+/// The patches to be listed.
+std::vector<UnseenPatch> largest(const Options& options, const ExplorationTruth& truth) {
+  if (options.unseen == 0) return {};
+  std::vector<UnseenPatch> patches = truth.unseen();
+  patches.resize(std::min(patches.size(), static_cast<std::size_t>(options.unseen)));
+  return patches;
+}
+
 void print(const Options& options, const ExplorationTruth& truth, const ExplorationResult& result) {
   if (options.json) {
     nlohmann::ordered_json out{{"possible", truth.possible()},
@@ -65,6 +74,12 @@ void print(const Options& options, const ExplorationTruth& truth, const Explorat
                                {"volume", result.volume},
                                {"metres", result.metres},
                                {"repeat", result.repeat}};
+    for (const UnseenPatch& patch : largest(options, truth)) {
+      const Eigen::Vector3d &a = patch.box.min(), &b = patch.box.max();
+      out["unseen"].push_back({{"cells", patch.cells},
+                               {"box", {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}},
+                               {"places", patch.places}});
+    }
     for (std::size_t n = 0; n < result.reached.size(); ++n) {
       const std::string key = ExplorationResult::name(n);
       if (result.reached[n])
@@ -86,6 +101,11 @@ void print(const Options& options, const ExplorationTruth& truth, const Explorat
       std::printf(" %.0f %% never;", share);
   }
   std::printf("\n");
+  for (const UnseenPatch& patch : largest(options, truth)) {
+    const Eigen::Vector3d &a = patch.box.min(), &b = patch.box.max();
+    std::printf("not seen: %zu cells, x %.1f to %.1f, y %.1f to %.1f, z %.1f to %.1f, from up to %d places\n",
+                patch.cells, a.x(), b.x(), a.y(), b.y(), a.z(), b.z(), patch.places);
+  }
 }
 
 int run(const Options& options) {
@@ -123,6 +143,8 @@ int main(int argc, char** argv) {
   app.add_option("--lidar-height", options.height, "m above the ground, instead of the platform's")
       ->check(CLI::Range(0.05, 5.0));
   app.add_flag("--of-lidar", options.of_lidar, "the poses are the lidar's");
+  app.add_option("--unseen", options.unseen, "also list so many patches that were not seen, largest first")
+      ->check(CLI::Range(0, 100'000));
   app.add_flag("--json", options.json, "one JSON object");
   app.footer(
       "A cell of 0.5 m counts once a ray of the lidar passed it within 12 m. 100 % is what can be seen from\n"
