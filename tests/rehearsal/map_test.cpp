@@ -92,7 +92,8 @@ TEST(MapRehearsal, MemoryIsFlatOverAnHour) {
   std::cout << "resident, MB: " << before << ", " << after_quarter << ", " << after_hour
             << "; bytes on the air: " << quarter.map->bytes << ", " << hour.map->bytes << "\n";
   EXPECT_LT(after_hour - before, 60.0);
-  EXPECT_LT(static_cast<double>(hour.map->bytes), 3.0 * static_cast<double>(quarter.map->bytes));
+  // Each submap is sent once, so the bytes grow with the way driven, and no faster.
+  EXPECT_LT(static_cast<double>(hour.map->bytes), 4.5 * static_cast<double>(quarter.map->bytes));
 }
 
 TEST(MapRehearsal, OffCostsNothing) {
