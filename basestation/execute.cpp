@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "basestation/findings/report.hpp"
+#include "basestation/model/json.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
@@ -159,7 +160,7 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
     outcome.json.update(list_json(fleet_, at));
   } else if (request.verb == verb("status") && !selection.empty()) {
     outcome.text = status_text(fleet_, *selection.front(), at);
-    outcome.json.update(robot_json(fleet_, *selection.front(), at));
+    outcome.json.update(json_of(described(*selection.front(), at)));
     outcome.json["notifications"] = notices_json(fleet_, selection.front()->name, at);
   } else if (request.verb == verb("status")) {
     const Counts& c = sender_.counts();
@@ -172,17 +173,13 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
     outcome.json["station"] = params_.name;
     outcome.json["link"] = params_.link;
     outcome.json["up_for"] = seconds(at - started_);
-    outcome.json["commands"] = {{"sent", c.sent},
-                                {"repeats", c.repeats},
-                                {"accepted", c.accepted},
-                                {"refused", c.refused},
-                                {"unanswered", c.unanswered}};
+    outcome.json["commands"] = json_of(c);
     outcome.json["notifications"] = notices_json(fleet_, "", at);
   } else if (request.verb == verb("net")) {
     outcome.text = net_text(fleet_, at, params_.link, params_.bandwidth);
     outcome.json.update(net_json(fleet_, at));
   } else if (request.verb == verb("actions")) {
-    const std::vector<Action> rows = actions(fleet_, selection);
+    const std::vector<Action> rows = actions({selection.begin(), selection.end()});
     outcome.text = actions_text(rows);
     outcome.json["actions"] = actions_json(rows);
   } else {
@@ -297,7 +294,7 @@ void Station::Impl::finish(Gather& gather) {
 void Station::Impl::down(Done done) {
   Request request(verb("release"));
   for (const auto& [robot_name, robot] : fleet_.robots())
-    if (fleet_.held_by_me(robot)) request.robots.push_back(robot_name);
+    if (robot.mine) request.robots.push_back(robot_name);
   auto gather = std::make_shared<Gather>();
   gather->request = request;
   gather->answers.resize(request.robots.size());
@@ -331,6 +328,7 @@ void Station::Impl::down(Done done) {
 void Station::Impl::note(const Answer& answer) {
   last_answer_ = answer;
   if (owner_.on_answer) owner_.on_answer(answer);
+  changed();
 }
 
 void Station::Impl::late_stop(const Answer& answer) {
@@ -339,12 +337,12 @@ void Station::Impl::late_stop(const Answer& answer) {
                           : answer.answered
                               ? "refused the stop that was sent before it was heard: " + answer.text
                               : "did not acknowledge the stop: " + answer.text;
-  fleet_.say({.at = strand_.now(),
-              .robot = answer.robot,
+  fleet_.say({.robot = answer.robot,
               .level = answer.accepted ? Level::info : Level::warning,
               .code = answer.accepted ? "stop_acknowledged" : "stop_not_acknowledged",
               .reason = answer.reason,
-              .text = answer.robot + " " + end});
+              .text = answer.robot + " " + end},
+             strand_.now());
 }
 
 void Station::Impl::add_flow(std::uint64_t handle, std::shared_ptr<Flow> flow, const Flow::Done& ended) {

@@ -24,6 +24,7 @@ namespace {
 constexpr std::uint16_t kProtocol = 1;
 constexpr Duration kReportPeriod = 2s;
 constexpr Duration kTickPeriod = 100ms;
+constexpr Duration kChanges = 20ms;  // Changes within it are reported together.
 constexpr std::size_t kMaxReportTopics = 16;
 constexpr std::uint64_t kStartSalt = 1;  // Beside the sequence of the phases.
 }  // namespace
@@ -57,8 +58,10 @@ Station::Impl::~Impl() = default;
 template <class T>
 Result<void> Station::Impl::read(const wire::Topic<T>& topic) {
   auto reader =
-      wire::make_reader(radio_, topic, strand_,
-                        [this](const T& sample, const wire::SampleInfo& info) { fleet_.hear(sample, info); });
+      wire::make_reader(radio_, topic, strand_, [this](const T& sample, const wire::SampleInfo& info) {
+        fleet_.hear(sample, info);
+        changed();
+      });
   if (!reader) return reader.error();
   topics_->readers.push_back(std::move(*reader));
   return {};
@@ -69,8 +72,9 @@ Result<void> Station::Impl::start() {
     return {Reason::bad_argument, "'" + command::clean(params_.name, 40) +
                                       "' cannot be an operator's name "
                                       "(1 to 32 of A-Z a-z 0-9 _ -); choose another --name"};
-  fleet_.on_notice = [this](const Notice& notice) {
+  fleet_.on_notice = [this](const StoredNotice& notice) {
     if (owner_.on_notice) owner_.on_notice(notice);
+    changed();
   };
   fleet_.on_robot = [this](const RobotView& robot) {
     sender_.prepare(robot.name);
@@ -138,10 +142,9 @@ Result<void> Station::Impl::start() {
   radio_.on_participant(strand_, [this, alive = std::weak_ptr(alive_)](const wire::ParticipantEvent& event) {
     if (alive.expired() || !event.present) return;
     if (event.incompatible.empty()) return announce_often();
-    fleet_.say({.at = strand_.now(),
-                .level = Level::warning,
-                .code = "other_release",
-                .text = command::clean(event.incompatible, 240)});
+    fleet_.say(
+        {.level = Level::warning, .code = "other_release", .text = command::clean(event.incompatible, 240)},
+        strand_.now());
   });
   // Random phases, so that stations that start together do not send at the same time.
   timers_.push_back(strand_.after(from_seconds(random_.uniform() * seconds(params_.presence)), [this] {
@@ -203,16 +206,25 @@ FindingDesk::Outputs Station::Impl::desk_outputs() {
         if (!closed_) (void)topics_->findings.write(to_radio(robot, params_.id, ids));
       },
       [this](const findings::Finding& f) {
-        fleet_.say({.at = strand_.now(),
-                    .robot = f.key.robot,
+        fleet_.say({.robot = f.key.robot,
                     .code = "found",
                     .text = f.key.robot + " found " + command::clean(f.kind, findings::Finding::kKind) +
-                            (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText))});
+                            (f.text.empty() ? "" : ": " + command::clean(f.text, findings::Finding::kText))},
+                   strand_.now());
       },
       [this](const std::string& code, const std::string& text) {
-        fleet_.say(
-            {.at = strand_.now(), .level = Level::warning, .code = code, .text = command::clean(text, 240)});
+        fleet_.say({.level = Level::warning, .code = code, .text = command::clean(text, 240)}, strand_.now());
       }};
+}
+
+/// Many samples come together: front ends receive their result once.
+void Station::Impl::changed() {
+  if (change_pending_ || !owner_.on_changed) return;
+  change_pending_ = true;
+  change_timer_ = strand_.after(kChanges, [this] {
+    change_pending_ = false;
+    owner_.on_changed();
+  });
 }
 
 void Station::Impl::announce() {
@@ -308,6 +320,10 @@ Time Station::now() const { return impl_->now(); }
 const Counts& Station::counts() const { return impl_->sender_.counts(); }
 const ChunkStore& Station::map() const { return impl_->chunks(); }
 const std::optional<Answer>& Station::last_answer() const { return impl_->last_answer_; }
+void Station::map_since(std::uint64_t revision, std::size_t most, MapDone done) {
+  impl_->map_since(revision, most, std::move(done));
+}
+
 std::size_t Station::findings() const { return impl_->findings(); }
 bool Station::closed() const { return impl_->closed_; }
 

@@ -8,9 +8,10 @@
 #include <string>
 
 #include "basestation/fleet/fleet.hpp"
+#include "basestation/model/map_tiles.hpp"
+#include "basestation/model/stick_velocity.hpp"
 #include "basestation/outcome.hpp"
 #include "basestation/send/answer.hpp"
-#include "basestation/send/stick_velocity.hpp"
 #include "core/command/request.hpp"
 #include "core/exec/executor.hpp"
 #include "core/store/disk.hpp"
@@ -74,6 +75,11 @@ class Station {
   const std::optional<Answer>& last_answer() const;
   /// The map of all robots as this station received it.
   const ChunkStore& map() const;
+  /// The map seen from above: what changed after that revision, at most `most` tiles; call again while
+  /// `more`. The view is made at most once a second, on a thread of the pool; `done` is called when it
+  /// is complete.
+  using MapDone = std::function<void(MapUpdate update, bool more)>;
+  void map_since(std::uint64_t revision, std::size_t most, MapDone done);
   /// Number of stored findings of all robots.
   std::size_t findings() const;
   /// True after `down`, until `up`.
@@ -82,8 +88,10 @@ class Station {
   /// Observers, called on the strand. Set them before start().
   std::function<void(const RobotCommand&, std::uint64_t seq)> on_sent{};
   std::function<void(const Answer&)> on_answer{};
-  std::function<void(const Notice&)> on_notice{};
+  std::function<void(const StoredNotice&)> on_notice{};
   std::function<void()> on_down{};
+  /// Called when something that front ends receive may have changed, at most every 20 ms.
+  std::function<void()> on_changed{};
 
  private:
   class Impl;

@@ -10,6 +10,7 @@
 #include "basestation/flow/arrival.hpp"
 #include "basestation/flow/steer.hpp"
 #include "basestation/map/map_receiver.hpp"
+#include "basestation/map/tiles.hpp"
 #include "basestation/map/trails.hpp"
 #include "basestation/station.hpp"
 #include "core/time/random.hpp"
@@ -31,6 +32,8 @@ struct Gather {
 
 class Station::Impl {
  public:
+  using MapDone = Station::MapDone;
+
   Impl(Station& owner, StationParams params, Executor& strand, wire::Participant& radio);
   ~Impl();
 
@@ -43,6 +46,7 @@ class Station::Impl {
   Time now() const { return strand_.now(); }
   std::size_t findings() const { return desk_.all().size(); }
   const ChunkStore& chunks() const { return map_.chunks(); }
+  void map_since(std::uint64_t revision, std::size_t most, MapDone done);
 
   Station& owner_;
   StationParams params_;
@@ -70,6 +74,7 @@ class Station::Impl {
   // Defined in station.cpp: reception and transmission.
   template <class T>
   Result<void> read(const wire::Topic<T>& topic);
+  void changed();
   void announce();
   void announce_often();
   void report_traffic();
@@ -92,6 +97,7 @@ class Station::Impl {
   void save_map(const command::Request& request, const Done& done);
   void load_map(const command::Request& request, const Done& done);
   void draw_map(const command::Request& request, const Done& done);
+  void answer_tiles(std::uint64_t revision, std::size_t most, const MapDone& done) const;
   void command_robots(std::uint64_t handle, const command::Request& request, Done done);
   /// Sends the gather's command to every robot of its request.
   void send_to_all(std::uint64_t handle, const std::shared_ptr<Gather>& gather);
@@ -126,7 +132,19 @@ class Station::Impl {
   MapReceiver map_{};
   Trails trails_{};
   std::shared_ptr<const perception::VoxelImage> prior_{};  ///< What the crew had; null: nothing.
-  std::uint32_t start_{};                                  ///< Drawn at this start; see transfer::Ack.
+  /// The map seen from above, for front ends.
+  struct View {
+    Tiles tiles{};
+    std::uint64_t chunks{};                                 ///< Revision of the map that the tiles show.
+    std::shared_ptr<const perception::VoxelImage> prior{};  ///< And what the crew had then.
+    std::optional<Time> begun{};                            ///< The last time that it was begun.
+    bool running{false};
+    std::vector<std::function<void()>> waiting{};  ///< Requests that are answered when it is complete.
+  };
+  View view_{};
+  bool change_pending_{false};  ///< on_changed will be called.
+  Timer change_timer_{};
+  std::uint32_t start_{};  ///< Drawn at this start; see transfer::Ack.
   std::uint64_t next_handle_{1};
   std::uint32_t presence_seq_{};
   std::uint64_t report_seq_{};

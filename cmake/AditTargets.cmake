@@ -72,7 +72,7 @@ endfunction()
 # Labels: unit (default, milliseconds), rehearsal, live (processes over Fast DDS), slow, long (soaks, fuzzing, campaigns
 # and benchmarks: built always, run by `./run test long` alone).
 # SERIAL: its cases never run beside other tests (live timing).
-# Under sanitizers only some are built: address takes those labelled unit; thread takes those in tests/core, tests/wire
+# Under sanitizers only some are built: address takes those labelled unit; thread takes those in tests/client, tests/core, tests/wire
 # (live ones over Fast DDS too) and tests/live. NO_SANITIZE leaves one out, with the reason beside it.
 function(adit_test name)
   if(NOT ADIT_TESTS)
@@ -87,7 +87,7 @@ function(adit_test name)
     return()
   elseif(ADIT_SANITIZE MATCHES address AND NOT "unit" IN_LIST arg_LABELS)
     return()
-  elseif(ADIT_SANITIZE STREQUAL thread AND NOT part MATCHES "^(core|wire|live)$")
+  elseif(ADIT_SANITIZE STREQUAL thread AND NOT part MATCHES "^(client|core|wire|live)$")
     return()
   endif()
   if(NOT arg_TIMEOUT)

@@ -8,15 +8,19 @@ bin="$root/build/release/bin"
 scenario="$root/config/scenarios/demo.yaml"
 out="$root/build/demo"
 watch=no
+gui=no
 for argument in "$@"; do
   case "$argument" in
     --watch) watch=yes ;;
+    --gui) gui=yes ;;
     --team) scenario="$root/config/scenarios/demo_team.yaml" ;;
     -h|--help)
-      echo "usage: ./run demo [--watch] [--team]     --watch: the operator's dashboard instead of the narration"
-      echo "                                         --team: robots that drive together"
+      echo "usage: ./run demo [--watch|--gui] [--team]"
+      echo "  --watch   the operator's dashboard instead of the narration"
+      echo "  --gui     the window of op1; without a screen, its picture build/demo/window.png"
+      echo "  --team    robots that drive together"
       exit 0 ;;
-    *) echo "demo: unknown option '$argument'; usage: ./run demo [--watch] [--team]" >&2; exit 2 ;;
+    *) echo "demo: unknown option '$argument'; usage: ./run demo [--watch|--gui] [--team]" >&2; exit 2 ;;
   esac
 done
 
@@ -105,6 +109,24 @@ for name in "${operators[@]}"; do
 done
 echo
 
+# The window of op1. Without a screen it is drawn all the same, and its picture taken while the robots are under way.
+picture_after=40
+window=()
+if [ "$gui" = yes ]; then
+  [ -x "$bin/adit_gui" ] || { echo "demo: there is no $bin/adit_gui: ./run demo --gui builds it" >&2; exit 1; }
+  window=("$bin/adit_gui" --name op1 --domain "$domain" --select "${robots[1]}")
+  if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+    echo "  window         of op1; keys and gestures are in docs/gui.md"
+  else
+    rm -f "$out/window.png"
+    window=(env QT_QPA_PLATFORM=offscreen QT_QUICK_BACKEND=software "${window[@]}" --size 1920x1080
+      --screenshot "$out/window.png" --after "$picture_after")
+    echo "  window         of op1: no screen, so its picture after $picture_after s"
+  fi
+  "${window[@]}" > "$home/gui.log" 2>&1 &
+  pids+=("$!")
+fi
+
 play=0
 kill -USR1 "$simulator"  # the scenario's time begins
 if [ "$watch" = yes ]; then
@@ -132,6 +154,15 @@ say "What was true in the simulated building"
 grep -v -e "simulate: ready" -e "on domain" "$home/simulate.log" | sed 's/^/  /'
 echo "  picture        ${out#"$root"/}/demo.png"
 echo "  report         ${out#"$root"/}/report.json"
+if [ "$gui" = yes ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+  if [ -s "$out/window.png" ]; then
+    echo "  window         ${out#"$root"/}/window.png"
+  else
+    echo "demo: the window left no picture; its log:" >&2
+    tail -5 "$home/gui.log" >&2
+    play=2
+  fi
+fi
 say "The map that the station of op1 holds"
 sed 's/^/  /' "$out/map.txt"
 if [ "$map" = yes ]; then echo "  map            ${out#"$root"/}/map.png"; else sed 's/^/  /' "$home/map.log"; fi

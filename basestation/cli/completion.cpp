@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "basestation/cli/client.hpp"
-#include "basestation/cli/process/launch.hpp"
+#include "basestation/cli/run_line.hpp"
+#include "basestation/client/connection.hpp"
+#include "basestation/client/paths.hpp"
 #include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
 
@@ -35,19 +36,18 @@ constexpr const char* kFishScript =
 /// The robots that a running station knows; empty if it does not answer immediately.
 std::vector<std::string> known_robots(const Options& options) {
   std::vector<std::string> robots;
-  auto path = socket_path(options);
+  const auto path = client::socket_path(options.name);
   if (!path) return robots;
-  auto socket = LineSocket::connect(*path);
+  auto socket = client::LineSocket::connect(*path);
   if (!socket) return robots;
-  Client client(std::move(*socket), "completion");
+  client::Connection client(std::move(*socket), "completion");
   bool answered = false;
-  client.on_outcome = [&](std::int64_t, const nlohmann::json& outcome) {
+  client.on_world = [&](const World& world) {
     answered = true;
-    const auto list =
-        outcome.value("json", nlohmann::json::object()).value("robots", nlohmann::json::array());
-    for (const auto& robot : list) robots.push_back(robot.value("robot", std::string()));
+    robots.clear();
+    for (const Robot& robot : world.robots) robots.push_back(robot.name);
   };
-  client.execute("list");
+  client.watch();
   for (int i = 0; i < 5 && !answered; ++i)
     if (!client.wait(100)) break;
   return robots;

@@ -5,16 +5,16 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "basestation/cli/client.hpp"
 #include "basestation/cli/completion.hpp"
 #include "basestation/cli/interrupt.hpp"
-#include "basestation/cli/process/launch.hpp"
-#include "basestation/cli/process/serve.hpp"
 #include "basestation/cli/prompt.hpp"
+#include "basestation/cli/run_line.hpp"
 #include "basestation/cli/script.hpp"
 #include "basestation/cli/stop.hpp"
 #include "basestation/cli/teleop.hpp"
 #include "basestation/cli/watch/watch.hpp"
+#include "basestation/client/paths.hpp"
+#include "basestation/host/serve.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
@@ -62,14 +62,14 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
   if (words[0] == "completion") return print_completion(options, words);
   auto request = command::parse(words);
   if (!request) return fail(options, kExitUsage, request.error());
-  const std::string line = quoted(words);
+  const std::string line = client::quoted(words);
   if (request->verb == verb("stop")) return stop(options, line, request->all);
   if (request->verb == verb("down")) {
-    auto path = socket_path(options);
+    auto path = client::socket_path(options.name);
     if (!path) return fail(options, kExitRefused, path.error());
-    auto socket = LineSocket::connect(*path);
+    auto socket = client::LineSocket::connect(*path);
     if (!socket) return down_without_station(options);
-    Client client(std::move(*socket), "shell");
+    client::Connection client(std::move(*socket), "shell");
     return run_line(client, options, line);
   }
   if (request->verb == verb("run")) {
@@ -77,10 +77,10 @@ int run_command(const Options& options, const std::vector<std::string>& words) {
     if (!script) return fail(options, kExitUsage, script.error());
     return play(options, *script, request->has("--all"));
   }
-  auto socket = connect_or_launch(options);
+  auto socket = connect(options);
   if (!socket) return fail(options, exit_without_station(socket.error()), socket.error());
   const bool terminal = request->info->runs == command::Runs::terminal;
-  Client client(std::move(*socket), terminal ? std::string(request->info->name) : "shell");
+  client::Connection client(std::move(*socket), terminal ? std::string(request->info->name) : "shell");
   if (request->verb == verb("watch")) return watch(client, options);
   if (request->verb == verb("teleop")) return teleop(client, options, request->robots.front());
   return run_line(client, options, line);
@@ -119,6 +119,7 @@ int main(int argc, char** argv) {
          "--record", options.record,
          "Folder for the recording of the last minutes, or none; below the state folder when not given")
       ->allow_extra_args(false);
+  app.add_flag("--alone", options.alone, "A stop goes out without the station")->group("");
   CLI::Option* served = app.add_option("--serve", ready_fd, "Run the station in this process")->group("");
   app.prefix_command();
   app.footer(footer());
@@ -138,7 +139,7 @@ int main(int argc, char** argv) {
     return fail(options, kExitUsage,
                 {Reason::bad_argument,
                  "--name is 1 to 32 of A-Z a-z 0-9 _ -, not '" + command::clean(options.name, 40) + "'"});
-  if (served->count() > 0) return serve(options, ready_fd);
+  if (served->count() > 0) return host::serve(options, ready_fd);
 
   std::vector<std::string> words = app.remaining();
   if (!words.empty() && words[0].starts_with('-'))

@@ -1,30 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <cstdint>
-#include <string>
-#include <vector>
+#include "basestation/client/options.hpp"
+#include "basestation/model/exit_code.hpp"
 
 namespace adit::station::cli {
 
 /// The options before the command on the command line.
-struct Options {
-  std::string name{"op1"};  ///< Name of the operator.
-  /// Link profile that limits the traffic: one of config/links, or a .yaml file; empty: none.
-  std::string link{};
-  bool json{false};
-  std::uint32_t domain{77};               ///< Radio domain, [0, 232].
-  bool domain_given{false};               ///< A running station must be on `domain`.
-  std::vector<std::string> interfaces{};  ///< IPv4 addresses of interfaces; empty: loopback.
-  std::vector<std::string> peers{};       ///< Addresses of peers, for networks without multicast.
-  std::vector<float> at{};                ///< Position X Y Z of the station, map frame, m; empty: unknown.
-  std::string record{};   ///< Folder of recordings; empty: below the state folder; "none": no recording.
-  std::string program{};  ///< Path of this program, with which a station is started.
+struct Options : client::StationOptions {
+  bool json{false};   ///< One JSON object in place of text.
+  bool alone{false};  ///< A stop does not ask the station: the caller did, and it hangs.
 };
-
-/// Exit codes of the program.
-inline constexpr int kExitDone = 0;
-inline constexpr int kExitRefused = 1;
-inline constexpr int kExitUsage = 2;
-inline constexpr int kExitNoAnswer = 3;
 
 }  // namespace adit::station::cli

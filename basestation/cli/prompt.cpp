@@ -12,15 +12,14 @@
 #include <iostream>
 #include <optional>
 
-#include "basestation/cli/client.hpp"
 #include "basestation/cli/completion.hpp"
 #include "basestation/cli/interrupt.hpp"
-#include "basestation/cli/process/launch.hpp"
-#include "basestation/cli/process/paths.hpp"
+#include "basestation/cli/run_line.hpp"
 #include "basestation/cli/script.hpp"
 #include "basestation/cli/stop.hpp"
 #include "basestation/cli/teleop.hpp"
 #include "basestation/cli/watch/watch.hpp"
+#include "basestation/client/paths.hpp"
 #include "basestation/report/table.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/vocabulary.hpp"
@@ -31,14 +30,13 @@ namespace {
 
 using command::Request;
 using command::verb;
-using nlohmann::json;
 
 class Prompt {
  public:
   explicit Prompt(const Options& options) : options_(options) {}
 
   Result<void> connect() {
-    auto socket = connect_or_launch(options_);
+    auto socket = cli::connect(options_);
     if (!socket) return socket.error();
     client_.emplace(std::move(*socket), "prompt");
     listen();
@@ -83,22 +81,19 @@ class Prompt {
 
  private:
   void listen() {
-    client_->on_notice = [this](const json& notice) {
-      if (!notice.value("mine", false)) return;
-      const std::string robot = notice.value("robot", std::string());
-      const std::string text = notice.value("text", std::string());
-      const bool named = robot.empty() || text.find(robot) != std::string::npos;
-      const std::string when = ago(notice.value("age", 0.0));
-      std::printf("%s* %s%s%s\n", clear_, named ? "" : (robot + ": ").c_str(), text.c_str(),
+    client_->on_notice = [this](const Notice& notice) {
+      if (!notice.mine) return;
+      const bool named = notice.robot.empty() || notice.text.find(notice.robot) != std::string::npos;
+      const std::string when = ago(notice.age);
+      std::printf("%s* %s%s%s\n", clear_, named ? "" : (notice.robot + ": ").c_str(), notice.text.c_str(),
                   when.empty() ? "" : (" (" + when + ")").c_str());
       printed_ = true;
     };
-    client_->on_snapshot = [this](const json& snapshot) {
+    client_->on_world = [this](const World& world) {
       robots_.clear();
-      for (const json& robot : snapshot.value("robots", json::array()))
-        robots_.push_back(robot.value("robot", std::string()));
+      for (const Robot& robot : world.robots) robots_.push_back(robot.name);
     };
-    client_->on_command = [this](const json& event) {
+    client_->on_command = [this](const CommandEvent& event) {
       if (const std::string text = command_of_another(event); !text.empty()) {
         std::printf("%s* %s\n", clear_, text.c_str());
         printed_ = true;
@@ -123,9 +118,9 @@ class Prompt {
       if (auto connected = connect(); !connected)
         return fail(options_, exit_without_station(connected.error()), connected.error());
     if (request.verb == verb("watch") || request.verb == verb("teleop")) {
-      auto socket = connect_or_launch(options_);
+      auto socket = cli::connect(options_);
       if (!socket) return fail(options_, exit_without_station(socket.error()), socket.error());
-      Client own(std::move(*socket), std::string(request.info->name));
+      client::Connection own(std::move(*socket), std::string(request.info->name));
       return request.verb == verb("watch") ? watch(own, options_)
                                            : teleop(own, options_, request.robots.front());
     }
@@ -134,7 +129,7 @@ class Prompt {
 
   Options options_;
   const char* clear_{::isatty(STDOUT_FILENO) != 0 ? "\r\x1b[K" : ""};  ///< Erases the typed line.
-  std::optional<Client> client_{};
+  std::optional<client::Connection> client_{};
   std::vector<std::string> robots_{};
   int code_{kExitDone};
   bool printed_{false};
@@ -179,7 +174,7 @@ int read_terminal(Prompt& prompt, const Options& options) {
   rl_attempted_completion_function = complete;
   using_history();
   stifle_history(500);
-  auto state = state_folder();
+  auto state = client::state_folder();
   const std::string history = state ? *state + "/" + options.name + ".history" : "";
   if (!history.empty()) read_history(history.c_str());
   std::printf("commands: help; leave: Ctrl-D (the station stays, down ends it)\n");

@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
-#include "basestation/cli/client.hpp"
 #include "basestation/cli/interrupt.hpp"
-#include "basestation/cli/process/launch.hpp"
+#include "basestation/cli/run_line.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/words.hpp"
 #include "core/config/node.hpp"
@@ -20,7 +20,7 @@ namespace {
 
 /// Plays the lines of one operator.
 struct Player {
-  std::unique_ptr<Client> client{};
+  std::unique_ptr<client::Connection> client{};
   std::map<std::int64_t, std::string> open{};
 };
 
@@ -31,16 +31,16 @@ class Play {
   Result<void> add(const std::string& name) {
     Options own = options_;
     own.name = name;
-    auto socket = connect_or_launch(own);
+    auto socket = connect(own);
     if (!socket) return socket.error();
     Player& player = players_[name];
-    player.client = std::make_unique<Client>(std::move(*socket), "script");
-    player.client->on_notice = [this, name](const nlohmann::json& notice) {
-      if (!options_.json && notice.value("mine", false) && players_.contains(name))
-        std::printf("%7.1f %s* %s\n", now(), name.c_str(), notice.value("text", std::string()).c_str());
+    player.client = std::make_unique<client::Connection>(std::move(*socket), "script");
+    player.client->on_notice = [this, name](const Notice& notice) {
+      if (!options_.json && notice.mine && players_.contains(name))
+        std::printf("%7.1f %s* %s\n", now(), name.c_str(), notice.text.c_str());
     };
     player.client->notices();
-    player.client->on_outcome = [this, name](std::int64_t id, const nlohmann::json& outcome) {
+    player.client->on_outcome = [this, name](std::int64_t id, const CommandOutcome& outcome) {
       Player& owner = players_[name];
       const auto found = owner.open.find(id);
       if (found == owner.open.end()) return;
@@ -75,15 +75,15 @@ class Play {
   }
 
  private:
-  void event(const std::string& by, const std::string& line, const nlohmann::json* outcome) {
+  void event(const std::string& by, const std::string& line, const CommandOutcome* outcome) {
     if (options_.json) {
       nlohmann::json object{{"at", now()}, {"by", by}, {"do", line}};
-      if (outcome) object["outcome"] = outcome->value("json", nlohmann::json::object());
+      if (outcome) object["outcome"] = nlohmann::json::parse(outcome->json, nullptr, false);
       std::printf("%s\n", object.dump().c_str());
     } else if (!outcome) {
       std::printf("%7.1f %s> %s\n", now(), by.c_str(), line.c_str());
     } else {
-      const std::string text = outcome->value("text", std::string()) + outcome->value("error", std::string());
+      const std::string text = outcome->text + outcome->error;
       for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
         std::printf("%7.1f %s  %s\n", now(), by.c_str(), text.substr(at, end - at).c_str());
     }

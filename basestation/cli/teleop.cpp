@@ -8,17 +8,21 @@
 #include <optional>
 
 #include "basestation/cli/interrupt.hpp"
-#include "basestation/cli/terminal/gamepad.hpp"
-#include "basestation/cli/terminal/key_stick.hpp"
-#include "basestation/cli/terminal/keys.hpp"
+#include "basestation/cli/run_line.hpp"
 #include "basestation/cli/terminal/terminal.hpp"
+#include "basestation/input/gamepad.hpp"
+#include "basestation/input/key_stick.hpp"
+#include "basestation/input/keys.hpp"
 
 namespace adit::station::cli {
 namespace {
 
-using nlohmann::json;
+using input::decode_keys;
+using input::Gamepad;
+using input::KeyStick;
 using Clock = KeyStick::Clock;
 
+constexpr double kUnknownLimit = 0.5;                    // m/s and rad/s, until the robot describes itself.
 constexpr auto kPeriod = std::chrono::milliseconds(50);  // Period of the joystick samples.
 
 constexpr const char* kInstructions =
@@ -27,30 +31,28 @@ constexpr const char* kInstructions =
     "shoulder)\r\n";
 
 /// Describes the robot's motion in one line.
-std::string status_line(const json& robot, const std::array<double, 3>& asked, double scale, bool dead_man,
+std::string status_line(const Robot& robot, const std::array<double, 3>& asked, double scale, bool dead_man,
                         const std::string& pad) {
-  const json speed = robot.value("velocity", json::array({0.0, 0.0, 0.0}));
-  const auto number = [](const json& value) { return value.is_number() ? value.get<double>() : 0.0; };
   char text[256];
   std::snprintf(text, sizeof text,
                 "\r\x1b[K%s  asked %5.2f %5.2f %5.2f  robot %5.2f %5.2f %5.2f  x%.1f  pad: %s%s",
-                robot.value("mode", std::string("?")).c_str(), asked[0], asked[1], asked[2], number(speed[0]),
-                number(speed[1]), number(speed[2]), scale, pad.c_str(), dead_man ? " (hold L)" : "");
+                robot.mode.empty() ? "?" : robot.mode.c_str(), asked[0], asked[1], asked[2],
+                static_cast<double>(robot.vx), static_cast<double>(robot.vy), static_cast<double>(robot.wz),
+                scale, pad.c_str(), dead_man ? " (hold L)" : "");
   return text;
 }
 
 }  // namespace
 
-int teleop(Client& client, const Options& options, const std::string& robot) {
-  std::optional<json> outcome;
-  json view = json::object();
+int teleop(client::Connection& client, const Options& options, const std::string& robot) {
+  std::optional<CommandOutcome> outcome;
+  Robot view;
   std::int64_t id = 0;
-  client.on_outcome = [&](std::int64_t ended, const json& object) {
-    if (ended == id) outcome = object;
+  client.on_outcome = [&](std::int64_t ended, const CommandOutcome& result) {
+    if (ended == id) outcome = result;
   };
-  client.on_snapshot = [&](const json& snapshot) {
-    for (const json& row : snapshot.value("robots", json::array()))
-      if (row.value("robot", std::string()) == robot) view = row;
+  client.on_world = [&](const World& world) {
+    if (const Robot* found = world.robot(robot)) view = *found;
   };
   Terminal terminal(false);
   if (!terminal.usable())
@@ -65,10 +67,10 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
   auto next = Clock::now();
   while (!outcome) {
     const auto now = Clock::now();
-    keys.set_limits(view.value("max_speed", 0.0), view.value("max_turn", 0.0));
+    keys.set_limits(view.max_speed, view.max_turn);
     bool stop = false;
     for (const int key : decode_keys(terminal.read())) {
-      if (key == key_escape || key == key_interrupt) leaving = true;
+      if (key == input::key_escape || key == input::key_interrupt) leaving = true;
       if (key == 'x') stop = true;
       if (key == 'k') dead_man = !dead_man;
       keys.press(key, now);
@@ -83,9 +85,11 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
     }
     std::array<double, 3> velocity = keys.velocity(now);
     if (held.present && (held.shoulder || !dead_man)) {
-      velocity[0] += held.stick[0] * view.value("max_speed", 0.5);
-      velocity[1] += held.stick[1] * view.value("max_speed", 0.5);
-      velocity[2] += held.stick[2] * view.value("max_turn", 0.5);
+      const double speed = view.described ? view.max_speed : kUnknownLimit;
+      const double turn = view.described ? view.max_turn : kUnknownLimit;
+      velocity[0] += held.stick[0] * speed;
+      velocity[1] += held.stick[1] * speed;
+      velocity[2] += held.stick[2] * turn;
     }
     if (now >= next) {
       if (!leaving) client.stick(id, velocity[0], velocity[1], velocity[2]);
@@ -99,9 +103,8 @@ int teleop(Client& client, const Options& options, const std::string& robot) {
     }
   }
   terminal.write("\r\x1b[K");
-  const json result = outcome->value("json", json::object());
-  const json rows = result.value("results", json::array());
-  const bool quit = leaving && !rows.empty() && rows[0].value("reason", std::string()) == "cancelled";
+  const bool quit =
+      leaving && !outcome->answers.empty() && outcome->answers.front().reason == Reason::cancelled;
   if (!quit) return print_outcome(options, *outcome);
   terminal.write(robot + ": manual control ended\r\n");
   return kExitDone;

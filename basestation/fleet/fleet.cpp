@@ -50,40 +50,48 @@ std::optional<AreaView> view_of(const radio::Area& area) {
   return view;
 }
 
+/// Sets what follows from the holder and the stops.
+void set_owner(RobotView& robot, const std::string& own_name, const Id& own_id) {
+  robot.mine = robot.holder == own_name && robot.holder_id == own_id;
+  robot.stops.clear();
+  robot.stopped_by_holder = false;
+  for (const StopLatch& latch : robot.latches) {
+    robot.stops.push_back(latch.station);
+    if (latch.station == robot.holder && latch.station_id == robot.holder_id) robot.stopped_by_holder = true;
+  }
+}
+
 }  // namespace
 
-const char* to_string(GoalPhase phase) {
+const char* word(ComponentPhase phase) {
   switch (phase) {
-    case GoalPhase::none:
-      return "none";
-    case GoalPhase::kept:
-      return "kept";
-    case GoalPhase::active:
-      return "active";
-    case GoalPhase::blocked:
-      return "blocked";
-    case GoalPhase::reached:
-      return "reached";
+    case ComponentPhase::starting:
+      return "starting";
+    case ComponentPhase::up:
+      return "up";
+    case ComponentPhase::waiting:
+      return "waiting";
+    case ComponentPhase::failed:
+      return "FAILED";
+    case ComponentPhase::hung:
+      return "HUNG";
   }
-  return "unknown";
+  return "FAILED";
 }
 
-const char* to_string(ExplorationPhase phase) {
-  constexpr std::array kNames{"none", "starting", "exploring", "travelling", "reporting", "done", "ended"};
-  const auto index = static_cast<std::size_t>(phase);
-  return index < kNames.size() ? kNames[index] : "unknown";
+Robot described(const RobotView& robot, Time now) {
+  Robot out = robot;
+  out.age = seconds(now - robot.last_heard);
+  out.stopped = robot.stopped || !robot.latches.empty();
+  for (const ComponentView& part : robot.components)
+    if (!part.healthy) out.troubles.push_back(part.name + " " + word(part.phase));
+  return out;
 }
 
-const char* to_string(Level level) {
-  switch (level) {
-    case Level::info:
-      return "info";
-    case Level::warning:
-      return "warning";
-    case Level::error:
-      return "error";
-  }
-  return "unknown";
+Notice described(const StoredNotice& notice, Time now) {
+  Notice out = notice;
+  out.age = seconds(now - notice.at);
+  return out;
 }
 
 RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
@@ -93,7 +101,9 @@ RobotView* Fleet::touch(const std::string& name, const wire::SampleInfo& info) {
     known->second.spoke = info.received;
     return &known->second;
   }
-  if (!command::valid_name(name) || robots_.size() == kMaxRobots) {
+  // A robot of such a name would make other commands of those that name it.
+  const bool word = name == "all" || name.starts_with('-');
+  if (!command::valid_name(name) || word || robots_.size() == kMaxRobots) {
     ++ignored_;
     return nullptr;
   }
@@ -153,11 +163,11 @@ void Fleet::hear(const radio::Presence& sample, const wire::SampleInfo& info) {
   if (sample.name() == own_name_ && sample.id() != own_id_) {
     // Robots will refuse one of the two stations: its operator must choose another name.
     if (!clashed_ || info.received - last_clash_ > kForgetAfter)
-      notice({.at = info.received,
-              .level = Level::warning,
-              .code = "name_in_use",
-              .reason = Reason::name_in_use,
-              .text = "another station on the air calls itself " + own_name_ + "; choose another --name"});
+      say({.level = Level::warning,
+           .code = "name_in_use",
+           .reason = Reason::name_in_use,
+           .text = "another station on the air calls itself " + own_name_ + "; choose another --name"},
+          info.received);
     clashed_ = true;
     last_clash_ = info.received;
     return;
@@ -183,7 +193,7 @@ void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) 
   robot->last_heard = info.received;
   robot->stamp = sample.stamp();
   robot->stamped_by = info.sender;
-  for (Notice& waits : notices_)
+  for (StoredNotice& waits : notices_)
     if (waits.undated && waits.robot == robot->name) date(waits, *robot);
   robot->x = sample.x();
   robot->y = sample.y();
@@ -198,8 +208,7 @@ void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) 
   robot->localisation = static_cast<Localisation>(std::min(sample.localisation(), lost));
   if (!robot->lost) return;
   robot->lost = false;
-  notice(
-      {.at = info.received, .robot = robot->name, .code = "back", .text = robot->name + " is heard again"});
+  say({.robot = robot->name, .code = "back", .text = robot->name + " is heard again"}, info.received);
 }
 
 void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info) {
@@ -214,11 +223,12 @@ void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& i
   robot->holder_id = sample.holder_id();
   robot->locked = sample.locked();
   robot->lease_left = sample.lock_lease_left();
-  robot->stops.clear();
+  robot->latches.clear();
   for (const auto& stop : sample.stops()) {
-    if (robot->stops.size() == 17) break;
-    robot->stops.push_back({command::clean(stop.station(), kNameLimit), stop.station_id()});
+    if (robot->latches.size() == 17) break;
+    robot->latches.push_back({command::clean(stop.station(), kNameLimit), stop.station_id()});
   }
+  set_owner(*robot, own_name_, own_id_);
 }
 
 void Fleet::hear(const radio::BehaviourState& sample, const wire::SampleInfo& info) {
@@ -265,14 +275,15 @@ void Fleet::hear(const radio::Notification& sample, const wire::SampleInfo& info
   const RobotView* robot = touch(sample.robot(), info);
   if (!robot) return;
   const auto severity = static_cast<std::uint32_t>(sample.severity());
-  Notice told{.at = info.received,
-              .robot = sample.robot(),
-              .operator_name = command::clean(sample.operator_name(), kNameLimit),
-              .level = severity <= 2 ? static_cast<Level>(severity) : Level::error,
-              .code = command::clean(sample.code(), kNameLimit),
-              .reason = static_cast<Reason>(sample.reason()),
-              .text = command::clean(sample.text(), kTextLimit),
-              .said_by = info.sender};
+  StoredNotice told{{.robot = sample.robot(),
+                     .operator_name = command::clean(sample.operator_name(), kNameLimit),
+                     .level = severity <= 2 ? static_cast<Level>(severity) : Level::error,
+                     .code = command::clean(sample.code(), kNameLimit),
+                     .reason = static_cast<Reason>(sample.reason()),
+                     .text = command::clean(sample.text(), kTextLimit)},
+                    info.received,
+                    {},
+                    info.sender};
   if (sample.stamp() != 0) told.undated = sample.stamp();
   date(told, *robot);
   notice(std::move(told));
@@ -281,7 +292,7 @@ void Fleet::hear(const radio::Notification& sample, const wire::SampleInfo& info
 /// Computes the time of a notice from the robot's clock only: its last stamp, and the time since then. A
 /// notification that is repeated after a gap keeps its true age; the clock may differ after a restart of the
 /// robot.
-void Fleet::date(Notice& notice, const RobotView& robot) const {
+void Fleet::date(StoredNotice& notice, const RobotView& robot) const {
   if (!notice.undated || !robot.located || robot.stamped_by != notice.said_by) return;
   const Duration since_shown = notice.at - robot.last_heard;
   // Negative if the event is newer than the stamp. Clamped, because the robot's values are not trusted.
@@ -356,6 +367,7 @@ void Fleet::learn_authority(const std::string& robot, const std::string& holder,
   view.holder_id = holder == own_name_ ? own_id_ : Id{};
   view.locked = false;  // Every change of holder ends a lock.
   view.lease_left = -1.0F;
+  set_owner(view, own_name_, own_id_);
 }
 
 void Fleet::own_traffic(TrafficView traffic) { traffic_[own_name_] = std::move(traffic); }
@@ -364,11 +376,11 @@ void Fleet::check(Time now) {
   for (auto& [name, robot] : robots_) {
     if (robot.lost || now - std::max(robot.last_heard, robot.last_sign) <= kLostAfter) continue;
     robot.lost = true;
-    notice({.at = now,
-            .robot = name,
-            .level = Level::warning,
-            .code = "lost",
-            .text = name + " has not been heard for 2.5 s"});
+    say({.robot = name,
+         .level = Level::warning,
+         .code = "lost",
+         .text = name + " has not been heard for 2.5 s"},
+        now);
   }
   const auto silent = [now](const auto& entry) { return now - entry.second.last_heard > kForgetAfter; };
   std::erase_if(stations_, silent);
@@ -388,7 +400,7 @@ std::vector<std::string> Fleet::robot_names() const {
   return names;
 }
 
-void Fleet::notice(Notice notice) {
+void Fleet::notice(StoredNotice notice) {
   notice.id = ++last_notice_;
   notice.mine = notice.operator_name.empty() || notice.operator_name == own_name_;
   if (notices_.size() == kMaxNotices) notices_.pop_front();

@@ -42,7 +42,7 @@ class Fleet {
   /// Marks silent robots lost, and forgets stations and reports that were silent for a minute.
   void check(Time now);
   /// Adds a notice of this station itself.
-  void say(Notice said) { notice(std::move(said)); }
+  void say(Notice said, Time at) { notice({std::move(said), at, {}, {}}); }
 
   /// Whether messages of this participant count as that robot's: false for another robot of the same name.
   bool speaks_for(const std::string& robot, const wire::ParticipantId& participant) const;
@@ -61,15 +61,11 @@ class Fleet {
   /// Records that this station's own heartbeat with that number was sent.
   void said_present(std::uint32_t number, Time now) { links_.sent(number, now); }
   /// The last 200 notices, oldest first.
-  const std::deque<Notice>& notices() const { return notices_; }
-  /// Whether this station (name and id) holds the robot.
-  bool held_by_me(const RobotView& robot) const {
-    return robot.holder == own_name_ && robot.holder_id == own_id_;
-  }
+  const std::deque<StoredNotice>& notices() const { return notices_; }
   const std::string& own_name() const { return own_name_; }
   std::uint64_t ignored() const { return ignored_; }
 
-  std::function<void(const Notice&)> on_notice{};
+  std::function<void(const StoredNotice&)> on_notice{};
   /// Called once per robot, when it is heard for the first time.
   std::function<void(const RobotView&)> on_robot{};
 
@@ -86,8 +82,8 @@ class Fleet {
   /// Returns the view for a sample of a participant that is not the shown one.
   RobotView* touch_namesake(RobotView& shown, const wire::SampleInfo& info);
   static bool replaces(const Namesake& namesake, const RobotView& shown, Time now);
-  void notice(Notice notice);
-  void date(Notice& notice, const RobotView& robot) const;
+  void notice(StoredNotice notice);
+  void date(StoredNotice& notice, const RobotView& robot) const;
 
   std::string own_name_;
   Id own_id_;
@@ -98,7 +94,7 @@ class Fleet {
   std::map<std::string, TrafficView> traffic_{};
   wire::PeerMeter links_{};
   PeerRates peer_rates_{};
-  std::deque<Notice> notices_{};
+  std::deque<StoredNotice> notices_{};
   std::uint64_t last_notice_{};  ///< Id of the last notice.
   Time last_clash_{};
   bool clashed_{false};

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "basestation/fleet/links.hpp"
-#include "core/config/perception_level.hpp"
-#include "core/result/reason.hpp"
+#include "basestation/model/notice.hpp"
+#include "basestation/model/robot.hpp"
 #include "core/time/time.hpp"
 #include "core/wire/participant.hpp"
 
@@ -16,46 +16,10 @@ namespace adit::station {
 
 using Id = std::array<std::uint8_t, 16>;
 
-struct Epoch {
-  std::uint64_t start{};
-  std::uint32_t counter{};
-  bool operator==(const Epoch&) const = default;
-};
-
 /// One latch of the software stop.
 struct StopLatch {
   std::string station{};
   Id station_id{};
-};
-
-/// A mode, and why it could not be entered now (`none`: it could).
-struct ModeChoice {
-  std::string mode{};
-  bool available{};
-  Reason reason{Reason::none};
-};
-
-enum class GoalPhase : std::uint8_t { none, kept, active, blocked, reached };
-
-/// States of an exploration, as in radio::ExplorationPhase.
-enum class ExplorationPhase : std::uint8_t { none, starting, exploring, travelling, reporting, done, ended };
-
-/// What a robot explored, as it reports.
-struct ExplorationView {
-  ExplorationPhase phase{ExplorationPhase::none};  ///< `none`: it did not explore.
-  Reason reason{Reason::none};                     ///< Why it ended.
-  float volume{};                                  ///< Volume that was seen, m3.
-  float share{};                   ///< Share of that in itself and what is expected to be left, [0, 1].
-  unsigned open{}, unreachable{};  ///< Frontiers to which a route leads, and to which none leads.
-};
-
-/// A part of the map where a robot may drive or not, or that it prefers to explore.
-struct AreaView {
-  std::string name{};
-  std::string kind{};                           ///< keep_in, keep_out or prefer.
-  std::vector<std::array<float, 2>> corners{};  ///< Of a polygon, map frame, m.
-  float z_min{}, z_max{};                       ///< Heights, m; infinite: at any height.
-  float weight{1.0F};                           ///< Of an area to prefer.
 };
 
 enum class ComponentPhase : std::uint8_t { starting, up, waiting, failed, hung };
@@ -71,74 +35,31 @@ struct ComponentView {
   std::string text{};
 };
 
-/// The bounding box of a robot's body, m; 0: unknown.
-struct Size {
-  float length{};  ///< Along x of the body frame.
-  float width{};
-  float height{};
-};
-
-/// The state of one robot as received. Positions are in the map frame (m, rad), speeds in the body frame
-/// (m/s, rad/s).
-struct RobotView {
-  std::string name{};
+/// The state of one robot as received: what front ends receive of it, and what only the station needs.
+/// `age`, `troubles` and `stopped` are complete after described().
+struct RobotView : Robot {
   wire::ParticipantId participant{};
   Time first_heard{};
   Time last_heard{};  ///< Last RobotState, or the first heartbeat before that.
   Time spoke{};       ///< Last sample of any kind.
   Time last_sign{};   ///< Last heartbeat, sent once a second beside RobotState.
-  bool lost{false};   ///< Neither RobotState nor heartbeat for 2.5 s.
 
-  bool described{false};  ///< Capabilities were received.
-  std::string platform{};
-  std::string software{};
-  std::uint16_t protocol{};
-  float max_speed{};         ///< m/s
-  float max_turn{};          ///< rad/s
-  float max_acceleration{};  ///< In m/s2; 0: unknown.
-  bool holonomic{};          ///< It can also move sideways.
-  Size size{};
-  float max_step{};      ///< Maximum height of a step, m; 0: none.
-  float max_slope{};     ///< In rad; 0: unknown.
-  bool climbs_stairs{};  ///< It can climb stairs.
-  std::vector<std::string> modes{};
-  std::vector<std::string> sensors{};
-  std::vector<std::string> services{};
+  std::vector<std::string> modes{};  ///< As in its capabilities.
 
-  bool located{false};    ///< A RobotState was received.
   std::uint64_t stamp{};  ///< Stamp of the robot's clock, to be echoed.
   wire::ParticipantId stamped_by{};
-  float x{}, y{}, z{}, yaw{};
-  float vx{}, vy{}, wz{};
-  float battery{-1.0F};  ///< State of charge, [0, 1]; negative: unknown.
-  Localisation localisation{Localisation::off};
-  double sigma{};  ///< Standard deviation of the position as the robot states it, m.
 
   bool owned{false};  ///< An AuthorityStatus was received.
-  Epoch epoch{};
-  std::string holder{};  ///< Empty: no holder.
   Id holder_id{};
-  bool locked{};
-  float lease_left{-1.0F};  ///< In s; negative: no lease runs.
-  std::vector<StopLatch> stops{};
+  std::vector<StopLatch> latches{};  ///< The stops, with the stations' identities.
 
   std::uint64_t behaviour_count{};  ///< Number of BehaviourStates received.
-  std::string mode{};
-  bool stopped{};
-  bool moving_allowed{};
-  Reason reason{Reason::none};  ///< Why the robot does not move.
-  GoalPhase goal_phase{GoalPhase::none};
-  std::uint32_t goal_id{};
-  std::array<double, 3> goal{};
-  ExplorationView exploration{};
-  std::vector<ModeChoice> choices{};
-  bool yields{};                      ///< It may make way for other robots.
-  std::string yields_to{};            ///< The robot for which it makes way; empty: none.
-  std::vector<std::string> convoy{};  ///< The robots of its convoy in their order; empty: it is in none.
-  std::vector<AreaView> areas{};
 
   std::vector<ComponentView> components{};
 };
+
+/// What front ends receive of a robot.
+Robot described(const RobotView& robot, Time now);
 
 struct StationView {
   std::string name{};
@@ -148,24 +69,17 @@ struct StationView {
   std::optional<std::array<float, 3>> place{};  ///< Position of the station, map frame, m; unset: unknown.
 };
 
-enum class Level : std::uint8_t { info, warning, error };
-
-/// A notification for operators, from a robot or from this station (lost, back).
-struct Notice {
-  std::uint64_t id{};  ///< Unique in this run of the station, rising from 1; never changes.
-  Time at{};           ///< Time of the event, by this station's clock.
-  std::string robot{};
-  std::string operator_name{};  ///< The operator concerned; empty: all operators.
-  Level level{Level::info};
-  std::string code{};
-  Reason reason{Reason::none};
-  std::string text{};
-  bool mine{};  ///< It concerns this operator.
+/// A notice as the station stores it: with the time of the event in place of its age.
+struct StoredNotice : Notice {
+  Time at{};  ///< Time of the event, by this station's clock.
   /// Set while the robot's clock is unknown: `at` is then the time of reception, and is moved back to the
   /// event later.
   std::optional<std::uint64_t> undated{};  ///< Stamp of the robot's clock.
   wire::ParticipantId said_by{};
 };
+
+/// What front ends receive of a notice.
+Notice described(const StoredNotice& notice, Time now);
 
 /// Bytes/s and samples/s of one topic at one agent.
 struct TopicRate {
@@ -185,8 +99,7 @@ struct TrafficView {
       -1.0F};  ///< Fraction of this station's heartbeats that the agent missed, [0, 1]; negative: unknown.
 };
 
-const char* to_string(GoalPhase phase);
-const char* to_string(ExplorationPhase phase);
-const char* to_string(Level level);
+/// Readable word for a phase: "up", "FAILED", ...
+const char* word(ComponentPhase phase);
 
 }  // namespace adit::station

@@ -108,7 +108,7 @@ void Steer::poll_driving(Duration in_phase) {
 
 void Steer::on_sender_idle() {
   const RobotView* robot_now = view();
-  const bool mine = robot_now && dependencies_.fleet.held_by_me(*robot_now);
+  const bool mine = robot_now && robot_now->mine;
   if (mine && params_.purpose != SteerParams::Purpose::enter && robot_now->mode == "smart_joystick") {
     params_.mode = "smart_joystick";
     hold_centred_after_ = mode_seen_ = true;
@@ -162,15 +162,13 @@ void Steer::set_velocity(const StickVelocity& velocity) {
 void Steer::update_mode_seen() {
   if (phase_ != Phase::driving && phase_ != Phase::holding_centred) return;
   const RobotView* robot_now = view();
-  if (robot_now && !is_outdated(*robot_now) && dependencies_.fleet.held_by_me(*robot_now) &&
-      is_in_mode(*robot_now))
-    mode_seen_ = true;
+  if (robot_now && !is_outdated(*robot_now) && robot_now->mine && is_in_mode(*robot_now)) mode_seen_ = true;
 }
 
 std::optional<Error> Steer::drive_loss() const {
   const RobotView* robot_now = view();
   if (!robot_now || is_outdated(*robot_now)) return std::nullopt;
-  if (!dependencies_.fleet.held_by_me(*robot_now)) {
+  if (!robot_now->mine) {
     if (robot_now->holder.empty()) return Error{Reason::nobody_holds, ""};
     return Error{Reason::not_holder, robot_now->holder + " holds the robot now"};
   }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/report/json.hpp"
 
-#include <cmath>
-
-#include "basestation/report/text.hpp"
+#include "basestation/fleet/summary.hpp"
+#include "basestation/model/json.hpp"
 
 namespace adit::station {
 
@@ -13,106 +12,12 @@ namespace {
 
 json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
-/// Returns null for 0, which means unknown.
-json known(float amount) { return amount > 0.0F ? json(amount) : json(nullptr); }
-
-json abilities_json(const RobotView& robot) {
-  return {{"size",
-           {{"length", known(robot.size.length)},
-            {"width", known(robot.size.width)},
-            {"height", known(robot.size.height)}}},
-          {"max_acceleration", known(robot.max_acceleration)},
-          {"holonomic", robot.holonomic},
-          {"max_step", robot.max_step},
-          {"max_slope", known(robot.max_slope)},
-          {"climbs_stairs", robot.climbs_stairs}};
-}
-
-json area_json(const AreaView& area) {
-  json out{{"name", area.name}, {"kind", area.kind}, {"corners", area.corners}};
-  if (area.kind == "prefer") out["weight"] = area.weight;
-  if (std::isfinite(area.z_min)) out["z_min"] = area.z_min;
-  if (std::isfinite(area.z_max)) out["z_max"] = area.z_max;
-  return out;
-}
-
 }  // namespace
-
-json robot_json(const Fleet& fleet, const RobotView& robot, Time now) {
-  json stops = json::array();
-  for (const StopLatch& stop : robot.stops) stops.push_back(stop.station);
-  json modes = json::array();
-  for (const ModeChoice& choice : robot.choices)
-    modes.push_back(
-        {{"mode", choice.mode}, {"available", choice.available}, {"reason", name(choice.reason)}});
-  json troubles = json::array();
-  for (const ComponentView& part : robot.components)
-    if (!part.healthy) troubles.push_back(part.name + " " + word(part.phase));
-  json out{{"robot", robot.name},
-           {"age", seconds(now - robot.last_heard)},
-           {"lost", robot.lost},
-           {"described", robot.described},
-           {"kind", robot.platform},
-           {"software", robot.software},
-           {"protocol", robot.protocol},
-           {"max_speed", robot.max_speed},
-           {"max_turn", robot.max_turn},
-           {"sensors", robot.sensors},
-           {"services", robot.services},
-           {"holder", robot.holder},
-           {"mine", fleet.held_by_me(robot)},
-           {"locked", robot.locked},
-           {"lock_lease_left", robot.lease_left},
-           {"epoch", {{"start", robot.epoch.start}, {"counter", robot.epoch.counter}}},
-           {"stops", stops},
-           {"stopped", robot.stopped || !robot.stops.empty()},
-           {"mode", robot.mode},
-           {"moving_allowed", robot.moving_allowed},
-           {"reason", name(robot.reason)},
-           {"goal_state", to_string(robot.goal_phase)},
-           {"goal_id", robot.goal_id},
-           {"modes", modes},
-           {"convoy", robot.convoy},
-           {"yields", robot.yields},
-           {"yields_to", robot.yields_to},
-           {"troubles", troubles}};
-  if (robot.described) out.update(abilities_json(robot));
-  if (robot.located) {
-    out["pose"] = {robot.x, robot.y, robot.z, robot.yaw};
-    out["velocity"] = {robot.vx, robot.vy, robot.wz};
-    if (robot.battery >= 0.0F) out["battery"] = robot.battery;
-    out["localisation"] = name(robot.localisation);
-    if (robot.localisation != Localisation::off) out["sigma"] = robot.sigma;
-  }
-  if (robot.goal_phase != GoalPhase::none) out["goal"] = robot.goal;
-  out["areas"] = json::array();
-  for (const AreaView& area : robot.areas) out["areas"].push_back(area_json(area));
-  if (const ExplorationView& e = robot.exploration; e.phase != ExplorationPhase::none)
-    out["exploration"] = {{"state", to_string(e.phase)},
-                          {"reason", name(e.reason)},
-                          {"volume", e.volume},
-                          {"share", e.share},
-                          {"open", e.open},
-                          {"unreachable", e.unreachable}};
-  return out;
-}
-
-json notice_json(const Notice& notice, Time now) {
-  return {{"id", notice.id},
-          {"age", seconds(now - notice.at)},
-          {"robot", notice.robot},
-          {"operator", notice.operator_name},
-          {"level", to_string(notice.level)},
-          {"code", notice.code},
-          {"reason", name(notice.reason)},
-          {"text", notice.text},
-          {"mine", notice.mine}};
-}
 
 json notices_json(const Fleet& fleet, const std::string& robot, Time now) {
   json out = json::array();
-  for (const Notice& notice : fleet.notices())
-    if (robot.empty() || notice.robot == robot) out.push_back(notice_json(notice, now));
+  for (const StoredNotice& notice : fleet.notices())
+    if (robot.empty() || notice.robot == robot) out.push_back(json_of(described(notice, now)));
   return out;
 }
 
@@ -286,18 +191,9 @@ json health_json(const RobotView& robot) {
 }
 
 json list_json(const Fleet& fleet, Time now) {
-  json robots = json::array();
-  for (const auto& [robot_name, robot] : fleet.robots()) robots.push_back(robot_json(fleet, robot, now));
-  json stations = json::array();
-  stations.push_back({{"station", fleet.own_name()}, {"self", true}, {"age", 0.0}, {"lost", false}});
-  if (const auto& place = fleet.own_place()) stations.back()["place"] = *place;
-  for (const auto& [station_name, station] : fleet.stations()) {
-    stations.push_back({{"station", station_name},
-                        {"self", false},
-                        {"age", seconds(now - station.last_heard)},
-                        {"lost", now - station.last_heard > Fleet::kLostAfter}});
-    if (station.place) stations.back()["place"] = *station.place;
-  }
+  json robots = json::array(), stations = json::array();
+  for (const Robot& robot : robots_of(fleet, now)) robots.push_back(json_of(robot));
+  for (const StationSummary& station : stations_of(fleet, now)) stations.push_back(json_of(station));
   return {{"robots", robots}, {"stations", stations}};
 }
 

@@ -2,16 +2,14 @@
 #pragma once
 #include <nlohmann/json.hpp>
 
-#include "basestation/fleet/actions.hpp"
 #include "basestation/fleet/fleet.hpp"
+#include "basestation/model/action.hpp"
 #include "basestation/send/answer.hpp"
 
-/// The fleet model as JSON, for scripts and dashboards. Units as in the views: m, rad, m/s, s, bytes/s.
+/// Reports of the station as JSON, for scripts: each function returns one value; unknown values are omitted
+/// or null. Units as in the views: m, rad, m/s, s, bytes/s.
 namespace adit::station {
 
-/// Return one object each; unknown values are omitted or null.
-nlohmann::json robot_json(const Fleet& fleet, const RobotView& robot, Time now);
-nlohmann::json notice_json(const Notice& notice, Time now);
 /// Returns an array of the notices of one robot, oldest first; an empty name: all notices.
 nlohmann::json notices_json(const Fleet& fleet, const std::string& robot, Time now);
 nlohmann::json answer_json(const Answer& answer);

@@ -23,10 +23,10 @@ std::string age_text(const RobotView& robot, Time now) {
   return (robot.lost ? "lost " : "") + fixed(seconds(now - robot.last_heard), 1);
 }
 
-std::string holder_text(const Fleet& fleet, const RobotView& robot) {
+std::string holder_text(const RobotView& robot) {
   if (!robot.owned) return "?";
   if (robot.holder.empty()) return "-";
-  return robot.holder + (fleet.held_by_me(robot) ? "*" : "");
+  return robot.holder + (robot.mine ? "*" : "");
 }
 
 }  // namespace
@@ -91,16 +91,14 @@ std::string area_text(const AreaView& area) {
 
 std::string stops_text(const RobotView& robot) {
   if (robot.stops.empty()) return robot.stopped ? "stopped" : "-";
-  std::vector<std::string> names;
-  for (const StopLatch& stop : robot.stops) names.push_back(stop.station);
-  return command::joined(names, "-");
+  return command::joined(robot.stops, "-");
 }
 
 std::string list_text(const Fleet& fleet, Time now) {
   std::vector<std::vector<std::string>> rows{
       {"ROBOT", "KIND", "MODE", "HOLDER", "LOCK", "STOPPED BY", "X Y YAW", "M/S", "GOAL", "BATT", "AGE S"}};
   for (const auto& [robot_name, robot] : fleet.robots())
-    rows.push_back({robot_name, or_dash(robot.platform), mode_text(robot), holder_text(fleet, robot),
+    rows.push_back({robot_name, or_dash(robot.platform), mode_text(robot), holder_text(robot),
                     robot.locked ? "locked" : "-", stops_text(robot), pose_text(robot),
                     robot.located ? fixed(std::hypot(robot.vx, robot.vy), 2) : "-", goal_text(robot),
                     battery_text(robot), age_text(robot, now)});
@@ -137,7 +135,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
                     ", heard " + fixed(seconds(now - robot.last_heard), 1) + " s ago" +
                     (robot.lost ? ", LOST" : "") + "\n";
   std::string holder = robot.owned ? (robot.holder.empty() ? "nobody" : robot.holder) : "not heard yet";
-  if (fleet.held_by_me(robot)) holder += " (you)";
+  if (robot.mine) holder += " (you)";
   if (robot.locked) holder += ", locked";
   if (robot.locked && robot.lease_left >= 0.0F) holder += ", lapses in " + fixed(robot.lease_left, 0) + " s";
   out += "  holder   " + holder + "\n";
@@ -239,22 +237,6 @@ std::string net_text(const Fleet& fleet, Time now, const std::string& link, doub
     out += ": " + fixed(out_sum * 8.0 / bandwidth * 100.0, 1) + " % of " + link + " (" +
            fixed(bandwidth / 1000.0, 0) + " kbit/s)";
   return out + "\n\n" + links_text(fleet, now);
-}
-
-const char* word(ComponentPhase phase) {
-  switch (phase) {
-    case ComponentPhase::starting:
-      return "starting";
-    case ComponentPhase::up:
-      return "up";
-    case ComponentPhase::waiting:
-      return "waiting";
-    case ComponentPhase::failed:
-      return "FAILED";
-    case ComponentPhase::hung:
-      return "HUNG";
-  }
-  return "FAILED";
 }
 
 std::string health_text(const std::vector<const RobotView*>& robots) {

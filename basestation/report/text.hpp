@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "basestation/fleet/actions.hpp"
 #include "basestation/fleet/fleet.hpp"
+#include "basestation/model/action.hpp"
 #include "basestation/send/answer.hpp"
 
 /// The fleet model as readable text; lines end in a newline.
@@ -16,8 +16,6 @@ std::string list_text(const Fleet& fleet, Time now);
 std::string status_text(const Fleet& fleet, const RobotView& robot, Time now);
 /// Bytes/s by agent and topic; `bandwidth` (bit/s, 0: unknown) relates the total to the link.
 std::string net_text(const Fleet& fleet, Time now, const std::string& link, double bandwidth);
-/// The word for a phase: "up", "FAILED", ...
-const char* word(ComponentPhase phase);
 /// A row for each component of the robots.
 std::string health_text(const std::vector<const RobotView*>& robots);
 /// A row for each command: whether it is valid now, and why not.

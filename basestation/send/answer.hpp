@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "basestation/model/counts.hpp"
 #include "core/command/request.hpp"
 #include "core/result/reason.hpp"
 #include "core/time/time.hpp"
@@ -41,11 +42,6 @@ struct Answer {
   std::string holder{};
   std::optional<Route> route{};  ///< Of an accepted `plan`.
   Duration latency{};            ///< From the first transmission to the answer.
-};
-
-/// Counts of this station's commands since its start; repeats do not count.
-struct Counts {
-  std::uint64_t sent{}, repeats{}, accepted{}, refused{}, unanswered{};
 };
 
 }  // namespace adit::station

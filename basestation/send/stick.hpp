@@ -5,7 +5,7 @@
 #include <string>
 
 #include "basestation/fleet/fleet.hpp"
-#include "basestation/send/stick_velocity.hpp"
+#include "basestation/model/stick_velocity.hpp"
 #include "core/exec/executor.hpp"
 
 namespace adit::station {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basestation/fleet/actions.hpp"
+#include "basestation/model/action.hpp"
 
 #include <gmock/gmock.h>
 
@@ -56,9 +56,9 @@ class Actions : public testing::Test {
   }
 
   Action action(const std::string& command, const std::vector<std::string>& robots = {"r1"}) {
-    std::vector<const RobotView*> selection;
+    std::vector<const Robot*> selection;
     for (const std::string& robot : robots) selection.push_back(fleet_.robot(robot));
-    for (const Action& row : actions(fleet_, selection))
+    for (const Action& row : actions(selection))
       if (row.command == command) return row;
     ADD_FAILURE() << "no row " << command;
     return {};
@@ -150,7 +150,7 @@ TEST_F(Actions, SayWhatACommandTakesAndHowDangerousItIs) {
   own("r1", "op1", kAskingId);
   const RobotView* robot = fleet_.robot("r1");
   nlohmann::json grant, go_to, stop, waypoint;
-  for (const nlohmann::json& row : actions_json(actions(fleet_, {robot}))) {
+  for (const nlohmann::json& row : actions_json(actions({robot}))) {
     if (row["command"] == "grant") grant = row;
     if (row["command"] == "goto") go_to = row;
     if (row["command"] == "stop") stop = row;

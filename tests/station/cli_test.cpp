@@ -15,7 +15,7 @@
 #include <sstream>
 #include <thread>
 
-#include "basestation/cli/process/server.hpp"
+#include "basestation/host/server.hpp"
 #include "core/command/vocabulary.hpp"
 #include "core/exec/live_runtime.hpp"
 #include "core/exec/virtual_runtime.hpp"
@@ -241,7 +241,7 @@ TEST_F(Cli, AStopThatTheStationHasNoRoomForGoesOutByItself) {
   const auto wire = network.join(77, "op1");
   LiveRuntime runtime;
   const auto strand = runtime.strand("station");
-  auto server = cli::Server::open(path(""), "op1").value();
+  auto server = host::Server::open(path(""), "op1").value();
   std::unique_ptr<Station> station;
   std::promise<void> made, free;
   strand->post([&, go = free.get_future().share()] {

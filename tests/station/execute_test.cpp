@@ -214,7 +214,7 @@ TEST_F(ExecuteTest, AFlowTooManyIsRefusedAndCancelsNoOther) {
 
 TEST_F(ExecuteTest, ANamedStopReachesARobotThatIsHeardLater) {
   std::vector<std::string> codes;
-  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  op_->on_notice = [&](const StoredNotice& notice) { codes.push_back(notice.code + " " + notice.robot); };
   const Duration before = scheduler_.elapsed();
   const Outcome outcome = execute("stop r1 r9");
   EXPECT_LT(seconds(scheduler_.elapsed() - before), 1.5);
@@ -234,7 +234,7 @@ TEST_F(ExecuteTest, ANamedStopReachesARobotThatIsHeardLater) {
 
 TEST_F(ExecuteTest, ARobotThatIsHeardAndDoesNotAcknowledgeTheStopIsToldToTheOperator) {
   std::vector<std::string> codes;
-  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  op_->on_notice = [&](const StoredNotice& notice) { codes.push_back(notice.code + " " + notice.robot); };
   EXPECT_EQ(execute("stop r9").exit_code, 3);
   run_for(30s);
   add("r9").answering = [](const radio::Command&) { return std::nullopt; };
@@ -244,7 +244,7 @@ TEST_F(ExecuteTest, ARobotThatIsHeardAndDoesNotAcknowledgeTheStopIsToldToTheOper
 
 TEST_F(ExecuteTest, AStopRepeatedLaterIsAnsweredToBothCallers) {
   std::vector<std::string> codes;
-  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  op_->on_notice = [&](const StoredNotice& notice) { codes.push_back(notice.code + " " + notice.robot); };
   EXPECT_EQ(execute("stop r9").exit_code, 3) << "the first caller reads that it is not acknowledged yet";
   add("r9").answering = [](const radio::Command&) { return std::nullopt; };
   run_for(2s);
@@ -260,7 +260,7 @@ TEST_F(ExecuteTest, AStopRepeatedLaterIsAnsweredToBothCallers) {
 
 TEST_F(ExecuteTest, TheOldestOfSixteenStopsForUnheardRobotsGivesWayToANewOne) {
   std::vector<std::string> codes;
-  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  op_->on_notice = [&](const StoredNotice& notice) { codes.push_back(notice.code + " " + notice.robot); };
   for (int i = 0; i < 16; ++i) begin("stop x" + std::to_string(i));
   run_for(2s);
   EXPECT_EQ(execute("stop x3").exit_code, 3) << "one that goes out already takes no second place";
@@ -293,7 +293,7 @@ TEST_F(ExecuteTest, AfterDownAndUpAllPlacesForUnheardRobotsAreFree) {
   run_for(2s);
   execute("down");
   execute("up");
-  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  op_->on_notice = [&](const StoredNotice& notice) { codes.push_back(notice.code + " " + notice.robot); };
   for (int i = 0; i < 16; ++i) begin("stop y" + std::to_string(i));
   run_for(2s);
   add("y0");
@@ -312,7 +312,7 @@ TEST_F(ExecuteTest, AStationThatIsDownSendsNoStopToARobotThatIsHeardLater) {
 
 TEST_F(ExecuteTest, ALostRobotIsToldToTheOperator) {
   std::vector<std::string> codes;
-  op_->on_notice = [&](const Notice& notice) { codes.push_back(notice.code + " " + notice.robot); };
+  op_->on_notice = [&](const StoredNotice& notice) { codes.push_back(notice.code + " " + notice.robot); };
   robots_[0]->alive = false;
   run_for(4s);
   robots_[0]->alive = true;
@@ -322,7 +322,7 @@ TEST_F(ExecuteTest, ALostRobotIsToldToTheOperator) {
 
 TEST_F(ExecuteTest, ARobotOfAnotherReleaseIsToldToTheOperator) {
   std::vector<std::string> seen;
-  op_->on_notice = [&](const Notice& notice) { seen.push_back(notice.code + ": " + notice.text); };
+  op_->on_notice = [&](const StoredNotice& notice) { seen.push_back(notice.code + ": " + notice.text); };
   const auto older = network_.join(77, "r7");
   constexpr wire::TopicInfo unversioned{
       "adit/robot_state", "adit::radio::RobotState", wire::QosClass::state, 1, wire::topics::kKeyed, 256};

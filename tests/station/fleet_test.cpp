@@ -10,6 +10,7 @@
 #include "adit/link.h"
 #include "adit/robot.h"
 #include "basestation/fleet/traffic.hpp"
+#include "basestation/model/json.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
@@ -34,7 +35,7 @@ radio::RobotState state(const std::string& robot) {
 
 std::vector<std::string> codes(const Fleet& fleet) {
   std::vector<std::string> out;
-  for (const Notice& notice : fleet.notices()) out.push_back(notice.code);
+  for (const StoredNotice& notice : fleet.notices()) out.push_back(notice.code);
   return out;
 }
 
@@ -130,7 +131,7 @@ TEST(Fleet, HealthNamesWhatIsNotUp) {
   EXPECT_EQ(robot.components[2].phase, ComponentPhase::failed) << "a state of a later version";
   EXPECT_THAT(health_text({&robot}), testing::HasSubstr("HUNG"));
   EXPECT_THAT(health_json(robot)["components"][0]["policy"], "manual");
-  EXPECT_THAT(robot_json(fleet, robot, Time{})["troubles"], testing::SizeIs(2));
+  EXPECT_THAT(json_of(described(robot, Time{}))["troubles"], testing::SizeIs(2));
 }
 
 TEST(Fleet, RobotIsLostWithinThreeSecondsAndBackAtTheNextState) {
@@ -184,10 +185,10 @@ TEST(Fleet, HolderIsNameAndId) {
   status.holder("op1");
   status.holder_id({2});
   fleet.hear(status, at(0s));
-  EXPECT_FALSE(fleet.held_by_me(*fleet.robot("r1")));
+  EXPECT_FALSE(fleet.robot("r1")->mine);
   status.holder_id(kOwnId);
   fleet.hear(status, at(0s));
-  EXPECT_TRUE(fleet.held_by_me(*fleet.robot("r1")));
+  EXPECT_TRUE(fleet.robot("r1")->mine);
 }
 
 TEST(Fleet, AnAcknowledgementIsNewerThanALateStatus) {
@@ -224,6 +225,17 @@ TEST(Fleet, NamesAndNumbersAreBounded) {
   EXPECT_EQ(fleet.stations().size(), Fleet::kMaxStations);
 }
 
+TEST(Fleet, ARobotThatIsNamedLikeAWordOfTheGrammarIsIgnored) {
+  Fleet fleet("op1", kOwnId);
+  for (const char* name : {"all", "--override", "-r1"}) {
+    radio::RobotState sample;
+    sample.robot(name);
+    fleet.hear(sample, at(0s));
+  }
+  EXPECT_TRUE(fleet.robots().empty());
+  EXPECT_EQ(fleet.ignored(), 3U);
+}
+
 TEST(Fleet, NoticesKeepTheLastTwoHundredAndKnowWhomTheyConcern) {
   Fleet fleet("op1", kOwnId);
   radio::Notification sample;
@@ -252,8 +264,8 @@ TEST(Fleet, EveryNoticeHasAnIdThatStays) {
   ASSERT_EQ(seen.size(), Fleet::kMaxNotices + 2);
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], i + 1);
   EXPECT_EQ(fleet.notices().front().id, 3U) << "the first two made room";
-  EXPECT_EQ(notice_json(fleet.notices().back(), Time(2s))["id"], seen.back());
-  EXPECT_EQ(notice_json(fleet.notices().back(), Time(9s))["id"], seen.back());
+  EXPECT_EQ(json_of(described(fleet.notices().back(), Time(2s)))["id"], seen.back());
+  EXPECT_EQ(json_of(described(fleet.notices().back(), Time(9s)))["id"], seen.back());
 }
 
 /// r1's clock is 1000 s ahead of this station's.
@@ -272,7 +284,7 @@ radio::Notification arisen(Duration here) {
 }
 
 double newest_age(const Fleet& fleet, Duration now) {
-  return notice_json(fleet.notices().back(), Time(now))["age"].get<double>();
+  return described(fleet.notices().back(), Time(now)).age;
 }
 
 TEST(Fleet, ANoticeThatComesAfterAGapIsAsOldAsItIs) {

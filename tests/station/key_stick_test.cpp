@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "basestation/cli/terminal/key_stick.hpp"
+#include "basestation/input/key_stick.hpp"
 
 #include <gmock/gmock.h>
 
-#include "basestation/cli/terminal/keys.hpp"
+#include "basestation/input/keys.hpp"
 
-namespace adit::station::cli {
+namespace adit::station::input {
 namespace {
 
 using namespace std::chrono_literals;
@@ -57,4 +57,4 @@ TEST(KeyStick, SpaceIsZeroAndScaleHasItsLimits) {
 }
 
 }  // namespace
-}  // namespace adit::station::cli
+}  // namespace adit::station::input

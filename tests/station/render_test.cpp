@@ -4,40 +4,42 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace adit::station::cli {
 namespace {
 
-using nlohmann::json;
 using testing::Contains;
 using testing::HasSubstr;
 
-json fleet(int robots) {
-  json list = json::array();
+World fleet(int robots) {
+  World world{.station = "op1", .link = "wifi"};
   for (int i = 1; i <= robots; ++i)
-    list.push_back({{"robot", "r" + std::to_string(i)},
-                    {"kind", "wheeled"},
-                    {"mode", i == 2 ? "smart_joystick" : "waypoint"},
-                    {"holder", "op1"},
-                    {"mine", true},
-                    {"locked", i == 1},
-                    {"pose", {1.25, -200.5, 0.0, 1.57}},
-                    {"velocity", {0.5, 0.0, 0.1}},
-                    {"goal_state", "active"},
-                    {"goal", {12.0, 0.5, nullptr}},
-                    {"moving_allowed", true},
-                    {"reason", "none"},
-                    {"age", 0.1},
-                    {"lost", i == 3}});
-  json notices = json::array();
+    world.robots.push_back({.name = "r" + std::to_string(i),
+                            .age = 0.1,
+                            .lost = i == 3,
+                            .platform = "wheeled",
+                            .located = true,
+                            .x = 1.25F,
+                            .y = -200.5F,
+                            .yaw = 1.57F,
+                            .vx = 0.5F,
+                            .wz = 0.1F,
+                            .holder = "op1",
+                            .mine = true,
+                            .locked = i == 1,
+                            .mode = i == 2 ? "smart_joystick" : "waypoint",
+                            .moving_allowed = true,
+                            .goal_phase = GoalPhase::active,
+                            .goal = {12.0, 0.5, std::nan("")}});
   for (int i = 0; i < 30; ++i)
-    notices.push_back({{"age", 100.0 - i},
-                       {"robot", "r1"},
-                       {"level", "warning"},
-                       {"mine", true},
-                       {"code", "taken"},
-                       {"text", "notice " + std::to_string(i)}});
-  return {{"station", "op1"}, {"link", "wifi"}, {"robots", list}, {"notices", notices}};
+    world.notices.push_back({.age = 100.0 - i,
+                             .robot = "r1",
+                             .level = Level::warning,
+                             .code = "taken",
+                             .text = "notice " + std::to_string(i),
+                             .mine = true});
+  return world;
 }
 
 std::string text(const std::vector<std::string>& lines) {
@@ -96,10 +98,9 @@ TEST(Render, TheSelectedRobotStaysInView) {
   EXPECT_THAT(text(render(fleet(40), {.selected = "r40"}, 24, 80, false)), HasSubstr("r40"));
 }
 
-TEST(Render, SnapshotsWithHolesDoNoHarm) {
-  EXPECT_THAT(text(render(json::object(), {}, 24, 80, false)), HasSubstr("no robot has been heard"));
-  const json odd{{"robots", {json::object(), {{"robot", 5}, {"pose", "x"}, {"stops", {1, 2}}}}},
-                 {"notices", {json::object()}}};
+TEST(Render, RobotsOfWhichLittleIsKnownDoNoHarm) {
+  EXPECT_THAT(text(render({}, {}, 24, 80, false)), HasSubstr("no robot has been heard"));
+  const World odd{.robots = {{}, {.name = "r5", .stops = {"", "op2"}}}, .notices = {{}}};
   EXPECT_EQ(render(odd, {.selected = ""}, 24, 80, true).size(), 24U);
 }
 

@@ -6,6 +6,7 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
+#include "basestation/model/json.hpp"
 #include "basestation/report/json.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
@@ -60,7 +61,7 @@ TEST(Report, StatusSaysHowLargeARobotIsAndWhatItClimbs) {
   EXPECT_THAT(text, HasSubstr("0.90 x 0.60 x 0.50 m"));
   EXPECT_THAT(text, HasSubstr("1.2 m/s, 1.0 rad/s, 0.8 m/s2, steps of 0.25 m, slopes of 45 degrees, "
                               "climbs stairs"));
-  const auto json = robot_json(fleet, *fleet.robot("r1"), Time(1s));
+  const auto json = json_of(described(*fleet.robot("r1"), Time(1s)));
   EXPECT_FLOAT_EQ(json["size"]["length"].get<float>(), 0.9F);
   EXPECT_FLOAT_EQ(json["size"]["width"].get<float>(), 0.6F);
   EXPECT_FLOAT_EQ(json["size"]["height"].get<float>(), 0.5F);
@@ -98,7 +99,7 @@ TEST(Report, StatusNamesTheAreasOfARobotAndNoMalformedOnes) {
   EXPECT_THAT(text, HasSubstr("  area     shaft keep_out, 0.0 0.0, 4.0 0.0, 4.0 4.2\n"));
   EXPECT_THAT(text, HasSubstr("  area     hall prefer weight 2.5, 0.0 0.0, 4.0 0.0, 4.0 4.2, from z 1.0\n"));
   EXPECT_THAT(text, testing::Not(HasSubstr("no_")));
-  const auto json = robot_json(fleet, *fleet.robot("r1"), Time(1s));
+  const auto json = json_of(described(*fleet.robot("r1"), Time(1s)));
   ASSERT_EQ(json["areas"].size(), 2U);
   EXPECT_EQ(json["areas"][0]["kind"], "keep_out");
   EXPECT_EQ(json["areas"][0]["corners"][1][0], 4.0);
@@ -130,9 +131,8 @@ TEST(Report, StatusShowsTheNewestNoticesOfTheRobot) {
   sample.robot("r1");
   fleet.hear(sample, {.received = Time(1s)});
   EXPECT_THAT(status_text(fleet, *fleet.robot("r1"), Time(1s)), testing::Not(HasSubstr("notices")));
-  for (int n = 1; n <= 7; ++n)
-    fleet.say({.at = Time(n * 1s), .robot = "r1", .text = "event " + std::to_string(n)});
-  fleet.say({.at = Time(8s), .robot = "r2", .text = "of another robot"});
+  for (int n = 1; n <= 7; ++n) fleet.say({.robot = "r1", .text = "event " + std::to_string(n)}, Time(n * 1s));
+  fleet.say({.robot = "r2", .text = "of another robot"}, Time(8s));
   const std::string text = status_text(fleet, *fleet.robot("r1"), Time(10s));
   EXPECT_THAT(text, HasSubstr("  notices  3 s ago: event 7\n           4 s ago: event 6\n"));
   EXPECT_THAT(text, HasSubstr("7 s ago: event 3\n"));
@@ -145,7 +145,10 @@ TEST(Report, StatusShowsTheNewestNoticesOfTheRobot) {
 }
 
 TEST(Report, HealthOfSeveralRobotsIsOneTable) {
-  RobotView first{.name = "r1"}, second{.name = "r2"}, silent{.name = "r3"};
+  RobotView first, second, silent;
+  first.name = "r1";
+  second.name = "r2";
+  silent.name = "r3";
   first.components = second.components = {{.name = "planner", .phase = ComponentPhase::up, .text = {}}};
   const std::string text = health_text({&first, &second, &silent});
   EXPECT_EQ(text.find("COMPONENT"), text.rfind("COMPONENT"));
@@ -161,7 +164,7 @@ TEST(Report, AmountsThatARobotCannotMeanAreNotKnown) {
   sample.step(INFINITY);
   sample.slope(std::nanf(""));
   fleet.hear(sample, {.received = Time(1s)});
-  const auto json = robot_json(fleet, *fleet.robot("r1"), Time(1s));
+  const auto json = json_of(described(*fleet.robot("r1"), Time(1s)));
   EXPECT_TRUE(json["size"]["length"].is_null());
   EXPECT_TRUE(json["size"]["width"].is_null());
   EXPECT_EQ(json["max_step"], 0.0);

@@ -6,11 +6,10 @@
 #include <numbers>
 
 #include "basestation/report/table.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::station::cli {
 namespace {
-
-using nlohmann::json;
 
 /// A text in one line with its colour; colours are applied after clipping, so that no escape sequence is cut.
 struct Cell {
@@ -59,23 +58,6 @@ class Page {
   std::vector<std::string> lines_{};
 };
 
-double number(const json& object, const char* key, std::size_t index = 0) {
-  const auto found = object.find(key);
-  if (found == object.end()) return std::nan("");
-  const json& value = found->is_array() ? (index < found->size() ? (*found)[index] : json()) : *found;
-  return value.is_number() ? value.get<double>() : std::nan("");
-}
-
-std::string text(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-bool flag(const json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_boolean() && found->get<bool>();
-}
-
 std::string padded(std::string value, std::size_t width, bool right = false) {
   if (value.size() > width) value.resize(width);
   const std::string space(width - value.size(), ' ');
@@ -87,38 +69,39 @@ std::string rate(double bytes) {
   return bytes < 10000.0 ? fixed(bytes, 0) : fixed(bytes / 1000.0, 0) + "k";
 }
 
-Cell mode_cell(const json& robot, std::size_t width) {
-  const std::string mode = text(robot, "mode");
-  const std::string reason = text(robot, "reason");
-  if (flag(robot, "stopped")) return {padded("STOP " + mode, width), kRed};
-  const bool waits = mode != "hold" && !flag(robot, "moving_allowed") && reason != "none" && !reason.empty();
+Cell mode_cell(const Robot& robot, std::size_t width) {
+  const std::string& mode = robot.mode;
+  if (robot.stopped) return {padded("STOP " + mode, width), kRed};
+  const bool waits = mode != "hold" && !robot.moving_allowed && robot.reason != Reason::none;
   if (waits) return {padded(mode + "!", width), kYellow};
   return {padded(mode.empty() ? "?" : mode, width), mode == "hold" ? "" : kGreen};
 }
 
-Cell holder_cell(const json& robot, std::size_t width) {
-  const std::string holder = text(robot, "holder");
-  const char* colour = flag(robot, "mine") ? kGreen : holder.empty() ? kDim : "";
-  const std::string lock = flag(robot, "locked") ? "#" : "";
+Cell holder_cell(const Robot& robot, std::size_t width) {
+  const std::string& holder = robot.holder;
+  const char* colour = robot.mine ? kGreen : holder.empty() ? kDim : "";
+  const std::string lock = robot.locked ? "#" : "";
   return {padded(holder.empty() ? "-" : holder.substr(0, width - lock.size()) + lock, width), colour};
 }
 
-Cell goal_cell(const json& robot, std::size_t width) {
-  const std::string state = text(robot, "goal_state");
-  if (state == "none" || state.empty()) return {padded("-", width), kDim};
-  const std::string where = fixed(number(robot, "goal", 0), 1) + "," + fixed(number(robot, "goal", 1), 1);
-  const char* colour = state == "blocked" ? kRed : state == "reached" ? kGreen : "";
-  const std::string shown = state == "active" ? "to" : state == "reached" ? "at" : state;
+Cell goal_cell(const Robot& robot, std::size_t width) {
+  const GoalPhase phase = robot.goal_phase;
+  if (phase == GoalPhase::none) return {padded("-", width), kDim};
+  const std::string where = fixed(robot.goal[0], 1) + "," + fixed(robot.goal[1], 1);
+  const char* colour = phase == GoalPhase::blocked ? kRed : phase == GoalPhase::reached ? kGreen : "";
+  const std::string shown = phase == GoalPhase::active    ? "to"
+                            : phase == GoalPhase::reached ? "at"
+                                                          : to_string(phase);
   return {padded(shown + " " + where, width), colour};
 }
 
-Cell age_cell(const json& robot) {
-  const double age = number(robot, "age");
-  if (flag(robot, "lost")) return {padded("LOST", 5, true), kRed};
+Cell age_cell(const Robot& robot) {
+  const double age = robot.age;
+  if (robot.lost) return {padded("LOST", 5, true), kRed};
   return {padded(fixed(age, 1) + "s", 5, true), age > 1.0 ? kYellow : ""};
 }
 
-void robots(Page& page, const json& snapshot, const WatchState& state) {
+void robots(Page& page, const World& world, const WatchState& state) {
   const std::size_t spare = page.columns() > 80 ? std::min<std::size_t>(page.columns() - 80, 32) : 0;
   const std::size_t mode_width = 9 + std::min<std::size_t>(spare, 8);
   const std::size_t name_width = 6 + (spare > 8 ? std::min<std::size_t>(spare - 8, 8) : 0);
@@ -129,98 +112,85 @@ void robots(Page& page, const json& snapshot, const WatchState& state) {
               padded("YAW", 4, true) + padded("M/S", 4, true) + padded("GOAL", goal_width) +
               padded("AGE", 5, true) + (spare > 6 ? padded("B/S", 6, true) : "")}},
             kBold);
-  const json list = snapshot.value("robots", json::array());
-  const json traffic = snapshot.value("traffic", json::object());
+  const std::vector<Robot>& list = world.robots;
   // Keeps the selected robot in view.
   const std::size_t room = page.left() > 8 ? page.left() - 8 : 1;
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < list.size(); ++i)
-    if (text(list[i], "robot") == state.selected) chosen = i;
+    if (list[i].name == state.selected) chosen = i;
   const std::size_t first = chosen >= room ? chosen - room + 1 : 0;
   for (std::size_t i = first; i < list.size() && i < first + room; ++i) {
-    const json& robot = list[i];
-    const std::string robot_name = text(robot, "robot");
-    const bool selected = robot_name == state.selected;
-    const double speed = std::hypot(number(robot, "velocity", 0), number(robot, "velocity", 1));
-    const double yaw = number(robot, "pose", 3) * 180.0 / std::numbers::pi;
+    const Robot& robot = list[i];
+    const bool selected = robot.name == state.selected;
+    const double nan = std::nan("");
+    const double x = robot.located ? robot.x : nan, y = robot.located ? robot.y : nan;
+    const double speed = robot.located ? std::hypot(robot.vx, robot.vy) : nan;
+    const double yaw = robot.located ? robot.yaw * 180.0 / std::numbers::pi : nan;
     std::vector<Cell> cells{{selected ? "> " : "  "},
                             {i < 9 ? std::to_string(i + 1) + " " : "  ", kDim},
-                            {padded(robot_name, name_width), selected ? kBold : ""},
-                            {padded(text(robot, "kind"), 7), ""},
+                            {padded(robot.name, name_width), selected ? kBold : ""},
+                            {padded(robot.platform, 7), ""},
                             mode_cell(robot, mode_width),
                             holder_cell(robot, holder_width),
-                            {padded(fixed(number(robot, "pose", 0), 1), 6, true)},
-                            {padded(fixed(number(robot, "pose", 1), 1), 6, true)},
+                            {padded(fixed(x, 1), 6, true)},
+                            {padded(fixed(y, 1), 6, true)},
                             {padded(fixed(yaw, 0), 4, true)},
                             {padded(fixed(speed, 1), 4, true)},
                             goal_cell(robot, goal_width),
                             age_cell(robot)};
+    const auto traffic = world.traffic.find(robot.name);
     if (spare > 6)
-      cells.push_back(
-          {padded(traffic.contains(robot_name) ? rate(number(traffic[robot_name], "out")) : "-", 6, true)});
+      cells.push_back({padded(traffic != world.traffic.end() ? rate(traffic->second.out) : "-", 6, true)});
     page.line(cells, selected ? kReverse : "");
   }
   if (list.empty()) page.line({{"   no robot has been heard", kDim}});
 }
 
-/// Adds the detail lines of the selected robot.
-void detail(Page& page, const json& snapshot, const WatchState& state) {
-  for (const json& robot : snapshot.value("robots", json::array())) {
-    if (text(robot, "robot") != state.selected) continue;
-    std::vector<Cell> cells{{" " + state.selected + ": ", kBold}};
-    const json stops = robot.value("stops", json::array());
-    if (!stops.empty()) {
-      std::string by;
-      for (const json& stop : stops)
-        by += (by.empty() ? "" : ", ") + (stop.is_string() ? stop.get<std::string>() : "");
-      cells.push_back({"stopped by " + by + "  ", kRed});
-    }
-    std::string troubles;
-    for (const json& trouble : robot.value("troubles", json::array()))
-      if (trouble.is_string()) troubles += trouble.get<std::string>() + "  ";
-    if (!troubles.empty()) cells.push_back({troubles, kRed});
-    const std::string reason = text(robot, "reason");
-    if (reason != "none" && !reason.empty() && stops.empty())
-      cells.push_back({"does not move: " + reason + "  ", kYellow});
-    std::string areas;
-    for (const json& area : robot.value("areas", json::array()))
-      areas += (areas.empty() ? "" : ", ") + text(area, "name") + " " + text(area, "kind");
-    if (!areas.empty()) cells.push_back({"areas: " + areas + "  ", kCyan});
-    if (const auto explored = robot.find("exploration"); explored != robot.end())
-      cells.push_back({text(*explored, "state") + " about " + fixed(100.0 * number(*explored, "share"), 0) +
-                           "%, " + fixed(number(*explored, "open"), 0) + " frontiers left  ",
-                       kCyan});
-    if (flag(robot, "locked")) {
-      const double lease = number(robot, "lock_lease_left");
-      cells.push_back({lease >= 0.0 ? "locked, lapses in " + fixed(lease, 0) + " s  " : "locked  "});
-    }
-    std::string closed;
-    for (const json& mode : robot.value("modes", json::array()))
-      if (!flag(mode, "available") && text(mode, "reason") != "joystick_stale")
-        closed += (closed.empty() ? "" : ", ") + text(mode, "mode") + " (" + text(mode, "reason") + ")";
-    if (!closed.empty()) cells.push_back({"no " + closed, kDim});
-    if (cells.size() == 1) cells.push_back({"ready", kGreen});
-    page.line(cells);
-    return;
-  }
-  page.line({});
+/// Adds the detail line of the selected robot.
+void detail(Page& page, const World& world, const WatchState& state) {
+  const Robot* robot = world.robot(state.selected);
+  if (!robot) return page.line({});
+  std::vector<Cell> cells{{" " + state.selected + ": ", kBold}};
+  if (!robot->stops.empty())
+    cells.push_back({"stopped by " + command::joined(robot->stops, "") + "  ", kRed});
+  std::string troubles;
+  for (const std::string& trouble : robot->troubles) troubles += trouble + "  ";
+  if (!troubles.empty()) cells.push_back({troubles, kRed});
+  if (robot->reason != Reason::none && robot->stops.empty())
+    cells.push_back({"does not move: " + std::string(name(robot->reason)) + "  ", kYellow});
+  std::string areas;
+  for (const AreaView& area : robot->areas)
+    areas += (areas.empty() ? "" : ", ") + area.name + " " + area.kind;
+  if (!areas.empty()) cells.push_back({"areas: " + areas + "  ", kCyan});
+  if (const ExplorationView& explored = robot->exploration; explored.phase != ExplorationPhase::none)
+    cells.push_back({std::string(to_string(explored.phase)) + " about " + fixed(100.0 * explored.share, 0) +
+                         "%, " + std::to_string(explored.open) + " frontiers left  ",
+                     kCyan});
+  if (robot->locked)
+    cells.push_back({robot->lease_left >= 0.0F ? "locked, lapses in " + fixed(robot->lease_left, 0) + " s  "
+                                               : "locked  "});
+  std::string closed;
+  for (const ModeChoice& mode : robot->choices)
+    if (!mode.available && mode.reason != Reason::joystick_stale)
+      closed += (closed.empty() ? "" : ", ") + mode.mode + " (" + std::string(name(mode.reason)) + ")";
+  if (!closed.empty()) cells.push_back({"no " + closed, kDim});
+  if (cells.size() == 1) cells.push_back({"ready", kGreen});
+  page.line(cells);
 }
 
-void notices(Page& page, const json& snapshot, std::size_t room) {
+void notices(Page& page, const World& world, std::size_t room) {
   page.line({{" NOTIFICATIONS", kBold}});
   if (room < 2) return;
-  const json list = snapshot.value("notices", json::array());
   std::size_t shown = 0;
-  for (auto it = list.rbegin(); it != list.rend() && shown < room - 1; ++it, ++shown) {
-    const std::string level = text(*it, "level");
-    const char* colour = !flag(*it, "mine")   ? kDim
-                         : level == "error"   ? kRed
-                         : level == "warning" ? kYellow
-                                              : "";
-    std::string line = " " + padded(short_age(number(*it, "age")), 5, true) + padded(text(*it, "robot"), 6);
-    page.line({{line}, {text(*it, "text").empty() ? text(*it, "code") : text(*it, "text"), colour}});
+  for (auto it = world.notices.rbegin(); it != world.notices.rend() && shown < room - 1; ++it, ++shown) {
+    const char* colour = !it->mine                     ? kDim
+                         : it->level == Level::error   ? kRed
+                         : it->level == Level::warning ? kYellow
+                                                       : "";
+    const std::string line = " " + padded(short_age(it->age), 5, true) + padded(it->robot, 6);
+    page.line({{line}, {it->text.empty() ? it->code : it->text, colour}});
   }
-  if (list.empty()) {
+  if (world.notices.empty()) {
     page.line({{"   none yet", kDim}});
     ++shown;
   }
@@ -241,36 +211,35 @@ void help(Page& page) {
 
 }  // namespace
 
-std::vector<std::string> robots_of(const json& snapshot) {
+std::vector<std::string> names_of(const World& world) {
   std::vector<std::string> names;
-  for (const json& robot : snapshot.value("robots", json::array())) names.push_back(text(robot, "robot"));
+  for (const Robot& robot : world.robots) names.push_back(robot.name);
   return names;
 }
 
-std::vector<std::string> render(const json& snapshot, const WatchState& state, int rows, int columns,
+std::vector<std::string> render(const World& world, const WatchState& state, int rows, int columns,
                                 bool colour) {
   const int footer = std::min(rows, 2);  // Always visible: typed line or answer, and the keys.
   Page page(rows - footer, columns, colour);
-  const json counts = snapshot.value("commands", json::object());
-  std::string title =
-      " ADIT  " + text(snapshot, "station") +
-      (text(snapshot, "link").empty() ? "  no link profile" : "  link " + text(snapshot, "link")) +
-      "  commands " + fixed(number(counts, "accepted"), 0) + " done " + fixed(number(counts, "refused"), 0) +
-      " refused " + fixed(number(counts, "unanswered"), 0) + " unanswered";
+  const Counts& counts = world.commands;
+  std::string title = " ADIT  " + world.station +
+                      (world.link.empty() ? "  no link profile" : "  link " + world.link) + "  commands " +
+                      std::to_string(counts.accepted) + " done " + std::to_string(counts.refused) +
+                      " refused " + std::to_string(counts.unanswered) + " unanswered";
   std::string others;
-  for (const json& station : snapshot.value("stations", json::array()))
-    if (!flag(station, "self")) others += (others.empty() ? "  with " : ", ") + text(station, "station");
+  for (const StationSummary& station : world.stations)
+    if (!station.self) others += (others.empty() ? "  with " : ", ") + station.name;
   page.line({{title + others}}, kReverse);
   if (state.silent)
     page.line({{" the station does not answer", kRed}});
   else
     page.line({});
-  robots(page, snapshot, state);
+  robots(page, world, state);
   page.line({});
-  detail(page, snapshot, state);
+  detail(page, world, state);
   page.line({});
   if (state.help) help(page);
-  if (page.left() > 1) notices(page, snapshot, page.left());
+  if (page.left() > 1) notices(page, world, page.left());
   while (page.left() > 0) page.line({});
   page.allow(static_cast<std::size_t>(footer));
   if (state.typing)

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "basestation/model/world.hpp"
 
 namespace adit::station::cli {
 
@@ -21,10 +22,10 @@ struct WatchState {
 
 /// Renders the dashboard as `rows` lines of at most `columns` cells. `colour`: adds escape sequences, which
 /// take no cells. A pure function.
-std::vector<std::string> render(const nlohmann::json& snapshot, const WatchState& state, int rows,
-                                int columns, bool colour);
+std::vector<std::string> render(const World& world, const WatchState& state, int rows, int columns,
+                                bool colour);
 
 /// The robots' names in display order.
-std::vector<std::string> robots_of(const nlohmann::json& snapshot);
+std::vector<std::string> names_of(const World& world);
 
 }  // namespace adit::station::cli

@@ -10,31 +10,32 @@
 #include <map>
 
 #include "basestation/cli/interrupt.hpp"
-#include "basestation/cli/terminal/key_stick.hpp"
-#include "basestation/cli/terminal/keys.hpp"
+#include "basestation/cli/run_line.hpp"
 #include "basestation/cli/terminal/terminal.hpp"
 #include "basestation/cli/watch/render.hpp"
+#include "basestation/input/key_stick.hpp"
+#include "basestation/input/keys.hpp"
 
 namespace adit::station::cli {
 namespace {
 
-using nlohmann::json;
+using namespace input;
 using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 class Dashboard {
  public:
-  Dashboard(Client& client, Terminal& terminal) : client_(client), terminal_(terminal) {
-    client_.on_snapshot = [this](const json& snapshot) {
-      snapshot_ = snapshot;
+  Dashboard(client::Connection& client, Terminal& terminal) : client_(client), terminal_(terminal) {
+    client_.on_world = [this](const World& world) {
+      world_ = world;
       heard_ = Clock::now();
       dirty_ = true;
-      const auto names = robots_of(snapshot_);
+      const auto names = names_of(world_);
       if (std::find(names.begin(), names.end(), state_.selected) == names.end())
         state_.selected = names.empty() ? "" : names.front();
     };
-    client_.on_outcome = [this](std::int64_t id, const json& outcome) { ended(id, outcome); };
-    client_.on_command = [this](const json& event) {
+    client_.on_outcome = [this](std::int64_t id, const CommandOutcome& outcome) { ended(id, outcome); };
+    client_.on_command = [this](const CommandEvent& event) {
       const std::string text = command_of_another(event);
       if (text.empty()) return;
       others_.push_back({Clock::now(), text});
@@ -85,22 +86,14 @@ class Dashboard {
     terminal_.write(out);
   }
 
-  /// The snapshot with the commands of other front ends merged into its notices, by age.
-  json with_others() const {
-    json snapshot = snapshot_;
-    json& notices = snapshot["notices"];
-    if (!notices.is_array()) notices = json::array();
+  /// The world with the commands of other front ends merged into its notices, by age.
+  World with_others() const {
+    World world = world_;
     for (const auto& [when, text] : others_)
-      notices.push_back({{"age", std::chrono::duration<double>(Clock::now() - when).count()},
-                         {"mine", true},
-                         {"text", text}});
-    const auto age = [](const json& notice) {
-      const auto found = notice.find("age");
-      return found != notice.end() && found->is_number() ? found->get<double>() : 0.0;
-    };
-    std::stable_sort(notices.begin(), notices.end(),
-                     [&](const json& a, const json& b) { return age(a) > age(b); });
-    return snapshot;
+      world.notices.push_back(
+          {.age = std::chrono::duration<double>(Clock::now() - when).count(), .text = text, .mine = true});
+    std::ranges::stable_sort(world.notices, std::ranges::greater{}, &Notice::age);
+    return world;
   }
 
   void say(const std::string& text, bool refused) {
@@ -114,29 +107,21 @@ class Dashboard {
     say(line + " ...", false);
   }
 
-  void ended(std::int64_t id, const json& outcome) {
-    std::string text = outcome.value("error", std::string()) + outcome.value("text", std::string());
+  void ended(std::int64_t id, const CommandOutcome& outcome) {
+    std::string text = outcome.error + outcome.text;
     std::replace(text.begin(), text.end(), '\n', ' ');
     if (id == drive_ && state_.driving) {
       state_.driving = false;
-      return say(text, outcome.value("exit", 1) != 0);
+      return say(text, outcome.exit_code != kExitDone);
     }
     const auto found = asked_.find(id);
     if (found == asked_.end()) return;
-    say(found->second + " -> " + text, outcome.value("exit", 1) != 0);
+    say(found->second + " -> " + text, outcome.exit_code != kExitDone);
     asked_.erase(found);
   }
 
-  const json* robot() const {
-    const auto list = snapshot_.find("robots");
-    if (list == snapshot_.end()) return nullptr;
-    for (const json& row : *list)
-      if (row.value("robot", std::string()) == state_.selected) return &row;
-    return nullptr;
-  }
-
   void select(int step) {
-    const auto names = robots_of(snapshot_);
+    const auto names = names_of(world_);
     const auto at = std::find(names.begin(), names.end(), state_.selected);
     if (names.empty()) return;
     const auto last = static_cast<std::ptrdiff_t>(names.size()) - 1;
@@ -169,7 +154,7 @@ class Dashboard {
     } else if (key == key_up || key == key_down) {
       select(key == key_up ? -1 : 1);
     } else if (key >= '1' && key <= '9') {
-      const auto names = robots_of(snapshot_);
+      const auto names = names_of(world_);
       const auto index = static_cast<std::size_t>(key - '1');
       if (index < names.size()) state_.selected = names[index];
     } else if (!state_.selected.empty()) {
@@ -179,14 +164,14 @@ class Dashboard {
 
   void command(int key) {
     const std::string& name = state_.selected;
-    const json* view = robot();
+    const Robot* view = world_.robot(name);
     switch (key) {
       case 't':
         return execute("take " + name);
       case 'r':
         return execute("release " + name);
       case 'l':
-        return execute((view && view->value("locked", false) ? "unlock " : "lock ") + name);
+        return execute((view && view->locked ? "unlock " : "lock ") + name);
       case 's':
         return execute("stop " + name);
       case 'e':
@@ -202,7 +187,7 @@ class Dashboard {
         state_.line = "goto " + name + " ";
         return;
       case 'm':
-        if (view) stick_.set_limits(view->value("max_speed", 0.0), view->value("max_turn", 0.0));
+        if (view) stick_.set_limits(view->max_speed, view->max_turn);
         drive_ = client_.teleop(name);
         state_.driving = true;
         return say("", false);
@@ -226,9 +211,9 @@ class Dashboard {
     }
   }
 
-  Client& client_;
+  client::Connection& client_;
   Terminal& terminal_;
-  json snapshot_ = json::object();
+  World world_{};
   WatchState state_{};
   KeyStick stick_{};
   std::map<std::int64_t, std::string> asked_{};
@@ -243,7 +228,7 @@ class Dashboard {
 
 }  // namespace
 
-int watch(Client& client, const Options& options) {
+int watch(client::Connection& client, const Options& options) {
   bool good = true;
   {
     Terminal terminal(true);

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/alert/table.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace adit::station {
+namespace {
+
+using enum Priority;
+
+constexpr std::array kRows{
+    // Motion or control is at stake.
+    AlertRow{"stopped", act, Ends::stop_cleared, "reset"},
+    AlertRow{"joystick_lost", act, Ends::by_hand, "", true},
+    AlertRow{"driver_lost", act, Ends::goes_on, "", true},
+    AlertRow{"lost", act, Ends::heard, "back", true},
+    AlertRow{"intruder", act},
+    AlertRow{"name_in_use", act},
+    AlertRow{"name_taken", act},
+    AlertRow{"escalated", act, Ends::seen, "restarted"},
+    AlertRow{"rival_writer", act},
+    AlertRow{"tilted", act, Ends::goes_on},
+    AlertRow{"stop_not_acknowledged", act, Ends::seen, "stop_acknowledged"},
+
+    // A robot does nothing useful.
+    AlertRow{"blocked", soon, Ends::goes_on, "arrived"},
+    AlertRow{"unreachable", soon, Ends::goes_on, "arrived"},
+    AlertRow{"stuck", soon, Ends::goes_on, "arrived"},
+    AlertRow{"start_in_collision", soon, Ends::goes_on, "arrived"},
+    AlertRow{"unknown_budget", soon, Ends::goes_on, "arrived"},
+    AlertRow{"idle", soon, Ends::busy},
+    AlertRow{"asked", soon, Ends::not_asked, "granted"},
+    AlertRow{"lock_lapsed", soon},
+    AlertRow{"link_lost", soon, Ends::seen, "link_back"},
+    AlertRow{"return_refused", soon, Ends::goes_on},
+    AlertRow{"component_failed", soon, Ends::healthy, "component_back"},
+    AlertRow{"component_hung", soon, Ends::healthy, "component_back"},
+    AlertRow{"battery_low", soon},
+    AlertRow{"battery_last", act},
+    AlertRow{"convoy_lost", soon, Ends::goes_on},
+    AlertRow{"convoy_split", soon, Ends::seen},
+    AlertRow{"convoy_waits", soon, Ends::goes_on},
+    AlertRow{"trail_impassable", soon, Ends::goes_on},
+    AlertRow{"yield_refused", soon, Ends::goes_on, "made_way"},
+    AlertRow{"yield_deadlock", soon, Ends::goes_on, "made_way"},
+    AlertRow{"outside_area", soon, Ends::goes_on},
+    AlertRow{"explore_ended", soon, Ends::busy},
+    AlertRow{"mode_refused", soon, Ends::busy},
+    AlertRow{"odometry_jumped", soon, Ends::goes_on},
+    AlertRow{"not_localised_here", soon, Ends::goes_on},
+    AlertRow{"localisation_lost", soon, Ends::goes_on, "localisation_ok"},
+    AlertRow{"sensor_refused", soon, Ends::healthy},
+    AlertRow{"sensor_silent", soon, Ends::healthy},
+    AlertRow{"tree_refused", soon},
+    AlertRow{"state_lost", soon},
+    AlertRow{"state_damaged", soon},
+    AlertRow{"map_damaged", soon},
+    AlertRow{"map_not_stored", soon},
+    AlertRow{"findings_damaged", soon},
+    AlertRow{"findings_full", soon},
+    AlertRow{"store_failing", soon, Ends::seen, "store_works"},
+    AlertRow{"other_release", soon},
+
+    // News.
+    AlertRow{"taken", know},
+    AlertRow{"granted", know},
+    AlertRow{"released", know},
+    AlertRow{"mode_changed", know},
+    AlertRow{"found", know},
+    AlertRow{"finding_refused", know},
+    AlertRow{"explored", know},
+    AlertRow{"back", know},
+    AlertRow{"link_back", know},
+    AlertRow{"returning", know},
+    AlertRow{"component_back", know},
+    AlertRow{"restarted", know},
+    AlertRow{"lidar_silent", know},
+    AlertRow{"obstacle_near", know},
+    AlertRow{"localisation_weak", know},
+    AlertRow{"battery_warning", know},
+    AlertRow{"goal_unseen", know},
+    AlertRow{"goal_moved", know},
+    AlertRow{"made_way", know},
+    AlertRow{"not_deskewed", know},
+    AlertRow{"imu_in_g", know},
+    AlertRow{"stop_acknowledged", know},
+
+    AlertRow{"arrived", log},
+    AlertRow{"reset", log},
+    AlertRow{"localisation_ok", log},
+    AlertRow{"map_stored", log},
+    AlertRow{"store_works", log},
+};
+
+}  // namespace
+
+std::span<const AlertRow> alert_table() { return kRows; }
+
+const AlertRow* alert_row(std::string_view code) {
+  const auto found = std::ranges::find(kRows, code, &AlertRow::code);
+  return found == kRows.end() ? nullptr : &*found;
+}
+
+}  // namespace adit::station

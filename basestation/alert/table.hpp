@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace adit::station {
+
+/// How soon the operator must act on a notification.
+enum class Priority : std::uint8_t {
+  act,   ///< Motion or control is at stake: a banner that stays until it was seen.
+  soon,  ///< A robot does nothing useful: a row of the attention queue.
+  know,  ///< News: a line of the log, and a mark on the map.
+  log,   ///< The rest.
+};
+
+/// What ends the cause of an alert, beside a notification that closes it.
+enum class Ends : std::uint8_t {
+  seen,          ///< The state of the robot does not show it: when the operator has seen it.
+  heard,         ///< The robot is heard.
+  stop_cleared,  ///< No software stop is set.
+  goes_on,       ///< The robot may move, or its goal is no longer the one that is blocked.
+  busy,          ///< The robot has something to do, or another holder.
+  not_asked,     ///< The robot is not locked by this operator any more.
+  healthy,       ///< No component of the robot is in trouble.
+  by_hand,       ///< The robot is not driven by hand.
+};
+
+/// What a notification code means to an operator.
+struct AlertRow {
+  std::string_view code{};
+  Priority priority{};
+  Ends ends{Ends::seen};
+  std::string_view closed_by{};  ///< Code of the notification that reports the end of the cause; empty: none.
+  /// Only `act` while the robot is driven by hand; otherwise `soon`.
+  bool by_hand{false};
+};
+
+/// One row for each code of docs/operators.md.
+std::span<const AlertRow> alert_table();
+/// The row of that code; null for a code of another version.
+const AlertRow* alert_row(std::string_view code);
+
+}  // namespace adit::station

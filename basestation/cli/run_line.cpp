@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/cli/run_line.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "basestation/cli/interrupt.hpp"
+#include "basestation/client/launch.hpp"
+
+namespace adit::station::cli {
+
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+Result<client::LineSocket> connect(const Options& options) {
+  auto connected = client::connect_or_launch(options);
+  if (!connected) return connected.error();
+  if (!connected->remark.empty()) std::fprintf(stderr, "%s\n", connected->remark.c_str());
+  return std::move(connected->socket);
+}
+
+int exit_without_station(const Error& error) {
+  if (error.reason == Reason::no_answer) return kExitNoAnswer;
+  return error.reason == Reason::bad_argument ? kExitUsage : kExitRefused;
+}
+
+int print_outcome(const Options& options, const CommandOutcome& outcome) {
+  if (options.json) {
+    std::printf("%s\n", outcome.json.c_str());
+  } else {
+    std::fputs(outcome.text.c_str(), stdout);
+    std::fflush(stdout);
+    std::fputs(outcome.error.c_str(), stderr);
+  }
+  return outcome.exit_code;
+}
+
+int fail(const Options& options, int exit_code, const Error& error) {
+  if (options.json)
+    std::printf(
+        "%s\n",
+        json{{"exit", exit_code}, {"ok", false}, {"reason", name(error.reason)}, {"error", error.text}}
+            .dump(-1, ' ', true, json::error_handler_t::replace)
+            .c_str());
+  else
+    std::fprintf(stderr, "basestation: %s\n", error.text.c_str());
+  return exit_code;
+}
+
+int run_line(client::Connection& client, const Options& options, const std::string& line) {
+  std::optional<CommandOutcome> outcome;
+  bool begun = false;
+  client.on_begun = [&](std::int64_t) { begun = true; };
+  client.on_outcome = [&](std::int64_t, const CommandOutcome& ended) { outcome = ended; };
+  const std::int64_t id = client.execute(line);
+  const auto started = Clock::now();
+  std::optional<Clock::time_point> cancelled;
+  while (!outcome) {
+    if (!client.wait(200) && !outcome)
+      return fail(options, kExitNoAnswer, {Reason::no_answer, client.gone()});
+    const auto now = Clock::now();
+    if (!begun && !outcome && now - started > std::chrono::seconds(5))
+      return fail(
+          options, kExitNoAnswer,
+          {Reason::no_answer, "the station of " + options.name + " does not answer; end its process"});
+    if (interrupted()) {
+      if (cancelled) return 130;
+      cancelled = now;
+      client.cancel(id);
+    }
+    // A command that cannot be cancelled any more is left to the station.
+    if (cancelled && now - *cancelled > std::chrono::milliseconds(800)) return 130;
+  }
+  const int code = print_outcome(options, *outcome);
+  return cancelled ? 130 : code;
+}
+
+std::string command_of_another(const CommandEvent& event) {
+  if (event.mine || event.query || !event.ended) return {};
+  if (event.pid == ::getpid()) return {};  // A stop uses a connection of its own.
+  std::string answer = event.text + event.error;
+  while (answer.ends_with('\n')) answer.pop_back();
+  std::replace(answer.begin(), answer.end(), '\n', ' ');
+  return "in another " + (event.front_end.empty() ? "program" : event.front_end) + ": " + event.line +
+         " -> " + answer;
+}
+
+}  // namespace adit::station::cli

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/bridge/action_bar.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "basestation/model/action.hpp"
+
+namespace adit::gui {
+namespace {
+
+using station::Action;
+using station::Robot;
+
+constexpr std::size_t kMany = 3;  // Commands to more robots are held, not tapped.
+
+const Action* find_action(const std::vector<Action>& actions, std::string_view id) {
+  for (const Action& action : actions)
+    if (station::id_of(action) == id) return &action;
+  return nullptr;
+}
+
+std::string line_for(const Slot& slot, const std::vector<std::string>& robots) {
+  std::string line = slot.before;
+  for (const std::string& robot : robots) line += " " + robot;
+  if (*slot.after != 0) line += " " + std::string(slot.after);
+  return line;
+}
+
+/// Why an action that the robot would accept changes nothing.
+std::string useless(std::string_view id, const Robot& robot) {
+  if (id == "take" && robot.mine) return "you hold it already";
+  if (id == "reset" && robot.stops.empty()) return "no stop is set";
+  if (id == "mode_hold" && robot.mode == "hold") return "it holds already";
+  return {};
+}
+
+class Builder {
+ public:
+  Builder(const station::World& world, const std::vector<std::string>& selection) {
+    for (const std::string& name : selection)
+      if (const Robot* robot = world.robot(name)) {
+        robots_.push_back(robot);
+        actions_.push_back(station::actions({robot}));
+      }
+  }
+
+  ActionBar build() {
+    for (const Slot& slot : kSlots) add(slot);
+    merge();
+    return std::move(bar_);
+  }
+
+ private:
+  void add(const Slot& slot) {
+    std::string id = slot.id;
+    Slot row = slot;
+    // One place for both: locked robots are unlocked once all of the selection are.
+    const bool all_locked =
+        !robots_.empty() && std::all_of(robots_.begin(), robots_.end(),
+                                        [](const Robot* robot) { return robot->mine && robot->locked; });
+    if (id == "lock" && all_locked) row.before = "unlock", row.label = "Unlock", id = "unlock";
+    BarButton button{.id = slot.id, .label = row.label, .key = slot.key};
+    std::string from;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      const Robot& robot = *robots_[i];
+      const Action* action = find_action(actions_[i], id);
+      if (!action) {
+        refuse(row, robot, Reason::mode_not_installed, std::string(describe(Reason::mode_not_installed)));
+        continue;
+      }
+      button.label = station::label_of(*action);
+      const std::string nothing = action->valid ? useless(id, robot) : "";
+      if (!action->valid || !nothing.empty()) {
+        refuse(row, robot, action->reason, nothing.empty() ? action->text : nothing);
+        continue;
+      }
+      button.robots.push_back(robot.name);
+      if (id == "take" && !robot.holder.empty()) {
+        from = "from " + robot.holder;
+        button.touch = Touch::hold;
+      }
+    }
+    if (id == "goto") button.touch = Touch::place;
+    const bool free = id == "stop" || id == "mode_hold" || id == "goto";
+    if (button.robots.size() > kMany && !free) button.touch = Touch::hold;
+    if (!button.robots.empty()) button.line = line_for(row, button.robots);
+    if (button.robots.size() < robots_.size() && !button.robots.empty())
+      button.hint = std::to_string(button.robots.size()) + "/" + std::to_string(robots_.size());
+    if (!from.empty()) button.hint += (button.hint.empty() ? "" : " ") + from;
+    bar_.buttons.push_back(std::move(button));
+  }
+
+  void refuse(const Slot& slot, const Robot& robot, Reason reason, const std::string& why) {
+    Refusal next{.label = slot.label, .robots = robot.name, .why = why};
+    cure(next, robot, reason);
+    // One row for all that a robot refuses for the same reason.
+    for (Refusal& known : bar_.not_now)
+      if (known.robots == next.robots && known.why == why && known.cure_line == next.cure_line) {
+        known.label += std::string(", ") + slot.label;
+        return;
+      }
+    bar_.not_now.push_back(std::move(next));
+  }
+
+  /// One row for robots that refuse the same for the same reason, where no cure names one of them.
+  void merge() {
+    std::vector<Refusal> merged;
+    for (Refusal& next : bar_.not_now) {
+      const auto known = std::find_if(merged.begin(), merged.end(), [&](const Refusal& row) {
+        return row.label == next.label && row.why == next.why && row.cure_line.empty() &&
+               next.cure_line.empty();
+      });
+      if (known == merged.end())
+        merged.push_back(std::move(next));
+      else
+        known->robots += ", " + next.robots;
+    }
+    bar_.not_now = std::move(merged);
+  }
+
+  static void cure(Refusal& refusal, const Robot& robot, Reason reason) {
+    const auto set = [&](std::string label, std::string line, bool hold) {
+      refusal.cure_label = std::move(label);
+      refusal.cure_line = std::move(line);
+      refusal.cure_hold = hold;
+    };
+    if (reason == Reason::nobody_holds) set("Take " + robot.name, "take " + robot.name, false);
+    if (reason == Reason::not_holder && !robot.holder.empty() && !robot.locked)
+      set("Take " + robot.name + " from " + robot.holder, "take " + robot.name, true);
+    if (reason == Reason::stopped && robot.mine && (robot.stopped_by_holder && robot.stops.size() == 1))
+      set("Reset " + robot.name, "reset " + robot.name, false);
+    if ((reason == Reason::stopped || reason == Reason::stop_of_another) && robot.mine &&
+        (!robot.stopped_by_holder || robot.stops.size() > 1))
+      set("Reset all stops of " + robot.name, "reset " + robot.name + " --override", true);
+  }
+
+  std::vector<const Robot*> robots_{};
+  std::vector<std::vector<Action>> actions_{};
+  ActionBar bar_{};
+};
+
+}  // namespace
+
+ActionBar bar_of(const station::World& world, const std::vector<std::string>& selection) {
+  return Builder(world, selection).build();
+}
+
+}  // namespace adit::gui

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "basestation/model/world.hpp"
+
+namespace adit::gui {
+
+/// What a button needs of the operator.
+enum class Touch : std::uint8_t {
+  tap,
+  hold,   ///< Press and hold: it takes something from someone, or concerns many robots.
+  place,  ///< A tap on the map follows.
+};
+
+/// A place of the action bar. Its position never changes.
+struct Slot {
+  const char* id{};  ///< As station::id_of().
+  const char* key{};
+  const char* before{};  ///< The command line: before, robots, after.
+  const char* after{};
+  const char* label{};  ///< Where no robot knows the action.
+  bool motion{};        ///< It can start motion: its key acts when it is released.
+};
+inline constexpr std::array kSlots{
+    Slot{"take", "t", "take", "", "Take", false},
+    Slot{"release", "r", "release", "", "Release", false},
+    Slot{"lock", "l", "lock", "", "Lock", false},
+    Slot{"mode_hold", "h", "mode", "hold", "Hold", false},
+    Slot{"mode_waypoint", "w", "mode", "waypoint", "Waypoint", true},
+    Slot{"goto", "g", "goto", "", "Go to", true},
+    Slot{"home", "", "home", "", "Home", true},
+    Slot{"explore", "x", "explore", "", "Explore", true},
+    Slot{"stop", "s", "stop", "", "Stop", false},
+    Slot{"reset", "e", "reset", "", "Reset", false},
+};
+
+struct BarButton {
+  std::string id{}, label{}, key{};
+  std::string hint{};                 ///< "2/3", or "from op2".
+  std::string line{};                 ///< The command, with the robots' names.
+  std::vector<std::string> robots{};  ///< Those that would accept it; empty: it is not possible now.
+  Touch touch{Touch::tap};
+  bool operator==(const BarButton&) const = default;
+};
+
+/// Why actions are not possible now for some robots, and what would change that.
+struct Refusal {
+  std::string id{}, label{};
+  std::string robots{};      ///< "r1, r3".
+  std::string why{};         ///< In words.
+  std::string cure_label{};  ///< Empty: there is none.
+  std::string cure_line{};
+  bool cure_hold{};
+  bool operator==(const Refusal&) const = default;
+};
+
+struct ActionBar {
+  std::vector<BarButton> buttons{};  ///< One for each of kSlots, in their order.
+  std::vector<Refusal> not_now{};
+  bool operator==(const ActionBar&) const = default;
+};
+
+/// What the robots of a selection would accept now, by their station's catalogue of actions.
+ActionBar bar_of(const station::World& world, const std::vector<std::string>& selection);
+
+}  // namespace adit::gui

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/bridge/card.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace adit::gui {
+namespace {
+
+using station::GoalPhase;
+using station::Robot;
+
+std::string upper(std::string text) {
+  for (char& c : text) {
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    if (c == '_') c = ' ';
+  }
+  return text;
+}
+
+std::string glyph_of(const std::string& platform) {
+  if (platform == "wheeled") return "wheels";
+  if (platform == "tracked") return "tracks";
+  if (platform == "legged") return "legs";
+  if (platform == "aerial") return "rotor";
+  return "unknown";
+}
+
+std::string joined_names(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+void headline(Card& card, const Robot& robot) {
+  const auto set = [&](std::string word, Token token, std::string shape, bool needs) {
+    card.headline = std::move(word);
+    card.headline_token = token;
+    card.shape = std::move(shape);
+    card.needs_operator = needs;
+  };
+  const bool drives = robot.mode != "hold" && !robot.mode.empty();
+  const bool waits = drives && !robot.moving_allowed && robot.reason != Reason::none;
+  if (card.contact == Contact::lost) return set("LOST", Token::bad, "square", true);
+  if (robot.stopped || !robot.stops.empty()) return set("STOP", Token::bad, "square", true);
+  if (robot.goal_phase == GoalPhase::blocked || robot.reason == Reason::blocked)
+    return set("BLOCKED", Token::bad, "square", true);
+  if (!robot.troubles.empty()) return set(upper(robot.mode), Token::warn, "triangle", true);
+  if (waits) return set(upper(robot.mode) + " WAITS", Token::warn, "triangle", true);
+  if (drives) return set(upper(robot.mode), Token::ok, "disc", false);
+  set(robot.mode.empty() ? "NOT HEARD YET" : upper(robot.mode), Token::none, "ring", false);
+}
+
+std::string detail(const Card& card, const Robot& robot, double age) {
+  if (card.contact == Contact::lost) return "last heard " + age_text(age) + " ago";
+  if (!robot.stops.empty()) return "stopped by " + joined_names(robot.stops);
+  if (robot.stopped) return "stopped";
+  if (!robot.troubles.empty()) return joined_names(robot.troubles);
+  if (robot.reason != Reason::none && !robot.moving_allowed) return std::string(describe(robot.reason));
+  if (!robot.yields_to.empty()) return "makes way for " + robot.yields_to;
+  if (!robot.described) return "capabilities not heard yet";
+  if (robot.localisation == Localisation::weak) return "position is weak";
+  if (robot.localisation == Localisation::lost) return "does not know where it is";
+  if (robot.exploration.phase != station::ExplorationPhase::none && robot.mode == "explore")
+    return std::string(to_string(robot.exploration.phase)) + ", " + std::to_string(robot.exploration.open) +
+           " frontiers left";
+  if (robot.goal_phase == GoalPhase::active || robot.goal_phase == GoalPhase::kept)
+    return (robot.goal_phase == GoalPhase::active ? "to " : "goal kept: ") + fixed_text(robot.goal[0], 1) +
+           " " + fixed_text(robot.goal[1], 1);
+  if (robot.goal_phase == GoalPhase::reached) return "arrived";
+  return "ready";
+}
+
+}  // namespace
+
+std::string fixed_text(double value, int digits) {
+  if (!(std::abs(value) < 1e6)) return "-";
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+std::string age_text(double seconds) {
+  if (!(seconds >= 0.0) || seconds > 1e7) return "-";
+  if (seconds < 9.95) return fixed_text(seconds, 1) + " s";
+  if (seconds < 120.0) return fixed_text(seconds, 0) + " s";
+  if (seconds < 7200.0) return fixed_text(std::floor(seconds / 60.0), 0) + " min";
+  return fixed_text(std::floor(seconds / 3600.0), 0) + " h";
+}
+
+Card card_of(const Robot& robot, int number, double silent, double stale_after) {
+  Card card{
+      .number = number, .name = robot.name, .glyph = glyph_of(robot.platform), .platform = robot.platform};
+  const double age = robot.age + silent;
+  card.contact = robot.lost                          ? Contact::lost
+                 : age > stale_after || silent > 1.0 ? Contact::stale
+                                                     : Contact::live;
+  card.owner = robot.mine ? Token::mine : robot.holder.empty() ? Token::none : Token::other;
+  card.holder = robot.mine ? "mine" : robot.holder.empty() ? "no holder" : robot.holder;
+  if (robot.locked) card.holder += ", locked";
+  headline(card, robot);
+  card.detail = detail(card, robot, age);
+  const bool battery = robot.battery >= 0.0F && robot.battery <= 1.0F;
+  card.battery = battery ? fixed_text(100.0 * robot.battery, 0) + " %" : "-";
+  card.speed = robot.located ? fixed_text(std::hypot(robot.vx, robot.vy), 1) + " m/s" : "-";
+  const bool goal = robot.goal_phase != GoalPhase::none && robot.goal_phase != GoalPhase::reached;
+  if (goal && robot.located)
+    card.goal = fixed_text(std::hypot(robot.goal[0] - robot.x, robot.goal[1] - robot.y), 0) + " m";
+  card.age = age_text(age);
+  return card;
+}
+
+}  // namespace adit::gui

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "basestation/model/outcome.hpp"
+
+namespace adit::gui {
+
+/// Receives what the operator orders in the window. The station of the operator, or a test.
+class CommandSink {
+ public:
+  using Done = std::function<void(const station::CommandOutcome&)>;
+  virtual ~CommandSink() = default;
+
+  /// Runs a command line; `done` is called once, in the thread of the window.
+  virtual void execute(const std::string& line, Done done) = 0;
+  /// Software stop of these robots, or of all if there is none.
+  virtual void stop(const std::vector<std::string>& robots, Done done) = 0;
+  /// Starts the station again after it ended.
+  virtual void start_station() = 0;
+};
+
+}  // namespace adit::gui

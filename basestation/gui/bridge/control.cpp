@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/bridge/control.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "basestation/gui/bridge/card.hpp"
+#include "basestation/gui/scene/mark_list.hpp"
+#include "basestation/model/exit_code.hpp"
+
+namespace adit::gui {
+namespace {
+
+using station::Robot;
+
+QString text_of(const std::string& text) { return QString::fromStdString(text); }
+
+QString names_of(const std::vector<std::string>& names) {
+  QStringList list;
+  for (const std::string& name : names) list << text_of(name);
+  return list.join(" ");
+}
+
+QString one_line(const std::string& text) {
+  return text_of(text).split('\n', Qt::SkipEmptyParts).join(" · ");
+}
+
+QString word_of(Token token) {
+  constexpr std::array kWords{"ok", "warn", "bad", "mine", "other", "none", "goal", "text", "dim"};
+  return QString::fromLatin1(kWords[static_cast<std::size_t>(token)]);
+}
+
+QString word_of(Contact contact) {
+  constexpr std::array kWords{"live", "stale", "lost"};
+  return QString::fromLatin1(kWords[static_cast<std::size_t>(contact)]);
+}
+
+}  // namespace
+
+Control::Control(CommandSink& sink, QObject* parent)
+    : QObject(parent),
+      sink_(sink),
+      world_(std::make_shared<station::World>()),
+      map_(std::make_shared<station::TileMap>()),
+      robots_({"name", "number", "glyph", "platform", "holder", "owner", "headline", "token", "shape",
+               "detail", "battery", "speed", "goal", "age", "contact", "selected"},
+              this),
+      buttons_({"slot", "label", "key", "hint", "names", "possible", "touch", "state_", "reason"}, this),
+      refusals_({"row", "label", "names", "why", "cureLabel", "cureLine", "cureHold"}, this),
+      log_({"row", "time", "kind", "who", "line"}, this) {
+  refresh();
+}
+
+void Control::show(std::shared_ptr<const station::World> world, double now) {
+  if (first_ < 0.0) first_ = now;
+  now_ = now;
+  world_ = std::move(world);
+  silent_for_ = 0.0;
+  trails_.add(*world_, now);
+  refresh();
+}
+
+void Control::show_map(std::shared_ptr<const station::TileMap> map) {
+  map_ = std::move(map);
+  emit map_changed();
+}
+
+void Control::show_link(bool connected, double silent_for, const std::string& why) {
+  const bool same = connected != ended_ && why == why_ && silent_for < 1.0 && silent_for_ < 1.0;
+  ended_ = !connected;
+  silent_for_ = silent_for;
+  why_ = why;
+  if (!same) refresh();  // While the station speaks, its snapshots refresh the window.
+}
+
+void Control::refresh() {
+  show_cards();
+  show_bar();
+  emit shown();
+}
+
+void Control::show_cards() {
+  std::vector<QVariantList> rows;
+  QStringList attention;
+  mine_ = lost_ = stopped_ = 0;
+  int number = 0;
+  for (const Robot& robot : world_->robots) {
+    const Card card = card_of(robot, ++number, silent_for_, trails_.stale_after(robot.name));
+    mine_ += robot.mine;
+    lost_ += robot.lost;
+    stopped_ += robot.stopped || !robot.stops.empty();
+    const bool selected = std::find(selection_.begin(), selection_.end(), robot.name) != selection_.end();
+    rows.push_back({text_of(card.name), card.number, text_of(card.glyph), text_of(card.platform),
+                    text_of(card.holder), word_of(card.owner), text_of(card.headline),
+                    word_of(card.headline_token), text_of(card.shape), text_of(card.detail),
+                    text_of(card.battery), text_of(card.speed), text_of(card.goal), text_of(card.age),
+                    word_of(card.contact), selected});
+    if (card.needs_operator && attention.size() < 6)
+      attention << text_of(card.name + " " + card.headline + ": " + card.detail);
+  }
+  attention_ = attention.join("   ·   ");
+  robots_.show(std::move(rows));
+}
+
+void Control::show_bar() {
+  bar_ = bar_of(*world_, selection_);
+  if (silent()) {  // Only a stop has a way of its own.
+    bar_.not_now.clear();
+    if (!selection_.empty())
+      bar_.not_now.push_back({.label = "All but stop",
+                              .robots = names_of(selection_).toStdString(),
+                              .why = "the station is silent"});
+    for (BarButton& button : bar_.buttons)
+      if (button.id != "stop") button.robots.clear(), button.hint.clear();
+  }
+  std::vector<QVariantList> rows;
+  for (const BarButton& button : bar_.buttons) {
+    constexpr std::array kTouches{"tap", "hold", "place"};
+    const auto state = states_.find(button.id);
+    rows.push_back({text_of(button.id), text_of(button.label), text_of(button.key), text_of(button.hint),
+                    names_of(button.robots), !button.robots.empty(),
+                    QString::fromLatin1(kTouches[static_cast<std::size_t>(button.touch)]),
+                    state == states_.end() ? QString() : state->second, reason_of(button)});
+  }
+  buttons_.show(std::move(rows));
+  rows.clear();
+  for (const Refusal& refusal : bar_.not_now)
+    rows.push_back({static_cast<int>(rows.size()), text_of(refusal.label), text_of(refusal.robots),
+                    text_of(refusal.why), text_of(refusal.cure_label), text_of(refusal.cure_line),
+                    refusal.cure_hold});
+  refusals_.show(std::move(rows));
+}
+
+QString Control::reason_of(const BarButton& button) const {
+  if (!button.robots.empty()) return {};
+  if (selection_.empty()) return "no robot is selected";
+  for (const Refusal& refusal : bar_.not_now) {
+    const QStringList labels = text_of(refusal.label).split(", ");
+    if (labels.contains(text_of(button.label)) || refusal.label == "All but stop")
+      return text_of(refusal.robots + ": " + refusal.why);
+  }
+  return "not heard yet";
+}
+
+QString Control::others() const {
+  QStringList list;
+  for (const station::StationSummary& station : world_->stations)
+    if (!station.self)
+      list << text_of(station.name + (station.lost ? " lost " : " ") + age_text(station.age + silent_for_));
+  return list.join(", ");
+}
+
+QString Control::stop_text() const {
+  const int all = robot_count();
+  if (all == 0) return "no robot heard";
+  const QString count = QString("%1/%2 stopped").arg(stopped_).arg(all);
+  return stop_missing_.isEmpty() || stopped_ == all ? count : count + ", no answer: " + stop_missing_;
+}
+
+QString Control::silent_text() const {
+  if (ended_) return "NO STATION: " + text_of(why_.empty() ? "it ended" : why_) + ". All values are old.";
+  if (silent_for_ > 1.0)
+    return "STATION SILENT for " + text_of(age_text(silent_for_)) +
+           ". All values are old; only stop is tried.";
+  return text_of(why_);
+}
+
+QString Control::selection_text() const { return names_of(selection_); }
+
+int Control::refusal_count() const {
+  QSet<QString> labels;
+  for (const Refusal& refusal : bar_.not_now)
+    for (const QString& label : text_of(refusal.label).split(", ")) labels.insert(label);
+  return static_cast<int>(labels.size());
+}
+
+void Control::set_aiming(bool aiming) {
+  if (aiming == aiming_) return;
+  aiming_ = aiming;
+  emit aiming_changed();
+}
+
+void Control::set_reasons_open(bool open) {
+  if (open == reasons_open_) return;
+  reasons_open_ = open;
+  emit reasons_open_changed();
+}
+
+void Control::say(const QString& text, const QString& kind) {
+  outcome_ = text;
+  outcome_kind_ = kind;
+  emit said();
+}
+
+void Control::log_row(const QString& kind, const QString& who, const QString& text) {
+  const int seconds = first_ < 0.0 ? 0 : static_cast<int>(now_ - first_);
+  const QString time =
+      QString("%1:%2").arg(seconds / 60, 2, 10, QChar('0')).arg(seconds % 60, 2, 10, QChar('0'));
+  log_.prepend({next_row_++, time, kind, who, text}, kMaxLog);
+}
+
+void Control::add_notice(const station::Notice& notice) {
+  const QString kind = !notice.mine                              ? "dim"
+                       : notice.level == station::Level::error   ? "bad"
+                       : notice.level == station::Level::warning ? "warn"
+                                                                 : "text";
+  log_row(kind, text_of(notice.robot), text_of(notice.text.empty() ? notice.code : notice.text));
+}
+
+void Control::add_command(const station::CommandEvent& event) {
+  if (event.query || !event.ended) return;
+  const bool own = event.mine || event.pid == ::getpid();  // A stop uses a connection of its own.
+  const QString who =
+      own ? "here" : "in another " + text_of(event.front_end.empty() ? "program" : event.front_end);
+  const QString answer = one_line(event.text + event.error);
+  log_row(event.exit_code == station::kExitDone ? "ok" : "warn", who,
+          text_of(event.line) + (answer.isEmpty() ? "" : "  →  " + answer));
+}
+
+void Control::add_remark(const QString& text) { log_row("dim", {}, text); }
+
+}  // namespace adit::gui

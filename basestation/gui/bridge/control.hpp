@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <QtQml/qqmlregistration.h>
+#include <QElapsedTimer>
+#include <QObject>
+#include <QSet>
+#include <QTimer>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "basestation/gui/bridge/action_bar.hpp"
+#include "basestation/gui/bridge/command_sink.hpp"
+#include "basestation/gui/bridge/row_model.hpp"
+#include "basestation/gui/scene/camera.hpp"
+#include "basestation/gui/scene/trails.hpp"
+#include "basestation/model/map_tiles.hpp"
+#include "basestation/model/world.hpp"
+
+namespace adit::gui {
+
+/// The state of the window and the operator's inputs: what QML shows, and what it calls. Commands always
+/// carry the names of their robots, and only the operator changes the selection.
+class Control : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("given to the window by the program")
+  Q_PROPERTY(QAbstractItemModel* robots READ robots CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* buttons READ buttons CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* refusals READ refusals CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* log READ log CONSTANT)
+  Q_PROPERTY(QString operatorName READ operator_name NOTIFY shown)
+  Q_PROPERTY(QString link READ link NOTIFY shown)
+  Q_PROPERTY(int robotCount READ robot_count NOTIFY shown)
+  Q_PROPERTY(int mineCount READ mine_count NOTIFY shown)
+  Q_PROPERTY(int lostCount READ lost_count NOTIFY shown)
+  Q_PROPERTY(int stoppedCount READ stopped_count NOTIFY shown)
+  Q_PROPERTY(QString others READ others NOTIFY shown)
+  Q_PROPERTY(QString attention READ attention NOTIFY shown)
+  Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
+  Q_PROPERTY(bool silent READ silent NOTIFY shown)
+  Q_PROPERTY(bool ended READ ended NOTIFY shown)
+  Q_PROPERTY(QString silentText READ silent_text NOTIFY shown)
+  Q_PROPERTY(QString selectionText READ selection_text NOTIFY shown)
+  Q_PROPERTY(int refusalCount READ refusal_count NOTIFY shown)
+  Q_PROPERTY(QString outcome READ outcome NOTIFY said)
+  Q_PROPERTY(QString outcomeKind READ outcome_kind NOTIFY said)
+  Q_PROPERTY(bool aiming READ aiming WRITE set_aiming NOTIFY aiming_changed)
+  Q_PROPERTY(bool reasonsOpen READ reasons_open WRITE set_reasons_open NOTIFY reasons_open_changed)
+
+ public:
+  static constexpr std::size_t kMaxLog = 500;
+
+  explicit Control(CommandSink& sink, QObject* parent = nullptr);
+
+  // From the station.
+  /// `now`: steady time, s, that never falls.
+  void show(std::shared_ptr<const station::World> world, double now);
+  void show_map(std::shared_ptr<const station::TileMap> map);
+  void show_link(bool connected, double silent_for, const std::string& why);
+  void add_notice(const station::Notice& notice);
+  void add_command(const station::CommandEvent& event);
+  void add_remark(const QString& text);  ///< A line of the log.
+
+  // For the map.
+  const station::World& world() const { return *world_; }
+  const std::shared_ptr<const station::TileMap>& map() const { return map_; }
+  const Trails& trails() const { return trails_; }
+  const std::vector<std::string>& selection() const { return selection_; }
+  double now() const { return now_; }
+  double silent_for() const { return silent_for_; }
+  /// Goals of the robots that would drive if that place was tapped, map frame, m.
+  std::vector<Point> goals_at(const Point& place) const;
+  /// Sends the robots of the selection that would accept it to a place, map frame, m.
+  void go_to(const Point& place);
+
+  // From QML.
+  Q_INVOKABLE void select(const QString& name, bool add);
+  Q_INVOKABLE void trigger(int slot, bool held);
+  Q_INVOKABLE void cure(int row, bool held);
+  Q_INVOKABLE void stopAll();
+  Q_INVOKABLE void restartStation() { sink_.start_station(); }
+  /// A key of the keyboard; `scan` is its place, as Shift turns 1 into another character. True if it means
+  /// something.
+  Q_INVOKABLE bool pressKey(int key, int modifiers, int scan, bool repeated);
+  Q_INVOKABLE bool releaseKey(int key, bool repeated);
+  /// The window has no keyboard any more, so no release will come.
+  Q_INVOKABLE void forgetKeys() { keys_down_.clear(), motion_key_ = 0; }
+
+  QAbstractItemModel* robots() { return &robots_; }
+  QAbstractItemModel* buttons() { return &buttons_; }
+  QAbstractItemModel* refusals() { return &refusals_; }
+  QAbstractItemModel* log() { return &log_; }
+  QString operator_name() const { return QString::fromStdString(world_->station); }
+  QString link() const { return QString::fromStdString(world_->link); }
+  int robot_count() const { return static_cast<int>(world_->robots.size()); }
+  int mine_count() const { return mine_; }
+  int lost_count() const { return lost_; }
+  int stopped_count() const { return stopped_; }
+  QString others() const;
+  QString attention() const { return attention_; }
+  QString stop_text() const;
+  bool silent() const { return silent_for_ > 1.0 || ended_; }
+  bool ended() const { return ended_; }
+  QString silent_text() const;
+  QString selection_text() const;
+  int refusal_count() const;  ///< Actions that some robot of the selection would refuse.
+  QString outcome() const { return outcome_; }
+  QString outcome_kind() const { return outcome_kind_; }
+  bool aiming() const { return aiming_; }
+  void set_aiming(bool aiming);
+  bool reasons_open() const { return reasons_open_; }
+  void set_reasons_open(bool open);
+
+ signals:
+  void shown();  ///< The world, the link or the selection changed.
+  void map_changed();
+  void said();
+  void orders_dropped();  ///< A finger that is down on the map sends nothing any more.
+  void aiming_changed();
+  void reasons_open_changed();
+
+ private:
+  void refresh();
+  void show_cards();
+  void show_bar();
+  void say(const QString& text, const QString& kind);
+  void run(const std::string& line, const std::string& slot);
+  void stop(const std::vector<std::string>& robots);
+  void finished(const std::string& line, const std::string& slot, int batch,
+                const station::CommandOutcome& outcome);
+  /// The next outcomes belong to a new order of the operator.
+  void begin_batch();
+  /// Takes back everything that was begun and not sent.
+  void drop_orders();
+  void set_state(const std::string& slot, const QString& state);
+  void pend(const std::string& line, const std::string& slot);
+  void press_slot(const char* id);
+  void move_selection(int by);
+  QString reason_of(const BarButton& button) const;
+  bool press_letter(int key);
+  void log_row(const QString& kind, const QString& who, const QString& text);
+
+  CommandSink& sink_;
+  std::shared_ptr<const station::World> world_;
+  std::shared_ptr<const station::TileMap> map_;
+  Trails trails_{};
+  double now_{}, first_{-1.0};
+  double silent_for_{0.0};
+  bool ended_{false};
+  std::string why_{};
+
+  std::vector<std::string> selection_{};
+  ActionBar bar_{};
+  std::map<std::string, QString> states_{};  ///< Of buttons: sent, done or refused.
+  RowModel robots_, buttons_, refusals_, log_;
+  qint64 next_row_{1};
+  int mine_{}, lost_{}, stopped_{};
+  QString attention_{};
+
+  int batch_{0};
+  QStringList batch_lines_{};
+  bool batch_refused_{false};
+  QString outcome_{}, outcome_kind_{};
+  QString stop_missing_{};  ///< Robots that did not answer the last stop of all.
+  bool aiming_{false}, reasons_open_{false};
+
+  std::string pending_line_{}, pending_slot_{};  ///< Sent by the Enter key within 3 s.
+  QElapsedTimer pending_since_{};
+  QSet<int> keys_down_{};
+  int motion_key_{0};  ///< Acts when it is released.
+};
+
+}  // namespace adit::gui

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <QObject>
+#include <QTimer>
+#include <memory>
+#include <thread>
+
+#include "basestation/client/station.hpp"
+#include "basestation/gui/bridge/command_sink.hpp"
+
+namespace adit::gui {
+
+class Control;
+
+/// Brings the operator's station and the window together. Everything happens in the window's thread but the
+/// start of a station, which takes a while.
+class QtStation : public QObject, public CommandSink {
+  Q_OBJECT
+
+ public:
+  explicit QtStation(std::unique_ptr<station::client::Station> station);
+  ~QtStation() override;
+
+  /// Shows the station in a window from now on.
+  void show_in(Control& control);
+
+  void execute(const std::string& line, Done done) override;
+  void stop(const std::vector<std::string>& robots, Done done) override;
+  void start_station() override;
+
+ private:
+  void take();
+  void look();
+
+  std::unique_ptr<station::client::Station> station_;
+  Control* control_{};
+  QTimer timer_{};  ///< Notices that the station is silent.
+  QTimer show_{};   ///< Runs while a snapshot waits to be shown: states of many robots come one by one.
+  std::jthread starter_{};
+  bool starting_{false};
+};
+
+}  // namespace adit::gui

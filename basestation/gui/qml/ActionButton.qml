@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+import QtQuick
+import Adit
+
+// A place of the action bar: it fades where its action is not possible, and never moves.
+Rectangle {
+    id: button
+    required property Control control
+    required property int index
+    required property string slot
+    required property string label
+    required property string key
+    required property string hint
+    required property string names
+    required property bool possible
+    required property string touch
+    required property string state_
+    readonly property bool aims: slot === "goto" && control.aiming
+
+    radius: 1 * Theme.mm
+    opacity: possible ? 1 : 0.35
+    color: area.pressed ? Theme.edge : aims ? Theme.goal : Theme.raised
+    border.width: state_ === "" ? 1 : 3
+    border.color: state_ === "sent" ? Theme.goal : state_ === "done" ? Theme.ok : state_ === "refused" ? Theme.bad : Theme.edge
+
+    PlainLabel {
+        x: 1.5 * Theme.mm
+        y: 1 * Theme.mm
+        width: parent.width - 3 * Theme.mm
+        height: 6 * Theme.mm
+        horizontalAlignment: Text.AlignHCenter
+        font.bold: true
+        color: button.aims ? Theme.ink : Theme.text
+        text: (button.state_ === "done" ? "✓ " : button.state_ === "refused" ? "✗ " : "") + button.label + (button.key === "" ? "" : "  " + button.key)
+    }
+    PlainLabel {
+        x: 1 * Theme.mm
+        y: 7 * Theme.mm
+        width: parent.width - 2 * Theme.mm
+        height: 5 * Theme.mm
+        horizontalAlignment: Text.AlignHCenter
+        color: button.aims ? Theme.ink : Theme.dim
+        text: button.touch === "hold" && button.possible ? "hold: " + (button.hint === "" ? button.names : button.hint) : button.hint === "" ? button.names : button.hint
+    }
+    Rectangle {
+        width: parent.width * area.progress
+        height: 1.2 * Theme.mm
+        anchors.bottom: parent.bottom
+        color: Theme.goal
+    }
+    Glyph {
+        visible: area.progress > 0
+        kind: "pie"
+        progress: area.progress
+        colour: Theme.goal
+        anchors.centerIn: parent
+        width: 12 * Theme.mm
+        height: width
+    }
+    PressArea {
+        id: area
+        objectName: "button_" + button.slot
+        anchors.fill: parent
+        holdTime: button.possible && button.touch === "hold" ? 800 : 0
+        meaning: button.label + button.hint + button.names + button.touch
+        onTapped: button.control.trigger(button.index, false)
+        onHeld: button.control.trigger(button.index, true)
+    }
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+import QtQuick
+import Adit
+
+Window {
+    id: window
+    required property Control control
+    readonly property double stopWidth: stop.width + 4 * Theme.mm
+    width: 1280
+    height: 720
+    minimumWidth: 800
+    minimumHeight: 500
+    color: Theme.ground
+    title: "Adit " + control.operatorName
+    onActiveChanged: control.forgetKeys()
+
+    Item {
+        anchors.fill: parent
+        focus: true
+        Keys.onPressed: event => event.accepted = window.control.pressKey(event.key, event.modifiers, event.nativeScanCode, event.isAutoRepeat)
+        Keys.onReleased: event => event.accepted = window.control.releaseKey(event.key, event.isAutoRepeat)
+
+        TopBar {
+            id: top
+            control: window.control
+            width: parent.width - window.stopWidth
+            height: 12 * Theme.mm
+        }
+        AttentionLine {
+            id: attention
+            control: window.control
+            width: top.width
+            anchors.top: top.bottom
+            height: 10 * Theme.mm
+        }
+        StopAll {
+            id: stop
+            control: window.control
+            x: parent.width - width - 2 * Theme.mm
+            y: 1 * Theme.mm
+        }
+        FleetPane {
+            id: fleet
+            control: window.control
+            width: 74 * Theme.mm
+            anchors.top: attention.bottom
+            anchors.bottom: actions.top
+        }
+        MapPane {
+            id: map
+            control: window.control
+            anchors.left: fleet.right
+            anchors.right: parent.right
+            anchors.top: attention.bottom
+            anchors.bottom: actions.top
+        }
+        ReasonList {
+            control: window.control
+            anchors.left: fleet.right
+            anchors.right: parent.right
+            anchors.bottom: actions.top
+        }
+        ActionBar {
+            id: actions
+            control: window.control
+            width: parent.width
+            height: 16 * Theme.mm
+            anchors.bottom: outcome.top
+        }
+        OutcomeRow {
+            id: outcome
+            control: window.control
+            width: parent.width
+            height: 9 * Theme.mm
+            anchors.bottom: log.top
+        }
+        LogTab {
+            id: log
+            control: window.control
+            width: parent.width
+            height: 24 * Theme.mm
+            anchors.bottom: parent.bottom
+        }
+    }
+}

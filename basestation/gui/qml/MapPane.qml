@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+import QtQuick
+import Adit
+
+Rectangle {
+    id: pane
+    required property Control control
+    color: Theme.ground
+    border.width: control.aiming ? 3 : 0
+    border.color: Theme.goal
+
+    MapView {
+        id: map
+        objectName: "map"
+        anchors.fill: parent
+        anchors.margins: pane.border.width
+        control: pane.control
+    }
+    PlainLabel {
+        visible: map.empty
+        anchors.horizontalCenter: parent.horizontalCenter
+        y: 4 * Theme.mm
+        color: Theme.dim
+        text: "no map yet: only what robots report of themselves"
+    }
+    Column {
+        anchors.right: parent.right
+        anchors.top: parent.top
+        anchors.margins: 2 * Theme.mm
+        spacing: 2 * Theme.mm
+        HoldButton {
+            objectName: "fitAll"
+            width: 22 * Theme.mm
+            height: 10 * Theme.mm
+            text: map.fitting ? "● fit all" : "fit all"
+            onFired: map.fitAll()
+        }
+        HoldButton {
+            anchors.right: parent.right
+            width: 10 * Theme.mm
+            height: width
+            text: "+"
+            onFired: map.zoomBy(1.5)
+        }
+        HoldButton {
+            anchors.right: parent.right
+            width: 10 * Theme.mm
+            height: width
+            text: "−"
+            onFired: map.zoomBy(1 / 1.5)
+        }
+    }
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+import QtQuick
+import Adit
+
+// The last outcome, and how many actions are not possible now.
+Rectangle {
+    id: row
+    required property Control control
+    color: Theme.ground
+
+    Rectangle {
+        id: mark
+        x: 3 * Theme.mm
+        width: 1.6 * Theme.mm
+        height: parent.height - 3 * Theme.mm
+        anchors.verticalCenter: parent.verticalCenter
+        color: row.control.outcomeKind === "done" ? Theme.ok : row.control.outcomeKind === "refused" ? Theme.bad : row.control.outcomeKind === "sent" ? Theme.goal : Theme.edge
+    }
+    PlainLabel {
+        objectName: "outcome"
+        anchors.left: mark.right
+        anchors.leftMargin: 2 * Theme.mm
+        anchors.right: toggle.left
+        height: parent.height
+        text: row.control.outcome === "" ? "No command yet. Tap a robot, then an action; press and hold on the map to send it there." : row.control.outcome
+        color: row.control.outcome === "" ? Theme.dim : Theme.text
+    }
+    HoldButton {
+        id: toggle
+        objectName: "notNow"
+        visible: row.control.refusalCount > 0
+        anchors.right: parent.right
+        anchors.rightMargin: 2 * Theme.mm
+        width: 34 * Theme.mm
+        height: parent.height - 1 * Theme.mm
+        anchors.verticalCenter: parent.verticalCenter
+        text: "not now (" + row.control.refusalCount + ") " + (row.control.reasonsOpen ? "▾" : "▴")
+        onFired: row.control.reasonsOpen = !row.control.reasonsOpen
+    }
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace adit::gui {
+
+/// A colour as 0xRRGGBB.
+using Rgb = std::uint32_t;
+
+/// What a mark or a chip says. A colour is never alone: each token has a shape and a word as well.
+enum class Token : std::uint8_t { ok, warn, bad, mine, other, none, goal, text, dim };
+
+/// The hues of Okabe and Ito, which differ for dichromats, too. Both themes use these fills: darkened for the
+/// light theme they would no longer differ; there, each mark has a dark outline instead.
+inline constexpr std::array<Rgb, 7> kTokens{0x009E73, 0xE69F00, 0xD55E00, 0x56B4E9,
+                                            0xCC79A7, 0xF1F3F4, 0xF0E442};
+inline constexpr Rgb kInk = 0x111111;  ///< Text on a fill, and the outline of marks.
+
+/// Grounds and texts of a theme.
+struct Palette {
+  Rgb ground{}, panel{}, raised{}, edge{}, text{}, dim{};
+  Rgb floor{};        ///< Cells of the map with ground.
+  Rgb low{}, high{};  ///< Cells with things: low ones and those of 2.5 m and more.
+};
+inline constexpr Palette kDark{.ground = 0x15181C,
+                               .panel = 0x1E2329,
+                               .raised = 0x2B333B,
+                               .edge = 0x46515B,
+                               .text = 0xF1F3F4,
+                               .dim = 0xAEB7BF,
+                               .floor = 0x29313A,
+                               .low = 0x5C6B7A,
+                               .high = 0x9FB0C0};
+inline constexpr Palette kLight{.ground = 0xF5F6F7,
+                                .panel = 0xFFFFFF,
+                                .raised = 0xE1E5E8,
+                                .edge = 0x9AA4AD,
+                                .text = 0x15181C,
+                                .dim = 0x48525B,
+                                .floor = 0xDFE4E8,
+                                .low = 0x93A0AC,
+                                .high = 0x52606D};
+
+constexpr Rgb colour(Token token, const Palette& palette) {
+  if (token == Token::text) return palette.text;
+  if (token == Token::dim) return palette.dim;
+  return kTokens[static_cast<std::size_t>(token)];
+}
+
+}  // namespace adit::gui

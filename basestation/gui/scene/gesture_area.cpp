@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/scene/gesture_area.hpp"
+
+#include <QMouseEvent>
+#include <QTimerEvent>
+#include <QTouchEvent>
+#include <QWheelEvent>
+#include <algorithm>
+#include <cmath>
+
+namespace adit::gui {
+
+namespace {
+double length(const QPointF& v) { return std::hypot(v.x(), v.y()); }
+}  // namespace
+
+GestureArea::GestureArea(QQuickItem* parent) : QQuickItem(parent) {
+  setAcceptedMouseButtons(Qt::LeftButton | Qt::RightButton);
+  setAcceptTouchEvents(true);
+}
+
+void GestureArea::press(const QPointF& at, bool aim) {
+  start_ = last_ = at;
+  state_ = aim || aiming() ? State::aimed : State::pressed;
+  if (state_ == State::aimed)
+    show_aim(at);
+  else
+    timer_.start(kLongPress, this);
+}
+
+void GestureArea::leave_press() {
+  timer_.stop();
+  if (state_ == State::aimed) drop_aim();
+}
+
+void GestureArea::move(const QPointF& at) {
+  if ((state_ == State::pressed || state_ == State::aimed) && length(at - start_) > slop()) {
+    leave_press();
+    state_ = State::panning;
+  }
+  if (state_ == State::panning) pan(at - last_);
+  last_ = at;
+}
+
+void GestureArea::release(const QPointF& at, bool add) {
+  move(at);  // The last move may come with the release alone.
+  const State was = state_;
+  leave_press();
+  state_ = State::idle;
+  if (was == State::pressed) tap(start_, add);
+  if (was == State::aimed) send_aim(start_);
+}
+
+void GestureArea::drop_press() {
+  leave_press();
+  if (state_ != State::idle) state_ = State::ignored;
+}
+
+void GestureArea::cancel() {
+  leave_press();
+  state_ = State::idle;
+}
+
+void GestureArea::timerEvent(QTimerEvent* event) {
+  if (event->timerId() != timer_.timerId()) return;
+  timer_.stop();
+  if (state_ != State::pressed) return;
+  state_ = State::aimed;
+  show_aim(start_);
+}
+
+void GestureArea::mousePressEvent(QMouseEvent* event) {
+  event->accept();
+  if (state_ != State::idle) return cancel();  // A second button takes back.
+  press(event->position(), event->button() == Qt::RightButton);
+}
+void GestureArea::mouseMoveEvent(QMouseEvent* event) { move(event->position()); }
+void GestureArea::mouseReleaseEvent(QMouseEvent* event) {
+  release(event->position(), event->modifiers().testFlag(Qt::ShiftModifier));
+}
+
+void GestureArea::wheelEvent(QWheelEvent* event) {
+  event->accept();
+  zoom(std::pow(1.2, std::clamp(event->angleDelta().y() / 120.0, -5.0, 5.0)), event->position());
+}
+
+void GestureArea::pinch(const QPointF& first, const QPointF& second) {
+  const QPointF middle = (first + second) / 2;
+  const double spread = std::max(length(first - second), 1.0);
+  if (state_ != State::pinching) {
+    leave_press();
+    state_ = State::pinching;
+  } else {
+    pan(middle - last_);
+    zoom(std::clamp(spread / spread_, 0.2, 5.0), middle);
+  }
+  last_ = middle;
+  spread_ = spread;
+}
+
+void GestureArea::touchEvent(QTouchEvent* event) {
+  if (event->type() == QEvent::TouchCancel) return cancel();
+  event->accept();
+  QList<QPointF> down;
+  for (const QEventPoint& point : event->points())
+    if (point.state() != QEventPoint::Released) down.push_back(point.position());
+  if (down.empty()) {
+    if (state_ == State::pinching || state_ == State::ignored || event->points().empty())
+      cancel();
+    else
+      release(event->points().front().position(), event->modifiers().testFlag(Qt::ShiftModifier));
+    return;
+  }
+  if (down.size() > 2) {
+    leave_press();
+    state_ = State::ignored;
+  }
+  if (state_ == State::ignored) return;
+  if (down.size() == 2) return pinch(down[0], down[1]);
+  if (state_ == State::pinching) {  // One finger stays: it goes on to pan.
+    state_ = State::panning;
+    last_ = down[0];
+  } else if (state_ == State::idle) {
+    press(down[0], false);
+  } else {
+    move(down[0]);
+  }
+}
+
+}  // namespace adit::gui

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <QBasicTimer>
+#include <QQuickItem>
+
+namespace adit::gui {
+
+/// Recognises what fingers and the mouse do on the map, from raw events: Qt 6.4's handlers lose fingers of
+/// several, and a Flickable around the map would take them. A third finger is a palm: everything is ignored
+/// until all are up.
+class GestureArea : public QQuickItem {
+  Q_OBJECT
+
+ public:
+  static constexpr int kLongPress = 600;  ///< Time until a press means a place to drive to, ms.
+  static constexpr double kSlopMm = 3.0;  ///< A finger that moves less has not moved.
+
+  explicit GestureArea(QQuickItem* parent = nullptr);
+
+ protected:
+  /// Whether a tap means a place to drive to.
+  virtual bool aiming() const = 0;
+  virtual double slop() const = 0;  ///< Pixels.
+  virtual void tap(const QPointF& at, bool add) = 0;
+  virtual void show_aim(const QPointF& at) = 0;  ///< The place that would be sent.
+  virtual void drop_aim() = 0;
+  virtual void send_aim(const QPointF& at) = 0;
+  virtual void pan(const QPointF& by) = 0;
+  virtual void zoom(double factor, const QPointF& about) = 0;
+
+  /// Takes back what a finger that is down would do when it is lifted.
+  void drop_press();
+  bool busy() const { return state_ != State::idle; }  ///< A finger or a button is down.
+
+  void mousePressEvent(QMouseEvent* event) override;
+  void mouseMoveEvent(QMouseEvent* event) override;
+  void mouseReleaseEvent(QMouseEvent* event) override;
+  void mouseUngrabEvent() override { cancel(); }
+  void wheelEvent(QWheelEvent* event) override;
+  void touchEvent(QTouchEvent* event) override;
+  void touchUngrabEvent() override { cancel(); }
+  void timerEvent(QTimerEvent* event) override;
+
+ private:
+  enum class State : std::uint8_t { idle, pressed, aimed, panning, pinching, ignored };
+
+  void press(const QPointF& at, bool aim);
+  void move(const QPointF& at);
+  void release(const QPointF& at, bool add);
+  void cancel();
+  void pinch(const QPointF& first, const QPointF& second);
+  void leave_press();
+
+  State state_{State::idle};
+  QBasicTimer timer_{};
+  QPointF start_{}, last_{};
+  double spread_{};  ///< Distance between two fingers, pixels.
+};
+
+}  // namespace adit::gui

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/scene/map_item_2d.hpp"
+
+#include <QPainter>
+#include <algorithm>
+#include <cmath>
+
+#include "basestation/gui/scene/mark_list.hpp"
+#include "basestation/gui/scene/theme.hpp"
+
+namespace adit::gui {
+namespace {
+
+using station::MapTile;
+
+constexpr double kHigh = 2.5;  // Height from which things have the last colour, m.
+
+Rgb mix(Rgb a, Rgb b, double share) {
+  Rgb out = 0;
+  for (const int shift : {0, 8, 16}) {
+    const double low = (a >> shift) & 0xFFU, high = (b >> shift) & 0xFFU;
+    out |= static_cast<Rgb>(std::lround(low + share * (high - low))) << shift;
+  }
+  return out;
+}
+
+}  // namespace
+
+QImage image_of(const MapTile& tile, double resolution, const Palette& palette) {
+  constexpr int kSide = MapTile::kSide;
+  QImage image(kSide, kSide, QImage::Format_ARGB32_Premultiplied);
+  image.fill(Qt::transparent);
+  if (tile.cells.size() != static_cast<std::size_t>(kSide) * kSide) return image;
+  std::array<QRgb, 256> colours{};
+  colours[MapTile::kGround] = 0xFF000000U | palette.floor;
+  for (std::size_t n = MapTile::kThing; n < colours.size(); ++n) {
+    const double height = static_cast<double>(n - 1) * resolution;
+    colours[n] = 0xFF000000U | mix(palette.low, palette.high, std::clamp(height / kHigh, 0.0, 1.0));
+  }
+  for (int row = 0; row < kSide; ++row) {
+    const std::uint8_t* cells = tile.cells.data() + static_cast<std::ptrdiff_t>(row) * kSide;
+    QRgb* line =
+        reinterpret_cast<QRgb*>(image.scanLine(kSide - 1 - row));  // The first row is the southernmost.
+    for (int column = 0; column < kSide; ++column) line[column] = colours[cells[column]];
+  }
+  return image;
+}
+
+MapItem2D::MapItem2D(QQuickItem* parent) : QQuickPaintedItem(parent) {
+  connect(&Theme::instance(), &Theme::changed, this, [this] { update(); });
+}
+
+void MapItem2D::show(std::shared_ptr<const station::TileMap> map) {
+  map_ = std::move(map);
+  update();
+}
+
+void MapItem2D::look(const Camera& camera) {
+  camera_ = camera;
+  update();
+}
+
+void MapItem2D::draw_grid(QPainter& painter) const {
+  const double step = bar_length(camera_.scale, 160.0);
+  if (step * camera_.scale < 8.0) return;
+  QColor colour = Theme::instance().edge();
+  colour.setAlphaF(0.35F);
+  painter.setPen(QPen(colour, 1.0));
+  const Point low = camera_.to_map(0, camera_.height), high = camera_.to_map(camera_.width, 0);
+  for (double x = std::ceil(low.x / step) * step; x < high.x; x += step) {
+    const double at = std::round(camera_.to_screen(x, 0).x) + 0.5;
+    painter.drawLine(QPointF(at, 0), QPointF(at, camera_.height));
+  }
+  for (double y = std::ceil(low.y / step) * step; y < high.y; y += step) {
+    const double at = std::round(camera_.to_screen(0, y).y) + 0.5;
+    painter.drawLine(QPointF(0, at), QPointF(camera_.width, at));
+  }
+}
+
+void MapItem2D::paint(QPainter* painter) {
+  const Theme& theme = Theme::instance();
+  painter->fillRect(QRectF(0, 0, width(), height()), theme.ground());
+  if (light_ != theme.light()) pictures_.clear();
+  light_ = theme.light();
+  const double side = map_ ? MapTile::kSide * map_->resolution : 0.0;
+  if (side > 0.0 && side < 1e4) {
+    painter->setRenderHint(QPainter::SmoothPixmapTransform, camera_.scale * map_->resolution < 1.0);
+    for (const auto& [place, tile] : map_->tiles) {
+      // Edges are rounded to pixels, so that neighbours leave no gap.
+      const Point low = camera_.to_screen(place.first * side, place.second * side);
+      const Point high = camera_.to_screen((place.first + 1) * side, (place.second + 1) * side);
+      const QRectF target(QPointF(std::round(low.x), std::round(high.y)),
+                          QPointF(std::round(high.x), std::round(low.y)));
+      if (!target.intersects(QRectF(0, 0, width(), height()))) continue;
+      Picture& picture = pictures_[place];
+      if (picture.tile != tile) picture = {tile, image_of(*tile, map_->resolution, theme.palette())};
+      painter->drawImage(target, picture.image);
+    }
+  }
+  draw_grid(*painter);
+}
+
+}  // namespace adit::gui

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/scene/map_view.hpp"
+
+#include <algorithm>
+
+#include "basestation/gui/scene/theme.hpp"
+
+namespace adit::gui {
+
+MapView::MapView(QQuickItem* parent)
+    : GestureArea(parent), map_(new MapItem2D(this)), marks_(new MarkPainter(this)) {
+  setClip(true);
+}
+
+void MapView::set_control(Control* control) {
+  if (control == control_) return;
+  if (control_) control_->disconnect(this);
+  control_ = control;
+  if (control_) {
+    connect(control_, &Control::shown, this, &MapView::refresh);
+    connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
+    connect(control_, &Control::map_changed, this, [this] {
+      map_->show(control_->map());
+      if (fitting_ && !busy()) fit(false);
+      emit content_changed();
+    });
+    map_->show(control_->map());
+  }
+  emit control_changed();
+  emit content_changed();
+  refresh();
+}
+
+bool MapView::empty() const { return !control_ || control_->map()->tiles.empty(); }
+
+void MapView::geometryChange(const QRectF& now, const QRectF& before) {
+  GestureArea::geometryChange(now, before);
+  map_->setSize(now.size());
+  marks_->setSize(now.size());
+  camera_.width = now.width();
+  camera_.height = now.height();
+  if (fitting_) fit(true);
+  refresh_camera();
+}
+
+double MapView::slop() const { return kSlopMm * Theme::instance().mm(); }
+
+void MapView::refresh() {
+  if (!control_) return;
+  if (fitting_ && !busy() && !aiming()) fit(false);
+  marks_->show(marks_of({.world = &control_->world(),
+                         .trails = &control_->trails(),
+                         .camera = camera_,
+                         .selection = control_->selection(),
+                         .ghosts = ghosts_,
+                         .now = control_->now(),
+                         .silent = control_->silent_for(),
+                         .mm = Theme::instance().mm()}),
+               camera_);
+}
+
+void MapView::refresh_camera() {
+  map_->look(camera_);
+  refresh();
+}
+
+void MapView::set_fitting(bool fitting) {
+  if (fitting == fitting_) return;
+  fitting_ = fitting;
+  emit fitting_changed();
+}
+
+void MapView::fit(bool at_once) {
+  if (!control_ || camera_.width < 10) return;
+  Point low{1e9, 1e9}, high{-1e9, -1e9};
+  const auto add = [&](double x, double y) {
+    if (!drawable(x, y)) return;
+    low = {std::min(low.x, x), std::min(low.y, y)};
+    high = {std::max(high.x, x), std::max(high.y, y)};
+  };
+  for (const station::Robot& robot : control_->world().robots)
+    if (robot.located) add(robot.x, robot.y);
+  for (const station::StationSummary& station : control_->world().stations)
+    if (station.place) add((*station.place)[0], (*station.place)[1]);
+  const station::TileMap& map = *control_->map();
+  for (const auto& [place, tile] : map.tiles) {
+    // The cells that are known, to an eighth of the tile.
+    constexpr int kSide = station::MapTile::kSide, kStep = kSide / 8;
+    if (tile->cells.size() != static_cast<std::size_t>(kSide) * kSide) continue;
+    for (int row = 0; row < kSide; row += 4)
+      for (int column = 0; column < kSide; column += 4) {
+        if (tile->cells[static_cast<std::size_t>(row * kSide + column)] == station::MapTile::kUnknown)
+          continue;
+        const double x = place.first * kSide + column / kStep * kStep,
+                     y = place.second * kSide + row / kStep * kStep;
+        add(x * map.resolution, y * map.resolution);
+        add((x + kStep) * map.resolution, (y + kStep) * map.resolution);
+      }
+  }
+  if (low.x > high.x) return;
+  if (!at_once && camera_.shows(low) && camera_.shows(high)) return;
+  Camera next = camera_;
+  next.fit(low, high, 12.0 * Theme::instance().mm());
+  camera_ = next;
+  map_->look(camera_);
+}
+
+void MapView::fitAll() {
+  set_fitting(true);
+  fit(true);
+  refresh_camera();
+}
+
+void MapView::zoomBy(double factor) { zoom(factor, {width() / 2, height() / 2}); }
+
+void MapView::tap(const QPointF& at, bool add) {
+  const std::string robot = marks_->marks().robot_at(at.x(), at.y());
+  if (control_ && !robot.empty()) control_->select(QString::fromStdString(robot), add);
+}
+
+void MapView::show_aim(const QPointF& at) {
+  if (control_) ghosts_ = control_->goals_at(camera_.to_map(at.x(), at.y()));
+  refresh();
+}
+
+void MapView::drop_aim() {
+  ghosts_.clear();
+  refresh();
+}
+
+void MapView::send_aim(const QPointF& at) {
+  if (control_) control_->go_to(camera_.to_map(at.x(), at.y()));
+}
+
+void MapView::pan(const QPointF& by) {
+  set_fitting(false);
+  camera_.pan(by.x(), by.y());
+  refresh_camera();
+}
+
+void MapView::zoom(double factor, const QPointF& about) {
+  set_fitting(false);
+  camera_.zoom(factor, about.x(), about.y());
+  refresh_camera();
+}
+
+}  // namespace adit::gui

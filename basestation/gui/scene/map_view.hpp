@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <QtQml/qqmlregistration.h>
+
+#include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/scene/gesture_area.hpp"
+#include "basestation/gui/scene/map_item_2d.hpp"
+#include "basestation/gui/scene/mark_painter.hpp"
+
+namespace adit::gui {
+
+/// The map from above with all marks, and what fingers do on it.
+class MapView : public GestureArea {
+  Q_OBJECT
+  QML_ELEMENT
+  Q_PROPERTY(adit::gui::Control* control READ control WRITE set_control NOTIFY control_changed)
+  /// Whether the view is adjusted so that all robots and the map stay in it; ends when the operator moves it.
+  Q_PROPERTY(bool fitting READ fitting NOTIFY fitting_changed)
+  Q_PROPERTY(bool empty READ empty NOTIFY content_changed)
+
+ public:
+  explicit MapView(QQuickItem* parent = nullptr);
+
+  Control* control() const { return control_; }
+  void set_control(Control* control);
+  bool fitting() const { return fitting_; }
+  bool empty() const;  ///< There is no map yet.
+  const Camera& camera() const { return camera_; }
+  const MarkList& marks() const { return marks_->marks(); }
+
+  Q_INVOKABLE void fitAll();
+  Q_INVOKABLE void zoomBy(double factor);
+
+ signals:
+  void control_changed();
+  void fitting_changed();
+  void content_changed();
+
+ protected:
+  void geometryChange(const QRectF& now, const QRectF& before) override;
+  bool aiming() const override { return control_ && control_->aiming(); }
+  double slop() const override;
+  void tap(const QPointF& at, bool add) override;
+  void show_aim(const QPointF& at) override;
+  void drop_aim() override;
+  void send_aim(const QPointF& at) override;
+  void pan(const QPointF& by) override;
+  void zoom(double factor, const QPointF& about) override;
+
+ private:
+  void refresh();         ///< The marks.
+  void refresh_camera();  ///< The map and the marks.
+  void set_fitting(bool fitting);
+  /// Adjusts the view if something is outside of it, or at once.
+  void fit(bool at_once);
+
+  Control* control_{};
+  MapItem2D* map_{};
+  MarkPainter* marks_{};
+  Camera camera_{};
+  bool fitting_{true};
+  std::vector<Point> ghosts_{};
+};
+
+}  // namespace adit::gui

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <QQmlEngine>
+#include <QQuickWindow>
+#include <memory>
+
+namespace adit::gui {
+
+class Control;
+
+/// The operator's window: the files of qml/ with a control.
+class OperatorWindow {
+ public:
+  explicit OperatorWindow(Control& control);
+  /// Null if the files could not be loaded; the reasons are in the log of QML.
+  QQuickWindow* window() const { return window_.get(); }
+
+ private:
+  QQmlEngine engine_{};
+  std::unique_ptr<QQuickWindow> window_{};
+};
+
+}  // namespace adit::gui

@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/host/server.hpp"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "basestation/host/snapshot.hpp"
+#include "basestation/model/exit_code.hpp"
+#include "basestation/model/json.hpp"
+#include "basestation/model/json_reader.hpp"
+#include "core/command/parse.hpp"
+#include "core/command/words.hpp"
+
+namespace adit::station::host {
+namespace {
+
+using nlohmann::json;
+using namespace std::chrono_literals;
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kSnapshotPeriodMs = 200;
+constexpr int kPendingMs = 20;
+constexpr auto kChangePeriod = 20ms, kMotionPeriod = 100ms;  // Shortest time between two differences.
+constexpr auto kSignOfLife = 400ms;  // Longest: a client counts a station silent that says nothing for 1 s.
+constexpr const char* kUnreadText = "the program did not read what the station answered";
+constexpr std::size_t kMaxTiles = 3;        // In one answer: a tile takes up to 0.1 MB as text.
+constexpr std::size_t kMaxEventText = 400;  // Length of an outcome's text in the event for the other clients.
+
+/// The outcome of a request that was not begun.
+json busy(const std::string& why) {
+  const json script{
+      {"exit", kExitRefused}, {"ok", false}, {"reason", name(Reason::queue_full)}, {"error", why}};
+  return outcome_json(kExitRefused, "", why + "\n", script);
+}
+
+/// Whether the peer is the user who runs the station, or root.
+bool allowed(int fd) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0) return false;
+  return peer.uid == ::geteuid() || peer.uid == 0;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Server>> Server::open(const std::string& folder, const std::string& name) {
+  std::unique_ptr<Server> server(new Server);
+  server->path_ = folder + "/" + name + ".sock";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (server->path_.size() >= sizeof address.sun_path)
+    return {Reason::cannot_write,
+            "the path " + server->path_ + " is too long for a socket; set XDG_RUNTIME_DIR"};
+  std::memcpy(address.sun_path, server->path_.c_str(), server->path_.size() + 1);
+
+  // The lock ends with the process in any case; the socket's file remains.
+  const std::string lock = folder + "/" + name + ".lock";
+  server->lock_.reset(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
+  if (!server->lock_) return {Reason::cannot_write, "cannot write " + lock + ": " + std::strerror(errno)};
+  if (::flock(server->lock_.get(), LOCK_EX | LOCK_NB) != 0)
+    return {Reason::in_use, "a station named " + name + " is running already"};
+  ::unlink(server->path_.c_str());
+
+  server->listener_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const mode_t mask = ::umask(0177);
+  const bool bound =
+      server->listener_ &&
+      ::bind(server->listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const int error = errno;
+  ::umask(mask);
+  if (!bound || ::listen(server->listener_.get(), 16) != 0)
+    return {Reason::cannot_write,
+            "cannot listen at " + server->path_ + ": " + std::strerror(bound ? errno : error)};
+  server->wake_.reset(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (!server->wake_) return {Reason::internal, std::string("no eventfd: ") + std::strerror(errno)};
+  return server;
+}
+
+Server::~Server() {
+  if (listener_) ::unlink(path_.c_str());
+}
+
+void Server::wake() {
+  const std::uint64_t one = 1;
+  (void)!::write(wake_.get(), &one, sizeof one);  // If the counter is full, the thread wakes anyway.
+}
+
+void Server::hand_over(Reply reply) {
+  {
+    const std::lock_guard guard(mutex_);
+    // The number of answers is bounded by the open requests.
+    if (reply.kind != Reply::Kind::answer && handed_over_ == kMaxHandedOver) {
+      ++lost_;
+    } else {
+      handed_over_ += reply.kind == Reply::Kind::answer ? 0 : 1;
+      replies_.push_back(std::move(reply));
+    }
+  }
+  wake();
+}
+
+void Server::end() {
+  ending_ = true;
+  wake();
+}
+
+void Server::notify(const Notice& notice) {
+  hand_over({Reply::Kind::notice, 0, {{"notice", json_of(notice)}}});
+}
+
+void Server::accept_client() {
+  client::File file(::accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+  if (!file || !allowed(file.get())) return;
+  client::LineSocket socket(std::move(file));
+  if (clients_.size() >= kMaxClients) {
+    const auto leaving =
+        std::find_if(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.cut_off; });
+    if (leaving == clients_.end()) {
+      socket.send_line(line_of(
+          {{"cut_off", std::to_string(kMaxClients) + " programs are connected to the station already"}}));
+      return;
+    }
+    drop(leaving->first);
+  }
+  Client& client = clients_[next_client_++];
+  client.pid = socket.peer_pid();
+  client.socket = std::move(socket);
+}
+
+void Server::cancel_all(Client& client) {
+  // The requests of a client end even if the strand's queue is full.
+  for (const auto& [id, handle] : std::exchange(client.open, {}))
+    strand_->post_control([station = station_, h = handle] { station->cancel(*h); });
+}
+
+void Server::drop(std::uint64_t number) {
+  const auto found = clients_.find(number);
+  if (found == clients_.end()) return;
+  cancel_all(found->second);
+  if (found->second.follows) --followers_;
+  clients_.erase(found);
+}
+
+void Server::cut_off(Client& client, const std::string& why) {
+  if (client.cut_off) return;
+  client.cut_off = true;
+  cancel_all(client);
+  client.socket.stop_reading();
+  client.outbox.clear();
+  (void)client.outbox.reply(line_of({{"cut_off", why}}));
+}
+
+bool Server::push(Client& client) {
+  if (!client.socket.flush()) return false;
+  while (!client.socket.has_backlog()) {
+    const auto line = client.outbox.next(client.socket.is_read());
+    if (!line) return !client.cut_off;
+    if (!client.socket.send_line(*line)) return false;
+  }
+  return true;
+}
+
+void Server::begin(std::uint64_t number, Client& client, std::int64_t id, const json& request) {
+  const auto handle = std::make_shared<std::uint64_t>(0);
+  client.open[id] = handle;
+  const auto text = [&](const char* key) {
+    const auto found = request.find(key);
+    return found != request.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  const std::string line = text("do");
+  const std::string robot = text("teleop");
+  const auto answer = [this, number, id](const Outcome& outcome) {
+    const json ended = outcome_json(outcome.exit_code, outcome.text, outcome.error, outcome.json);
+    hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", ended}}});
+  };
+  const bool posted = strand_->post([this, number, id, line, robot, handle, front_end = client.front_end,
+                                     pid = client.pid, answer] {
+    const auto parsed = command::parse(line);
+    const CommandEvent event{.id = ++last_command_,
+                             .line = (robot.empty() ? line : "teleop " + robot).substr(0, kMaxEventText),
+                             .query = robot.empty() && parsed && parsed->info->runs == command::Runs::query,
+                             .front_end = front_end,
+                             .pid = pid};
+    const auto done = [this, number, event, answer](const Outcome& outcome) {
+      answer(outcome);
+      CommandEvent ended = event;
+      ended.ended = true;
+      ended.exit_code = outcome.exit_code;
+      ended.text = outcome.text.substr(0, kMaxEventText);
+      ended.error = outcome.error.substr(0, kMaxEventText);
+      hand_over({Reply::Kind::event, number, json_of(ended)});
+    };
+    hand_over({Reply::Kind::answer, number, {{"id", id}, {"begun", true}}});
+    hand_over({Reply::Kind::event, number, json_of(event)});
+    *handle = robot.empty() ? station_->execute(line, done) : station_->teleop(robot, done);
+  });
+  if (posted) return;
+  hand_over({Reply::Kind::answer, number, {{"id", id}, {"outcome", busy("the station has too much to do")}}});
+}
+
+void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
+  std::uint64_t run = 0, revision = 0;
+  std::string misfit;
+  JsonReader in(wanted, misfit);
+  in.read("run", run);
+  in.read("revision", revision);
+  if (!misfit.empty()) {
+    if (!client.outbox.reply(line_of({{"wrong", "the map's '" + misfit + "' does not fit"}})))
+      cut_off(client, kUnreadText);
+    return;
+  }
+  if (run != run_) revision = 0;  // Revisions of an earlier run mean nothing.
+  client.map_asked = strand_->post([this, number, revision] {
+    station_->map_since(revision, kMaxTiles, [this, number](MapUpdate update, bool more) {
+      update.run = run_;
+      hand_over({Reply::Kind::answer, number, {{"map", json_of(update)}, {"more", more}}});
+    });
+  });
+  if (!client.map_asked && !client.outbox.reply(line_of({{"wrong", "the station has too much to do"}})))
+    cut_off(client, kUnreadText);
+}
+
+void Server::handle(std::uint64_t number, Client& client, const std::string& line) {
+  const json request = json::parse(line, nullptr, false);
+  const auto answer = [&](const json& object) {
+    if (!client.outbox.reply(line_of(object))) cut_off(client, kUnreadText);
+  };
+  const auto wrong = [&](const char* text) { answer({{"wrong", text}}); };
+  if (!request.is_object()) return wrong("a JSON object was expected");
+  const auto integer = [&](const char* key) -> std::int64_t {
+    const auto found = request.find(key);
+    return found != request.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
+  };
+  if (request.contains("hello")) return answer({{"hello", hello_}});
+  if (request.contains("watch")) return void(client.watches = true);
+  if (request.contains("follow")) {
+    if (!std::exchange(client.follows, true) && followers_++ == 0) {
+      newest_.reset();  // It was not followed for a while and is old.
+      newest_world_.reset();
+    }
+    client.sent.reset();  // It gets the whole state, also if it asks again.
+    return ask_change();
+  }
+  if (request.contains("notices")) return void(client.notices = true);
+  if (const auto name = request.find("front_end"); name != request.end()) {
+    if (!name->is_string() || !command::valid_name(name->get<std::string>()))
+      return wrong("a front end has a name of 1 to 32 of A-Z a-z 0-9 _ -");
+    client.front_end = name->get<std::string>();
+    return;
+  }
+  if (const auto map = request.find("map"); map != request.end()) {
+    if (client.map_asked) return wrong("the map was asked for already");
+    return ask_map(number, client, *map);
+  }
+  if (request.contains("cancel")) {
+    const auto found = client.open.find(integer("cancel"));
+    if (found != client.open.end())
+      strand_->post_control([station = station_, h = found->second] { station->cancel(*h); });
+    return;
+  }
+  const std::int64_t id = integer("id");
+  if (id <= 0) return wrong("an id above 0 was expected");
+  if (const auto stick = request.find("stick"); stick != request.end()) {
+    const bool numbers =
+        stick->is_array() && stick->size() == 3 &&
+        std::all_of(stick->begin(), stick->end(), [](const json& v) { return v.is_number(); });
+    if (!numbers) return wrong("a stick has three numbers");
+    const auto axis = [&](std::size_t i) { return std::clamp((*stick)[i].get<double>(), -20.0, 20.0); };
+    const StickVelocity velocity{axis(0), axis(1), axis(2)};
+    const auto found = client.open.find(id);
+    if (found != client.open.end())
+      strand_->post([station = station_, h = found->second, velocity] { station->stick(*h, velocity); });
+    return;
+  }
+  const auto text = [&](const char* key) {
+    const auto found = request.find(key);
+    return found != request.end() && found->is_string();
+  };
+  if (!text("do") && !text("teleop")) return wrong("no request that this version knows");
+  if (text("teleop") && !command::valid_name(request["teleop"].get<std::string>()))
+    return wrong("teleop wants a robot's name");
+  if (client.open.contains(id)) return wrong("the id is in use");
+  if (client.open.size() >= kMaxOpen)
+    return answer({{"id", id}, {"outcome", busy("this program asks for too much at once")}});
+  begin(number, client, id, request);
+}
+
+void Server::deliver(const Reply& reply) {
+  const std::string text = reply.kind == Reply::Kind::event ? "" : line_of(reply.object);
+  if (reply.kind == Reply::Kind::answer) {
+    const auto found = clients_.find(reply.client);
+    if (found == clients_.end() || found->second.cut_off) return;
+    Client& client = found->second;
+    if (reply.object.contains("map")) client.map_asked = false;
+    if (reply.object.contains("outcome")) client.open.erase(reply.object.value("id", std::int64_t{0}));
+    if (!client.outbox.reply(text)) cut_off(client, kUnreadText);
+    return;
+  }
+  for (auto& [number, client] : clients_) {
+    if (client.cut_off) continue;
+    if (reply.kind == Reply::Kind::notice) {
+      if (client.notices) client.outbox.event(text);
+      continue;
+    }
+    json event = reply.object;
+    event["mine"] = number == reply.client;
+    client.outbox.event(line_of(event));
+  }
+}
+
+void Server::deliver() {
+  std::vector<Reply> replies;
+  std::optional<World> snapshot, changed;
+  std::size_t lost = 0;
+  {
+    const std::lock_guard guard(mutex_);
+    replies.swap(replies_);
+    snapshot.swap(snapshot_);
+    changed.swap(changed_);
+    handed_over_ = 0;
+    lost = std::exchange(lost_, 0);
+  }
+  for (const Reply& next : replies) deliver(next);
+  const std::string text = snapshot ? line_of({{"snapshot", json_of(*snapshot)}}) : "";
+  if (snapshot) snapshot_asked_ = false;
+  if (changed) {
+    newest_ = std::make_shared<const EncodedWorld>(encoded(*changed));
+    newest_world_ = std::move(changed);
+  }
+  for (auto& [number, client] : clients_) {
+    if (client.cut_off) continue;
+    if (lost > 0) client.outbox.lost(lost);
+    if (snapshot && client.watches) client.outbox.snapshot(text);
+  }
+}
+
+void Server::changed(const Station& station) {
+  if (followers_ == 0) return;
+  World world = world_of(station);
+  {
+    const std::lock_guard guard(mutex_);
+    changed_ = std::move(world);
+  }
+  wake();
+}
+
+void Server::ask_change() {
+  strand_->post([this] { changed(*station_); });
+}
+
+bool Server::follow(Client& client, Clock::time_point now) {
+  if (!client.follows || client.cut_off || !newest_ || client.sent == newest_) return false;
+  if (!client.sent) {
+    if (!client.outbox.reply(line_of({{"world", json_of(*newest_world_)}}))) cut_off(client, kUnreadText);
+    client.sent = newest_;
+    client.sent_at = now;
+    return false;
+  }
+  // A client that does not read gets one difference later, not many.
+  const auto since = now - client.sent_at;
+  if (since < kChangePeriod || !client.outbox.empty() || !client.socket.is_read()) return true;
+  const Delta delta = difference(*client.sent, *newest_);
+  if (delta.urgency == Urgency::none && since < kSignOfLife) {
+    client.sent = newest_;  // Nothing differs between the two.
+    return false;
+  }
+  if (delta.urgency == Urgency::motion && since < kMotionPeriod) return true;
+  if (!client.outbox.reply(line_of({{"delta", delta.json}}))) cut_off(client, kUnreadText);
+  client.sent = newest_;
+  client.sent_at = now;
+  return false;
+}
+
+void Server::ask_snapshot() {
+  const bool wanted =
+      std::any_of(clients_.begin(), clients_.end(), [](const auto& c) { return c.second.watches; });
+  if (!wanted || snapshot_asked_) return;
+  snapshot_asked_ = strand_->post([this] {
+    World snapshot = world_of(*station_);
+    {
+      const std::lock_guard guard(mutex_);
+      snapshot_ = std::move(snapshot);
+    }
+    wake();
+  });
+}
+
+void Server::read(std::uint64_t number, Client& client) {
+  const bool open = client.socket.pump();
+  // Requests in the last bytes of a client that closed the connection are still executed.
+  for (auto line = client.socket.line(); line && !client.cut_off; line = client.socket.line())
+    handle(number, client, *line);
+  if (!open) drop(number);
+}
+
+void Server::serve(Station& station, Executor& strand, const json& hello, int stop_fd) {
+  station_ = &station;
+  strand_ = &strand;
+  hello_ = hello;
+  run_ = static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+  auto next_snapshot = Clock::now(), next_sign = Clock::now();
+  bool pending = false;  // A client that follows is to receive something soon.
+  while (!ending_) {
+    std::vector<pollfd> fds{{stop_fd, POLLIN, 0}, {wake_.get(), POLLIN, 0}, {listener_.get(), POLLIN, 0}};
+    std::vector<std::uint64_t> numbers;
+    bool watched = false;
+    for (const auto& [number, client] : clients_) {
+      const short events =
+          static_cast<short>((client.cut_off ? 0 : POLLIN) | (client.socket.has_backlog() ? POLLOUT : 0));
+      fds.push_back({client.socket.fd(), events, 0});
+      numbers.push_back(number);
+      watched = watched || client.watches;
+    }
+    const int limit = pending ? kPendingMs : watched || followers_ > 0 ? kSnapshotPeriodMs : -1;
+    if (::poll(fds.data(), fds.size(), limit) < 0 && errno != EINTR) return;
+    if (fds[0].revents != 0) return;
+    if (fds[1].revents != 0) {
+      std::uint64_t count = 0;
+      (void)!::read(wake_.get(), &count, sizeof count);
+      deliver();
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      const auto found = clients_.find(numbers[i]);
+      if (found == clients_.end() || (fds[i + 3].revents & ~POLLOUT) == 0) continue;
+      if (found->second.cut_off)
+        drop(numbers[i]);  // It disconnected.
+      else
+        read(numbers[i], found->second);
+    }
+    if (fds[2].revents != 0) accept_client();
+    const auto now = Clock::now();
+    pending = false;
+    for (auto& [number, client] : clients_) pending = follow(client, now) || pending;
+    std::vector<std::uint64_t> gone;
+    for (auto& [number, client] : clients_)
+      if (!push(client)) gone.push_back(number);
+    for (const std::uint64_t number : gone) drop(number);
+    if (now >= next_snapshot) {
+      ask_snapshot();
+      next_snapshot = now + std::chrono::milliseconds(kSnapshotPeriodMs - 10);
+    }
+    if (followers_ > 0 && now >= next_sign) {
+      ask_change();
+      next_sign = now + kSignOfLife;
+    }
+  }
+  // Sends the last answers to clients that still read.
+  deliver();
+  for (auto& [number, client] : clients_) {
+    pollfd writable{client.socket.fd(), POLLOUT, 0};
+    for (int i = 0; i < 10 && push(client) && client.socket.has_backlog(); ++i)
+      if (::poll(&writable, 1, 20) < 0) break;
+  }
+}
+
+}  // namespace adit::station::host

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/input/gamepad.hpp"
+
+namespace adit::station::input {
+
+// Built instead of gamepad.cpp if SDL2's headers are missing: a controller is never available.
+struct Gamepad::Sdl {};
+
+Gamepad::Gamepad() = default;
+Gamepad::~Gamepad() = default;
+Gamepad::State Gamepad::read() { return {}; }
+std::string Gamepad::name() const { return "none (built without SDL2)"; }
+
+}  // namespace adit::station::input

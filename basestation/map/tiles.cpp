@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/map/tiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace adit::station {
+namespace {
+
+constexpr std::size_t kCells = std::size_t{MapTile::kSide} * MapTile::kSide;
+
+std::uint8_t code_of(const TopView::Cell& cell) {
+  switch (cell.kind) {
+    case TopView::Kind::unknown:
+      return MapTile::kUnknown;
+    case TopView::Kind::ground:
+      return MapTile::kGround;
+    case TopView::Kind::low:
+    case TopView::Kind::high:
+      break;
+  }
+  return static_cast<std::uint8_t>(std::min(255, MapTile::kThing + std::max<int>(cell.height, 1) - 1));
+}
+
+/// Quotient rounded down.
+int tile_of(int cell) {
+  return cell >= 0 ? cell / MapTile::kSide : -((-cell + MapTile::kSide - 1) / MapTile::kSide);
+}
+
+}  // namespace
+
+std::vector<MapTile> tiles_of(const TopView& view) {
+  std::map<std::pair<int, int>, MapTile> tiles;
+  // Tiles lie on one grid over the map frame, however far the view reaches.
+  const int x0 = static_cast<int>(std::lround(view.low().x() / view.resolution()));
+  const int y0 = static_cast<int>(std::lround(view.low().y() / view.resolution()));
+  for (int y = 0; y < view.ny(); ++y)
+    for (int x = 0; x < view.nx(); ++x) {
+      const std::uint8_t code = code_of(view.at(x, y));
+      if (code == MapTile::kUnknown) continue;
+      const int cell_x = x0 + x, cell_y = y0 + y;
+      const std::pair key{tile_of(cell_x), tile_of(cell_y)};
+      MapTile& tile = tiles[key];
+      if (tile.cells.empty()) {
+        tile.x = key.first;
+        tile.y = key.second;
+        tile.cells.resize(kCells);
+      }
+      tile.cells[static_cast<std::size_t>(cell_y - key.second * MapTile::kSide) * MapTile::kSide +
+                 static_cast<std::size_t>(cell_x - key.first * MapTile::kSide)] = code;
+    }
+  std::vector<MapTile> out;
+  for (auto& [key, tile] : tiles) out.push_back(std::move(tile));
+  return out;
+}
+
+void Tiles::show(double resolution, std::vector<MapTile> tiles) {
+  resolution_ = resolution;
+  std::set<std::pair<int, int>> shown;
+  for (MapTile& tile : tiles) {
+    const std::pair key{tile.x, tile.y};
+    const auto known = tiles_.find(key);
+    if (known == tiles_.end() && tiles_.size() == kMaxTiles) continue;
+    shown.insert(key);
+    if (known != tiles_.end() && known->second.cells == tile.cells) continue;
+    tile.revision = ++revision_;
+    tiles_[key] = std::move(tile);
+  }
+  for (auto& [key, tile] : tiles_) {
+    if (shown.contains(key) || std::ranges::all_of(tile.cells, [](std::uint8_t c) { return c == 0; }))
+      continue;
+    std::ranges::fill(tile.cells, MapTile::kUnknown);
+    tile.revision = ++revision_;
+  }
+}
+
+MapUpdate Tiles::since(std::uint64_t revision, std::size_t most) const {
+  std::vector<const MapTile*> changed;
+  for (const auto& [key, tile] : tiles_)
+    if (tile.revision > revision) changed.push_back(&tile);
+  std::ranges::sort(changed, {}, [](const MapTile* tile) { return tile->revision; });
+  MapUpdate update{.resolution = resolution_, .revision = revision_};
+  if (changed.size() > most) {
+    changed.resize(most);
+    update.revision = changed.back()->revision;
+  }
+  for (const MapTile* tile : changed) update.tiles.push_back(*tile);
+  return update;
+}
+
+}  // namespace adit::station

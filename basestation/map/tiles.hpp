@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "basestation/map/top_view.hpp"
+#include "basestation/model/map_tiles.hpp"
+
+namespace adit::station {
+
+/// The tiles of a view in which anything is known, without revisions.
+std::vector<MapTile> tiles_of(const TopView& view);
+
+/// The map seen from above as front ends receive it: in tiles, each with the revision of its last change.
+class Tiles {
+ public:
+  static constexpr std::size_t kMaxTiles = 4096;  ///< 64 MB; further tiles are left out.
+
+  /// Takes a newer view. A tile that the view does not have any more becomes unknown.
+  void show(double resolution, std::vector<MapTile> tiles);
+  /// The oldest changes after that revision, at most `most` tiles. `MapUpdate::run` is left 0.
+  MapUpdate since(std::uint64_t revision, std::size_t most) const;
+  std::uint64_t revision() const { return revision_; }
+
+ private:
+  double resolution_{0.2};
+  std::uint64_t revision_{};
+  std::map<std::pair<int, int>, MapTile> tiles_{};
+};
+
+}  // namespace adit::station

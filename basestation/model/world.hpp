@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "basestation/model/counts.hpp"
+#include "basestation/model/notice.hpp"
+#include "basestation/model/robot.hpp"
+
+namespace adit::station {
+
+/// A station on the air, this one or another operator's.
+struct StationSummary {
+  std::string name{};
+  bool self{};
+  double age{};                                 ///< Time since it was heard, s.
+  bool lost{};                                  ///< Not heard for 2.5 s.
+  std::optional<std::array<float, 3>> place{};  ///< Map frame, m; unset: unknown.
+  bool operator==(const StationSummary&) const = default;
+};
+
+/// What an agent sends and receives, bytes/s, and the age of its report, s.
+struct AgentRate {
+  double out{}, in{}, age{};
+  bool operator==(const AgentRate&) const = default;
+};
+
+/// All that a station reports to its front ends at one time.
+struct World {
+  double at{};            ///< The station's clock, s; its start means nothing.
+  std::string station{};  ///< Name of the operator.
+  std::string link{};     ///< Link profile; empty: the traffic is not limited.
+  Counts commands{};
+  std::vector<Robot> robots{};             ///< By name.
+  std::vector<StationSummary> stations{};  ///< This station first.
+  std::vector<Notice> notices{};           ///< The newest, oldest first.
+  std::map<std::string, AgentRate> traffic{};
+
+  /// The robot of that name; null if there is none.
+  const Robot* robot(const std::string& name) const;
+};
+
+}  // namespace adit::station

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/scene/mark_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/gui/fixture.hpp"
+
+namespace adit::gui {
+namespace {
+
+MarkScene scene_of(const station::World& world) {
+  return {.world = &world, .camera = {.x = 10, .y = 0, .scale = 20, .width = 1000, .height = 600}};
+}
+
+const Target* target(const MarkList& marks, const std::string& robot) {
+  for (const Target& next : marks.targets)
+    if (next.robot == robot) return &next;
+  return nullptr;
+}
+
+TEST(Camera, ProjectsThereAndBack) {
+  const Camera camera{.x = 10, .y = -3, .scale = 25, .width = 800, .height = 400};
+  EXPECT_EQ(camera.to_screen(10, -3), (Point{400, 200}));
+  EXPECT_EQ(camera.to_screen(11, -2), (Point{425, 175}));
+  const Point back = camera.to_map(123, 45);
+  const Point again = camera.to_screen(back.x, back.y);
+  EXPECT_NEAR(again.x, 123, 1e-9);
+  EXPECT_NEAR(again.y, 45, 1e-9);
+}
+
+TEST(Camera, ZoomKeepsThePlaceUnderTheFinger) {
+  Camera camera{.x = 3, .y = 4, .scale = 20, .width = 800, .height = 400};
+  const Point before = camera.to_map(700, 50);
+  camera.zoom(1.7, 700, 50);
+  const Point after = camera.to_map(700, 50);
+  EXPECT_NEAR(before.x, after.x, 1e-9);
+  EXPECT_NEAR(before.y, after.y, 1e-9);
+  for (int i = 0; i < 100; ++i) camera.zoom(2.0, 0, 0);
+  EXPECT_LE(camera.scale, Camera::kMaxScale);
+}
+
+TEST(Marks, RobotsStandAtTheirProjectedPixels) {
+  const station::World world = ten_robots();
+  const MarkList marks = marks_of(scene_of(world));
+  const Target* r1 = target(marks, "r1");
+  ASSERT_NE(r1, nullptr);
+  EXPECT_NEAR(r1->at.x, 500 + (2 - 10) * 20, 0.01);
+  EXPECT_NEAR(r1->at.y, 300, 0.01);
+  EXPECT_EQ(marks.robot_at(r1->at.x + 3, r1->at.y - 3), "r1");
+  EXPECT_EQ(marks.robot_at(5, 5), "");
+}
+
+TEST(Marks, SmallRobotsHaveAtLeastFourteenPixels) {
+  station::World world{.robots = {robot("r1", 10, 0)}};
+  MarkScene scene = scene_of(world);
+  scene.camera.scale = 1;
+  double low = 1e9, high = -1e9;
+  for (const Shape& shape : marks_of(scene).shapes)
+    if (shape.filled)
+      for (const Point& point : shape.points) low = std::min(low, point.y), high = std::max(high, point.y);
+  EXPECT_GE(high - low, 14.0);
+}
+
+TEST(Marks, PlacesThatAreNoPlacesAreLeftOut) {
+  for (const float wrong :
+       {1e30F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e30F}) {
+    station::World world = ten_robots();
+    for (station::Robot& robot : world.robots) {
+      robot.x = wrong;
+      robot.goal = {wrong, 0, 0};
+      robot.sigma = wrong;
+      for (station::AreaView& area : robot.areas) area.corners[0][0] = wrong;
+    }
+    world.stations[1].place = {{wrong, 0.0F, 0.0F}};
+    Trails trails;
+    trails.add(world, 1.0);
+    MarkScene scene = scene_of(world);
+    scene.trails = &trails;
+    const MarkList marks = marks_of(scene);
+    EXPECT_TRUE(marks.targets.empty());
+    for (const Shape& shape : marks.shapes)
+      for (const Point& point : shape.points) EXPECT_TRUE(std::isfinite(point.x) && std::isfinite(point.y));
+  }
+}
+
+TEST(Marks, AnUnsureRobotHasACircleOfTwoSigma) {
+  station::World world{.robots = {robot("r1", 10, 0)}};
+  world.robots[0].sigma = 1.5;
+  bool found = false;
+  for (const Shape& shape : marks_of(scene_of(world)).shapes)
+    found = found || (shape.points.size() > 20 && std::abs(shape.points[0].x - (500 + 2 * 1.5 * 20)) < 0.01);
+  EXPECT_TRUE(found);
+}
+
+TEST(Marks, AnActiveGoalIsSolidAndAKeptOneDashed) {
+  for (const bool active : {true, false}) {
+    station::World world{.robots = {mine(robot("r1", 10, 0))}};
+    world.robots[0].goal_phase = active ? station::GoalPhase::active : station::GoalPhase::kept;
+    world.robots[0].goal = {12, 2, 0};
+    const MarkList marks = marks_of(scene_of(world));
+    ASSERT_FALSE(marks.shapes.empty());
+    EXPECT_EQ(marks.shapes[0].points[1], (Point{540, 260}));
+    EXPECT_EQ(marks.shapes[0].dashed, !active);
+  }
+}
+
+TEST(Trails, BreakWhereARobotJumpsAndStayBounded) {
+  Trails trails;
+  station::World world{.robots = {robot("r1", 0, 0)}};
+  for (int i = 0; i < 5000; ++i) {
+    world.robots[0].x = static_cast<float>(i) * 0.2F;
+    trails.add(world, 0.1 * i);
+  }
+  ASSERT_NE(trails.of("r1"), nullptr);
+  EXPECT_LE(trails.of("r1")->points.size(), Trails::kMaxPoints);
+  world.robots[0].x = 0;
+  trails.add(world, 501);
+  EXPECT_TRUE(trails.of("r1")->points.back().begins);
+}
+
+TEST(Trails, ARobotThatReportsOnceASecondIsStaleAfterThree) {
+  Trails trails;
+  station::World world{.robots = {robot("r1", 0, 0)}};
+  world.robots[0].age = 0.0;
+  for (int i = 0; i < 60; ++i) trails.add(world, i);
+  EXPECT_NEAR(trails.stale_after("r1"), 3.0, 0.2);
+  EXPECT_EQ(trails.stale_after("unheard"), 1.0);
+}
+
+TEST(Spread, PlacesOfSeveralRobotsAreApart) {
+  const std::vector<Point> places = spread({1, 2}, 20, 1.5);
+  ASSERT_EQ(places.size(), 20U);
+  EXPECT_EQ(places[0], (Point{1, 2}));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k)
+      EXPECT_GE(std::hypot(places[i].x - places[k].x, places[i].y - places[k].y), 1.5 - 1e-9);
+}
+
+TEST(ScaleBar, IsRoundAndFits) {
+  EXPECT_DOUBLE_EQ(bar_length(20, 180), 5.0);
+  EXPECT_DOUBLE_EQ(bar_length(100, 180), 1.0);
+  EXPECT_DOUBLE_EQ(bar_length(1, 180), 100.0);
+}
+
+}  // namespace
+}  // namespace adit::gui

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// What needs the operator, and until when.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "basestation/alert/queue.hpp"
+#include "core/time/random.hpp"
+
+namespace adit::station {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+std::string content(const fs::path& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// The first groups of all matches.
+std::set<std::string> matches(const std::string& text, const char* pattern) {
+  const std::regex expression(pattern);
+  std::set<std::string> out;
+  for (auto it = std::sregex_iterator(text.begin(), text.end(), expression); it != std::sregex_iterator();
+       ++it)
+    out.insert((*it)[1]);
+  return out;
+}
+
+TEST(AlertTable, HasOneRowForEachCodeThatOperatorsCanRead) {
+  const std::string page = content(fs::path(ADIT_SOURCE_DIR) / "docs/operators.md");
+  const std::string table = page.substr(page.find("## Notifications"));
+  std::set<std::string> documented;
+  for (const std::string& cell : matches(table, "\n\\| (`[^|]*) \\|"))
+    for (const std::string& code : matches(cell, "`([a-z_]+)`")) documented.insert(code);
+  ASSERT_GT(documented.size(), 50U);
+  std::set<std::string> rows;
+  for (const AlertRow& row : alert_table()) {
+    EXPECT_TRUE(rows.insert(std::string(row.code)).second) << row.code << " has two rows";
+    EXPECT_TRUE(documented.contains(std::string(row.code))) << row.code << " is not in docs/operators.md";
+    EXPECT_TRUE(row.closed_by.empty() || alert_row(row.closed_by)) << row.closed_by << " is no code";
+  }
+  for (const std::string& code : documented) EXPECT_TRUE(rows.contains(code)) << code << " has no priority";
+}
+
+TEST(AlertTable, HasARowForEachCodeThatAProgramSends) {
+  std::set<std::string> sent;
+  for (const char* folder : {"robot_agent", "basestation"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(ADIT_SOURCE_DIR) / folder)) {
+      if (entry.path().extension() != ".cpp") continue;
+      const std::string text = content(entry.path());
+      for (const char* pattern : {"Severity::[a-z]+,\\s*\"([a-z_]+)\"", "\\.code = \"([a-z_]+)\""})
+        sent.merge(matches(text, pattern));
+    }
+  ASSERT_GT(sent.size(), 30U);
+  for (const std::string& code : sent) EXPECT_TRUE(alert_row(code)) << code << " has no row";
+}
+
+/// A world of robots r1, r2, ... of this operator, and a queue.
+class AlertQueueTest : public testing::Test {
+ protected:
+  AlertQueueTest() {
+    for (int i = 1; i <= 5; ++i)
+      world_.robots.push_back({.name = "r" + std::to_string(i), .mine = true, .mode = "waypoint"});
+  }
+  Robot& r(int number) { return world_.robots[static_cast<std::size_t>(number) - 1]; }
+  Priority say(const std::string& robot, const std::string& code, bool mine = true) {
+    return queue_.add({.robot = robot, .code = code, .text = robot + " " + code, .mine = mine}, world_, now_);
+  }
+  void pass(double seconds) {
+    now_ += seconds;
+    queue_.update(world_, now_);
+  }
+  std::vector<std::string> shown() const {
+    std::vector<std::string> out;
+    for (const Alert& alert : queue_.shown(now_)) {
+      std::string text = alert.code;
+      for (const std::string& robot : alert.robots) text += " " + robot;
+      out.push_back(alert.count > 1 ? text + " x" + std::to_string(alert.count) : text);
+    }
+    return out;
+  }
+
+  World world_{};
+  AlertQueue queue_{};
+  double now_{1000.0};
+};
+
+TEST_F(AlertQueueTest, TheMostUrgentAndThenTheOldestComesFirst) {
+  say("r1", "blocked");
+  now_ += 1;
+  say("r2", "idle");
+  now_ += 1;
+  EXPECT_EQ(say("r3", "stopped"), Priority::act);
+  EXPECT_THAT(shown(), ElementsAre("stopped r3", "blocked r1", "idle r2"));
+  EXPECT_EQ(say("r1", "arrived"), Priority::log);
+}
+
+TEST_F(AlertQueueTest, TheSameIsCountedInOneRow) {
+  r(1).reason = Reason::blocked;
+  for (int i = 0; i < 4; ++i) {
+    say("r1", "blocked");
+    pass(10.0);
+  }
+  EXPECT_THAT(shown(), ElementsAre("blocked r1 x4"));
+}
+
+TEST_F(AlertQueueTest, EndsWhenItsCauseIsGone) {
+  r(1).reason = Reason::blocked;
+  say("r1", "blocked");
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre("blocked r1"));
+  r(1).reason = Reason::none;
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre());
+
+  r(2).lost = true;
+  say("r2", "lost");
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre("lost r2"));
+  say("r2", "back");
+  EXPECT_THAT(shown(), ElementsAre());
+
+  r(3).stopped = true;
+  say("r3", "stopped");
+  pass(60.0);
+  EXPECT_THAT(shown(), ElementsAre("stopped r3"));
+  r(3).stopped = false;
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre());
+}
+
+TEST_F(AlertQueueTest, AStateThatIsOlderThanTheNotificationEndsNothing) {
+  r(1).age = 5.0;  // The robot's state does not show yet that it is blocked.
+  say("r1", "blocked");
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre("blocked r1"));
+}
+
+TEST_F(AlertQueueTest, WhatIsLostByHandIsUrgent) {
+  EXPECT_EQ(say("r1", "lost"), Priority::soon);
+  r(2).mode = "manual";
+  EXPECT_EQ(say("r2", "lost"), Priority::act);
+  EXPECT_EQ(say("r2", "joystick_lost"), Priority::act);
+}
+
+TEST_F(AlertQueueTest, ManyRobotsWithOneCodeAreOneRow) {
+  for (int i = 1; i <= 4; ++i) {
+    r(i).lost = true;
+    say("r" + std::to_string(i), "lost");
+    now_ += 1.0;
+  }
+  EXPECT_THAT(shown(), ElementsAre("lost r1 r2 r3 r4 x4"));
+  say("r2", "back");
+  EXPECT_THAT(shown(), ElementsAre("lost r1 r3 r4 x4"));
+  for (const int i : {1, 3, 4}) r(i).lost = false;
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre());
+}
+
+TEST_F(AlertQueueTest, ThoseThatComeSlowlyStayApart) {
+  for (int i = 1; i <= 3; ++i) {
+    r(i).lost = true;
+    say("r" + std::to_string(i), "lost");
+    now_ += AlertQueue::kTogether + 1.0;
+  }
+  EXPECT_EQ(shown().size(), 3U);
+}
+
+TEST_F(AlertQueueTest, WhatNoStateShowsStaysUntilItIsSeen) {
+  say("r1", "lock_lapsed");
+  pass(1000.0);
+  ASSERT_EQ(shown().size(), 1U);
+  queue_.see(queue_.shown(now_)[0].id);
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre());
+}
+
+TEST_F(AlertQueueTest, LaterHidesAnAlertForFiveMinutesOrUntilItComesAgain) {
+  r(1).reason = Reason::blocked;
+  say("r1", "blocked");
+  queue_.later(queue_.shown(now_)[0].id, now_);
+  pass(299.0);
+  EXPECT_THAT(shown(), ElementsAre());
+  pass(2.0);
+  EXPECT_THAT(shown(), ElementsAre("blocked r1"));
+  queue_.later(queue_.shown(now_)[0].id, now_);
+  say("r1", "blocked");
+  EXPECT_THAT(shown(), ElementsAre("blocked r1 x2"));
+}
+
+TEST_F(AlertQueueTest, WhatConcernsAnotherOperatorIsNoAlert) {
+  EXPECT_EQ(say("r1", "stopped", false), Priority::log);
+  EXPECT_THAT(shown(), ElementsAre());
+}
+
+TEST_F(AlertQueueTest, ACodeOfALaterVersionCountsByItsLevel) {
+  EXPECT_EQ(queue_.add({.level = Level::info, .code = "of_a_later_version", .mine = true}, world_, now_),
+            Priority::know);
+  EXPECT_EQ(queue_.add({.level = Level::error, .code = "of_a_later_version", .mine = true}, world_, now_),
+            Priority::soon);
+}
+
+TEST_F(AlertQueueTest, AFloodStaysBoundedAndKeepsWhatIsUrgent) {
+  r(1).stopped = true;
+  say("r1", "stopped");
+  for (int i = 0; i < 10'000; ++i) {
+    say("x" + std::to_string(i), "lock_lapsed");
+    now_ += 10.0;
+  }
+  EXPECT_LE(queue_.size(), AlertQueue::kMaxAlerts);
+  EXPECT_EQ(shown().front(), "stopped r1");
+}
+
+}  // namespace
+}  // namespace adit::station
