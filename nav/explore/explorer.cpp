@@ -26,7 +26,7 @@ constexpr std::size_t kMaxDeferred = 64;
 // with its margin, two voxels wide and 2.5 m high, to the depth of 1.5 m that counts.
 constexpr double kSmallGain = 3.75;
 // Small frontiers are not worth a way when all of them together promise less than this share of what was
-// seen.
+// seen. Chosen with bench_explore, not derived: without it the blocks take up to half as long again.
 constexpr double kWorth = 0.01;
 
 std::size_t unseen_of(const CoverageMap& map, const Frontier& frontier) {
