@@ -56,7 +56,7 @@ std::string nearest_mode(const RobotView* robot, const std::string& typed) {
 /// Parameters of a command with a joystick stream; unset for other commands.
 std::optional<SteerParams> steering(const Request& request) {
   const std::string mode = request.word("MODE");
-  if (request.verb == verb("mode") && (mode == "manual" || mode == "smart_joystick"))
+  if (request.verb == verb("mode") && is_by_hand(mode))
     return SteerParams{.purpose = SteerParams::Purpose::enter, .mode = mode};
   if (request.verb == verb("teleop")) return SteerParams{.purpose = SteerParams::Purpose::teleop};
   if (request.verb != verb("drive")) return std::nullopt;

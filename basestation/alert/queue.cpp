@@ -7,14 +7,12 @@
 namespace adit::station {
 namespace {
 
-bool driven_by_hand(const Robot& robot) { return robot.mode == "manual" || robot.mode == "smart_joystick"; }
-
 /// The priority of a notification in the state that the robot has.
 Priority priority_of(const Notice& notice, const AlertRow* row, const Robot* robot) {
   if (!notice.mine) return Priority::log;
   // A code of a later version: its level says how much it matters.
   if (!row) return notice.level == Level::info ? Priority::know : Priority::soon;
-  if (row->priority == Priority::act && row->by_hand && (!robot || !driven_by_hand(*robot)))
+  if (row->priority == Priority::act && row->by_hand && (!robot || !is_by_hand(robot->mode)))
     return Priority::soon;
   return row->priority;
 }
@@ -30,14 +28,14 @@ bool over(const Robot& robot, Ends ends) {
     case Ends::goes_on:
       return robot.reason == Reason::none && robot.goal_phase != GoalPhase::blocked;
     case Ends::busy:
-      return !robot.mine || robot.goal_phase == GoalPhase::active || driven_by_hand(robot) ||
+      return !robot.mine || robot.goal_phase == GoalPhase::active || is_by_hand(robot.mode) ||
              robot.exploration.phase == ExplorationPhase::exploring;
     case Ends::not_asked:
       return !robot.mine || !robot.locked;
     case Ends::healthy:
       return robot.troubles.empty();
     case Ends::by_hand:
-      return !driven_by_hand(robot);
+      return !is_by_hand(robot.mode);
   }
   return false;
 }

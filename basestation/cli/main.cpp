@@ -13,6 +13,7 @@
 #include "basestation/cli/stop.hpp"
 #include "basestation/cli/teleop.hpp"
 #include "basestation/cli/watch/watch.hpp"
+#include "basestation/client/arguments.hpp"
 #include "basestation/client/paths.hpp"
 #include "basestation/host/serve.hpp"
 #include "core/command/parse.hpp"
@@ -99,16 +100,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", ADIT_VERSION, "The version");
   app.option_defaults()->always_capture_default();
   int ready_fd = -1;
-  app.add_option("--name", options.name, "Operator name; one station runs per name");
-  app.add_option("--link", options.link, "Link profile (config/links), for a station that is started");
+  client::StationArguments station(app, options);
   app.add_flag("--json", options.json, "One JSON object instead of text");
-  CLI::Option* domain = app.add_option("--domain", options.domain, "Radio domain")->check(CLI::Range(0, 232));
-  // These options take one value each, otherwise they would consume the command.
-  app.add_option("--interface", options.interfaces,
-                 "Address of a network interface to use, may be repeated; loopback when none is named")
-      ->allow_extra_args(false);
-  app.add_option("--peer", options.peers, "ADDRESS[:PORT] of an agent, for networks without multicast")
-      ->allow_extra_args(false);
   app.add_option(
          "--at", options.at,
          "Where the station stands, X Y Z of the map in m; others are told, and a link with a range or "
@@ -134,11 +127,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return fail(options, kExitUsage, {Reason::bad_argument, std::string(error.what()) + "; try --help"});
   }
-  options.domain_given = domain->count() > 0;
-  if (!command::valid_name(options.name))
-    return fail(options, kExitUsage,
-                {Reason::bad_argument,
-                 "--name is 1 to 32 of A-Z a-z 0-9 _ -, not '" + command::clean(options.name, 40) + "'"});
+  if (const auto good = station.finish(); !good) return fail(options, kExitUsage, good.error());
   if (served->count() > 0) return host::serve(options, ready_fd);
 
   std::vector<std::string> words = app.remaining();

@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "basestation/cli/interrupt.hpp"
 #include "basestation/client/launch.hpp"
+#include "basestation/model/json.hpp"
 
 namespace adit::station::cli {
 
-using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
 Result<client::LineSocket> connect(const Options& options) {
@@ -44,8 +43,7 @@ int fail(const Options& options, int exit_code, const Error& error) {
   if (options.json)
     std::printf(
         "%s\n",
-        json{{"exit", exit_code}, {"ok", false}, {"reason", name(error.reason)}, {"error", error.text}}
-            .dump(-1, ' ', true, json::error_handler_t::replace)
+        line_of({{"exit", exit_code}, {"ok", false}, {"reason", name(error.reason)}, {"error", error.text}})
             .c_str());
   else
     std::fprintf(stderr, "basestation: %s\n", error.text.c_str());

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "basestation/client/arguments.hpp"
 #include "basestation/client/options.hpp"
 #include "basestation/client/station.hpp"
 #include "basestation/gui/bridge/control.hpp"
@@ -19,7 +20,6 @@
 #include "basestation/gui/scene/theme.hpp"
 #include "basestation/gui/window.hpp"
 #include "basestation/model/exit_code.hpp"
-#include "core/command/words.hpp"
 
 namespace adit::gui {
 namespace {
@@ -44,17 +44,7 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
   app.set_help_flag("-h,--help", "This help");
   app.set_version_flag("--version", ADIT_VERSION, "The version");
   app.option_defaults()->always_capture_default();
-  app.add_option("--name", options.station.name, "Operator name; one station runs per name");
-  CLI::Option* domain =
-      app.add_option("--domain", options.station.domain, "Radio domain")->check(CLI::Range(0, 232));
-  app.add_option("--interface", options.station.interfaces,
-                 "Address of a network interface to use, may be repeated; loopback when none is named")
-      ->allow_extra_args(false);
-  app.add_option("--peer", options.station.peers,
-                 "ADDRESS[:PORT] of an agent, for networks without multicast")
-      ->allow_extra_args(false);
-  app.add_option("--link", options.station.link,
-                 "Link profile (config/links), for a station that is started");
+  station::client::StationArguments arguments(app, options.station);
   app.add_option("--select", options.select, "Robots that are selected at the start, may be repeated")
       ->allow_extra_args(false);
   app.add_option("--screenshot", options.screenshot, "Write a picture of the window (.png) and end");
@@ -79,10 +69,7 @@ std::optional<int> read_options(int argc, char** argv, Options& options) {
   } catch (const CLI::ParseError& error) {
     return fail(station::kExitUsage, std::string(error.what()) + "; try --help");
   }
-  options.station.domain_given = domain->count() > 0;
-  if (!command::valid_name(options.station.name))
-    return fail(station::kExitUsage, "--name is 1 to 32 of A-Z a-z 0-9 _ -, not '" +
-                                         command::clean(options.station.name, 40) + "'");
+  if (const auto good = arguments.finish(); !good) return fail(station::kExitUsage, good.error().text);
   return std::nullopt;
 }
 
@@ -113,7 +100,7 @@ int show_window(int argc, char** argv, const Options& options, const QSize& size
   QGuiApplication::setApplicationDisplayName("Adit " + QString::fromStdString(options.station.name));
   // Without a GPU, Qt's own renderer paints only what changed, where OpenGL by the processor paints whole
   // frames.
-  if (std::string why; !qEnvironmentVariableIsSet("QT_QUICK_BACKEND") && !has_gpu(why))
+  if (!qEnvironmentVariableIsSet("QT_QUICK_BACKEND") && !has_gpu())
     QQuickWindow::setGraphicsApi(QSGRendererInterface::Software);
   auto station = station::client::Station::open(options.station, "adit_gui");
   if (!station)

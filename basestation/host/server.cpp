@@ -31,9 +31,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int kSnapshotPeriodMs = 200;
 constexpr int kPendingMs = 20;
 constexpr auto kChangePeriod = 20ms, kMotionPeriod = 100ms;  // Shortest time between two differences.
-constexpr auto kSignOfLife = 400ms;  // Longest: a client counts a station silent that says nothing for 1 s.
-constexpr const char* kUnreadText = "the program did not read what the station answered";
-constexpr std::size_t kMaxTiles = 3;        // In one answer: a tile takes up to 0.1 MB as text.
+constexpr auto kSignOfLife = 400ms;   // Longest: a client counts a station silent that says nothing for 1 s.
+constexpr std::size_t kMaxTiles = 3;  // In one answer: a tile takes up to 0.1 MB as text.
 constexpr std::size_t kMaxEventText = 400;  // Length of an outcome's text in the event for the other clients.
 
 /// The outcome of a request that was not begun.
@@ -160,6 +159,11 @@ void Server::cut_off(Client& client, const std::string& why) {
   (void)client.outbox.reply(line_of({{"cut_off", why}}));
 }
 
+void Server::answer(Client& client, const json& object) {
+  if (!client.outbox.reply(line_of(object)))
+    cut_off(client, "the program did not read what the station answered");
+}
+
 bool Server::push(Client& client) {
   if (!client.socket.flush()) return false;
   while (!client.socket.has_backlog()) {
@@ -214,11 +218,7 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
   JsonReader in(wanted, misfit);
   in.read("run", run);
   in.read("revision", revision);
-  if (!misfit.empty()) {
-    if (!client.outbox.reply(line_of({{"wrong", "the map's '" + misfit + "' does not fit"}})))
-      cut_off(client, kUnreadText);
-    return;
-  }
+  if (!misfit.empty()) return answer(client, {{"wrong", "the map's '" + misfit + "' does not fit"}});
   if (run != run_) revision = 0;  // Revisions of an earlier run mean nothing.
   client.map_asked = strand_->post([this, number, revision] {
     station_->map_since(revision, kMaxTiles, [this, number](MapUpdate update, bool more) {
@@ -226,22 +226,18 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
       hand_over({Reply::Kind::answer, number, {{"map", json_of(update)}, {"more", more}}});
     });
   });
-  if (!client.map_asked && !client.outbox.reply(line_of({{"wrong", "the station has too much to do"}})))
-    cut_off(client, kUnreadText);
+  if (!client.map_asked) answer(client, {{"wrong", "the station has too much to do"}});
 }
 
 void Server::handle(std::uint64_t number, Client& client, const std::string& line) {
   const json request = json::parse(line, nullptr, false);
-  const auto answer = [&](const json& object) {
-    if (!client.outbox.reply(line_of(object))) cut_off(client, kUnreadText);
-  };
-  const auto wrong = [&](const char* text) { answer({{"wrong", text}}); };
+  const auto wrong = [&](const char* text) { answer(client, {{"wrong", text}}); };
   if (!request.is_object()) return wrong("a JSON object was expected");
   const auto integer = [&](const char* key) -> std::int64_t {
     const auto found = request.find(key);
     return found != request.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
   };
-  if (request.contains("hello")) return answer({{"hello", hello_}});
+  if (request.contains("hello")) return answer(client, {{"hello", hello_}});
   if (request.contains("watch")) return void(client.watches = true);
   if (request.contains("follow")) {
     if (!std::exchange(client.follows, true) && followers_++ == 0) {
@@ -291,21 +287,20 @@ void Server::handle(std::uint64_t number, Client& client, const std::string& lin
     return wrong("teleop wants a robot's name");
   if (client.open.contains(id)) return wrong("the id is in use");
   if (client.open.size() >= kMaxOpen)
-    return answer({{"id", id}, {"outcome", busy("this program asks for too much at once")}});
+    return answer(client, {{"id", id}, {"outcome", busy("this program asks for too much at once")}});
   begin(number, client, id, request);
 }
 
 void Server::deliver(const Reply& reply) {
-  const std::string text = reply.kind == Reply::Kind::event ? "" : line_of(reply.object);
   if (reply.kind == Reply::Kind::answer) {
     const auto found = clients_.find(reply.client);
     if (found == clients_.end() || found->second.cut_off) return;
     Client& client = found->second;
     if (reply.object.contains("map")) client.map_asked = false;
     if (reply.object.contains("outcome")) client.open.erase(reply.object.value("id", std::int64_t{0}));
-    if (!client.outbox.reply(text)) cut_off(client, kUnreadText);
-    return;
+    return answer(client, reply.object);
   }
+  const std::string text = reply.kind == Reply::Kind::notice ? line_of(reply.object) : "";
   for (auto& [number, client] : clients_) {
     if (client.cut_off) continue;
     if (reply.kind == Reply::Kind::notice) {
@@ -361,7 +356,7 @@ void Server::ask_change() {
 bool Server::follow(Client& client, Clock::time_point now) {
   if (!client.follows || client.cut_off || !newest_ || client.sent == newest_) return false;
   if (!client.sent) {
-    if (!client.outbox.reply(line_of({{"world", json_of(*newest_world_)}}))) cut_off(client, kUnreadText);
+    answer(client, {{"world", json_of(*newest_world_)}});
     client.sent = newest_;
     client.sent_at = now;
     return false;
@@ -375,7 +370,7 @@ bool Server::follow(Client& client, Clock::time_point now) {
     return false;
   }
   if (delta.urgency == Urgency::motion && since < kMotionPeriod) return true;
-  if (!client.outbox.reply(line_of({{"delta", delta.json}}))) cut_off(client, kUnreadText);
+  answer(client, {{"delta", delta.json}});
   client.sent = newest_;
   client.sent_at = now;
   return false;

@@ -101,6 +101,8 @@ class Server {
   void handle(std::uint64_t number, Client& client, const std::string& line);
   void begin(std::uint64_t number, Client& client, std::int64_t id, const nlohmann::json& request);
   void ask_map(std::uint64_t number, Client& client, const nlohmann::json& wanted);
+  /// Queues an answer; a client with too many unread ones is cut off.
+  void answer(Client& client, const nlohmann::json& object);
   void hand_over(Reply reply);
   void wake();
   void deliver();

@@ -111,9 +111,8 @@ std::vector<std::string> offered(const std::vector<const Robot*>& selection) {
 }  // namespace
 
 bool can_enter(const ModeChoice& choice) {
-  const bool stick = choice.mode == "manual" || choice.mode == "smart_joystick";
-  return choice.available ||
-         (stick && (choice.reason == Reason::joystick_stale || choice.reason == Reason::stick_not_centred));
+  return choice.available || (is_by_hand(choice.mode) && (choice.reason == Reason::joystick_stale ||
+                                                          choice.reason == Reason::stick_not_centred));
 }
 
 std::string id_of(const Action& action) {

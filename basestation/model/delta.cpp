@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "basestation/model/json.hpp"
-#include "basestation/model/json_reader.hpp"
+#include "basestation/model/json_fields.hpp"
 
 namespace adit::station {
 
@@ -82,28 +82,20 @@ void add_parts(const Named& before, double at_before, const Named& now, double a
 }
 
 Result<StationSummary> station_from(const json& object) {
-  const auto world = world_from({{"stations", json::array({object})}});
-  if (!world) return world.error();
-  return world->stations.front();
+  return value_from<StationSummary>(object, "a station's");
 }
 
-Result<AgentRate> rate_from(const json& object) {
-  const auto world = world_from({{"traffic", {{"agent", object}}}});
-  if (!world) return world.error();
-  return world->traffic.at("agent");
-}
+Result<AgentRate> rate_from(const json& object) { return value_from<AgentRate>(object, "a link report's"); }
 
 }  // namespace
 
 EncodedWorld encoded(const World& world) {
   EncodedWorld out{
       .at = world.at,
-      .head = json_of(World{.station = world.station, .link = world.link, .commands = world.commands})};
-  for (const char* key : {"at", "robots", "stations", "notices", "traffic"}) out.head.erase(key);
+      .head = {{"station", world.station}, {"link", world.link}, {"commands", json_of(world.commands)}}};
   for (const Robot& robot : world.robots) out.robots[robot.name] = json_of(robot);
   for (const StationSummary& station : world.stations) out.stations[station.name] = json_of(station);
-  const json rates = json_of(World{.traffic = world.traffic})["traffic"];
-  for (const auto& [agent, rate] : rates.items()) out.traffic[agent] = rate;
+  for (const auto& [agent, rate] : world.traffic) out.traffic[agent] = json_of(rate);
   for (auto* parts : {&out.robots, &out.stations, &out.traffic})
     for (auto& [name, part] : *parts) normalise(part);
   return out;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "basestation/model/json_reader.hpp"
+#include "basestation/model/json_fields.hpp"
 
 namespace adit::station {
 
@@ -14,49 +14,6 @@ namespace {
 
 Error malformed(const char* what, const std::string& key) {
   return {Reason::malformed, std::string(what) + " '" + key + "' does not fit"};
-}
-
-bool take_counts(const json& object, Counts& counts) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("sent", counts.sent);
-  in.read("repeats", counts.repeats);
-  in.read("accepted", counts.accepted);
-  in.read("refused", counts.refused);
-  in.read("unanswered", counts.unanswered);
-  return wrong.empty();
-}
-
-bool take_station(const json& object, StationSummary& station) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("station", station.name);
-  in.read("self", station.self);
-  in.read("age", station.age);
-  in.read("lost", station.lost);
-  if (in.has("place")) in.read("place", station.place.emplace());
-  return wrong.empty();
-}
-
-bool take_rate(const json& object, AgentRate& rate) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("out", rate.out);
-  in.read("in", rate.in);
-  in.read("age", rate.age);
-  return wrong.empty();
-}
-
-bool take_answer(const json& object, RobotAnswer& answer) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("robot", answer.robot);
-  in.read("accepted", answer.accepted);
-  in.read("answered", answer.answered);
-  in.read("reason", answer.reason);
-  in.read("text", answer.text);
-  in.read("holder", answer.holder);
-  return wrong.empty();
 }
 
 /// Cells as runs: value, count, value, count, ...
@@ -71,24 +28,6 @@ json runs_json(const std::vector<std::uint8_t>& cells) {
     i = next;
   }
   return runs;
-}
-
-bool take_tile(const json& object, MapTile& tile) {
-  constexpr std::size_t cells = std::size_t{MapTile::kSide} * MapTile::kSide;
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("x", tile.x);
-  in.read("y", tile.y);
-  in.read("revision", tile.revision);
-  std::vector<std::uint32_t> runs;
-  in.read("cells", runs);
-  if (!wrong.empty() || runs.size() % 2 != 0) return false;
-  tile.cells.reserve(cells);
-  for (std::size_t i = 0; i < runs.size(); i += 2) {
-    if (runs[i] > 255 || runs[i + 1] > cells - tile.cells.size()) return false;
-    tile.cells.insert(tile.cells.end(), runs[i + 1], static_cast<std::uint8_t>(runs[i]));
-  }
-  return tile.cells.size() == cells;
 }
 
 }  // namespace
@@ -121,6 +60,8 @@ json json_of(const StationSummary& station) {
   return out;
 }
 
+json json_of(const AgentRate& rate) { return {{"out", rate.out}, {"in", rate.in}, {"age", rate.age}}; }
+
 json json_of(const World& world) {
   json out{{"at", world.at},
            {"station", world.station},
@@ -131,8 +72,7 @@ json json_of(const World& world) {
   for (const StationSummary& station : world.stations) out["stations"].push_back(json_of(station));
   for (const Notice& notice : world.notices) out["notices"].push_back(json_of(notice));
   out["traffic"] = json::object();
-  for (const auto& [agent, rate] : world.traffic)
-    out["traffic"][agent] = {{"out", rate.out}, {"in", rate.in}, {"age", rate.age}};
+  for (const auto& [agent, rate] : world.traffic) out["traffic"][agent] = json_of(rate);
   return out;
 }
 
@@ -166,10 +106,15 @@ json outcome_json(int exit_code, const std::string& text, const std::string& err
   return {{"exit", exit_code}, {"text", text}, {"error", error}, {"json", script}};
 }
 
-Result<Notice> notice_from(const json& object) {
-  Notice notice;
-  std::string wrong;
-  JsonReader in(object, wrong);
+void read_fields(JsonReader& in, Counts& counts) {
+  in.read("sent", counts.sent);
+  in.read("repeats", counts.repeats);
+  in.read("accepted", counts.accepted);
+  in.read("refused", counts.refused);
+  in.read("unanswered", counts.unanswered);
+}
+
+void read_fields(JsonReader& in, Notice& notice) {
   in.read("id", notice.id);
   in.read("age", notice.age);
   in.read("robot", notice.robot);
@@ -179,9 +124,48 @@ Result<Notice> notice_from(const json& object) {
   in.read("reason", notice.reason);
   in.read("text", notice.text);
   in.read("mine", notice.mine);
-  if (!wrong.empty()) return malformed("a notice's", wrong);
-  return notice;
 }
+
+void read_fields(JsonReader& in, StationSummary& station) {
+  in.read("station", station.name);
+  in.read("self", station.self);
+  in.read("age", station.age);
+  in.read("lost", station.lost);
+  in.read("place", station.place);
+}
+
+void read_fields(JsonReader& in, AgentRate& rate) {
+  in.read("out", rate.out);
+  in.read("in", rate.in);
+  in.read("age", rate.age);
+}
+
+void read_fields(JsonReader& in, RobotAnswer& answer) {
+  in.read("robot", answer.robot);
+  in.read("accepted", answer.accepted);
+  in.read("answered", answer.answered);
+  in.read("reason", answer.reason);
+  in.read("text", answer.text);
+  in.read("holder", answer.holder);
+}
+
+void read_fields(JsonReader& in, MapTile& tile) {
+  constexpr std::size_t cells = std::size_t{MapTile::kSide} * MapTile::kSide;
+  in.read("x", tile.x);
+  in.read("y", tile.y);
+  in.read("revision", tile.revision);
+  std::vector<std::uint32_t> runs;
+  in.read("cells", runs);
+  if (runs.size() % 2 != 0) return in.refuse("cells");
+  tile.cells.reserve(cells);
+  for (std::size_t i = 0; i < runs.size(); i += 2) {
+    if (runs[i] > 255 || runs[i + 1] > cells - tile.cells.size()) return in.refuse("cells");
+    tile.cells.insert(tile.cells.end(), runs[i + 1], static_cast<std::uint8_t>(runs[i]));
+  }
+  if (tile.cells.size() != cells) in.refuse("cells");
+}
+
+Result<Notice> notice_from(const json& object) { return value_from<Notice>(object, "a notice's"); }
 
 Result<World> world_from(const json& object) {
   World world;
@@ -190,7 +174,7 @@ Result<World> world_from(const json& object) {
   in.read("at", world.at);
   in.read("station", world.station);
   in.read("link", world.link);
-  if (in.has("commands") && !take_counts(object.at("commands"), world.commands)) in.refuse("commands");
+  in.read("commands", world.commands);
   std::optional<Error> inner;
   in.each("robots", [&](const json& row) {
     auto robot = robot_from(row);
@@ -198,16 +182,14 @@ Result<World> world_from(const json& object) {
     world.robots.push_back(std::move(*robot));
     return true;
   });
-  in.each("stations", [&](const json& row) { return take_station(row, world.stations.emplace_back()); });
+  in.read("stations", world.stations);
   in.each("notices", [&](const json& row) {
     auto notice = notice_from(row);
     if (!notice) return inner = notice.error(), false;
     world.notices.push_back(std::move(*notice));
     return true;
   });
-  in.each_member("traffic", [&](const std::string& agent, const json& value) {
-    return take_rate(value, world.traffic[agent]);
-  });
+  in.read("traffic", world.traffic);
   if (inner) return *inner;
   if (!wrong.empty()) return malformed("a snapshot's", wrong);
   return world;
@@ -250,7 +232,7 @@ Result<CommandOutcome> outcome_from(const json& object) {
     if (const auto rows = script.find("results"); rows != script.end() && rows->is_array())
       for (const json& row : *rows) {
         RobotAnswer answer;
-        if (row.is_object() && row.contains("accepted") && take_answer(row, answer))
+        if (row.is_object() && row.contains("accepted") && JsonReader::take(row, answer))
           outcome.answers.push_back(std::move(answer));
       }
   }
@@ -265,7 +247,7 @@ Result<MapUpdate> map_update_from(const json& object) {
   in.read("resolution", update.resolution);
   in.read("revision", update.revision);
   in.read("run", update.run);
-  in.each("tiles", [&](const json& row) { return take_tile(row, update.tiles.emplace_back()); });
+  in.read("tiles", update.tiles);
   if (!(update.resolution >= 0.01 && update.resolution <= 10.0)) in.refuse("resolution");
   if (!wrong.empty()) return malformed("a map update's", wrong);
   return update;

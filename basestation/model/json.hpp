@@ -21,6 +21,7 @@ nlohmann::json json_of(const Counts& counts);
 nlohmann::json json_of(const Robot& robot);
 nlohmann::json json_of(const Notice& notice);
 nlohmann::json json_of(const StationSummary& station);
+nlohmann::json json_of(const AgentRate& rate);
 nlohmann::json json_of(const World& world);
 nlohmann::json json_of(const CommandEvent& event);
 nlohmann::json json_of(const MapUpdate& update);

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/result/reason.hpp"
+#include "core/result/result.hpp"
 
 namespace adit::station {
 
@@ -39,15 +42,6 @@ class JsonReader {
     if (!found->is_array() || found->size() > kMaxElements) return refuse(key);
     for (const nlohmann::json& element : *found)
       if (!take_element(element)) return refuse(key);
-  }
-  /// The values of an object by their keys.
-  template <class Take>
-  void each_member(const char* key, const Take& take_member) {
-    const auto found = object_.is_object() ? object_.find(key) : object_.end();
-    if (found == object_.end()) return;
-    if (!found->is_object()) return refuse(key);
-    for (const auto& [name, value] : found->items())
-      if (!take_member(name, value)) return refuse(key);
   }
   void refuse(const std::string& key) {
     if (wrong_.empty()) wrong_ = key;
@@ -88,6 +82,26 @@ class JsonReader {
     out = static_cast<T>(value.get<std::int64_t>());
     return true;
   }
+  /// A value of several keys, which its read_fields() reads (model/json_fields.hpp).
+  template <class T>
+  requires requires(JsonReader& in, T& out) { read_fields(in, out); }
+  static bool take(const nlohmann::json& value, T& out) {
+    std::string wrong;
+    JsonReader in(value, wrong);
+    read_fields(in, out);
+    return wrong.empty();
+  }
+  template <class T>
+  static bool take(const nlohmann::json& value, std::optional<T>& out) {
+    return take(value, out.emplace());
+  }
+  template <class T>
+  static bool take(const nlohmann::json& value, std::map<std::string, T>& out) {
+    if (!value.is_object()) return false;
+    for (const auto& [name, member] : value.items())
+      if (!take(member, out[name])) return false;
+    return true;
+  }
   template <class T>
   static bool take(const nlohmann::json& value, std::vector<T>& out) {
     if (!value.is_array() || value.size() > kMaxElements) return false;
@@ -121,5 +135,16 @@ class JsonReader {
   const nlohmann::json& object_;
   std::string& wrong_;
 };
+
+/// Reads a value of several keys. Error: malformed, "WHAT 'KEY' does not fit".
+template <class T>
+Result<T> value_from(const nlohmann::json& object, const char* what) {
+  T value;
+  std::string wrong;
+  JsonReader in(object, wrong);
+  read_fields(in, value);
+  if (!wrong.empty()) return {Reason::malformed, std::string(what) + " '" + wrong + "' does not fit"};
+  return value;
+}
 
 }  // namespace adit::station

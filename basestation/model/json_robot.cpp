@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "basestation/model/json.hpp"
-#include "basestation/model/json_reader.hpp"
+#include "basestation/model/json_fields.hpp"
 
 namespace adit::station {
 
@@ -31,40 +31,12 @@ json abilities_json(const Robot& robot) {
           {"climbs_stairs", robot.climbs_stairs}};
 }
 
-void read_abilities(JsonReader& in, const json& object, Robot& robot) {
-  if (in.has("size")) {
-    std::string wrong;
-    JsonReader size(object.at("size"), wrong);
-    read_known(size, "length", robot.size.length);
-    read_known(size, "width", robot.size.width);
-    read_known(size, "height", robot.size.height);
-    if (!wrong.empty()) in.refuse("size");
-  }
-  read_known(in, "max_acceleration", robot.max_acceleration);
-  in.read("holonomic", robot.holonomic);
-  in.read("max_step", robot.max_step);
-  read_known(in, "max_slope", robot.max_slope);
-  in.read("climbs_stairs", robot.climbs_stairs);
-}
-
 json area_json(const AreaView& area) {
   json out{{"name", area.name}, {"kind", area.kind}, {"corners", area.corners}};
   if (area.kind == "prefer") out["weight"] = area.weight;
   if (std::isfinite(area.z_min)) out["z_min"] = area.z_min;
   if (std::isfinite(area.z_max)) out["z_max"] = area.z_max;
   return out;
-}
-
-bool take_area(const json& object, AreaView& area) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("name", area.name);
-  in.read("kind", area.kind);
-  in.read("corners", area.corners);
-  in.read("weight", area.weight);
-  in.read("z_min", area.z_min);
-  in.read("z_max", area.z_max);
-  return wrong.empty();
 }
 
 json exploration_json(const ExplorationView& e) {
@@ -74,35 +46,6 @@ json exploration_json(const ExplorationView& e) {
           {"share", e.share},
           {"open", e.open},
           {"unreachable", e.unreachable}};
-}
-
-bool take_exploration(const json& object, ExplorationView& e) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read_word("state", e.phase, ExplorationPhase::ended, [](ExplorationPhase p) { return to_string(p); });
-  in.read("reason", e.reason);
-  in.read("volume", e.volume);
-  in.read("share", e.share);
-  in.read("open", e.open);
-  in.read("unreachable", e.unreachable);
-  return wrong.empty();
-}
-
-bool take_choice(const json& object, ModeChoice& choice) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("mode", choice.mode);
-  in.read("available", choice.available);
-  in.read("reason", choice.reason);
-  return wrong.empty();
-}
-
-bool take_epoch(const json& object, Epoch& epoch) {
-  std::string wrong;
-  JsonReader in(object, wrong);
-  in.read("start", epoch.start);
-  in.read("counter", epoch.counter);
-  return wrong.empty();
 }
 
 void read_place(JsonReader& in, Robot& robot) {
@@ -171,10 +114,42 @@ json json_of(const Robot& robot) {
   return out;
 }
 
-Result<Robot> robot_from(const json& object) {
-  Robot robot;
-  std::string wrong;
-  JsonReader in(object, wrong);
+void read_fields(JsonReader& in, Epoch& epoch) {
+  in.read("start", epoch.start);
+  in.read("counter", epoch.counter);
+}
+
+void read_fields(JsonReader& in, ModeChoice& choice) {
+  in.read("mode", choice.mode);
+  in.read("available", choice.available);
+  in.read("reason", choice.reason);
+}
+
+void read_fields(JsonReader& in, ExplorationView& e) {
+  in.read_word("state", e.phase, ExplorationPhase::ended, [](ExplorationPhase p) { return to_string(p); });
+  in.read("reason", e.reason);
+  in.read("volume", e.volume);
+  in.read("share", e.share);
+  in.read("open", e.open);
+  in.read("unreachable", e.unreachable);
+}
+
+void read_fields(JsonReader& in, AreaView& area) {
+  in.read("name", area.name);
+  in.read("kind", area.kind);
+  in.read("corners", area.corners);
+  in.read("weight", area.weight);
+  in.read("z_min", area.z_min);
+  in.read("z_max", area.z_max);
+}
+
+void read_fields(JsonReader& in, Size& size) {
+  read_known(in, "length", size.length);
+  read_known(in, "width", size.width);
+  read_known(in, "height", size.height);
+}
+
+void read_fields(JsonReader& in, Robot& robot) {
   if (!in.has("robot")) in.refuse("robot");
   in.read("robot", robot.name);
   in.read("age", robot.age);
@@ -191,7 +166,7 @@ Result<Robot> robot_from(const json& object) {
   in.read("mine", robot.mine);
   in.read("locked", robot.locked);
   in.read("lock_lease_left", robot.lease_left);
-  if (in.has("epoch") && !take_epoch(object.at("epoch"), robot.epoch)) in.refuse("epoch");
+  in.read("epoch", robot.epoch);
   in.read("stops", robot.stops);
   in.read("stopped_by_holder", robot.stopped_by_holder);
   in.read("stopped", robot.stopped);
@@ -200,19 +175,23 @@ Result<Robot> robot_from(const json& object) {
   in.read("reason", robot.reason);
   in.read_word("goal_state", robot.goal_phase, GoalPhase::reached, [](GoalPhase p) { return to_string(p); });
   in.read("goal_id", robot.goal_id);
-  in.each("modes", [&](const json& row) { return take_choice(row, robot.choices.emplace_back()); });
+  in.read("modes", robot.choices);
   in.read("convoy", robot.convoy);
   in.read("yields", robot.yields);
   in.read("yields_to", robot.yields_to);
   in.read("troubles", robot.troubles);
-  read_abilities(in, object, robot);
+  in.read("size", robot.size);
+  read_known(in, "max_acceleration", robot.max_acceleration);
+  in.read("holonomic", robot.holonomic);
+  in.read("max_step", robot.max_step);
+  read_known(in, "max_slope", robot.max_slope);
+  in.read("climbs_stairs", robot.climbs_stairs);
   read_place(in, robot);
   in.read("goal", robot.goal);
-  in.each("areas", [&](const json& row) { return take_area(row, robot.areas.emplace_back()); });
-  if (in.has("exploration") && !take_exploration(object.at("exploration"), robot.exploration))
-    in.refuse("exploration");
-  if (!wrong.empty()) return {Reason::malformed, "a robot's '" + wrong + "' does not fit"};
-  return robot;
+  in.read("areas", robot.areas);
+  in.read("exploration", robot.exploration);
 }
+
+Result<Robot> robot_from(const json& object) { return value_from<Robot>(object, "a robot's"); }
 
 }  // namespace adit::station

@@ -5,6 +5,8 @@
 
 namespace adit::station {
 
+bool is_by_hand(std::string_view mode) { return mode == "manual" || mode == "smart_joystick"; }
+
 const char* to_string(GoalPhase phase) {
   constexpr std::array kNames{"none", "kept", "active", "blocked", "reached"};
   const auto index = static_cast<std::size_t>(phase);

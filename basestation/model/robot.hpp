@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/config/perception_level.hpp"
@@ -112,6 +113,9 @@ struct Robot {
   std::vector<AreaView> areas{};
   std::vector<std::string> troubles{};  ///< Components that do not work, with their state.
 };
+
+/// Whether a stick drives the robot in that mode.
+bool is_by_hand(std::string_view mode);
 
 const char* to_string(GoalPhase phase);
 const char* to_string(ExplorationPhase phase);

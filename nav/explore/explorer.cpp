@@ -245,7 +245,6 @@ std::vector<bool> Explorer::choose(GroundView& ground, const Frontiers& frontier
   }
   // A frontier that was seen is no reason to go on in its direction.
   const bool open = goal_ && !satisfied(*goal_);
-  const auto is_small = [this](const Frontier& f) { return f.gain < params_.least_gain; };
   std::vector<bool> reachable(frontiers.list.size(), false);
   bool large = false;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -284,11 +283,11 @@ std::vector<bool> Explorer::choose(GroundView& ground, const Frontiers& frontier
 }
 
 void Explorer::leave_small(std::vector<Frontier>& frontiers) const {
-  const auto is_small = [this](const Frontier& f) { return f.gain < params_.least_gain; };
   double gain = 0;
   for (const Frontier& frontier : frontiers)
     if (is_small(frontier)) gain += frontier.gain;
-  if (gain < kWorth * map_.seen_volume()) std::erase_if(frontiers, is_small);
+  if (gain < kWorth * map_.seen_volume())
+    std::erase_if(frontiers, [this](const Frontier& f) { return is_small(f); });
 }
 
 ExploreStep Explorer::step(GroundView& ground, const Eigen::Vector3d& place, double stamp_s, bool blocked) {

@@ -108,6 +108,8 @@ class Explorer {
   void end_goal(const Eigen::Vector3d& place, double stamp_s, bool blocked);
   /// Whether a frontier is about where that of the goal is.
   bool continues(const Frontier& frontier) const;
+  /// Whether it is left to the end.
+  bool is_small(const Frontier& frontier) const { return frontier.gain < params_.least_gain; }
   /// Drops the small frontiers if all of them together are not worth a way.
   void leave_small(std::vector<Frontier>& frontiers) const;
   /// Chooses the goal. Returns which frontiers can be reached.

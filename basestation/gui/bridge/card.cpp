@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/command/words.hpp"
+
 namespace adit::gui {
 namespace {
 
@@ -25,12 +27,6 @@ std::string glyph_of(const std::string& platform) {
   if (platform == "legged") return "legs";
   if (platform == "aerial") return "rotor";
   return "unknown";
-}
-
-std::string joined_names(const std::vector<std::string>& names) {
-  std::string out;
-  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
-  return out;
 }
 
 void headline(Card& card, const Robot& robot) {
@@ -54,9 +50,9 @@ void headline(Card& card, const Robot& robot) {
 
 std::string detail(const Card& card, const Robot& robot, double age) {
   if (card.contact == Contact::lost) return "last heard " + age_text(age) + " ago";
-  if (!robot.stops.empty()) return "stopped by " + joined_names(robot.stops);
+  if (!robot.stops.empty()) return "stopped by " + command::joined(robot.stops, "");
   if (robot.stopped) return "stopped";
-  if (!robot.troubles.empty()) return joined_names(robot.troubles);
+  if (!robot.troubles.empty()) return command::joined(robot.troubles, "");
   if (robot.reason != Reason::none && !robot.moving_allowed) return std::string(describe(robot.reason));
   if (!robot.yields_to.empty()) return "makes way for " + robot.yields_to;
   if (!robot.described) return "capabilities not heard yet";
@@ -93,10 +89,8 @@ Card card_of(const Robot& robot, int number, double silent, double stale_after) 
   Card card{
       .number = number, .name = robot.name, .glyph = glyph_of(robot.platform), .platform = robot.platform};
   const double age = robot.age + silent;
-  card.contact = robot.lost                          ? Contact::lost
-                 : age > stale_after || silent > 1.0 ? Contact::stale
-                                                     : Contact::live;
-  card.owner = robot.mine ? Token::mine : robot.holder.empty() ? Token::none : Token::other;
+  card.contact = contact_of(robot, silent, stale_after);
+  card.owner = owner_of(robot);
   card.holder = robot.mine ? "mine" : robot.holder.empty() ? "no holder" : robot.holder;
   if (robot.locked) card.holder += ", locked";
   headline(card, robot);

@@ -4,11 +4,10 @@
 #include <string>
 
 #include "basestation/gui/scene/colours.hpp"
+#include "basestation/gui/scene/state.hpp"
 #include "basestation/model/robot.hpp"
 
 namespace adit::gui {
-
-enum class Contact : std::uint8_t { live, stale, lost };
 
 /// What a robot's card shows, as texts.
 struct Card {

@@ -23,10 +23,6 @@ QString names_of(const std::vector<std::string>& names) {
   return list.join(" ");
 }
 
-QString one_line(const std::string& text) {
-  return text_of(text).split('\n', Qt::SkipEmptyParts).join(" · ");
-}
-
 QString word_of(Token token) {
   constexpr std::array kWords{"ok", "warn", "bad", "mine", "other", "none", "goal", "text", "dim"};
   return QString::fromLatin1(kWords[static_cast<std::size_t>(token)]);
@@ -38,6 +34,10 @@ QString word_of(Contact contact) {
 }
 
 }  // namespace
+
+QString Control::one_line(const std::string& text) {
+  return text_of(text).split('\n', Qt::SkipEmptyParts).join(" · ");
+}
 
 Control::Control(CommandSink& sink, QObject* parent)
     : QObject(parent),

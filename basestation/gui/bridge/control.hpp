@@ -122,6 +122,8 @@ class Control : public QObject {
   void reasons_open_changed();
 
  private:
+  /// Lines of an answer, as one.
+  static QString one_line(const std::string& text);
   void refresh();
   void show_cards();
   void show_bar();

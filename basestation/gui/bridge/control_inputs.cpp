@@ -22,10 +22,6 @@ std::size_t slot_index(const char* id) {
   return 0;
 }
 
-QString joined_lines(const std::string& text) {
-  return QString::fromStdString(text).split('\n', Qt::SkipEmptyParts).join(" · ");
-}
-
 }  // namespace
 
 void Control::select(const QString& name, bool add) {
@@ -90,10 +86,10 @@ void Control::finished(const std::string& line, const std::string& slot, int bat
     if (state != states_.end() && state->second != "sent") set_state(slot, {});
   });
   if (batch != batch_) {  // Another order came after it. A stop without the station is in no log yet.
-    if (line.starts_with("stop")) add_remark(joined_lines(outcome.text + outcome.error));
+    if (line.starts_with("stop")) add_remark(one_line(outcome.text + outcome.error));
     return;
   }
-  const QString answer = joined_lines(outcome.text + outcome.error);
+  const QString answer = one_line(outcome.text + outcome.error);
   batch_lines_ << (answer.isEmpty() ? QString::fromStdString(line) : answer);
   batch_refused_ = batch_refused_ || !done;
   say((batch_refused_ ? "" : "✓ ") + batch_lines_.join(" · "), batch_refused_ ? "refused" : "done");

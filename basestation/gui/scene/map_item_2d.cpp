@@ -52,6 +52,8 @@ MapItem2D::MapItem2D(QQuickItem* parent) : QQuickPaintedItem(parent) {
 
 void MapItem2D::show(std::shared_ptr<const station::TileMap> map) {
   map_ = std::move(map);
+  // Another station's map has other tiles.
+  std::erase_if(pictures_, [this](const auto& picture) { return !map_->tiles.contains(picture.first); });
   update();
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "basestation/gui/scene/state.hpp"
+
 namespace adit::gui {
 namespace {
 
@@ -60,10 +62,9 @@ class Drawer {
             .filled = true,
             .fill = fill};
   }
+  /// `robot`: one of the world's.
   std::string number(const Robot& robot) const {
-    for (std::size_t i = 0; i < scene_.world->robots.size(); ++i)
-      if (&scene_.world->robots[i] == &robot) return std::to_string(i + 1);
-    return {};
+    return std::to_string(&robot - scene_.world->robots.data() + 1);
   }
 
   void draw_area(const station::AreaView& area) {
@@ -160,7 +161,7 @@ class Drawer {
     const Point at = camera_.to_screen(robot.x, robot.y);
     const double age = robot.age + scene_.silent;
     const double stale_after = scene_.trails ? scene_.trails->stale_after(robot.name) : 1.0;
-    const bool old = robot.lost || age > stale_after || scene_.silent > 1.0;
+    const bool old = contact_of(robot, scene_.silent, stale_after) != Contact::live;
     const double opacity = old ? 0.55 : 1.0;
     if (robot.sigma > 0.3 && std::isfinite(robot.sigma))
       out_.shapes.push_back({.points = circle(at, 2.0 * std::min(robot.sigma, 1e3) * camera_.scale),
@@ -208,7 +209,7 @@ class Drawer {
     const double c = std::cos(yaw), s = std::sin(yaw);
     // From the body frame (x ahead, y left, pixels) to the screen, whose y points down.
     const auto place = [&](double x, double y) { return Point{at.x + c * x - s * y, at.y - s * x - c * y}; };
-    const Token owner = robot.mine ? Token::mine : robot.holder.empty() ? Token::none : Token::other;
+    const Token owner = owner_of(robot);
     const double ring = std::hypot(half_length, half_width) + 4;
     if (selected(robot))
       out_.shapes.push_back(
