@@ -6,6 +6,7 @@
 #include "core/transfer/piece.hpp"
 #include "perception/stream/piece.hpp"
 #include "tests/station/fake_robot.hpp"
+#include "tests/store/scratch_folder.hpp"
 
 namespace adit::station {
 namespace {
@@ -16,14 +17,11 @@ using testing::HasSubstr;
 class MapCommandsTest : public StationTest {
  protected:
   MapCommandsTest() {
-    folder_ = testing::TempDir() + "adit_map_commands";
-    std::filesystem::create_directories(folder_);
     robot_ = &add("r1");
     add("r2");
     start();
     run_for(6s);
   }
-  ~MapCommandsTest() override { std::filesystem::remove_all(folder_); }
 
   static radio::BulkPiece piece(const std::string& robot, std::uint32_t id, transfer::Kind kind,
                                 const std::vector<std::uint8_t>& data) {
@@ -47,9 +45,9 @@ class MapCommandsTest : public StationTest {
     robot_->send(piece(robot, 2, transfer::Kind::map_blocks, perception::pack(key, blocks, 1200).bytes));
     run_for(2s);
   }
-  std::string file(const std::string& name) const { return folder_ + "/" + name; }
+  std::string file(const std::string& name) const { return folder_.path(name); }
 
-  std::string folder_{};
+  store::ScratchFolder folder_{};
   FakeRobot* robot_{};
 };
 
@@ -60,7 +58,7 @@ TEST_F(MapCommandsTest, WithoutAMapEachSaysSo) {
     EXPECT_EQ(outcome.json["reason"], "map_empty") << line;
   }
   EXPECT_EQ(execute("map status").exit_code, 0);
-  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
 }
 
 TEST_F(MapCommandsTest, APieceIsStoredAndAcknowledged) {
@@ -103,7 +101,7 @@ TEST_F(MapCommandsTest, EveryKindOfFileIsWritten) {
   }
   EXPECT_TRUE(std::filesystem::exists(file("site.yaml")));
   EXPECT_EQ(execute("map picture " + file("site.png")).exit_code, 0);
-  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path()))
     EXPECT_NE(entry.path().extension(), ".part") << entry.path();
 }
 
