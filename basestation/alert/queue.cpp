@@ -158,4 +158,9 @@ std::vector<Alert> AlertQueue::shown(double now) const {
   return out;
 }
 
+bool AlertQueue::concerns(const std::string& robot) const {
+  return std::ranges::any_of(
+      alerts_, [&](const Alert& alert) { return std::ranges::count(alert.robots, robot) > 0; });
+}
+
 }  // namespace adit::station

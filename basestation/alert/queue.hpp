@@ -46,6 +46,8 @@ class AlertQueue {
 
   /// The alerts to show, the most urgent and then the oldest first.
   std::vector<Alert> shown(double now) const;
+  /// Whether an alert names that robot, also one that is hidden.
+  bool concerns(const std::string& robot) const;
   std::size_t size() const { return alerts_.size(); }
 
  private:

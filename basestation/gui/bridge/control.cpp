@@ -59,6 +59,14 @@ void Control::show(std::shared_ptr<const station::World> world, double now) {
   world_ = std::move(world);
   silent_for_ = 0.0;
   trails_.add(*world_, now);
+  if (catch_up_) {
+    catch_up_ = false;
+    std::uint64_t newest = 0;
+    for (const station::Notice& notice : world_->notices) newest = std::max(newest, notice.id);
+    if (newest < last_notice_) last_notice_ = 0;  // Another run of the station.
+    for (const station::Notice& notice : world_->notices)
+      if (notice.id > last_notice_) show_notice(notice);
+  }
   refresh();
 }
 
@@ -70,6 +78,7 @@ void Control::show_map(std::shared_ptr<const station::TileMap> map) {
 void Control::show_link(bool connected, double silent_for, const std::string& why) {
   const bool same = connected != ended_ && why == why_ && silent_for < 1.0 && silent_for_ < 1.0;
   ended_ = !connected;
+  catch_up_ = catch_up_ || ended_;
   silent_for_ = silent_for;
   why_ = why;
   if (!same) refresh();  // While the station speaks, its snapshots refresh the window.
@@ -78,12 +87,12 @@ void Control::show_link(bool connected, double silent_for, const std::string& wh
 void Control::refresh() {
   show_cards();
   show_bar();
+  attention_.refresh();
   emit shown();
 }
 
 void Control::show_cards() {
   std::vector<QVariantList> rows;
-  QStringList attention;
   mine_ = lost_ = stopped_ = 0;
   int number = 0;
   for (const Robot& robot : world_->robots) {
@@ -97,10 +106,7 @@ void Control::show_cards() {
                     word_of(card.headline_token), text_of(card.shape), text_of(card.detail),
                     text_of(card.battery), text_of(card.speed), text_of(card.goal), text_of(card.age),
                     word_of(card.contact), selected});
-    if (card.needs_operator && attention.size() < 6)
-      attention << text_of(card.name + " " + card.headline + ": " + card.detail);
   }
-  attention_ = attention.join("   ·   ");
   robots_.show(std::move(rows));
 }
 
@@ -194,19 +200,28 @@ void Control::say(const QString& text, const QString& kind) {
   emit said();
 }
 
-void Control::log_row(const QString& kind, const QString& who, const QString& text) {
-  const int seconds = first_ < 0.0 ? 0 : static_cast<int>(now_ - first_);
-  const QString time =
-      QString("%1:%2").arg(seconds / 60, 2, 10, QChar('0')).arg(seconds % 60, 2, 10, QChar('0'));
+void Control::log_row(const QString& kind, const QString& who, const QString& text, double age) {
+  constexpr double kLongest = 1e6;  // s
+  const double since = first_ < 0.0 ? 0.0 : now_ - first_ - std::max(age, 0.0);
+  const int seconds = static_cast<int>(std::clamp(std::abs(since), 0.0, kLongest));
+  const QString time = QString(since <= -1.0 ? "-%1:%2" : "%1:%2")  // Before the window was opened.
+                           .arg(seconds / 60, 2, 10, QChar('0'))
+                           .arg(seconds % 60, 2, 10, QChar('0'));
   log_.prepend({next_row_++, time, kind, who, text}, kMaxLog);
 }
 
 void Control::add_notice(const station::Notice& notice) {
+  if (!catch_up_) show_notice(notice);  // Otherwise the next snapshot has it, too.
+}
+
+void Control::show_notice(const station::Notice& notice) {
+  last_notice_ = std::max(last_notice_, notice.id);
+  attention_.add(notice);
   const QString kind = !notice.mine                              ? "dim"
                        : notice.level == station::Level::error   ? "bad"
                        : notice.level == station::Level::warning ? "warn"
                                                                  : "text";
-  log_row(kind, text_of(notice.robot), text_of(notice.text.empty() ? notice.code : notice.text));
+  log_row(kind, text_of(notice.robot), one_line(notice.text.empty() ? notice.code : notice.text), notice.age);
 }
 
 void Control::add_command(const station::CommandEvent& event) {

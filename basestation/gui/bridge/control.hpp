@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "basestation/gui/bridge/action_bar.hpp"
+#include "basestation/gui/bridge/attention_list.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/scene/camera.hpp"
@@ -37,7 +38,7 @@ class Control : public QObject {
   Q_PROPERTY(int lostCount READ lost_count NOTIFY shown)
   Q_PROPERTY(int stoppedCount READ stopped_count NOTIFY shown)
   Q_PROPERTY(QString others READ others NOTIFY shown)
-  Q_PROPERTY(QString attention READ attention NOTIFY shown)
+  Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
   Q_PROPERTY(bool silent READ silent NOTIFY shown)
   Q_PROPERTY(bool ended READ ended NOTIFY shown)
@@ -75,6 +76,13 @@ class Control : public QObject {
   /// Sends the robots of the selection that would accept it to a place, map frame, m.
   void go_to(const Point& place);
 
+  /// Runs a command line as an order of the operator.
+  void order(const std::string& line, const std::string& slot = {});
+  /// Selects these robots as far as they are known, and asks the map to show them.
+  void select_and_show(const std::vector<std::string>& robots);
+  /// Lines of an answer, as one.
+  static QString one_line(const std::string& text);
+
   // From QML.
   Q_INVOKABLE void select(const QString& name, bool add);
   Q_INVOKABLE void trigger(int slot, bool held);
@@ -99,7 +107,7 @@ class Control : public QObject {
   int lost_count() const { return lost_; }
   int stopped_count() const { return stopped_; }
   QString others() const;
-  QString attention() const { return attention_; }
+  AttentionList* attention() { return &attention_; }
   QString stop_text() const;
   bool silent() const { return silent_for_ > 1.0 || ended_; }
   bool ended() const { return ended_; }
@@ -116,14 +124,13 @@ class Control : public QObject {
  signals:
   void shown();  ///< The world, the link or the selection changed.
   void map_changed();
+  void look_at(double x, double y);  ///< The map should show this place in its middle, map frame, m.
   void said();
   void orders_dropped();  ///< A finger that is down on the map sends nothing any more.
   void aiming_changed();
   void reasons_open_changed();
 
  private:
-  /// Lines of an answer, as one.
-  static QString one_line(const std::string& text);
   void refresh();
   void show_cards();
   void show_bar();
@@ -142,7 +149,9 @@ class Control : public QObject {
   void move_selection(int by);
   QString reason_of(const BarButton& button) const;
   bool press_letter(int key);
-  void log_row(const QString& kind, const QString& who, const QString& text);
+  /// `age`: time since it happened, s.
+  void log_row(const QString& kind, const QString& who, const QString& text, double age = 0.0);
+  void show_notice(const station::Notice& notice);
 
   CommandSink& sink_;
   std::shared_ptr<const station::World> world_;
@@ -159,7 +168,9 @@ class Control : public QObject {
   RowModel robots_, buttons_, refusals_, log_;
   qint64 next_row_{1};
   int mine_{}, lost_{}, stopped_{};
-  QString attention_{};
+  AttentionList attention_{*this};
+  std::uint64_t last_notice_{};  ///< The newest one that was shown.
+  bool catch_up_{true};          ///< The next snapshot has notices that did not come by themselves.
 
   int batch_{0};
   QStringList batch_lines_{};

@@ -37,6 +37,31 @@ void Control::select(const QString& name, bool add) {
   refresh();
 }
 
+void Control::select_and_show(const std::vector<std::string>& robots) {
+  std::vector<std::string> known;
+  Point sum{};
+  int located = 0;
+  for (const std::string& name : robots) {
+    const station::Robot* robot = world_->robot(name);
+    if (!robot) continue;
+    known.push_back(name);
+    if (!robot->located || !drawable(robot->x, robot->y)) continue;
+    sum = {sum.x + robot->x, sum.y + robot->y};
+    ++located;
+  }
+  if (known.empty()) return;
+  selection_ = std::move(known);
+  drop_orders();
+  refresh();
+  if (located > 0) emit look_at(sum.x / located, sum.y / located);
+}
+
+void Control::order(const std::string& line, const std::string& slot) {
+  pending_line_.clear();
+  begin_batch();
+  run(line, slot);
+}
+
 void Control::begin_batch() {
   ++batch_;
   batch_lines_.clear();
@@ -119,17 +144,14 @@ void Control::trigger(int slot, bool held) {
   if (button.touch == Touch::hold && !held)
     return say(QString::fromStdString(button.label + " " + button.hint) + ": press and hold", "sent");
   if (button.id == "stop") return stop(button.robots);
-  begin_batch();
-  run(button.line, button.id);
+  order(button.line, button.id);
 }
 
 void Control::cure(int row, bool held) {
   if (row < 0 || row >= static_cast<int>(bar_.not_now.size())) return;
   const Refusal refusal = bar_.not_now[static_cast<std::size_t>(row)];
   if (refusal.cure_line.empty() || (refusal.cure_hold && !held)) return;
-  pending_line_.clear();
-  begin_batch();
-  run(refusal.cure_line, refusal.cure_line.starts_with("take") ? "take" : "reset");
+  order(refusal.cure_line, refusal.cure_line.starts_with("take") ? "take" : "reset");
 }
 
 void Control::stopAll() {
@@ -198,6 +220,10 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
     return true;
   }
   if (repeated || key == Qt::Key_Shift || key == Qt::Key_Control) return false;
+  if (key == Qt::Key_Tab) {
+    attention_.show_next();
+    return true;
+  }
   if ((modifiers & (Qt::AltModifier | Qt::MetaModifier)) != 0) return false;
   motion_key_ = 0;
   keys_down_.insert(key);
@@ -229,10 +255,11 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
   }
   if (key == Qt::Key_Escape) {
     emit orders_dropped();
-    if (aiming_ || reasons_open_ || !pending_line_.empty()) {
+    if (aiming_ || reasons_open_ || attention_.is_open() || !pending_line_.empty()) {
       if (aiming_ || !pending_line_.empty()) say("Taken back.", "sent");
       set_aiming(false);
       set_reasons_open(false);
+      attention_.set_open(false);
       pending_line_.clear();
     } else {
       selection_.clear();

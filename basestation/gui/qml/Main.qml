@@ -26,12 +26,12 @@ Window {
             width: parent.width - window.stopWidth
             height: 12 * Theme.mm
         }
-        AttentionLine {
+        AttentionStrip {
             id: attention
-            control: window.control
+            attention: window.control.attention
             width: top.width
             anchors.top: top.bottom
-            height: 10 * Theme.mm
+            height: 12 * Theme.mm
         }
         StopAll {
             id: stop
@@ -53,6 +53,12 @@ Window {
             anchors.right: parent.right
             anchors.top: attention.bottom
             anchors.bottom: actions.top
+        }
+        AttentionMenu {
+            attention: window.control.attention
+            anchors.left: fleet.right
+            anchors.right: parent.right
+            anchors.top: attention.bottom
         }
         ReasonList {
             control: window.control

@@ -18,6 +18,7 @@ void MapView::set_control(Control* control) {
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, &MapView::refresh);
+    connect(control_, &Control::look_at, this, &MapView::look_at);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
     connect(control_, &Control::map_changed, this, [this] {
       map_->show(control_->map());
@@ -130,6 +131,16 @@ void MapView::drop_aim() {
 
 void MapView::send_aim(const QPointF& at) {
   if (control_) control_->go_to(camera_.to_map(at.x(), at.y()));
+}
+
+void MapView::look_at(double x, double y) {
+  constexpr double kLeastScale = 8.0;  // Pixels per m, so that the robot can be seen.
+  if (busy() || aiming()) return;      // The place under a finger stays there.
+  set_fitting(false);
+  camera_.x = x;
+  camera_.y = y;
+  camera_.scale = std::max(camera_.scale, kLeastScale);
+  refresh_camera();
 }
 
 void MapView::pan(const QPointF& by) {

@@ -48,7 +48,8 @@ class MapView : public GestureArea {
   void zoom(double factor, const QPointF& about) override;
 
  private:
-  void refresh();         ///< The marks.
+  void look_at(double x, double y);  ///< Brings a place of the map frame, m, into the middle.
+  void refresh();                    ///< The marks.
   void refresh_camera();  ///< The map and the marks.
   void set_fitting(bool fitting);
   /// Adjusts the view if something is outside of it, or at once.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+#include "basestation/alert/queue.hpp"
+#include "basestation/gui/scene/trails.hpp"
+
+namespace adit::gui {
+
+/// Something that needs the operator, as the window shows it.
+struct Need {
+  std::string id{};  ///< Stays the same while it is shown.
+  std::vector<std::string> robots{};
+  std::string who{};                        ///< The robots, or "station".
+  std::string text{};                       ///< What happened, with the count if it happened more than once.
+  std::string since{};                      ///< Time since it began; empty: not known.
+  std::string grant_label{}, grant_line{};  ///< Hands the robot to the operator who asked; empty: none did.
+  bool urgent{};          ///< Motion or control is at stake, and the operator has not seen it yet.
+  bool can_see{};         ///< It waits until the operator has seen it.
+  bool can_wait{};        ///< The operator may put it off.
+  std::uint64_t alert{};  ///< Of the queue; 0: the robot's state alone says it.
+  bool operator==(const Need&) const = default;
+};
+
+/// What needs this operator: the alerts of the queue, and the operator's robots whose state says that they do
+/// nothing useful although no notification of it was heard, e.g. because the window was opened later.
+class Attention {
+ public:
+  void add(const station::Notice& notice, const station::World& world, double now) {
+    queue_.add(notice, world, now);
+  }
+  void update(const station::World& world, double now) { queue_.update(world, now); }
+  void see(std::uint64_t alert) { queue_.see(alert); }
+  void later(std::uint64_t alert, double now) { queue_.later(alert, now); }
+
+  /// The most urgent and then the oldest first. `silent`: time since the station's last snapshot, s.
+  std::vector<Need> needs(const station::World& world, const Trails& trails, double now, double silent) const;
+
+ private:
+  station::AlertQueue queue_{};
+};
+
+}  // namespace adit::gui

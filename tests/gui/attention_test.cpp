@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the window says that needs the operator.
+#include <gmock/gmock.h>
+
+#include "basestation/gui/bridge/attention.hpp"
+#include "tests/gui/fixture.hpp"
+
+namespace adit::gui {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+class AttentionTest : public testing::Test {
+ protected:
+  AttentionTest() {
+    world_.station = "op1";
+    world_.stations = {{.name = "op1", .self = true}, {.name = "op2"}};
+    for (const char* name : {"r1", "r2", "r3", "r4"}) {
+      world_.robots.push_back(mine(robot(name, 0, 0)));
+      world_.robots.back().mode = "waypoint";
+      world_.robots.back().moving_allowed = true;
+      world_.robots.back().goal_phase = station::GoalPhase::active;
+    }
+  }
+  station::Robot& r(int number) { return world_.robots[static_cast<std::size_t>(number) - 1]; }
+  void say(const std::string& robot, const std::string& code, const std::string& text) {
+    attention_.add({.robot = robot, .code = code, .text = text, .mine = true}, world_, now_);
+  }
+  std::vector<Need> needs() {
+    attention_.update(world_, now_);
+    return attention_.needs(world_, trails_, now_, 0.0);
+  }
+  std::vector<std::string> lines() {
+    std::vector<std::string> out;
+    for (const Need& need : needs()) out.push_back(need.who + ": " + need.text);
+    return out;
+  }
+  void block(int number) {
+    r(number).goal_phase = station::GoalPhase::blocked;
+    r(number).reason = Reason::blocked;
+    r(number).moving_allowed = false;
+  }
+
+  station::World world_{};
+  Trails trails_{};
+  Attention attention_{};
+  double now_{100.0};
+};
+
+TEST_F(AttentionTest, IsEmptyWhileEveryRobotWorks) { EXPECT_THAT(lines(), IsEmpty()); }
+
+TEST_F(AttentionTest, SaysWhatTheNotificationSaidAndSinceWhen) {
+  block(1);
+  say("r1", "blocked", "every path is blocked");
+  now_ += 72;
+  EXPECT_THAT(lines(), ElementsAre("r1: every path is blocked"));
+  EXPECT_EQ(needs()[0].since, "72 s");
+  EXPECT_TRUE(needs()[0].can_wait);
+  EXPECT_FALSE(needs()[0].can_see);
+  EXPECT_FALSE(needs()[0].urgent);
+}
+
+TEST_F(AttentionTest, ARobotOfWhichNoNotificationWasHeardIsFoundByItsState) {
+  block(2);
+  EXPECT_EQ(lines().size(), 1U);
+  EXPECT_EQ(needs()[0].who, "r2");
+  EXPECT_THAT(needs()[0].text, testing::HasSubstr("BLOCKED"));
+  say("r2", "blocked", "every path is blocked");
+  EXPECT_THAT(lines(), ElementsAre("r2: every path is blocked")) << "once, not twice";
+}
+
+TEST_F(AttentionTest, WhatWasPutOffDoesNotComeBackByTheState) {
+  block(2);
+  say("r2", "blocked", "every path is blocked");
+  attention_.later(needs()[0].alert, now_);
+  EXPECT_THAT(lines(), IsEmpty());
+  now_ += station::AlertQueue::kLater + 1;
+  EXPECT_EQ(lines().size(), 1U);
+}
+
+TEST_F(AttentionTest, OnesOwnStopAndRobotsOfOthersNeedNothing) {
+  r(1).stopped = true;
+  r(1).stops = {"op1"};
+  block(3);
+  r(3).mine = false;
+  r(3).holder = "op2";
+  EXPECT_THAT(lines(), IsEmpty());
+  r(1).stops = {"op1", "op2"};
+  EXPECT_EQ(lines().size(), 1U);
+}
+
+TEST_F(AttentionTest, AStopByAnotherIsUrgentUntilSeenAndStaysUntilReset) {
+  r(1).stopped = true;
+  r(1).stops = {"op2"};
+  say("r1", "stopped", "op2 stopped r1");
+  EXPECT_TRUE(needs()[0].urgent);
+  EXPECT_TRUE(needs()[0].can_see);
+  attention_.see(needs()[0].alert);
+  EXPECT_FALSE(needs()[0].urgent);
+  EXPECT_THAT(lines(), ElementsAre("r1: op2 stopped r1"));
+  r(1).stopped = false;
+  r(1).stops.clear();
+  now_ += 1;
+  EXPECT_THAT(lines(), IsEmpty());
+}
+
+TEST_F(AttentionTest, WhoAsksForALockedRobotCanBeGrantedIt) {
+  r(4).locked = true;
+  say("r4", "asked", "op2 asked for r4");
+  EXPECT_EQ(needs()[0].grant_line, "grant r4 op2");
+  world_.stations[1].lost = true;
+  EXPECT_EQ(needs()[0].grant_line, "") << "a station that is not heard takes nothing";
+  world_.stations.clear();
+  say("r4", "asked", "r9; stop all asked for r4");
+  EXPECT_EQ(needs()[0].grant_line, "") << "only a name that is on the air";
+}
+
+TEST_F(AttentionTest, ManyRobotsWithOneCauseAreOneRow) {
+  for (int i = 1; i <= 4; ++i) {
+    r(i).lost = true;
+    r(i).age = 3;
+    say("r" + std::to_string(i), "lost", "r" + std::to_string(i) + " is lost");
+  }
+  EXPECT_THAT(lines(), ElementsAre("4 robots: lost: r1, r2, r3, r4"));
+}
+
+}  // namespace
+}  // namespace adit::gui
