@@ -18,6 +18,8 @@ Priority priority_of(const Notice& notice, const AlertRow* row, const Robot* rob
 }
 
 bool over(const Robot& robot, Ends ends) {
+  // It is the concern of the operator who holds it now.
+  if (ends != Ends::seen && !robot.mine && !robot.holder.empty()) return true;
   switch (ends) {
     case Ends::seen:
       return false;

@@ -79,6 +79,13 @@ TEST_F(AttentionTest, WhatWasPutOffDoesNotComeBackByTheState) {
   EXPECT_EQ(lines().size(), 1U);
 }
 
+TEST_F(AttentionTest, AComponentThatStartsNeedsNothingAndOneThatFailedDoes) {
+  r(1).troubles = {"planner starting", "lidar waiting"};
+  EXPECT_THAT(lines(), IsEmpty());
+  r(1).troubles = {"planner starting", "lidar FAILED"};
+  EXPECT_EQ(lines().size(), 1U);
+}
+
 TEST_F(AttentionTest, OnesOwnStopAndRobotsOfOthersNeedNothing) {
   r(1).stopped = true;
   r(1).stops = {"op1"};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Qt's program around the tests of the window: no screen, no GPU.
-#include "tests/gui/window_fixture.hpp"
+#include "tests/gui/fingers.hpp"
 
 int main(int argc, char** argv) {
   qputenv("QT_QPA_PLATFORM", "offscreen");

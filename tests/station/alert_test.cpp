@@ -112,6 +112,20 @@ TEST_F(AlertQueueTest, TheSameIsCountedInOneRow) {
   EXPECT_THAT(shown(), ElementsAre("blocked r1 x4"));
 }
 
+TEST_F(AlertQueueTest, ARobotThatAnotherOperatorTookNeedsNothingHere) {
+  r(1).stopped = true;
+  r(1).stops = {"op2"};
+  say("r1", "stopped");
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre("stopped r1"));
+  r(1).mine = false;
+  pass(1.0);
+  EXPECT_THAT(shown(), ElementsAre("stopped r1")) << "no operator has it: it may be anybody's";
+  r(1).holder = "op2";
+  pass(1.0);
+  EXPECT_TRUE(shown().empty());
+}
+
 TEST_F(AlertQueueTest, EndsWhenItsCauseIsGone) {
   r(1).reason = Reason::blocked;
   say("r1", "blocked");

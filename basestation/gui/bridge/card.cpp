@@ -29,6 +29,11 @@ std::string glyph_of(const std::string& platform) {
   return "unknown";
 }
 
+/// Whether a component does not work and does not come by itself.
+bool broken(const std::string& trouble) {
+  return !trouble.ends_with(" starting") && !trouble.ends_with(" waiting");
+}
+
 void headline(Card& card, const Robot& robot) {
   const auto set = [&](std::string word, Token token, std::string shape, bool needs) {
     card.headline = std::move(word);
@@ -42,7 +47,9 @@ void headline(Card& card, const Robot& robot) {
   if (robot.stopped || !robot.stops.empty()) return set("STOP", Token::bad, "square", true);
   if (robot.goal_phase == GoalPhase::blocked || robot.reason == Reason::blocked)
     return set("BLOCKED", Token::bad, "square", true);
-  if (!robot.troubles.empty()) return set(upper(robot.mode), Token::warn, "triangle", true);
+  if (!robot.troubles.empty())
+    return set(upper(robot.mode), Token::warn, "triangle",
+               std::any_of(robot.troubles.begin(), robot.troubles.end(), broken));
   if (waits) return set(upper(robot.mode) + " WAITS", Token::warn, "triangle", true);
   if (drives) return set(upper(robot.mode), Token::ok, "disc", false);
   set(robot.mode.empty() ? "NOT HEARD YET" : upper(robot.mode), Token::none, "ring", false);

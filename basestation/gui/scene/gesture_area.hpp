@@ -16,6 +16,8 @@ class GestureArea : public QQuickItem {
   static constexpr double kSlopMm = 3.0;  ///< A finger that moves less has not moved.
 
   explicit GestureArea(QQuickItem* parent = nullptr);
+  /// A place is shown that would be sent if the finger was lifted.
+  bool aims() const { return state_ == State::aimed; }
 
  protected:
   /// Whether a tap means a place to drive to.
