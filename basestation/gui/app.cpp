@@ -111,6 +111,8 @@ int show_window(int argc, char** argv, const Options& options, const QSize& size
   Control control(qt_station);
   qt_station.show_in(control);
   for (const std::string& robot : options.select) control.select(QString::fromStdString(robot), true);
+  constexpr int kWide = 1600;  // There is room for the details beside the map.
+  control.details()->set_open(size.width() >= kWide);
   const OperatorWindow window(control);
   if (!window.window())
     return fail(station::kExitRefused, "the window's files could not be loaded, see above");

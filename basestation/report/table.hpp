@@ -3,14 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "basestation/model/text.hpp"  // fixed(), for those who fill the rows.
+
 namespace adit::station {
 
 /// Formats rows as aligned columns; the first row is the heading. A column whose cells below the heading are
 /// all numbers or "-", with one number at least, is aligned right.
 std::string table(const std::vector<std::vector<std::string>>& rows);
-
-/// Formats a number with `decimals` decimal places, without a negative zero; "-" if not finite.
-std::string fixed(double value, int decimals);
 
 /// Formats an age, s, in a few characters: 59s, 12m, 30h; "-" if not finite.
 std::string short_age(double seconds);

@@ -29,31 +29,8 @@ std::string holder_text(const RobotView& robot) {
   return robot.holder + (robot.mine ? "*" : "");
 }
 
-}  // namespace
-
-namespace {
-
 std::string place_text(const std::array<float, 3>& place) {
   return " at " + fixed(place[0], 1) + " " + fixed(place[1], 1) + " " + fixed(place[2], 1);
-}
-
-/// The size: "0.90 x 0.60 x 0.50 m"; "-" if unknown.
-std::string size_text(const Size& size) {
-  if (size.length <= 0.0F || size.width <= 0.0F) return "-";
-  return fixed(size.length, 2) + " x " + fixed(size.width, 2) +
-         (size.height > 0.0F ? " x " + fixed(size.height, 2) : "") + " m";
-}
-
-/// The robot's own limits.
-std::string limits_text(const RobotView& robot) {
-  std::vector<std::string> limits{fixed(robot.max_speed, 1) + " m/s", fixed(robot.max_turn, 1) + " rad/s"};
-  if (robot.max_acceleration > 0.0F) limits.push_back(fixed(robot.max_acceleration, 1) + " m/s2");
-  if (robot.max_step > 0.0F) limits.push_back("steps of " + fixed(robot.max_step, 2) + " m");
-  if (robot.max_slope > 0.0F)
-    limits.push_back("slopes of " + fixed(robot.max_slope * 180.0 / std::numbers::pi, 0) + " degrees");
-  limits.push_back(robot.climbs_stairs ? "climbs stairs" : "no stairs");
-  if (robot.holonomic) limits.push_back("moves sideways");
-  return command::joined(limits, "-");
 }
 
 }  // namespace
@@ -70,23 +47,6 @@ std::string goal_text(const RobotView& robot) {
   if (robot.goal_phase == GoalPhase::none) return "-";
   return std::string(to_string(robot.goal_phase)) + " " + fixed(robot.goal[0], 1) + " " +
          fixed(robot.goal[1], 1);
-}
-
-std::string exploration_text(const ExplorationView& exploration) {
-  const ExplorationView& e = exploration;
-  return std::string(to_string(e.phase)) +
-         (e.reason == Reason::none ? "" : " (" + std::string(describe(e.reason)) + ")") + ", " +
-         fixed(e.volume, 0) + " m3, about " + fixed(e.share * 100.0, 0) + "%, " + std::to_string(e.open) +
-         " frontiers left, " + std::to_string(e.unreachable) + " out of reach";
-}
-
-std::string area_text(const AreaView& area) {
-  std::string text = area.name + " " + area.kind;
-  if (area.kind == "prefer") text += " weight " + fixed(area.weight, 1);
-  for (const auto& corner : area.corners) text += ", " + fixed(corner[0], 1) + " " + fixed(corner[1], 1);
-  if (std::isfinite(area.z_min)) text += ", from z " + fixed(area.z_min, 1);
-  if (std::isfinite(area.z_max)) text += ", up to z " + fixed(area.z_max, 1);
-  return text;
 }
 
 std::string stops_text(const RobotView& robot) {

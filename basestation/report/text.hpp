@@ -5,6 +5,7 @@
 
 #include "basestation/fleet/fleet.hpp"
 #include "basestation/model/action.hpp"
+#include "basestation/model/text.hpp"
 #include "basestation/send/answer.hpp"
 
 /// The fleet model as readable text; lines end in a newline.
@@ -32,10 +33,6 @@ std::string mode_text(const RobotView& robot);
 std::string pose_text(const RobotView& robot);
 /// The goal: "active 12.0 0.5" (m), or "-".
 std::string goal_text(const RobotView& robot);
-/// "exploring, 1200 m3, about 60%, 4 frontiers left, 0 out of reach".
-std::string exploration_text(const ExplorationView& exploration);
-/// "shaft keep_out, 3.0 20.0, 11.0 20.0, 11.0 25.0, 3.0 25.0".
-std::string area_text(const AreaView& area);
 /// The stops: "none", or the stopping operators.
 std::string stops_text(const RobotView& robot);
 

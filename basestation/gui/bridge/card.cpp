@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "basestation/model/text.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::gui {
@@ -69,27 +69,20 @@ std::string detail(const Card& card, const Robot& robot, double age) {
     return std::string(to_string(robot.exploration.phase)) + ", " + std::to_string(robot.exploration.open) +
            " frontiers left";
   if (robot.goal_phase == GoalPhase::active || robot.goal_phase == GoalPhase::kept)
-    return (robot.goal_phase == GoalPhase::active ? "to " : "goal kept: ") + fixed_text(robot.goal[0], 1) +
-           " " + fixed_text(robot.goal[1], 1);
+    return (robot.goal_phase == GoalPhase::active ? "to " : "goal kept: ") +
+           station::fixed(robot.goal[0], 1) + " " + station::fixed(robot.goal[1], 1);
   if (robot.goal_phase == GoalPhase::reached) return "arrived";
   return "ready";
 }
 
 }  // namespace
 
-std::string fixed_text(double value, int digits) {
-  if (!(std::abs(value) < 1e6)) return "-";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
 std::string age_text(double seconds) {
   if (!(seconds >= 0.0) || seconds > 1e7) return "-";
-  if (seconds < 9.95) return fixed_text(seconds, 1) + " s";
-  if (seconds < 120.0) return fixed_text(seconds, 0) + " s";
-  if (seconds < 7200.0) return fixed_text(std::floor(seconds / 60.0), 0) + " min";
-  return fixed_text(std::floor(seconds / 3600.0), 0) + " h";
+  if (seconds < 9.95) return station::fixed(seconds, 1) + " s";
+  if (seconds < 120.0) return station::fixed(seconds, 0) + " s";
+  if (seconds < 7200.0) return station::fixed(std::floor(seconds / 60.0), 0) + " min";
+  return station::fixed(std::floor(seconds / 3600.0), 0) + " h";
 }
 
 Card card_of(const Robot& robot, int number, double silent, double stale_after) {
@@ -103,11 +96,11 @@ Card card_of(const Robot& robot, int number, double silent, double stale_after) 
   headline(card, robot);
   card.detail = detail(card, robot, age);
   const bool battery = robot.battery >= 0.0F && robot.battery <= 1.0F;
-  card.battery = battery ? fixed_text(100.0 * robot.battery, 0) + " %" : "-";
-  card.speed = robot.located ? fixed_text(std::hypot(robot.vx, robot.vy), 1) + " m/s" : "-";
+  card.battery = battery ? station::fixed(100.0 * robot.battery, 0) + " %" : "-";
+  card.speed = robot.located ? station::fixed(std::hypot(robot.vx, robot.vy), 1) + " m/s" : "-";
   const bool goal = robot.goal_phase != GoalPhase::none && robot.goal_phase != GoalPhase::reached;
   if (goal && robot.located)
-    card.goal = fixed_text(std::hypot(robot.goal[0] - robot.x, robot.goal[1] - robot.y), 0) + " m";
+    card.goal = station::fixed(std::hypot(robot.goal[0] - robot.x, robot.goal[1] - robot.y), 0) + " m";
   card.age = age_text(age);
   return card;
 }

@@ -36,7 +36,5 @@ Card card_of(const station::Robot& robot, int number, double silent, double stal
 
 /// "0.4 s", "47 s", "3 min".
 std::string age_text(double seconds);
-/// A number with so many digits after the point; "-" if it is not finite or too large to mean anything.
-std::string fixed_text(double value, int digits);
 
 }  // namespace adit::gui

@@ -88,6 +88,7 @@ void Control::refresh() {
   show_cards();
   show_bar();
   attention_.refresh();
+  details_.refresh();
   emit shown();
 }
 

@@ -13,6 +13,7 @@
 #include "basestation/gui/bridge/action_bar.hpp"
 #include "basestation/gui/bridge/attention_list.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
+#include "basestation/gui/bridge/detail_list.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/scene/camera.hpp"
 #include "basestation/gui/scene/trails.hpp"
@@ -39,6 +40,7 @@ class Control : public QObject {
   Q_PROPERTY(int stoppedCount READ stopped_count NOTIFY shown)
   Q_PROPERTY(QString others READ others NOTIFY shown)
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
+  Q_PROPERTY(adit::gui::DetailList* details READ details CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
   Q_PROPERTY(bool silent READ silent NOTIFY shown)
   Q_PROPERTY(bool ended READ ended NOTIFY shown)
@@ -108,6 +110,7 @@ class Control : public QObject {
   int stopped_count() const { return stopped_; }
   QString others() const;
   AttentionList* attention() { return &attention_; }
+  DetailList* details() { return &details_; }
   QString stop_text() const;
   bool silent() const { return silent_for_ > 1.0 || ended_; }
   bool ended() const { return ended_; }
@@ -169,6 +172,7 @@ class Control : public QObject {
   qint64 next_row_{1};
   int mine_{}, lost_{}, stopped_{};
   AttentionList attention_{*this};
+  DetailList details_{*this};
   std::uint64_t last_notice_{};  ///< The newest one that was shown.
   bool catch_up_{true};          ///< The next snapshot has notices that did not come by themselves.
 

@@ -8,6 +8,7 @@
 #include "basestation/gui/scene/mark_list.hpp"
 #include "basestation/gui/scene/theme.hpp"
 #include "basestation/model/exit_code.hpp"
+#include "basestation/model/text.hpp"
 
 namespace adit::gui {
 namespace {
@@ -180,7 +181,8 @@ void Control::go_to(const Point& place) {
   const std::vector<Point> goals = goals_at(place);
   begin_batch();
   for (std::size_t i = 0; i < button.robots.size(); ++i)
-    run("goto " + button.robots[i] + " " + fixed_text(goals[i].x, 2) + " " + fixed_text(goals[i].y, 2),
+    run("goto " + button.robots[i] + " " + station::fixed(goals[i].x, 2) + " " +
+            station::fixed(goals[i].y, 2),
         "goto");
 }
 
@@ -239,6 +241,10 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
   if (digit >= 0) {
     if (digit < robot_count())
       select(QString::fromStdString(world_->robots[static_cast<std::size_t>(digit)].name), shift);
+    return true;
+  }
+  if (key == Qt::Key_I) {
+    details_.set_open(!details_.is_open());
     return true;
   }
   if (key == Qt::Key_Return || key == Qt::Key_Enter) {

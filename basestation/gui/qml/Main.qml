@@ -50,9 +50,18 @@ Window {
             id: map
             control: window.control
             anchors.left: fleet.right
+            anchors.right: details.visible ? details.left : parent.right
+            anchors.top: attention.bottom
+            anchors.bottom: actions.top
+        }
+        DetailPane {
+            id: details
+            details: window.control.details
+            title: window.control.selectionText
             anchors.right: parent.right
             anchors.top: attention.bottom
             anchors.bottom: actions.top
+            width: 84 * Theme.mm
         }
         AttentionMenu {
             attention: window.control.attention

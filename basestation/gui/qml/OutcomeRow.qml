@@ -20,10 +20,23 @@ Rectangle {
         objectName: "outcome"
         anchors.left: mark.right
         anchors.leftMargin: 2 * Theme.mm
-        anchors.right: toggle.left
+        anchors.right: details.left
+        anchors.rightMargin: 2 * Theme.mm
         height: parent.height
         text: row.control.outcome === "" ? "No command yet. Tap a robot, then an action; press and hold on the map to send it there." : row.control.outcome
         color: row.control.outcome === "" ? Theme.dim : Theme.text
+    }
+    HoldButton {
+        id: details
+        objectName: "detailsToggle"
+        anchors.right: toggle.visible ? toggle.left : parent.right
+        anchors.rightMargin: 2 * Theme.mm
+        width: 24 * Theme.mm
+        height: toggle.height
+        anchors.verticalCenter: parent.verticalCenter
+        active: row.control.details.open
+        text: "details  i"
+        onFired: row.control.details.open = !row.control.details.open
     }
     HoldButton {
         id: toggle

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/model/text.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include "core/command/words.hpp"
+
+namespace adit::station {
+
+std::string fixed(double value, int decimals) {
+  constexpr double kLargest = 1e12;  // More means nothing, and would fill a line.
+  if (!(std::abs(value) < kLargest)) return "-";
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.*f", decimals, value);
+  std::string out(buffer);
+  if (out.starts_with('-') && out.find_first_not_of("-0.") == std::string::npos) out.erase(0, 1);
+  return out;
+}
+
+std::string size_text(const Size& size) {
+  if (size.length <= 0.0F || size.width <= 0.0F) return "-";
+  return fixed(size.length, 2) + " x " + fixed(size.width, 2) +
+         (size.height > 0.0F ? " x " + fixed(size.height, 2) : "") + " m";
+}
+
+std::string limits_text(const Robot& robot) {
+  std::vector<std::string> limits{fixed(robot.max_speed, 1) + " m/s", fixed(robot.max_turn, 1) + " rad/s"};
+  if (robot.max_acceleration > 0.0F) limits.push_back(fixed(robot.max_acceleration, 1) + " m/s2");
+  if (robot.max_step > 0.0F) limits.push_back("steps of " + fixed(robot.max_step, 2) + " m");
+  if (robot.max_slope > 0.0F)
+    limits.push_back("slopes of " + fixed(robot.max_slope * 180.0 / std::numbers::pi, 0) + " degrees");
+  limits.push_back(robot.climbs_stairs ? "climbs stairs" : "no stairs");
+  if (robot.holonomic) limits.push_back("moves sideways");
+  return command::joined(limits, "-");
+}
+
+std::string exploration_text(const ExplorationView& e) {
+  return std::string(to_string(e.phase)) +
+         (e.reason == Reason::none ? "" : " (" + std::string(describe(e.reason)) + ")") + ", " +
+         fixed(e.volume, 0) + " m3, about " + fixed(e.share * 100.0, 0) + "%, " + std::to_string(e.open) +
+         " frontiers left, " + std::to_string(e.unreachable) + " out of reach";
+}
+
+std::string area_text(const AreaView& area) {
+  std::string text = area.name + " " + area.kind;
+  if (area.kind == "prefer") text += " weight " + fixed(area.weight, 1);
+  for (const auto& corner : area.corners) text += ", " + fixed(corner[0], 1) + " " + fixed(corner[1], 1);
+  if (std::isfinite(area.z_min)) text += ", from z " + fixed(area.z_min, 1);
+  if (std::isfinite(area.z_max)) text += ", up to z " + fixed(area.z_max, 1);
+  return text;
+}
+
+}  // namespace adit::station

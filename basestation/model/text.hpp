@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+
+#include "basestation/model/robot.hpp"
+
+/// Values in words, the same in every front end.
+namespace adit::station {
+
+/// The value with so many digits after the point; "-" if it is not finite or too large to mean anything, and
+/// no minus sign before zero.
+std::string fixed(double value, int decimals);
+/// The size: "0.90 x 0.60 x 0.50 m"; "-" if unknown.
+std::string size_text(const Size& size);
+/// What the robot can do at most: "1.0 m/s, 1.5 rad/s, steps of 0.10 m, no stairs".
+std::string limits_text(const Robot& robot);
+/// What it explored: "exploring, 120 m3, about 40%, 3 frontiers left, 0 out of reach".
+std::string exploration_text(const ExplorationView& exploration);
+/// An area with its kind, corners (m) and heights (m).
+std::string area_text(const AreaView& area);
+
+}  // namespace adit::station
