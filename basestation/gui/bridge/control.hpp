@@ -12,6 +12,7 @@
 
 #include "basestation/gui/bridge/action_bar.hpp"
 #include "basestation/gui/bridge/attention_list.hpp"
+#include "basestation/gui/bridge/command_line.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/detail_list.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
@@ -41,6 +42,7 @@ class Control : public QObject {
   Q_PROPERTY(QString others READ others NOTIFY shown)
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
   Q_PROPERTY(adit::gui::DetailList* details READ details CONSTANT)
+  Q_PROPERTY(adit::gui::CommandLine* commandLine READ command_line CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
   Q_PROPERTY(bool silent READ silent NOTIFY shown)
   Q_PROPERTY(bool ended READ ended NOTIFY shown)
@@ -78,8 +80,10 @@ class Control : public QObject {
   /// Sends the robots of the selection that would accept it to a place, map frame, m.
   void go_to(const Point& place);
 
-  /// Runs a command line as an order of the operator.
-  void order(const std::string& line, const std::string& slot = {});
+  /// Runs a command line as an order of the operator. `slot`: the button that shows its state. `then`: called
+  /// with its outcome.
+  void order(const std::string& line, const std::string& slot = {}, CommandSink::Done then = {});
+  void stop(const std::vector<std::string>& robots);  ///< Software stop; of all, if there is none.
   /// Selects these robots as far as they are known, and asks the map to show them.
   void select_and_show(const std::vector<std::string>& robots);
   /// Lines of an answer, as one.
@@ -111,6 +115,7 @@ class Control : public QObject {
   QString others() const;
   AttentionList* attention() { return &attention_; }
   DetailList* details() { return &details_; }
+  CommandLine* command_line() { return &command_line_; }
   QString stop_text() const;
   bool silent() const { return silent_for_ > 1.0 || ended_; }
   bool ended() const { return ended_; }
@@ -138,8 +143,7 @@ class Control : public QObject {
   void show_cards();
   void show_bar();
   void say(const QString& text, const QString& kind);
-  void run(const std::string& line, const std::string& slot);
-  void stop(const std::vector<std::string>& robots);
+  void run(const std::string& line, const std::string& slot, CommandSink::Done then = {});
   void finished(const std::string& line, const std::string& slot, int batch,
                 const station::CommandOutcome& outcome);
   /// The next outcomes belong to a new order of the operator.
@@ -173,6 +177,7 @@ class Control : public QObject {
   int mine_{}, lost_{}, stopped_{};
   AttentionList attention_{*this};
   DetailList details_{*this};
+  CommandLine command_line_{*this};
   std::uint64_t last_notice_{};  ///< The newest one that was shown.
   bool catch_up_{true};          ///< The next snapshot has notices that did not come by themselves.
 

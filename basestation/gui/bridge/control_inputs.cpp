@@ -57,10 +57,10 @@ void Control::select_and_show(const std::vector<std::string>& robots) {
   if (located > 0) emit look_at(sum.x / located, sum.y / located);
 }
 
-void Control::order(const std::string& line, const std::string& slot) {
+void Control::order(const std::string& line, const std::string& slot, CommandSink::Done then) {
   pending_line_.clear();
   begin_batch();
-  run(line, slot);
+  run(line, slot, std::move(then));
 }
 
 void Control::begin_batch() {
@@ -75,13 +75,15 @@ void Control::drop_orders() {
   emit orders_dropped();
 }
 
-void Control::run(const std::string& line, const std::string& slot) {
+void Control::run(const std::string& line, const std::string& slot, CommandSink::Done then) {
   const int batch = batch_;
   say(QString::fromStdString(line) + "  …", "sent");
   set_state(slot, "sent");
-  sink_.execute(line, [this, line, slot, batch](const station::CommandOutcome& outcome) {
-    finished(line, slot, batch, outcome);
-  });
+  sink_.execute(line,
+                [this, line, slot, batch, then = std::move(then)](const station::CommandOutcome& outcome) {
+                  finished(line, slot, batch, outcome);
+                  if (then) then(outcome);
+                });
 }
 
 void Control::stop(const std::vector<std::string>& robots) {
@@ -231,6 +233,10 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
   keys_down_.insert(key);
   if (control && key == Qt::Key_L) {
     Theme::instance().set_light(!Theme::instance().light());
+    return true;
+  }
+  if (key == Qt::Key_Colon || (control && key == Qt::Key_K)) {
+    command_line_.set_open(true);
     return true;
   }
   if (control) return false;

@@ -95,8 +95,7 @@ std::vector<Detail> rows_of(const Robot& robot, const World& world, double silen
             : DetailAction{});
   for (const station::StationSummary& other : world.stations)
     if (robot.mine && !other.self)
-      add("hand to " + other.name,
-          other.lost ? "lost" : "heard " + age_text(other.age + silent) + " ago",
+      add("hand to " + other.name, other.lost ? "lost" : "heard " + age_text(other.age + silent) + " ago",
           other.lost ? DetailAction{}
                      : DetailAction{"Grant", "grant " + robot.name + " " + other.name, true});
   if (robot.described) {

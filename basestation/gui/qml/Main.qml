@@ -16,7 +16,7 @@ Window {
 
     Item {
         anchors.fill: parent
-        focus: true
+        focus: !window.control.commandLine.open
         Keys.onPressed: event => event.accepted = window.control.pressKey(event.key, event.modifiers, event.nativeScanCode, event.isAutoRepeat)
         Keys.onReleased: event => event.accepted = window.control.releaseKey(event.key, event.isAutoRepeat)
 
@@ -88,6 +88,13 @@ Window {
             width: parent.width
             height: 9 * Theme.mm
             anchors.bottom: log.top
+        }
+        CommandPanel {
+            line: window.control.commandLine
+            control: window.control
+            anchors.left: fleet.right
+            anchors.right: parent.right
+            anchors.bottom: outcome.bottom
         }
         LogTab {
             id: log

@@ -20,11 +20,22 @@ Rectangle {
         objectName: "outcome"
         anchors.left: mark.right
         anchors.leftMargin: 2 * Theme.mm
-        anchors.right: details.left
+        anchors.right: command.left
         anchors.rightMargin: 2 * Theme.mm
         height: parent.height
         text: row.control.outcome === "" ? "No command yet. Tap a robot, then an action; press and hold on the map to send it there." : row.control.outcome
         color: row.control.outcome === "" ? Theme.dim : Theme.text
+    }
+    HoldButton {
+        id: command
+        objectName: "commandToggle"
+        anchors.right: details.left
+        anchors.rightMargin: 2 * Theme.mm
+        width: 28 * Theme.mm
+        height: toggle.height
+        anchors.verticalCenter: parent.verticalCenter
+        text: "command  :"
+        onFired: row.control.commandLine.open = true
     }
     HoldButton {
         id: details

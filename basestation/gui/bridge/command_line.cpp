@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/bridge/command_line.hpp"
+
+#include <algorithm>
+
+#include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/bridge/typed_line.hpp"
+#include "basestation/model/exit_code.hpp"
+
+namespace adit::gui {
+
+CommandLine::CommandLine(Control& control) : QObject(&control), control_(control) {}
+
+void CommandLine::set_open(bool open) {
+  if (open == open_) return;
+  open_ = open;
+  if (open_) {
+    show_answer({}, false);
+    set_line({});
+  }
+  emit open_changed();
+}
+
+void CommandLine::set_line(const QString& line) {
+  line_ = line;
+  std::vector<std::string> robots;
+  for (const station::Robot& robot : control_.world().robots) robots.push_back(robot.name);
+  proposals_.clear();
+  for (const std::string& word : gui::proposals(line.toStdString(), robots))
+    proposals_ << QString::fromStdString(word);
+  emit line_changed();
+}
+
+void CommandLine::complete() {
+  std::vector<std::string> robots;
+  for (const station::Robot& robot : control_.world().robots) robots.push_back(robot.name);
+  set_line(QString::fromStdString(completed(line_.toStdString(), robots)));
+}
+
+void CommandLine::take(const QString& word) {
+  set_line(QString::fromStdString(with_word(line_.toStdString(), word.toStdString())));
+}
+
+void CommandLine::recall(int by) {
+  const int count = static_cast<int>(history_.size());
+  at_ = std::clamp(at_ + by, 0, count);
+  set_line(at_ < count ? history_[at_] : QString());
+}
+
+void CommandLine::show_answer(const QString& text, bool refused) {
+  answer_ = text.size() > kMaxAnswer ? text.left(kMaxAnswer) + "\n…" : text;
+  refused_ = refused;
+  emit answered();
+}
+
+void CommandLine::run() {
+  const std::string line = line_.trimmed().toStdString();
+  const TypedLine typed = read_line(line);
+  const int order = ++orders_;
+  if (typed.kind == TypedLine::Kind::nothing) return;
+  if (typed.kind == TypedLine::Kind::wrong || typed.kind == TypedLine::Kind::help)
+    return show_answer(QString::fromStdString(typed.text), typed.kind == TypedLine::Kind::wrong);
+  if (history_.isEmpty() || history_.back() != line_.trimmed()) history_ << line_.trimmed();
+  while (history_.size() > kMaxHistory) history_.removeFirst();
+  at_ = static_cast<int>(history_.size());
+  set_line({});
+  if (typed.kind == TypedLine::Kind::stop) {
+    show_answer("the answer to a stop is shown above", false);
+    return typed.robots.empty() ? control_.stopAll() : control_.stop(typed.robots);
+  }
+  if (control_.silent()) return show_answer("Not sent, as the station is silent.", true);
+  show_answer("…", false);
+  control_.order(line, {}, [this, order](const station::CommandOutcome& outcome) {
+    if (order == orders_)
+      show_answer(QString::fromStdString(outcome.text + outcome.error).trimmed(),
+                  outcome.exit_code != station::kExitDone);
+  });
+}
+
+}  // namespace adit::gui
