@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/gui/bridge/qt_station.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "basestation/gui/bridge/control.hpp"
@@ -20,8 +21,8 @@ double steady_seconds() {
 QtStation::QtStation(std::unique_ptr<station::client::Station> station) : station_(std::move(station)) {
   connect(&timer_, &QTimer::timeout, this, &QtStation::look);
   show_.setSingleShot(true);
-  show_.setInterval(kShowMs);
-  connect(&show_, &QTimer::timeout, this, [this] { control_->show(station_->world(), steady_seconds()); });
+  shown_.start();
+  connect(&show_, &QTimer::timeout, this, &QtStation::show_world);
 }
 
 QtStation::~QtStation() {
@@ -34,7 +35,7 @@ void QtStation::show_in(Control& control) {
   station_->want_map(true);
   timer_.start(kLookMs);
   take();
-  control.show(station_->world(), steady_seconds());
+  show_world();
   if (!station_->remark().empty()) control.add_remark(QString::fromStdString(station_->remark()));
 }
 
@@ -44,9 +45,16 @@ void QtStation::take() {
   for (const station::CommandEvent& event : changes.commands) control_->add_command(event);
   if (changes.missed > 0)
     control_->add_remark(QString("%1 lines were too many and did not come").arg(changes.missed));
-  if (changes.world && !show_.isActive()) show_.start();
+  // The first change after a while is shown at once, and what follows it together.
+  if (changes.world && !show_.isActive())
+    show_.start(static_cast<int>(std::max<qint64>(0, kShowMs - shown_.elapsed())));
   if (changes.map) control_->show_map(station_->map());
   if (changes.link) look();
+}
+
+void QtStation::show_world() {
+  shown_.start();
+  control_->show(station_->world(), steady_seconds());
 }
 
 void QtStation::look() {

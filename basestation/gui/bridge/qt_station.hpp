@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <QElapsedTimer>
 #include <QObject>
 #include <QTimer>
 #include <memory>
@@ -31,11 +32,13 @@ class QtStation : public QObject, public CommandSink {
  private:
   void take();
   void look();
+  void show_world();
 
   std::unique_ptr<station::client::Station> station_;
   Control* control_{};
   QTimer timer_{};  ///< Notices that the station is silent.
   QTimer show_{};   ///< Runs while a snapshot waits to be shown: states of many robots come one by one.
+  QElapsedTimer shown_{};  ///< Since a snapshot was shown.
   std::jthread starter_{};
   bool starting_{false};
 };

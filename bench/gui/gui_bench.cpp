@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the operator's window costs and how soon it answers, without a screen and without a GPU: the machine
+// with the least that it must run on. Each repeat is a process of its own.
+#include <CLI/CLI.hpp>
+#include <QGuiApplication>
+#include <cstdio>
+#include <cstdlib>
+
+#include "bench/gui/course.hpp"
+
+namespace {
+
+using namespace adit::gui::bench;
+
+/// The limit of a result on such a machine; 0: it is only reported.
+struct Limit {
+  const char* name{};
+  double most{};   ///< 0: no limit.
+  double least{};  ///< 0: no limit.
+};
+constexpr Limit kLimits[] = {
+    {"start to the first card, ms", 1500, 0},
+    {"memory, ten robots, MB", 130, 0},
+    {"state to pixel, median, ms", 40, 0},
+    {"state to pixel, 99 %, ms", 120, 0},
+    {"processor, nothing changes, %", 1, 0},
+    {"processor, ten robots at 10 Hz, %", 15, 0},
+    {"the same, window hidden, %", 0, 0},
+    {"frame in which a map of 1 M cells comes, ms", 60, 0},
+    {"memory for that map, MB", 40, 0},
+    {"frames per second, the map moves", 0, 25},
+    {"event at the station to pixel, median, ms", 40, 0},
+    {"event at the station to pixel, 99 %, ms", 120, 0},
+    {"tap to the station, median, ms", 0, 0},
+    {"tap to the station, 99 %, ms", 20, 0},
+    {"stop at finger-down to the station, median, ms", 0, 0},
+    {"stop at finger-down to the station, 99 %, ms", 15, 0},
+};
+
+int measure_once(int argc, char** argv, double started) {
+  ::setenv("QT_QPA_PLATFORM", "offscreen", 1);
+  ::setenv("QT_QUICK_BACKEND", "software", 1);
+  const QGuiApplication app(argc, argv);
+  Results results = window_results(started);
+  for (const auto& result : socket_results()) results.push_back(result);
+  for (const auto& [name, value] : results) std::printf("%s\t%.3f\n", name.c_str(), value);
+  return 0;
+}
+
+/// Runs this program once more and reads its results.
+bool add_run(const char* program, std::map<std::string, std::vector<double>>& samples) {
+  const std::string line = "'" + std::string(program) + "' --once " + std::to_string(steady_ms());
+  FILE* pipe = ::popen(line.c_str(), "r");
+  if (pipe == nullptr) return false;
+  char row[256];
+  while (std::fgets(row, sizeof row, pipe) != nullptr) {
+    const std::string text = row;
+    const std::size_t tab = text.find('\t');
+    if (tab != std::string::npos) samples[text.substr(0, tab)].push_back(std::atof(text.c_str() + tab));
+  }
+  return ::pclose(pipe) == 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"The window's costs and delays without a screen and without a GPU; medians of several runs."};
+  double started = 0.0;
+  int repeats = 5;
+  auto* once = app.add_option("--once", started, "measure once, started at this steady time, ms; for itself");
+  app.add_option("--repeats", repeats, "processes (default 5)")->check(CLI::Range(1, 100));
+  app.footer("Example: ./run bench gui --repeats 3");
+  CLI11_PARSE(app, argc, argv);
+  if (once->count() > 0) return measure_once(argc, argv, started);
+  std::map<std::string, std::vector<double>> samples;
+  for (int i = 0; i < repeats; ++i) {
+    std::fprintf(stderr, "\rrun %d of %d", i + 1, repeats);
+    if (!add_run(argv[0], samples)) {
+      std::fprintf(stderr, "\nbench_gui: a run failed\n");
+      return 1;
+    }
+  }
+  std::fprintf(stderr, "\r                \r");
+  std::printf("%-50s %9s %9s %s\n", "", "median", "wanted", "");
+  int missed = 0;
+  for (const Limit& limit : kLimits) {
+    const double value = share_below(samples[limit.name], 0.5);
+    const bool good = (limit.most == 0 || value <= limit.most) && (limit.least == 0 || value >= limit.least);
+    missed += !good;
+    char wanted[32] = "-";
+    if (limit.most > 0) std::snprintf(wanted, sizeof wanted, "<= %g", limit.most);
+    if (limit.least > 0) std::snprintf(wanted, sizeof wanted, ">= %g", limit.least);
+    std::printf("%-50s %9.1f %9s %s\n", limit.name, value, wanted, good ? "" : "MISSED");
+  }
+  return missed == 0 ? 0 : 1;
+}
