@@ -155,5 +155,34 @@ TEST(ActionBar, LockedRobotsAreUnlocked) {
   EXPECT_EQ(button(bar, "lock").label, "Unlock");
 }
 
+TEST(ActionBarConvoy, IsStartedInTheOrderOfTheSelectionByHolding) {
+  const BarButton start = button(bar_of(ten_robots(), {"r4", "r1", "r6"}), "convoy");
+  EXPECT_EQ(start.line, "convoy start r4 r1 r6");
+  EXPECT_EQ(start.touch, Touch::hold);
+  EXPECT_EQ(start.hint, "r4 leads 2");
+}
+
+TEST(ActionBarConvoy, SaysWhatIsMissing) {
+  const ActionBar one = bar_of(ten_robots(), {"r1"});
+  EXPECT_TRUE(button(one, "convoy").robots.empty());
+  EXPECT_THAT(refusal(one, "Convoy")->why, testing::HasSubstr("select the leader"));
+  const ActionBar mixed = bar_of(ten_robots(), {"r1", "r3"});
+  EXPECT_TRUE(button(mixed, "convoy").robots.empty());
+  EXPECT_EQ(refusal(mixed, "Convoy")->cure_line, "take r3");
+  station::World world = ten_robots();
+  world.robots[0].lost = true;
+  EXPECT_TRUE(button(bar_of(world, {"r1", "r4"}), "convoy").robots.empty());
+  EXPECT_TRUE(button(bar_of(ten_robots(), {}), "convoy").robots.empty());
+}
+
+TEST(ActionBarConvoy, IsEndedByItsLeaderAndLeftByAFollower) {
+  station::World world = ten_robots();
+  for (const int i : {0, 3, 5}) world.robots[static_cast<std::size_t>(i)].convoy = {"r1", "r4", "r6"};
+  EXPECT_EQ(button(bar_of(world, {"r1"}), "convoy").line, "convoy stop r1");
+  EXPECT_EQ(button(bar_of(world, {"r1", "r4"}), "convoy").label, "End convoy");
+  EXPECT_EQ(button(bar_of(world, {"r4", "r6"}), "convoy").line, "peeloff r4 r6");
+  EXPECT_EQ(button(bar_of(world, {"r4", "r2"}), "convoy").label, "Convoy") << "r2 is in none";
+}
+
 }  // namespace
 }  // namespace adit::gui

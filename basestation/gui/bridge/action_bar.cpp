@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "basestation/model/action.hpp"
+#include "core/command/vocabulary.hpp"
 
 namespace adit::gui {
 namespace {
@@ -20,9 +21,14 @@ const Action* find_action(const std::vector<Action>& actions, std::string_view i
   return nullptr;
 }
 
+std::string spaced(const std::vector<std::string>& robots) {
+  std::string words;
+  for (const std::string& robot : robots) words += (words.empty() ? "" : " ") + robot;
+  return words;
+}
+
 std::string line_for(const Slot& slot, const std::vector<std::string>& robots) {
-  std::string line = slot.before;
-  for (const std::string& robot : robots) line += " " + robot;
+  std::string line = slot.before + (" " + spaced(robots));
   if (*slot.after != 0) line += " " + std::string(slot.after);
   return line;
 }
@@ -46,7 +52,11 @@ class Builder {
   }
 
   ActionBar build() {
-    for (const Slot& slot : kSlots) add(slot);
+    for (const Slot& slot : kSlots)
+      if (std::string_view(slot.id) == "convoy")
+        add_convoy(slot);
+      else
+        add(slot);
     merge();
     return std::move(bar_);
   }
@@ -88,6 +98,51 @@ class Builder {
     if (button.robots.size() < robots_.size() && !button.robots.empty())
       button.hint = std::to_string(button.robots.size()) + "/" + std::to_string(robots_.size());
     if (!from.empty()) button.hint += (button.hint.empty() ? "" : " ") + from;
+    bar_.buttons.push_back(std::move(button));
+  }
+
+  /// Whether all of the selection are in one convoy, and whether its leader is among them.
+  bool in_one_convoy() const {
+    return !robots_.empty() && !robots_[0]->convoy.empty() &&
+           std::all_of(robots_.begin(), robots_.end(),
+                       [&](const Robot* robot) { return robot->convoy == robots_[0]->convoy; });
+  }
+
+  /// One place for what changes a convoy: it is started, ended by its leader, or left by followers. The robot
+  /// that was selected first leads.
+  void add_convoy(const Slot& slot) {
+    BarButton button{.id = slot.id, .label = slot.label};
+    std::vector<std::string> names;
+    for (const Robot* robot : robots_) {
+      names.push_back(robot->name);
+      if (robot->mine && !robot->lost) continue;
+      const Reason reason = robot->lost             ? Reason::no_answer
+                            : robot->holder.empty() ? Reason::nobody_holds
+                                                    : Reason::not_holder;
+      refuse(slot, *robot, reason,
+             reason == Reason::not_holder ? robot->holder + " holds the robot; take it first"
+                                          : std::string(describe(reason)));
+      names.clear();
+      break;
+    }
+    if (in_one_convoy() && !names.empty()) {
+      const std::string& leader = robots_[0]->convoy.front();
+      const bool leads = std::count(names.begin(), names.end(), leader) > 0;
+      button.label = leads ? "End convoy" : "Peel off";
+      button.robots = leads ? std::vector{leader} : names;
+      button.line = (leads ? "convoy stop " : "peeloff ") + spaced(button.robots);
+    } else if (names.size() == 1) {
+      refuse(slot, *robots_[0], Reason::none,
+             "select the leader, and then those that follow, in their order");
+    } else if (names.size() > command::kMaxConvoy) {
+      refuse(slot, *robots_[0], Reason::none,
+             "a convoy has at most " + std::to_string(command::kMaxConvoy) + " robots");
+    } else if (!names.empty()) {
+      button.robots = names;
+      button.touch = Touch::hold;
+      button.hint = names.front() + " leads " + std::to_string(names.size() - 1);
+      button.line = line_for(slot, names);
+    }
     bar_.buttons.push_back(std::move(button));
   }
 
