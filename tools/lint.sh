@@ -28,7 +28,7 @@ check_includes() {
       may["sim"] = "core nav perception robot_agent basestation sim"
       for (i in order) part[order[i]] = 1
       front_end["model"] = "model"; front_end["input"] = "input"; front_end["client"] = "model|client"; front_end["alert"] = "model|alert"
-      front_end["gui"] = "model|client|gui"
+      front_end["gui"] = "model|client|alert|input|gui"
       part["tests"] = part["bench"] = part["examples"] = 1
     }
     function allowed(from, to, whole,   list, n, i) {
@@ -52,7 +52,7 @@ check_includes() {
       in_wire = FILENAME ~ /^core\/wire\//
       if (to in part && !allowed(from, to, file))
         printf "%s:%d: %s may not include %s\n", FILENAME, FNR, from, file
-      if (file ~ /^Q[A-Z]|^Qt[A-Z].*\// && FILENAME !~ /^(basestation|tests)\/gui\//)
+      if (file ~ /^Q[A-Z]|^Qt[A-Z].*\// && FILENAME !~ /^(basestation|bench|tests)\/gui\//)
         printf "%s:%d: Qt belongs into basestation/gui\n", FILENAME, FNR
       if (file ~ /^\.\.?\//) printf "%s:%d: includes are written from the root\n", FILENAME, FNR
       if ((to == "fastdds" || to == "fastrtps" || to == "fastcdr") && !in_wire && from != "tests")

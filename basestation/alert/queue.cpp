@@ -161,8 +161,8 @@ std::vector<Alert> AlertQueue::shown(double now) const {
 }
 
 bool AlertQueue::concerns(const std::string& robot) const {
-  return std::ranges::any_of(
-      alerts_, [&](const Alert& alert) { return std::ranges::count(alert.robots, robot) > 0; });
+  return std::ranges::any_of(alerts_,
+                             [&](const Alert& alert) { return std::ranges::count(alert.robots, robot) > 0; });
 }
 
 }  // namespace adit::station

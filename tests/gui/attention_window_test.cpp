@@ -125,7 +125,7 @@ TEST_F(AttentionWindow, Pictures) {
   say("r4", "asked", "op2 asked for r4");
   picture("needs_720");
   control.attention()->set_open(true);
-  picture("needs_open_720");
+  picture("needs");
   Theme::instance().set_light(true);
   window()->resize(1920, 1080);
   picture("needs_light_1080");

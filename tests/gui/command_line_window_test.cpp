@@ -31,7 +31,7 @@ TEST_F(CommandLineWindow, RunsWhatWasTypedAndShowsTheAnswerInPlace) {
   EXPECT_EQ(text("commandAnswer"), "…");
   sink.pending[0]({.text = "r1: driving to 3.00 4.00\nsecond line\n"});
   EXPECT_EQ(text("commandAnswer"), "r1: driving to 3.00 4.00\nsecond line");
-  picture("command_720");
+  picture("command");
   QTest::keyClick(window(), Qt::Key_Up);
   EXPECT_EQ(control.command_line()->line(), "goto r1 3 4");
   QTest::keyClick(window(), Qt::Key_Escape);

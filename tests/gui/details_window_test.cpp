@@ -48,7 +48,7 @@ TEST_F(Window, DetailsOfASilentStationOfferNothing) {
 TEST_F(Window, PicturesOfDetails) {
   control.details()->set_open(true);
   control.select("r4", false);
-  picture("details_720");
+  picture("details");
   window()->resize(1920, 1080);
   control.select("r1", true);
   settle();

@@ -89,11 +89,15 @@ class Fingers : public testing::Test {
     settle_layout();
     touch(middle("button_" + slot));
   }
-  void picture(const QString& name) {
+  /// Saves the window if the tests run to make pictures (tools/screenshots.sh); those of docs/gui have its
+  /// names. `grey`: without colours.
+  void picture(const QString& name, bool grey = false) {
     const QByteArray folder = qgetenv("ADIT_GUI_PICTURES");
     if (folder.isEmpty()) return;
     settle();
-    EXPECT_TRUE(window()->grabWindow().save(QString::fromUtf8(folder) + "/" + name + ".png"));
+    QImage image = window()->grabWindow();
+    if (grey) image = image.convertToFormat(QImage::Format_Grayscale8);
+    EXPECT_TRUE(image.save(QString::fromUtf8(folder) + "/" + name + ".png"));
   }
 
   QPointingDevice* finger{QTest::createTouchDevice()};

@@ -159,7 +159,7 @@ TEST(ActionBarConvoy, IsStartedInTheOrderOfTheSelectionByHolding) {
   const BarButton start = button(bar_of(ten_robots(), {"r4", "r1", "r6"}), "convoy");
   EXPECT_EQ(start.line, "convoy start r4 r1 r6");
   EXPECT_EQ(start.touch, Touch::hold);
-  EXPECT_EQ(start.hint, "r4 leads 2");
+  EXPECT_EQ(start.hint, "r4 first");
 }
 
 TEST(ActionBarConvoy, SaysWhatIsMissing) {

@@ -414,9 +414,10 @@ TEST_F(Window, PicturesOfBothThemesAndSizes) {
                        .text = "r6: exploring\n"});
   control.select("r1", false);
   control.select("r4", true);
-  picture("dark_720");
+  picture("window");
+  picture("grey", true);
   Theme::instance().set_light(true);
-  picture("light_720");
+  picture("light");
   control.select("r3", false);
   control.set_reasons_open(true);
   window()->resize(1920, 1080);

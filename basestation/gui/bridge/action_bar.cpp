@@ -140,7 +140,7 @@ class Builder {
     } else if (!names.empty()) {
       button.robots = names;
       button.touch = Touch::hold;
-      button.hint = names.front() + " leads " + std::to_string(names.size() - 1);
+      button.hint = names.front() + " first";
       button.line = line_for(slot, names);
     }
     bar_.buttons.push_back(std::move(button));

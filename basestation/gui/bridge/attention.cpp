@@ -16,7 +16,7 @@ std::string spaced(std::string code) {
   return code;
 }
 
-/// A robot tells its holder who asked for it, in its text: "op2 asked for r3".
+/// The text of the notification names the operator who asked: "op2 asked for r3".
 void offer_grant(Need& need, const Alert& alert, const station::World& world) {
   if (alert.code != "asked" || alert.robots.size() != 1) return;
   for (const station::StationSummary& station : world.stations)

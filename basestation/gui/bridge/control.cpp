@@ -89,6 +89,7 @@ void Control::refresh() {
   show_bar();
   attention_.refresh();
   details_.refresh();
+  area_.refresh();
   emit shown();
 }
 

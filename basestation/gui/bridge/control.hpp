@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "basestation/gui/bridge/action_bar.hpp"
+#include "basestation/gui/bridge/area_tool.hpp"
 #include "basestation/gui/bridge/attention_list.hpp"
 #include "basestation/gui/bridge/command_line.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
@@ -40,6 +41,7 @@ class Control : public QObject {
   Q_PROPERTY(int lostCount READ lost_count NOTIFY shown)
   Q_PROPERTY(int stoppedCount READ stopped_count NOTIFY shown)
   Q_PROPERTY(QString others READ others NOTIFY shown)
+  Q_PROPERTY(adit::gui::AreaTool* area READ area CONSTANT)
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
   Q_PROPERTY(adit::gui::DetailList* details READ details CONSTANT)
   Q_PROPERTY(adit::gui::CommandLine* commandLine READ command_line CONSTANT)
@@ -89,6 +91,9 @@ class Control : public QObject {
   /// Lines of an answer, as one.
   static QString one_line(const std::string& text);
 
+  /// Shows a line as the last outcome; `kind`: sent, done or refused.
+  void say(const QString& text, const QString& kind);
+
   // From QML.
   Q_INVOKABLE void select(const QString& name, bool add);
   Q_INVOKABLE void trigger(int slot, bool held);
@@ -113,6 +118,7 @@ class Control : public QObject {
   int lost_count() const { return lost_; }
   int stopped_count() const { return stopped_; }
   QString others() const;
+  AreaTool* area() { return &area_; }
   AttentionList* attention() { return &attention_; }
   DetailList* details() { return &details_; }
   CommandLine* command_line() { return &command_line_; }
@@ -142,7 +148,6 @@ class Control : public QObject {
   void refresh();
   void show_cards();
   void show_bar();
-  void say(const QString& text, const QString& kind);
   void run(const std::string& line, const std::string& slot, CommandSink::Done then = {});
   void finished(const std::string& line, const std::string& slot, int batch,
                 const station::CommandOutcome& outcome);
@@ -175,6 +180,7 @@ class Control : public QObject {
   RowModel robots_, buttons_, refusals_, log_;
   qint64 next_row_{1};
   int mine_{}, lost_{}, stopped_{};
+  AreaTool area_{*this};
   AttentionList attention_{*this};
   DetailList details_{*this};
   CommandLine command_line_{*this};

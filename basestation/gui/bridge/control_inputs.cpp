@@ -267,7 +267,9 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
   }
   if (key == Qt::Key_Escape) {
     emit orders_dropped();
-    if (aiming_ || reasons_open_ || attention_.is_open() || !pending_line_.empty()) {
+    if (area_.active()) {
+      area_.set_active(false);
+    } else if (aiming_ || reasons_open_ || attention_.is_open() || !pending_line_.empty()) {
       if (aiming_ || !pending_line_.empty()) say("Taken back.", "sent");
       set_aiming(false);
       set_reasons_open(false);

@@ -35,7 +35,8 @@ std::vector<std::string> proposals(const std::string& line, const std::vector<st
   const bool first = words->size() == 1;
   std::vector<std::string> out;
   for (std::string& word : command::complete(*words, robots))
-    if (word.starts_with(begun) && !(first && for_terminals(word)) && out.size() < kMaxProposals) out.push_back(std::move(word));
+    if (word.starts_with(begun) && !(first && for_terminals(word)) && out.size() < kMaxProposals)
+      out.push_back(std::move(word));
   return out;
 }
 

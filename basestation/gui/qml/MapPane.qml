@@ -23,6 +23,12 @@ Rectangle {
         color: Theme.dim
         text: "no map yet: only what robots report of themselves"
     }
+    AreaMenu {
+        area: pane.control.area
+        anchors.horizontalCenter: parent.horizontalCenter
+        anchors.bottom: parent.bottom
+        anchors.bottomMargin: 3 * Theme.mm
+    }
     Column {
         anchors.right: parent.right
         anchors.top: parent.top
@@ -34,6 +40,14 @@ Rectangle {
             height: 10 * Theme.mm
             text: map.fitting ? "● fit all" : "fit all"
             onFired: map.fitAll()
+        }
+        HoldButton {
+            objectName: "areaToggle"
+            width: 22 * Theme.mm
+            height: 10 * Theme.mm
+            active: pane.control.area.active
+            text: "area"
+            onFired: pane.control.area.active = !pane.control.area.active
         }
         HoldButton {
             anchors.right: parent.right

@@ -21,6 +21,10 @@ GestureArea::GestureArea(QQuickItem* parent) : QQuickItem(parent) {
 
 void GestureArea::press(const QPointF& at, bool aim) {
   start_ = last_ = at;
+  if (drawing()) {
+    state_ = State::drawing;
+    return;
+  }
   state_ = aim || aiming() ? State::aimed : State::pressed;
   if (state_ == State::aimed)
     show_aim(at);
@@ -31,6 +35,7 @@ void GestureArea::press(const QPointF& at, bool aim) {
 void GestureArea::leave_press() {
   timer_.stop();
   if (state_ == State::aimed) drop_aim();
+  if (state_ == State::drawing) drop_drawing();
 }
 
 void GestureArea::move(const QPointF& at) {
@@ -39,12 +44,17 @@ void GestureArea::move(const QPointF& at) {
     state_ = State::panning;
   }
   if (state_ == State::panning) pan(at - last_);
+  if (state_ == State::drawing) draw(start_, at, false);
   last_ = at;
 }
 
 void GestureArea::release(const QPointF& at, bool add) {
   move(at);  // The last move may come with the release alone.
   const State was = state_;
+  if (was == State::drawing) {
+    state_ = State::idle;
+    return draw(start_, at, true);
+  }
   leave_press();
   state_ = State::idle;
   if (was == State::pressed) tap(start_, add);

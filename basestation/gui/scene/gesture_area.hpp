@@ -22,11 +22,16 @@ class GestureArea : public QQuickItem {
  protected:
   /// Whether a tap means a place to drive to.
   virtual bool aiming() const = 0;
+  /// Whether a drag draws a rectangle.
+  virtual bool drawing() const { return false; }
   virtual double slop() const = 0;  ///< Pixels.
   virtual void tap(const QPointF& at, bool add) = 0;
   virtual void show_aim(const QPointF& at) = 0;  ///< The place that would be sent.
   virtual void drop_aim() = 0;
   virtual void send_aim(const QPointF& at) = 0;
+  /// A rectangle from corner to corner; `done`: the finger was lifted.
+  virtual void draw(const QPointF& /*from*/, const QPointF& /*to*/, bool /*done*/) {}
+  virtual void drop_drawing() {}
   virtual void pan(const QPointF& by) = 0;
   virtual void zoom(double factor, const QPointF& about) = 0;
 
@@ -44,7 +49,7 @@ class GestureArea : public QQuickItem {
   void timerEvent(QTimerEvent* event) override;
 
  private:
-  enum class State : std::uint8_t { idle, pressed, aimed, panning, pinching, ignored };
+  enum class State : std::uint8_t { idle, pressed, aimed, drawing, panning, pinching, ignored };
 
   void press(const QPointF& at, bool aim);
   void move(const QPointF& at);

@@ -14,10 +14,11 @@ MapView::MapView(QQuickItem* parent)
 
 void MapView::set_control(Control* control) {
   if (control == control_) return;
-  if (control_) control_->disconnect(this);
+  if (control_) control_->disconnect(this), control_->area()->disconnect(this);
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, &MapView::refresh);
+    connect(control_->area(), &AreaTool::changed, this, &MapView::refresh);
     connect(control_, &Control::look_at, this, &MapView::look_at);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
     connect(control_, &Control::map_changed, this, [this] {
@@ -48,12 +49,13 @@ double MapView::slop() const { return kSlopMm * Theme::instance().mm(); }
 
 void MapView::refresh() {
   if (!control_) return;
-  if (fitting_ && !busy() && !aiming()) fit(false);
+  if (fitting_ && !busy() && !aiming() && !drawing()) fit(false);
   marks_->show(marks_of({.world = &control_->world(),
                          .trails = &control_->trails(),
                          .camera = camera_,
                          .selection = control_->selection(),
                          .ghosts = ghosts_,
+                         .sketch = control_->area()->sketch(),
                          .now = control_->now(),
                          .silent = control_->silent_for(),
                          .mm = Theme::instance().mm()}),
@@ -131,6 +133,15 @@ void MapView::drop_aim() {
 
 void MapView::send_aim(const QPointF& at) {
   if (control_) control_->go_to(camera_.to_map(at.x(), at.y()));
+}
+
+void MapView::draw(const QPointF& from, const QPointF& to, bool done) {
+  if (control_)
+    control_->area()->draw(camera_.to_map(from.x(), from.y()), camera_.to_map(to.x(), to.y()), done);
+}
+
+void MapView::drop_drawing() {
+  if (control_) control_->area()->drop();
 }
 
 void MapView::look_at(double x, double y) {

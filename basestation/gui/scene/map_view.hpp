@@ -39,18 +39,21 @@ class MapView : public GestureArea {
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
   bool aiming() const override { return control_ && control_->aiming(); }
+  bool drawing() const override { return control_ && control_->area()->active(); }
   double slop() const override;
   void tap(const QPointF& at, bool add) override;
   void show_aim(const QPointF& at) override;
   void drop_aim() override;
   void send_aim(const QPointF& at) override;
+  void draw(const QPointF& from, const QPointF& to, bool done) override;
+  void drop_drawing() override;
   void pan(const QPointF& by) override;
   void zoom(double factor, const QPointF& about) override;
 
  private:
   void look_at(double x, double y);  ///< Brings a place of the map frame, m, into the middle.
   void refresh();                    ///< The marks.
-  void refresh_camera();  ///< The map and the marks.
+  void refresh_camera();             ///< The map and the marks.
   void set_fitting(bool fitting);
   /// Adjusts the view if something is outside of it, or at once.
   void fit(bool at_once);

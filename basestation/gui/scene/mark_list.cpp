@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "basestation/gui/scene/state.hpp"
+#include "basestation/model/text.hpp"
 
 namespace adit::gui {
 namespace {
@@ -37,6 +38,17 @@ class Drawer {
     for (const station::StationSummary& station : world.stations) draw_station(station);
     for (const Robot& robot : world.robots) draw_goal(robot);
     for (const Robot& robot : world.robots) draw_robot(robot);
+    if (!scene_.sketch.empty()) {
+      Shape area{.closed = true,
+                 .line = Token::goal,
+                 .width = 2.0,
+                 .dashed = true,
+                 .filled = true,
+                 .fill = Token::goal,
+                 .fill_opacity = 0.15};
+      for (const Point& corner : scene_.sketch) area.points.push_back(camera_.to_screen(corner.x, corner.y));
+      out_.shapes.push_back(std::move(area));
+    }
     for (const Point& ghost : scene_.ghosts) {
       Shape mark = diamond(camera_.to_screen(ghost.x, ghost.y), 9.0, Token::goal);
       mark.fill_opacity = 0.45;
@@ -186,7 +198,8 @@ class Drawer {
     draw_body(robot, at, old, opacity);
     const double radius = std::max(kMinRobotPixels, extent(robot) * camera_.scale / 2);
     std::string label = robot.name;
-    if (robot.lost) label += " lost " + std::to_string(static_cast<int>(age)) + " s";
+    if (owner_of(robot) == Token::other) label += ", " + robot.holder;
+    if (robot.lost) label += " lost " + station::fixed(age, 0) + " s";
     out_.labels.push_back({.at = {at.x, at.y + radius + (selected(robot) ? 19 : 9)},
                            .text = label,
                            .opacity = old ? 0.8 : 1.0});

@@ -59,6 +59,7 @@ struct MarkScene {
   Camera camera{};
   std::vector<std::string> selection{};
   std::vector<Point> ghosts{};  ///< Goals that would be sent, map frame, m.
+  std::vector<Point> sketch{};  ///< Corners of an area that is being drawn, map frame, m.
   double now{};                 ///< Time as given to Trails::add(), s.
   double silent{};              ///< Time since the station's last snapshot, s.
   double mm{3.78};              ///< Pixels per mm.
