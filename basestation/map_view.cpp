@@ -30,7 +30,7 @@ void Station::Impl::map_since(std::uint64_t revision, std::size_t most, MapDone 
   strand_.compute(
       {.name = "map view", .modelled = kModelledView, .watchdog = std::chrono::seconds(60)},
       [parts = parts_of(map_.chunks()), prior = prior_] {
-        return tiles_of(TopView(merged(parts, prior.get(), kViewResolution)));
+        return tiles_of(merged(parts, prior.get(), kViewResolution));
       },
       [this, alive = std::weak_ptr(alive_)](Result<std::vector<MapTile>> tiles) {
         if (alive.expired()) return;

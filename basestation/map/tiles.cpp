@@ -8,6 +8,7 @@
 namespace adit::station {
 namespace {
 
+constexpr int kMaxZ = 32000;  // Voxels.
 constexpr std::size_t kCells = std::size_t{MapTile::kSide} * MapTile::kSide;
 
 std::uint8_t code_of(const TopView::Cell& cell) {
@@ -30,7 +31,8 @@ int tile_of(int cell) {
 
 }  // namespace
 
-std::vector<MapTile> tiles_of(const TopView& view) {
+std::vector<MapTile> tiles_of(const perception::VoxelImage& image) {
+  const TopView view(image);
   std::map<std::pair<int, int>, MapTile> tiles;
   // Tiles lie on one grid over the map frame, however far the view reaches.
   const int x0 = static_cast<int>(std::lround(view.low().x() / view.resolution()));
@@ -50,7 +52,24 @@ std::vector<MapTile> tiles_of(const TopView& view) {
       tile.cells[static_cast<std::size_t>(cell_y - key.second * MapTile::kSide) * MapTile::kSide +
                  static_cast<std::size_t>(cell_x - key.first * MapTile::kSide)] = code;
     }
+  // Voxels of one column follow each other from below; columns of one row of a tile do not.
+  for (const perception::VoxelIndex& index : image.occupied()) {
+    const std::pair key{tile_of(index.x), tile_of(index.y)};
+    const auto tile = tiles.find(key);
+    if (tile == tiles.end() || std::abs(index.z) > kMaxZ) continue;  // The view is too large, or it is.
+    const int cell =
+        (index.y - key.second * MapTile::kSide) * MapTile::kSide + index.x - key.first * MapTile::kSide;
+    std::vector<VoxelRun>& runs = tile->second.runs;
+    if (!runs.empty() && runs.back().cell == cell && runs.back().z + runs.back().length == index.z)
+      ++runs.back().length;
+    else
+      runs.push_back({static_cast<std::uint16_t>(cell), static_cast<std::int16_t>(index.z), 1});
+  }
   std::vector<MapTile> out;
+  for (auto& [key, tile] : tiles) {
+    std::ranges::sort(tile.runs, {}, [](const VoxelRun& run) { return std::pair(run.cell, run.z); });
+    if (tile.runs.size() > MapTile::kMaxRuns) tile.runs.resize(MapTile::kMaxRuns);
+  }
   for (auto& [key, tile] : tiles) out.push_back(std::move(tile));
   return out;
 }
@@ -63,7 +82,8 @@ void Tiles::show(double resolution, std::vector<MapTile> tiles) {
     const auto known = tiles_.find(key);
     if (known == tiles_.end() && tiles_.size() == kMaxTiles) continue;
     shown.insert(key);
-    if (known != tiles_.end() && known->second.cells == tile.cells) continue;
+    if (known != tiles_.end() && known->second.cells == tile.cells && known->second.runs == tile.runs)
+      continue;
     tile.revision = ++revision_;
     tiles_[key] = std::move(tile);
   }
@@ -71,6 +91,7 @@ void Tiles::show(double resolution, std::vector<MapTile> tiles) {
     if (shown.contains(key) || std::ranges::all_of(tile.cells, [](std::uint8_t c) { return c == 0; }))
       continue;
     std::ranges::fill(tile.cells, MapTile::kUnknown);
+    tile.runs.clear();
     tile.revision = ++revision_;
   }
 }

@@ -10,13 +10,13 @@
 
 namespace adit::station {
 
-/// The tiles of a view in which anything is known, without revisions.
-std::vector<MapTile> tiles_of(const TopView& view);
+/// The tiles of an image in which anything is known, without revisions.
+std::vector<MapTile> tiles_of(const perception::VoxelImage& image);
 
 /// The map seen from above as front ends receive it: in tiles, each with the revision of its last change.
 class Tiles {
  public:
-  static constexpr std::size_t kMaxTiles = 4096;  ///< 64 MB; further tiles are left out.
+  static constexpr std::size_t kMaxTiles = 4096;  ///< 64 MB and what is occupied; further tiles are left out.
 
   /// Takes a newer view. A tile that the view does not have any more becomes unknown.
   void show(double resolution, std::vector<MapTile> tiles);

@@ -17,6 +17,8 @@ Error malformed(const char* what, const std::string& key) {
 }
 
 /// Cells as runs: value, count, value, count, ...
+constexpr int kLowestVoxel = 32768;  // Added, as the numbers of a list have no sign.
+
 json runs_json(const std::vector<std::uint8_t>& cells) {
   json runs = json::array();
   for (std::size_t i = 0; i < cells.size();) {
@@ -28,6 +30,19 @@ json runs_json(const std::vector<std::uint8_t>& cells) {
     i = next;
   }
   return runs;
+}
+
+/// For each run the cells since the run before, its lowest voxel and its length.
+json columns_json(const std::vector<VoxelRun>& runs) {
+  json columns = json::array();
+  int cell = 0;
+  for (const VoxelRun& run : runs) {
+    columns.push_back(run.cell - cell);
+    columns.push_back(run.z + kLowestVoxel);
+    columns.push_back(run.length);
+    cell = run.cell;
+  }
+  return columns;
 }
 
 }  // namespace
@@ -94,8 +109,11 @@ json json_of(const CommandEvent& event) {
 json json_of(const MapUpdate& update) {
   json tiles = json::array();
   for (const MapTile& tile : update.tiles)
-    tiles.push_back(
-        {{"x", tile.x}, {"y", tile.y}, {"revision", tile.revision}, {"cells", runs_json(tile.cells)}});
+    tiles.push_back({{"x", tile.x},
+                     {"y", tile.y},
+                     {"revision", tile.revision},
+                     {"cells", runs_json(tile.cells)},
+                     {"columns", columns_json(tile.runs)}});
   return {{"resolution", update.resolution},
           {"revision", update.revision},
           {"run", update.run},
@@ -163,6 +181,18 @@ void read_fields(JsonReader& in, MapTile& tile) {
     tile.cells.insert(tile.cells.end(), runs[i + 1], static_cast<std::uint8_t>(runs[i]));
   }
   if (tile.cells.size() != cells) in.refuse("cells");
+  std::vector<std::uint32_t> columns;
+  in.read("columns", columns);
+  if (columns.size() % 3 != 0 || columns.size() > 3 * MapTile::kMaxRuns) return in.refuse("columns");
+  std::size_t cell = 0;
+  for (std::size_t i = 0; i < columns.size(); i += 3) {
+    const std::uint32_t skip = columns[i], z = columns[i + 1], length = columns[i + 2];
+    if (skip >= cells - cell || z > 65535 || length < 1 || length > 65535) return in.refuse("columns");
+    cell += skip;
+    tile.runs.push_back({static_cast<std::uint16_t>(cell),
+                         static_cast<std::int16_t>(static_cast<int>(z) - kLowestVoxel),
+                         static_cast<std::uint16_t>(length)});
+  }
 }
 
 Result<Notice> notice_from(const json& object) { return value_from<Notice>(object, "a notice's"); }

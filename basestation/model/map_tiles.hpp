@@ -8,15 +8,25 @@
 
 namespace adit::station {
 
+/// Occupied voxels on top of each other.
+struct VoxelRun {
+  std::uint16_t cell{};    ///< Of its tile: column + kSide x row.
+  std::int16_t z{};        ///< Index of the lowest voxel: it begins at z r, r: resolution.
+  std::uint16_t length{};  ///< Voxels, at least 1.
+  bool operator==(const VoxelRun&) const = default;
+};
+
 /// A square of the map seen from above.
 struct MapTile {
-  static constexpr int kSide = 128;  ///< Cells.
+  static constexpr int kSide = 128;               ///< Cells.
+  static constexpr std::size_t kMaxRuns = 32768;  ///< Two for each column.
   /// Content of a cell; from kThing on the height of the tallest thing in its column: n - 1 voxels.
   static constexpr std::uint8_t kUnknown = 0, kGround = 1, kThing = 2;
 
   int x{}, y{};
   std::uint64_t revision{};
   std::vector<std::uint8_t> cells{};  ///< kSide x kSide, row by row from low y.
+  std::vector<VoxelRun> runs{};       ///< All that is occupied, by rising cell and z; at most kMaxRuns.
 };
 
 /// The map of all robots seen from above. Tile (x, y) covers [x kSide r, (x + 1) kSide r) along x of the map

@@ -257,6 +257,11 @@ MapTile tile(int x, int y, std::uint64_t seed) {
     for (std::size_t i = 0; i < run && out.cells.size() < std::size_t{MapTile::kSide} * MapTile::kSide; ++i)
       out.cells.push_back(value);
   }
+  for (int cell = 0; cell < MapTile::kSide * MapTile::kSide;
+       cell += 1 + static_cast<int>(random.uniform() * 90.0))
+    for (int z = static_cast<int>(random.uniform() * 60000.0) - 32000, k = 0; k < 3; ++k, z += 400)
+      out.runs.push_back({static_cast<std::uint16_t>(cell), static_cast<std::int16_t>(z),
+                          static_cast<std::uint16_t>(1 + random.uniform() * 300.0)});
   return out;
 }
 
@@ -271,6 +276,8 @@ TEST(ModelJson, TilesOfTheMapComeBackAsTheyWere) {
     EXPECT_EQ(back->tiles[i].x, update.tiles[i].x);
     EXPECT_EQ(back->tiles[i].revision, update.tiles[i].revision);
     EXPECT_EQ(back->tiles[i].cells, update.tiles[i].cells);
+    EXPECT_EQ(back->tiles[i].runs, update.tiles[i].runs);
+    EXPECT_FALSE(update.tiles[i].runs.empty());
   }
 }
 
@@ -333,6 +340,13 @@ TEST(ModelJson, HostileTilesAreRefused) {
   EXPECT_FALSE(with("cells", json::array({256, 16384}))) << "no such cell";
   EXPECT_FALSE(with("cells", json::array({1}))) << "half a run";
   EXPECT_FALSE(with("cells", json::array()));
+  EXPECT_FALSE(with("columns", json::array({0, 1}))) << "a run has three numbers";
+  EXPECT_FALSE(with("columns", json::array({16384, 1, 1}))) << "no such cell";
+  EXPECT_FALSE(with("columns", json::array({16383, 1, 1, 1, 1, 1}))) << "beyond the last cell";
+  EXPECT_FALSE(with("columns", json::array({0, 65536, 1})));
+  EXPECT_FALSE(with("columns", json::array({0, 1, 0}))) << "nothing is no run";
+  EXPECT_FALSE(with("columns", json(std::vector<std::uint32_t>(3 * (MapTile::kMaxRuns + 1), 1))));
+  EXPECT_TRUE(with("columns", json::array())) << "a flat station";
   EXPECT_FALSE(with("x", 5'000'000'000));
 }
 

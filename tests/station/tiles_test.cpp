@@ -3,6 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+
+#include "core/time/random.hpp"
+
 namespace adit::station {
 namespace {
 
@@ -30,7 +34,7 @@ VoxelImage image() {
 }
 
 TEST(Tiles, LieOnOneGridAlsoAtNegativePlaces) {
-  const std::vector<MapTile> tiles = tiles_of(TopView(image()));
+  const std::vector<MapTile> tiles = tiles_of(image());
   std::vector<std::pair<int, int>> places;
   for (const MapTile& tile : tiles) places.emplace_back(tile.x, tile.y);
   EXPECT_THAT(places, testing::UnorderedElementsAre(std::pair{-1, 0}, std::pair{0, 0}, std::pair{1, 0},
@@ -45,18 +49,18 @@ TEST(Tiles, OnlyWhatChangedIsSentAndAllOfItInParts) {
   Tiles tiles;
   EXPECT_TRUE(tiles.since(0, 10).tiles.empty());
   VoxelImage map = image();
-  tiles.show(kEdge, tiles_of(TopView(map)));
+  tiles.show(kEdge, tiles_of(map));
   const MapUpdate all = tiles.since(0, 10);
   EXPECT_EQ(all.tiles.size(), 5U);
   EXPECT_EQ(all.revision, tiles.revision());
 
   // The same view changes nothing.
-  tiles.show(kEdge, tiles_of(TopView(map)));
+  tiles.show(kEdge, tiles_of(map));
   EXPECT_EQ(tiles.revision(), all.revision);
   EXPECT_TRUE(tiles.since(all.revision, 10).tiles.empty());
 
   map.set({3, 3, 0}, Voxel::free);
-  tiles.show(kEdge, tiles_of(TopView(map)));
+  tiles.show(kEdge, tiles_of(map));
   const MapUpdate one = tiles.since(all.revision, 10);
   ASSERT_EQ(one.tiles.size(), 1U);
   EXPECT_EQ(cell(one.tiles, 3, 3), MapTile::kGround);
@@ -67,7 +71,7 @@ TEST(Tiles, OnlyWhatChangedIsSentAndAllOfItInParts) {
     client = updated(client, tiles.since(client.revision, 2));
     if (asked != 0) continue;
     map.set({4, 4, 0}, Voxel::free);
-    tiles.show(kEdge, tiles_of(TopView(map)));
+    tiles.show(kEdge, tiles_of(map));
   }
   const MapUpdate whole = tiles.since(0, 10);
   ASSERT_EQ(client.tiles.size(), whole.tiles.size());
@@ -76,17 +80,57 @@ TEST(Tiles, OnlyWhatChangedIsSentAndAllOfItInParts) {
 
 TEST(Tiles, WhatIsGoneFromTheViewBecomesUnknown) {
   Tiles tiles;
-  tiles.show(kEdge, tiles_of(TopView(image())));
+  tiles.show(kEdge, tiles_of(image()));
   TileMap client = updated({}, tiles.since(0, 10));
   VoxelImage small(kEdge);
   small.set({0, 0, 0}, Voxel::free);
-  tiles.show(kEdge, tiles_of(TopView(small)));
+  tiles.show(kEdge, tiles_of(small));
   client = updated(client, tiles.since(client.revision, 10));
   for (const auto& [place, tile] : client.tiles) {
     const bool known =
         std::ranges::any_of(tile->cells, [](std::uint8_t c) { return c != MapTile::kUnknown; });
     EXPECT_EQ(known, place == std::pair(0, 0)) << place.first << " " << place.second;
   }
+}
+
+/// The occupied voxels of tiles, as (x, y, z).
+std::vector<std::array<int, 3>> voxels(const std::vector<MapTile>& tiles) {
+  std::vector<std::array<int, 3>> out;
+  for (const MapTile& tile : tiles)
+    for (const VoxelRun& run : tile.runs)
+      for (int z = run.z; z < run.z + run.length; ++z)
+        out.push_back({tile.x * MapTile::kSide + run.cell % MapTile::kSide,
+                       tile.y * MapTile::kSide + run.cell / MapTile::kSide, z});
+  std::ranges::sort(out);
+  return out;
+}
+
+TEST(Tiles, HaveEveryOccupiedVoxelOnce) {
+  VoxelImage map = image();
+  Random random(3);
+  for (int i = 0; i < 3000; ++i)
+    map.set({static_cast<int>(random.uniform() * 300) - 150, static_cast<int>(random.uniform() * 300) - 150,
+             static_cast<int>(random.uniform() * 20) - 10},
+            Voxel::occupied);
+  std::vector<std::array<int, 3>> expected;
+  for (const auto& index : map.occupied()) expected.push_back({index.x, index.y, index.z});
+  std::ranges::sort(expected);
+  EXPECT_EQ(voxels(tiles_of(map)), expected);
+  for (const MapTile& tile : tiles_of(map))
+    for (std::size_t i = 1; i < tile.runs.size(); ++i) {
+      const VoxelRun &a = tile.runs[i - 1], &b = tile.runs[i];
+      EXPECT_TRUE(a.cell < b.cell || (a.cell == b.cell && a.z + a.length < b.z)) << "in order, none touches";
+    }
+}
+
+TEST(Tiles, AreSentAgainWhenAVoxelChangesThatIsNotSeenFromAbove) {
+  VoxelImage map = image();
+  Tiles tiles;
+  tiles.show(kEdge, tiles_of(map));
+  const std::uint64_t before = tiles.revision();
+  map.set({-128, -1, 20}, Voxel::occupied);  // Higher than the wall, and a gap between.
+  tiles.show(kEdge, tiles_of(map));
+  EXPECT_EQ(tiles.since(before, 10).tiles.size(), 1U);
 }
 
 }  // namespace
