@@ -29,6 +29,8 @@ constexpr Limit kLimits[] = {
     {"frame in which a map of 1 M cells comes, ms", 60, 0},
     {"memory for that map, MB", 40, 0},
     {"frames per second, the map moves", 0, 25},
+    {"voxels of the map, M", 0, 0},
+    {"frames per second, the map in 3D moves", 0, 15},
     {"event at the station to pixel, median, ms", 40, 0},
     {"event at the station to pixel, 99 %, ms", 120, 0},
     {"tap to the station, median, ms", 0, 0},

@@ -91,7 +91,7 @@ inline station::World ten_robots() {
   return world;
 }
 
-/// Corridors of a building, cells of 0.2 m.
+/// Corridors of a building, cells and voxels of 0.2 m.
 inline station::TileMap corridors() {
   station::TileMap map;
   map.revision = 1;
@@ -122,6 +122,14 @@ inline station::TileMap corridors() {
         for (int column = 0; column < kSide; ++column)
           tile->cells[static_cast<std::size_t>(row * kSide + column)] =
               cell((tx * kSide + column + 0.5) * map.resolution, (ty * kSide + row + 0.5) * map.resolution);
+      // The floor below z = 0, what stands on it, and a ceiling at 2.8 m.
+      for (std::size_t i = 0; i < tile->cells.size(); ++i) {
+        const auto cell_number = static_cast<std::uint16_t>(i);
+        if (tile->cells[i] == station::MapTile::kUnknown) continue;
+        const int things = tile->cells[i] - station::MapTile::kGround;
+        tile->runs.push_back({cell_number, -1, static_cast<std::uint16_t>(1 + things)});
+        if (things < 14) tile->runs.push_back({cell_number, 14, 1});
+      }
       map.tiles[{tx, ty}] = tile;
     }
   return map;

@@ -190,6 +190,13 @@ void Control::set_aiming(bool aiming) {
   emit aiming_changed();
 }
 
+void Control::set_solid(bool solid) {
+  if (solid == solid_) return;
+  drop_orders();
+  solid_ = solid;
+  emit solid_changed();
+}
+
 void Control::set_reasons_open(bool open) {
   if (open == reasons_open_) return;
   reasons_open_ = open;

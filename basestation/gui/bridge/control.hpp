@@ -7,6 +7,7 @@
 #include <QTimer>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,8 @@ class Control : public QObject {
   Q_PROPERTY(int refusalCount READ refusal_count NOTIFY shown)
   Q_PROPERTY(QString outcome READ outcome NOTIFY said)
   Q_PROPERTY(QString outcomeKind READ outcome_kind NOTIFY said)
+  /// Whether the map is shown from the side.
+  Q_PROPERTY(bool solid READ solid WRITE set_solid NOTIFY solid_changed)
   Q_PROPERTY(bool aiming READ aiming WRITE set_aiming NOTIFY aiming_changed)
   Q_PROPERTY(bool reasonsOpen READ reasons_open WRITE set_reasons_open NOTIFY reasons_open_changed)
 
@@ -80,7 +83,8 @@ class Control : public QObject {
   /// Goals of the robots that would drive if that place was tapped, map frame, m.
   std::vector<Point> goals_at(const Point& place) const;
   /// Sends the robots of the selection that would accept it to a place, map frame, m.
-  void go_to(const Point& place);
+  /// `z`: height of the ground there, if it is known.
+  void go_to(const Point& place, std::optional<double> z = std::nullopt);
 
   /// Runs a command line as an order of the operator. `slot`: the button that shows its state. `then`: called
   /// with its outcome.
@@ -130,6 +134,8 @@ class Control : public QObject {
   int refusal_count() const;  ///< Actions that some robot of the selection would refuse.
   QString outcome() const { return outcome_; }
   QString outcome_kind() const { return outcome_kind_; }
+  bool solid() const { return solid_; }
+  void set_solid(bool solid);
   bool aiming() const { return aiming_; }
   void set_aiming(bool aiming);
   bool reasons_open() const { return reasons_open_; }
@@ -141,6 +147,8 @@ class Control : public QObject {
   void look_at(double x, double y);  ///< The map should show this place in its middle, map frame, m.
   void said();
   void orders_dropped();  ///< A finger that is down on the map sends nothing any more.
+  void solid_changed();
+  void cut_moved(int steps);  ///< The height above which the map is not shown.
   void aiming_changed();
   void reasons_open_changed();
 
@@ -192,7 +200,7 @@ class Control : public QObject {
   bool batch_refused_{false};
   QString outcome_{}, outcome_kind_{};
   QString stop_missing_{};  ///< Robots that did not answer the last stop of all.
-  bool aiming_{false}, reasons_open_{false};
+  bool aiming_{false}, reasons_open_{false}, solid_{false};
 
   std::string pending_line_{}, pending_slot_{};  ///< Sent by the Enter key within 3 s.
   QElapsedTimer pending_since_{};

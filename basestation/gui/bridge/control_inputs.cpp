@@ -175,7 +175,7 @@ std::vector<Point> Control::goals_at(const Point& place) const {
   return spread(place, button.robots.size(), spacing + kGap);
 }
 
-void Control::go_to(const Point& place) {
+void Control::go_to(const Point& place, std::optional<double> z) {
   const BarButton button = bar_.buttons[slot_index("goto")];
   set_aiming(false);
   pending_line_.clear();
@@ -184,7 +184,7 @@ void Control::go_to(const Point& place) {
   begin_batch();
   for (std::size_t i = 0; i < button.robots.size(); ++i)
     run("goto " + button.robots[i] + " " + station::fixed(goals[i].x, 2) + " " +
-            station::fixed(goals[i].y, 2),
+            station::fixed(goals[i].y, 2) + (z ? " " + station::fixed(*z, 2) : ""),
         "goto");
 }
 
@@ -247,6 +247,14 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
   if (digit >= 0) {
     if (digit < robot_count())
       select(QString::fromStdString(world_->robots[static_cast<std::size_t>(digit)].name), shift);
+    return true;
+  }
+  if (key == Qt::Key_V) {
+    set_solid(!solid_);
+    return true;
+  }
+  if (key == Qt::Key_PageUp || key == Qt::Key_PageDown) {
+    emit cut_moved(key == Qt::Key_PageUp ? 1 : -1);
     return true;
   }
   if (key == Qt::Key_I) {

@@ -15,9 +15,22 @@ Rectangle {
         anchors.fill: parent
         anchors.margins: pane.border.width
         control: pane.control
+        visible: !pane.control.solid
+    }
+    MapView3D {
+        id: solid
+        objectName: "solid"
+        anchors.fill: parent
+        anchors.margins: pane.border.width
+        control: pane.control
+        visible: pane.control.solid
+    }
+    Connections {
+        target: pane.control
+        function onCut_moved(steps) { solid.moveCut(steps) }
     }
     PlainLabel {
-        visible: map.empty
+        visible: pane.control.solid ? solid.empty : map.empty
         anchors.horizontalCenter: parent.horizontalCenter
         y: 4 * Theme.mm
         color: Theme.dim
@@ -38,11 +51,28 @@ Rectangle {
             objectName: "fitAll"
             width: 22 * Theme.mm
             height: 10 * Theme.mm
-            text: map.fitting ? "● fit all" : "fit all"
-            onFired: map.fitAll()
+            text: map.fitting && !pane.control.solid ? "● fit all" : "fit all"
+            onFired: pane.control.solid ? solid.fitAll() : map.fitAll()
+        }
+        HoldButton {
+            objectName: "solidToggle"
+            width: 22 * Theme.mm
+            height: 10 * Theme.mm
+            text: pane.control.solid ? "2D  v" : "3D  v"
+            onFired: pane.control.solid = !pane.control.solid
+        }
+        HoldButton {
+            objectName: "cutToggle"
+            visible: pane.control.solid
+            width: 22 * Theme.mm
+            height: 10 * Theme.mm
+            active: solid.cutting
+            text: solid.cutting ? "≤ " + solid.cut.toFixed(1) + " m" : "all heights"
+            onFired: solid.toggleCut()
         }
         HoldButton {
             objectName: "areaToggle"
+            visible: !pane.control.solid
             width: 22 * Theme.mm
             height: 10 * Theme.mm
             active: pane.control.area.active
@@ -54,14 +84,14 @@ Rectangle {
             width: 10 * Theme.mm
             height: width
             text: "+"
-            onFired: map.zoomBy(1.5)
+            onFired: pane.control.solid ? solid.zoomBy(1.5) : map.zoomBy(1.5)
         }
         HoldButton {
             anchors.right: parent.right
             width: 10 * Theme.mm
             height: width
             text: "−"
-            onFired: map.zoomBy(1 / 1.5)
+            onFired: pane.control.solid ? solid.zoomBy(1 / 1.5) : map.zoomBy(1 / 1.5)
         }
     }
 }

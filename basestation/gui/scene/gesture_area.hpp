@@ -37,6 +37,7 @@ class GestureArea : public QQuickItem {
 
   /// Takes back what a finger that is down would do when it is lifted.
   void drop_press();
+  bool pinching() const { return state_ == State::pinching; }
   bool busy() const { return state_ != State::idle; }  ///< A finger or a button is down.
 
   void mousePressEvent(QMouseEvent* event) override;

@@ -17,15 +17,6 @@ using station::Robot;
 constexpr double kMinRobotPixels = 14.0;  // So that a robot can be seen and hit at any scale.
 constexpr double kReachLimit = 30.0;      // Radius in which a lost robot is expected, m.
 
-std::vector<Point> circle(const Point& centre, double radius, int corners = 40) {
-  std::vector<Point> points;
-  for (int i = 0; i < corners; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / corners;
-    points.push_back({centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
-  }
-  return points;
-}
-
 class Drawer {
  public:
   explicit Drawer(const MarkScene& scene) : scene_(scene), camera_(scene.camera) {}
@@ -62,17 +53,6 @@ class Drawer {
  private:
   bool selected(const Robot& robot) const {
     return std::find(scene_.selection.begin(), scene_.selection.end(), robot.name) != scene_.selection.end();
-  }
-  static Shape diamond(const Point& at, double radius, Token fill) {
-    return {.points = {{at.x, at.y - radius},
-                       {at.x + radius, at.y},
-                       {at.x, at.y + radius},
-                       {at.x - radius, at.y}},
-            .closed = true,
-            .line = Token::text,
-            .width = 1.0,
-            .filled = true,
-            .fill = fill};
   }
   /// `robot`: one of the world's.
   std::string number(const Robot& robot) const {
@@ -196,7 +176,7 @@ class Drawer {
                              .fill_opacity = 0.05});
     }
     draw_body(robot, at, old, opacity);
-    const double radius = std::max(kMinRobotPixels, extent(robot) * camera_.scale / 2);
+    const double radius = std::max(kMinRobotPixels, extent_of(robot) * camera_.scale / 2);
     std::string label = robot.name;
     if (owner_of(robot) == Token::other) label += ", " + robot.holder;
     if (robot.lost) label += " lost " + station::fixed(age, 0) + " s";
@@ -206,15 +186,9 @@ class Drawer {
     out_.targets.push_back({robot.name, at, std::max(radius, 6.0 * scene_.mm)});
   }
 
-  static double extent(const Robot& robot) {
-    const double length = robot.size.length, width = robot.size.width;
-    const double both = std::max(length, width);
-    return both > 0.05 && both < 50.0 ? both : 0.8;
-  }
-
   void draw_body(const Robot& robot, const Point& at, bool old, double opacity) {
     double length = robot.size.length, width = robot.size.width;
-    if (!(length > 0.05 && length < 50.0 && width > 0.05 && width < 50.0)) length = width = extent(robot);
+    if (!(length > 0.05 && length < 50.0 && width > 0.05 && width < 50.0)) length = width = extent_of(robot);
     const double grow = std::max(1.0, kMinRobotPixels / (std::min(length, width) * camera_.scale));
     const double half_length = length * camera_.scale * grow / 2,
                  half_width = width * camera_.scale * grow / 2;
@@ -269,6 +243,30 @@ class Drawer {
 };
 
 }  // namespace
+
+std::vector<Point> circle(const Point& centre, double radius, int corners) {
+  std::vector<Point> points;
+  for (int i = 0; i < corners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / corners;
+    points.push_back({centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)});
+  }
+  return points;
+}
+
+Shape diamond(const Point& at, double radius, Token fill) {
+  return {
+      .points = {{at.x, at.y - radius}, {at.x + radius, at.y}, {at.x, at.y + radius}, {at.x - radius, at.y}},
+      .closed = true,
+      .line = Token::text,
+      .width = 1.0,
+      .filled = true,
+      .fill = fill};
+}
+
+double extent_of(const Robot& robot) {
+  const double both = std::max<double>(robot.size.length, robot.size.width);
+  return both > 0.05 && both < 50.0 ? both : 0.8;
+}
 
 std::string MarkList::robot_at(double x, double y) const {
   std::string nearest;

@@ -65,6 +65,13 @@ struct MarkScene {
   double mm{3.78};              ///< Pixels per mm.
 };
 
+/// Corners of a circle, in the units of its centre.
+std::vector<Point> circle(const Point& centre, double radius, int corners = 40);
+/// A mark of a goal, pixels.
+Shape diamond(const Point& at, double radius, Token fill);
+/// The larger side of a robot, m; 0.8 if it is not known.
+double extent_of(const station::Robot& robot);
+
 /// The marks of a world. Robots whose place is not finite are left out.
 MarkList marks_of(const MarkScene& scene);
 

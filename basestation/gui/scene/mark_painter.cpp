@@ -71,6 +71,7 @@ void MarkPainter::draw_label(QPainter& painter, const MapLabel& label) const {
 }
 
 void MarkPainter::draw_bar(QPainter& painter) const {
+  if (!(camera_.scale > 0.0)) return;  // A view from the side has no scale.
   const Theme& theme = Theme::instance();
   const double length = bar_length(camera_.scale, 180.0), pixels = length * camera_.scale;
   const double right = width() - 14, y = height() - 14;

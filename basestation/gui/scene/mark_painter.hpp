@@ -12,6 +12,7 @@ class MarkPainter : public QQuickPaintedItem {
 
  public:
   explicit MarkPainter(QQuickItem* parent = nullptr);
+  /// `camera`: for the scale bar; with a scale of 0 there is none.
   void show(MarkList marks, const Camera& camera);
   const MarkList& marks() const { return marks_; }
   void paint(QPainter* painter) override;

@@ -23,7 +23,7 @@ void Trails::add(const station::World& world, double now) {
       const Point& last = trail.points.back().place;
       moved = std::hypot(here.x - last.x, here.y - last.y);
     }
-    if (moved >= kStep) trail.points.push_back({here, now, trail.points.empty() || moved > kJump});
+    if (moved >= kStep) trail.points.push_back({here, now, trail.points.empty() || moved > kJump, robot.z});
     while (!trail.points.empty() &&
            (trail.points.size() > kMaxPoints || now - trail.points.front().time > kMaxAge))
       trail.points.pop_front();

@@ -21,6 +21,7 @@ class Trails {
     Point place{};
     double time{};  ///< As given to add().
     bool begins{};  ///< No line leads here from the point before.
+    double z{};     ///< Map frame, m.
   };
   struct Trail {
     std::deque<Stamped> points{};

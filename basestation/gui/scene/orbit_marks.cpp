@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/scene/orbit_marks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "basestation/gui/scene/state.hpp"
+#include "basestation/model/text.hpp"
+
+namespace adit::gui {
+namespace {
+
+using station::GoalPhase;
+using station::Robot;
+
+constexpr double kMinPixels = 14.0;  // Of a robot.
+
+class OrbitDrawer {
+ public:
+  explicit OrbitDrawer(const OrbitScene& scene) : scene_(scene) {}
+
+  MarkList draw() {
+    for (const Robot& robot : scene_.world->robots) draw_areas(robot);
+    for (const Robot& robot : scene_.world->robots) draw_trail(robot);
+    for (const station::StationSummary& station : scene_.world->stations) draw_station(station);
+    for (const Robot& robot : scene_.world->robots) draw_goal(robot);
+    int number = 0;
+    for (const Robot& robot : scene_.world->robots) draw_robot(robot, std::to_string(++number));
+    for (const Point3& ghost : scene_.ghosts)
+      if (const auto seen = scene_.camera.project(ghost)) {
+        Shape mark = diamond(seen->at, 9.0, Token::goal);
+        mark.fill_opacity = 0.45;
+        mark.width = 2.0;
+        mark.line = Token::goal;
+        out_.shapes.push_back(std::move(mark));
+      }
+    return std::move(out_);
+  }
+
+ private:
+  static double height_of(const Robot& robot) { return std::abs(robot.z) < 1e5F ? robot.z : 0.0; }
+
+  /// Adds a shape through places of the map; none of it if a part is behind the camera.
+  void add(const std::vector<Point3>& places, Shape shape) {
+    for (const Point3& place : places) {
+      const auto seen = scene_.camera.project(place);
+      if (!seen) return;
+      shape.points.push_back(seen->at);
+    }
+    if (shape.points.size() > 1) out_.shapes.push_back(std::move(shape));
+  }
+
+  void draw_areas(const Robot& robot) {
+    for (const station::AreaView& area : robot.areas) {
+      std::vector<Point3> corners;
+      for (const auto& corner : area.corners)
+        if (drawable(corner[0], corner[1])) corners.push_back({corner[0], corner[1], height_of(robot)});
+      if (corners.size() < 3 || corners.size() != area.corners.size()) continue;
+      const bool out = area.kind == "keep_out";
+      add(corners, {.closed = true,
+                    .line = out                      ? Token::bad
+                            : area.kind == "keep_in" ? Token::ok
+                                                     : Token::goal,
+                    .width = 1.5,
+                    .dashed = area.kind == "prefer",
+                    .filled = out,
+                    .fill = Token::bad,
+                    .fill_opacity = 0.15});
+    }
+  }
+
+  void draw_trail(const Robot& robot) {
+    const Trails::Trail* trail = scene_.trails ? scene_.trails->of(robot.name) : nullptr;
+    if (!trail) return;
+    Shape line{.line = robot.mine ? Token::mine : Token::dim, .width = 2.0, .opacity = 0.6};
+    const auto flush = [&] {
+      if (line.points.size() > 1) out_.shapes.push_back(line);
+      line.points.clear();
+    };
+    for (const Trails::Stamped& point : trail->points) {
+      const auto seen = scene_.camera.project({point.place.x, point.place.y, point.z});
+      if (!seen || point.begins) flush();
+      if (seen) line.points.push_back(seen->at);
+    }
+    flush();
+  }
+
+  void draw_station(const station::StationSummary& station) {
+    if (!station.place || !drawable((*station.place)[0], (*station.place)[1])) return;
+    const auto seen = scene_.camera.project({(*station.place)[0], (*station.place)[1], (*station.place)[2]});
+    if (!seen) return;
+    const Point at = seen->at;
+    const double opacity = station.lost ? 0.5 : 1.0;
+    out_.shapes.push_back({.points = {at, {at.x - 6, at.y - 14}, {at.x, at.y - 20}, {at.x + 6, at.y - 14}},
+                           .closed = true,
+                           .line = Token::text,
+                           .width = 1.0,
+                           .dashed = station.lost,
+                           .filled = true,
+                           .fill = station.self ? Token::mine : Token::other,
+                           .opacity = opacity});
+    out_.labels.push_back({.at = {at.x, at.y - 28}, .text = station.name, .opacity = opacity});
+  }
+
+  void draw_goal(const Robot& robot) {
+    if (robot.goal_phase == GoalPhase::none || robot.goal_phase == GoalPhase::reached) return;
+    if (!drawable(robot.goal[0], robot.goal[1])) return;
+    const double z = std::abs(robot.goal[2]) < 1e5 ? robot.goal[2] : height_of(robot);
+    const Point3 goal{robot.goal[0], robot.goal[1], z};
+    if (robot.located && drawable(robot.x, robot.y))
+      add({{robot.x, robot.y, height_of(robot)}, goal}, {.line = Token::goal,
+                                                         .width = 1.5,
+                                                         .dashed = robot.goal_phase != GoalPhase::active,
+                                                         .opacity = 0.8});
+    const auto seen = scene_.camera.project(goal);
+    if (!seen) return;
+    out_.shapes.push_back(diamond(seen->at, 9.0, Token::goal));
+    if (robot.goal_phase != GoalPhase::blocked) return;
+    const Point at = seen->at;
+    for (const double side : {-1.0, 1.0})
+      out_.shapes.push_back({.points = {{at.x - 12, at.y - side * 12}, {at.x + 12, at.y + side * 12}},
+                             .line = Token::bad,
+                             .width = 3.0});
+  }
+
+  void draw_robot(const Robot& robot, const std::string& number) {
+    if (!robot.located || !drawable(robot.x, robot.y)) return;
+    const Point3 centre{robot.x, robot.y, height_of(robot)};
+    const auto seen = scene_.camera.project(centre);
+    if (!seen) return;
+    const bool old =
+        contact_of(robot, scene_.silent, scene_.trails ? scene_.trails->stale_after(robot.name) : 1.0) !=
+        Contact::live;
+    const double opacity = old ? 0.55 : 1.0;
+    const double extent = extent_of(robot), scale = scene_.camera.focal() / seen->depth;
+    const double grow = std::max(1.0, kMinPixels / (extent * scale));
+    double length = robot.size.length, width = robot.size.width;
+    if (!(length > 0.05 && length < 50.0 && width > 0.05 && width < 50.0)) length = width = extent;
+    const double yaw = std::isfinite(robot.yaw) ? robot.yaw : 0.0;
+    const double c = grow * std::cos(yaw), s = grow * std::sin(yaw);
+    const auto place = [&](double x, double y) { return centre + Point3{c * x - s * y, s * x + c * y, 0}; };
+    const double l = length / 2, w = width / 2, ring = grow * (std::hypot(l, w) + 0.1);
+    const bool selected =
+        std::find(scene_.selection.begin(), scene_.selection.end(), robot.name) != scene_.selection.end();
+    const auto around = [&](double radius, int corners) {
+      std::vector<Point3> places;
+      for (const Point& at : circle({centre.x, centre.y}, radius, corners))
+        places.push_back({at.x, at.y, centre.z});
+      return places;
+    };
+    if (selected) add(around(ring * 1.3, 40), {.closed = true, .line = Token::text, .width = 3.0});
+    if (robot.stopped) add(around(ring * 1.4, 4), {.closed = true, .line = Token::bad, .width = 3.5});
+    const Shape body{.closed = true,
+                     .line = Token::text,
+                     .width = 1.5,
+                     .dashed = old,
+                     .filled = true,
+                     .fill = owner_of(robot),
+                     .opacity = opacity};
+    add({place(l, w), place(-l, w), place(-l, -w), place(l, -w)}, body);
+    add({place(l + 0.4 * length, 0), place(l, 0.7 * w), place(l, -0.7 * w)}, body);
+    out_.labels.push_back({.at = seen->at, .text = number, .on_fill = true, .opacity = opacity});
+    std::string label = robot.name;
+    if (owner_of(robot) == Token::other) label += ", " + robot.holder;
+    if (robot.lost) label += " lost " + station::fixed(robot.age + scene_.silent, 0) + " s";
+    const double radius = std::max(kMinPixels, grow * extent * scale / 2);
+    out_.labels.push_back(
+        {.at = {seen->at.x, seen->at.y + radius + 12}, .text = label, .opacity = old ? 0.8 : 1.0});
+    out_.targets.push_back({robot.name, seen->at, std::max(radius, 6.0 * scene_.mm)});
+  }
+
+  const OrbitScene& scene_;
+  MarkList out_{};
+};
+
+}  // namespace
+
+MarkList orbit_marks(const OrbitScene& scene) { return scene.world ? OrbitDrawer(scene).draw() : MarkList{}; }
+
+}  // namespace adit::gui
