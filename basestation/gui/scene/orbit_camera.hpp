@@ -30,7 +30,7 @@ struct Projected {
 /// The view of a map from outside, which turns around a point of it.
 struct OrbitCamera {
   static constexpr double kNear = 0.1;                         ///< Nothing nearer is drawn, m.
-  static constexpr double kMinPitch = 0.05, kMaxPitch = 1.57;  ///< rad; the last one looks straight down.
+  static constexpr double kMinPitch = 0.05, kMaxPitch = 1.57;  ///< In rad; the last one looks straight down.
   static constexpr double kMinDistance = 0.5, kMaxDistance = 5000.0;    ///< m
   static constexpr double kHalfView = 25.0 * std::numbers::pi / 180.0;  ///< Half of the vertical view, rad.
 

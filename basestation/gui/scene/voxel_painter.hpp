@@ -48,7 +48,7 @@ class VoxelPainter {
   int width_{}, height_{};
   double lowest_{}, per_metre_{};  ///< Of the table of colours.
   std::vector<std::uint32_t> colours_{}, pixels_{};
-  std::vector<float> depth_{};  ///< m; kFar where nothing is.
+  std::vector<float> depth_{};  ///< In m; kFar where nothing is.
   std::size_t drawn_{};
 };
 
