@@ -63,22 +63,6 @@ void set_owner(RobotView& robot, const std::string& own_name, const Id& own_id) 
 
 }  // namespace
 
-const char* word(ComponentPhase phase) {
-  switch (phase) {
-    case ComponentPhase::starting:
-      return "starting";
-    case ComponentPhase::up:
-      return "up";
-    case ComponentPhase::waiting:
-      return "waiting";
-    case ComponentPhase::failed:
-      return "FAILED";
-    case ComponentPhase::hung:
-      return "HUNG";
-  }
-  return "FAILED";
-}
-
 Robot described(const RobotView& robot, Time now) {
   Robot out = robot;
   out.age = seconds(now - robot.last_heard);
