@@ -9,6 +9,7 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
+#include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::station {

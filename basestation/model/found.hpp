@@ -50,5 +50,7 @@ const char* to_string(Verdict verdict);
 
 /// Reads the outcome of `findings`. Errors: as of health_of().
 Result<FoundReport> findings_of(const CommandOutcome& outcome);
+/// The report as JSON, as `basestation --json findings` writes it, for a file.
+std::string findings_text_of(const FoundReport& report);
 
 }  // namespace adit::station

@@ -244,4 +244,8 @@ Result<FoundReport> findings_of(const CommandOutcome& outcome) {
   return report_of<FoundReport>(outcome, "the findings'");
 }
 
+std::string findings_text_of(const FoundReport& report) {
+  return json_of(report).dump(2, ' ', true, json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace adit::station

@@ -46,6 +46,8 @@ const char* to_string(command::Type type) {
       return "choice";
     case command::Type::number:
       return "number";
+    case command::Type::text:
+      return "text";
     case command::Type::command:
       return "command";
     case command::Type::keyword:
