@@ -13,6 +13,7 @@
 #include "basestation/gui/bridge/action_bar.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
+#include "basestation/gui/bridge/tabs.hpp"
 #include "basestation/gui/scene/camera.hpp"
 #include "basestation/gui/scene/trails.hpp"
 #include "basestation/model/map_tiles.hpp"
@@ -30,6 +31,7 @@ class Control : public QObject {
   Q_PROPERTY(QAbstractItemModel* buttons READ buttons CONSTANT)
   Q_PROPERTY(QAbstractItemModel* refusals READ refusals CONSTANT)
   Q_PROPERTY(QAbstractItemModel* log READ log CONSTANT)
+  Q_PROPERTY(TabState* tabs READ tabs CONSTANT)
   Q_PROPERTY(QString operatorName READ operator_name NOTIFY shown)
   Q_PROPERTY(QString link READ link NOTIFY shown)
   Q_PROPERTY(int robotCount READ robot_count NOTIFY shown)
@@ -92,6 +94,7 @@ class Control : public QObject {
   QAbstractItemModel* buttons() { return &buttons_; }
   QAbstractItemModel* refusals() { return &refusals_; }
   QAbstractItemModel* log() { return &log_; }
+  TabState* tabs() { return &tabs_; }
   QString operator_name() const { return QString::fromStdString(world_->station); }
   QString link() const { return QString::fromStdString(world_->link); }
   int robot_count() const { return static_cast<int>(world_->robots.size()); }
@@ -129,6 +132,7 @@ class Control : public QObject {
   void show_bar();
   void say(const QString& text, const QString& kind);
   void run(const std::string& line, const std::string& slot);
+  void order(const QString& line);  ///< Of a tab.
   void stop(const std::vector<std::string>& robots);
   void finished(const std::string& line, const std::string& slot, int batch,
                 const station::CommandOutcome& outcome);
@@ -157,6 +161,7 @@ class Control : public QObject {
   ActionBar bar_{};
   std::map<std::string, QString> states_{};  ///< Of buttons: sent, done or refused.
   RowModel robots_, buttons_, refusals_, log_;
+  TabState tabs_;
   qint64 next_row_{1};
   int mine_{}, lost_{}, stopped_{};
   QString attention_{};

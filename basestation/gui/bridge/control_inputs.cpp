@@ -58,6 +58,13 @@ void Control::run(const std::string& line, const std::string& slot) {
   });
 }
 
+void Control::order(const QString& line) {
+  if (silent()) return say("Not sent, as the station is silent: " + line, "refused");
+  drop_orders();
+  begin_batch();
+  run(line.toStdString(), "");
+}
+
 void Control::stop(const std::vector<std::string>& robots) {
   begin_batch();
   const int batch = batch_;
@@ -206,6 +213,7 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
     return true;
   }
   if (control) return false;
+  if (tabs_.press_key(key)) return true;
   constexpr int kScanOf1 = 10;  // X11 and Wayland number the keys 1 to 9 from here.
   const int digit = key >= Qt::Key_1 && key <= Qt::Key_9               ? key - Qt::Key_1
                     : shift && scan >= kScanOf1 && scan < kScanOf1 + 9 ? scan - kScanOf1
@@ -234,7 +242,7 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
       set_aiming(false);
       set_reasons_open(false);
       pending_line_.clear();
-    } else {
+    } else if (!tabs_.close()) {
       selection_.clear();
       refresh();
     }

@@ -12,9 +12,9 @@ namespace {
 using station::ComponentPhase;
 using station::ComponentView;
 
-constexpr double kSilent = 10.0;     // On a full link reports come every 8 s.
-constexpr double kFullQueue = 0.2;   // Queued airtime from which a link counts as full, s.
-constexpr double kLossy = 0.2;       // Share of lost heartbeats from which a link counts as bad.
+constexpr double kSilent = 10.0;    // On a full link reports come every 8 s.
+constexpr double kFullQueue = 0.2;  // Queued airtime from which a link counts as full, s.
+constexpr double kLossy = 0.2;      // Share of lost heartbeats from which a link counts as bad.
 
 std::string count_text(std::uint32_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
@@ -44,7 +44,8 @@ void mark(const ComponentView& part, HealthCell& cell) {
       break;
   }
   if (part.restarts > 0) cell.hint = count_text(part.restarts, "restart", "restarts");
-  if (part.hung > 0) cell.hint += (cell.hint.empty() ? "" : ", ") + count_text(part.hung, "thread", "threads");
+  if (part.hung > 0)
+    cell.hint += (cell.hint.empty() ? "" : ", ") + count_text(part.hung, "thread", "threads");
 }
 
 std::string percent(double share) { return fixed_text(share * 100.0, 0) + " %"; }
@@ -61,7 +62,8 @@ void show_budget(const station::SenderReport* sender, const station::AgentTraffi
     row.budget = "sends " + rate_text(sent) + ", unlimited";
   } else if (sender->bandwidth > 0.0) {
     row.share = std::clamp(sent * 8.0 / sender->bandwidth, 0.0, 1.0);
-    row.budget = "sends " + rate_text(sent) + " of " + rate_text(sender->bandwidth / 8.0) + ", " + sender->link;
+    row.budget =
+        "sends " + rate_text(sent) + " of " + rate_text(sender->bandwidth / 8.0) + ", " + sender->link;
   } else {
     row.budget = "sends " + rate_text(sent) + ", " + sender->link;
   }
@@ -153,7 +155,8 @@ std::vector<NetworkRow> network_rows(const station::NetworkReport& report, const
     NetworkRow row{.agent = link.agent, .shape = "disc", .token = Token::ok};
     row.loss = "lost from it " + percent(link.lost_from) +
                (link.lost_to ? ", to it " + percent(*link.lost_to) : ", to it unknown");
-    row.trip = link.round_trip ? "round trip " + fixed_text(*link.round_trip * 1000.0, 0) + " ms" : "no round trip";
+    row.trip =
+        link.round_trip ? "round trip " + fixed_text(*link.round_trip * 1000.0, 0) + " ms" : "no round trip";
     if (link.signal) row.trip += ", " + fixed_text(*link.signal, 0) + " dBm";
     if (link.bytes_from && link.bytes_to)
       row.rates = "from it " + rate_text(*link.bytes_from) + ", to it " + rate_text(*link.bytes_to);
@@ -197,7 +200,8 @@ std::string found_missing(const station::FoundReport& report) {
   std::string out;
   for (const station::FoundAtRobot& robot : report.at_robots) {
     if (robot.stored > robot.here)
-      out += (out.empty() ? "" : ", ") + std::to_string(robot.stored - robot.here) + " are still at " + robot.robot;
+      out += (out.empty() ? "" : ", ") + std::to_string(robot.stored - robot.here) + " are still at " +
+             robot.robot;
     if (robot.overflowed > 0)
       out += (out.empty() ? "" : ", ") + robot.robot + " had no room for " + std::to_string(robot.overflowed);
   }

@@ -14,7 +14,7 @@ Window {
     title: "Adit " + control.operatorName
     onActiveChanged: control.forgetKeys()
 
-    Item {
+    FocusScope {
         anchors.fill: parent
         focus: true
         Keys.onPressed: event => event.accepted = window.control.pressKey(event.key, event.modifiers, event.nativeScanCode, event.isAutoRepeat)
@@ -53,6 +53,15 @@ Window {
             anchors.right: parent.right
             anchors.top: attention.bottom
             anchors.bottom: actions.top
+            anchors.bottomMargin: window.control.tabs.open === "" ? 0 : panel.strip
+        }
+        TabPanel {
+            id: panel
+            control: window.control
+            space: actions.y - map.y
+            x: parent.width < 220 * Theme.mm ? 0 : fleet.width
+            width: parent.width - x
+            anchors.bottom: actions.top
         }
         ReasonList {
             control: window.control
@@ -72,13 +81,13 @@ Window {
             control: window.control
             width: parent.width
             height: 9 * Theme.mm
-            anchors.bottom: log.top
+            anchors.bottom: tabs.top
         }
-        LogTab {
-            id: log
+        Tabs {
+            id: tabs
             control: window.control
             width: parent.width
-            height: 24 * Theme.mm
+            height: 13 * Theme.mm
             anchors.bottom: parent.bottom
         }
     }
