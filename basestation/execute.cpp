@@ -128,6 +128,7 @@ void Station::Impl::run(std::uint64_t handle, const Request& request, Done done)
     return done(outcome);
   }
   if (request.verb == verb("down")) return down(std::move(done));
+  if (request.info->first_word() == "finding") return judge_finding(request, done);
   if (request.verb == verb("stop") && request.all) return stop_all(request, std::move(done));
   if (request.verb == verb("convoy start")) return start_convoy(handle, request, std::move(done));
   if (request.verb == verb("convoy stop")) return stop_convoy(handle, request, std::move(done));
@@ -144,8 +145,9 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
       if (!found && !fleet_.robot(robot)) return done(unknown_robot(request, fleet_, robot));
     }
     Outcome outcome{.json = json_of(request, 0)};
-    outcome.text = findings_text(desk_, fleet_, request.robots);
-    outcome.json["findings"] = findings_json(desk_, fleet_, request.robots);
+    const FoundReport report = findings_report(desk_, book_, fleet_, request.robots);
+    outcome.text = findings_text(report);
+    outcome.json.update(findings_json(report, desk_, book_));
     return done(outcome);
   }
   std::vector<const RobotView*> selection;

@@ -49,6 +49,7 @@ Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire
       stick_(params_.id, strand, radio, fleet_),
       started_(strand.now()),
       random_(params_.seed),
+      book_(params_.disk, strand),
       desk_({}, params_.disk, strand, desk_outputs()),
       start_(static_cast<std::uint32_t>(Random(params_.seed).fork(kStartSalt).next())),
       topics_(std::make_unique<Radio>()) {}
@@ -101,6 +102,8 @@ Result<void> Station::Impl::start() {
   topics_->findings = std::move(*findings);
   if (const std::string lost = desk_.load().text(); !lost.empty())
     desk_outputs().trouble("findings_damaged", lost);
+  if (const std::string lost = book_.load(); !lost.empty()) desk_outputs().trouble("findings_damaged", lost);
+  for (const auto& [key, finding] : desk_.all()) book_.add(key);
   auto found = wire::make_reader(radio_, wire::topics::kFinding, strand_,
                                  [this](const radio::Finding& sample, const wire::SampleInfo&) {
                                    desk_.hear(from_radio(sample), {sample.kept(), sample.overflowed()});
@@ -206,6 +209,7 @@ FindingDesk::Outputs Station::Impl::desk_outputs() {
         if (!closed_) (void)topics_->findings.write(to_radio(robot, params_.id, ids));
       },
       [this](const findings::Finding& f) {
+        book_.add(f.key);
         fleet_.say({.robot = f.key.robot,
                     .code = "found",
                     .text = f.key.robot + " found " + command::clean(f.kind, findings::Finding::kKind) +

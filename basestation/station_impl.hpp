@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "basestation/findings/book.hpp"
 #include "basestation/findings/desk.hpp"
 #include "basestation/fleet/traffic.hpp"
 #include "basestation/flow/arrival.hpp"
@@ -111,6 +112,8 @@ class Station::Impl {
   void ask_stop(StopAll& all, const std::string& robot);
   void finish_stop_all();
   void down(Done done);
+  // Defined in finding_commands.cpp.
+  void judge_finding(const command::Request& request, const Done& done);
   void gathered(const std::shared_ptr<Gather>& gather, std::size_t index, const Answer& answer);
   void finish(Gather& gather);
   void note(const Answer& answer);
@@ -128,6 +131,7 @@ class Station::Impl {
   Time started_;
   Random random_;
   TrafficMeter meter_{};
+  FindingBook book_;
   FindingDesk desk_;
   MapReceiver map_{};
   Trails trails_{};

@@ -2,7 +2,9 @@
 #include "basestation/findings/report.hpp"
 
 #include <algorithm>
+#include <map>
 
+#include "basestation/model/json_reports.hpp"
 #include "basestation/report/table.hpp"
 #include "basestation/report/text.hpp"
 #include "core/command/words.hpp"
@@ -31,47 +33,61 @@ double age(const Finding& finding, const Fleet& fleet) {
 
 }  // namespace
 
-std::string findings_text(const FindingDesk& desk, const Fleet& fleet,
-                          const std::vector<std::string>& robots) {
-  const auto list = chosen(desk, robots);
-  std::string out;
-  if (list.empty()) {
-    out = "nothing was found yet\n";
-  } else {
-    std::vector<std::vector<std::string>> rows{{"ROBOT", "KIND", "X", "Y", "Z", "AGE S", "TEXT", "ID"}};
-    for (const Finding* f : list) {
-      const double seconds_ago = age(*f, fleet);
-      rows.push_back({f->key.robot, command::clean(f->kind, Finding::kKind), fixed(f->position[0], 2),
-                      fixed(f->position[1], 2), fixed(f->position[2], 2),
-                      seconds_ago < 0 ? "-" : fixed(seconds_ago, 0), command::clean(f->text, Finding::kText),
-                      findings::id_text(f->key.id)});
+FoundReport findings_report(const FindingDesk& desk, const FindingBook& book, const Fleet& fleet,
+                            const std::vector<std::string>& robots) {
+  FoundReport report;
+  std::map<std::string, std::uint32_t> here;
+  for (const Finding* f : chosen(desk, robots)) {
+    FoundItem item{.robot = f->key.robot,
+                   .id = findings::id_text(f->key.id),
+                   .kind = command::clean(f->kind, Finding::kKind),
+                   .importance = f->importance,
+                   .position = f->position,
+                   .text = command::clean(f->text, Finding::kText)};
+    if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0) item.age = seconds_ago;
+    if (const FindingBook::Entry* entry = book.find(f->key)) {
+      item.number = entry->number;
+      item.verdict = entry->verdict;
+      item.note = entry->note;
     }
+    ++here[item.robot];
+    report.findings.push_back(std::move(item));
+  }
+  for (const auto& [robot, says] : desk.robots())
+    if (robots.empty() || std::find(robots.begin(), robots.end(), robot) != robots.end())
+      report.at_robots.push_back(
+          {.robot = robot, .stored = says.kept, .here = here[robot], .overflowed = says.overflowed});
+  return report;
+}
+
+std::string findings_text(const FoundReport& report) {
+  std::string out = "nothing was found yet\n";
+  if (!report.findings.empty()) {
+    std::vector<std::vector<std::string>> rows{
+        {"N", "ROBOT", "KIND", "X", "Y", "Z", "AGE S", "VERDICT", "TEXT", "NOTE", "ID"}};
+    for (const FoundItem& item : report.findings)
+      rows.push_back({std::to_string(item.number), item.robot, item.kind, fixed(item.position[0], 2),
+                      fixed(item.position[1], 2), fixed(item.position[2], 2),
+                      item.age ? fixed(*item.age, 0) : "-", to_string(item.verdict), item.text, item.note,
+                      item.id});
     out = table(rows);
   }
-  for (const auto& [robot, says] : desk.robots()) {
-    if (!robots.empty() && std::find(robots.begin(), robots.end(), robot) == robots.end()) continue;
-    const auto here =
-        std::count_if(list.begin(), list.end(), [&](const Finding* f) { return f->key.robot == robot; });
-    if (says.kept > static_cast<std::uint32_t>(here))
-      out += robot + " has " + std::to_string(says.kept) + ", " + std::to_string(here) + " are here\n";
-    if (says.overflowed > 0) out += robot + " had no room for " + std::to_string(says.overflowed) + " more\n";
+  for (const FoundAtRobot& robot : report.at_robots) {
+    if (robot.stored > robot.here)
+      out += robot.robot + " has " + std::to_string(robot.stored) + ", " + std::to_string(robot.here) +
+             " are here\n";
+    if (robot.overflowed > 0)
+      out += robot.robot + " had no room for " + std::to_string(robot.overflowed) + " more\n";
   }
   return out;
 }
 
-nlohmann::json findings_json(const FindingDesk& desk, const Fleet& fleet,
-                             const std::vector<std::string>& robots) {
-  nlohmann::json out = nlohmann::json::array();
-  for (const Finding* f : chosen(desk, robots)) {
-    nlohmann::json row{{"robot", f->key.robot},
-                       {"id", findings::id_text(f->key.id)},
-                       {"kind", command::clean(f->kind, Finding::kKind)},
-                       {"importance", f->importance},
-                       {"position", f->position},
-                       {"text", command::clean(f->text, Finding::kText)},
-                       {"data", f->data}};
-    if (const double seconds_ago = age(*f, fleet); seconds_ago >= 0) row["age"] = seconds_ago;
-    out.push_back(std::move(row));
+nlohmann::json findings_json(const FoundReport& report, const FindingDesk& desk, const FindingBook& book) {
+  nlohmann::json out = json_of(report);
+  for (nlohmann::json& row : out["findings"]) {
+    const findings::Key* key = book.key_of(row["number"].get<std::uint32_t>());
+    const auto found = key ? desk.all().find(*key) : desk.all().end();
+    if (found != desk.all().end()) row["data"] = found->second.data;
   }
   return out;
 }

@@ -9,6 +9,7 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
+#include "core/command/vocabulary.hpp"
 #include "core/command/words.hpp"
 
 namespace adit::station {
@@ -62,22 +63,6 @@ void set_owner(RobotView& robot, const std::string& own_name, const Id& own_id) 
 }
 
 }  // namespace
-
-const char* word(ComponentPhase phase) {
-  switch (phase) {
-    case ComponentPhase::starting:
-      return "starting";
-    case ComponentPhase::up:
-      return "up";
-    case ComponentPhase::waiting:
-      return "waiting";
-    case ComponentPhase::failed:
-      return "FAILED";
-    case ComponentPhase::hung:
-      return "HUNG";
-  }
-  return "FAILED";
-}
 
 Robot described(const RobotView& robot, Time now) {
   Robot out = robot;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "basestation/fleet/links.hpp"
+#include "basestation/model/health.hpp"
+#include "basestation/model/network.hpp"
 #include "basestation/model/notice.hpp"
 #include "basestation/model/robot.hpp"
 #include "core/time/time.hpp"
@@ -20,19 +22,6 @@ using Id = std::array<std::uint8_t, 16>;
 struct StopLatch {
   std::string station{};
   Id station_id{};
-};
-
-enum class ComponentPhase : std::uint8_t { starting, up, waiting, failed, hung };
-
-struct ComponentView {
-  std::string name{};
-  ComponentPhase phase{ComponentPhase::starting};
-  bool healthy{};
-  bool automatic{};    ///< Restarts automatically.
-  float silent_for{};  ///< In s.
-  std::uint32_t restarts{};
-  std::uint32_t hung{};  ///< Number of threads that it left behind.
-  std::string text{};
 };
 
 /// The state of one robot as received: what front ends receive of it, and what only the station needs.
@@ -81,13 +70,6 @@ struct StoredNotice : Notice {
 /// What front ends receive of a notice.
 Notice described(const StoredNotice& notice, Time now);
 
-/// Bytes/s and samples/s of one topic at one agent.
-struct TopicRate {
-  std::string topic{};
-  float bytes_out{}, samples_out{}, bytes_in{}, samples_in{};
-  std::uint32_t dropped{};  ///< Since its start.
-};
-
 struct TrafficView {
   std::string agent{};
   Time last_heard{};
@@ -98,8 +80,5 @@ struct TrafficView {
   float lost_there{
       -1.0F};  ///< Fraction of this station's heartbeats that the agent missed, [0, 1]; negative: unknown.
 };
-
-/// Readable word for a phase: "up", "FAILED", ...
-const char* word(ComponentPhase phase);
 
 }  // namespace adit::station

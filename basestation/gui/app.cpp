@@ -17,7 +17,6 @@
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/gui/bridge/gl_probe.hpp"
 #include "basestation/gui/bridge/qt_station.hpp"
-#include "basestation/gui/scene/theme.hpp"
 #include "basestation/gui/window.hpp"
 #include "basestation/model/exit_code.hpp"
 
@@ -106,9 +105,9 @@ int show_window(int argc, char** argv, const Options& options, const QSize& size
   if (!station)
     return fail(station.error().reason == Reason::bad_argument ? station::kExitUsage : station::kExitNoAnswer,
                 station.error().text);
-  Theme::instance().set_light(options.light);
   QtStation qt_station(std::move(*station));
   Control control(qt_station);
+  control.tabs()->settings()->open(WindowSettings::default_file(), options.light);
   qt_station.show_in(control);
   for (const std::string& robot : options.select) control.select(QString::fromStdString(robot), true);
   constexpr int kWide = 1600;  // There is room for the details beside the map.

@@ -91,9 +91,11 @@ class JsonReader {
     read_fields(in, out);
     return wrong.empty();
   }
+  /// An unset value is written as null, or left out.
   template <class T>
   static bool take(const nlohmann::json& value, std::optional<T>& out) {
-    return take(value, out.emplace());
+    out.reset();
+    return value.is_null() || take(value, out.emplace());
   }
   template <class T>
   static bool take(const nlohmann::json& value, std::map<std::string, T>& out) {

@@ -3,16 +3,11 @@
 
 #include "basestation/fleet/summary.hpp"
 #include "basestation/model/json.hpp"
+#include "basestation/model/json_reports.hpp"
 
 namespace adit::station {
 
 using nlohmann::json;
-
-namespace {
-
-json or_null(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
-}  // namespace
 
 json notices_json(const Fleet& fleet, const std::string& robot, Time now) {
   json out = json::array();
@@ -51,6 +46,8 @@ const char* to_string(command::Type type) {
       return "choice";
     case command::Type::number:
       return "number";
+    case command::Type::text:
+      return "text";
     case command::Type::command:
       return "command";
     case command::Type::keyword:
@@ -125,69 +122,53 @@ json actions_json(const std::vector<Action>& actions) {
 
 namespace {
 
-json sender_json(const SenderView& sender) {
-  json dropped = json::object();
-  for (std::size_t p = 0; p < wire::kPriorities; ++p) dropped[priority_name(p)] = sender.dropped[p];
-  return {{"link", sender.link},
-          {"bandwidth", sender.bandwidth},
-          {"queue", sender.queue},
-          {"state_rate", sender.state_rate},
-          {"dropped", dropped}};
+SenderReport report_of(const SenderView& sender) {
+  SenderReport out{.link = sender.link,
+                   .bandwidth = sender.bandwidth,
+                   .queue = sender.queue,
+                   .state_rate = sender.state_rate};
+  for (std::size_t p = 0; p < wire::kPriorities; ++p) out.dropped[priority_name(p)] = sender.dropped[p];
+  return out;
+}
+
+LinkReport report_of(const LinkView& link) {
+  LinkReport out{.agent = link.peer.name,
+                 .age = seconds(link.peer.held),
+                 .lost_from = link.peer.lost,
+                 .lost_to = link.lost_to,
+                 .round_trip = link.peer.round_trip};
+  if (link.rate) {
+    out.bytes_from = link.rate->in;
+    out.bytes_to = link.rate->out;
+    out.signal = link.rate->signal;
+  }
+  if (link.sender) out.sender = report_of(*link.sender);
+  return out;
 }
 
 }  // namespace
 
-json net_json(const Fleet& fleet, Time now) {
-  json agents = json::array();
-  for (const auto& [agent, traffic] : fleet.traffic()) {
-    json topics = json::array();
-    for (const TopicRate& row : traffic.topics)
-      topics.push_back({{"topic", row.topic},
-                        {"bytes_out", row.bytes_out},
-                        {"samples_out", row.samples_out},
-                        {"bytes_in", row.bytes_in},
-                        {"samples_in", row.samples_in},
-                        {"dropped", row.dropped}});
-    agents.push_back({{"agent", agent},
-                      {"age", seconds(now - traffic.last_heard)},
-                      {"discovery_out", traffic.discovery_out},
-                      {"discovery_in", traffic.discovery_in},
-                      {"total_out", traffic.total_out},
-                      {"total_in", traffic.total_in},
-                      {"malformed", traffic.malformed},
-                      {"topics", topics}});
-  }
-  json rows = json::array();
-  for (const LinkView& link : links(fleet, now)) {
-    json row{{"agent", link.peer.name},
-             {"age", seconds(link.peer.held)},
-             {"lost_from", link.peer.lost},
-             {"lost_to", or_null(link.lost_to)},
-             {"round_trip", or_null(link.peer.round_trip)},
-             {"bytes_from", link.rate ? json(link.rate->in) : json(nullptr)},
-             {"bytes_to", link.rate ? json(link.rate->out) : json(nullptr)},
-             {"signal", link.rate ? or_null(link.rate->signal) : json(nullptr)}};
-    row["sender"] = link.sender ? sender_json(*link.sender) : json(nullptr);
-    rows.push_back(std::move(row));
-  }
-  json out{{"agents", agents}, {"links", rows}};
+NetworkReport network_report(const Fleet& fleet, Time now) {
+  NetworkReport report;
+  for (const auto& [agent, traffic] : fleet.traffic())
+    report.agents.push_back({.agent = agent,
+                             .age = seconds(now - traffic.last_heard),
+                             .discovery_out = traffic.discovery_out,
+                             .discovery_in = traffic.discovery_in,
+                             .total_out = traffic.total_out,
+                             .total_in = traffic.total_in,
+                             .malformed = traffic.malformed,
+                             .topics = traffic.topics});
+  for (const LinkView& link : links(fleet, now)) report.links.push_back(report_of(link));
   const auto own = fleet.traffic().find(fleet.own_name());
-  if (own != fleet.traffic().end()) out["sender"] = sender_json(own->second.sender);
-  return out;
+  if (own != fleet.traffic().end()) report.sender = report_of(own->second.sender);
+  return report;
 }
 
+json net_json(const Fleet& fleet, Time now) { return json_of(network_report(fleet, now)); }
+
 json health_json(const RobotView& robot) {
-  json parts = json::array();
-  for (const ComponentView& part : robot.components)
-    parts.push_back({{"component", part.name},
-                     {"state", word(part.phase)},
-                     {"healthy", part.healthy},
-                     {"policy", part.automatic ? "auto" : "manual"},
-                     {"silent_for", part.silent_for},
-                     {"restarts", part.restarts},
-                     {"hung", part.hung},
-                     {"text", part.text}});
-  return {{"robot", robot.name}, {"components", parts}};
+  return json_of(RobotHealth{.robot = robot.name, .components = robot.components});
 }
 
 json list_json(const Fleet& fleet, Time now) {

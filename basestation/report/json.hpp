@@ -14,6 +14,7 @@ namespace adit::station {
 nlohmann::json notices_json(const Fleet& fleet, const std::string& robot, Time now);
 nlohmann::json answer_json(const Answer& answer);
 nlohmann::json actions_json(const std::vector<Action>& actions);
+NetworkReport network_report(const Fleet& fleet, Time now);
 nlohmann::json net_json(const Fleet& fleet, Time now);
 nlohmann::json health_json(const RobotView& robot);
 

@@ -27,6 +27,7 @@ constexpr int kLimitMs = 5000;
 
 struct NoSink : CommandSink {
   void execute(const std::string&, Done) override {}
+  void query(const std::string&, Done) override {}
   void stop(const std::vector<std::string>&, Done) override {}
   void start_station() override {}
 };

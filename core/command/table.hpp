@@ -21,6 +21,9 @@ inline constexpr Argument kMaybeRobot{.name = "R", .type = Type::robots, .what =
 inline constexpr Argument kMaybeRobots{
     .name = "R", .type = Type::robots, .what = "a robot", .min_count = 0, .max_count = kMaxRobots};
 inline constexpr Argument kFile{.name = "FILE", .type = Type::file, .what = "a file"};
+/// A finding, by the number that `findings` shows.
+inline constexpr Argument kFinding{
+    .name = "N", .type = Type::number, .what = "the number of a finding", .minimum = 1.0, .maximum = 1e9};
 inline constexpr Argument kOperator{.name = "OPERATOR", .type = Type::name, .what = "an operator"};
 
 constexpr Argument coordinate(std::string_view name, std::uint8_t least = 1) {
@@ -94,6 +97,24 @@ inline constexpr std::array kTable{
                 .summary = "what robots found, most important first",
                 .details = "findings stay when their robot is gone",
                 .example = "findings r1"},
+    CommandInfo{
+        .name = "finding note",
+        .arguments =
+            {kFinding, Argument{.name = "note", .type = Type::keyword},
+             Argument{.name = "TEXT", .type = Type::text, .what = "a text", .min_count = 0, .max_count = 64}},
+        .runs = Runs::station,
+        .summary = "store a note on a finding, at this station",
+        .details = "without TEXT the note is removed",
+        .example = "finding 3 note seen again by r2"},
+    CommandInfo{.name = "finding",
+                .arguments = {kFinding, Argument{.name = "VERDICT",
+                                                 .type = Type::choice,
+                                                 .what = "a verdict",
+                                                 .choices = "confirm|reject|reopen"}},
+                .runs = Runs::station,
+                .summary = "confirm or reject a finding, or take that back",
+                .details = "N as in `findings`; stored at this station, also over its restart",
+                .example = "finding 3 confirm"},
     CommandInfo{
         .name = "map save",
         .arguments = {Argument{.name = "save", .type = Type::keyword}, kFile},

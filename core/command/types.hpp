@@ -18,6 +18,7 @@ enum class Type : std::uint8_t {
   file,     ///< A path.
   choice,   ///< One of `choices`.
   number,   ///< A finite number within the range.
+  text,     ///< Any words.
   command,  ///< The name of a command.
   keyword,  ///< The word `name` itself; it distinguishes commands with the same first word.
 };

@@ -12,6 +12,10 @@ class FakeSink : public CommandSink {
     lines.push_back(line);
     pending.push_back(std::move(done));
   }
+  void query(const std::string& line, Done done) override {
+    queries.push_back(line);
+    asked.push_back(std::move(done));
+  }
   void stop(const std::vector<std::string>& robots, Done done) override {
     std::string line = "STOP";
     for (const std::string& robot : robots) line += " " + robot;
@@ -21,6 +25,8 @@ class FakeSink : public CommandSink {
 
   std::vector<std::string> lines{};
   std::vector<Done> pending{};
+  std::vector<std::string> queries{};
+  std::vector<Done> asked{};
   int starts{};
 };
 

@@ -90,6 +90,64 @@ TEST_F(FindingsTest, SurviveARestartOfTheStation) {
   EXPECT_EQ(execute("findings").json["findings"].size(), 1u);
 }
 
+TEST_F(FindingsTest, AreJudgedByTheirNumberAndThatSurvivesARestart) {
+  find(7);
+  find(8, 9, "person");
+  EXPECT_EQ(execute("finding 1 confirm").text, "finding 1 of r1 is confirmed\n");
+  EXPECT_EQ(execute("finding 2 reject").exit_code, 0);
+  EXPECT_EQ(execute("finding 2 note near the second pillar").json["note"], "near the second pillar");
+  begin_station();
+  run_for(2s);
+  find(3, 20);
+  const auto rows = execute("findings").json["findings"];
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["number"], 3) << "a new finding takes no number of an old one";
+  EXPECT_EQ(rows[0]["verdict"], "open");
+  EXPECT_EQ(rows[1]["number"], 2);
+  EXPECT_EQ(rows[1]["verdict"], "rejected");
+  EXPECT_EQ(rows[1]["note"], "near the second pillar");
+  EXPECT_EQ(rows[2]["verdict"], "confirmed");
+  EXPECT_EQ(execute("finding 1 reopen").json["verdict"], "open");
+  EXPECT_EQ(execute("finding 2 note").text, "finding 2 of r1 has no note\n");
+}
+
+TEST_F(FindingsTest, AreJudgedOnlyIfTheyExistAndTheJudgementIsStored) {
+  find(7);
+  for (const char* line : {"finding 2 confirm", "finding 1.5 confirm", "finding 99 note x"})
+    EXPECT_EQ(execute(line).json["reason"], "out_of_range") << line;
+  for (const char* line : {"finding 0 confirm", "finding 1 maybe", "finding 1", "finding x note"})
+    EXPECT_EQ(execute(line).exit_code, 2) << line;
+  disk_->set_full(true);
+  const Outcome outcome = execute("finding 1 confirm");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.error, HasSubstr("not stored"));
+  disk_->set_full(false);
+  EXPECT_EQ(execute("finding 1 confirm").exit_code, 0);
+}
+
+TEST_F(FindingsTest, ADamagedFileOfJudgementsIsPreservedAndReported) {
+  find(7);
+  const std::vector<std::string> bad{
+      "",
+      "{",
+      "[]",
+      R"({"version": 2, "findings": []})",
+      R"({"version": 1, "findings": [{"robot": 5}]})",
+      R"({"version": 1, "findings": [{"robot": "r1", "id": "x", "number": 1}]})"};
+  for (const std::string& text : bad) {
+    op_.reset();
+    ASSERT_TRUE(
+        disk_->replace("judgements", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
+    begin_station();
+    run_for(2s);
+    EXPECT_EQ(op_->fleet().notices().back().code, "findings_damaged") << text;
+    const auto aside = disk_->read("judgements.bad");
+    ASSERT_TRUE(aside && *aside) << text;
+    EXPECT_EQ(std::string((*aside)->begin(), (*aside)->end()), text);
+    EXPECT_EQ(execute("finding 1 confirm").exit_code, 0) << "numbers are given again";
+  }
+}
+
 TEST_F(FindingsTest, AreNotAcknowledgedWhileTheDiskFails) {
   disk_->set_full(true);
   find(1);

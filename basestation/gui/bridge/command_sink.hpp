@@ -16,6 +16,8 @@ class CommandSink {
 
   /// Runs a command line; `done` is called once, in the thread of the window.
   virtual void execute(const std::string& line, Done done) = 0;
+  /// Asks the station by a command line that changes nothing.
+  virtual void query(const std::string& line, Done done) = 0;
   /// Software stop of these robots, or of all if there is none.
   virtual void stop(const std::vector<std::string>& robots, Done done) = 0;
   /// Starts the station again after it ended.

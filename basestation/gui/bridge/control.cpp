@@ -49,7 +49,12 @@ Control::Control(CommandSink& sink, QObject* parent)
               this),
       buttons_({"slot", "label", "key", "hint", "names", "possible", "touch", "state_", "reason"}, this),
       refusals_({"row", "label", "names", "why", "cureLabel", "cureLine", "cureHold"}, this),
-      log_({"row", "time", "kind", "who", "line"}, this) {
+      log_({"row", "time", "kind", "who", "line"}, this),
+      tabs_(sink, log_, this) {
+  connect(&tabs_, &TabState::ordered, this, &Control::order_of_tab);
+  connect(&tabs_, &TabState::remark, this, &Control::add_remark);
+  connect(&tabs_, &TabState::said, this,
+          [this](const QString& text, bool good) { say(text, good ? "done" : "refused"); });
   refresh();
 }
 
@@ -90,6 +95,7 @@ void Control::refresh() {
   attention_.refresh();
   details_.refresh();
   area_.refresh();
+  tabs_.show(world_, selection_, silent());
   emit shown();
 }
 
@@ -226,6 +232,7 @@ void Control::add_notice(const station::Notice& notice) {
 void Control::show_notice(const station::Notice& notice) {
   last_notice_ = std::max(last_notice_, notice.id);
   attention_.add(notice);
+  tabs_.add_notice(notice);
   const QString kind = !notice.mine                              ? "dim"
                        : notice.level == station::Level::error   ? "bad"
                        : notice.level == station::Level::warning ? "warn"
@@ -234,6 +241,7 @@ void Control::show_notice(const station::Notice& notice) {
 }
 
 void Control::add_command(const station::CommandEvent& event) {
+  tabs_.add_command(event);
   if (event.query || !event.ended) return;
   const bool own = event.mine || event.pid == ::getpid();  // A stop uses a connection of its own.
   const QString who =

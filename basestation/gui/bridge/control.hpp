@@ -18,6 +18,7 @@
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/detail_list.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
+#include "basestation/gui/bridge/tabs.hpp"
 #include "basestation/gui/scene/camera.hpp"
 #include "basestation/gui/scene/trails.hpp"
 #include "basestation/model/map_tiles.hpp"
@@ -35,6 +36,7 @@ class Control : public QObject {
   Q_PROPERTY(QAbstractItemModel* buttons READ buttons CONSTANT)
   Q_PROPERTY(QAbstractItemModel* refusals READ refusals CONSTANT)
   Q_PROPERTY(QAbstractItemModel* log READ log CONSTANT)
+  Q_PROPERTY(TabState* tabs READ tabs CONSTANT)
   Q_PROPERTY(QString operatorName READ operator_name NOTIFY shown)
   Q_PROPERTY(QString link READ link NOTIFY shown)
   Q_PROPERTY(int robotCount READ robot_count NOTIFY shown)
@@ -115,6 +117,7 @@ class Control : public QObject {
   QAbstractItemModel* buttons() { return &buttons_; }
   QAbstractItemModel* refusals() { return &refusals_; }
   QAbstractItemModel* log() { return &log_; }
+  TabState* tabs() { return &tabs_; }
   QString operator_name() const { return QString::fromStdString(world_->station); }
   QString link() const { return QString::fromStdString(world_->link); }
   int robot_count() const { return static_cast<int>(world_->robots.size()); }
@@ -157,6 +160,7 @@ class Control : public QObject {
   void show_cards();
   void show_bar();
   void run(const std::string& line, const std::string& slot, CommandSink::Done then = {});
+  void order_of_tab(const QString& line);
   void finished(const std::string& line, const std::string& slot, int batch,
                 const station::CommandOutcome& outcome);
   /// The next outcomes belong to a new order of the operator.
@@ -186,6 +190,7 @@ class Control : public QObject {
   ActionBar bar_{};
   std::map<std::string, QString> states_{};  ///< Of buttons: sent, done or refused.
   RowModel robots_, buttons_, refusals_, log_;
+  TabState tabs_;
   qint64 next_row_{1};
   int mine_{}, lost_{}, stopped_{};
   AreaTool area_{*this};

@@ -86,6 +86,12 @@ void Control::run(const std::string& line, const std::string& slot, CommandSink:
                 });
 }
 
+void Control::order_of_tab(const QString& line) {
+  if (silent()) return say("Not sent, as the station is silent: " + line, "refused");
+  drop_orders();
+  order(line.toStdString());
+}
+
 void Control::stop(const std::vector<std::string>& robots) {
   begin_batch();
   const int batch = batch_;
@@ -240,6 +246,7 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
     return true;
   }
   if (control) return false;
+  if (tabs_.press_key(key)) return true;
   constexpr int kScanOf1 = 10;  // X11 and Wayland number the keys 1 to 9 from here.
   const int digit = key >= Qt::Key_1 && key <= Qt::Key_9               ? key - Qt::Key_1
                     : shift && scan >= kScanOf1 && scan < kScanOf1 + 9 ? scan - kScanOf1
@@ -283,7 +290,7 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
       set_reasons_open(false);
       attention_.set_open(false);
       pending_line_.clear();
-    } else {
+    } else if (!tabs_.close()) {
       selection_.clear();
       refresh();
     }

@@ -26,6 +26,7 @@ class QtStation : public QObject, public CommandSink {
   void show_in(Control& control);
 
   void execute(const std::string& line, Done done) override;
+  void query(const std::string& line, Done done) override { execute(line, std::move(done)); }
   void stop(const std::vector<std::string>& robots, Done done) override;
   void start_station() override;
 

@@ -6,6 +6,8 @@ import Adit
 Rectangle {
     id: tab
     required property Control control
+    readonly property LogView log: control.tabs.log
+    readonly property double side: 62 * Theme.mm
     color: Theme.panel
 
     ListView {
@@ -13,47 +15,13 @@ Rectangle {
         objectName: "log"
         anchors.fill: parent
         anchors.margins: 1.5 * Theme.mm
+        anchors.rightMargin: tab.side
         clip: true
         boundsBehavior: Flickable.StopAtBounds
-        model: tab.control.log
-        delegate: Item {
-            id: row
-            required property string time
-            required property string kind
-            required property string who
-            required property string line
+        model: tab.log.lines
+        onContentYChanged: tab.log.paused = contentY > originY + 2
+        delegate: LogLine {
             width: list.width
-            height: 5.2 * Theme.mm
-            PlainLabel {
-                width: 13 * Theme.mm
-                height: parent.height
-                text: row.time
-                color: Theme.dim
-            }
-            Glyph {
-                x: 14 * Theme.mm
-                width: 3.4 * Theme.mm
-                height: width
-                anchors.verticalCenter: parent.verticalCenter
-                visible: row.kind === "ok" || row.kind === "warn" || row.kind === "bad"
-                kind: row.kind === "ok" ? "disc" : row.kind === "warn" ? "triangle" : "square"
-                colour: row.kind === "ok" ? Theme.ok : row.kind === "warn" ? Theme.warn : Theme.bad
-                outline: Theme.ink
-            }
-            PlainLabel {
-                x: 19 * Theme.mm
-                width: 30 * Theme.mm
-                height: parent.height
-                text: row.who
-                color: Theme.dim
-            }
-            PlainLabel {
-                x: 50 * Theme.mm
-                width: parent.width - x
-                height: parent.height
-                text: row.line
-                color: row.kind === "dim" ? Theme.dim : Theme.text
-            }
         }
     }
     PlainLabel {
@@ -61,6 +29,54 @@ Rectangle {
         x: 3 * Theme.mm
         height: 8 * Theme.mm
         color: Theme.dim
-        text: "log: nothing yet"
+        text: tab.log.text === "" && !tab.log.warnings && !tab.log.selected ? "log: nothing yet" : "log: no line that the filters let through"
+    }
+    HoldButton {
+        objectName: "logWaiting"
+        visible: tab.log.waiting > 0
+        anchors.top: list.top
+        anchors.right: list.right
+        height: 10 * Theme.mm
+        text: "▴ " + tab.log.waiting + " new"
+        active: true
+        onFired: list.positionViewAtBeginning()
+    }
+    Grid {
+        x: parent.width - tab.side + 2 * Theme.mm
+        y: 1.5 * Theme.mm
+        columns: 2
+        spacing: 1 * Theme.mm
+        readonly property double place: (tab.side - 4.5 * Theme.mm) / 2
+        readonly property double tall: (tab.height - 4 * Theme.mm) / 2
+        HoldButton {
+            objectName: "logWarnings"
+            width: parent.place
+            height: parent.tall
+            active: tab.log.warnings
+            text: "warnings"
+            onFired: tab.log.warnings = !tab.log.warnings
+        }
+        HoldButton {
+            objectName: "logSelected"
+            width: parent.place
+            height: parent.tall
+            active: tab.log.selected
+            text: "selected"
+            onFired: tab.log.selected = !tab.log.selected
+        }
+        TextField {
+            objectName: "logText"
+            width: parent.place
+            height: parent.tall
+            hint: "filter: text"
+            onEdited: text => tab.log.text = text
+        }
+        HoldButton {
+            objectName: "logExport"
+            width: parent.place
+            height: parent.tall
+            text: "export"
+            onFired: tab.control.tabs.exportLog()
+        }
     }
 }

@@ -14,9 +14,9 @@ Window {
     title: "Adit " + control.operatorName
     onActiveChanged: control.forgetKeys()
 
-    Item {
+    FocusScope {
         anchors.fill: parent
-        focus: !window.control.commandLine.open
+        focus: true
         Keys.onPressed: event => event.accepted = window.control.pressKey(event.key, event.modifiers, event.nativeScanCode, event.isAutoRepeat)
         Keys.onReleased: event => event.accepted = window.control.releaseKey(event.key, event.isAutoRepeat)
 
@@ -53,6 +53,7 @@ Window {
             anchors.right: details.visible ? details.left : parent.right
             anchors.top: attention.bottom
             anchors.bottom: actions.top
+            anchors.bottomMargin: window.control.tabs.open === "" ? 0 : panel.strip
         }
         DetailPane {
             id: details
@@ -61,7 +62,16 @@ Window {
             anchors.right: parent.right
             anchors.top: attention.bottom
             anchors.bottom: actions.top
+            anchors.bottomMargin: window.control.tabs.open === "" ? 0 : panel.strip
             width: 84 * Theme.mm
+        }
+        TabPanel {
+            id: panel
+            control: window.control
+            space: actions.y - map.y
+            x: parent.width < 220 * Theme.mm ? 0 : fleet.width
+            width: parent.width - x
+            anchors.bottom: actions.top
         }
         AttentionMenu {
             attention: window.control.attention
@@ -87,7 +97,7 @@ Window {
             control: window.control
             width: parent.width
             height: 9 * Theme.mm
-            anchors.bottom: log.top
+            anchors.bottom: tabs.top
         }
         CommandPanel {
             line: window.control.commandLine
@@ -96,11 +106,11 @@ Window {
             anchors.right: parent.right
             anchors.bottom: outcome.bottom
         }
-        LogTab {
-            id: log
+        Tabs {
+            id: tabs
             control: window.control
             width: parent.width
-            height: 24 * Theme.mm
+            height: 13 * Theme.mm
             anchors.bottom: parent.bottom
         }
     }

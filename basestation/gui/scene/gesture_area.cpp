@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basestation/gui/scene/theme.hpp"
+
 namespace adit::gui {
 
 namespace {
@@ -29,7 +31,7 @@ void GestureArea::press(const QPointF& at, bool aim) {
   if (state_ == State::aimed)
     show_aim(at);
   else
-    timer_.start(kLongPress, this);
+    timer_.start(Theme::instance().glove() ? kGlovePress : kLongPress, this);
 }
 
 void GestureArea::leave_press() {

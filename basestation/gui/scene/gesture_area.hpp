@@ -12,8 +12,9 @@ class GestureArea : public QQuickItem {
   Q_OBJECT
 
  public:
-  static constexpr int kLongPress = 600;  ///< Time until a press means a place to drive to, ms.
-  static constexpr double kSlopMm = 3.0;  ///< A finger that moves less has not moved.
+  static constexpr int kLongPress = 600;   ///< Time until a press means a place to drive to, ms.
+  static constexpr int kGlovePress = 800;  ///< The same in glove mode.
+  static constexpr double kSlopMm = 3.0;   ///< A finger that moves less has not moved.
 
   explicit GestureArea(QQuickItem* parent = nullptr);
   /// A place is shown that would be sent if the finger was lifted.

@@ -30,4 +30,16 @@ void Theme::set_light(bool light) {
   emit changed();
 }
 
+void Theme::set_glove(bool glove) {
+  if (glove == glove_) return;
+  glove_ = glove;
+  emit changed();
+}
+
+void Theme::set_scale(double scale) {
+  if (scale == scale_) return;
+  scale_ = scale;
+  emit changed();
+}
+
 }  // namespace adit::gui

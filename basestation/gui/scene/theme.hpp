@@ -17,7 +17,8 @@ class Theme : public QObject {
   QML_ELEMENT
   QML_SINGLETON
   Q_PROPERTY(bool light READ light WRITE set_light NOTIFY changed)
-  Q_PROPERTY(double mm READ mm CONSTANT)
+  Q_PROPERTY(double mm READ mm NOTIFY changed)
+  Q_PROPERTY(bool glove READ glove WRITE set_glove NOTIFY changed)
   Q_PROPERTY(QColor ground READ ground NOTIFY changed)
   Q_PROPERTY(QColor panel READ panel NOTIFY changed)
   Q_PROPERTY(QColor raised READ raised NOTIFY changed)
@@ -39,7 +40,13 @@ class Theme : public QObject {
 
   bool light() const { return light_; }
   void set_light(bool light);
-  double mm() const { return mm_; }  ///< Pixels per mm of the screen.
+  /// Pixels per mm, as the operator set it. With gloves everything is larger, so that the buttons of the
+  /// action bar are 20 mm high in place of 13 mm.
+  double mm() const { return mm_ * scale_ * (glove_ ? kGlove : 1.0); }
+  bool glove() const { return glove_; }
+  void set_glove(bool glove);
+  double scale() const { return scale_; }
+  void set_scale(double scale);  ///< Of what the screen states.
   const Palette& palette() const { return light_ ? kLight : kDark; }
   QColor of(Token token) const { return QColor::fromRgb(colour(token, palette())); }
 
@@ -64,8 +71,10 @@ class Theme : public QObject {
  private:
   Theme();
 
-  bool light_{false};
-  double mm_{};
+  static constexpr double kGlove = 20.0 / 13.0;
+
+  bool light_{false}, glove_{false};
+  double mm_{}, scale_{1.0};  ///< As the screen states it, and what the operator makes of it.
 };
 
 }  // namespace adit::gui

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/bridge/settings.hpp"
+
+#include <QDir>
+#include <QFile>
+#include <QFileInfo>
+#include <QSaveFile>
+#include <algorithm>
+#include <cmath>
+
+#include "basestation/gui/scene/theme.hpp"
+
+namespace adit::gui {
+namespace {
+
+constexpr qint64 kMaxFile = 64 * 1024;
+
+}  // namespace
+
+WindowSettings::WindowSettings(QObject* parent) : QObject(parent) {
+  // The theme also changes by a key.
+  connect(&Theme::instance(), &Theme::changed, this, [this] {
+    if (!applying_) store();
+    emit changed();
+  });
+}
+
+QString WindowSettings::default_file() {
+  const QString folder = qEnvironmentVariable("XDG_CONFIG_HOME");
+  return (QDir::isAbsolutePath(folder) ? folder : QDir::homePath() + "/.config") + "/adit/gui.yaml";
+}
+
+void WindowSettings::open(const QString& file, bool light) {
+  file_ = file;
+  wrong_ = false;
+  QFile in(file);
+  if (in.exists()) {
+    if (!in.open(QIODevice::ReadOnly) || in.size() > kMaxFile) {
+      emit remark(file + ": " + (in.isOpen() ? "too long for settings" : in.errorString()));
+      wrong_ = true;
+    } else {
+      const SettingsRead read = read_settings(in.readAll().toStdString());
+      wrong_ = !read.problems.empty();
+      for (const std::string& problem : read.problems)
+        emit remark(file + ", " + QString::fromStdString(problem));
+      applying_ = true;
+      apply(read.values);
+      applying_ = false;
+    }
+  }
+  applying_ = true;
+  if (light) set_light(true);
+  applying_ = false;
+  emit changed();
+}
+
+SettingsValues WindowSettings::values() {
+  const Theme& theme = Theme::instance();
+  return {.light = theme.light(), .glove = theme.glove(), .scale = theme.scale()};
+}
+
+void WindowSettings::apply(const SettingsValues& values) {
+  Theme& theme = Theme::instance();
+  theme.set_light(values.light);
+  theme.set_glove(values.glove);
+  theme.set_scale(values.scale);
+}
+
+void WindowSettings::store() {
+  if (file_.isEmpty()) return;
+  if (wrong_) {  // What is not understood is preserved.
+    QFile::remove(file_ + ".bad");
+    if (QFile::rename(file_, file_ + ".bad")) emit remark("what was wrong is preserved in " + file_ + ".bad");
+    wrong_ = false;
+  }
+  QDir().mkpath(QFileInfo(file_).path());
+  QSaveFile out(file_);
+  const bool stored = out.open(QIODevice::WriteOnly) &&
+                      out.write(QByteArray::fromStdString(settings_text(values()))) > 0 && out.commit();
+  if (!stored) emit remark("settings are not stored: " + file_ + ": " + out.errorString());
+}
+
+bool WindowSettings::light() const { return Theme::instance().light(); }
+void WindowSettings::set_light(bool light) { Theme::instance().set_light(light); }
+bool WindowSettings::glove() const { return Theme::instance().glove(); }
+void WindowSettings::set_glove(bool glove) { Theme::instance().set_glove(glove); }
+double WindowSettings::scale() const { return Theme::instance().scale(); }
+
+void WindowSettings::set_scale(double scale) {
+  constexpr double kSteps = 20.0;  // A step is 0.05.
+  if (!std::isfinite(scale)) return;
+  Theme::instance().set_scale(
+      std::clamp(std::round(scale * kSteps) / kSteps, SettingsValues::kMinScale, SettingsValues::kMaxScale));
+}
+
+void WindowSettings::restoreDefaults() {
+  applying_ = true;
+  apply({});
+  applying_ = false;
+  store();
+  emit changed();
+}
+
+}  // namespace adit::gui

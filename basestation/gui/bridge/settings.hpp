@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <QtQml/qqmlregistration.h>
+#include <QObject>
+#include <QString>
+
+#include "basestation/gui/bridge/settings_file.hpp"
+
+namespace adit::gui {
+
+/// The operator's settings of the window. Each change acts at once and is stored at once.
+class WindowSettings : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("a part of the tabs")
+  Q_PROPERTY(bool light READ light WRITE set_light NOTIFY changed)
+  Q_PROPERTY(bool glove READ glove WRITE set_glove NOTIFY changed)
+  Q_PROPERTY(double scale READ scale WRITE set_scale NOTIFY changed)
+  Q_PROPERTY(bool isDefault READ is_default NOTIFY changed)
+  Q_PROPERTY(QString file READ file NOTIFY changed)
+
+ public:
+  explicit WindowSettings(QObject* parent);
+
+  /// Reads the file, and stores changes in it from now on. Before, nothing is stored. `light`: the light
+  /// theme whatever the file says, until it is changed.
+  void open(const QString& file, bool light = false);
+  /// $XDG_CONFIG_HOME/adit/gui.yaml, or ~/.config/adit/gui.yaml.
+  static QString default_file();
+
+  bool light() const;
+  void set_light(bool light);
+  bool glove() const;
+  void set_glove(bool glove);
+  double scale() const;
+  void set_scale(double scale);
+  bool is_default() const { return values() == SettingsValues{}; }
+  const QString& file() const { return file_; }
+  Q_INVOKABLE void restoreDefaults();
+
+ signals:
+  void changed();
+  void remark(const QString& text);  ///< For the log.
+
+ private:
+  static SettingsValues values();
+  static void apply(const SettingsValues& values);
+  void store();
+
+  QString file_{};
+  bool wrong_{false};  ///< The file holds what this version does not understand.
+  bool applying_{false};
+};
+
+}  // namespace adit::gui

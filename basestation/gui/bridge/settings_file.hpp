@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <string>
+#include <vector>
+
+namespace adit::gui {
+
+/// What the operator sets for the window.
+struct SettingsValues {
+  static constexpr double kMinScale = 0.6, kMaxScale = 2.5;
+
+  bool light{false};  ///< The light theme.
+  bool glove{false};  ///< Larger targets, longer presses.
+  double scale{1.0};  ///< Size of a millimetre, of what the screen states, [kMinScale, kMaxScale].
+  bool operator==(const SettingsValues&) const = default;
+};
+
+/// The settings of a file, and what is wrong with it.
+struct SettingsRead {
+  SettingsValues values{};
+  std::vector<std::string> problems{};  ///< "line 3: ...".
+};
+
+/// Reads the text of gui.yaml. What is wrong is reported, and the rest is used.
+SettingsRead read_settings(const std::string& text);
+std::string settings_text(const SettingsValues& values);
+
+}  // namespace adit::gui

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/bridge/tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "basestation/gui/bridge/card.hpp"
+#include "basestation/model/text.hpp"
+
+namespace adit::gui {
+namespace {
+
+using station::ComponentPhase;
+using station::ComponentView;
+
+constexpr double kSilent = 10.0;    // On a full link reports come every 8 s.
+constexpr double kFullQueue = 0.2;  // Queued airtime from which a link counts as full, s.
+constexpr double kLossy = 0.2;      // Share of lost heartbeats from which a link counts as bad.
+
+std::string count_text(std::uint32_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+void mark(const ComponentView& part, HealthCell& cell) {
+  cell.text = word(part.phase);
+  switch (part.phase) {
+    case ComponentPhase::up:
+      cell.shape = part.healthy ? "disc" : "triangle";
+      cell.token = part.healthy ? Token::ok : Token::warn;
+      if (!part.healthy) cell.text = "up, not well";
+      break;
+    case ComponentPhase::starting:
+      cell.shape = "ring";
+      cell.token = Token::text;
+      break;
+    case ComponentPhase::waiting:
+      cell.shape = "triangle";
+      cell.token = Token::warn;
+      cell.text = "waits";
+      break;
+    case ComponentPhase::failed:
+    case ComponentPhase::hung:
+      cell.shape = "square";
+      cell.token = Token::bad;
+      break;
+  }
+  if (part.restarts > 0) cell.hint = count_text(part.restarts, "restart", "restarts");
+  if (part.hung > 0)
+    cell.hint += (cell.hint.empty() ? "" : ", ") + count_text(part.hung, "thread", "threads");
+}
+
+std::string percent(double share) { return station::fixed(share * 100.0, 0) + " %"; }
+
+std::string rate_text(double bytes) {
+  return bytes < 1000.0 ? station::fixed(bytes, 0) + " B/s" : station::fixed(bytes / 1000.0, 1) + " kB/s";
+}
+
+void show_budget(const station::SenderReport* sender, const station::AgentTraffic* traffic, NetworkRow& row) {
+  const double sent = traffic ? traffic->total_out : 0.0;
+  if (!sender || !traffic) {
+    row.budget = "no report yet";
+  } else if (sender->link.empty()) {
+    row.budget = "sends " + rate_text(sent) + ", unlimited";
+  } else if (sender->bandwidth > 0.0) {
+    row.share = std::clamp(sent * 8.0 / sender->bandwidth, 0.0, 1.0);
+    row.budget =
+        "sends " + rate_text(sent) + " of " + rate_text(sender->bandwidth / 8.0) + ", " + sender->link;
+  } else {
+    row.budget = "sends " + rate_text(sent) + ", " + sender->link;
+  }
+  if (!sender) return;
+  if (!sender->link.empty()) row.queue = "queue " + station::fixed(sender->queue * 1000.0, 0) + " ms";
+  if (sender->state_rate > 0.0)
+    row.queue +=
+        (row.queue.empty() ? "" : ", ") + ("states " + station::fixed(sender->state_rate, 1) + " Hz");
+  for (const auto& [priority, count] : sender->dropped)
+    if (count > 0)
+      row.dropped += (row.dropped.empty() ? "never sent: " : ", ") + std::to_string(count) + " " + priority;
+}
+
+bool full(const station::SenderReport* sender) { return sender && sender->queue > kFullQueue; }
+
+std::string csv_cell(std::string text) {
+  if (!text.empty() && std::string("=+-@\t\r").find(text[0]) != std::string::npos) text.insert(0, "'");
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+}  // namespace
+
+HealthTable health_table(const station::HealthReport& report, const station::World& world) {
+  HealthTable table;
+  for (const station::RobotHealth& robot : report.robots)
+    for (const ComponentView& part : robot.components)
+      if (table.columns.size() < kMaxColumns &&
+          std::find(table.columns.begin(), table.columns.end(), part.name) == table.columns.end())
+        table.columns.push_back(part.name);
+  for (const station::RobotHealth& robot : report.robots) {
+    const station::Robot* seen = world.robot(robot.robot);
+    const bool old = !seen || seen->lost;
+    HealthCell head{.robot = robot.robot, .text = robot.robot, .old = old};
+    if (old) head.hint = "LOST";
+    if (robot.components.empty()) head.hint = "no report";
+    table.cells.push_back(std::move(head));
+    for (const std::string& column : table.columns) {
+      HealthCell cell{.robot = robot.robot, .component = column, .old = old};
+      const auto part = std::find_if(robot.components.begin(), robot.components.end(),
+                                     [&](const ComponentView& one) { return one.name == column; });
+      if (part != robot.components.end()) mark(*part, cell);
+      table.cells.push_back(std::move(cell));
+    }
+  }
+  return table;
+}
+
+HealthDetail health_detail(const station::HealthReport& report, const station::World& world,
+                           const std::string& robot, const std::string& component) {
+  HealthDetail out;
+  for (const station::RobotHealth& one : report.robots) {
+    if (one.robot != robot) continue;
+    for (const ComponentView& part : one.components) {
+      if (part.name != component) continue;
+      HealthCell cell;
+      mark(part, cell);
+      const station::Robot* seen = world.robot(robot);
+      out.known = true;
+      out.mine = seen && seen->mine;
+      out.automatic = part.automatic;
+      out.title = robot + " " + component + ": " + cell.text;
+      out.text = cell.hint.empty() ? "never restarted" : cell.hint;
+      if (part.hung > 0) out.text += " left behind";
+      if (part.silent_for > 1.0F) out.text += ", silent for " + age_text(part.silent_for);
+      if (!part.text.empty()) out.text += " — " + part.text;
+      return out;
+    }
+  }
+  return out;
+}
+
+std::vector<NetworkRow> network_rows(const station::NetworkReport& report, const std::string& own) {
+  const auto traffic_of = [&](const std::string& name) -> const station::AgentTraffic* {
+    for (const station::AgentTraffic& traffic : report.agents)
+      if (traffic.agent == name) return &traffic;
+    return nullptr;
+  };
+  std::vector<NetworkRow> rows;
+  if (report.sender) {
+    NetworkRow row{.agent = own + " (this station)", .shape = "disc", .token = Token::ok};
+    show_budget(&*report.sender, traffic_of(own), row);
+    if (full(&*report.sender)) row.shape = "triangle", row.token = Token::warn, row.loss = "link is full";
+    rows.push_back(std::move(row));
+  }
+  for (const station::LinkReport& link : report.links) {
+    const station::AgentTraffic* traffic = traffic_of(link.agent);
+    const station::SenderReport* sender = link.sender ? &*link.sender : nullptr;
+    NetworkRow row{.agent = link.agent, .shape = "disc", .token = Token::ok};
+    row.loss = "lost from it " + percent(link.lost_from) +
+               (link.lost_to ? ", to it " + percent(*link.lost_to) : ", to it unknown");
+    row.trip = link.round_trip ? "round trip " + station::fixed(*link.round_trip * 1000.0, 0) + " ms"
+                               : "no round trip";
+    if (link.signal) row.trip += ", " + station::fixed(*link.signal, 0) + " dBm";
+    if (link.bytes_from && link.bytes_to)
+      row.rates = "from it " + rate_text(*link.bytes_from) + ", to it " + rate_text(*link.bytes_to);
+    show_budget(sender, traffic, row);
+    const bool silent = link.age > kSilent || (traffic && traffic->age > kSilent);
+    const bool deaf = link.lost_to && *link.lost_to >= 1.0;
+    if (full(sender)) row.loss = "link is full, " + row.loss;
+    if (deaf) row.loss = "does not hear us, " + row.loss;
+    if (silent) row.loss = "SILENT for " + age_text(std::max(link.age, traffic ? traffic->age : 0.0));
+    if (silent || deaf)
+      row.shape = "square", row.token = Token::bad;
+    else if (full(sender) || link.lost_from > kLossy || (link.lost_to && *link.lost_to > kLossy))
+      row.shape = "triangle", row.token = Token::warn;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::vector<FoundRow> found_rows(const station::FoundReport& report) {
+  std::vector<FoundRow> rows;
+  for (const station::FoundItem& item : report.findings) {
+    FoundRow row{.number = static_cast<int>(item.number),
+                 .importance = std::to_string(item.importance),
+                 .kind = item.kind,
+                 .robot = item.robot,
+                 .text = item.text,
+                 .note = item.note};
+    row.place = station::fixed(item.position[0], 1) + " " + station::fixed(item.position[1], 1) + " " +
+                station::fixed(item.position[2], 1);
+    row.age = item.age ? age_text(*item.age) : "-";
+    const bool open = item.verdict == station::Verdict::open;
+    row.verdict = open ? "new" : to_string(item.verdict);
+    row.shape = open ? "ring" : item.verdict == station::Verdict::confirmed ? "disc" : "square";
+    row.token = open ? Token::text : item.verdict == station::Verdict::confirmed ? Token::ok : Token::dim;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+std::string found_missing(const station::FoundReport& report) {
+  std::string out;
+  for (const station::FoundAtRobot& robot : report.at_robots) {
+    if (robot.stored > robot.here)
+      out += (out.empty() ? "" : ", ") + std::to_string(robot.stored - robot.here) + " are still at " +
+             robot.robot;
+    if (robot.overflowed > 0)
+      out += (out.empty() ? "" : ", ") + robot.robot + " had no room for " + std::to_string(robot.overflowed);
+  }
+  return out;
+}
+
+std::string found_csv(const station::FoundReport& report) {
+  std::string out = "number,robot,id,kind,importance,x,y,z,age,verdict,text,note\r\n";
+  for (const station::FoundItem& item : report.findings) {
+    out += std::to_string(item.number) + "," + csv_cell(item.robot) + "," + csv_cell(item.id) + "," +
+           csv_cell(item.kind) + "," + std::to_string(item.importance);
+    for (const double axis : item.position) out += "," + (std::isfinite(axis) ? station::fixed(axis, 3) : "");
+    out += "," + (item.age ? station::fixed(*item.age, 0) : "") + "," + to_string(item.verdict) + "," +
+           csv_cell(item.text) + "," + csv_cell(item.note) + "\r\n";
+  }
+  return out;
+}
+
+}  // namespace adit::gui

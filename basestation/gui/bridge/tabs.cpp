@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the operator does with the tabs, and what they ask the station.
+#include "basestation/gui/bridge/tabs.hpp"
+
+#include <QDateTime>
+#include <QDir>
+#include <QSaveFile>
+#include <QStandardPaths>
+
+#include "basestation/client/connection.hpp"
+#include "basestation/client/paths.hpp"
+#include "basestation/gui/bridge/tables.hpp"
+
+namespace adit::gui {
+namespace {
+
+constexpr int kPeriodMs = 1000;
+constexpr int kFoundLaterMs = 300;
+
+/// The keys F2 to F6 in their order, and the names of the tabs.
+constexpr std::array kTabNames{"log", "findings", "health", "network", "settings"};
+
+}  // namespace
+
+TabState::TabState(CommandSink& sink, RowModel& log, QObject* parent)
+    : QObject(parent),
+      sink_(sink),
+      log_(log, this),
+      settings_(this),
+      tabs_({"tab", "label", "key", "count", "alarm"}, this),
+      columns_({"name"}, this),
+      cells_({"cell", "robot", "component", "label", "hint", "shape", "token", "old", "chosen"}, this),
+      network_({"agent", "loss", "trip", "rates", "queue", "budget", "share", "dropped", "shape", "token"},
+               this),
+      findings_({"number", "importance", "kind", "robot", "place", "age", "line", "note", "verdict", "shape",
+                 "token"},
+                this),
+      world_(std::make_shared<station::World>()) {
+  timer_.setInterval(kPeriodMs);
+  connect(&timer_, &QTimer::timeout, this, &TabState::ask);
+  found_later_.setSingleShot(true);
+  found_later_.setInterval(kFoundLaterMs);
+  connect(&found_later_, &QTimer::timeout, this, &TabState::ask_findings);
+  connect(&settings_, &WindowSettings::remark, this, &TabState::remark);
+  show_tabs();
+}
+
+void TabState::show(const std::shared_ptr<const station::World>& world,
+                    const std::vector<std::string>& selection, bool silent) {
+  world_ = world;
+  log_.set_selection(selection);
+  if (silent_ && !silent && !world_->station.empty()) found_later_.start();  // There is a station again.
+  if (!world_->station.empty()) silent_ = silent;
+  show_tabs();
+}
+
+void TabState::add_notice(const station::Notice& notice) {
+  if (notice.code == "found") found_later_.start();
+}
+
+void TabState::add_command(const station::CommandEvent& event) {
+  if (event.ended && event.line.starts_with("finding ")) found_later_.start();
+}
+
+bool TabState::press_key(int key) {
+  const int index = key - Qt::Key_F2;
+  if (index < 0 || index >= static_cast<int>(kTabNames.size())) return false;
+  toggle(QString::fromLatin1(kTabNames[static_cast<std::size_t>(index)]));
+  return true;
+}
+
+void TabState::toggle(const QString& tab) {
+  if (tab == "log") {
+    log_open_ = !extra_.isEmpty() || !log_open_;
+    extra_.clear();
+  } else {
+    extra_ = tab == extra_ ? QString() : tab;
+  }
+  noting_ = 0;
+  problem_.clear();
+  const bool asks = extra_ == "health" || extra_ == "network";
+  if (asks && !timer_.isActive()) timer_.start();
+  if (!asks) timer_.stop();
+  show_tabs();
+  emit opened();
+  emit shown();
+  ask();
+  if (extra_ == "findings") ask_findings();
+}
+
+bool TabState::close() {
+  if (extra_.isEmpty()) return false;
+  if (noting_ != 0) {
+    endNote({}, false);
+    return true;
+  }
+  toggle(extra_);
+  return true;
+}
+
+template <class Report>
+void TabState::ask_for(const char* line, Result<Report> (*read)(const station::CommandOutcome&), bool& asked,
+                       Report& report, void (TabState::*show)()) {
+  if (asked) return;
+  asked = true;
+  sink_.query(line, [this, read, &asked, &report, show](const station::CommandOutcome& outcome) {
+    asked = false;
+    Result<Report> answer = read(outcome);
+    problem_ = answer ? QString() : QString::fromStdString(answer.error().text).trimmed();
+    if (answer) report = std::move(*answer);
+    (this->*show)();
+    emit shown();
+  });
+}
+
+void TabState::ask() {
+  if (extra_ == "health")
+    ask_for("health", &station::health_of, health_asked_, health_, &TabState::show_health);
+  if (extra_ == "network")
+    ask_for("net", &station::network_of, network_asked_, net_, &TabState::show_network);
+}
+
+void TabState::ask_findings() {
+  found_again_ = found_asked_;  // What is under way may be older than what is wanted now.
+  ask_for("findings", &station::findings_of, found_asked_, found_, &TabState::show_findings);
+}
+
+void TabState::choose(const QString& robot, const QString& component) {
+  chosen_robot_ = robot.toStdString();
+  chosen_component_ = component.toStdString();
+  show_health();
+  emit shown();
+}
+
+void TabState::restartChosen() {
+  if (!chosen_mine_) return;
+  emit ordered(
+      QString::fromStdString(station::client::quoted({"restart", chosen_robot_, chosen_component_})));
+}
+
+void TabState::changePolicy() {
+  if (!chosen_mine_) return;
+  emit ordered(QString::fromStdString(station::client::quoted(
+      {"policy", chosen_robot_, chosen_component_, chosen_automatic_ ? "manual" : "auto"})));
+}
+
+void TabState::judge(int finding, const QString& verdict) {
+  emit ordered(QString("finding %1 %2").arg(finding).arg(verdict));
+}
+
+void TabState::startNote(int finding) {
+  noting_ = finding;
+  emit shown();
+}
+
+void TabState::endNote(const QString& text, bool send) {
+  const int finding = std::exchange(noting_, 0);
+  emit shown();
+  if (!send || finding == 0) return;
+  emit ordered(QString::fromStdString(station::client::quoted(
+      {"finding", std::to_string(finding), "note", text.simplified().toStdString()})));
+}
+
+void TabState::exportLog() { write("log.txt", log_.as_text().toUtf8()); }
+
+void TabState::exportFindings() {
+  write("findings.csv", QByteArray::fromStdString(found_csv(found_)));
+  write("findings.json", QByteArray::fromStdString(station::findings_text_of(found_)));
+}
+
+void TabState::write(const QString& name, const QByteArray& content) {
+  QString folder = QStandardPaths::writableLocation(QStandardPaths::DocumentsLocation);
+  if (folder.isEmpty() || !QDir(folder).exists()) {
+    const auto state = station::client::state_folder();
+    if (!state) return emit said(QString::fromStdString(state.error().text), false);
+    folder = QString::fromStdString(*state);
+  }
+  const QString when = QDateTime::currentDateTime().toString("yyyyMMdd-HHmmss");
+  QSaveFile file(folder + "/adit-" + when + "-" + name);
+  const bool written =
+      file.open(QIODevice::WriteOnly) && file.write(content) == content.size() && file.commit();
+  emit said(written ? "written: " + file.fileName() : file.fileName() + ": " + file.errorString(), written);
+}
+
+}  // namespace adit::gui

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <QtQml/qqmlregistration.h>
+#include <QElapsedTimer>
+#include <QObject>
+#include <QTimer>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "basestation/gui/bridge/command_sink.hpp"
+#include "basestation/gui/bridge/log_view.hpp"
+#include "basestation/gui/bridge/row_model.hpp"
+#include "basestation/gui/bridge/settings.hpp"
+#include "basestation/model/found.hpp"
+#include "basestation/model/health.hpp"
+#include "basestation/model/network.hpp"
+#include "basestation/model/world.hpp"
+
+namespace adit::gui {
+
+/// The tabs at the bottom of the window: which one is open, and what they show. The log can stay open; the
+/// others cover the map's lower part until they are closed. Health and network are asked for once a second,
+/// only while they are open; findings when there are new ones.
+class TabState : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("a part of the control")
+  Q_PROPERTY(QString open READ open NOTIFY opened)
+  Q_PROPERTY(bool logOpen READ log_open NOTIFY opened)
+  Q_PROPERTY(QAbstractItemModel* tabs READ tabs CONSTANT)
+  Q_PROPERTY(LogView* log READ log CONSTANT)
+  Q_PROPERTY(WindowSettings* settings READ settings CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* columns READ columns CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* cells READ cells CONSTANT)
+  Q_PROPERTY(int columnCount READ column_count NOTIFY shown)
+  Q_PROPERTY(QAbstractItemModel* network READ network CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* findings READ findings CONSTANT)
+  Q_PROPERTY(QString missing READ missing NOTIFY shown)
+  Q_PROPERTY(QString problem READ problem NOTIFY shown)
+  Q_PROPERTY(QString chosenTitle READ chosen_title NOTIFY shown)
+  Q_PROPERTY(QString chosenText READ chosen_text NOTIFY shown)
+  Q_PROPERTY(bool chosenMine READ chosen_mine NOTIFY shown)
+  Q_PROPERTY(bool chosenAutomatic READ chosen_automatic NOTIFY shown)
+  Q_PROPERTY(int noting READ noting NOTIFY shown)
+
+ public:
+  /// `log`: every line of the log, the newest first.
+  TabState(CommandSink& sink, RowModel& log, QObject* parent);
+
+  /// Shows a newer state. `silent`: the station does not speak.
+  void show(const std::shared_ptr<const station::World>& world, const std::vector<std::string>& selection,
+            bool silent);
+  void add_notice(const station::Notice& notice);
+  void add_command(const station::CommandEvent& event);
+  /// True if the key opens or closes a tab.
+  bool press_key(int key);
+  /// Closes the tab that covers the map; false if there is none.
+  bool close();
+
+  QString open() const { return extra_.isEmpty() ? (log_open_ ? "log" : "") : extra_; }
+  bool log_open() const { return log_open_; }
+  Q_INVOKABLE void toggle(const QString& tab);
+  /// Chooses a component for the details below the matrix.
+  Q_INVOKABLE void choose(const QString& robot, const QString& component);
+  Q_INVOKABLE void restartChosen();
+  Q_INVOKABLE void changePolicy();  ///< From automatic to manual, or back.
+  Q_INVOKABLE void judge(int finding, const QString& verdict);
+  Q_INVOKABLE void startNote(int finding);
+  Q_INVOKABLE void endNote(const QString& text, bool send);
+  Q_INVOKABLE void exportLog();
+  Q_INVOKABLE void exportFindings();
+
+  QAbstractItemModel* tabs() { return &tabs_; }
+  LogView* log() { return &log_; }
+  WindowSettings* settings() { return &settings_; }
+  QAbstractItemModel* columns() { return &columns_; }
+  QAbstractItemModel* cells() { return &cells_; }
+  int column_count() const { return columns_.rowCount(); }
+  QAbstractItemModel* network() { return &network_; }
+  QAbstractItemModel* findings() { return &findings_; }
+  const QString& missing() const { return missing_; }
+  const QString& problem() const { return problem_; }
+  const QString& chosen_title() const { return chosen_title_; }
+  const QString& chosen_text() const { return chosen_text_; }
+  bool chosen_mine() const { return chosen_mine_; }
+  bool chosen_automatic() const { return chosen_automatic_; }
+  int noting() const { return noting_; }
+  const station::FoundReport& found() const { return found_; }
+
+ signals:
+  void opened();
+  void shown();
+  void findings_changed();
+  void ordered(const QString& line);  ///< A command of the operator.
+  void said(const QString& text, bool good);
+  void remark(const QString& text);  ///< For the log.
+
+ private:
+  void ask();
+  void ask_findings();
+  template <class Report>
+  void ask_for(const char* line, Result<Report> (*read)(const station::CommandOutcome&), bool& asked,
+               Report& report, void (TabState::*show)());
+  void show_tabs();
+  void show_health();
+  void show_chosen();
+  void show_network();
+  void show_findings();
+  void write(const QString& name, const QByteArray& content);
+
+  CommandSink& sink_;
+  LogView log_;
+  WindowSettings settings_;
+  RowModel tabs_, columns_, cells_, network_, findings_;
+  std::shared_ptr<const station::World> world_;
+  bool silent_{true};
+
+  bool log_open_{true};
+  QString extra_{};
+  QTimer timer_{};        ///< Runs while a tab that asks is open.
+  QTimer found_later_{};  ///< Several findings at once are asked for once.
+  bool health_asked_{false}, network_asked_{false}, found_asked_{false};
+  bool found_again_{false};  ///< Findings changed while they were asked for.
+  station::HealthReport health_{};
+  station::NetworkReport net_{};
+  station::FoundReport found_{};
+  QString missing_{}, problem_{};
+  std::string chosen_robot_{}, chosen_component_{};
+  QString chosen_title_{}, chosen_text_{};
+  bool chosen_mine_{false}, chosen_automatic_{false};
+  int noting_{0};
+};
+
+}  // namespace adit::gui

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tabs show of the station's answers.
+#include <algorithm>
+
+#include "basestation/gui/bridge/tables.hpp"
+#include "basestation/gui/bridge/tabs.hpp"
+
+namespace adit::gui {
+namespace {
+
+QString text_of(const std::string& text) { return QString::fromStdString(text); }
+
+QString word_of(Token token) {
+  constexpr std::array kWords{"ok", "warn", "bad", "mine", "other", "none", "goal", "text", "dim"};
+  return QString::fromLatin1(kWords[static_cast<std::size_t>(token)]);
+}
+
+}  // namespace
+
+void TabState::show_tabs() {
+  const auto open_findings =
+      std::count_if(found_.findings.begin(), found_.findings.end(),
+                    [](const station::FoundItem& item) { return item.verdict == station::Verdict::open; });
+  const auto troubled = std::count_if(world_->robots.begin(), world_->robots.end(),
+                                      [](const station::Robot& robot) { return !robot.troubles.empty(); });
+  const auto count = [](auto number) { return number > 0 ? QString::number(number) : QString(); };
+  tabs_.show({{"log", "Log", "F2", QString(), false},
+              {"findings", "Findings", "F3", count(open_findings), false},
+              {"health", "Health", "F4", count(troubled), troubled > 0},
+              {"network", "Network", "F5", QString(), false},
+              {"settings", "Settings", "F6", QString(), false}});
+}
+
+void TabState::show_health() {
+  const HealthTable table = health_table(health_, *world_);
+  std::vector<QVariantList> columns, cells;
+  for (const std::string& column : table.columns) columns.push_back({text_of(column)});
+  for (const HealthCell& cell : table.cells) {
+    const bool chosen =
+        !cell.component.empty() && cell.robot == chosen_robot_ && cell.component == chosen_component_;
+    cells.push_back({text_of(cell.robot + '\n' + cell.component), text_of(cell.robot),
+                     text_of(cell.component), text_of(cell.text), text_of(cell.hint), text_of(cell.shape),
+                     word_of(cell.token), cell.old, chosen});
+  }
+  columns_.show(std::move(columns));
+  cells_.show(std::move(cells));
+  show_chosen();
+}
+
+void TabState::show_chosen() {
+  const HealthDetail detail = health_detail(health_, *world_, chosen_robot_, chosen_component_);
+  chosen_title_ = text_of(detail.title);
+  chosen_text_ = text_of(detail.text);
+  chosen_mine_ = detail.known && detail.mine;
+  chosen_automatic_ = detail.automatic;
+}
+
+void TabState::show_network() {
+  std::vector<QVariantList> rows;
+  for (const NetworkRow& row : network_rows(net_, world_->station))
+    rows.push_back({text_of(row.agent), text_of(row.loss), text_of(row.trip), text_of(row.rates),
+                    text_of(row.queue), text_of(row.budget), row.share, text_of(row.dropped),
+                    text_of(row.shape), word_of(row.token)});
+  network_.show(std::move(rows));
+}
+
+void TabState::show_findings() {
+  std::vector<QVariantList> rows;
+  for (const FoundRow& row : found_rows(found_))
+    rows.push_back({row.number, text_of(row.importance), text_of(row.kind), text_of(row.robot),
+                    text_of(row.place), text_of(row.age), text_of(row.text), text_of(row.note),
+                    text_of(row.verdict), text_of(row.shape), word_of(row.token)});
+  findings_.show(std::move(rows));
+  missing_ = text_of(found_missing(found_));
+  show_tabs();
+  emit findings_changed();
+  if (found_again_) found_later_.start();
+}
+
+}  // namespace adit::gui

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+import QtQuick
+import Adit
+
+Rectangle {
+    id: row
+    required property TabState state_
+    required property int number
+    required property string importance
+    required property string kind
+    required property string robot
+    required property string place
+    required property string age
+    required property string line
+    required property string note
+    required property string verdict
+    required property string shape
+    required property string token
+    height: 14 * Theme.mm
+    color: Theme.raised
+    opacity: verdict === "rejected" ? 0.6 : 1
+
+    Glyph {
+        x: 1.5 * Theme.mm
+        y: 2 * Theme.mm
+        width: 4 * Theme.mm
+        height: width
+        kind: row.shape
+        colour: row.token === "ok" ? Theme.ok : row.token === "dim" ? Theme.dim : Theme.text
+        outline: Theme.ink
+    }
+    PlainLabel {
+        x: 7 * Theme.mm
+        y: 1 * Theme.mm
+        width: buttons.x - 9 * Theme.mm
+        height: 6 * Theme.mm
+        font.bold: true
+        text: row.number + "  " + row.kind + "   " + row.robot + "   " + row.verdict + "   importance " + row.importance + "   at " + row.place + "   " + row.age
+    }
+    PlainLabel {
+        x: 7 * Theme.mm
+        y: 7 * Theme.mm
+        width: buttons.x - 9 * Theme.mm
+        height: 6 * Theme.mm
+        color: Theme.dim
+        text: row.line + (row.note === "" ? "" : "  —  note: " + row.note)
+    }
+    Row {
+        id: buttons
+        x: parent.width - width - 1 * Theme.mm
+        y: 0.5 * Theme.mm
+        spacing: 1.5 * Theme.mm
+        HoldButton {
+            objectName: "confirm_" + row.number
+            width: 26 * Theme.mm
+            height: 13 * Theme.mm
+            active: row.verdict === "confirmed"
+            meaning: row.number + row.verdict
+            text: row.verdict === "confirmed" ? "confirmed" : "confirm"
+            onFired: row.state_.judge(row.number, row.verdict === "confirmed" ? "reopen" : "confirm")
+        }
+        HoldButton {
+            objectName: "reject_" + row.number
+            width: 24 * Theme.mm
+            height: 13 * Theme.mm
+            active: row.verdict === "rejected"
+            meaning: row.number + row.verdict
+            text: row.verdict === "rejected" ? "rejected" : "reject"
+            onFired: row.state_.judge(row.number, row.verdict === "rejected" ? "reopen" : "reject")
+        }
+        HoldButton {
+            objectName: "note_" + row.number
+            width: 16 * Theme.mm
+            height: 13 * Theme.mm
+            active: row.state_.noting === row.number
+            text: "note"
+            onFired: row.state_.startNote(row.number)
+        }
+    }
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// What tabs show and settings files say, without Qt.
+#include "basestation/gui/bridge/tables.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "basestation/gui/bridge/settings_file.hpp"
+
+namespace adit::gui {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(Tables, AMatrixHasAPlaceForEachComponentOfAnyRobot) {
+  station::World world;
+  world.robots = {{.name = "r1", .mine = true}, {.name = "r2", .lost = true}};
+  station::HealthReport report;
+  report.robots = {
+      {.robot = "r1", .components = {{.name = "planner", .phase = station::ComponentPhase::up}}},
+      {.robot = "r2", .components = {{.name = "map", .phase = station::ComponentPhase::hung, .hung = 1}}}};
+  const HealthTable table = health_table(report, world);
+  EXPECT_THAT(table.columns, ElementsAre("planner", "map"));
+  ASSERT_EQ(table.cells.size(), 6U);
+  EXPECT_EQ(table.cells[1].text, "up, not well") << "a component that says that it is not healthy";
+  EXPECT_EQ(table.cells[1].shape, "triangle");
+  EXPECT_EQ(table.cells[2].text, "");
+  EXPECT_EQ(table.cells[3].hint, "LOST");
+  EXPECT_TRUE(table.cells[5].old);
+  EXPECT_EQ(table.cells[5].hint, "1 thread");
+  EXPECT_TRUE(health_detail(report, world, "r1", "planner").mine);
+  EXPECT_FALSE(health_detail(report, world, "r2", "map").mine);
+  EXPECT_FALSE(health_detail(report, world, "r2", "planner").known);
+  EXPECT_FALSE(health_detail(report, world, "r9", "map").known);
+}
+
+TEST(Tables, NumbersThatAreNoneHaveNoBar) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  station::NetworkReport report;
+  report.agents = {{.agent = "r1", .total_out = 1e30F}};
+  report.links = {
+      {.agent = "r1",
+       .lost_from = kNan,
+       .round_trip = kNan,
+       .sender = station::SenderReport{.link = "x", .bandwidth = 8.0, .queue = kNan}},
+      {.agent = "r2", .sender = station::SenderReport{.link = "y", .bandwidth = kNan, .queue = 0.0}}};
+  const auto rows = network_rows(report, "op1");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].share, 1.0);
+  EXPECT_LT(rows[1].share, 0.0);
+  EXPECT_EQ(rows[1].budget, "no report yet");
+}
+
+TEST(Tables, ACsvHoldsItsCellsTogetherAndComputesNothing) {
+  station::FoundReport report;
+  report.findings = {{.number = 4, .robot = "r1", .kind = "=1+1", .text = "a \"b\", c", .note = "-x"}};
+  EXPECT_THAT(found_csv(report), HasSubstr("4,\"r1\",\"\",\"'=1+1\",0,0.000,0.000,0.000,,open,"
+                                           "\"a \"\"b\"\", c\",\"'-x\"\r\n"));
+}
+
+TEST(Settings, ComeBackAsTheyWere) {
+  for (const SettingsValues& values : {SettingsValues{}, SettingsValues{true, true, 1.25}}) {
+    const SettingsRead read = read_settings(settings_text(values));
+    EXPECT_EQ(read.values, values);
+    EXPECT_THAT(read.problems, IsEmpty());
+  }
+  EXPECT_THAT(read_settings("").problems, IsEmpty());
+}
+
+TEST(Settings, WrongLinesAreNamedAndTheRestIsUsed) {
+  const SettingsRead read = read_settings(
+      "theme: light\n"
+      "glove_mod: true\n"
+      "scale: 40\n"
+      "colour: red\n"
+      "glove_mode: yes\n");
+  EXPECT_TRUE(read.values.light);
+  EXPECT_TRUE(read.values.glove);
+  EXPECT_EQ(read.values.scale, 1.0);
+  EXPECT_THAT(read.problems, ElementsAre("line 2: unknown setting 'glove_mod', did you mean glove_mode?",
+                                         "line 3: scale is a number from 0.6 to 2.5, not 40",
+                                         "line 4: unknown setting 'colour'"));
+}
+
+TEST(Settings, WhatIsNoSettingsFileDoesNoHarm) {
+  for (const char* text :
+       {"[1, 2]", "5", "theme: [", "theme: [a]", "scale: .nan", "scale: {a: b}", "glove_mode: maybe",
+        "? [a]\n: b", "*a", "\x01\x02", "theme: &a {b: *a}", "- theme: dark"}) {
+    const SettingsRead read = read_settings(text);
+    EXPECT_EQ(read.values, SettingsValues{}) << text;
+    ASSERT_FALSE(read.problems.empty()) << text;
+    EXPECT_TRUE(read.problems[0].starts_with("line ")) << read.problems[0];
+  }
+}
+
+}  // namespace
+}  // namespace adit::gui

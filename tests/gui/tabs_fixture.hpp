@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the station answers to the queries of the tabs, for tests.
+#pragma once
+#include <string>
+
+#include "basestation/model/json.hpp"
+#include "basestation/model/json_reports.hpp"
+#include "tests/gui/window_fixture.hpp"
+
+namespace adit::gui {
+
+inline station::HealthReport health_of_ten() {
+  using Phase = station::ComponentPhase;
+  station::HealthReport report;
+  for (int i = 1; i <= 9; ++i) {
+    station::RobotHealth robot{.robot = "r" + std::to_string(i)};
+    for (const char* name : {"agent", "command", "planner", "router", "sensors", "map"})
+      robot.components.push_back({.name = name, .phase = Phase::up, .healthy = true, .automatic = true});
+    if (i == 2) robot.components[3] = {.name = "router", .phase = Phase::waiting, .restarts = 1};
+    if (i == 3) robot.components[5] = {.name = "map", .phase = Phase::starting, .automatic = true};
+    if (i == 4)
+      robot.components[2] = {.name = "planner",
+                             .phase = Phase::failed,
+                             .restarts = 3,
+                             .text = "an exception: the costmap has no cell at the robot"};
+    if (i == 9)
+      robot.components[2] = {.name = "planner",
+                             .phase = Phase::hung,
+                             .automatic = true,
+                             .silent_for = 4.2F,
+                             .restarts = 2,
+                             .hung = 2,
+                             .text = "did not return from a callback"};
+    if (i == 8) robot.components.resize(3);
+    if (i == 5) robot.components.clear();
+    report.robots.push_back(std::move(robot));
+  }
+  return report;
+}
+
+inline station::NetworkReport network_of_ten() {
+  station::NetworkReport report;
+  report.sender = station::SenderReport{.link = "mesh_500k", .bandwidth = 5e5, .queue = 0.02};
+  report.agents.push_back({.agent = "op1", .total_out = 4200, .total_in = 38000});
+  for (int i = 1; i <= 9; ++i) {
+    const std::string name = "r" + std::to_string(i);
+    report.agents.push_back({.agent = name, .total_out = 6100.0F * static_cast<float>(i)});
+    report.links.push_back({.agent = name,
+                            .age = 0.4,
+                            .lost_from = 0.01 * i,
+                            .lost_to = 0.02,
+                            .round_trip = 0.031,
+                            .bytes_from = 5900.0 * i,
+                            .bytes_to = 480.0,
+                            .signal = -60.0 - i,
+                            .sender = station::SenderReport{.link = "mesh_500k",
+                                                            .bandwidth = 5e5,
+                                                            .queue = 0.004 * i,
+                                                            .state_rate = 10.0,
+                                                            .dropped = {{"bulk", i > 7 ? 12U : 0U}}}});
+  }
+  report.links[2].sender->link.clear();
+  report.links[3].lost_to = 1.0;
+  report.links[4].age = 47.0;
+  report.links[5].sender.reset();
+  report.links[8].sender->queue = 0.9;
+  return report;
+}
+
+inline station::FoundReport some_findings() {
+  station::FoundReport report;
+  report.findings = {{.number = 2,
+                      .robot = "r3",
+                      .id = "2",
+                      .kind = "person",
+                      .importance = 9,
+                      .position = {12, 4, 0.2},
+                      .text = "sits at the wall, moves",
+                      .age = 75.0},
+                     {.number = 1,
+                      .robot = "r1",
+                      .id = "1",
+                      .kind = "artifact",
+                      .importance = 5,
+                      .position = {3, 1, 0},
+                      .text = "a red backpack",
+                      .age = 740.0,
+                      .verdict = station::Verdict::confirmed,
+                      .note = "collected by the second crew"},
+                     {.number = 3,
+                      .robot = "r4",
+                      .id = "3",
+                      .kind = "gas",
+                      .importance = 3,
+                      .position = {16, -2, 0},
+                      .text = "CO 40 ppm",
+                      .verdict = station::Verdict::rejected}};
+  report.at_robots = {{.robot = "r4", .stored = 4, .here = 1}, {.robot = "r5", .overflowed = 2}};
+  return report;
+}
+
+/// The window with answers of a station for its tabs.
+class TabsTest : public Window {
+ protected:
+  template <class Report>
+  station::CommandOutcome answer_of(const Report& report) {
+    return {.json = station::line_of(station::json_of(report))};
+  }
+  /// Ends the last query.
+  void answer(const station::CommandOutcome& outcome) {
+    ASSERT_FALSE(sink.asked.empty());
+    const auto done = std::move(sink.asked.back());
+    sink.asked.pop_back();
+    done(outcome);
+    settle();
+  }
+  void open(const QString& tab) {
+    if (control.tabs()->open() != tab) control.tabs()->toggle(tab);
+    settle();
+  }
+  void type(const std::string& text) {
+    for (const char key : text) QTest::keyClick(window(), key);
+    settle();
+  }
+  double panel_height() { return item("panel")->isVisible() ? item("panel")->height() : 0.0; }
+};
+
+}  // namespace adit::gui
