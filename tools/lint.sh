@@ -27,7 +27,7 @@ check_includes() {
       may["basestation"] = "core perception basestation"
       may["sim"] = "core nav perception robot_agent basestation sim"
       for (i in order) part[order[i]] = 1
-      front_end["model"] = "model"; front_end["input"] = "input"; front_end["client"] = "model|client"; front_end["alert"] = "model|alert"
+      front_end["model"] = "model"; front_end["input"] = "model|input"; front_end["client"] = "model|client"; front_end["alert"] = "model|alert"
       front_end["gui"] = "model|client|alert|input|gui"
       part["tests"] = part["bench"] = part["examples"] = 1
     }

@@ -5,18 +5,14 @@
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
+
+#include "basestation/input/shaping.hpp"
 
 namespace adit::station::input {
 namespace {
 
-/// Scales an axis to [-1, 1] and removes the dead zone of a worn stick.
-double axis(Sint16 raw) {
-  constexpr double dead = 0.12;
-  const double value = std::clamp(raw / 32767.0, -1.0, 1.0);
-  return std::abs(value) < dead ? 0.0 : std::copysign((std::abs(value) - dead) / (1.0 - dead), value);
-}
+double axis(Sint16 raw) { return shaped(std::clamp(raw / 32767.0, -1.0, 1.0)); }
 
 }  // namespace
 
@@ -98,6 +94,11 @@ Gamepad::State Gamepad::read() {
   state.shoulder = pressed(SDL_CONTROLLER_BUTTON_LEFTSHOULDER);
   state.stop = pressed(SDL_CONTROLLER_BUTTON_A);
   state.quit = pressed(SDL_CONTROLLER_BUTTON_B);
+  state.take = pressed(SDL_CONTROLLER_BUTTON_X);
+  state.stop_all = pressed(SDL_CONTROLLER_BUTTON_BACK);
+  state.start = pressed(SDL_CONTROLLER_BUTTON_START);
+  state.fast = pressed(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER);
+  state.precise = sdl_->get_axis(sdl_->controller, SDL_CONTROLLER_AXIS_TRIGGERLEFT) > 16384;
   return state;
 }
 

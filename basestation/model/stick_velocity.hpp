@@ -8,6 +8,7 @@ struct StickVelocity {
   double vx{};  ///< Forward, m/s.
   double vy{};  ///< To the left, m/s.
   double wz{};  ///< Turn to the left, rad/s.
+  bool operator==(const StickVelocity&) const = default;
 };
 
 }  // namespace adit::station

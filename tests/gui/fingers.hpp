@@ -51,9 +51,14 @@ class Fingers : public testing::Test {
   void settle_layout() { QTest::qWait(PressArea::kSettle + 50); }
 
   QQuickItem* item(const QString& name) {
-    auto* found = window()->contentItem()->findChild<QQuickItem*>(name);
-    // Delegates have no parent object but a parent item.
-    if (!found) found = below(window()->contentItem(), name);
+    QQuickItem* found = nullptr;
+    const auto find = [&] {
+      found = window()->contentItem()->findChild<QQuickItem*>(name);
+      // Delegates have no parent object but a parent item.
+      if (!found) found = below(window()->contentItem(), name);
+      return found != nullptr;
+    };
+    (void)QTest::qWaitFor(find, 3000);  // Lists make their items when they are laid out.
     EXPECT_NE(found, nullptr) << name.toStdString();
     return found;
   }

@@ -3,6 +3,8 @@
 // what the robot's driver receives.
 #include <signal.h>
 
+#include <cstdlib>
+
 #include "basestation/client/line_socket.hpp"
 #include "basestation/client/paths.hpp"
 #include "tests/live/programs.hpp"
@@ -16,13 +18,54 @@ namespace {
 using live::PlainDriver;
 using live::Process;
 
-/// The programs and one window.
-class LiveWindow : public Fingers {
+/// A window of an operator's station.
+class StationWindow : public Fingers {
  protected:
-  ~LiveWindow() override {
+  ~StationWindow() override { close_window(); }
+  void close_window() {
     operator_window.reset();
     control.reset();
     qt_station.reset();
+  }
+  void open_window(const std::string& operator_name, unsigned domain) {
+    station::client::StationOptions options;
+    options.name = operator_name;
+    options.domain = domain;
+    options.program = program_folder() + "/basestation";
+    auto opened = station::client::Station::open(options, "adit_gui");
+    ASSERT_TRUE(opened) << opened.error().text;
+    qt_station = std::make_unique<QtStation>(std::move(*opened));
+    control = std::make_unique<Control>(*qt_station);
+    qt_station->show_in(*control);
+    control->drive()->use(*qt_station, [] { return [] { return station::input::Gamepad::State{}; }; });
+    open(*control);
+    ASSERT_TRUE(QTest::qWaitFor([&] { return robot() && robot()->located; }, 20'000));
+  }
+  const station::Robot* robot() { return control->world().robot("r1"); }
+  /// Whether it comes true while the window runs.
+  static bool soon(const std::function<bool()>& holds, int ms = 10'000) { return QTest::qWaitFor(holds, ms); }
+  void take_by_finger() {
+    settle_layout();
+    touch(middle("card_r1"));
+    press_slot("take");
+    ASSERT_TRUE(soon([&] { return robot()->mine; })) << control->outcome().toStdString();
+  }
+  /// Begins to drive and holds the stick of the screen ahead.
+  void drive_by_finger() {
+    press_slot("drive");
+    ASSERT_TRUE(soon([&] { return control->drive()->driving() && item("touchStick")->isVisible(); }));
+    finger_down(middle("touchStick") - QPoint(0, 50));
+  }
+
+  std::unique_ptr<QtStation> qt_station{};
+  std::unique_ptr<Control> control{};
+};
+
+/// The programs and one window.
+class LiveWindow : public StationWindow {
+ protected:
+  ~LiveWindow() override {
+    close_window();
     if (!name.empty()) programs.op(name, {"down"});
   }
 
@@ -50,26 +93,7 @@ class LiveWindow : public Fingers {
   void open_window(const std::string& operator_name) {
     name = operator_name;
     use_folder();
-    station::client::StationOptions options;
-    options.name = name;
-    options.domain = static_cast<std::uint32_t>(live::domain());
-    options.program = program_folder() + "/basestation";
-    auto opened = station::client::Station::open(options, "adit_gui");
-    ASSERT_TRUE(opened) << opened.error().text;
-    qt_station = std::make_unique<QtStation>(std::move(*opened));
-    control = std::make_unique<Control>(*qt_station);
-    qt_station->show_in(*control);
-    open(*control);
-    ASSERT_TRUE(QTest::qWaitFor([&] { return robot() && robot()->located; }, 20'000));
-  }
-  const station::Robot* robot() { return control->world().robot("r1"); }
-  /// Whether it comes true while the window runs.
-  static bool soon(const std::function<bool()>& holds, int ms = 10'000) { return QTest::qWaitFor(holds, ms); }
-  void take_by_finger() {
-    settle_layout();
-    touch(middle("card_r1"));
-    press_slot("take");
-    ASSERT_TRUE(soon([&] { return robot()->mine; })) << control->outcome().toStdString();
+    StationWindow::open_window(name, static_cast<unsigned>(live::domain()));
   }
   /// Presses on the map at a place of the map frame, m, and lets go.
   void send_by_finger(double x, double y) {
@@ -84,8 +108,6 @@ class LiveWindow : public Fingers {
   Live programs{};
   PlainDriver driver{*programs.net_};
   std::string name{};
-  std::unique_ptr<QtStation> qt_station{};
-  std::unique_ptr<Control> control{};
 };
 
 TEST_F(LiveWindow, TakesSendsStopsAndResetsByTouch) {
@@ -123,6 +145,68 @@ TEST_F(LiveWindow, AStopGoesOutAlthoughTheStationWasKilled) {
   finger_down(middle("stopAll"));
   EXPECT_TRUE(soon([&] { return !moves(); }, 3000)) << "the program stops without the station";
   finger_up(middle("stopAll"));
+}
+
+TEST_F(LiveWindow, DrivesByTheStickOfTheScreenAndLetsGo) {
+  const Process agent = programs.agent();
+  open_window("op1");
+  take_by_finger();
+  drive_by_finger();
+  ASSERT_TRUE(soon([&] { return moves(); })) << control->outcome().toStdString();
+  finger_up(middle("touchStick"));
+  EXPECT_TRUE(soon([&] { return !moves(); }, 600)) << "a lifted finger is zero";
+  QTest::keyClick(window(), Qt::Key_Escape);
+  EXPECT_TRUE(soon([&] { return !control->drive()->driving(); }));
+}
+
+/// How long the robot still moved after that, s; more than 5 if it did not stop.
+double until_zero(live::Net& net, const std::function<bool()>& moves) {
+  const Duration begun = net.clock();
+  if (!net.until([&] { return !moves(); }, std::chrono::seconds(5))) return 6.0;
+  return seconds(net.clock() - begun);
+}
+
+TEST_F(LiveWindow, AWindowThatIsKilledWhileDrivingStopsTheRobotAndNothingElse) {
+  const Process agent = programs.agent();
+  Process daemon = station_that_listens("op1");
+  name = "op1";
+  std::map<std::string, std::string> environment = programs.folder_.environment();
+  environment["ADIT_TEST_DRIVES_ON"] = std::to_string(live::domain());
+  Process other({program_folder() + "/test_gui_live", "--gtest_also_run_disabled_tests",
+                 "--gtest_filter=*UntilItIsKilled"},
+                environment);
+  ASSERT_TRUE(programs.net_->until([&] { return moves(); }, std::chrono::seconds(30))) << other.out();
+  other.signal(SIGKILL);
+  EXPECT_LT(until_zero(*programs.net_, [&] { return moves(); }), 0.6);
+  other.wait(live::Seconds(5));
+  EXPECT_TRUE(daemon.running());
+  EXPECT_EQ(programs.op("op1", {"list"}).exit_code, 0) << "the station works on";
+}
+
+TEST_F(LiveWindow, AStationThatIsKilledWhileDrivingStopsTheRobotAndTheWindowStays) {
+  const Process agent = programs.agent();
+  Process daemon = station_that_listens("op1");
+  open_window("op1");
+  take_by_finger();
+  drive_by_finger();
+  ASSERT_TRUE(soon([&] { return moves(); }));
+  daemon.signal(SIGKILL);
+  EXPECT_LT(until_zero(*programs.net_, [&] { return moves(); }), 0.6);
+  daemon.wait(live::Seconds(5));
+  EXPECT_TRUE(soon([&] { return control->ended() && !control->drive()->driving(); }, 3000));
+  finger_up(middle("touchStick"));
+}
+
+/// Another window, in a process of its own, that drives until it is killed.
+class DrivingWindow : public StationWindow {};
+
+TEST_F(DrivingWindow, DISABLED_UntilItIsKilled) {
+  const char* domain = std::getenv("ADIT_TEST_DRIVES_ON");
+  ASSERT_NE(domain, nullptr);
+  open_window("op1", static_cast<unsigned>(std::atoi(domain)));
+  take_by_finger();
+  drive_by_finger();
+  (void)soon([] { return false; }, 60'000);
 }
 
 TEST_F(LiveWindow, WhatAnotherOperatorDoesIsShownAndAsksForAttention) {

@@ -106,11 +106,26 @@ class TabsTest : public Window {
   station::CommandOutcome answer_of(const Report& report) {
     return {.json = station::line_of(station::json_of(report))};
   }
-  /// Ends the last query.
-  void answer(const station::CommandOutcome& outcome) {
-    ASSERT_FALSE(sink.asked.empty());
-    const auto done = std::move(sink.asked.back());
-    sink.asked.pop_back();
+  /// Presses an item until so many lines were sent in all.
+  void hold(const QString& name, std::size_t lines) {
+    settle_layout();
+    finger_down(middle(name));
+    (void)QTest::qWaitFor([&] { return sink.lines.size() >= lines; }, 3000);
+    finger_up(middle(name));
+    settle();
+  }
+  /// Ends the newest query of the open tab, or of that one: others may have been asked since.
+  void answer(const station::CommandOutcome& outcome, std::string query = {}) {
+    if (query.empty()) query = control.tabs()->open().toStdString();
+    if (query == "network") query = "net";
+    const auto asked = [&] {
+      return std::find_if(sink.asked.rbegin(), sink.asked.rend(),
+                          [&](const auto& next) { return next.first == query; });
+    };
+    ASSERT_TRUE(QTest::qWaitFor([&] { return asked() != sink.asked.rend(); }, 3000)) << query;
+    const auto found = std::prev(asked().base());
+    const auto done = std::move(found->second);
+    sink.asked.erase(found);
     done(outcome);
     settle();
   }

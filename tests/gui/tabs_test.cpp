@@ -68,7 +68,7 @@ TEST_F(TabsTest, AFingerOnAPanelReachesNoRobotBelowIt) {
 TEST_F(TabsTest, TheStationIsAskedOnlyWhileATabWantsIt) {
   QTest::qWait(500);  // Findings, once there is a station.
   EXPECT_THAT(sink.queries, ElementsAre("findings"));
-  answer(answer_of(some_findings()));
+  answer(answer_of(some_findings()), "findings");
   EXPECT_EQ(text("count_findings"), "1");
   open("health");
   EXPECT_EQ(sink.queries.size(), 2U);
@@ -117,17 +117,11 @@ TEST_F(TabsTest, AComponentIsRestartedOnlyByHoldingAndOnlyByTheHolder) {
   settle_layout();
   touch(middle("healthRestart"));
   EXPECT_THAT(sink.lines, IsEmpty()) << "a tap";
-  finger_down(middle("healthRestart"));
-  QTest::qWait(1000);
-  finger_up(middle("healthRestart"));
-  settle();
+  hold("healthRestart", 1);
   EXPECT_THAT(sink.lines, ElementsAre("restart r4 planner"));
   sink.pending[0]({.text = "r4: planner is restarted\n"});
   EXPECT_EQ(text("outcome"), "✓ r4: planner is restarted");
-  finger_down(middle("healthPolicy"));
-  QTest::qWait(1000);
-  finger_up(middle("healthPolicy"));
-  settle();
+  hold("healthPolicy", 2);
   ASSERT_EQ(sink.lines.size(), 2U);
   EXPECT_EQ(sink.lines[1], "policy r4 planner auto");
   touch(middle("health_r3_map"));
@@ -282,7 +276,6 @@ TEST_F(TabsTest, WhatDoesNotFitIsSaidAndTheRestStays) {
   open("health");
   answer(answer_of(health_of_ten()));
   const int cells = control.tabs()->cells()->rowCount();
-  EXPECT_TRUE(QTest::qWaitFor([&] { return !sink.asked.empty() && sink.queries.back() == "health"; }, 3000));
   answer({.json = R"({"robots": [{"robot": 5}]})"});
   EXPECT_EQ(control.tabs()->cells()->rowCount(), cells);
   EXPECT_TRUE(control.tabs()->problem().contains("does not fit"));

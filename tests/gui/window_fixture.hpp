@@ -14,7 +14,7 @@ class FakeSink : public CommandSink {
   }
   void query(const std::string& line, Done done) override {
     queries.push_back(line);
-    asked.push_back(std::move(done));
+    asked.emplace_back(line, std::move(done));
   }
   void stop(const std::vector<std::string>& robots, Done done) override {
     std::string line = "STOP";
@@ -26,7 +26,7 @@ class FakeSink : public CommandSink {
   std::vector<std::string> lines{};
   std::vector<Done> pending{};
   std::vector<std::string> queries{};
-  std::vector<Done> asked{};
+  std::vector<std::pair<std::string, Done>> asked{};  ///< Queries without an answer.
   int starts{};
 };
 

@@ -55,6 +55,8 @@ class Builder {
     for (const Slot& slot : kSlots)
       if (std::string_view(slot.id) == "convoy")
         add_convoy(slot);
+      else if (std::string_view(slot.id) == "drive")
+        add_drive(slot);
       else
         add(slot);
     merge();
@@ -98,6 +100,26 @@ class Builder {
     if (button.robots.size() < robots_.size() && !button.robots.empty())
       button.hint = std::to_string(button.robots.size()) + "/" + std::to_string(robots_.size());
     if (!from.empty()) button.hint += (button.hint.empty() ? "" : " ") + from;
+    bar_.buttons.push_back(std::move(button));
+  }
+
+  /// By hand: one robot that offers a mode for it.
+  void add_drive(const Slot& slot) {
+    BarButton button{.id = slot.id, .label = slot.label, .key = slot.key};
+    if (robots_.size() == 1) {
+      const Robot& robot = *robots_[0];
+      const Action* best = nullptr;
+      for (const char* mode : {"mode_smart_joystick", "mode_manual"})
+        if (const Action* action = find_action(actions_[0], mode); action && (!best || !best->valid))
+          best = action;
+      if (best && best->valid)
+        button.robots = {robot.name};
+      else
+        refuse(slot, robot, best ? best->reason : Reason::mode_not_installed,
+               best ? best->text : std::string(describe(Reason::mode_not_installed)));
+    } else if (!robots_.empty()) {
+      refuse(slot, *robots_[0], Reason::none, "one robot at a time: select one");
+    }
     bar_.buttons.push_back(std::move(button));
   }
 

@@ -17,7 +17,7 @@ enum class Touch : std::uint8_t {
 
 /// A place of the action bar. Its position never changes.
 struct Slot {
-  const char* id{};  ///< As station::id_of(), or "convoy".
+  const char* id{};  ///< As station::id_of(), "drive" or "convoy".
   const char* key{};
   const char* before{};  ///< The command line: before, robots, after.
   const char* after{};
@@ -33,6 +33,7 @@ inline constexpr std::array kSlots{
     Slot{"goto", "g", "goto", "", "Go to", true},
     Slot{"home", "", "home", "", "Home", true},
     Slot{"explore", "x", "explore", "", "Explore", true},
+    Slot{"drive", "m", "", "", "Drive", true},
     Slot{"convoy", "", "convoy start", "", "Convoy", true},
     Slot{"stop", "s", "stop", "", "Stop", false},
     Slot{"reset", "e", "reset", "", "Reset", false},

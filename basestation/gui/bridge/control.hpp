@@ -17,6 +17,7 @@
 #include "basestation/gui/bridge/command_line.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
 #include "basestation/gui/bridge/detail_list.hpp"
+#include "basestation/gui/bridge/drive_control.hpp"
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/bridge/tabs.hpp"
 #include "basestation/gui/scene/camera.hpp"
@@ -47,6 +48,7 @@ class Control : public QObject {
   Q_PROPERTY(adit::gui::AreaTool* area READ area CONSTANT)
   Q_PROPERTY(adit::gui::AttentionList* attention READ attention CONSTANT)
   Q_PROPERTY(adit::gui::DetailList* details READ details CONSTANT)
+  Q_PROPERTY(adit::gui::DriveControl* drive READ drive CONSTANT)
   Q_PROPERTY(adit::gui::CommandLine* commandLine READ command_line CONSTANT)
   Q_PROPERTY(QString stopText READ stop_text NOTIFY shown)
   Q_PROPERTY(bool silent READ silent NOTIFY shown)
@@ -92,6 +94,8 @@ class Control : public QObject {
   /// with its outcome.
   void order(const std::string& line, const std::string& slot = {}, CommandSink::Done then = {});
   void stop(const std::vector<std::string>& robots);  ///< Software stop; of all, if there is none.
+  /// Drives the selected robot by hand, if it is one that would accept it.
+  void drive_selected();
   /// Selects these robots as far as they are known, and asks the map to show them.
   void select_and_show(const std::vector<std::string>& robots);
   /// Lines of an answer, as one.
@@ -111,7 +115,7 @@ class Control : public QObject {
   Q_INVOKABLE bool pressKey(int key, int modifiers, int scan, bool repeated);
   Q_INVOKABLE bool releaseKey(int key, bool repeated);
   /// The window has no keyboard any more, so no release will come.
-  Q_INVOKABLE void forgetKeys() { keys_down_.clear(), motion_key_ = 0; }
+  Q_INVOKABLE void forgetKeys() { keys_down_.clear(), motion_key_ = 0, drive_.forget_keys(); }
 
   QAbstractItemModel* robots() { return &robots_; }
   QAbstractItemModel* buttons() { return &buttons_; }
@@ -128,6 +132,7 @@ class Control : public QObject {
   AreaTool* area() { return &area_; }
   AttentionList* attention() { return &attention_; }
   DetailList* details() { return &details_; }
+  DriveControl* drive() { return &drive_; }
   CommandLine* command_line() { return &command_line_; }
   QString stop_text() const;
   bool silent() const { return silent_for_ > 1.0 || ended_; }
@@ -196,6 +201,7 @@ class Control : public QObject {
   AreaTool area_{*this};
   AttentionList attention_{*this};
   DetailList details_{*this};
+  DriveControl drive_{*this};
   CommandLine command_line_{*this};
   std::uint64_t last_notice_{};  ///< The newest one that was shown.
   bool catch_up_{true};          ///< The next snapshot has notices that did not come by themselves.

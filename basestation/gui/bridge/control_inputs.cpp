@@ -63,6 +63,8 @@ void Control::order(const std::string& line, const std::string& slot, CommandSin
   run(line, slot, std::move(then));
 }
 
+void Control::drive_selected() { trigger(static_cast<int>(slot_index("drive")), false); }
+
 void Control::begin_batch() {
   ++batch_;
   batch_lines_.clear();
@@ -153,6 +155,7 @@ void Control::trigger(int slot, bool held) {
   if (button.touch == Touch::hold && !held)
     return say(QString::fromStdString(button.label + " " + button.hint) + ": press and hold", "sent");
   if (button.id == "stop") return stop(button.robots);
+  if (button.id == "drive") return drive_.begin(button.robots.front());
   order(button.line, button.id);
 }
 
@@ -225,6 +228,10 @@ bool Control::pressKey(int key, int modifiers, int scan, bool repeated) {
     return true;
   }
   motion_key_ = 0;
+  if (drive_.driving() && (modifiers & (Qt::ControlModifier | Qt::AltModifier | Qt::MetaModifier)) == 0) {
+    if (repeated) return true;
+    if (drive_.press(key)) return true;
+  }
   if (key == Qt::Key_Up || key == Qt::Key_Down) {
     move_selection(key == Qt::Key_Up ? -1 : 1);
     return true;
@@ -324,6 +331,7 @@ bool Control::press_letter(int key) {
 
 bool Control::releaseKey(int key, bool repeated) {
   if (repeated) return false;
+  drive_.release_key(key);
   keys_down_.remove(key);
   if (key != motion_key_) return false;
   motion_key_ = 0;

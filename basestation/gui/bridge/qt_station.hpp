@@ -8,6 +8,7 @@
 
 #include "basestation/client/station.hpp"
 #include "basestation/gui/bridge/command_sink.hpp"
+#include "basestation/gui/bridge/drive_sink.hpp"
 
 namespace adit::gui {
 
@@ -15,7 +16,7 @@ class Control;
 
 /// Brings the operator's station and the window together. Everything happens in the window's thread but the
 /// start of a station, which takes a while.
-class QtStation : public QObject, public CommandSink {
+class QtStation : public QObject, public CommandSink, public DriveSink {
   Q_OBJECT
 
  public:
@@ -25,9 +26,15 @@ class QtStation : public QObject, public CommandSink {
   /// Shows the station in a window from now on.
   void show_in(Control& control);
 
-  void execute(const std::string& line, Done done) override;
-  void query(const std::string& line, Done done) override { execute(line, std::move(done)); }
-  void stop(const std::vector<std::string>& robots, Done done) override;
+  void execute(const std::string& line, CommandSink::Done done) override;
+  void query(const std::string& line, CommandSink::Done done) override { execute(line, std::move(done)); }
+  void stop(const std::vector<std::string>& robots, CommandSink::Done done) override;
+  std::shared_ptr<const station::World> world() const override { return station_->world(); }
+  double silent_for() const override;
+  std::int64_t drive(const std::string& robot, DriveSink::Done done) override;
+  void stick(std::int64_t drive, const station::StickVelocity& velocity) override;
+  void cancel(std::int64_t drive) override;
+  void halt(const std::vector<std::string>& robots) override;
   void start_station() override;
 
  private:

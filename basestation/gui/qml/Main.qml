@@ -92,6 +92,19 @@ Window {
             height: 16 * Theme.mm
             anchors.bottom: outcome.top
         }
+        DriveBar {
+            drive: window.control.drive
+            visible: window.control.drive.driving
+            anchors.fill: actions
+        }
+        TouchStick {
+            drive: window.control.drive
+            visible: window.control.drive.driving
+            anchors.left: fleet.right
+            anchors.leftMargin: 3 * Theme.mm
+            anchors.bottom: map.bottom
+            anchors.bottomMargin: 3 * Theme.mm
+        }
         OutcomeRow {
             id: outcome
             control: window.control
@@ -112,6 +125,14 @@ Window {
             width: parent.width
             height: 13 * Theme.mm
             anchors.bottom: parent.bottom
+        }
+        Rectangle {
+            objectName: "driveFrame"
+            visible: window.control.drive.driving
+            anchors.fill: parent
+            color: "transparent"
+            border.width: 1.4 * Theme.mm
+            border.color: window.control.drive.good ? Theme.goal : Theme.bad
         }
     }
 }

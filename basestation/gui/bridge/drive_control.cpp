@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/gui/bridge/drive_control.hpp"
+
+#include <cmath>
+
+#include "basestation/gui/bridge/card.hpp"
+#include "basestation/gui/bridge/control.hpp"
+#include "basestation/model/text.hpp"
+
+namespace adit::gui {
+namespace {
+
+QString speed_text(double forward, double sideways, double turn) {
+  return QString::fromStdString(
+      station::fixed(forward, 2) + " m/s, " + station::fixed(turn, 2) + " rad/s" +
+      (sideways == 0.0 ? "" : ", sideways " + station::fixed(sideways, 2) + " m/s"));
+}
+
+}  // namespace
+
+DriveControl::DriveControl(Control& control) : QObject(&control), control_(control) {
+  connect(&timer_, &QTimer::timeout, this, &DriveControl::look);
+}
+
+void DriveControl::use(DriveSink& sink, std::function<InputThread::Pad()> make_pad) {
+  thread_ = std::make_unique<InputThread>(sink, std::move(make_pad));
+  timer_.start(kBeatMs);
+}
+
+void DriveControl::stop_using() {
+  timer_.stop();
+  thread_.reset();
+  status_ = {};
+}
+
+void DriveControl::begin(const std::string& robot) {
+  if (!thread_) return control_.say("Drive: there is no way to the station", "refused");
+  down_.clear();
+  thread_->beat();
+  thread_->drive(robot);
+  control_.say("Driving " + QString::fromStdString(robot) + "; Esc lets go.", "sent");
+  look();
+}
+
+void DriveControl::letGo() {
+  if (!thread_ || !driving()) return;
+  thread_->let_go();
+  control_.say("Let go of " + robot() + ".", "done");
+  look();
+}
+
+void DriveControl::touch(double forward, double turn) {
+  if (thread_) thread_->touch(true, {forward, 0.0, turn});
+}
+
+void DriveControl::release() {
+  if (thread_) thread_->touch(false, {});
+}
+
+void DriveControl::setMode(const QString& mode) {
+  if (driving()) control_.order("mode " + status_.robot + " " + mode.toStdString());
+}
+
+bool DriveControl::press(int key) {
+  if (!driving()) return false;
+  switch (key) {
+    case Qt::Key_Escape:
+    case Qt::Key_B:
+      letGo();
+      return true;
+    case Qt::Key_X:
+      control_.stop({status_.robot});
+      return true;
+    case Qt::Key_Space:
+      down_.clear();
+      send_keys();
+      return true;
+    case Qt::Key_Up:
+    case Qt::Key_Down:
+    case Qt::Key_Left:
+    case Qt::Key_Right:
+    case Qt::Key_W:
+    case Qt::Key_A:
+    case Qt::Key_S:
+    case Qt::Key_D:
+    case Qt::Key_Q:
+    case Qt::Key_E:
+      down_.insert(key);
+      send_keys();
+      return true;
+    default:
+      return false;
+  }
+}
+
+void DriveControl::release_key(int key) {
+  if (down_.remove(key)) send_keys();
+}
+
+void DriveControl::forget_keys() {
+  down_.clear();
+  send_keys();
+}
+
+void DriveControl::send_keys() {
+  const auto axis = [&](int more, int also_more, int less, int also_less) {
+    return static_cast<double>((down_.contains(more) || down_.contains(also_more)) -
+                               (down_.contains(less) || down_.contains(also_less)));
+  };
+  if (thread_)
+    thread_->keys({axis(Qt::Key_Up, Qt::Key_W, Qt::Key_Down, Qt::Key_S),
+                   axis(Qt::Key_Q, Qt::Key_Q, Qt::Key_E, Qt::Key_E),
+                   axis(Qt::Key_Left, Qt::Key_A, Qt::Key_Right, Qt::Key_D)});
+}
+
+void DriveControl::look() {
+  if (!thread_) return;
+  thread_->beat();
+  const InputThread::Status before = std::exchange(status_, thread_->status());
+  if (before.robot != status_.robot) down_.clear();
+  if (!before.robot.empty() && status_.robot.empty() && !status_.ended.empty())
+    control_.say(
+        "Driving " + QString::fromStdString(before.robot) + " ended: " + Control::one_line(status_.ended),
+        "refused");
+  if (status_.starts != before.starts && !driving() && control_.selection().size() == 1)
+    control_.drive_selected();
+  if (status_.takes != before.takes && control_.selection().size() == 1)
+    control_.order("take " + control_.selection().front());
+  if (status_ != before || driving()) emit changed();
+}
+
+QString DriveControl::mode() const {
+  const station::Robot* robot = control_.world().robot(status_.robot);
+  return robot ? QString::fromStdString(robot->mode) : QString();
+}
+
+QString DriveControl::asked() const {
+  return speed_text(status_.asked.vx, status_.asked.vy, status_.asked.wz);
+}
+
+QString DriveControl::measured() const {
+  const station::Robot* robot = control_.world().robot(status_.robot);
+  return robot ? speed_text(robot->vx, robot->vy, robot->wz) : QString();
+}
+
+QString DriveControl::age() const {
+  const station::Robot* robot = control_.world().robot(status_.robot);
+  return robot ? QString::fromStdString(age_text(robot->age + control_.silent_for())) : QString();
+}
+
+bool DriveControl::good() const {
+  const station::Robot* robot = control_.world().robot(status_.robot);
+  return robot && robot->age + control_.silent_for() <= station::input::DriveSession::kOldState &&
+         !robot->stopped && robot->stops.empty();
+}
+
+}  // namespace adit::gui
