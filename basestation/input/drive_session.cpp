@@ -50,13 +50,18 @@ DriveSession::Step DriveSession::step(const Hands& hands, const DriveView& view,
 
   Step step;
   std::array<double, 3> axes = asked(hands, step.why);
+  bool halted = false;
   const auto halt = [&](const char* why) {
     axes = {};
+    halted = true;
     step.why = why;
   };
   if (robot->stopped || !robot->stops.empty()) halt("a stop is set: reset it first");
   if (robot->age + view.silent > kOldState) halt("the robot's state is old");
   if (view.since_beat > kFrozen) halt("the window hangs");
+  const bool at_rest = zero(axes) && !halted;
+  rest_first_ = halted || (rest_first_ && !at_rest);
+  if (rest_first_ && !halted) halt("let go once, then drive on");
 
   const double speed = robot->max_speed > 0.0F ? robot->max_speed : kUnknownLimit;
   const double turn = robot->max_turn > 0.0F ? robot->max_turn : kUnknownLimit;

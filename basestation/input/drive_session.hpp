@@ -51,6 +51,7 @@ class DriveSession {
   std::string robot_;
   double begun_;
   bool entered_{false}, had_pad_{false};
+  bool rest_first_{false};  ///< It was halted: the hands must let go before they drive again.
   double sent_at_{-1.0};
   StickVelocity sent_{};
 };

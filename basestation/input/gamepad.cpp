@@ -79,6 +79,7 @@ Gamepad::State Gamepad::read() {
   if (sdl_->controller && sdl_->attached(sdl_->controller) == SDL_FALSE) {
     sdl_->close(sdl_->controller);
     sdl_->controller = nullptr;
+    return state;  // That it is gone is seen before another one takes its place.
   }
   if (!sdl_->controller) sdl_->find();
   if (!sdl_->controller) return state;

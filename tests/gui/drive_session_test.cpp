@@ -100,6 +100,11 @@ TEST_F(DriveSessionTest, AFrozenWindowAnOldStateAndAStopAreZero) {
   EXPECT_EQ(step().velocity.vx, 0.0);
   EXPECT_THAT(step().why, HasSubstr("window"));
   since_beat_ = 0.0;
+  EXPECT_EQ(step().velocity.vx, 0.0) << "a stick that was held all the time moves nothing";
+  EXPECT_THAT(step().why, HasSubstr("let go once"));
+  hands_.touching = false;
+  step();
+  touch(1.0);
   EXPECT_GT(step().velocity.vx, 0.0);
   robot_.age = 0.3;
   silent_ = 0.4;
