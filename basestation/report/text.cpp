@@ -10,9 +10,6 @@
 namespace adit::station {
 namespace {
 
-/// A robot that does not know where it is states this standard deviation, the largest there is, m.
-constexpr double kUnknownPlace = 65.0;
-
 std::string or_dash(const std::string& text) { return text.empty() ? "-" : text; }
 
 std::string battery_text(const RobotView& robot) {

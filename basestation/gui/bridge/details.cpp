@@ -15,11 +15,9 @@ namespace {
 using command::joined;
 using station::fixed;
 using station::GoalPhase;
+using station::kUnknownPlace;
 using station::Robot;
 using station::World;
-
-/// A robot that does not know where it is states this standard deviation, the largest there is, m.
-constexpr double kUnknownPlace = 65.0;
 
 std::string degrees(double angle) { return fixed(angle * 180.0 / std::numbers::pi, 0) + " degrees"; }
 

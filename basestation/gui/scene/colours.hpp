@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace adit::gui {
@@ -46,6 +47,16 @@ constexpr Rgb colour(Token token, const Palette& palette) {
   if (token == Token::text) return palette.text;
   if (token == Token::dim) return palette.dim;
   return kTokens[static_cast<std::size_t>(token)];
+}
+
+/// A colour between two. `share` of the second one, [0, 1].
+inline Rgb mixed(Rgb a, Rgb b, double share) {
+  Rgb out = 0;
+  for (const int shift : {0, 8, 16}) {
+    const double low = (a >> shift) & 0xFFU, high = (b >> shift) & 0xFFU;
+    out |= static_cast<Rgb>(std::lround(low + share * (high - low))) << shift;
+  }
+  return out;
 }
 
 }  // namespace adit::gui

@@ -15,15 +15,6 @@ using station::MapTile;
 
 constexpr double kHigh = 2.5;  // Height from which things have the last colour, m.
 
-Rgb mix(Rgb a, Rgb b, double share) {
-  Rgb out = 0;
-  for (const int shift : {0, 8, 16}) {
-    const double low = (a >> shift) & 0xFFU, high = (b >> shift) & 0xFFU;
-    out |= static_cast<Rgb>(std::lround(low + share * (high - low))) << shift;
-  }
-  return out;
-}
-
 }  // namespace
 
 QImage image_of(const MapTile& tile, double resolution, const Palette& palette) {
@@ -35,7 +26,7 @@ QImage image_of(const MapTile& tile, double resolution, const Palette& palette) 
   colours[MapTile::kGround] = 0xFF000000U | palette.floor;
   for (std::size_t n = MapTile::kThing; n < colours.size(); ++n) {
     const double height = static_cast<double>(n - 1) * resolution;
-    colours[n] = 0xFF000000U | mix(palette.low, palette.high, std::clamp(height / kHigh, 0.0, 1.0));
+    colours[n] = 0xFF000000U | mixed(palette.low, palette.high, std::clamp(height / kHigh, 0.0, 1.0));
   }
   for (int row = 0; row < kSide; ++row) {
     const std::uint8_t* cells = tile.cells.data() + static_cast<std::ptrdiff_t>(row) * kSide;

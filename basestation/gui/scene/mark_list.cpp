@@ -116,16 +116,7 @@ class Drawer {
   void draw_station(const station::StationSummary& station) {
     if (!station.place || !drawable((*station.place)[0], (*station.place)[1])) return;
     const Point at = camera_.to_screen((*station.place)[0], (*station.place)[1]);
-    const double opacity = station.lost ? 0.5 : 1.0;
-    out_.shapes.push_back({.points = {at, {at.x - 6, at.y - 14}, {at.x, at.y - 20}, {at.x + 6, at.y - 14}},
-                           .closed = true,
-                           .line = Token::text,
-                           .width = 1.0,
-                           .dashed = station.lost,
-                           .filled = true,
-                           .fill = station.self ? Token::mine : Token::other,
-                           .opacity = opacity});
-    out_.labels.push_back({.at = {at.x, at.y - 28}, .text = station.name, .opacity = opacity});
+    add_station(out_, station, at);
   }
 
   void draw_goal(const Robot& robot) {
@@ -141,11 +132,7 @@ class Drawer {
     Shape mark = diamond(at, 9.0, Token::goal);
     out_.shapes.push_back(mark);
     out_.labels.push_back({.at = at, .text = number(robot), .on_fill = true});
-    if (robot.goal_phase != GoalPhase::blocked) return;
-    for (const double side : {-1.0, 1.0})  // Crossed out.
-      out_.shapes.push_back({.points = {{at.x - 12, at.y - side * 12}, {at.x + 12, at.y + side * 12}},
-                             .line = Token::bad,
-                             .width = 3.0});
+    if (robot.goal_phase == GoalPhase::blocked) cross_out(out_, at);
   }
 
   void draw_robot(const Robot& robot) {
@@ -261,6 +248,26 @@ Shape diamond(const Point& at, double radius, Token fill) {
       .width = 1.0,
       .filled = true,
       .fill = fill};
+}
+
+void add_station(MarkList& marks, const station::StationSummary& station, const Point& at) {
+  const double opacity = station.lost ? 0.5 : 1.0;
+  marks.shapes.push_back({.points = {at, {at.x - 6, at.y - 14}, {at.x, at.y - 20}, {at.x + 6, at.y - 14}},
+                          .closed = true,
+                          .line = Token::text,
+                          .width = 1.0,
+                          .dashed = station.lost,
+                          .filled = true,
+                          .fill = station.self ? Token::mine : Token::other,
+                          .opacity = opacity});
+  marks.labels.push_back({.at = {at.x, at.y - 28}, .text = station.name, .opacity = opacity});
+}
+
+void cross_out(MarkList& marks, const Point& at) {
+  for (const double side : {-1.0, 1.0})
+    marks.shapes.push_back({.points = {{at.x - 12, at.y - side * 12}, {at.x + 12, at.y + side * 12}},
+                            .line = Token::bad,
+                            .width = 3.0});
 }
 
 double extent_of(const Robot& robot) {

@@ -69,6 +69,10 @@ struct MarkScene {
 std::vector<Point> circle(const Point& centre, double radius, int corners = 40);
 /// A mark of a goal, pixels.
 Shape diamond(const Point& at, double radius, Token fill);
+/// The pin of a station with its name, pixels.
+void add_station(MarkList& marks, const station::StationSummary& station, const Point& at);
+/// Crosses out a goal that cannot be reached, pixels.
+void cross_out(MarkList& marks, const Point& at);
 /// The larger side of a robot, m; 0.8 if it is not known.
 double extent_of(const station::Robot& robot);
 

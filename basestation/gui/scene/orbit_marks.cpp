@@ -89,17 +89,7 @@ class OrbitDrawer {
     if (!station.place || !drawable((*station.place)[0], (*station.place)[1])) return;
     const auto seen = scene_.camera.project({(*station.place)[0], (*station.place)[1], (*station.place)[2]});
     if (!seen) return;
-    const Point at = seen->at;
-    const double opacity = station.lost ? 0.5 : 1.0;
-    out_.shapes.push_back({.points = {at, {at.x - 6, at.y - 14}, {at.x, at.y - 20}, {at.x + 6, at.y - 14}},
-                           .closed = true,
-                           .line = Token::text,
-                           .width = 1.0,
-                           .dashed = station.lost,
-                           .filled = true,
-                           .fill = station.self ? Token::mine : Token::other,
-                           .opacity = opacity});
-    out_.labels.push_back({.at = {at.x, at.y - 28}, .text = station.name, .opacity = opacity});
+    add_station(out_, station, seen->at);
   }
 
   void draw_goal(const Robot& robot) {
@@ -115,12 +105,7 @@ class OrbitDrawer {
     const auto seen = scene_.camera.project(goal);
     if (!seen) return;
     out_.shapes.push_back(diamond(seen->at, 9.0, Token::goal));
-    if (robot.goal_phase != GoalPhase::blocked) return;
-    const Point at = seen->at;
-    for (const double side : {-1.0, 1.0})
-      out_.shapes.push_back({.points = {{at.x - 12, at.y - side * 12}, {at.x + 12, at.y + side * 12}},
-                             .line = Token::bad,
-                             .width = 3.0});
+    if (robot.goal_phase == GoalPhase::blocked) cross_out(out_, seen->at);
   }
 
   void draw_robot(const Robot& robot, const std::string& number) {

@@ -14,15 +14,6 @@ constexpr int kMaxSplat = 96;      // Pixels: a voxel that is nearer than half a
 constexpr float kLighting = 4.0F;  // Strength of the shading.
 constexpr float kDarkest = 0.35F;  // No edge is darker than this share.
 
-Rgb mixed(Rgb a, Rgb b, double share) {
-  Rgb out = 0;
-  for (const int shift : {0, 8, 16}) {
-    const double low = (a >> shift) & 0xFFU, high = (b >> shift) & 0xFFU;
-    out |= static_cast<Rgb>(std::lround(low + share * (high - low))) << shift;
-  }
-  return out;
-}
-
 }  // namespace
 
 void VoxelPainter::draw_brick(const VoxelScene::Brick& brick, int level, double edge) {
