@@ -120,8 +120,8 @@ Result<void> Station::Impl::start() {
   topics_->readers.push_back(std::move(*answers));
   for (const Result<void>& opened :
        {read(wire::topics::kCapabilities), read(wire::topics::kPresence), read(wire::topics::kRobotState),
-        read(wire::topics::kAuthority), read(wire::topics::kBehaviour), read(wire::topics::kNotification),
-        read(wire::topics::kHealth), read(wire::topics::kLinkReport)})
+        read(wire::topics::kAuthority), read(wire::topics::kBehaviour), read(wire::topics::kRoute),
+        read(wire::topics::kNotification), read(wire::topics::kHealth), read(wire::topics::kLinkReport)})
     if (!opened) return opened.error();
   if (auto opened = open_map(); !opened) return opened.error();
 

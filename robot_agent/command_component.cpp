@@ -34,7 +34,8 @@ constexpr Duration kBeat = 50ms;  // Tree, mux, follower and driver run at 20 Hz
 constexpr Duration kStatePeriod = 100ms;
 constexpr Duration kStatusPeriod = 1s;
 constexpr Duration kPulse = 50ms;
-constexpr double kBeaconAge = 1.0;  // s: an older beacon of a robot that moves does not say where it is.
+constexpr double kRouteAhead = 20.0;  // m of the route: right of way looks so far ahead.
+constexpr double kBeaconAge = 1.0;    // s: an older beacon of a robot that moves does not say where it is.
 
 }  // namespace
 
@@ -205,6 +206,7 @@ Result<void> Agent::CommandComponent::on_start() {
   timers_.push_back(every(kBeat, [this] { beat(); }));
   timers_.push_back(every(kStatePeriod, [this] {
     telemetry_.send_state(now(), safeguards_.charge(), localisation(now()), place_sigma());
+    telemetry_.send_route(now(), followed_route(now()));
     context_.directory.tick(now());
     send_beacon(now());
   }));
@@ -395,6 +397,14 @@ RightOfWay::Outputs Agent::CommandComponent::right_of_way_outputs() {
           [this](const Notice& notice) { notices_.send_to_holder(notice); }};
 }
 
+FollowedRoute Agent::CommandComponent::followed_route(Time at) const {
+  const nav::RouteStep* step = navigation_.followed_route(at);
+  if (!step || !frames_.initialised()) return {};
+  FollowedRoute route{behaviour_.view().goal_id, step->corners, {}, step->unknown_ahead};
+  for (const Eigen::Vector3d& point : step->ahead) route.points.push_back(frames_.to_map(point));
+  return route;
+}
+
 void Agent::CommandComponent::give_way(Time at) {
   RightOfWay::Own own{};
   own.mode = behaviour_.mode().name;
@@ -404,8 +414,8 @@ void Agent::CommandComponent::give_way(Time at) {
     own.drives = behaviour_.drives();
     own.members = convoy_.others();
     own.convoy = convoy_.in();
-    if (own.drives)
-      for (const Eigen::Vector3d& point : navigation_.route_ahead(at))
+    if (const nav::RouteStep* step = own.drives ? navigation_.followed_route(at) : nullptr)
+      for (const Eigen::Vector3d& point : nav::first_part(step->ahead, kRouteAhead))
         own.route.push_back(frames_.to_map(point).head<2>());
     const Progress clearing = behaviour_.clearing();
     own.blocked = clearing.blocked || clearing.unreachable;

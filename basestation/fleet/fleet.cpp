@@ -188,12 +188,31 @@ void Fleet::hear(const radio::RobotState& sample, const wire::SampleInfo& info) 
   robot->vy = sample.vy();
   robot->wz = sample.wz();
   robot->battery = sample.battery();
+  robot->roll = static_cast<float>(sample.tilt()[0]) * 1e-3F;
+  robot->pitch = static_cast<float>(sample.tilt()[1]) * 1e-3F;
+  robot->map_revision = sample.map_revision();
   robot->sigma = sample.sigma() * 1e-3;
   const auto lost = static_cast<std::uint8_t>(Localisation::lost);
   robot->localisation = static_cast<Localisation>(std::min(sample.localisation(), lost));
   if (!robot->lost) return;
   robot->lost = false;
   say({.robot = robot->name, .code = "back", .text = robot->name + " is heard again"}, info.received);
+}
+
+void Fleet::hear(const radio::Route& sample, const wire::SampleInfo& info) {
+  RobotView* robot = touch(sample.robot(), info);
+  if (!robot) return;
+  constexpr float kDecimetre = 0.1F;  // m
+  RouteView route{sample.goal_id(), {}, sample.unknown(), sample.corners()};
+  const auto& from = sample.from();
+  if (route.corners > 0) route.points.push_back(from);
+  for (std::size_t i = 0; i + 2 < sample.points().size() && route.corners > 0; i += 3)
+    route.points.push_back({from[0] + kDecimetre * static_cast<float>(sample.points()[i]),
+                            from[1] + kDecimetre * static_cast<float>(sample.points()[i + 1]),
+                            from[2] + kDecimetre * static_cast<float>(sample.points()[i + 2])});
+  const bool finite =
+      std::all_of(from.begin(), from.end(), [](float metres) { return std::isfinite(metres); });
+  robot->route = finite ? std::move(route) : RouteView{};
 }
 
 void Fleet::hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info) {

@@ -29,6 +29,7 @@ class Fleet {
   void hear(const radio::RobotState& sample, const wire::SampleInfo& info);
   void hear(const radio::AuthorityStatus& sample, const wire::SampleInfo& info);
   void hear(const radio::BehaviourState& sample, const wire::SampleInfo& info);
+  void hear(const radio::Route& sample, const wire::SampleInfo& info);
   void hear(const radio::Notification& sample, const wire::SampleInfo& info);
   void hear(const radio::Health& sample, const wire::SampleInfo& info);
   void hear(const radio::LinkReport& sample, const wire::SampleInfo& info);

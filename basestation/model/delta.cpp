@@ -18,8 +18,8 @@ namespace {
 constexpr double kSameTime = 1e-3;  // s
 
 /// Keys of a robot that change all the time.
-constexpr std::array<std::string_view, 7> kMotion{"age",          "pose",  "velocity",       "battery",
-                                                  "localisation", "sigma", "lock_lease_left"};
+constexpr std::array<std::string_view, 8> kMotion{"age",     "pose",         "velocity", "tilt",
+                                                  "battery", "localisation", "sigma",    "lock_lease_left"};
 
 double age_of(const json& part) {
   const auto age = part.find("age");

@@ -48,6 +48,13 @@ json exploration_json(const ExplorationView& e) {
           {"unreachable", e.unreachable}};
 }
 
+json route_json(const RouteView& route) {
+  return {{"goal_id", route.goal_id},
+          {"points", route.points},
+          {"unknown", route.unknown},
+          {"corners", route.corners}};
+}
+
 void read_place(JsonReader& in, Robot& robot) {
   robot.located = in.has("pose");
   std::array<float, 4> pose{};
@@ -56,6 +63,10 @@ void read_place(JsonReader& in, Robot& robot) {
   in.read("velocity", velocity);
   robot.x = pose[0], robot.y = pose[1], robot.z = pose[2], robot.yaw = pose[3];
   robot.vx = velocity[0], robot.vy = velocity[1], robot.wz = velocity[2];
+  std::array<float, 2> tilt{};
+  in.read("tilt", tilt);
+  robot.roll = tilt[0], robot.pitch = tilt[1];
+  in.read("map_revision", robot.map_revision);
   in.read("battery", robot.battery);
   in.read_word("localisation", robot.localisation, Localisation::lost,
                [](Localisation l) { return adit::name(l); });
@@ -102,11 +113,14 @@ json json_of(const Robot& robot) {
   if (robot.located) {
     out["pose"] = {robot.x, robot.y, robot.z, robot.yaw};
     out["velocity"] = {robot.vx, robot.vy, robot.wz};
+    out["tilt"] = {robot.roll, robot.pitch};
+    out["map_revision"] = robot.map_revision;
     if (robot.battery >= 0.0F) out["battery"] = robot.battery;
     out["localisation"] = name(robot.localisation);
     if (robot.localisation != Localisation::off) out["sigma"] = robot.sigma;
   }
   if (robot.goal_phase != GoalPhase::none) out["goal"] = robot.goal;
+  if (!robot.route.points.empty()) out["route"] = route_json(robot.route);
   out["areas"] = json::array();
   for (const AreaView& area : robot.areas) out["areas"].push_back(area_json(area));
   if (robot.exploration.phase != ExplorationPhase::none)
@@ -141,6 +155,14 @@ void read_fields(JsonReader& in, AreaView& area) {
   in.read("weight", area.weight);
   in.read("z_min", area.z_min);
   in.read("z_max", area.z_max);
+}
+
+void read_fields(JsonReader& in, RouteView& route) {
+  in.read("goal_id", route.goal_id);
+  in.read("points", route.points);
+  in.read("unknown", route.unknown);
+  in.read("corners", route.corners);
+  if (route.points.size() > RouteView::kMaxCorners) in.refuse("points");
 }
 
 void read_fields(JsonReader& in, Size& size) {
@@ -188,6 +210,7 @@ void read_fields(JsonReader& in, Robot& robot) {
   in.read("climbs_stairs", robot.climbs_stairs);
   read_place(in, robot);
   in.read("goal", robot.goal);
+  in.read("route", robot.route);
   in.read("areas", robot.areas);
   in.read("exploration", robot.exploration);
 }

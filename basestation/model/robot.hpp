@@ -54,6 +54,19 @@ struct AreaView {
   bool operator==(const AreaView&) const = default;
 };
 
+/// The route over the ground that a robot follows.
+struct RouteView {
+  static constexpr std::size_t kMaxCorners = 32;  ///< Of `points`.
+
+  std::uint32_t goal_id{};  ///< As in its robot.
+  /// Its first corners, from where the robot was when it sent them, map frame, m; empty: no route is
+  /// followed.
+  std::vector<std::array<float, 3>> points{};
+  std::uint32_t unknown{};  ///< Bit i: the leg from corner i leads through space that was not seen.
+  std::uint16_t corners{};  ///< Of the complete route.
+  bool operator==(const RouteView&) const = default;
+};
+
 /// The bounding box of a robot's body, m; 0: unknown.
 struct Size {
   float length{};  ///< Along x of the body frame.
@@ -86,6 +99,9 @@ struct Robot {
   bool located{};  ///< A state was received: the values up to `sigma`.
   float x{}, y{}, z{}, yaw{};
   float vx{}, vy{}, wz{};
+  float roll{}, pitch{};  ///< Of the body, rad (REP-103).
+  std::uint8_t
+      map_revision{};    ///< Changes when its place in the map was corrected: earlier places were moved.
   float battery{-1.0F};  ///< State of charge, [0, 1]; negative: unknown.
   Localisation localisation{Localisation::off};
   double sigma{};  ///< Standard deviation of the position as the robot states it, m; 0 with `off`.
@@ -105,6 +121,7 @@ struct Robot {
   GoalPhase goal_phase{GoalPhase::none};
   std::uint32_t goal_id{};
   std::array<double, 3> goal{};  ///< Unless the phase is `none`; z is NaN where the ground is meant.
+  RouteView route{};
   ExplorationView exploration{};
   std::vector<ModeChoice> choices{};
   bool yields{};                      ///< It may make way for other robots.

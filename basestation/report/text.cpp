@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "basestation/model/route.hpp"
 #include "basestation/report/table.hpp"
 #include "core/command/words.hpp"
 
@@ -103,6 +104,7 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
   out += "  mode     " + mode + "\n";
   out += "  stops    " + stops_text(robot) + "\n";
   out += "  goal     " + goal_text(robot) + "\n";
+  if (const std::string way = route_text(robot); !way.empty()) out += "  route    " + way + "\n";
   if (!robot.convoy.empty()) out += "  convoy   " + command::joined(robot.convoy, "") + "\n";
   if (!robot.yields_to.empty())
     out += "  yields   makes way for " + robot.yields_to + "\n";
@@ -115,6 +117,10 @@ std::string status_text(const Fleet& fleet, const RobotView& robot, Time now) {
     out += "  pose     x " + fixed(robot.x, 2) + " y " + fixed(robot.y, 2) + " z " + fixed(robot.z, 2) +
            " m, yaw " + fixed(robot.yaw * 180.0 / std::numbers::pi, 1) + " degrees\n  speed    " +
            fixed(robot.vx, 2) + " " + fixed(robot.vy, 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s\n";
+  constexpr float kTilted = 0.05F;  // rad: less is not worth a line.
+  if (robot.located && std::hypot(robot.roll, robot.pitch) > kTilted)
+    out += "  tilt     roll " + fixed(robot.roll * 180.0 / std::numbers::pi, 0) + ", pitch " +
+           fixed(robot.pitch * 180.0 / std::numbers::pi, 0) + " degrees\n";
   if (robot.located && robot.localisation != Localisation::off)
     out += "  place    " + std::string(name(robot.localisation)) +
            (robot.sigma < kUnknownPlace ? ", known to " + fixed(robot.sigma, 2) + " m\n" : ", unknown\n");

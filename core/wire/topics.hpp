@@ -12,6 +12,7 @@ class Acknowledgement;
 class AuthorityStatus;
 class RobotState;
 class BehaviourState;
+class Route;
 class Notification;
 class Health;
 class LinkReport;
@@ -62,6 +63,8 @@ inline constexpr Topic<radio::RobotState> kRobotState{
     {"adit/robot_state", "adit::radio::v1::RobotState", QosClass::state, 1, kKeyed, 256}};
 inline constexpr Topic<radio::BehaviourState> kBehaviour{
     {"adit/behaviour", "adit::radio::v1::BehaviourState", QosClass::status, 1, kKeyed, 5120}};
+inline constexpr Topic<radio::Route> kRoute{
+    {"adit/route", "adit::radio::v1::Route", QosClass::status, 1, kKeyed, 512}};
 inline constexpr Topic<radio::Notification> kNotification{
     {"adit/notification", "adit::radio::v1::Notification", QosClass::status, 8, kKeyed, 1024}};
 inline constexpr Topic<radio::Health> kHealth{

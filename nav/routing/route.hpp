@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace adit::nav {
@@ -47,5 +48,8 @@ struct Route {
   bool found() const { return status == RouteStatus::found; }
   bool attempt() const { return unknown_length > 0.0; }
 };
+
+/// The first `length` metres of a line through points. Frame and unit of the points.
+std::vector<Eigen::Vector3d> first_part(std::span<const Eigen::Vector3d> points, double length);
 
 }  // namespace adit::nav

@@ -33,16 +33,19 @@ struct RouteStep {
   };
   /// Tolerance of a target that is not the goal, m.
   static constexpr double kTolerance = 0.08;
+  static constexpr std::size_t kMaxAhead = 32;
 
   State state{State::straight};
   Eigen::Vector3d target{0, 0, 0};         ///< m
   bool last{true};                         ///< `target` is the goal.
   Standing goal{Standing::standable};      ///< Of the goal itself: `unseen` while its ground is unknown.
   std::optional<NarrowPassage> passage{};  ///< The next passage on the route to `target`.
-  /// Corners of the route ahead, from the robot on, for right of way; empty unless asked for.
+  /// The first corners of the rest of the route, from the robot on, at most kMaxAhead; empty without a route.
   std::vector<Eigen::Vector3d> ahead{};
-  bool stuck{false};  ///< No progress along the route for a long time: see ProgressChecker.
-  double length{0};   ///< Length of the rest of the route, m; 0 without a route.
+  std::uint32_t unknown_ahead{};  ///< Bit i: the leg from corner i leads through unknown space.
+  std::size_t corners{};          ///< Number of all corners of the rest of the route.
+  bool stuck{false};              ///< No progress along the route for a long time: see ProgressChecker.
+  double length{0};               ///< Length of the rest of the route, m; 0 without a route.
 };
 
 /// Follows a route with hysteresis: replaces the current route only when a new one is clearly better or the

@@ -120,6 +120,21 @@ void RouteLine::shorten(std::vector<Eigen::Vector3d>& points) {
   points = std::move(dense);
 }
 
+std::vector<Eigen::Vector3d> first_part(std::span<const Eigen::Vector3d> points, double length) {
+  std::vector<Eigen::Vector3d> part;
+  double passed = 0.0;
+  for (const Eigen::Vector3d& point : points) {
+    const double leg = part.empty() ? 0.0 : (point - part.back()).norm();
+    passed += leg;
+    if (passed > length) {
+      part.push_back(point - (point - part.back()) * ((passed - length) / leg));
+      break;
+    }
+    part.push_back(point);
+  }
+  return part;
+}
+
 bool RouteLine::measure(Route& route) {
   bool passable = true;
   route.length = route.unknown_length = route.cost = 0;

@@ -223,9 +223,9 @@ void Navigation::add_scan(std::shared_ptr<Scan> scan, Time received, Time now, s
   ask_route(scan, now, std::move(team));
 }
 
-std::span<const Eigen::Vector3d> Navigation::route_ahead(Time now) const {
+const nav::RouteStep* Navigation::followed_route(Time now) const {
   const nav::RouteStep* step = std::holds_alternative<GoTo>(motion_) ? step_on(now) : nullptr;
-  return step ? std::span<const Eigen::Vector3d>(step->ahead) : std::span<const Eigen::Vector3d>{};
+  return step && !step->ahead.empty() ? step : nullptr;
 }
 
 const nav::RouteStep* Navigation::step_on(Time now) const {

@@ -65,8 +65,8 @@ class Navigation : public Component, public NavigationInput {
   RouteAreas route_areas() const { return {fence_.all(), fence_.binding()}; }
   /// `team`: the other robots, for the route map.
   void add_scan(std::shared_ptr<Scan> scan, Time received, Time now, std::vector<TeamRobot> team = {});
-  /// Corners of the route ahead, from the robot on, odometry frame, m; empty: there is no route, or no team.
-  std::span<const Eigen::Vector3d> route_ahead(Time now) const;
+  /// The step along the route to the goal, odometry frame; null: no route is followed.
+  const nav::RouteStep* followed_route(Time now) const;
   /// Discards points and plans, because the odometry frame has changed. Until the next scan the terrain is
   /// not fresh.
   void clear();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/motion/router.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 
@@ -10,7 +11,6 @@ namespace adit::agent {
 namespace {
 
 constexpr double kMoved = 0.1;       // m
-constexpr double kAhead = 20.0;      // m: the route ahead that right of way looks at
 constexpr double kJudged = 3.0;      // m: a goal this near is in sight
 constexpr double kRefusedFor = 3.0;  // s: the body cannot stand at a goal for so long before the robot stops
 
@@ -34,7 +34,7 @@ struct Router::Maps {
 
   nav::RouteStep step(const RouteJob& job, double stamp) {
     nav::RouteStep step = route_follower.step(planner, job.place, *job.goal, job.blocked, stamp);
-    if (!job.team.empty() && step.state == nav::RouteStep::State::along) step.ahead = ahead();
+    if (step.state == nav::RouteStep::State::along) add_ahead(step);
     step.goal = goals.stand(planner, *job.goal, job.place.z());
     // From afar the map may show what was there a while ago, and a person who passes is no reason to stop.
     const bool near = (*job.goal - job.place).head<2>().norm() < kJudged;
@@ -48,20 +48,17 @@ struct Router::Maps {
     return step;
   }
 
-  /// The corners of the first kAhead metres of the route, from the robot on.
-  std::vector<Eigen::Vector3d> ahead() const {
-    std::vector<Eigen::Vector3d> corners;
-    double passed = 0.0;
-    for (const Eigen::Vector3d& point : route_follower.route().points) {
-      if (!corners.empty()) passed += (point - corners.back()).norm();
-      if (passed > kAhead) {
-        const Eigen::Vector3d way = point - corners.back();
-        corners.push_back(point - way * ((passed - kAhead) / way.norm()));
-        break;
-      }
-      corners.push_back(point);
-    }
-    return corners;
+  /// Adds the first corners of the rest of the route.
+  void add_ahead(nav::RouteStep& step) const {
+    const nav::Route& route = route_follower.route();
+    step.corners = route.points.size();
+    const std::size_t count = std::min(step.corners, nav::RouteStep::kMaxAhead);
+    step.ahead.assign(route.points.begin(), route.points.begin() + static_cast<std::ptrdiff_t>(count));
+    // The follower drops the beginning of a route before it measures the rest again.
+    if (route.unknown.size() + 1 < step.corners) return;
+    const std::size_t dropped = route.unknown.size() + 1 - step.corners;
+    for (std::size_t leg = 0; leg + 1 < count; ++leg)
+      if (route.unknown[leg + dropped]) step.unknown_ahead |= 1U << leg;
   }
 
   void enter(std::uint32_t epoch, const RouteAreas& now) {

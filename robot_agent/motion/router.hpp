@@ -30,7 +30,7 @@ struct RouteJob {
   std::optional<Eigen::Vector3d> goal{};  ///< Unset: the scan enters the map, and no route is requested.
   Eigen::Vector3d place{0, 0, 0};         ///< Position of the body.
   bool blocked{};                         ///< The local planner found no path along the previous step.
-  std::vector<TeamRobot> team{};          ///< The other robots; with any, the answer has the route ahead.
+  std::vector<TeamRobot> team{};          ///< The other robots.
   std::uint32_t odom_epoch{};             ///< Epoch of that frame; maps of another epoch are discarded.
   std::uint64_t generation{};             ///< Generation of the goal, for the caller.
   RouteAreas areas{};

@@ -200,6 +200,25 @@ static radio::Area to_radio(const nav::Area& area) {
   return out;
 }
 
+radio::Route to_radio(const FollowedRoute& route, const std::string& robot) {
+  constexpr double kDecimetres = 10.0;
+  radio::Route out;
+  out.robot(robot);
+  out.goal_id(route.goal_id);
+  out.unknown(route.unknown);
+  out.corners(static_cast<std::uint16_t>(std::min<std::size_t>(route.corners, 65535)));
+  if (route.points.empty()) return out;
+  const Eigen::Vector3f from = route.points.front().cast<float>();
+  out.from({from.x(), from.y(), from.z()});
+  for (std::size_t i = 1; i < std::min(route.points.size(), FollowedRoute::kMaxCorners); ++i) {
+    const Eigen::Vector3d offset = kDecimetres * (route.points[i] - from.cast<double>());
+    if (!(offset.cwiseAbs().maxCoeff() < 32767.0)) break;
+    for (const double length : {offset.x(), offset.y(), offset.z()})
+      out.points().push_back(static_cast<std::int16_t>(std::lround(length)));
+  }
+  return out;
+}
+
 radio::BehaviourState to_radio(const BehaviourView& view, const std::vector<ModeOption>& options,
                                const std::string& robot) {
   radio::BehaviourState out;
@@ -248,6 +267,7 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
   out.stairs(platform.stairs);
   out.sensors({"lidar", "odometry", "battery"});
   if (platform.router != "none") out.services().push_back("route");
+  for (const char* word : {"tilt", "map_revision"}) out.services().push_back(word);
   if (platform.turns_on_spot()) out.services().push_back("turn_on_spot");
   if (platform.stairs) out.services().push_back("stairs");
   if (platform.flies()) out.services().push_back("flight");

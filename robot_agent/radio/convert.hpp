@@ -13,6 +13,7 @@
 #include "core/transfer/piece.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
+#include "robot_agent/common/followed_route.hpp"
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
 
@@ -41,6 +42,8 @@ transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot);
 radio::TeamBeacon to_radio(const TeamBeacon& beacon);
 
 radio::PlannedRoute to_radio(const PlannedRoute& route);
+/// Corners from the first one on that is too far away for the message are left out.
+radio::Route to_radio(const FollowedRoute& route, const std::string& robot);
 radio::Acknowledgement to_radio(const Answer& answer, const std::string& robot);
 radio::Notification to_radio(const Notice& notice, const std::string& robot);
 radio::AuthorityStatus to_radio(const CommandInterface& commands, const std::string& robot, Time now);

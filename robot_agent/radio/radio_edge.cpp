@@ -30,6 +30,7 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::AuthorityStatus> authority{};
   wire::Writer<radio::BehaviourState> behaviour{};
   wire::Writer<radio::RobotState> state{};
+  wire::Writer<radio::Route> route{};
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
@@ -68,6 +69,11 @@ struct RadioEdge::Endpoints {
 };
 
 namespace {
+
+/// As a RobotState has it.
+std::int16_t milliradians(double angle) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(1000.0 * angle, -3200.0, 3200.0)));
+}
 
 /// Whether the command is a goto with valid arguments.
 bool asks_for_goal(const Command& command) {
@@ -289,8 +295,14 @@ void RadioEdge::send_state(const RobotReport& report, std::uint64_t stamp) {
   s.battery(report.battery);
   constexpr double kMaxSigma = 65.535;  // m
   s.sigma(static_cast<std::uint16_t>(std::lround(std::clamp(report.sigma, 0.0, kMaxSigma) * 1000.0)));
+  s.tilt({milliradians(report.roll), milliradians(report.pitch)});
   s.localisation(static_cast<std::uint8_t>(report.localisation));
+  s.map_revision(report.map_revision);
   (void)endpoints_->state.write(s);
+}
+
+void RadioEdge::send_route(const FollowedRoute& route) {
+  if (endpoints_->route) endpoints_->send(endpoints_->route, to_radio(route, endpoints_->robot));
 }
 
 void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::uint16_t protocol,
@@ -298,6 +310,8 @@ void RadioEdge::send_capabilities(const Platform& platform, const Id& id, std::u
   Endpoints& e = *endpoints_;
   e.capabilities_sample = to_radio(platform, e.robot, id, protocol, modes);
   (void)e.capabilities.write(e.capabilities_sample);
+  // Without it, stations show no route.
+  if (platform.router != "none") (void)e.io.open(e.route, topics::kRoute);
   e.presence_sample.name(e.robot);
   e.presence_sample.kind(radio::AGENT_ROBOT);
   e.presence_sample.id(id);

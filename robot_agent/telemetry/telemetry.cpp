@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_agent/telemetry/telemetry.hpp"
 
+#include <cmath>
+
 namespace adit::agent {
 
 void Telemetry::start(Time now, Time started) {
@@ -27,9 +29,22 @@ void Telemetry::send_state(Time now, float charge, Localisation localisation, do
   const std::uint64_t stamp = to_stamp(now);
   dependencies_.commands.sent_stamp(stamp);
   const Frames& at = dependencies_.frames;
-  dependencies_.radio.send_state(
-      {at.T_map_base(), at.height(), at.initialised() ? at.twist() : Twist2{}, charge, sigma, localisation},
-      stamp);
+  // Odometry frame and map are level to each other.
+  const Eigen::Vector3d up = at.T_odom_base().orientation.conjugate() * Eigen::Vector3d::UnitZ();
+  dependencies_.radio.send_state({.pose = at.T_map_base(),
+                                  .z = at.height(),
+                                  .twist = at.initialised() ? at.twist() : Twist2{},
+                                  .battery = charge,
+                                  .sigma = sigma,
+                                  .roll = std::atan2(up.y(), up.z()),
+                                  .pitch = std::atan2(-up.x(), std::hypot(up.y(), up.z())),
+                                  .localisation = localisation,
+                                  .map_revision = static_cast<std::uint8_t>(at.map_epoch())},
+                                 stamp);
+}
+
+void Telemetry::send_route(Time now, const FollowedRoute& route) {
+  if (route_report_.due(route, now, dependencies_.rate.stretch())) dependencies_.radio.send_route(route);
 }
 
 void Telemetry::send_periodic(Time now) {

@@ -10,6 +10,7 @@
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/radio/radio_edge.hpp"
 #include "robot_agent/supervisor/agent_supervisor.hpp"
+#include "robot_agent/telemetry/route_report.hpp"
 
 namespace adit::agent {
 
@@ -36,6 +37,8 @@ class Telemetry {
   /// Adapts the rate to the link, and sends RobotState when it is due. At 10 Hz. `charge`: of the battery,
   /// [0, 1], negative while unknown; `sigma`: of the position, m.
   void send_state(Time now, float charge, Localisation localisation, double sigma);
+  /// Sends the followed route when stations must see another one than before. At 10 Hz.
+  void send_route(Time now, const FollowedRoute& route);
   /// Repeats the status for stations that joined late, and reports on the link. Once a second.
   void send_periodic(Time now);
   void send_authority(Time now);
@@ -49,6 +52,7 @@ class Telemetry {
   void report_driver(Time now);
 
   Dependencies dependencies_;
+  RouteReport route_report_{};
   Time started_{};
   bool driver_was_alive_{};
   std::uint32_t seconds_{};  ///< Calls of send_periodic() so far.

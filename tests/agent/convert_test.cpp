@@ -56,6 +56,22 @@ TEST(Convert, ARouteOfAnyLengthFitsItsTopic) {
   EXPECT_TRUE(to_radio(Answer{}, name).route().empty());
 }
 
+TEST(Convert, AFollowedRouteOfAnyLengthFitsItsTopic) {
+  const std::string name(32, 'n');
+  FollowedRoute route{.goal_id = 7, .corners = 100'000, .points = {}, .unknown = 2};
+  for (int i = 0; i < 40; ++i) route.points.emplace_back(3.0 * i, -1.25, 0.5);
+  radio::Route sent = to_radio(route, name);
+  EXPECT_LE(encoded(sent), wire::topics::kRoute.max_bytes);
+  EXPECT_EQ(sent.corners(), 65535);
+  ASSERT_EQ(sent.points().size(), 3 * (FollowedRoute::kMaxCorners - 1));
+  EXPECT_EQ(sent.from()[1], -1.25F);
+  EXPECT_EQ(sent.points()[3], 60);
+  route.points[2].x() = 1e9;
+  sent = to_radio(route, name);
+  EXPECT_EQ(sent.points().size(), 3U) << "no corner beyond one that does not fit";
+  EXPECT_EQ(to_radio(FollowedRoute{}, name).corners(), 0);
+}
+
 // A name that is cut must not become the valid name of another station.
 TEST(Convert, AreasOfAnySizeFitTheirTopics) {
   const std::string name(32, 'n');

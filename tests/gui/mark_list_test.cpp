@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "basestation/model/route.hpp"
 #include "tests/gui/fixture.hpp"
 
 namespace adit::gui {
@@ -105,6 +106,62 @@ TEST(Marks, AnActiveGoalIsSolidAndAKeptOneDashed) {
     EXPECT_EQ(marks.shapes[0].points[1], (Point{540, 260}));
     EXPECT_EQ(marks.shapes[0].dashed, !active);
   }
+}
+
+TEST(Marks, ARouteIsDashedWhereNothingWasSeenYet) {
+  station::World world{.robots = {mine(robot("r1", 10, 0))}};
+  station::Robot& r1 = world.robots[0];
+  r1.goal_phase = station::GoalPhase::active;
+  r1.goal_id = 3;
+  r1.goal = {20, 10, 0};
+  // It was sent a metre behind the robot.
+  r1.route = {.goal_id = 3, .points = {{9, 0, 0}, {20, 0, 0}, {20, 10, 0}}, .unknown = 0b10, .corners = 3};
+  const MarkList marks = marks_of(scene_of(world));
+  ASSERT_GE(marks.shapes.size(), 2U);
+  EXPECT_EQ(marks.shapes[0].points, (std::vector<Point>{{500, 300}, {700, 300}}));
+  EXPECT_FALSE(marks.shapes[0].dashed);
+  EXPECT_EQ(marks.shapes[1].points, (std::vector<Point>{{700, 300}, {700, 100}}));
+  EXPECT_TRUE(marks.shapes[1].dashed);
+  r1.goal_id = 4;
+  EXPECT_EQ(marks_of(scene_of(world)).shapes[0].points, (std::vector<Point>{{500, 300}, {700, 100}}))
+      << "a route to an earlier goal means nothing";
+}
+
+TEST(Route, WhatLiesBehindDoesNotCount) {
+  station::Robot r1 = robot("r1", 3, 0);
+  r1.route = {.points = {{0, 0, 0}, {4, 0, 0}, {4, 3, 0}}, .unknown = 0b10, .corners = 4};
+  const station::RouteRest rest = station::rest_of_route(r1);
+  EXPECT_NEAR(rest.length, 4.0, 1e-6);
+  EXPECT_NEAR(rest.unknown_length, 3.0, 1e-6);
+  EXPECT_FALSE(rest.complete);
+  EXPECT_EQ(station::route_text(r1), "more than 4.0 m, of these 3.0 m not seen yet");
+  r1.route.points[1][0] = std::numeric_limits<float>::quiet_NaN();
+  (void)station::rest_of_route(r1);
+  r1.located = false;
+  EXPECT_TRUE(station::rest_of_route(r1).points.empty());
+}
+
+TEST(Trails, MoveWithTheRobotWhereItsPlaceIsCorrected) {
+  Trails trails;
+  station::World world{.robots = {robot("r1", 0, 0)}};
+  station::Robot& r1 = world.robots[0];
+  r1.age = 0.0;
+  r1.vx = 10.0F;
+  for (int i = 0; i <= 100; ++i) {  // 100 m along x.
+    r1.x = static_cast<float>(i);
+    trails.add(world, 0.1 * i);
+  }
+  r1.x = 101.0F;
+  r1.y = 8.0F;
+  r1.z = 2.0F;
+  r1.map_revision = 1;
+  trails.add(world, 10.1);
+  const auto& points = trails.of("r1")->points;
+  EXPECT_NEAR(points.front().place.y, 0.0, 1e-6);
+  EXPECT_NEAR(points[50].place.y, 4.0, 0.1);
+  EXPECT_NEAR(points[50].z, 1.0, 0.1);
+  EXPECT_NEAR(points[100].place.y, 8.0, 0.1);
+  for (std::size_t i = 1; i < points.size(); ++i) EXPECT_FALSE(points[i].begins) << i;
 }
 
 TEST(Trails, BreakWhereARobotJumpsAndStayBounded) {

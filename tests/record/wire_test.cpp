@@ -43,9 +43,9 @@ class MemorySink final : public RecordSink {
 TEST(IdlSchema, EveryTopicHasOne) {
   namespace t = wire::topics;
   const wire::TopicInfo* all[] = {
-      &t::kCapabilities, &t::kPresence,   &t::kCommand,   &t::kJoystick, &t::kAcknowledgement,
-      &t::kAuthority,    &t::kRobotState, &t::kBehaviour, &t::kHealth,   &t::kLinkReport,
-      &t::kNotification, &t::kCmdVel,     &t::kOdom,      &t::kPoints,   &t::kBattery};
+      &t::kCapabilities, &t::kPresence,  &t::kCommand, &t::kJoystick,   &t::kAcknowledgement, &t::kAuthority,
+      &t::kRobotState,   &t::kBehaviour, &t::kHealth,  &t::kLinkReport, &t::kNotification,    &t::kCmdVel,
+      &t::kOdom,         &t::kPoints,    &t::kBattery, &t::kRoute};
   for (const wire::TopicInfo* topic : all) {
     const auto schema = idl_schema(topic->type);
     ASSERT_TRUE(schema.has_value()) << topic->type;

@@ -165,6 +165,32 @@ TEST(Fleet, OnAFullLinkASignOfLifeIsEnoughNotToBeLost) {
   EXPECT_TRUE(fleet.robot("r1")->lost);
 }
 
+TEST(Fleet, ARouteIsWhatTheRobotFollowsUntilItSaysOtherwise) {
+  Fleet fleet("op1", kOwnId);
+  fleet.hear(state("r1"), at(1s));
+  radio::Route route;
+  route.robot("r1");
+  route.goal_id(4);
+  route.corners(3);
+  route.from({1.0F, 2.0F, 0.5F});
+  route.points({30, 0, 0, 30, -40, 5});
+  route.unknown(2);
+  fleet.hear(route, at(1s));
+  const RouteView& heard = fleet.robot("r1")->route;
+  ASSERT_EQ(heard.points.size(), 3U);
+  EXPECT_FLOAT_EQ(heard.points[2][0], 4.0F);
+  EXPECT_FLOAT_EQ(heard.points[2][1], -2.0F);
+  EXPECT_FLOAT_EQ(heard.points[2][2], 1.0F);
+  EXPECT_EQ(heard.unknown, 2U);
+  route.from({std::numeric_limits<float>::quiet_NaN(), 0, 0});
+  fleet.hear(route, at(2s));
+  EXPECT_TRUE(fleet.robot("r1")->route.points.empty()) << "a route from nowhere is none";
+  route.corners(0);
+  route.points({});
+  fleet.hear(route, at(3s));
+  EXPECT_TRUE(fleet.robot("r1")->route.points.empty());
+}
+
 TEST(Fleet, FirstHearingIsToldOnce) {
   Fleet fleet("op1", kOwnId);
   int told = 0;

@@ -147,9 +147,17 @@ class Draw {
     r.located = true;
     r.x = single(), r.y = single(), r.z = single(), r.yaw = single();
     r.vx = single(), r.vy = single(), r.wz = single();
+    r.roll = single(), r.pitch = single();
+    r.map_revision = static_cast<std::uint8_t>(below(256));
+    if (flag()) route(r.route);
     if (flag()) r.battery = static_cast<float>(random_.uniform());
     r.localisation = one_of(Localisation::lost);
     if (r.localisation != Localisation::off) r.sigma = number();
+  }
+  void route(RouteView& r) {
+    r = {.goal_id = static_cast<std::uint32_t>(integer()), .points = {}, .unknown = 5, .corners = 40};
+    r.points.resize(1 + below(RouteView::kMaxCorners));
+    for (auto& point : r.points) point = {single(), single(), single()};
   }
   AreaView area() {
     AreaView a{.name = text(), .kind = flag() ? "prefer" : "keep_out"};

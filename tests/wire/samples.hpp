@@ -80,6 +80,11 @@ inline std::vector<Example> examples() {
   behaviour.areas()[1].name("shaft");
   behaviour.areas()[1].corners({0.0F, 0.0F, 4.0F, 0.0F, 4.0F, 4.0F});
   all.push_back(example(topics::kBehaviour, behaviour));
+  radio::Route route;
+  route.robot("r1");
+  route.corners(3);
+  route.points({10, 0, 0, 10, 20, -1});
+  all.push_back(example(topics::kRoute, route));
   radio::Notification notification;
   notification.robot("r1");
   notification.code("taken");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basestation/model/route.hpp"
 #include "basestation/model/text.hpp"
 #include "core/command/words.hpp"
 
@@ -99,8 +100,11 @@ Card card_of(const Robot& robot, int number, double silent, double stale_after) 
   card.battery = battery ? station::fixed(100.0 * robot.battery, 0) + " %" : "-";
   card.speed = robot.located ? station::fixed(std::hypot(robot.vx, robot.vy), 1) + " m/s" : "-";
   const bool goal = robot.goal_phase != GoalPhase::none && robot.goal_phase != GoalPhase::reached;
-  if (goal && robot.located)
-    card.goal = station::fixed(std::hypot(robot.goal[0] - robot.x, robot.goal[1] - robot.y), 0) + " m";
+  if (goal && robot.located) {
+    const station::RouteRest route = station::rest_of_route(robot);
+    const double straight = std::hypot(robot.goal[0] - robot.x, robot.goal[1] - robot.y);
+    card.goal = station::fixed(route.complete ? route.length : straight, 0) + " m";
+  }
   card.age = age_text(age);
   return card;
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "basestation/gui/bridge/card.hpp"
+#include "basestation/model/route.hpp"
 #include "basestation/model/text.hpp"
 #include "core/command/words.hpp"
 
@@ -20,6 +21,8 @@ using station::Robot;
 using station::World;
 
 std::string degrees(double angle) { return fixed(angle * 180.0 / std::numbers::pi, 0) + " degrees"; }
+
+constexpr float kTilted = 0.05F;  // rad: less is not worth a row.
 
 std::string holder(const Robot& robot) {
   std::string text = robot.mine ? "you" : robot.holder.empty() ? "none" : robot.holder;
@@ -70,6 +73,7 @@ std::vector<Detail> rows_of(const Robot& robot, const World& world, double silen
   add("holder", holder(robot));
   if (!robot.stops.empty()) add("stopped by", joined(robot.stops, ""));
   if (robot.goal_phase != GoalPhase::none) add("goal", goal(robot));
+  if (const std::string way = station::route_text(robot); !way.empty()) add("route", way);
   if (robot.exploration.phase != station::ExplorationPhase::none)
     add("explored", exploration_text(robot.exploration));
   if (!robot.convoy.empty()) add("convoy", joined(robot.convoy, ""));
@@ -78,6 +82,8 @@ std::vector<Detail> rows_of(const Robot& robot, const World& world, double silen
   if (robot.located) {
     add("place", place(robot));
     add("localisation", localisation(robot));
+    if (std::hypot(robot.roll, robot.pitch) > kTilted)
+      add("tilt", "roll " + degrees(robot.roll) + ", pitch " + degrees(robot.pitch));
     add("speed", fixed(std::hypot(robot.vx, robot.vy), 2) + " m/s, turn " + fixed(robot.wz, 2) + " rad/s");
   }
   if (robot.mine)

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "basestation/gui/scene/state.hpp"
+#include "basestation/model/route.hpp"
 #include "basestation/model/text.hpp"
 
 namespace adit::gui {
@@ -123,7 +124,7 @@ class Drawer {
     if (robot.goal_phase == GoalPhase::none || robot.goal_phase == GoalPhase::reached) return;
     if (!drawable(robot.goal[0], robot.goal[1])) return;
     const Point at = camera_.to_screen(robot.goal[0], robot.goal[1]);
-    if (robot.located && drawable(robot.x, robot.y))
+    if (robot.located && drawable(robot.x, robot.y) && !draw_route(robot, at))
       out_.shapes.push_back({.points = {camera_.to_screen(robot.x, robot.y), at},
                              .line = Token::goal,
                              .width = 1.5,
@@ -133,6 +134,31 @@ class Drawer {
     out_.shapes.push_back(mark);
     out_.labels.push_back({.at = at, .text = number(robot), .on_fill = true});
     if (robot.goal_phase == GoalPhase::blocked) cross_out(out_, at);
+  }
+
+  /// The way along the route; dashed where nothing was seen yet, and beyond what the robot sent of it.
+  /// Returns false without a route.
+  bool draw_route(const Robot& robot, const Point& goal) {
+    const station::RouteRest rest = station::rest_of_route(robot);
+    if (rest.points.empty()) return false;
+    Shape line{.line = Token::goal, .width = selected(robot) ? 2.5 : 1.5, .opacity = 0.9};
+    for (std::size_t leg = 0; leg < rest.unknown.size(); ++leg) {
+      const auto& [x, y, z] = rest.points[leg];
+      const auto& [next_x, next_y, next_z] = rest.points[leg + 1];
+      if (!drawable(next_x, next_y)) return true;
+      if (line.points.empty()) line.points.push_back(camera_.to_screen(x, y));
+      line.points.push_back(camera_.to_screen(next_x, next_y));
+      line.dashed = rest.unknown[leg] || robot.goal_phase != GoalPhase::active;
+      if (leg + 1 < rest.unknown.size() && rest.unknown[leg + 1] == rest.unknown[leg]) continue;
+      out_.shapes.push_back(line);
+      line.points.clear();
+    }
+    if (!rest.complete) {
+      line.points = {camera_.to_screen(rest.points.back()[0], rest.points.back()[1]), goal};
+      line.dashed = true;
+      out_.shapes.push_back(line);
+    }
+    return true;
   }
 
   void draw_robot(const Robot& robot) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "basestation/gui/scene/state.hpp"
+#include "basestation/model/route.hpp"
 #include "basestation/model/text.hpp"
 
 namespace adit::gui {
@@ -97,15 +98,28 @@ class OrbitDrawer {
     if (!drawable(robot.goal[0], robot.goal[1])) return;
     const double z = std::abs(robot.goal[2]) < 1e5 ? robot.goal[2] : height_of(robot);
     const Point3 goal{robot.goal[0], robot.goal[1], z};
-    if (robot.located && drawable(robot.x, robot.y))
-      add({{robot.x, robot.y, height_of(robot)}, goal}, {.line = Token::goal,
-                                                         .width = 1.5,
-                                                         .dashed = robot.goal_phase != GoalPhase::active,
-                                                         .opacity = 0.8});
+    if (robot.located && drawable(robot.x, robot.y)) draw_way(robot, goal);
     const auto seen = scene_.camera.project(goal);
     if (!seen) return;
     out_.shapes.push_back(diamond(seen->at, 9.0, Token::goal));
     if (robot.goal_phase == GoalPhase::blocked) cross_out(out_, seen->at);
+  }
+
+  /// The rest of the route, or a line to the goal; dashed where nothing was seen yet.
+  void draw_way(const Robot& robot, const Point3& goal) {
+    const bool active = robot.goal_phase == GoalPhase::active;
+    const auto line = [&](const Point3& from, const Point3& to, bool dashed) {
+      add({from, to}, {.line = Token::goal, .width = 1.5, .dashed = dashed || !active, .opacity = 0.8});
+    };
+    const station::RouteRest rest = station::rest_of_route(robot);
+    Point3 from{robot.x, robot.y, height_of(robot)};
+    for (std::size_t leg = 0; leg < rest.unknown.size(); ++leg) {
+      const auto& [x, y, z] = rest.points[leg + 1];
+      if (!drawable(x, y) || !(std::abs(z) < 1e5)) return;
+      line(from, {x, y, z}, rest.unknown[leg]);
+      from = {x, y, z};
+    }
+    if (!rest.complete) line(from, goal, !rest.points.empty());
   }
 
   void draw_robot(const Robot& robot, const std::string& number) {

@@ -26,10 +26,12 @@ class Trails {
   struct Trail {
     std::deque<Stamped> points{};
     double last_state{-1.0};  ///< Time of the last state, s.
+    station::Robot last{};    ///< As it was then.
     double period{0.1};       ///< Between two states, s, smoothed.
   };
 
-  /// `now`: steady time, s.
+  /// Where a robot's place in the map was corrected, its trail is moved with it: the newest part as far as
+  /// the robot, the oldest not at all. `now`: steady time, s.
   void add(const station::World& world, double now);
   /// The trail of a robot; null before its first place.
   const Trail* of(const std::string& robot) const;
