@@ -9,18 +9,21 @@ scenario="$root/config/scenarios/demo.yaml"
 out="$root/build/demo"
 watch=no
 gui=no
+film=no
 for argument in "$@"; do
   case "$argument" in
     --watch) watch=yes ;;
     --gui) gui=yes ;;
+    --film) film=yes scenario="$root/config/scenarios/film.yaml" ;;
     --team) scenario="$root/config/scenarios/demo_team.yaml" ;;
     -h|--help)
-      echo "usage: ./run demo [--watch|--gui] [--team]"
+      echo "usage: ./run demo [--watch|--gui [--film]] [--team]"
       echo "  --watch   the operator's dashboard instead of the narration"
       echo "  --gui     the window of op1; without a screen, its picture build/demo/window.png"
+      echo "  --film    with --gui: the window works by itself and is filmed, build/demo/gui.mp4"
       echo "  --team    robots that drive together"
       exit 0 ;;
-    *) echo "demo: unknown option '$argument'; usage: ./run demo [--watch|--gui] [--team]" >&2; exit 2 ;;
+    *) echo "demo: unknown option '$argument'; usage: ./run demo [--watch|--gui [--film]] [--team]" >&2; exit 2 ;;
   esac
 done
 
@@ -112,7 +115,7 @@ echo
 # The window of op1. Without a screen it is drawn all the same, and its picture taken while the robots are under way.
 picture_after=40
 window=()
-if [ "$gui" = yes ]; then
+if [ "$gui$film" = yesno ]; then
   [ -x "$bin/adit_gui" ] || { echo "demo: there is no $bin/adit_gui: ./run demo --gui builds it" >&2; exit 1; }
   window=("$bin/adit_gui" --name op1 --domain "$domain" --select "${robots[1]}")
   if [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
@@ -129,7 +132,13 @@ fi
 
 play=0
 kill -USR1 "$simulator"  # the scenario's time begins
-if [ "$watch" = yes ]; then
+if [ "$film" = yes ]; then
+  rm -f "$out/gui.mp4"
+  "$bin/basestation" --name op2 --domain "$domain" run "$scenario" > "$out/narration.log" 2>&1 &
+  pids+=("$!")
+  echo "  film           about a minute and a half"
+  "$bin/gui_film" op1 "$domain" "$out/gui.mp4" || { echo "demo: the film failed" >&2; exit 1; }
+elif [ "$watch" = yes ]; then
   "$bin/basestation" --name op1 --domain "$domain" run "$scenario" --all > "$out/narration.log" 2>&1 &
   player=$!
   pids+=("$player")
@@ -154,7 +163,9 @@ say "What was true in the simulated building"
 grep -v -e "simulate: ready" -e "on domain" "$home/simulate.log" | sed 's/^/  /'
 echo "  picture        ${out#"$root"/}/demo.png"
 echo "  report         ${out#"$root"/}/report.json"
-if [ "$gui" = yes ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
+if [ "$film" = yes ]; then
+  echo "  film           ${out#"$root"/}/gui.mp4"
+elif [ "$gui" = yes ] && [ -z "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; then
   if [ -s "$out/window.png" ]; then
     echo "  window         ${out#"$root"/}/window.png"
   else

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/items.hpp"
 #include "basestation/gui/scene/map_view.hpp"
 #include "basestation/gui/scene/press_area.hpp"
 #include "basestation/gui/scene/theme.hpp"
@@ -52,22 +53,10 @@ class Fingers : public testing::Test {
 
   QQuickItem* item(const QString& name) {
     QQuickItem* found = nullptr;
-    const auto find = [&] {
-      found = window()->contentItem()->findChild<QQuickItem*>(name);
-      // Delegates have no parent object but a parent item.
-      if (!found) found = below(window()->contentItem(), name);
-      return found != nullptr;
-    };
+    const auto find = [&] { return (found = find_item(window(), name)) != nullptr; };
     (void)QTest::qWaitFor(find, 3000);  // Lists make their items when they are laid out.
     EXPECT_NE(found, nullptr) << name.toStdString();
     return found;
-  }
-  static QQuickItem* below(QQuickItem* top, const QString& name) {
-    for (QQuickItem* child : top->childItems()) {
-      if (child->objectName() == name) return child;
-      if (QQuickItem* found = below(child, name)) return found;
-    }
-    return nullptr;
   }
   QPoint middle(const QString& name) {
     QQuickItem* found = item(name);
