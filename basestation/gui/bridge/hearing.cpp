@@ -31,6 +31,8 @@ HearingTable hearing_table(const station::NetworkReport& report, const std::stri
     if (names.size() < kMaxHearing && std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
   add(speakers, own);
+  for (const station::AgentTraffic& agent : report.agents)  // Stations first: their columns have the most.
+    for (const auto& [speaker, lost] : agent.hears) add(speakers, speaker);
   for (const station::LinkReport& link : report.links) {
     add(hearers, link.agent);
     add(speakers, link.agent);
@@ -41,7 +43,6 @@ HearingTable hearing_table(const station::NetworkReport& report, const std::stri
     if (agent.agent == own || agent.age > kSilent) continue;
     for (const auto& [speaker, lost] : agent.hears) {
       add(hearers, agent.agent);
-      add(speakers, speaker);
       if (speaker != own) heard[agent.agent][speaker] = lost;
     }
   }

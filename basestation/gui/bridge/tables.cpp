@@ -61,9 +61,11 @@ void show_budget(const station::SenderReport* sender, const station::AgentTraffi
     row.budget = "sends " + rate_text(sent) + ", unlimited";
   } else if (sender->bandwidth > 0.0) {
     row.share = std::clamp(sent * 8.0 / sender->bandwidth, 0.0, 1.0);
-    row.parts = budget_parts(*traffic, sender->bandwidth);
     row.budget =
         "sends " + rate_text(sent) + " of " + rate_text(sender->bandwidth / 8.0) + ", " + sender->link;
+    row.parts = budget_parts(*traffic, sender->bandwidth);
+    const auto most = std::ranges::max_element(row.parts, {}, &BudgetPart::share);
+    if (most != row.parts.end() && row.parts.size() > 1) row.budget += ", most " + most->name;
   } else {
     row.budget = "sends " + rate_text(sent) + ", " + sender->link;
   }

@@ -16,7 +16,7 @@ Rectangle {
     required property string token
     required property var parts
     readonly property double third: (width - 34 * Theme.mm) / 2
-    height: 18.6 * Theme.mm
+    height: 13 * Theme.mm
     color: Theme.raised
 
     Glyph {
@@ -51,15 +51,7 @@ Rectangle {
         width: row.third - 2 * Theme.mm
         height: 5.4 * Theme.mm
         color: Theme.dim
-        text: row.trip
-    }
-    PlainLabel {
-        x: 34 * Theme.mm
-        y: 12.2 * Theme.mm
-        width: row.third - 2 * Theme.mm
-        height: 5.4 * Theme.mm
-        color: Theme.dim
-        text: row.rates
+        text: row.trip + (row.rates === "" ? "" : "  ·  " + row.rates)
     }
     PlainLabel {
         objectName: "budget"
@@ -67,7 +59,7 @@ Rectangle {
         y: 1 * Theme.mm
         width: row.third - 1.5 * Theme.mm
         height: 5.4 * Theme.mm
-        text: row.budget
+        text: row.budget + (row.dropped === "" ? "" : "  ·  " + row.dropped)
     }
     Rectangle {
         id: bar
@@ -75,7 +67,7 @@ Rectangle {
         visible: row.share >= 0
         x: 34 * Theme.mm + row.third
         y: 6.8 * Theme.mm
-        width: row.third - 1.5 * Theme.mm
+        width: 0.55 * row.third
         height: 5 * Theme.mm
         color: "transparent"
         border.width: row.share > 0.9 ? 2 : 1
@@ -101,11 +93,11 @@ Rectangle {
         }
     }
     PlainLabel {
-        x: 34 * Theme.mm + row.third
-        y: (row.share >= 0 ? 12.2 : 6.6) * Theme.mm
-        width: row.third - 1.5 * Theme.mm
+        x: row.share < 0 ? bar.x : bar.x + bar.width + 1.5 * Theme.mm
+        y: 6.6 * Theme.mm
+        width: row.width - x - 1.5 * Theme.mm
         height: 5.4 * Theme.mm
         color: Theme.dim
-        text: row.queue + (row.dropped === "" ? "" : (row.queue === "" ? "" : "  ·  ") + row.dropped)
+        text: row.queue
     }
 }
