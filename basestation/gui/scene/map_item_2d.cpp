@@ -4,6 +4,7 @@
 #include <QElapsedTimer>
 #include <QPainter>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "basestation/gui/scene/mark_list.hpp"
@@ -79,19 +80,21 @@ void MapItem2D::show_grid(const SignalGrid* grid) {
 }
 
 void MapItem2D::draw_reception(QPainter& painter) const {
-  constexpr double kOpacity = 0.45;
+  constexpr std::array kOpacity{0.8, 0.8, 0.4};  // Patterns leave most of the map free.
   const QRectF view(0, 0, width(), height());
   const Theme& theme = Theme::instance();
   const std::array brushes{QBrush(theme.of(Token::ok), Qt::Dense6Pattern),
                            QBrush(theme.of(Token::warn), Qt::BDiagPattern), QBrush(theme.of(Token::bad))};
-  painter.setOpacity(kOpacity);
   for (const auto& [place, cell] : grid_->cells()) {
     const Point low = camera_.to_screen(place.first * SignalGrid::kCell, place.second * SignalGrid::kCell);
     const Point high =
         camera_.to_screen((place.first + 1) * SignalGrid::kCell, (place.second + 1) * SignalGrid::kCell);
     const QRectF target(QPointF(std::round(low.x), std::round(high.y)),
                         QPointF(std::round(high.x), std::round(low.y)));
-    if (target.intersects(view)) painter.fillRect(target, brushes[static_cast<std::size_t>(cell.step())]);
+    if (!target.intersects(view)) continue;
+    const auto step = static_cast<std::size_t>(cell.step());
+    painter.setOpacity(kOpacity[step]);
+    painter.fillRect(target, brushes[step]);
   }
   painter.setOpacity(1.0);
 }
