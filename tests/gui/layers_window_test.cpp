@@ -31,6 +31,7 @@ TEST_F(LayersTest, FindingsAreOnTheMapWithoutTheTabBeingOpen) {
   EXPECT_EQ(star(map().marks(), 3), nullptr) << "rejected";
   EXPECT_EQ(sink.queries.size(), 1U);
   const Point at = map().camera().to_screen(3, 1);
+  ASSERT_NE(star(map().marks(), 1), nullptr);
   EXPECT_EQ(star(map().marks(), 1)->at, at);
   const QImage picture = window()->grabWindow();
   EXPECT_LT(difference(picture.pixel(on_map(3, 1)), Theme::instance().of(Token::ok).rgb()), 20)
@@ -43,7 +44,7 @@ TEST_F(LayersTest, FindingsAreOnTheMapWithoutTheTabBeingOpen) {
 TEST_F(LayersTest, ATapOnAStarOpensTheTabAtThatFinding) {
   answer(answer_of(some_findings()), "findings");
   touch(on_map(3, 1));
-  EXPECT_EQ(control.tabs()->open(), "findings");
+  ASSERT_EQ(control.tabs()->open(), "findings");
   EXPECT_EQ(control.tabs()->picked(), 1U);
   EXPECT_EQ(item("findings")->property("currentIndex").toInt(), 1);
   EXPECT_THAT(control.selection(), IsEmpty());
@@ -69,7 +70,7 @@ TEST_F(LayersTest, StarsAreInThreeDimensionsToo) {
   ASSERT_NE(star(solid().marks(), 1), nullptr);
   const Point at = star(solid().marks(), 1)->at;
   touch(solid().mapToScene({at.x, at.y}).toPoint());
-  EXPECT_EQ(control.tabs()->picked(), 1U);
+  ASSERT_EQ(control.tabs()->picked(), 1U);
   settle_layout();
   answer(answer_of(some_findings()), "findings");
   touch(middle("finding_2"));
