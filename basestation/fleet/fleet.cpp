@@ -349,6 +349,9 @@ void Fleet::hear(const radio::LinkReport& sample, const wire::SampleInfo& info) 
                            row.bytes_in(), row.samples_in(), row.dropped()});
   }
   for (const auto& peer : sample.peers()) {
+    // False for NaN, too.
+    if (command::valid_name(peer.peer()) && peer.lost() >= 0.0F && peer.lost() <= 1.0F)
+      view.hears[peer.peer()] = peer.lost();
     if (peer.peer() != own_name_) continue;
     if (peer.held() >= 0.0F && peer.held() < 1e6F)  // Also false for NaN.
       links_.echoed(view.agent, peer.number(), from_seconds(peer.held()), info.received);

@@ -76,6 +76,7 @@ struct TrafficView {
   float discovery_out{}, discovery_in{}, total_out{}, total_in{};  ///< Bytes/s.
   std::uint32_t malformed{};                                       ///< Malformed samples since its start.
   std::vector<TopicRate> topics{};
+  std::map<std::string, double> hears{};  ///< Fraction of heartbeats that it misses, [0, 1], by their sender.
   SenderView sender{};
   float lost_there{
       -1.0F};  ///< Fraction of this station's heartbeats that the agent missed, [0, 1]; negative: unknown.

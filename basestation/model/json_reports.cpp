@@ -117,7 +117,9 @@ json json_of(const AgentTraffic& traffic) {
           {"total_out", traffic.total_out},
           {"total_in", traffic.total_in},
           {"malformed", traffic.malformed},
-          {"topics", list_of(traffic.topics)}};
+          {"topics", list_of(traffic.topics)},
+          {"classes_out", traffic.classes_out},
+          {"hears", traffic.hears}};
 }
 
 void read_fields(JsonReader& in, AgentTraffic& traffic) {
@@ -129,6 +131,8 @@ void read_fields(JsonReader& in, AgentTraffic& traffic) {
   in.read("total_in", traffic.total_in);
   in.read("malformed", traffic.malformed);
   in.read("topics", traffic.topics);
+  in.read("classes_out", traffic.classes_out);
+  in.read("hears", traffic.hears);
 }
 
 json json_of(const SenderReport& sender) {

@@ -26,6 +26,8 @@ struct AgentTraffic {
   float discovery_out{}, discovery_in{}, total_out{}, total_in{};
   std::uint32_t malformed{};  ///< Malformed samples since its start.
   std::vector<TopicRate> topics{};
+  std::map<std::string, double> classes_out{};  ///< Bytes/s that it sends, by traffic class and "discovery".
+  std::map<std::string, double> hears{};  ///< Fraction of heartbeats that it misses, [0, 1], by their sender.
   bool operator==(const AgentTraffic&) const = default;
 };
 

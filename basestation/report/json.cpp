@@ -4,6 +4,8 @@
 #include "basestation/fleet/summary.hpp"
 #include "basestation/model/json.hpp"
 #include "basestation/model/json_reports.hpp"
+#include "core/wire/qos.hpp"
+#include "core/wire/topics.hpp"
 
 namespace adit::station {
 
@@ -148,6 +150,35 @@ LinkReport report_of(const LinkView& link) {
 
 }  // namespace
 
+namespace {
+
+/// The class of a topic as the budget counts it: "state", "bulk".
+std::string class_of(const std::string& topic) {
+  namespace topics = wire::topics;
+  static const std::map<std::string, wire::QosClass> classes = [] {
+    std::map<std::string, wire::QosClass> out;
+    const auto add = [&out](const auto&... all) { ((out[all.name] = all.qos), ...); };
+    add(topics::kCapabilities, topics::kPresence, topics::kCommand, topics::kJoystick,
+        topics::kAcknowledgement, topics::kAuthority, topics::kRobotState, topics::kBehaviour,
+        topics::kNotification, topics::kHealth, topics::kLinkReport, topics::kFinding, topics::kFindingsAck,
+        topics::kBulk, topics::kBulkAck, topics::kTeam);
+    return out;
+  }();
+  const auto known = classes.find(topic);
+  if (known == classes.end()) return "other";
+  return priority_name(static_cast<std::size_t>(wire::qos_of(known->second).priority));
+}
+
+std::map<std::string, double> classes_out(const TrafficView& traffic) {
+  std::map<std::string, double> out;
+  if (traffic.discovery_out > 0.0F) out["discovery"] = traffic.discovery_out;
+  for (const TopicRate& rate : traffic.topics)
+    if (rate.bytes_out > 0.0F) out[class_of(rate.topic)] += rate.bytes_out;
+  return out;
+}
+
+}  // namespace
+
 NetworkReport network_report(const Fleet& fleet, Time now) {
   NetworkReport report;
   for (const auto& [agent, traffic] : fleet.traffic())
@@ -158,7 +189,9 @@ NetworkReport network_report(const Fleet& fleet, Time now) {
                              .total_out = traffic.total_out,
                              .total_in = traffic.total_in,
                              .malformed = traffic.malformed,
-                             .topics = traffic.topics});
+                             .topics = traffic.topics,
+                             .classes_out = classes_out(traffic),
+                             .hears = traffic.hears});
   for (const LinkView& link : links(fleet, now)) report.links.push_back(report_of(link));
   const auto own = fleet.traffic().find(fleet.own_name());
   if (own != fleet.traffic().end()) report.sender = report_of(own->second.sender);

@@ -44,7 +44,13 @@ inline station::NetworkReport network_of_ten() {
   report.agents.push_back({.agent = "op1", .total_out = 4200, .total_in = 38000});
   for (int i = 1; i <= 9; ++i) {
     const std::string name = "r" + std::to_string(i);
-    report.agents.push_back({.agent = name, .total_out = 6100.0F * static_cast<float>(i)});
+    report.agents.push_back({.agent = name,
+                             .total_out = 6100.0F * static_cast<float>(i),
+                             .classes_out = {{"discovery", 200.0},
+                                             {"state", 1100.0 * i},
+                                             {"status", 300.0 * i},
+                                             {"bulk", 4200.0 * i}},
+                             .hears = {{"op1", 0.02}, {"op2", 0.04 * i}}});
     report.links.push_back({.agent = name,
                             .age = 0.4,
                             .lost_from = 0.01 * i,

@@ -142,7 +142,7 @@ TEST_F(TabsTest, NetworkShowsBudgetsLossAndSilence) {
   const QStringList loss = column(control.tabs()->network(), 1),
                     budget = column(control.tabs()->network(), 5),
                     shape = column(control.tabs()->network(), 8);
-  EXPECT_EQ(budget[1], "sends 6.1 kB/s of 62.5 kB/s, mesh_500k");
+  EXPECT_EQ(budget[1], "sends 6.1 kB/s of 62.5 kB/s, mesh_500k, most bulk");
   EXPECT_EQ(budget[3], "sends 18.3 kB/s, unlimited");
   EXPECT_TRUE(loss[4].startsWith("does not hear us")) << loss[4].toStdString();
   EXPECT_TRUE(loss[5].startsWith("SILENT for 47 s")) << loss[5].toStdString();

@@ -233,6 +233,9 @@ TEST(Report, NetShowsDiscoveryApartAndTheShareOfTheLink) {
   EXPECT_THAT(text, HasSubstr("discovery"));
   EXPECT_THAT(text, HasSubstr("5.0 % of mesh_100k"));
   EXPECT_EQ(net_json(fleet, Time(2s))["agents"][0]["topics"][0]["topic"], "adit/robot_state");
+  const auto classes = net_json(fleet, Time(2s))["agents"][0]["classes_out"];
+  EXPECT_EQ(classes["state"], 500.0);
+  EXPECT_EQ(classes["discovery"], 125.0);
 }
 
 TEST(Report, NetShowsWhatTheLinkToEachRobotGives) {
@@ -253,18 +256,26 @@ TEST(Report, NetShowsWhatTheLinkToEachRobotGives) {
   peer.held(0.7F);
   peer.lost(0.5F);
   report.peers().push_back(peer);
+  radio::PeerLink other;
+  other.peer("op2");
+  other.lost(0.25F);
+  report.peers().push_back(other);
+  other.peer("no name\n");
+  report.peers().push_back(other);
   fleet.hear(report, {.received = Time(4s)});
   const auto link = net_json(fleet, Time(5s))["links"][0];
   EXPECT_EQ(link["agent"], "r1");
   EXPECT_NEAR(link["lost_from"].get<double>(), 0.25, 1e-6);
   EXPECT_NEAR(link["lost_to"].get<double>(), 0.5, 1e-6);
   EXPECT_NEAR(link["round_trip"].get<double>(), 0.3, 1e-6);
+  EXPECT_EQ(net_json(fleet, Time(5s))["agents"][0]["hears"], (nlohmann::json{{"op1", 0.5}, {"op2", 0.25}}));
   EXPECT_THAT(net_text(fleet, Time(5s), "lan", 0), HasSubstr("ROUND TRIP MS"));
   peer.held(std::nanf(""));
   peer.lost(std::nanf(""));
   report.peers() = {peer};
   fleet.hear(report, {.received = Time(5s)});
   EXPECT_TRUE(net_json(fleet, Time(5s))["links"][0]["lost_to"].is_null());
+  EXPECT_TRUE(net_json(fleet, Time(5s))["agents"][0]["hears"].empty());
 }
 
 wire::PeerState carried(std::uint64_t out, std::uint64_t in, std::optional<double> signal = {}) {

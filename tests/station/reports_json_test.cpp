@@ -56,7 +56,9 @@ class ReportDraw {
     NetworkReport report;
     report.agents.resize(below(3));
     for (AgentTraffic& agent : report.agents) {
-      agent = {text(), number(), single(), single(), single(), single(), count(), {}};
+      agent = {text(), number(), single(), single(), single(), single(), count(), {}, {}, {}};
+      if (flag()) agent.classes_out[text()] = number();
+      if (flag()) agent.hears[text()] = number();
       agent.topics.resize(below(3));
       for (TopicRate& topic : agent.topics) topic = {text(), single(), single(), single(), single(), count()};
     }

@@ -52,6 +52,7 @@ Control::Control(CommandSink& sink, QObject* parent)
       log_({"row", "time", "kind", "who", "line"}, this),
       tabs_(sink, log_, this) {
   connect(&tabs_, &TabState::ordered, this, &Control::order_of_tab);
+  connect(&tabs_, &TabState::place_wanted, this, &Control::look_at);
   connect(&tabs_, &TabState::remark, this, &Control::add_remark);
   connect(&tabs_, &TabState::said, this,
           [this](const QString& text, bool good) { say(text, good ? "done" : "refused"); });

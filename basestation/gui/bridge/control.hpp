@@ -21,6 +21,7 @@
 #include "basestation/gui/bridge/row_model.hpp"
 #include "basestation/gui/bridge/tabs.hpp"
 #include "basestation/gui/scene/camera.hpp"
+#include "basestation/gui/scene/mark_list.hpp"
 #include "basestation/gui/scene/trails.hpp"
 #include "basestation/model/map_tiles.hpp"
 #include "basestation/model/world.hpp"
@@ -90,6 +91,9 @@ class Control : public QObject {
   /// `z`: height of the ground there, if it is known.
   void go_to(const Point& place, std::optional<double> z = std::nullopt);
 
+  /// A finger tapped a mark of the map; `add`: with the shift key.
+  void tap(const Target& target, bool add);
+
   /// Runs a command line as an order of the operator. `slot`: the button that shows its state. `then`: called
   /// with its outcome.
   void order(const std::string& line, const std::string& slot = {}, CommandSink::Done then = {});
@@ -152,7 +156,8 @@ class Control : public QObject {
  signals:
   void shown();  ///< The world, the link or the selection changed.
   void map_changed();
-  void look_at(double x, double y);  ///< The map should show this place in its middle, map frame, m.
+  /// The map should show this place in its middle, map frame, m; z may be NaN: that of the selection.
+  void look_at(double x, double y, double z);
   void said();
   void orders_dropped();  ///< A finger that is down on the map sends nothing any more.
   void solid_changed();

@@ -38,6 +38,11 @@ void Control::select(const QString& name, bool add) {
   refresh();
 }
 
+void Control::tap(const Target& target, bool add) {
+  if (target.finding != 0) return tabs_.show_finding(static_cast<int>(target.finding));
+  select(QString::fromStdString(target.robot), add);
+}
+
 void Control::select_and_show(const std::vector<std::string>& robots) {
   std::vector<std::string> known;
   Point sum{};
@@ -54,7 +59,7 @@ void Control::select_and_show(const std::vector<std::string>& robots) {
   selection_ = std::move(known);
   drop_orders();
   refresh();
-  if (located > 0) emit look_at(sum.x / located, sum.y / located);
+  if (located > 0) emit look_at(sum.x / located, sum.y / located, std::nan(""));
 }
 
 void Control::order(const std::string& line, const std::string& slot, CommandSink::Done then) {

@@ -13,9 +13,7 @@ namespace {
 using station::ComponentPhase;
 using station::ComponentView;
 
-constexpr double kSilent = 10.0;    // On a full link reports come every 8 s.
 constexpr double kFullQueue = 0.2;  // Queued airtime from which a link counts as full, s.
-constexpr double kLossy = 0.2;      // Share of lost heartbeats from which a link counts as bad.
 
 std::string count_text(std::uint32_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
@@ -65,6 +63,9 @@ void show_budget(const station::SenderReport* sender, const station::AgentTraffi
     row.share = std::clamp(sent * 8.0 / sender->bandwidth, 0.0, 1.0);
     row.budget =
         "sends " + rate_text(sent) + " of " + rate_text(sender->bandwidth / 8.0) + ", " + sender->link;
+    row.parts = budget_parts(*traffic, sender->bandwidth);
+    const auto most = std::ranges::max_element(row.parts, {}, &BudgetPart::share);
+    if (most != row.parts.end() && row.parts.size() > 1) row.budget += ", most " + most->name;
   } else {
     row.budget = "sends " + rate_text(sent) + ", " + sender->link;
   }

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "basestation/gui/bridge/hearing.hpp"
 #include "basestation/gui/scene/colours.hpp"
 #include "basestation/model/found.hpp"
 #include "basestation/model/health.hpp"
@@ -48,12 +49,13 @@ HealthDetail health_detail(const station::HealthReport& report, const station::W
 /// The link to an agent, or what this station sends itself.
 struct NetworkRow {
   std::string agent{};
-  std::string loss{};    ///< "lost 3 % from it, 1 % to it".
-  std::string trip{};    ///< Round trip.
-  std::string rates{};   ///< Bytes/s in the link's two directions.
-  std::string queue{};   ///< Queued airtime and the rate of states.
-  std::string budget{};  ///< "1.2 of 62.5 kB/s (mesh_500k)", or "unlimited".
-  double share{-1.0};    ///< Of the budget that is used, [0, 1]; negative: no budget is known.
+  std::string loss{};               ///< "lost 3 % from it, 1 % to it".
+  std::string trip{};               ///< Round trip.
+  std::string rates{};              ///< Bytes/s in the link's two directions.
+  std::string queue{};              ///< Queued airtime and the rate of states.
+  std::string budget{};             ///< "1.2 of 62.5 kB/s (mesh_500k)", or "unlimited".
+  double share{-1.0};               ///< Of the budget that is used, [0, 1]; negative: no budget is known.
+  std::vector<BudgetPart> parts{};  ///< Of that share, by traffic class.
   std::string dropped{};
   std::string shape{};  ///< Mark of its state.
   Token token{Token::none};

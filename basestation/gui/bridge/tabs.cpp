@@ -10,6 +10,7 @@
 #include "basestation/client/connection.hpp"
 #include "basestation/client/paths.hpp"
 #include "basestation/gui/bridge/tables.hpp"
+#include "basestation/gui/scene/camera.hpp"
 
 namespace adit::gui {
 namespace {
@@ -30,8 +31,11 @@ TabState::TabState(CommandSink& sink, RowModel& log, QObject* parent)
       tabs_({"tab", "label", "key", "count", "alarm"}, this),
       columns_({"name"}, this),
       cells_({"cell", "robot", "component", "label", "hint", "shape", "token", "old", "chosen"}, this),
-      network_({"agent", "loss", "trip", "rates", "queue", "budget", "share", "dropped", "shape", "token"},
+      network_({"agent", "loss", "trip", "rates", "queue", "budget", "share", "dropped", "shape", "token",
+                "parts"},
                this),
+      speakers_({"name"}, this),
+      hearing_({"cell", "name", "label", "shape", "token"}, this),
       findings_({"number", "importance", "kind", "robot", "place", "age", "line", "note", "verdict", "shape",
                  "token"},
                 this),
@@ -78,14 +82,24 @@ void TabState::toggle(const QString& tab) {
   }
   noting_ = 0;
   problem_.clear();
-  const bool asks = extra_ == "health" || extra_ == "network";
-  if (asks && !timer_.isActive()) timer_.start();
-  if (!asks) timer_.stop();
+  time_questions();
   show_tabs();
   emit opened();
   emit shown();
   ask();
   if (extra_ == "findings") ask_findings();
+}
+
+void TabState::time_questions() {
+  const bool asks = extra_ == "health" || extra_ == "network" || watching_network_;
+  if (asks && !timer_.isActive()) timer_.start();
+  if (!asks) timer_.stop();
+}
+
+void TabState::watch_network(bool watch) {
+  watching_network_ = watch;
+  time_questions();
+  if (watch) ask();
 }
 
 bool TabState::close() {
@@ -116,7 +130,7 @@ void TabState::ask_for(const char* line, Result<Report> (*read)(const station::C
 void TabState::ask() {
   if (extra_ == "health")
     ask_for("health", &station::health_of, health_asked_, health_, &TabState::show_health);
-  if (extra_ == "network")
+  if (extra_ == "network" || watching_network_)
     ask_for("net", &station::network_of, network_asked_, net_, &TabState::show_network);
 }
 
@@ -146,6 +160,28 @@ void TabState::changePolicy() {
 
 void TabState::judge(int finding, const QString& verdict) {
   emit ordered(QString("finding %1 %2").arg(finding).arg(verdict));
+}
+
+void TabState::pickFinding(int finding) {
+  picked_ = static_cast<std::uint32_t>(finding);
+  emit shown();
+  emit findings_changed();
+  for (const station::FoundItem& item : found_.findings)
+    if (item.number == picked_ && drawable(item.position[0], item.position[1]))
+      emit place_wanted(item.position[0], item.position[1], item.position[2]);
+}
+
+void TabState::show_finding(int finding) {
+  picked_ = static_cast<std::uint32_t>(finding);
+  if (extra_ != "findings") toggle("findings");
+  emit shown();
+  emit findings_changed();
+}
+
+int TabState::picked_row() const {
+  for (std::size_t i = 0; i < found_.findings.size(); ++i)
+    if (found_.findings[i].number == picked_) return static_cast<int>(i);
+  return -1;
 }
 
 void TabState::startNote(int finding) {

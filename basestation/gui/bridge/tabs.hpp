@@ -35,6 +35,9 @@ class TabState : public QObject {
   Q_PROPERTY(QAbstractItemModel* cells READ cells CONSTANT)
   Q_PROPERTY(int columnCount READ column_count NOTIFY shown)
   Q_PROPERTY(QAbstractItemModel* network READ network CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* speakers READ speakers CONSTANT)
+  Q_PROPERTY(QAbstractItemModel* hearing READ hearing CONSTANT)
+  Q_PROPERTY(int speakerCount READ speaker_count NOTIFY shown)
   Q_PROPERTY(QAbstractItemModel* findings READ findings CONSTANT)
   Q_PROPERTY(QString missing READ missing NOTIFY shown)
   Q_PROPERTY(QString problem READ problem NOTIFY shown)
@@ -43,6 +46,9 @@ class TabState : public QObject {
   Q_PROPERTY(bool chosenMine READ chosen_mine NOTIFY shown)
   Q_PROPERTY(bool chosenAutomatic READ chosen_automatic NOTIFY shown)
   Q_PROPERTY(int noting READ noting NOTIFY shown)
+  Q_PROPERTY(int pickedFinding READ picked NOTIFY shown)
+  /// The row of that finding; -1: none.
+  Q_PROPERTY(int pickedRow READ picked_row NOTIFY shown)
 
  public:
   /// `log`: every line of the log, the newest first.
@@ -66,6 +72,10 @@ class TabState : public QObject {
   Q_INVOKABLE void restartChosen();
   Q_INVOKABLE void changePolicy();  ///< From automatic to manual, or back.
   Q_INVOKABLE void judge(int finding, const QString& verdict);
+  /// Marks a finding, and asks the map to show its place.
+  Q_INVOKABLE void pickFinding(int finding);
+  /// Opens the tab of findings with that one marked.
+  void show_finding(int finding);
   Q_INVOKABLE void startNote(int finding);
   Q_INVOKABLE void endNote(const QString& text, bool send);
   Q_INVOKABLE void exportLog();
@@ -78,6 +88,9 @@ class TabState : public QObject {
   QAbstractItemModel* cells() { return &cells_; }
   int column_count() const { return columns_.rowCount(); }
   QAbstractItemModel* network() { return &network_; }
+  QAbstractItemModel* speakers() { return &speakers_; }
+  QAbstractItemModel* hearing() { return &hearing_; }
+  int speaker_count() const { return speakers_.rowCount(); }
   QAbstractItemModel* findings() { return &findings_; }
   const QString& missing() const { return missing_; }
   const QString& problem() const { return problem_; }
@@ -86,17 +99,25 @@ class TabState : public QObject {
   bool chosen_mine() const { return chosen_mine_; }
   bool chosen_automatic() const { return chosen_automatic_; }
   int noting() const { return noting_; }
+  std::uint32_t picked() const { return picked_; }  ///< Number of the marked finding; 0: none.
+  int picked_row() const;
+  const station::NetworkReport& net() const { return net_; }
+  /// Asks for the network also while its tab is closed.
+  void watch_network(bool watch);
   const station::FoundReport& found() const { return found_; }
 
  signals:
   void opened();
   void shown();
-  void findings_changed();
-  void ordered(const QString& line);  ///< A command of the operator.
+  void network_changed();
+  void findings_changed();                          ///< Or another one is marked.
+  void place_wanted(double x, double y, double z);  ///< The map should show it, map frame, m.
+  void ordered(const QString& line);                ///< A command of the operator.
   void said(const QString& text, bool good);
   void remark(const QString& text);  ///< For the log.
 
  private:
+  void time_questions();  ///< Starts or stops them.
   void ask();
   void ask_findings();
   template <class Report>
@@ -112,7 +133,7 @@ class TabState : public QObject {
   CommandSink& sink_;
   LogView log_;
   WindowSettings settings_;
-  RowModel tabs_, columns_, cells_, network_, findings_;
+  RowModel tabs_, columns_, cells_, network_, speakers_, hearing_, findings_;
   std::shared_ptr<const station::World> world_;
   bool silent_{true};
 
@@ -124,12 +145,14 @@ class TabState : public QObject {
   bool found_again_{false};  ///< Findings changed while they were asked for.
   station::HealthReport health_{};
   station::NetworkReport net_{};
+  bool watching_network_{false};
   station::FoundReport found_{};
   QString missing_{}, problem_{};
   std::string chosen_robot_{}, chosen_component_{};
   QString chosen_title_{}, chosen_text_{};
   bool chosen_mine_{false}, chosen_automatic_{false};
   int noting_{0};
+  std::uint32_t picked_{0};
 };
 
 }  // namespace adit::gui

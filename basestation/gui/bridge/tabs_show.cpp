@@ -57,11 +57,25 @@ void TabState::show_chosen() {
 
 void TabState::show_network() {
   std::vector<QVariantList> rows;
-  for (const NetworkRow& row : network_rows(net_, world_->station))
+  for (const NetworkRow& row : network_rows(net_, world_->station)) {
+    QVariantList parts;
+    for (const BudgetPart& part : row.parts)
+      parts.push_back(QVariantMap{{"name", text_of(part.name)}, {"from", part.from}, {"share", part.share}});
     rows.push_back({text_of(row.agent), text_of(row.loss), text_of(row.trip), text_of(row.rates),
                     text_of(row.queue), text_of(row.budget), row.share, text_of(row.dropped),
-                    text_of(row.shape), word_of(row.token)});
+                    text_of(row.shape), word_of(row.token), QVariant(parts)});
+  }
   network_.show(std::move(rows));
+  const HearingTable table = hearing_table(net_, world_->station);
+  std::vector<QVariantList> speakers, cells;
+  for (const std::string& speaker : table.speakers) speakers.push_back({text_of(speaker)});
+  for (const HearingCell& cell : table.cells)
+    cells.push_back({text_of(cell.hearer + '\n' + cell.speaker),
+                     text_of(cell.speaker.empty() ? cell.hearer : std::string()), text_of(cell.text),
+                     text_of(cell.shape), word_of(cell.token)});
+  speakers_.show(std::move(speakers));
+  hearing_.show(std::move(cells));
+  emit network_changed();
 }
 
 void TabState::show_findings() {

@@ -19,6 +19,16 @@ Rectangle {
     height: 14 * Theme.mm
     color: Theme.raised
     opacity: verdict === "rejected" ? 0.6 : 1
+    border.width: state_.pickedFinding === number ? 2 : 0
+    border.color: Theme.text
+
+    PressArea {
+        objectName: "finding_" + row.number
+        width: buttons.x
+        height: parent.height
+        meaning: row.kind + row.number
+        onTapped: row.state_.pickFinding(row.number)
+    }
 
     Glyph {
         x: 1.5 * Theme.mm

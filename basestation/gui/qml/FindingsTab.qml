@@ -18,6 +18,8 @@ Item {
         spacing: 1
         boundsBehavior: Flickable.StopAtBounds
         model: tab.state_.findings
+        currentIndex: tab.state_.pickedRow
+        highlightMoveDuration: 0
         delegate: FindingRow {
             width: list.width
             state_: tab.state_

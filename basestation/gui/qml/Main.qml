@@ -49,6 +49,7 @@ Window {
         MapPane {
             id: map
             control: window.control
+            covered: panel.open === "" ? 0 : panel.height - panel.strip
             anchors.left: fleet.right
             anchors.right: details.visible ? details.left : parent.right
             anchors.top: attention.bottom

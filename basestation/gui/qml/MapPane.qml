@@ -5,6 +5,7 @@ import Adit
 Rectangle {
     id: pane
     required property Control control
+    property double covered: 0
     color: Theme.ground
     border.width: control.aiming ? 3 : 0
     border.color: Theme.goal
@@ -15,6 +16,7 @@ Rectangle {
         anchors.fill: parent
         anchors.margins: pane.border.width
         control: pane.control
+        covered: pane.covered
         visible: !pane.control.solid
     }
     MapView3D {
@@ -23,11 +25,12 @@ Rectangle {
         anchors.fill: parent
         anchors.margins: pane.border.width
         control: pane.control
+        covered: pane.covered
         visible: pane.control.solid
     }
     Connections {
         target: pane.control
-        function onCut_moved(steps) { solid.moveCut(steps) }
+        function onCut_moved(steps) { pane.control.solid ? solid.moveCut(steps) : map.moveFloor(steps) }
     }
     PlainLabel {
         visible: pane.control.solid ? solid.empty : map.empty
@@ -35,6 +38,21 @@ Rectangle {
         y: 4 * Theme.mm
         color: Theme.dim
         text: "no map yet: only what robots report of themselves"
+    }
+    Rectangle {
+        visible: map.reception && !pane.control.solid
+        x: 1 * Theme.mm
+        y: 1 * Theme.mm
+        width: Math.min(legend.implicitWidth + 3 * Theme.mm, pane.width - 48 * Theme.mm)
+        height: 6 * Theme.mm
+        color: Theme.panel
+        PlainLabel {
+            id: legend
+            objectName: "receptionLegend"
+            anchors.fill: parent
+            anchors.leftMargin: 1.5 * Theme.mm
+            text: map.receptionLegend
+        }
     }
     AreaMenu {
         area: pane.control.area
@@ -49,6 +67,7 @@ Rectangle {
         spacing: 2 * Theme.mm
         HoldButton {
             objectName: "fitAll"
+            anchors.right: parent.right
             width: 22 * Theme.mm
             height: 10 * Theme.mm
             text: map.fitting && !pane.control.solid ? "● fit all" : "fit all"
@@ -56,6 +75,7 @@ Rectangle {
         }
         HoldButton {
             objectName: "solidToggle"
+            anchors.right: parent.right
             width: 22 * Theme.mm
             height: 10 * Theme.mm
             text: pane.control.solid ? "2D  v" : "3D  v"
@@ -63,6 +83,7 @@ Rectangle {
         }
         HoldButton {
             objectName: "cutToggle"
+            anchors.right: parent.right
             visible: pane.control.solid
             width: 22 * Theme.mm
             height: 10 * Theme.mm
@@ -70,28 +91,69 @@ Rectangle {
             text: solid.cutting ? "≤ " + solid.cut.toFixed(1) + " m" : "all heights"
             onFired: solid.toggleCut()
         }
-        HoldButton {
-            objectName: "areaToggle"
+        Row {
+            visible: !pane.control.solid && map.floor !== ""
+            anchors.right: parent.right
+            spacing: 1 * Theme.mm
+            HoldButton {
+                objectName: "floorDown"
+                width: 10 * Theme.mm
+                height: width
+                text: "↓"
+                onFired: map.moveFloor(-1)
+            }
+            HoldButton {
+                objectName: "floorUp"
+                width: 10 * Theme.mm
+                height: width
+                text: "↑"
+                onFired: map.moveFloor(1)
+            }
+            HoldButton {
+                objectName: "floorToggle"
+                width: 30 * Theme.mm
+                height: 10 * Theme.mm
+                active: map.floorAutomatic
+                text: map.floor
+                onFired: map.toggleFloor()
+            }
+        }
+        Row {
             visible: !pane.control.solid
-            width: 22 * Theme.mm
-            height: 10 * Theme.mm
-            active: pane.control.area.active
-            text: "area"
-            onFired: pane.control.area.active = !pane.control.area.active
-        }
-        HoldButton {
             anchors.right: parent.right
-            width: 10 * Theme.mm
-            height: width
-            text: "+"
-            onFired: pane.control.solid ? solid.zoomBy(1.5) : map.zoomBy(1.5)
+            spacing: 1 * Theme.mm
+            HoldButton {
+                objectName: "receptionToggle"
+                width: 22 * Theme.mm
+                height: 10 * Theme.mm
+                active: map.reception
+                text: "signal"
+                onFired: map.reception = !map.reception
+            }
+            HoldButton {
+                objectName: "areaToggle"
+                width: 22 * Theme.mm
+                height: 10 * Theme.mm
+                active: pane.control.area.active
+                text: "area"
+                onFired: pane.control.area.active = !pane.control.area.active
+            }
         }
-        HoldButton {
+        Row {
             anchors.right: parent.right
-            width: 10 * Theme.mm
-            height: width
-            text: "−"
-            onFired: pane.control.solid ? solid.zoomBy(1 / 1.5) : map.zoomBy(1 / 1.5)
+            spacing: 2 * Theme.mm
+            HoldButton {
+                width: 10 * Theme.mm
+                height: width
+                text: "−"
+                onFired: pane.control.solid ? solid.zoomBy(1 / 1.5) : map.zoomBy(1 / 1.5)
+            }
+            HoldButton {
+                width: 10 * Theme.mm
+                height: width
+                text: "+"
+                onFired: pane.control.solid ? solid.zoomBy(1.5) : map.zoomBy(1.5)
+            }
         }
     }
 }

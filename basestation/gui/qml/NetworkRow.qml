@@ -14,6 +14,7 @@ Rectangle {
     required property string dropped
     required property string shape
     required property string token
+    required property var parts
     readonly property double third: (width - 34 * Theme.mm) / 2
     height: 13 * Theme.mm
     color: Theme.raised
@@ -52,34 +53,51 @@ Rectangle {
         color: Theme.dim
         text: row.trip + (row.rates === "" ? "" : "  ·  " + row.rates)
     }
-    Rectangle {
+    PlainLabel {
+        objectName: "budget"
         x: 34 * Theme.mm + row.third
         y: 1 * Theme.mm
         width: row.third - 1.5 * Theme.mm
         height: 5.4 * Theme.mm
+        text: row.budget + (row.dropped === "" ? "" : "  ·  " + row.dropped)
+    }
+    Rectangle {
+        id: bar
+        objectName: "bar_" + row.agent
+        visible: row.share >= 0
+        x: 34 * Theme.mm + row.third
+        y: 6.8 * Theme.mm
+        width: 0.55 * row.third
+        height: 5 * Theme.mm
         color: "transparent"
-        border.width: row.share < 0 ? 0 : 1
-        border.color: Theme.edge
-        Rectangle {
-            visible: row.share >= 0
-            width: parent.width * Math.max(0, row.share)
-            height: parent.height
-            color: row.share > 0.9 ? Theme.warn : Theme.edge
-        }
-        PlainLabel {
-            objectName: "budget"
-            anchors.fill: parent
-            leftPadding: row.share < 0 ? 0 : 1 * Theme.mm
-            color: row.share > 0.9 ? Theme.ink : Theme.text
-            text: row.budget
+        border.width: row.share > 0.9 ? 2 : 1
+        border.color: row.share > 0.9 ? Theme.warn : Theme.edge
+        Repeater {
+            model: row.parts
+            Rectangle {
+                required property int index
+                required property var modelData
+                x: modelData.from * bar.width
+                width: Math.max(1, modelData.share * bar.width - 1)
+                height: bar.height
+                color: index % 2 === 0 ? Theme.edge : Theme.dim
+                PlainLabel {
+                    visible: parent.width > implicitWidth + 4
+                    anchors.fill: parent
+                    horizontalAlignment: Text.AlignHCenter
+                    font.pixelSize: 2.9 * Theme.mm
+                    color: parent.index % 2 === 0 ? Theme.text : Theme.ground
+                    text: parent.modelData.name
+                }
+            }
         }
     }
     PlainLabel {
-        x: 34 * Theme.mm + row.third
+        x: row.share < 0 ? bar.x : bar.x + bar.width + 1.5 * Theme.mm
         y: 6.6 * Theme.mm
-        width: row.third - 1.5 * Theme.mm
+        width: row.width - x - 1.5 * Theme.mm
         height: 5.4 * Theme.mm
         color: Theme.dim
-        text: row.queue + (row.dropped === "" ? "" : (row.queue === "" ? "" : "  ·  ") + row.dropped)
+        text: row.queue
     }
 }

@@ -84,7 +84,9 @@ void GestureArea::timerEvent(QTimerEvent* event) {
 void GestureArea::mousePressEvent(QMouseEvent* event) {
   event->accept();
   if (state_ != State::idle) return cancel();  // A second button takes back.
-  press(event->position(), event->button() == Qt::RightButton);
+  const bool right = event->button() == Qt::RightButton;
+  sliding_ = right || event->modifiers().testFlag(Qt::ShiftModifier);
+  press(event->position(), right);
 }
 void GestureArea::mouseMoveEvent(QMouseEvent* event) { move(event->position()); }
 void GestureArea::mouseReleaseEvent(QMouseEvent* event) {
@@ -133,6 +135,7 @@ void GestureArea::touchEvent(QTouchEvent* event) {
     state_ = State::panning;
     last_ = down[0];
   } else if (state_ == State::idle) {
+    sliding_ = false;
     press(down[0], false);
   } else {
     move(down[0]);

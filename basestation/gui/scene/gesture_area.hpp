@@ -39,6 +39,8 @@ class GestureArea : public QQuickItem {
   /// Takes back what a finger that is down would do when it is lifted.
   void drop_press();
   bool pinching() const { return state_ == State::pinching; }
+  /// The mouse drags with its right button, or with the shift key.
+  bool sliding() const { return sliding_; }
   bool busy() const { return state_ != State::idle; }  ///< A finger or a button is down.
 
   void mousePressEvent(QMouseEvent* event) override;
@@ -61,6 +63,7 @@ class GestureArea : public QQuickItem {
   void leave_press();
 
   State state_{State::idle};
+  bool sliding_{false};
   QBasicTimer timer_{};
   QPointF start_{}, last_{};
   double spread_{};  ///< Distance between two fingers, pixels.

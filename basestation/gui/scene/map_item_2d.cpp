@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/gui/scene/map_item_2d.hpp"
 
+#include <QElapsedTimer>
 #include <QPainter>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "basestation/gui/scene/mark_list.hpp"
@@ -13,23 +15,36 @@ namespace {
 
 using station::MapTile;
 
-constexpr double kHigh = 2.5;  // Height from which things have the last colour, m.
+constexpr QRgb kGhostAlpha = 38;  // Of what is on other floors: 15 %.
+constexpr int kBudgetMs = 20;     // For new pictures in one frame.
+constexpr double kHigh = 2.5;     // Height from which things have the last colour, m.
 
 }  // namespace
 
-QImage image_of(const MapTile& tile, double resolution, const Palette& palette) {
+QImage image_of(const MapTile& tile, double resolution, const Palette& palette,
+                const std::optional<Floor>& floor) {
   constexpr int kSide = MapTile::kSide;
   QImage image(kSide, kSide, QImage::Format_ARGB32_Premultiplied);
   image.fill(Qt::transparent);
   if (tile.cells.size() != static_cast<std::size_t>(kSide) * kSide) return image;
-  std::array<QRgb, 256> colours{};
-  colours[MapTile::kGround] = 0xFF000000U | palette.floor;
-  for (std::size_t n = MapTile::kThing; n < colours.size(); ++n) {
+  std::array<Rgb, 256> plain{};
+  plain[MapTile::kGround] = palette.floor;
+  for (std::size_t n = MapTile::kThing; n < plain.size(); ++n) {
     const double height = static_cast<double>(n - 1) * resolution;
-    colours[n] = 0xFF000000U | mixed(palette.low, palette.high, std::clamp(height / kHigh, 0.0, 1.0));
+    plain[n] = mixed(palette.low, palette.high, std::clamp(height / kHigh, 0.0, 1.0));
+  }
+  std::array<QRgb, 256> colours{};
+  std::vector<std::uint8_t> sliced;
+  if (floor) slice_cells(tile, resolution, *floor, sliced);
+  const std::vector<std::uint8_t>& codes = floor ? sliced : tile.cells;
+  for (std::size_t n = MapTile::kGround; n < colours.size(); ++n) {
+    if (!floor || n < kGhost)
+      colours[n] = 0xFF000000U | plain[n];
+    else if (n > kGhost)
+      colours[n] = qPremultiply(kGhostAlpha << 24 | mixed(palette.low, palette.high, 0.5));
   }
   for (int row = 0; row < kSide; ++row) {
-    const std::uint8_t* cells = tile.cells.data() + static_cast<std::ptrdiff_t>(row) * kSide;
+    const std::uint8_t* cells = codes.data() + static_cast<std::ptrdiff_t>(row) * kSide;
     QRgb* line =
         reinterpret_cast<QRgb*>(image.scanLine(kSide - 1 - row));  // The first row is the southernmost.
     for (int column = 0; column < kSide; ++column) line[column] = colours[cells[column]];
@@ -51,6 +66,37 @@ void MapItem2D::show(std::shared_ptr<const station::TileMap> map) {
 void MapItem2D::look(const Camera& camera) {
   camera_ = camera;
   update();
+}
+
+void MapItem2D::show_floor(const std::optional<Floor>& floor) {
+  if (floor == floor_) return;
+  floor_ = floor;
+  update();
+}
+
+void MapItem2D::show_grid(const SignalGrid* grid) {
+  grid_ = grid;
+  update();
+}
+
+void MapItem2D::draw_reception(QPainter& painter) const {
+  constexpr std::array kOpacity{0.8, 0.8, 0.4};  // Patterns leave most of the map free.
+  const QRectF view(0, 0, width(), height());
+  const Theme& theme = Theme::instance();
+  const std::array brushes{QBrush(theme.of(Token::ok), Qt::Dense6Pattern),
+                           QBrush(theme.of(Token::warn), Qt::BDiagPattern), QBrush(theme.of(Token::bad))};
+  for (const auto& [place, cell] : grid_->cells()) {
+    const Point low = camera_.to_screen(place.first * SignalGrid::kCell, place.second * SignalGrid::kCell);
+    const Point high =
+        camera_.to_screen((place.first + 1) * SignalGrid::kCell, (place.second + 1) * SignalGrid::kCell);
+    const QRectF target(QPointF(std::round(low.x), std::round(high.y)),
+                        QPointF(std::round(high.x), std::round(low.y)));
+    if (!target.intersects(view)) continue;
+    const auto step = static_cast<std::size_t>(cell.step());
+    painter.setOpacity(kOpacity[step]);
+    painter.fillRect(target, brushes[step]);
+  }
+  painter.setOpacity(1.0);
 }
 
 void MapItem2D::draw_grid(QPainter& painter) const {
@@ -75,6 +121,9 @@ void MapItem2D::paint(QPainter* painter) {
   painter->fillRect(QRectF(0, 0, width(), height()), theme.ground());
   if (light_ != theme.light()) pictures_.clear();
   light_ = theme.light();
+  pending_ = false;
+  QElapsedTimer clock;
+  clock.start();
   const double side = map_ ? MapTile::kSide * map_->resolution : 0.0;
   if (side > 0.0 && side < 1e4) {
     painter->setRenderHint(QPainter::SmoothPixmapTransform, camera_.scale * map_->resolution < 1.0);
@@ -86,11 +135,21 @@ void MapItem2D::paint(QPainter* painter) {
                           QPointF(std::round(high.x), std::round(low.y)));
       if (!target.intersects(QRectF(0, 0, width(), height()))) continue;
       Picture& picture = pictures_[place];
-      if (picture.tile != tile) picture = {tile, image_of(*tile, map_->resolution, theme.palette())};
+      if (picture.tile != tile || picture.floor != floor_) {
+        // Where another floor is still shown, the next frame is soon enough.
+        if (clock.elapsed() < kBudgetMs || picture.image.isNull())
+          picture = {tile, image_of(*tile, map_->resolution, theme.palette(), floor_), floor_};
+        else
+          pending_ = true;
+      }
       painter->drawImage(target, picture.image);
     }
   }
+  if (grid_) draw_reception(*painter);
   draw_grid(*painter);
+  if (pending_)
+    QMetaObject::invokeMethod(
+        this, [this] { update(); }, Qt::QueuedConnection);
 }
 
 }  // namespace adit::gui

@@ -2,7 +2,9 @@
 #include "basestation/gui/scene/map_view.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "basestation/gui/scene/layer_marks.hpp"
 #include "basestation/gui/scene/theme.hpp"
 
 namespace adit::gui {
@@ -14,19 +16,24 @@ MapView::MapView(QQuickItem* parent)
 
 void MapView::set_control(Control* control) {
   if (control == control_) return;
-  if (control_) control_->disconnect(this), control_->area()->disconnect(this);
+  if (control_)
+    control_->disconnect(this), control_->area()->disconnect(this), control_->tabs()->disconnect(this);
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, &MapView::refresh);
     connect(control_->area(), &AreaTool::changed, this, &MapView::refresh);
+    connect(control_->tabs(), &TabState::findings_changed, this, &MapView::refresh);
+    connect(control_->tabs(), &TabState::network_changed, this, &MapView::measure_reception);
     connect(control_, &Control::look_at, this, &MapView::look_at);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
     connect(control_, &Control::map_changed, this, [this] {
       map_->show(control_->map());
+      floors_.show(*control_->map());
       if (fitting_ && !busy()) fit(false);
       emit content_changed();
     });
     map_->show(control_->map());
+    floors_.show(*control_->map());
   }
   emit control_changed();
   emit content_changed();
@@ -50,16 +57,27 @@ double MapView::slop() const { return kSlopMm * Theme::instance().mm(); }
 void MapView::refresh() {
   if (!control_) return;
   if (fitting_ && !busy() && !aiming() && !drawing()) fit(false);
-  marks_->show(marks_of({.world = &control_->world(),
-                         .trails = &control_->trails(),
-                         .camera = camera_,
-                         .selection = control_->selection(),
-                         .ghosts = ghosts_,
-                         .sketch = control_->area()->sketch(),
-                         .now = control_->now(),
-                         .silent = control_->silent_for(),
-                         .mm = Theme::instance().mm()}),
-               camera_);
+  floors_.show(control_->world(), control_->trails());
+  show_floor();
+  const LayerScene layers{.world = &control_->world(),
+                          .found = &control_->tabs()->found(),
+                          .picked = control_->tabs()->picked(),
+                          .project = [this](const Point3& at) { return camera_.to_screen(at.x, at.y); },
+                          .floors = &floors_,
+                          .floor = choice_.shown(),
+                          .mm = Theme::instance().mm()};
+  MarkList marks = layer_marks(layers);
+  append(marks, marks_of({.world = &control_->world(),
+                          .trails = &control_->trails(),
+                          .camera = camera_,
+                          .selection = control_->selection(),
+                          .ghosts = ghosts_,
+                          .sketch = control_->area()->sketch(),
+                          .now = control_->now(),
+                          .silent = control_->silent_for(),
+                          .mm = Theme::instance().mm()}));
+  append(marks, floor_marks(layers));
+  marks_->show(std::move(marks), camera_);
 }
 
 void MapView::refresh_camera() {
@@ -117,8 +135,8 @@ void MapView::fitAll() {
 void MapView::zoomBy(double factor) { zoom(factor, {width() / 2, height() / 2}); }
 
 void MapView::tap(const QPointF& at, bool add) {
-  const std::string robot = marks_->marks().robot_at(at.x(), at.y());
-  if (control_ && !robot.empty()) control_->select(QString::fromStdString(robot), add);
+  if (const Target* target = marks_->marks().target_at(at.x(), at.y()); control_ && target)
+    control_->tap(*target, add);
 }
 
 void MapView::show_aim(const QPointF& at) {
@@ -132,7 +150,11 @@ void MapView::drop_aim() {
 }
 
 void MapView::send_aim(const QPointF& at) {
-  if (control_) control_->go_to(camera_.to_map(at.x(), at.y()));
+  if (!control_) return;
+  const Point place = camera_.to_map(at.x(), at.y());
+  std::optional<double> height;  // Only one of several floors has to be named.
+  if (const auto floor = shown_floor()) height = ground_at(*control_->map(), *floor, place);
+  control_->go_to(place, height);
 }
 
 void MapView::draw(const QPointF& from, const QPointF& to, bool done) {
@@ -144,13 +166,55 @@ void MapView::drop_drawing() {
   if (control_) control_->area()->drop();
 }
 
-void MapView::look_at(double x, double y) {
+std::optional<Floor> MapView::shown_floor() const {
+  return choice_.shown() ? std::optional(floors_.floors()[*choice_.shown()]) : std::nullopt;
+}
+
+void MapView::show_floor() {
+  choice_.update(floors_, control_->world(), control_->selection());
+  map_->show_floor(shown_floor());
+  if (std::exchange(floor_said_, floor()) != floor_said_) emit floor_changed();
+}
+
+void MapView::measure_reception() {
+  if (control_->silent()) return;
+  grid_.add(control_->world(), control_->tabs()->net());
+  if (!reception()) return;
+  map_->update();
+  emit reception_changed();
+}
+
+void MapView::set_reception(bool shown) {
+  if (!control_ || shown == reception()) return;
+  map_->show_grid(shown ? &grid_ : nullptr);
+  control_->tabs()->watch_network(shown);
+  emit reception_changed();
+}
+
+QString MapView::reception_legend() const {
+  if (grid_.cells().empty()) return "reception: no link report yet";
+  return grid_.knows_signal() ? "worst signal heard here: dots from -75 dBm, lines from -85 dBm, full below"
+                              : "most heartbeats lost here: dots up to 5 %, lines up to 20 %, full above";
+}
+
+void MapView::moveFloor(int steps) {
+  choice_.move(steps, floors_);
+  refresh();
+}
+
+void MapView::toggleFloor() {
+  choice_.toggle();
+  refresh();
+}
+
+void MapView::look_at(double x, double y, double z) {
   constexpr double kLeastScale = 8.0;  // Pixels per m, so that the robot can be seen.
   if (busy() || aiming()) return;      // The place under a finger stays there.
   set_fitting(false);
+  choice_.show_height(z, floors_);
   camera_.x = x;
-  camera_.y = y;
   camera_.scale = std::max(camera_.scale, kLeastScale);
+  camera_.y = y - covered_ / 2 / camera_.scale;
   refresh_camera();
 }
 

@@ -3,6 +3,7 @@
 #include <QtQml/qqmlregistration.h>
 
 #include "basestation/gui/bridge/control.hpp"
+#include "basestation/gui/scene/floor_choice.hpp"
 #include "basestation/gui/scene/gesture_area.hpp"
 #include "basestation/gui/scene/map_item_2d.hpp"
 #include "basestation/gui/scene/mark_painter.hpp"
@@ -17,6 +18,14 @@ class MapView : public GestureArea {
   /// Whether the view is adjusted so that all robots and the map stay in it; ends when the operator moves it.
   Q_PROPERTY(bool fitting READ fitting NOTIFY fitting_changed)
   Q_PROPERTY(bool empty READ empty NOTIFY content_changed)
+  /// The floor that is shown, in words; empty: there are not two.
+  Q_PROPERTY(QString floor READ floor NOTIFY floor_changed)
+  Q_PROPERTY(bool floorAutomatic READ floor_automatic NOTIFY floor_changed)
+  /// Whether the reception from robots is drawn where they were.
+  Q_PROPERTY(bool reception READ reception WRITE set_reception NOTIFY reception_changed)
+  Q_PROPERTY(QString receptionLegend READ reception_legend NOTIFY reception_changed)
+  /// Height at the lower edge that something else covers, pixels.
+  Q_PROPERTY(double covered MEMBER covered_ NOTIFY covered_changed)
 
  public:
   explicit MapView(QQuickItem* parent = nullptr);
@@ -28,6 +37,18 @@ class MapView : public GestureArea {
   const Camera& camera() const { return camera_; }
   const MarkList& marks() const { return marks_->marks(); }
 
+  QString floor() const { return QString::fromStdString(choice_.label()); }
+  bool floor_automatic() const { return choice_.kind() == FloorChoice::Kind::automatic; }
+  bool reception() const { return map_->grid() != nullptr; }
+  void set_reception(bool shown);
+  QString reception_legend() const;
+  const SignalGrid& grid() const { return grid_; }
+  const MapItem2D& tiles() const { return *map_; }
+
+  /// Shows the floor so many above.
+  Q_INVOKABLE void moveFloor(int steps);
+  /// Follows the selected robot, or shows all floors.
+  Q_INVOKABLE void toggleFloor();
   Q_INVOKABLE void fitAll();
   Q_INVOKABLE void zoomBy(double factor);
 
@@ -35,6 +56,9 @@ class MapView : public GestureArea {
   void control_changed();
   void fitting_changed();
   void content_changed();
+  void covered_changed();
+  void floor_changed();
+  void reception_changed();
 
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
@@ -51,9 +75,13 @@ class MapView : public GestureArea {
   void zoom(double factor, const QPointF& about) override;
 
  private:
-  void look_at(double x, double y);  ///< Brings a place of the map frame, m, into the middle.
-  void refresh();                    ///< The marks.
-  void refresh_camera();             ///< The map and the marks.
+  void look_at(double x, double y, double z);  ///< Brings a place of the map frame, m, into the middle.
+  void refresh();                              ///< The marks.
+  void refresh_camera();                       ///< The map and the marks.
+  void measure_reception();
+  /// Shows the chosen floor.
+  void show_floor();
+  std::optional<Floor> shown_floor() const;  ///< Nothing: all of them.
   void set_fitting(bool fitting);
   /// Adjusts the view if something is outside of it, or at once.
   void fit(bool at_once);
@@ -63,6 +91,11 @@ class MapView : public GestureArea {
   MarkPainter* marks_{};
   Camera camera_{};
   bool fitting_{true};
+  double covered_{0.0};
+  SignalGrid grid_{};
+  Floors floors_{};
+  FloorChoice choice_{};
+  QString floor_said_{};
   std::vector<Point> ghosts_{};
 };
 

@@ -5,6 +5,7 @@
 #include <QTimerEvent>
 #include <algorithm>
 
+#include "basestation/gui/scene/layer_marks.hpp"
 #include "basestation/gui/scene/orbit_marks.hpp"
 #include "basestation/gui/scene/theme.hpp"
 
@@ -42,10 +43,11 @@ MapView3D::MapView3D(QQuickItem* parent)
 
 void MapView3D::set_control(Control* control) {
   if (control == control_) return;
-  if (control_) control_->disconnect(this);
+  if (control_) control_->disconnect(this), control_->tabs()->disconnect(this);
   control_ = control;
   if (control_) {
     connect(control_, &Control::shown, this, &MapView3D::refresh);
+    connect(control_->tabs(), &TabState::findings_changed, this, &MapView3D::refresh);
     connect(control_, &Control::orders_dropped, this, [this] { drop_press(); });
     connect(control_, &Control::look_at, this, &MapView3D::look_at);
     connect(control_, &Control::map_changed, this, [this] {
@@ -92,14 +94,23 @@ double MapView3D::slop() const { return kSlopMm * Theme::instance().mm(); }
 
 void MapView3D::refresh() {
   if (!control_ || !isVisible()) return;
-  marks_->show(orbit_marks({.world = &control_->world(),
-                            .trails = &control_->trails(),
-                            .camera = camera_,
-                            .selection = control_->selection(),
-                            .ghosts = ghosts_,
-                            .silent = control_->silent_for(),
-                            .mm = Theme::instance().mm()}),
-               {.scale = 0.0});
+  const auto project = [this](const Point3& place) -> std::optional<Point> {
+    const auto seen = camera_.project(place);
+    return seen ? std::optional(seen->at) : std::nullopt;
+  };
+  MarkList marks = layer_marks({.world = &control_->world(),
+                                .found = &control_->tabs()->found(),
+                                .picked = control_->tabs()->picked(),
+                                .project = project,
+                                .mm = Theme::instance().mm()});
+  append(marks, orbit_marks({.world = &control_->world(),
+                             .trails = &control_->trails(),
+                             .camera = camera_,
+                             .selection = control_->selection(),
+                             .ghosts = ghosts_,
+                             .silent = control_->silent_for(),
+                             .mm = Theme::instance().mm()}));
+  marks_->show(std::move(marks), {.scale = 0.0});
 }
 
 void MapView3D::look(Detail3 detail) {
@@ -121,15 +132,17 @@ void MapView3D::fitAll() {
   look(Detail3::fine);
 }
 
-void MapView3D::look_at(double x, double y) {
+void MapView3D::look_at(double x, double y, double height) {
   constexpr double kNearEnough = 15.0;  // m
   if (busy() || aiming()) return;
-  double z = camera_.target.z;
-  for (const std::string& name : control_->selection())
-    if (const station::Robot* robot = control_->world().robot(name); robot && std::abs(robot->z) < 1e5F)
-      z = robot->z;
+  double z = std::abs(height) < 1e5 ? height : camera_.target.z;
+  if (!(std::abs(height) < 1e5))
+    for (const std::string& name : control_->selection())
+      if (const station::Robot* robot = control_->world().robot(name); robot && std::abs(robot->z) < 1e5F)
+        z = robot->z;
   camera_.target = {x, y, z};
   camera_.distance = std::min(camera_.distance, kNearEnough);
+  camera_.pan(0, -covered_ / 2);
   look(Detail3::fine);
 }
 
@@ -150,8 +163,8 @@ void MapView3D::toggleCut() {
 }
 
 void MapView3D::tap(const QPointF& at, bool add) {
-  const std::string robot = marks_->marks().robot_at(at.x(), at.y());
-  if (control_ && !robot.empty()) control_->select(QString::fromStdString(robot), add);
+  if (const Target* target = marks_->marks().target_at(at.x(), at.y()); control_ && target)
+    control_->tap(*target, add);
 }
 
 std::optional<Point3> MapView3D::place_at(const QPointF& at) const {
@@ -180,7 +193,7 @@ void MapView3D::send_aim(const QPointF& at) {
 }
 
 void MapView3D::pan(const QPointF& by) {
-  if (pinching())
+  if (pinching() || sliding())
     camera_.pan(by.x(), by.y());
   else
     camera_.orbit(by.x(), by.y());

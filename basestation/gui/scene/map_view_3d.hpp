@@ -35,13 +35,16 @@ class VoxelItem : public QQuickPaintedItem {
   int paintings_{0};
 };
 
-/// The map from the side with all marks. One finger turns it, two move and zoom it; a tap selects a robot,
+/// The map from the side with all marks. One finger or the mouse turns it, two fingers or
+/// the right button move it; a tap selects a robot,
 /// and a long press sends the selected ones to the place under the finger.
 class MapView3D : public GestureArea {
   Q_OBJECT
   QML_ELEMENT
   Q_PROPERTY(adit::gui::Control* control READ control WRITE set_control NOTIFY control_changed)
   Q_PROPERTY(bool empty READ empty NOTIFY content_changed)
+  /// Height at the lower edge that something else covers, pixels.
+  Q_PROPERTY(double covered MEMBER covered_ NOTIFY covered_changed)
   /// Height above which nothing is shown, m.
   Q_PROPERTY(double cut READ cut NOTIFY cut_changed)
   Q_PROPERTY(bool cutting READ cutting NOTIFY cut_changed)
@@ -73,6 +76,7 @@ class MapView3D : public GestureArea {
   void control_changed();
   void content_changed();
   void cut_changed();
+  void covered_changed();
 
  protected:
   void geometryChange(const QRectF& now, const QRectF& before) override;
@@ -90,7 +94,7 @@ class MapView3D : public GestureArea {
  private:
   void refresh();  ///< The marks.
   void look(Detail3 detail);
-  void look_at(double x, double y);
+  void look_at(double x, double y, double z);
   void show_map();
   std::optional<Point3> place_at(const QPointF& at) const;
   double cut_above_robots() const;
@@ -101,6 +105,7 @@ class MapView3D : public GestureArea {
   OrbitCamera camera_{};
   Slice slice_{};
   bool fitted_{false};
+  double covered_{0.0};
   std::vector<Point3> ghosts_{};
   QBasicTimer settled_{};  ///< Runs while the camera moves.
 };

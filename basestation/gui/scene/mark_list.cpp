@@ -196,7 +196,7 @@ class Drawer {
     out_.labels.push_back({.at = {at.x, at.y + radius + (selected(robot) ? 19 : 9)},
                            .text = label,
                            .opacity = old ? 0.8 : 1.0});
-    out_.targets.push_back({robot.name, at, std::max(radius, 6.0 * scene_.mm)});
+    out_.targets.push_back({.robot = robot.name, .at = at, .radius = std::max(radius, 6.0 * scene_.mm)});
   }
 
   void draw_body(const Robot& robot, const Point& at, bool old, double opacity) {
@@ -301,16 +301,21 @@ double extent_of(const Robot& robot) {
   return both > 0.05 && both < 50.0 ? both : 0.8;
 }
 
-std::string MarkList::robot_at(double x, double y) const {
-  std::string nearest;
+const Target* MarkList::target_at(double x, double y) const {
+  const Target* nearest = nullptr;
   double best = 1e9;
   for (const Target& target : targets) {
     const double distance = std::hypot(target.at.x - x, target.at.y - y);
     if (distance > target.radius || distance >= best) continue;
     best = distance;
-    nearest = target.robot;
+    nearest = &target;
   }
   return nearest;
+}
+
+std::string MarkList::robot_at(double x, double y) const {
+  const Target* target = target_at(x, y);
+  return target ? target->robot : std::string();
 }
 
 MarkList marks_of(const MarkScene& scene) { return scene.world ? Drawer(scene).draw() : MarkList{}; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -33,11 +34,12 @@ struct MapLabel {
   bool operator==(const MapLabel&) const = default;
 };
 
-/// Where a tap on the map means a robot.
+/// Where a tap on the map means a robot or a finding.
 struct Target {
-  std::string robot{};
-  Point at{};       ///< Pixels.
-  double radius{};  ///< Pixels.
+  std::string robot{};      ///< Empty: it is a finding.
+  Point at{};               ///< Pixels.
+  double radius{};          ///< Pixels.
+  std::uint32_t finding{};  ///< Its number; 0: it is a robot.
   bool operator==(const Target&) const = default;
 };
 
@@ -47,7 +49,9 @@ struct MarkList {
   std::vector<MapLabel> labels{};
   std::vector<Target> targets{};
 
-  /// The robot at a point of the screen, the nearest of several; empty: none.
+  /// What a tap at a point of the screen means, the nearest of several; null: nothing.
+  const Target* target_at(double x, double y) const;
+  /// The robot at a point of the screen; empty: none, or something else is nearer.
   std::string robot_at(double x, double y) const;
   bool operator==(const MarkList&) const = default;
 };

@@ -24,8 +24,9 @@ class OrbitDrawer {
     for (const Robot& robot : scene_.world->robots) draw_areas(robot);
     for (const Robot& robot : scene_.world->robots) draw_trail(robot);
     for (const station::StationSummary& station : scene_.world->stations) draw_station(station);
-    for (const Robot& robot : scene_.world->robots) draw_goal(robot);
     int number = 0;
+    for (const Robot& robot : scene_.world->robots) draw_goal(robot, std::to_string(++number));
+    number = 0;
     for (const Robot& robot : scene_.world->robots) draw_robot(robot, std::to_string(++number));
     for (const Point3& ghost : scene_.ghosts)
       if (const auto seen = scene_.camera.project(ghost)) {
@@ -93,7 +94,7 @@ class OrbitDrawer {
     add_station(out_, station, seen->at);
   }
 
-  void draw_goal(const Robot& robot) {
+  void draw_goal(const Robot& robot, const std::string& number) {
     if (robot.goal_phase == GoalPhase::none || robot.goal_phase == GoalPhase::reached) return;
     if (!drawable(robot.goal[0], robot.goal[1])) return;
     const double z = std::abs(robot.goal[2]) < 1e5 ? robot.goal[2] : height_of(robot);
@@ -102,6 +103,7 @@ class OrbitDrawer {
     const auto seen = scene_.camera.project(goal);
     if (!seen) return;
     out_.shapes.push_back(diamond(seen->at, 9.0, Token::goal));
+    out_.labels.push_back({.at = seen->at, .text = number, .on_fill = true});
     if (robot.goal_phase == GoalPhase::blocked) cross_out(out_, seen->at);
   }
 
@@ -165,7 +167,8 @@ class OrbitDrawer {
     const double radius = std::max(kMinPixels, grow * extent * scale / 2);
     out_.labels.push_back(
         {.at = {seen->at.x, seen->at.y + radius + 12}, .text = label, .opacity = old ? 0.8 : 1.0});
-    out_.targets.push_back({robot.name, seen->at, std::max(radius, 6.0 * scene_.mm)});
+    out_.targets.push_back(
+        {.robot = robot.name, .at = seen->at, .radius = std::max(radius, 6.0 * scene_.mm)});
   }
 
   const OrbitScene& scene_;
