@@ -35,7 +35,7 @@ double steady_now() {
 
 Crew::Crew(const Mission& mission, double max_speed)
     : mission_(mission), environment_(folder_.environment()) {
-  folder_.write("platforms/wheeled.yaml", slow_platform(max_speed));
+  folder_.write("slow.yaml", slow_platform(max_speed));
   for (std::size_t robot = 0; robot < kRobots; ++robot) {
     const std::string name = name_of(robot), y = std::to_string(Mission::start(robot).y);
     hosts_.add(name, address(robot + 1));
@@ -47,7 +47,7 @@ Crew::Crew(const Mission& mission, double max_speed)
     agents_.push_back(
         hosts_.start(name,
                      {"robot_agent", "--config",
-                      folder_.write(name + ".yaml", "name: " + name + "\nplatform: wheeled\npose: [0, " + y +
+                      folder_.write(name + ".yaml", "name: " + name + "\nplatform: slow.yaml\npose: [0, " + y +
                                                         ", 0]\nrobot_domain: 1\nradio:\n  interfaces: [" +
                                                         address(robot + 1) + "]\n")},
                      environment_));

@@ -74,13 +74,38 @@ class CrewWindow : public Fingers {
   QString card(std::size_t robot) { return "card_" + QString::fromStdString(crew::name_of(robot)); }
   crew::Seen seen(std::size_t robot) {
     const auto text_of = [&](const char* what) {
-      return item(card(robot))->property(what).toString().toStdString();
+      return item(card(robot))->parentItem()->property(what).toString().toStdString();
     };
     return {text_of("holder"), text_of("headline"), text_of("detail")};
   }
   void select(std::size_t robot) {
     if (control->selection() == std::vector<std::string>{crew::name_of(robot)}) return;
+    show_card(robot);
     touch(middle(card(robot)));
+    EXPECT_EQ(control->selection(), std::vector<std::string>{crew::name_of(robot)});
+  }
+  /// Drags the list of cards until that one is in it.
+  void show_card(std::size_t robot) {
+    const QQuickItem* list = item("fleet");
+    const QRectF frame = list->mapRectToScene({0, 0, list->width(), list->height()});
+    for (int tries = 0; tries < 10; ++tries) {
+      const QQuickItem* wanted = item(card(robot));
+      const QRectF place = wanted->mapRectToScene({0, 0, wanted->width(), wanted->height()});
+      const double below = place.bottom() - frame.bottom(), above = frame.top() - place.top();
+      if (below <= 0.5 && above <= 0.5) return;
+      drag(frame.center().toPoint(), static_cast<int>(below > 0 ? -below - 20 : above + 20));
+    }
+  }
+  void drag(const QPoint& from, int by) {
+    constexpr int kSteps = 10;
+    finger_down(from);
+    for (int step = 1; step <= kSteps; ++step) {
+      QTest::touchEvent(window(), finger).move(0, from + QPoint(0, by * step / kSteps), window());
+      QTest::qWait(20);
+    }
+    QTest::qWait(200);  // At rest, so that the list does not go on by itself.
+    finger_up(from + QPoint(0, by));
+    settle();
   }
   /// Presses a button of the action bar as long as its ring needs, and waits for the answer.
   void command(std::size_t robot, const QString& slot, bool hold = false) {
@@ -105,11 +130,15 @@ class CrewWindow : public Fingers {
   void answered() {
     ++result.commands;
     (void)QTest::qWaitFor([&] { return control->outcome_kind() != "sent"; }, 4000);
-    if (control->outcome_kind() == "refused") ++result.refused;
+    if (control->outcome_kind() == "done") return;
+    ++result.refused;
+    std::printf("%s: %s\n", control->outcome_kind().toUtf8().data(), control->outcome().toUtf8().data());
+    std::fflush(stdout);
   }
   /// Grants what another operator asks for in the line of what needs the operator.
   bool grant_what_is_asked() {
-    for (const Need& need : control->attention()->needs()) {
+    const std::vector<Need> needs = control->attention()->needs();  // They change while the window runs.
+    for (const Need& need : needs) {
       if (need.grant_line.empty()) continue;
       control->attention()->set_open(true);
       settle_layout();
@@ -166,6 +195,7 @@ class CrewWindow : public Fingers {
     EXPECT_EQ(robots.failure(), "");
     open_window(robots);
     const double begun = steady_now();
+    picture("crew_begin");
     while (goals_done(progress) < static_cast<int>(kRobots * kGoals) && steady_now() - begun < kLimit) {
       robots.tick(progress);
       bool busy = grant_what_is_asked();
@@ -174,6 +204,7 @@ class CrewWindow : public Fingers {
         robots.tick(progress);
       }
       if (!busy) QTest::qWait(100);
+      if (static_cast<int>(steady_now() - begun) % 30 == 29) picture("crew_later");
     }
     result.seconds = steady_now() - begun;
     result.done = goals_done(progress);

@@ -87,7 +87,7 @@ std::string Mission::scenario(std::size_t robot) const {
       box(goal.x - kPillar, goal.x + kPillar, goal.y - kPillar, goal.y + kPillar);
     }
   out << "]\n  floor: 0\n  ceiling: 2.5\nduration: 3600\nlink: wifi\nlidar: planar\nrobots:\n  - {id: "
-      << name_of(robot) << ", platform: wheeled, pose: [0, " << y
+      << name_of(robot) << ", platform: slow.yaml, pose: [0, " << y
       << ", 0]}\nbasestations:\n  - {id: op1, pose: [-1, 0]}\nscript: []\nexpect:\n  - {always: "
          "no_collision}\n";
   return out.str();
@@ -96,13 +96,12 @@ std::string Mission::scenario(std::size_t robot) const {
 Step next_step(const Seen& seen) {
   if (seen.headline == "LOST" || seen.headline.empty() || seen.headline == "NOT HEARD YET") return Step::wait;
   if (seen.holder == "no holder") return Step::take;
-  if (seen.holder == "mine") return Step::lock;
   if (!seen.holder.starts_with("mine")) return Step::wait;
   if (seen.headline == "STOP") return Step::reset;
   if (seen.headline == "BLOCKED") return Step::another_way;
   if (seen.detail.starts_with("goal kept")) return Step::go_on;
   if (seen.detail == "arrived" || seen.detail == "ready") return Step::next_goal;
-  return Step::wait;
+  return seen.holder == "mine" ? Step::lock : Step::wait;  // What drives is locked when there is time.
 }
 
 }  // namespace adit::gui::crew
