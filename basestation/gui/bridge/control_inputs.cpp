@@ -65,6 +65,15 @@ void Control::order(const std::string& line, const std::string& slot, CommandSin
 
 void Control::drive_selected() { trigger(static_cast<int>(slot_index("drive")), false); }
 
+void Control::take_selected(bool held) {
+  const std::size_t slot = slot_index("take");
+  const BarButton& button = bar_.buttons[slot];
+  const bool needs_hold = button.touch == Touch::hold && !button.robots.empty();
+  if (held == needs_hold) return trigger(static_cast<int>(slot), held);
+  if (needs_hold)
+    say(QString::fromStdString(button.label + " " + button.hint) + ": keep the button held", "sent");
+}
+
 void Control::begin_batch() {
   ++batch_;
   batch_lines_.clear();

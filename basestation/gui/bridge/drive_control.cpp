@@ -122,11 +122,16 @@ void DriveControl::look() {
     control_.say(
         "Driving " + QString::fromStdString(before.robot) + " ended: " + Control::one_line(status_.ended),
         "refused");
-  if (status_.starts != before.starts && !driving() && control_.selection().size() == 1)
-    control_.drive_selected();
-  if (status_.takes != before.takes && control_.selection().size() == 1)
-    control_.order("take " + control_.selection().front());
+  if (status_.starts != before.starts && !driving()) control_.drive_selected();
+  if (status_.takes != before.takes) control_.take_selected(false);
+  if (status_.takes_held != before.takes_held) control_.take_selected(true);
+  if (status_.steps != before.steps && !driving()) control_.move_selection(status_.steps - before.steps);
   if (status_ != before || driving()) emit changed();
+}
+
+void DriveControl::warn_hand(bool strongly) {
+  using namespace std::chrono_literals;
+  if (thread_) thread_->rumble(strongly ? 1.0 : 0.5, strongly ? 600ms : 200ms);
 }
 
 QString DriveControl::mode() const {
