@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basestation/gui/break.hpp"
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/gui/scene/mark_list.hpp"
@@ -179,6 +180,7 @@ void Control::stopAll() {
   drop_orders();
   stop_missing_.clear();
   set_aiming(false);
+  if constexpr (kBreakStopConfirm) return pend("stop all", "stop");
   stop({});
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "basestation/gui/break.hpp"
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/model/text.hpp"
@@ -116,6 +117,9 @@ void DriveControl::send_keys() {
 void DriveControl::look() {
   if (!thread_) return;
   thread_->beat();
+  if constexpr (kBreakBoundStick)
+    if (driving() && !control_.selection().empty() && control_.selection().front() != status_.robot)
+      thread_->drive(control_.selection().front());
   const InputThread::Status before = std::exchange(status_, thread_->status());
   if (before.robot != status_.robot) down_.clear();
   if (!before.robot.empty() && status_.robot.empty() && !status_.ended.empty())
