@@ -12,6 +12,8 @@ Rectangle {
     MapView {
         id: map
         objectName: "map"
+        Accessible.role: Accessible.Canvas
+        Accessible.name: "map from above"
         anchors.fill: parent
         anchors.margins: pane.border.width
         control: pane.control
@@ -20,6 +22,8 @@ Rectangle {
     MapView3D {
         id: solid
         objectName: "solid"
+        Accessible.role: Accessible.Canvas
+        Accessible.name: "map in three dimensions"
         anchors.fill: parent
         anchors.margins: pane.border.width
         control: pane.control
@@ -83,14 +87,18 @@ Rectangle {
             anchors.right: parent.right
             width: 10 * Theme.mm
             height: width
+            objectName: "zoomIn"
             text: "+"
+            spoken: "zoom in"
             onFired: pane.control.solid ? solid.zoomBy(1.5) : map.zoomBy(1.5)
         }
         HoldButton {
             anchors.right: parent.right
             width: 10 * Theme.mm
             height: width
+            objectName: "zoomOut"
             text: "−"
+            spoken: "zoom out"
             onFired: pane.control.solid ? solid.zoomBy(1 / 1.5) : map.zoomBy(1 / 1.5)
         }
     }

@@ -115,6 +115,10 @@ Rectangle {
     PressArea {
         objectName: "card_" + card.name
         anchors.fill: parent
+        Accessible.role: Accessible.Button
+        Accessible.name: card.name + " " + card.headline
+        Accessible.description: card.detail
+        Accessible.onPressAction: card.control.select(card.name, false)
         meaning: card.name
         onTapped: add => card.control.select(card.name, add)
     }
