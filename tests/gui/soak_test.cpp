@@ -95,10 +95,12 @@ TEST_F(Soak, HalfAnHourOfAMissionDoesNotGrow) {
     pass(step);
     operate(step);
     QCoreApplication::processEvents();
-    if (step % 4 == 0) (void)window()->grabWindow();  // Paints it, as a screen would.
+    QCoreApplication::sendPostedEvents(nullptr, QEvent::DeferredDelete);  // As an event loop would.
+    if (step % 4 == 0) (void)window()->grabWindow();                      // Paints it, as a screen would.
     if (step == begins) before = resident_mb();
     if (step % (steps / 10 + 1) == 0)
       std::printf("minute %.1f: %.1f MB\n", kStep * step / 60.0, resident_mb());
+    std::fflush(stdout);
   }
   const double grown = resident_mb() - before, hours = (minutes - minutes / 3.0) / 60.0;
   std::printf("after the first third: %.1f MB, grown by %.1f MB in %.2f h\n", before, grown, hours);
