@@ -41,8 +41,8 @@ class InputThread {
     bool pad{};           ///< A controller is there.
     bool dead_man{};      ///< Its left shoulder button is held, or a finger or a key is down.
     int starts{};         ///< How often Start of the controller was held for long enough.
-    int takes{};          ///< How often X was pressed,
-    int takes_held{};     ///< and held for long enough to take a robot from its holder.
+    int takes{};          ///< How often X was pressed.
+    int takes_held{};     ///< How often X was held for long enough to take a robot from its holder.
     int steps{};  ///< Presses of the directional pad to the right less those to the left, while none drives.
     bool operator==(const Status&) const = default;
   };
