@@ -167,6 +167,40 @@ check_format() {
     'clang-format --dry-run -Werror "$1" > /dev/null 2>&1 || echo "$1: not as clang-format writes it (./run format)"' lint | sort
 }
 
+# --- qml: the window's files: what qmllint says, at most 200 lines, no functions ------------------------------
+# qmllint knows the window's own types from a build; without Qt 6 or a build, only the rest is checked.
+qmllint_of_qt6() {
+  local tool
+  for tool in /usr/lib/qt6/bin/qmllint qmllint6 qmllint; do
+    # Version 5 has the name, too, and other options.
+    if "$tool" --help 2> /dev/null | grep -q -- '--unqualified'; then echo "$tool"; return; fi
+  done
+}
+check_qml() {
+  local sources tool types
+  sources="$(files -name '*.qml')"
+  [ -n "$sources" ] || return
+  # shellcheck disable=SC2086
+  LC_ALL=C awk '
+    FNR == 1 && !/^\/\/ SPDX-License-Identifier: Apache-2\.0$/ { print FILENAME ": no line SPDX-License-Identifier: Apache-2.0" }
+    FNR == 201 { print FILENAME ": more than 200 lines" }
+    # Connections has its handlers as functions, of one line.
+    /^[ \t]*function[ \t]/ && !/^[ \t]*function on[A-Z][A-Za-z_]*\([a-z, ]*\) \{.*\}$/ { print FILENAME ":" FNR ": a function: rules belong into C++" }
+    /(=>|on[A-Z][A-Za-z]*:)[ \t]*\{[ \t]*$/ { print FILENAME ":" FNR ": more than a binding of one line" }' $sources
+  tool="$(qmllint_of_qt6)"
+  types="$(ls -t build/*/basestation/gui/Adit/*.qmltypes 2> /dev/null | head -n 1)"
+  if [ -z "$tool" ]; then
+    echo "lint: qml: no qmllint of Qt 6 (qt6-declarative-dev-tools): it is skipped" >&2
+  elif [ -z "$types" ]; then
+    echo "lint: qml: adit_gui is not built: qmllint is skipped" >&2
+  else
+    # Delegates use the ids around them, which qmllint of Qt 6.4 always calls unqualified.
+    # shellcheck disable=SC2086
+    "$tool" --unqualified disable -I "$(dirname "$(dirname "$types")")" $sources 2>&1 |
+      sed -nE 's/^(Warning|Error|Critical): //p'
+  fi
+}
+
 check_shell() {
   command -v shellcheck > /dev/null || return 0
   { files -name '*.sh'; ls run .ci/run tools/pre-commit 2> /dev/null; } | xargs -r shellcheck -x -S warning -f gcc
@@ -178,7 +212,7 @@ if [ "${1:-}" = --count ]; then
   exit
 fi
 checks=("$@")
-[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps format shell)
+[ ${#checks[@]} -gt 0 ] || checks=(includes circles sizes words language citation spdx sleeps qml format shell)
 status=0
 for check in "${checks[@]}"; do
   declare -F "check_$check" > /dev/null || { echo "lint: no check '$check'" >&2; exit 2; }

@@ -2,6 +2,7 @@
 #include "basestation/alert/queue.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace adit::station {
@@ -79,12 +80,28 @@ Priority AlertQueue::add(const Notice& notice, const World& world, double now) {
     known->priority = std::min(known->priority, priority);
     return priority;
   }
+  if (Alert* whole = row && !row->part_of.empty() ? find(notice.robot, std::string(row->part_of)) : nullptr;
+      whole && std::abs(at - whole->last) <= kTogether)
+    return priority;
   make_room();
   Alert alert{next_++, priority, notice.code, {}, notice.text, notice.reason, 1, at, at, false, 0.0};
   if (!notice.robot.empty()) alert.robots.push_back(notice.robot);
   alerts_.push_back(alert);
-  if (!notice.robot.empty()) gather(alert);
+  if (notice.robot.empty()) return priority;
+  absorb(alert);
+  gather(alert);
   return priority;
+}
+
+void AlertQueue::absorb(const Alert& newest) {
+  const auto is_part = [&](const Alert& alert) {
+    const AlertRow* row = alert_row(alert.code);
+    return row && !row->part_of.empty() && row->part_of == newest.code;
+  };
+  for (Alert& alert : alerts_)
+    if (is_part(alert) && newest.last - alert.last <= kTogether)
+      std::erase(alert.robots, newest.robots.front());
+  std::erase_if(alerts_, [&](const Alert& alert) { return is_part(alert) && alert.robots.empty(); });
 }
 
 /// Makes one alert of those with the newest one's code, if there are many at its time.

@@ -25,7 +25,8 @@ struct Alert {
 
 /// Which notifications need the operator: the alerts of priority `act` and `soon`, until their cause is gone.
 ///
-/// One alert per robot and code, with a count. A code of three or more robots within 5 s is one alert for all
+/// One alert per robot and code, with a count. A code that says the same as a more urgent one within 5 s is
+/// none of its own. A code of three or more robots within 5 s is one alert for all
 /// of them. Notifications that concern another operator are none. The caller passes the time, in s of any
 /// steady clock; nothing is stored that grows with time.
 class AlertQueue {
@@ -54,6 +55,8 @@ class AlertQueue {
   Alert* find(const std::string& robot, const std::string& code);
   void close(const std::string& robot, const std::string& closing);
   void gather(const Alert& newest);
+  /// Drops the alerts of that robot that say less of what the newest one says.
+  void absorb(const Alert& newest);
   void make_room();
 
   std::vector<Alert> alerts_{};

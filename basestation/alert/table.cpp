@@ -34,8 +34,8 @@ constexpr std::array kRows{
     AlertRow{"lock_lapsed", soon},
     AlertRow{"link_lost", soon, Ends::seen, "link_back"},
     AlertRow{"return_refused", soon, Ends::goes_on},
-    AlertRow{"component_failed", soon, Ends::healthy, "component_back"},
-    AlertRow{"component_hung", soon, Ends::healthy, "component_back"},
+    AlertRow{"component_failed", soon, Ends::healthy, "component_back", false, "escalated"},
+    AlertRow{"component_hung", soon, Ends::healthy, "component_back", false, "escalated"},
     AlertRow{"battery_low", soon},
     AlertRow{"battery_last", act},
     AlertRow{"convoy_lost", soon, Ends::goes_on},
@@ -46,7 +46,6 @@ constexpr std::array kRows{
     AlertRow{"yield_deadlock", soon, Ends::goes_on, "made_way"},
     AlertRow{"outside_area", soon, Ends::goes_on},
     AlertRow{"explore_ended", soon, Ends::busy},
-    AlertRow{"mode_refused", soon, Ends::busy},
     AlertRow{"odometry_jumped", soon, Ends::goes_on},
     AlertRow{"not_localised_here", soon, Ends::goes_on},
     AlertRow{"localisation_lost", soon, Ends::goes_on, "localisation_ok"},
@@ -87,6 +86,7 @@ constexpr std::array kRows{
     AlertRow{"stop_acknowledged", know},
 
     AlertRow{"arrived", log},
+    AlertRow{"mode_refused", log},  // The operator's own command: its outcome says it.
     AlertRow{"reset", log},
     AlertRow{"localisation_ok", log},
     AlertRow{"map_stored", log},

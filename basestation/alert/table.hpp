@@ -34,6 +34,8 @@ struct AlertRow {
   std::string_view closed_by{};  ///< Code of the notification that reports the end of the cause; empty: none.
   /// Only `act` while the robot is driven by hand; otherwise `soon`.
   bool by_hand{false};
+  /// Code of the notification that says the same, and more urgently, when both come together; empty: none.
+  std::string_view part_of{};
 };
 
 /// One row for each code of docs/operators.md.

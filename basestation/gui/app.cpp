@@ -109,9 +109,13 @@ int show_window(int argc, char** argv, const Options& options, const QSize& size
   Control control(qt_station);
   control.tabs()->settings()->open(WindowSettings::default_file(), options.light);
   qt_station.show_in(control);
-  control.drive()->use(qt_station, [] {
-    auto pad = std::make_shared<station::input::Gamepad>();
-    return [pad] { return pad->read(); };
+  control.drive()->use(qt_station, [mapping = control.tabs()->settings()->pad()] {
+    auto gamepad = std::make_shared<station::input::Gamepad>(mapping);
+    InputThread::Pad pad([gamepad] { return gamepad->read(); });
+    pad.rumble = [gamepad](double strength, std::chrono::milliseconds duration) {
+      gamepad->rumble(strength, duration);
+    };
+    return pad;
   });
   for (const std::string& robot : options.select) control.select(QString::fromStdString(robot), true);
   constexpr int kWide = 1600;  // There is room for the details beside the map.

@@ -12,7 +12,7 @@
 namespace adit::station::input {
 namespace {
 
-double axis(Sint16 raw) { return shaped(std::clamp(raw / 32767.0, -1.0, 1.0)); }
+double share(Sint16 raw) { return std::clamp(raw / 32767.0, -1.0, 1.0); }
 
 }  // namespace
 
@@ -20,8 +20,8 @@ double axis(Sint16 raw) { return shaped(std::clamp(raw / 32767.0, -1.0, 1.0)); }
 struct Gamepad::Sdl {
   void* library{};
   SDL_GameController* controller{};
-  decltype(&SDL_Init) init{};
-  decltype(&SDL_Quit) quit{};
+  decltype(&SDL_InitSubSystem) init{};
+  decltype(&SDL_QuitSubSystem) quit{};
   decltype(&SDL_SetHint) set_hint{};
   decltype(&SDL_NumJoysticks) count{};
   decltype(&SDL_IsGameController) is_controller{};
@@ -32,6 +32,7 @@ struct Gamepad::Sdl {
   decltype(&SDL_GameControllerGetAxis) get_axis{};
   decltype(&SDL_GameControllerGetButton) get_button{};
   decltype(&SDL_GameControllerName) get_name{};
+  decltype(&SDL_GameControllerRumble) rumble{};  ///< Null in versions before 2.0.9.
 
   template <class F>
   bool load(F& function, const char* symbol) {
@@ -39,12 +40,13 @@ struct Gamepad::Sdl {
     return function != nullptr;
   }
   bool load_all() {
-    return load(init, "SDL_Init") && load(quit, "SDL_Quit") && load(set_hint, "SDL_SetHint") &&
-           load(count, "SDL_NumJoysticks") && load(is_controller, "SDL_IsGameController") &&
-           load(open, "SDL_GameControllerOpen") && load(close, "SDL_GameControllerClose") &&
-           load(update, "SDL_GameControllerUpdate") && load(attached, "SDL_GameControllerGetAttached") &&
-           load(get_axis, "SDL_GameControllerGetAxis") && load(get_button, "SDL_GameControllerGetButton") &&
-           load(get_name, "SDL_GameControllerName");
+    load(rumble, "SDL_GameControllerRumble");
+    return load(init, "SDL_InitSubSystem") && load(quit, "SDL_QuitSubSystem") &&
+           load(set_hint, "SDL_SetHint") && load(count, "SDL_NumJoysticks") &&
+           load(is_controller, "SDL_IsGameController") && load(open, "SDL_GameControllerOpen") &&
+           load(close, "SDL_GameControllerClose") && load(update, "SDL_GameControllerUpdate") &&
+           load(attached, "SDL_GameControllerGetAttached") && load(get_axis, "SDL_GameControllerGetAxis") &&
+           load(get_button, "SDL_GameControllerGetButton") && load(get_name, "SDL_GameControllerName");
   }
   void find() {
     for (int i = 0; i < count() && !controller; ++i)
@@ -52,7 +54,7 @@ struct Gamepad::Sdl {
   }
 };
 
-Gamepad::Gamepad() {
+Gamepad::Gamepad(const PadMapping& mapping) : mapping_(mapping) {
   auto sdl = std::make_unique<Sdl>();
   sdl->library = ::dlopen("libSDL2-2.0.so.0", RTLD_NOW | RTLD_LOCAL);
   if (!sdl->library) return;
@@ -68,7 +70,7 @@ Gamepad::Gamepad() {
 Gamepad::~Gamepad() {
   if (!sdl_) return;
   if (sdl_->controller) sdl_->close(sdl_->controller);
-  sdl_->quit();
+  sdl_->quit(SDL_INIT_GAMECONTROLLER);
   // The library stays loaded: its threads may not have ended yet.
 }
 
@@ -83,24 +85,40 @@ Gamepad::State Gamepad::read() {
   }
   if (!sdl_->controller) sdl_->find();
   if (!sdl_->controller) return state;
-  const auto value = [&](SDL_GameControllerAxis which) {
-    return axis(sdl_->get_axis(sdl_->controller, which));
+  const auto raw = [&](const PadInput& input) {
+    const double value = share(sdl_->get_axis(sdl_->controller, SDL_GameControllerAxis(input.index)));
+    return input.reversed ? -value : value;
   };
-  const auto pressed = [&](SDL_GameControllerButton which) {
-    return sdl_->get_button(sdl_->controller, which) != 0;
+  // SDL counts axes to the right and downwards, robots to the left and upwards.
+  const auto axis = [&](PadAction action) {
+    const PadInput& input = mapping_.of(action);
+    return input.kind == PadInput::Kind::axis ? -shaped(raw(input)) : 0.0;
+  };
+  const auto pressed = [&](PadAction action) {
+    const PadInput& input = mapping_.of(action);
+    if (input.kind == PadInput::Kind::axis) return raw(input) > 0.5;
+    return input.kind == PadInput::Kind::button &&
+           sdl_->get_button(sdl_->controller, SDL_GameControllerButton(input.index)) != 0;
   };
   state.present = true;
-  state.stick = {-value(SDL_CONTROLLER_AXIS_LEFTY), -value(SDL_CONTROLLER_AXIS_LEFTX),
-                 -value(SDL_CONTROLLER_AXIS_RIGHTX)};
-  state.shoulder = pressed(SDL_CONTROLLER_BUTTON_LEFTSHOULDER);
-  state.stop = pressed(SDL_CONTROLLER_BUTTON_A);
-  state.quit = pressed(SDL_CONTROLLER_BUTTON_B);
-  state.take = pressed(SDL_CONTROLLER_BUTTON_X);
-  state.stop_all = pressed(SDL_CONTROLLER_BUTTON_BACK);
-  state.start = pressed(SDL_CONTROLLER_BUTTON_START);
-  state.fast = pressed(SDL_CONTROLLER_BUTTON_RIGHTSHOULDER);
-  state.precise = sdl_->get_axis(sdl_->controller, SDL_CONTROLLER_AXIS_TRIGGERLEFT) > 16384;
+  state.stick = {axis(PadAction::forward), axis(PadAction::sideways), axis(PadAction::turn)};
+  state.shoulder = pressed(PadAction::dead_man);
+  state.stop = pressed(PadAction::stop);
+  state.quit = pressed(PadAction::let_go);
+  state.take = pressed(PadAction::take);
+  state.stop_all = pressed(PadAction::stop_all);
+  state.start = pressed(PadAction::drive);
+  state.fast = pressed(PadAction::fast);
+  state.precise = pressed(PadAction::precise);
+  state.next = pressed(PadAction::next);
+  state.previous = pressed(PadAction::previous);
   return state;
+}
+
+void Gamepad::rumble(double strength, std::chrono::milliseconds duration) {
+  if (!sdl_ || !sdl_->controller || !sdl_->rumble) return;
+  const auto force = static_cast<Uint16>(std::clamp(strength, 0.0, 1.0) * 65535.0);
+  sdl_->rumble(sdl_->controller, force, force, static_cast<Uint32>(std::max<long>(0, duration.count())));
 }
 
 std::string Gamepad::name() const {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "bench/gui/course.hpp"
+#include "tests/gui/tasks.hpp"
 
 namespace {
 
@@ -49,6 +50,26 @@ int measure_once(int argc, char** argv, double started) {
   return 0;
 }
 
+/// The operator's tasks in the window: inputs, and the time that the keystroke-level model expects.
+int print_tasks(int argc, char** argv) {
+  ::setenv("QT_QPA_PLATFORM", "offscreen", 1);
+  ::setenv("QT_QUICK_BACKEND", "software", 1);
+  const QGuiApplication app(argc, argv);
+  std::printf("\n%-50s %6s %6s %7s %6s\n", "task, by touch, 1280x720", "inputs", "wanted", "KLM, s",
+              "wanted");
+  int missed = 0;
+  for (const adit::gui::TaskResult& task : adit::gui::do_tasks()) {
+    const bool good =
+        task.done && task.inputs <= task.most && (task.limit == 0.0 || task.seconds <= task.limit);
+    missed += !good;
+    char wanted[16] = "-";
+    if (task.limit > 0.0) std::snprintf(wanted, sizeof wanted, "<= %g", task.limit);
+    std::printf("%-50s %6d %6d %7.1f %6s %s\n", task.name.c_str(), task.inputs, task.most, task.seconds,
+                wanted, good ? "" : "MISSED");
+  }
+  return missed == 0 ? 0 : 1;
+}
+
 /// Runs this program once more and reads its results.
 bool add_run(const char* program, std::map<std::string, std::vector<double>>& samples) {
   const std::string line = "'" + std::string(program) + "' --once " + std::to_string(steady_ms());
@@ -71,8 +92,11 @@ int main(int argc, char** argv) {
   int repeats = 5;
   auto* once = app.add_option("--once", started, "measure once, started at this steady time, ms; for itself");
   app.add_option("--repeats", repeats, "processes (default 5)")->check(CLI::Range(1, 100));
-  app.footer("Example: ./run bench gui --repeats 3");
+  bool tasks = false;
+  app.add_flag("--tasks", tasks, "only the operator's tasks: inputs and time by the keystroke-level model");
+  app.footer("Examples:\n  ./run bench gui --repeats 3\n  ./run bench gui --tasks");
   CLI11_PARSE(app, argc, argv);
+  if (tasks) return print_tasks(argc, argv);
   if (once->count() > 0) return measure_once(argc, argv, started);
   std::map<std::string, std::vector<double>> samples;
   for (int i = 0; i < repeats; ++i) {
@@ -94,5 +118,6 @@ int main(int argc, char** argv) {
     if (limit.least > 0) std::snprintf(wanted, sizeof wanted, ">= %g", limit.least);
     std::printf("%-50s %9.1f %9s %s\n", limit.name, value, wanted, good ? "" : "MISSED");
   }
+  missed += print_tasks(argc, argv);
   return missed == 0 ? 0 : 1;
 }

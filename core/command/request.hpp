@@ -28,7 +28,8 @@ struct Request {
   bool all{false};                      ///< Addresses every robot that is heard.
   std::vector<ArgumentValue> values{};  ///< Arguments in the table's order, then options.
 
-  explicit Request(Verb of = command::verb("list"), std::vector<std::string> to = {})
+  Request() : Request(command::verb("list")) {}
+  explicit Request(Verb of, std::vector<std::string> to = {})
       : info(&command::info(of)), verb(of), robots(std::move(to)) {}
 
   /// Returns null when the argument or option was not given.

@@ -211,6 +211,9 @@ class Run {
     if (now % Trail::kPeriod == 0ns) add_people(simulation_, people_);
     checker_.advance(now);
     if (params_.on_truth && now % kTruthPeriod == 0ns) params_.on_truth(now, simulation_);
+    if (params_.on_station && now % Trail::kPeriod == 0ns)
+      for (const auto& [id, machine] : stations_)
+        if (const station::Station* station = machine->station()) params_.on_station(now, *station);
     if (trajectories_ && now % kTruthPeriod == 0ns) trajectories_->add(simulation_, witness_, now);
     if (surface_ && now % SeenSurfaceRecord::kPeriod == 0ns) {
       for (std::size_t i = 0; i < simulation_.size(); ++i) surface_->look(i, simulation_.truth(i).pose);

@@ -12,6 +12,10 @@
 #include "sim/rehearsal/witness.hpp"
 #include "sim/world/simulation.hpp"
 
+namespace adit::station {
+class Station;
+}
+
 namespace adit::sim {
 
 /// A run while it lasts.
@@ -35,6 +39,8 @@ struct RunParams {
   std::function<void(const wire::SampleEvent&)> on_frame{};
   /// Called at 50 Hz. Empty: never.
   std::function<void(Duration, const Simulation&)> on_truth{};
+  /// Called for each station that is not dead, every Trail::kPeriod. Empty: never.
+  std::function<void(Duration, const station::Station&)> on_station{};
 };
 
 /// The path of a robot or a person, for the picture.

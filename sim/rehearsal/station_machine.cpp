@@ -96,6 +96,10 @@ void StationMachine::jump_clock(Duration by) {
   if (process_) stage_.scheduler.jump_clock(*process_->runtime, by);
 }
 
+const station::Station* StationMachine::station() const {
+  return process_ ? process_->station.get() : nullptr;
+}
+
 std::optional<std::size_t> StationMachine::findings() const {
   if (!process_) return std::nullopt;
   return process_->station->findings();

@@ -29,6 +29,8 @@ class StationMachine {
   /// Of the newest answer this operator got, from a robot or from his station.
   std::optional<Reason> last_answer() const;
   const station::Id& id() const { return id_; }
+  /// His station; null while it is dead.
+  const station::Station* station() const;
   /// What his station has of all robots; nothing while it is dead.
   std::optional<std::size_t> findings() const;
   /// The map that his station has; null while it is dead.

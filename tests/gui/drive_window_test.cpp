@@ -3,6 +3,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "tests/gui/fake_drive.hpp"
 #include "tests/gui/window_fixture.hpp"
 
 namespace adit::gui {
@@ -11,83 +12,17 @@ namespace {
 using station::input::Gamepad;
 using testing::ElementsAre;
 
-class FakeDrive : public DriveSink {
- public:
-  std::shared_ptr<const station::World> world() const override {
-    const std::lock_guard guard(mutex_);
-    return world_;
-  }
-  double silent_for() const override { return silent; }
-  std::int64_t drive(const std::string& robot, Done done) override {
-    const std::lock_guard guard(mutex_);
-    robots_.push_back(robot);
-    done_ = std::move(done);
-    return static_cast<std::int64_t>(robots_.size());
-  }
-  void stick(std::int64_t drive, const station::StickVelocity& velocity) override {
-    const std::lock_guard guard(mutex_);
-    last_ = velocity;
-    last_drive_ = drive;
-    ++sticks_;
-  }
-  void cancel(std::int64_t drive) override {
-    const std::lock_guard guard(mutex_);
-    cancelled_.push_back(drive);
-  }
-  void halt(const std::vector<std::string>& robots) override {
-    const std::lock_guard guard(mutex_);
-    halts_.push_back(robots.empty() ? "all" : robots.front());
-  }
-  void show(const station::World& world) {
-    const std::lock_guard guard(mutex_);
-    world_ = std::make_shared<station::World>(world);
-  }
-  station::StickVelocity last() const {
-    const std::lock_guard guard(mutex_);
-    return last_;
-  }
-  std::int64_t last_drive() const {
-    const std::lock_guard guard(mutex_);
-    return last_drive_;
-  }
-  std::vector<std::string> robots() const {
-    const std::lock_guard guard(mutex_);
-    return robots_;
-  }
-  std::vector<std::string> halts() const {
-    const std::lock_guard guard(mutex_);
-    return halts_;
-  }
-  std::size_t cancelled() const {
-    const std::lock_guard guard(mutex_);
-    return cancelled_.size();
-  }
-  Done done() const {
-    const std::lock_guard guard(mutex_);
-    return done_;
-  }
-  std::atomic<double> silent{0.0};
-
- private:
-  mutable std::mutex mutex_{};
-  std::shared_ptr<const station::World> world_{std::make_shared<station::World>()};
-  std::vector<std::string> robots_{}, halts_{};
-  std::vector<std::int64_t> cancelled_{};
-  station::StickVelocity last_{};
-  std::int64_t last_drive_{};
-  int sticks_{};
-  Done done_{};
-};
-
 class DriveWindow : public Window {
  protected:
   DriveWindow() {
     drive_sink.show(manual("r1"));
     control.drive()->use(drive_sink, [this] {
-      return [this] {
+      InputThread::Pad out([this] {
         const std::lock_guard guard(pad_mutex);
         return pad;
-      };
+      });
+      out.rumble = [this](double strength, std::chrono::milliseconds) { rumble = strength; };
+      return out;
     });
   }
   ~DriveWindow() override { operator_window.reset(); }
@@ -113,6 +48,8 @@ class DriveWindow : public Window {
 
   std::mutex pad_mutex{};
   Gamepad::State pad{};
+  std::atomic<double> rumble{0.0};
+  std::uint64_t notices{1000};
   FakeDrive drive_sink{};
   struct Release {  // The thread ends before what it uses.
     Control& control;
@@ -244,6 +181,50 @@ TEST_F(DriveWindow, OnlyOneRobotOfMineCanBeDriven) {
   QTest::keyClick(window(), Qt::Key_M);
   EXPECT_FALSE(control.drive()->driving());
   EXPECT_TRUE(drive_sink.robots().empty());
+}
+
+TEST_F(DriveWindow, TheDirectionalPadSelectsTheNextRobotWhileNoneIsDriven) {
+  control.select("r1", false);
+  set_pad({.present = true});
+  ASSERT_TRUE(soon([&] { return control.drive()->pad(); }));
+  set_pad({.present = true, .next = true});
+  EXPECT_TRUE(soon([&] { return control.selection() == std::vector<std::string>{"r2"}; }));
+  set_pad({.present = true, .previous = true});
+  EXPECT_TRUE(soon([&] { return control.selection() == std::vector<std::string>{"r1"}; }));
+}
+
+TEST_F(DriveWindow, XTakesAFreeRobotAtOnceAndOneOfAnotherOnlyWhenHeld) {
+  set_pad({.present = true});
+  ASSERT_TRUE(soon([&] { return control.drive()->pad(); }));
+  control.select("r7", false);
+  set_pad({.present = true, .take = true});
+  ASSERT_TRUE(soon([&] { return !sink.lines.empty(); }));
+  EXPECT_THAT(sink.lines, ElementsAre("take r7"));
+  set_pad({.present = true});
+  control.select("r3", false);
+  settle_layout();
+  set_pad({.present = true, .take = true});
+  ASSERT_TRUE(soon([&] { return control.outcome().contains("keep the button held"); }));
+  EXPECT_THAT(sink.lines, ElementsAre("take r7"));
+  ASSERT_TRUE(soon([&] { return sink.lines.size() == 2; }));
+  EXPECT_EQ(sink.lines.back(), "take r3");
+}
+
+TEST_F(DriveWindow, TheControllerVibratesForUrgentAlertsAndForObstaclesOfTheDrivenRobot) {
+  begin();
+  const auto notice = [&](const char* robot, const char* code) {
+    rumble = 0.0;
+    control.add_notice(
+        station::Notice{.id = ++notices, .robot = robot, .code = code, .text = code, .mine = true});
+  };
+  notice("r4", "arrived");
+  notice("r4", "obstacle_near");
+  QTest::qWait(100);
+  EXPECT_EQ(rumble, 0.0);
+  notice("r1", "obstacle_near");
+  EXPECT_TRUE(soon([&] { return rumble == 0.5; }));
+  notice("r4", "stopped");
+  EXPECT_TRUE(soon([&] { return rumble == 1.0; }));
 }
 
 }  // namespace

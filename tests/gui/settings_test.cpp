@@ -74,6 +74,36 @@ TEST_F(SettingsTest, AWrongFileIsNamedInTheLogAndPreserved) {
   EXPECT_TRUE(content(file()).contains("theme: light"));
 }
 
+TEST_F(SettingsTest, ButtonsOfTheControllerAreReadAndSurviveAChange) {
+  using station::input::PadAction;
+  write("theme: light\npad:\n  dead_man: righttrigger\n  forward: -lefty\n  fast: none\n");
+  WindowSettings& settings = *control.tabs()->settings();
+  settings.open(file());
+  EXPECT_EQ(log(), "");
+  EXPECT_EQ(name_of(settings.pad().of(PadAction::dead_man)), "righttrigger");
+  EXPECT_EQ(name_of(settings.pad().of(PadAction::forward)), "-lefty");
+  settings.set_glove(true);
+  EXPECT_EQ(read_settings(content(file()).toStdString()).pad, settings.pad());
+}
+
+TEST(SettingsFile, WrongButtonsOfTheControllerAreNamedWithTheirLines) {
+  using station::input::PadAction;
+  const SettingsRead read = read_settings(
+      "pad:\n  stop: leftsholder\n  dead_mam: a\n  turn: b\n  stop_all: none\n  take: [1]\n  drive: back\n");
+  EXPECT_THAT(read.problems,
+              testing::ElementsAre("line 2: no button or axis 'leftsholder', did you mean leftshoulder?",
+                                   "line 3: unknown action of the pad 'dead_mam', did you mean dead_man?",
+                                   "line 4: turn is an axis, not the button b",
+                                   "line 5: stop_all needs a button", "line 6: no button or axis 'a list'",
+                                   "line 7: back is stop_all already: drive is none"));
+  station::input::PadMapping usual;
+  EXPECT_TRUE(usual.set(PadAction::drive, "none"));
+  EXPECT_EQ(read.pad, usual) << "the rest is as usual";
+  EXPECT_THAT(read_settings("pad: 3\n").problems,
+              testing::ElementsAre("line 1: pad has lines 'action: button'"));
+  EXPECT_THAT(read_settings("pad:\n").problems, IsEmpty());
+}
+
 TEST_F(SettingsTest, AFileThatCannotBeWrittenIsSaid) {
   control.tabs()->settings()->open("/proc/no/such/gui.yaml");
   control.tabs()->settings()->set_light(true);

@@ -18,6 +18,13 @@ TEST_F(Window, LoadsWithoutAnyWarning) {
   EXPECT_EQ(text("stopText"), "1/10 stopped");
 }
 
+TEST_F(Window, OldValuesAreFadedAndSaidToBeOld) {
+  EXPECT_EQ(item("values_r1")->opacity(), 1.0);
+  EXPECT_FALSE(text("age_r1").contains("old"));
+  EXPECT_EQ(item("values_r7")->opacity(), 0.5);
+  EXPECT_TRUE(text("age_r7").contains("old"));
+}
+
 TEST_F(Window, AStopOfAllLeavesAtFingerDown) {
   const QPoint at = middle("stopAll");
   finger_down(at);

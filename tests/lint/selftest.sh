@@ -44,6 +44,14 @@ put core/word.cpp '// TO''DO later\n'
 expect words 'core/word.cpp:1'
 put tests/s.cpp 'std::this_thread::sleep''_for(1s);\n'
 expect sleeps 'tests/s.cpp:1'
+put basestation/gui/qml/A.qml '// SPDX-License-Identifier: Apache-2.0\nItem {\n  function onB(c) { d.e(c) }\n}\n'
+expect qml ""
+put basestation/gui/qml/A.qml "$(printf 'x\\n%.0s' $(seq 201))"
+expect qml 'basestation/gui/qml/A.qml: no line SPDX'
+expect qml 'basestation/gui/qml/A.qml: more than 200 lines'
+put basestation/gui/qml/A.qml '// SPDX-License-Identifier: Apache-2.0\n  function a() {\n  onB: {\n'
+expect qml 'basestation/gui/qml/A.qml:2: a function'
+expect qml 'basestation/gui/qml/A.qml:3: more than a binding'
 put CMakeLists.txt 'project(adit VERSION 0.2.0 LANGUAGES CXX)\n'
 put CITATION.cff 'cff-version: 1.2.0\nversion: 0.2.0\n'
 expect citation ""

@@ -112,6 +112,28 @@ TEST_F(AlertQueueTest, TheSameIsCountedInOneRow) {
   EXPECT_THAT(shown(), ElementsAre("blocked r1 x4"));
 }
 
+TEST_F(AlertQueueTest, AHungComponentThatEndsItsAgentIsOneRowInEitherOrder) {
+  say("r1", "escalated");
+  say("r1", "component_hung");
+  EXPECT_THAT(shown(), ElementsAre("escalated r1"));
+  say("r2", "component_hung");
+  say("r2", "escalated");
+  say("r3", "component_hung");
+  EXPECT_THAT(shown(), ElementsAre("escalated r1", "escalated r2", "component_hung r3"));
+  r(1).troubles = r(3).troubles = {"planner hung"};
+  pass(AlertQueue::kTogether + 1.0);
+  say("r1", "component_hung");
+  EXPECT_THAT(shown(), ElementsAre("escalated r1", "escalated r2", "component_hung r3", "component_hung r1"))
+      << "a component that hangs later is another matter";
+  queue_.add({.robot = "r3", .level = Level::warning, .mine = true}, world_, now_);
+  EXPECT_EQ(queue_.size(), 5U) << "a notification without a code is part of nothing";
+}
+
+TEST_F(AlertQueueTest, AnOwnCommandThatIsRefusedIsNoAlert) {
+  EXPECT_EQ(say("r1", "mode_refused"), Priority::log);
+  EXPECT_TRUE(shown().empty());
+}
+
 TEST_F(AlertQueueTest, ARobotThatAnotherOperatorTookNeedsNothingHere) {
   r(1).stopped = true;
   r(1).stops = {"op2"};

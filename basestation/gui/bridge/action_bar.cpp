@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "basestation/gui/break.hpp"
 #include "basestation/model/action.hpp"
 #include "core/command/vocabulary.hpp"
 
@@ -22,6 +23,7 @@ const Action* find_action(const std::vector<Action>& actions, std::string_view i
 }
 
 std::string spaced(const std::vector<std::string>& robots) {
+  if constexpr (kBreakAllImplied) return "all";
   std::string words;
   for (const std::string& robot : robots) words += (words.empty() ? "" : " ") + robot;
   return words;

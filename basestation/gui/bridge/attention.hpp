@@ -27,8 +27,9 @@ struct Need {
 /// nothing useful although no notification of it was heard, e.g. because the window was opened later.
 class Attention {
  public:
-  void add(const station::Notice& notice, const station::World& world, double now) {
-    queue_.add(notice, world, now);
+  /// Returns its priority.
+  station::Priority add(const station::Notice& notice, const station::World& world, double now) {
+    return queue_.add(notice, world, now);
   }
   void update(const station::World& world, double now) { queue_.update(world, now); }
   void see(std::uint64_t alert) { queue_.see(alert); }

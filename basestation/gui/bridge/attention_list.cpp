@@ -19,8 +19,8 @@ QString text_of(const std::string& text) { return QString::fromStdString(text); 
 AttentionList::AttentionList(Control& control)
     : QObject(&control), control_(control), rows_(roles(), this), top_(roles(), this) {}
 
-void AttentionList::add(const station::Notice& notice) {
-  attention_.add(notice, control_.world(), control_.now());
+station::Priority AttentionList::add(const station::Notice& notice) {
+  return attention_.add(notice, control_.world(), control_.now());
 }
 
 void AttentionList::refresh() {

@@ -28,7 +28,8 @@ class AttentionList : public QObject {
 
   explicit AttentionList(Control& control);
 
-  void add(const station::Notice& notice);
+  /// Returns its priority.
+  station::Priority add(const station::Notice& notice);
   void refresh();
   const std::vector<Need>& needs() const { return needs_; }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basestation/gui/break.hpp"
 #include "basestation/model/route.hpp"
 #include "basestation/model/text.hpp"
 #include "core/command/words.hpp"
@@ -91,6 +92,7 @@ Card card_of(const Robot& robot, int number, double silent, double stale_after) 
       .number = number, .name = robot.name, .glyph = glyph_of(robot.platform), .platform = robot.platform};
   const double age = robot.age + silent;
   card.contact = contact_of(robot, silent, stale_after);
+  if constexpr (kBreakStaleFade) card.contact = Contact::live;
   card.owner = owner_of(robot);
   card.holder = robot.mine ? "mine" : robot.holder.empty() ? "no holder" : robot.holder;
   if (robot.locked) card.holder += ", locked";

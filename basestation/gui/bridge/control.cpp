@@ -232,7 +232,9 @@ void Control::add_notice(const station::Notice& notice) {
 
 void Control::show_notice(const station::Notice& notice) {
   last_notice_ = std::max(last_notice_, notice.id);
-  attention_.add(notice);
+  const bool urgent = attention_.add(notice) == station::Priority::act;
+  if (urgent || (notice.code == "obstacle_near" && notice.robot == drive_.robot().toStdString()))
+    drive_.warn_hand(urgent);
   tabs_.add_notice(notice);
   const QString kind = !notice.mine                              ? "dim"
                        : notice.level == station::Level::error   ? "bad"

@@ -38,7 +38,7 @@ class Control : public QObject {
   Q_PROPERTY(QAbstractItemModel* buttons READ buttons CONSTANT)
   Q_PROPERTY(QAbstractItemModel* refusals READ refusals CONSTANT)
   Q_PROPERTY(QAbstractItemModel* log READ log CONSTANT)
-  Q_PROPERTY(TabState* tabs READ tabs CONSTANT)
+  Q_PROPERTY(adit::gui::TabState* tabs READ tabs CONSTANT)
   Q_PROPERTY(QString operatorName READ operator_name NOTIFY shown)
   Q_PROPERTY(QString link READ link NOTIFY shown)
   Q_PROPERTY(int robotCount READ robot_count NOTIFY shown)
@@ -100,6 +100,10 @@ class Control : public QObject {
   void stop(const std::vector<std::string>& robots);  ///< Software stop; of all, if there is none.
   /// Drives the selected robot by hand, if it is one that would accept it.
   void drive_selected();
+  /// Takes the selected robots; `held`: by press and hold, which takes them from their holders.
+  void take_selected(bool held);
+  /// Selects the robot so many cards below the selected one.
+  void move_selection(int by);
   /// Selects these robots as far as they are known, and asks the map to show them.
   void select_and_show(const std::vector<std::string>& robots);
   /// Lines of an answer, as one.
@@ -180,7 +184,6 @@ class Control : public QObject {
   void set_state(const std::string& slot, const QString& state);
   void pend(const std::string& line, const std::string& slot);
   void press_slot(const char* id);
-  void move_selection(int by);
   QString reason_of(const BarButton& button) const;
   bool press_letter(int key);
   /// `age`: time since it happened, s.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "basestation/gui/break.hpp"
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/gui/scene/mark_list.hpp"
@@ -69,6 +70,15 @@ void Control::order(const std::string& line, const std::string& slot, CommandSin
 }
 
 void Control::drive_selected() { trigger(static_cast<int>(slot_index("drive")), false); }
+
+void Control::take_selected(bool held) {
+  const std::size_t slot = slot_index("take");
+  const BarButton& button = bar_.buttons[slot];
+  const bool needs_hold = button.touch == Touch::hold && !button.robots.empty();
+  if (held == needs_hold) return trigger(static_cast<int>(slot), held);
+  if (needs_hold)
+    say(QString::fromStdString(button.label + " " + button.hint) + ": keep the button held", "sent");
+}
 
 void Control::begin_batch() {
   ++batch_;
@@ -175,6 +185,7 @@ void Control::stopAll() {
   drop_orders();
   stop_missing_.clear();
   set_aiming(false);
+  if constexpr (kBreakStopConfirm) return pend("stop all", "stop");
   stop({});
 }
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "basestation/gui/break.hpp"
 #include "basestation/gui/bridge/card.hpp"
 #include "basestation/gui/bridge/control.hpp"
 #include "basestation/model/text.hpp"
@@ -116,17 +117,25 @@ void DriveControl::send_keys() {
 void DriveControl::look() {
   if (!thread_) return;
   thread_->beat();
+  if constexpr (kBreakBoundStick)
+    if (driving() && !control_.selection().empty() && control_.selection().front() != status_.robot)
+      thread_->drive(control_.selection().front());
   const InputThread::Status before = std::exchange(status_, thread_->status());
   if (before.robot != status_.robot) down_.clear();
   if (!before.robot.empty() && status_.robot.empty() && !status_.ended.empty())
     control_.say(
         "Driving " + QString::fromStdString(before.robot) + " ended: " + Control::one_line(status_.ended),
         "refused");
-  if (status_.starts != before.starts && !driving() && control_.selection().size() == 1)
-    control_.drive_selected();
-  if (status_.takes != before.takes && control_.selection().size() == 1)
-    control_.order("take " + control_.selection().front());
+  if (status_.starts != before.starts && !driving()) control_.drive_selected();
+  if (status_.takes != before.takes) control_.take_selected(false);
+  if (status_.takes_held != before.takes_held) control_.take_selected(true);
+  if (status_.steps != before.steps && !driving()) control_.move_selection(status_.steps - before.steps);
   if (status_ != before || driving()) emit changed();
+}
+
+void DriveControl::warn_hand(bool strongly) {
+  using namespace std::chrono_literals;
+  if (thread_) thread_->rumble(strongly ? 1.0 : 0.5, strongly ? 600ms : 200ms);
 }
 
 QString DriveControl::mode() const {

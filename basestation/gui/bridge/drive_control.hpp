@@ -50,6 +50,8 @@ class DriveControl : public QObject {
   bool press(int key);
   void release_key(int key);
   void forget_keys();
+  /// Vibrates the game controller: strongly if motion or control is at stake.
+  void warn_hand(bool strongly);
 
   bool driving() const { return !status_.robot.empty(); }
   QString robot() const { return QString::fromStdString(status_.robot); }

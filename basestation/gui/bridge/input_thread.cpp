@@ -89,6 +89,12 @@ void InputThread::keys(const std::array<double, 3>& axes) {
   wake_.notify_all();
 }
 
+void InputThread::rumble(double strength, std::chrono::milliseconds duration) {
+  const std::lock_guard guard(mutex_);
+  rumble_ = {strength, duration};
+  wake_.notify_all();
+}
+
 InputThread::Status InputThread::status() const {
   const std::lock_guard guard(mutex_);
   return status_;
@@ -97,8 +103,13 @@ InputThread::Status InputThread::status() const {
 void InputThread::run(const std::stop_token& stop) {
   const Pad pad = make_pad_();
   while (!stop.stop_requested()) {
-    const Gamepad::State state = pad();
+    const Gamepad::State state = pad.read();
     std::unique_lock guard(mutex_);
+    if (const auto wanted = std::exchange(rumble_, std::nullopt); wanted && pad.rumble) {
+      guard.unlock();
+      pad.rumble(wanted->first, wanted->second);
+      guard.lock();
+    }
     step(state, steady_seconds());
     const bool busy = session_ || state.present;
     // By the system's clock: the thread sanitizer does not know the wait by the steady one.
@@ -110,12 +121,24 @@ void InputThread::run(const std::stop_token& stop) {
 /// With the mutex held.
 void InputThread::step(const Gamepad::State& pad, double now) {
   const auto pressed = [&](bool Gamepad::State::*button) { return pad.*button && !(last_pad_.*button); };
+  // What is held at the moment when a controller comes is no press, except for a stop.
+  const bool known = last_pad_.present;
+  const auto held = [&](bool Gamepad::State::*button, double& since, double limit) {
+    if (known && pressed(button)) since = now;
+    if (!(pad.*button)) since = 0.0;
+    if (since == 0.0 || now - since < limit) return false;
+    since = 0.0;
+    return true;
+  };
   // Stops do not depend on anything else.
   if (pressed(&Gamepad::State::stop_all)) sink_.halt({});
   if (pressed(&Gamepad::State::stop) && session_) sink_.halt({session_->robot()});
   if (pressed(&Gamepad::State::quit)) end_drive("let go");
-  status_.takes += pressed(&Gamepad::State::take);
-  status_.starts += pressed(&Gamepad::State::start);
+  status_.takes += known && pressed(&Gamepad::State::take);
+  status_.takes_held += held(&Gamepad::State::take, take_since_, kTakeHeld);
+  status_.starts += held(&Gamepad::State::start, start_since_, kStartHeld);
+  if (!session_ && known)
+    status_.steps += pressed(&Gamepad::State::next) - pressed(&Gamepad::State::previous);
   status_.pad = pad.present;
   status_.dead_man = pad.shoulder || hands_.touching || hands_.keys != std::array<double, 3>{};
   last_pad_ = pad;

@@ -41,6 +41,7 @@ void WindowSettings::open(const QString& file, bool light) {
     } else {
       const SettingsRead read = read_settings(in.readAll().toStdString());
       wrong_ = !read.problems.empty();
+      pad_ = read.pad;
       for (const std::string& problem : read.problems)
         emit remark(file + ", " + QString::fromStdString(problem));
       applying_ = true;
@@ -76,7 +77,7 @@ void WindowSettings::store() {
   QDir().mkpath(QFileInfo(file_).path());
   QSaveFile out(file_);
   const bool stored = out.open(QIODevice::WriteOnly) &&
-                      out.write(QByteArray::fromStdString(settings_text(values()))) > 0 && out.commit();
+                      out.write(QByteArray::fromStdString(settings_text(values(), pad_))) > 0 && out.commit();
   if (!stored) emit remark("settings are not stored: " + file_ + ": " + out.errorString());
 }
 

@@ -35,6 +35,8 @@ class WindowSettings : public QObject {
   double scale() const;
   void set_scale(double scale);
   bool is_default() const { return values() == SettingsValues{}; }
+  /// The buttons of the game controller, as the file was opened.
+  const station::input::PadMapping& pad() const { return pad_; }
   const QString& file() const { return file_; }
   Q_INVOKABLE void restoreDefaults();
 
@@ -48,6 +50,7 @@ class WindowSettings : public QObject {
   void store();
 
   QString file_{};
+  station::input::PadMapping pad_{};
   bool wrong_{false};  ///< The file holds what this version does not understand.
   bool applying_{false};
 };

@@ -3,6 +3,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "core/command/words.hpp"
@@ -14,6 +16,43 @@ constexpr std::size_t kMaxProblems = 20;
 constexpr std::size_t kMaxShown = 40;
 
 std::string line_of(const YAML::Mark& mark) { return "line " + std::to_string(mark.line + 1) + ": "; }
+
+/// Takes the section `pad`: actions, and the buttons or axes for them.
+void take_pad(const YAML::Node& section, SettingsRead& read) {
+  using station::input::PadAction;
+  const auto wrong = [&](const YAML::Node& at, const std::string& why) {
+    if (read.problems.size() < kMaxProblems) read.problems.push_back(line_of(at.Mark()) + why);
+  };
+  if (!section.IsMap()) {
+    if (!section.IsNull()) wrong(section, "pad has lines 'action: button'");
+    return;
+  }
+  const auto names = station::input::pad_action_names();
+  std::array<int, station::input::kPadActions> lines{};
+  for (const auto& entry : section) {
+    const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
+    const auto at = std::ranges::find(names, key);
+    if (at == names.end()) {
+      const std::string meant = command::nearest(key, {names.begin(), names.end()});
+      wrong(entry.first, "unknown action of the pad '" + command::clean(key, kMaxShown) + "'" +
+                             (meant.empty() ? "" : ", did you mean " + meant + "?"));
+      continue;
+    }
+    const auto index = static_cast<std::size_t>(at - names.begin());
+    lines[index] = entry.first.Mark().line + 1;
+    const auto set =
+        read.pad.set(PadAction(index), entry.second.IsScalar() ? entry.second.Scalar() : "a list");
+    if (!set) wrong(entry.first, set.error().text);
+  }
+  for (const auto& clash : read.pad.resolve()) {
+    const auto keeps = static_cast<std::size_t>(clash.keeps), loses = static_cast<std::size_t>(clash.loses);
+    const int line = std::max(lines[keeps], lines[loses]);
+    if (read.problems.size() < kMaxProblems)
+      read.problems.push_back("line " + std::to_string(line) + ": " + clash.input + " is " +
+                              std::string(names[keeps]) + " already: " + std::string(names[loses]) +
+                              " is none");
+  }
+}
 
 /// Takes one entry; returns what is wrong with it, or nothing.
 std::string take(const std::string& key, const YAML::Node& value, SettingsValues& out) {
@@ -37,7 +76,7 @@ std::string take(const std::string& key, const YAML::Node& value, SettingsValues
     return {};
   }
   const std::string shown = command::clean(key, kMaxShown);
-  const std::string meant = command::nearest(key, {"theme", "glove_mode", "scale"});
+  const std::string meant = command::nearest(key, {"theme", "glove_mode", "scale", "pad"});
   return "unknown setting '" + shown + "'" + (meant.empty() ? "" : ", did you mean " + meant + "?");
 }
 
@@ -53,6 +92,10 @@ SettingsRead read_settings(const std::string& text) {
       return read;
     }
     for (const auto& entry : root) {
+      if (entry.first.IsScalar() && entry.first.Scalar() == "pad") {
+        take_pad(entry.second, read);
+        continue;
+      }
       const std::string wrong = entry.first.IsScalar() ? take(entry.first.Scalar(), entry.second, read.values)
                                                        : "a name was expected";
       if (!wrong.empty() && read.problems.size() < kMaxProblems)
@@ -64,12 +107,20 @@ SettingsRead read_settings(const std::string& text) {
   return read;
 }
 
-std::string settings_text(const SettingsValues& values) {
+std::string settings_text(const SettingsValues& values, const station::input::PadMapping& pad) {
   char scale[16] = {};
   std::snprintf(scale, sizeof scale, "%.2f", values.scale);
-  return std::string("# The operator's window, see docs/gui.md. The window writes this file.\n") +
-         "theme: " + (values.light ? "light" : "dark") +
-         "\nglove_mode: " + (values.glove ? "true" : "false") + "\nscale: " + scale + "\n";
+  std::string text = std::string("# The operator's window, see docs/gui.md. The window writes this file.\n") +
+                     "theme: " + (values.light ? "light" : "dark") +
+                     "\nglove_mode: " + (values.glove ? "true" : "false") + "\nscale: " + scale + "\n";
+  const station::input::PadMapping usual;
+  const auto names = station::input::pad_action_names();
+  if (pad != usual) text += "pad:\n";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (const auto& input = pad.of(station::input::PadAction(i));
+        input != usual.of(station::input::PadAction(i)))
+      text += "  " + std::string(names[i]) + ": " + name_of(input) + "\n";
+  return text;
 }
 
 }  // namespace adit::gui

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "basestation/input/pad_mapping.hpp"
+
 namespace adit::gui {
 
 /// What the operator sets for the window.
@@ -18,11 +20,12 @@ struct SettingsValues {
 /// The settings of a file, and what is wrong with it.
 struct SettingsRead {
   SettingsValues values{};
+  station::input::PadMapping pad{};     ///< Buttons of the game controller.
   std::vector<std::string> problems{};  ///< "line 3: ...".
 };
 
 /// Reads the text of gui.yaml. What is wrong is reported, and the rest is used.
 SettingsRead read_settings(const std::string& text);
-std::string settings_text(const SettingsValues& values);
+std::string settings_text(const SettingsValues& values, const station::input::PadMapping& pad = {});
 
 }  // namespace adit::gui

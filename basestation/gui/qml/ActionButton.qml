@@ -24,19 +24,20 @@ Rectangle {
     border.color: state_ === "sent" ? Theme.goal : state_ === "done" ? Theme.ok : state_ === "refused" ? Theme.bad : Theme.edge
 
     PlainLabel {
-        x: 1.5 * Theme.mm
+        x: 0.5 * Theme.mm
         y: 1 * Theme.mm
-        width: parent.width - 3 * Theme.mm
+        width: parent.width - 2 * x
         height: 6 * Theme.mm
         horizontalAlignment: Text.AlignHCenter
         font.bold: true
         color: button.aims ? Theme.ink : Theme.text
-        text: (button.state_ === "done" ? "✓ " : button.state_ === "refused" ? "✗ " : "") + button.label + (button.key === "" ? "" : "  " + button.key)
+        text: (button.state_ === "done" ? "✓ " : button.state_ === "refused" ? "✗ " : "") + button.label + (button.key === "" ? "" : " " + button.key)
     }
     PlainLabel {
-        x: 1 * Theme.mm
+        objectName: "buttonHint"
+        x: 0.5 * Theme.mm
         y: 7 * Theme.mm
-        width: parent.width - 2 * Theme.mm
+        width: parent.width - 2 * x
         height: 5 * Theme.mm
         horizontalAlignment: Text.AlignHCenter
         color: button.aims ? Theme.ink : Theme.dim
@@ -61,6 +62,10 @@ Rectangle {
         id: area
         objectName: "button_" + button.slot
         anchors.fill: parent
+        Accessible.role: Accessible.Button
+        Accessible.name: button.label
+        Accessible.description: button.names
+        Accessible.onPressAction: button.control.trigger(button.index, false)
         holdTime: button.possible && button.touch === "hold" ? 800 : 0
         meaning: button.label + button.hint + button.names + button.touch
         onTapped: button.control.trigger(button.index, false)

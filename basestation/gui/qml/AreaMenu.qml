@@ -28,6 +28,6 @@ Rectangle {
         HoldButton { objectName: "area_keep_out"; height: parent.height; text: "keep out"; meaning: menu.area.text; onFired: menu.area.apply("keep_out") }
         HoldButton { objectName: "area_keep_in"; height: parent.height; text: "keep in"; meaning: menu.area.text; onFired: menu.area.apply("keep_in") }
         HoldButton { objectName: "area_prefer"; height: parent.height; text: "explore first"; meaning: menu.area.text; onFired: menu.area.apply("prefer") }
-        HoldButton { objectName: "area_cancel"; width: 10 * Theme.mm; height: parent.height; text: "×"; onFired: menu.area.active = false }
+        HoldButton { objectName: "area_cancel"; width: 10 * Theme.mm; height: parent.height; text: "×"; spoken: "no area"; onFired: menu.area.active = false }
     }
 }

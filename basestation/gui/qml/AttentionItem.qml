@@ -25,6 +25,9 @@ Rectangle {
         id: area
         objectName: "show_" + item.need
         anchors.fill: parent
+        Accessible.role: Accessible.Button
+        Accessible.name: item.who + ": " + item.line
+        Accessible.onPressAction: item.attention.show(item.need)
         meaning: item.need
         onTapped: item.attention.show(item.need)
     }

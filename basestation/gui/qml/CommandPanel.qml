@@ -70,6 +70,8 @@ Rectangle {
                 TextInput {
                     id: field
                     objectName: "commandField"
+                    Accessible.role: Accessible.EditableText
+                    Accessible.name: "command"
                     anchors.fill: parent
                     anchors.margins: 1.5 * Theme.mm
                     color: Theme.text
@@ -102,6 +104,7 @@ Rectangle {
                 width: 9 * Theme.mm
                 height: parent.height
                 text: "×"
+                spoken: "close"
                 onFired: panel.line.open = false
             }
         }

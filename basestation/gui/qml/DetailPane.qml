@@ -29,6 +29,7 @@ Rectangle {
         width: 9 * Theme.mm
         height: 9 * Theme.mm
         text: "×"
+        spoken: "close the details"
         onFired: pane.details.open = false
     }
     ListView {

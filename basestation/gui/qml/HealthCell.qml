@@ -51,6 +51,9 @@ Rectangle {
         id: area
         objectName: "health_" + cell.robot + "_" + cell.component
         anchors.fill: parent
+        Accessible.role: Accessible.Button
+        Accessible.name: cell.robot + " " + cell.component + " " + cell.label
+        Accessible.onPressAction: cell.chosenByTap()
         enabled: cell.component !== "" && cell.label !== ""
         onTapped: cell.chosenByTap()
     }

@@ -6,6 +6,7 @@ import Adit
 Rectangle {
     id: button
     property string text
+    property string spoken: text
     property bool hold: false
     property bool active: false
     property alias meaning: area.meaning
@@ -40,6 +41,9 @@ Rectangle {
     PressArea {
         id: area
         anchors.fill: parent
+        Accessible.role: Accessible.Button
+        Accessible.name: button.spoken
+        Accessible.onPressAction: button.fired(false)
         holdTime: button.hold ? 800 : 0
         onTapped: button.fired(false)
         onHeld: button.fired(true)

@@ -13,6 +13,8 @@ Rectangle {
     MapView {
         id: map
         objectName: "map"
+        Accessible.role: Accessible.Canvas
+        Accessible.name: "map from above"
         anchors.fill: parent
         anchors.margins: pane.border.width
         control: pane.control
@@ -22,6 +24,8 @@ Rectangle {
     MapView3D {
         id: solid
         objectName: "solid"
+        Accessible.role: Accessible.Canvas
+        Accessible.name: "map in three dimensions"
         anchors.fill: parent
         anchors.margins: pane.border.width
         control: pane.control
@@ -100,6 +104,7 @@ Rectangle {
                 width: 10 * Theme.mm
                 height: width
                 text: "↓"
+                spoken: "lower floor"
                 onFired: map.moveFloor(-1)
             }
             HoldButton {
@@ -107,6 +112,7 @@ Rectangle {
                 width: 10 * Theme.mm
                 height: width
                 text: "↑"
+                spoken: "higher floor"
                 onFired: map.moveFloor(1)
             }
             HoldButton {
@@ -143,15 +149,19 @@ Rectangle {
             anchors.right: parent.right
             spacing: 2 * Theme.mm
             HoldButton {
+                objectName: "zoomOut"
                 width: 10 * Theme.mm
                 height: width
                 text: "−"
+                spoken: "zoom out"
                 onFired: pane.control.solid ? solid.zoomBy(1 / 1.5) : map.zoomBy(1 / 1.5)
             }
             HoldButton {
+                objectName: "zoomIn"
                 width: 10 * Theme.mm
                 height: width
                 text: "+"
+                spoken: "zoom in"
                 onFired: pane.control.solid ? solid.zoomBy(1.5) : map.zoomBy(1.5)
             }
         }

@@ -88,6 +88,7 @@ Rectangle {
         text: card.holder + "  ·  " + card.detail
     }
     Row {
+        objectName: "values_" + card.name
         x: 2 * Theme.mm
         y: 15 * Theme.mm
         height: 5 * Theme.mm
@@ -98,6 +99,7 @@ Rectangle {
         PlainLabel { text: card.goal === "" ? "" : "◇ " + card.goal; color: Theme.dim }
     }
     PlainLabel {
+        objectName: "age_" + card.name
         anchors.right: parent.right
         anchors.rightMargin: 2 * Theme.mm
         y: 15 * Theme.mm
@@ -113,6 +115,10 @@ Rectangle {
     PressArea {
         objectName: "card_" + card.name
         anchors.fill: parent
+        Accessible.role: Accessible.Button
+        Accessible.name: card.name + " " + card.headline
+        Accessible.description: card.detail
+        Accessible.onPressAction: card.control.select(card.name, false)
         meaning: card.name
         onTapped: add => card.control.select(card.name, add)
     }

@@ -41,6 +41,7 @@ Item {
                     width: 13 * Theme.mm
                     height: 13 * Theme.mm
                     text: "−"
+                    spoken: "smaller"
                     onFired: tab.settings.scale -= 0.05
                 }
                 PlainLabel {
@@ -55,6 +56,7 @@ Item {
                     width: 13 * Theme.mm
                     height: 13 * Theme.mm
                     text: "+"
+                    spoken: "larger"
                     onFired: tab.settings.scale += 0.05
                 }
             }

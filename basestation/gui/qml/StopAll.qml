@@ -47,6 +47,9 @@ Rectangle {
         id: area
         objectName: "stopAll"
         anchors.fill: parent
+        Accessible.role: Accessible.Button
+        Accessible.name: "software stop of all robots"
+        Accessible.onPressAction: stop.control.stopAll()
         onDown: stop.control.stopAll()
     }
 }

@@ -72,6 +72,9 @@ Rectangle {
                 id: area
                 objectName: "tab_" + tab_.tab
                 anchors.fill: parent
+                Accessible.role: Accessible.PageTab
+                Accessible.name: tab_.label
+                Accessible.onPressAction: row.control.tabs.toggle(tab_.tab)
                 onTapped: row.control.tabs.toggle(tab_.tab)
             }
         }

@@ -30,6 +30,8 @@ Rectangle {
         objectName: field.objectName + "Input"
         anchors.fill: parent
         anchors.margins: 1 * Theme.mm
+        Accessible.role: Accessible.EditableText
+        Accessible.name: field.hint
         clip: true
         color: Theme.text
         selectionColor: Theme.goal

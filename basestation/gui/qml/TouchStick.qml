@@ -28,6 +28,8 @@ Rectangle {
         id: area
         objectName: "touchStick"
         anchors.fill: parent
+        Accessible.role: Accessible.Dial
+        Accessible.name: "stick that drives the robot"
         onMoved: held ? stick.drive.touch(forward, leftward) : stick.drive.release()
         onReleased: stick.drive.release()
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <QtQml/qqmlregistration.h>
 #include <QBasicTimer>
 #include <QQuickItem>
 
@@ -10,6 +11,7 @@ namespace adit::gui {
 /// until all are up.
 class GestureArea : public QQuickItem {
   Q_OBJECT
+  QML_ANONYMOUS
 
  public:
   static constexpr int kLongPress = 600;   ///< Time until a press means a place to drive to, ms.

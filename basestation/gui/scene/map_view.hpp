@@ -11,7 +11,7 @@
 namespace adit::gui {
 
 /// The map from above with all marks, and what fingers do on it.
-class MapView : public GestureArea {
+class MapView : public adit::gui::GestureArea {
   Q_OBJECT
   QML_ELEMENT
   Q_PROPERTY(adit::gui::Control* control READ control WRITE set_control NOTIFY control_changed)

@@ -38,7 +38,7 @@ class VoxelItem : public QQuickPaintedItem {
 /// The map from the side with all marks. One finger or the mouse turns it, two fingers or
 /// the right button move it; a tap selects a robot,
 /// and a long press sends the selected ones to the place under the finger.
-class MapView3D : public GestureArea {
+class MapView3D : public adit::gui::GestureArea {
   Q_OBJECT
   QML_ELEMENT
   Q_PROPERTY(adit::gui::Control* control READ control WRITE set_control NOTIFY control_changed)

@@ -1,0 +1,28 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Sends made-up bytes of a station to the client's readers, with libFuzzer and the sanitizers. usage:
+# tools/fuzz.sh [SECONDS]   (default 300). What it finds is in build/fuzz/found, its inputs in build/fuzz/corpus. Exit
+# status 77: Clang with libFuzzer is not installed.
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
+seconds="${1:-300}"
+build=build/fuzz
+probe="$(mktemp -d)"
+trap 'rm -rf "$probe"' EXIT
+echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' > "$probe/a.cpp"
+if ! clang++ -fsanitize=fuzzer "$probe/a.cpp" -o "$probe/a" 2> /dev/null; then
+  echo "fuzz: Clang with libFuzzer is not installed (clang)" >&2
+  exit 77
+fi
+mkdir -p "$build/corpus" "$build/found"
+cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
+  -DADIT_SANITIZE=address,undefined,fuzzer-no-link -DADIT_WERROR=OFF -DADIT_BENCH=OFF -DADIT_FUZZ=ON > "$build/configure.log" 2>&1 ||
+  { tail -20 "$build/configure.log" >&2; exit 1; }
+nice -n 5 cmake --build "$build" -j "${ADIT_JOBS:-$(nproc)}" --target fuzz_client > "$build/build.log" 2>&1 ||
+  { tail -30 "$build/build.log" >&2; exit 1; }
+ADIT_FUZZ_SEEDS="$build/corpus" "$build/bin/fuzz_client" -runs=0 > /dev/null 2>&1
+nice -n 5 "$build/bin/fuzz_client" -max_total_time="$seconds" -max_len=60000 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+  -artifact_prefix="$build/found/" "$build/corpus" > "$build/run.log" 2>&1
+status=$?
+tail -12 "$build/run.log"
+exit $status
