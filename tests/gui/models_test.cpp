@@ -129,6 +129,17 @@ TEST(ActionBar, WhatIsNotPossibleSaysWhyAndWhatHelps) {
   EXPECT_TRUE(stop->cure_hold);
 }
 
+TEST(ActionBar, AStopOfAnotherIsResetByHoldingTheSameButton) {
+  const station::World world = ten_robots();
+  const ActionBar bar = bar_of(world, {"r2"});  // Mine, stopped by op2.
+  const auto reset = std::find_if(bar.buttons.begin(), bar.buttons.end(),
+                                  [](const BarButton& button) { return button.id == "reset"; });
+  ASSERT_NE(reset, bar.buttons.end());
+  EXPECT_EQ(reset->line, "reset r2 --override");
+  EXPECT_EQ(reset->touch, Touch::hold);
+  EXPECT_EQ(reset->hint, "stop of op2");
+}
+
 TEST(ActionBar, AMixedSelectionSaysHowManyWouldObey) {
   const ActionBar bar = bar_of(ten_robots(), {"r1", "r3", "r4"});
   EXPECT_EQ(button(bar, "release").hint, "2/3");

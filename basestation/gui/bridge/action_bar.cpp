@@ -7,6 +7,7 @@
 #include "basestation/gui/break.hpp"
 #include "basestation/model/action.hpp"
 #include "core/command/vocabulary.hpp"
+#include "core/command/words.hpp"
 
 namespace adit::gui {
 namespace {
@@ -85,7 +86,13 @@ class Builder {
       }
       button.label = station::label_of(*action);
       const std::string nothing = action->valid ? useless(id, robot) : "";
-      if (!action->valid || !nothing.empty()) {
+      // The holder may clear the stops of others, but not by the way.
+      const bool of_others = id == "reset" && action->reason == Reason::stop_of_another && robot.mine;
+      if (of_others) {
+        row.after = "--override";
+        button.touch = Touch::hold;
+        from = "stop of " + command::joined(robot.stops, "");
+      } else if (!action->valid || !nothing.empty()) {
         refuse(row, robot, action->reason, nothing.empty() ? action->text : nothing);
         continue;
       }
