@@ -17,16 +17,17 @@
 namespace adit::bench {
 namespace {
 
-constexpr double kHeight = 0.5;       ///< Of the lidar above the ground, m.
-constexpr double kStep = 0.4;         ///< Between two scans, m.
-constexpr double kBatch = 3.0;        ///< Between two batches, m.
-constexpr double kBody = 0.5;         ///< Free around the robot, m.
-constexpr double kHeadroom = 0.8;     ///< m
-constexpr float kMaxRange = 20.0f;    ///< m
-constexpr double kCeiling = 3.0;      ///< Of generated worlds, m.
+constexpr double kHeight = 0.5;     ///< Of the lidar above the ground, m.
+constexpr double kStep = 0.4;       ///< Between two scans, m.
+constexpr double kBatch = 3.0;      ///< Between two batches, m.
+constexpr double kBody = 0.5;       ///< Free around the robot, m.
+constexpr double kHeadroom = 0.8;   ///< m
+constexpr float kMaxRange = 20.0f;  ///< m
+constexpr double kCeiling = 3.0;    ///< Of generated worlds, m.
 
 Result<std::filesystem::path> building_file() {
-  const std::array<std::filesystem::path, 3> folders{source_folder() + "/data/maps", source_folder() + "/config",
+  const std::array<std::filesystem::path, 3> folders{source_folder() + "/data/maps",
+                                                     source_folder() + "/config",
                                                      "/usr/share/doc/liboctomap-dev/examples/data"};
   return sim::find_map("geb079.bt", folders);
 }
@@ -74,9 +75,11 @@ Result<MapDrive> drive_through(std::string_view name, std::uint64_t seed, double
     const Pose3 base = Pose3::level({at.x(), at.y(), z + 0.02 * uniform(random)}, heading);
     PointCloud points = lidar.scan(*world, {}, base, kHeight, n + 1000 * seed);
     for (Eigen::Vector3f& p : points) p = (T_submap_world * (base * p.cast<double>())).cast<float>();
-    out.grid.insert((T_submap_world * (base * Eigen::Vector3d(0, 0, kHeight))).cast<float>(), points, kMaxRange);
+    out.grid.insert((T_submap_world * (base * Eigen::Vector3d(0, 0, kHeight))).cast<float>(), points,
+                    kMaxRange);
     for (int attempt = 0; attempt < 60; ++attempt) {
-      const double turn = attempt == 0 ? 0.15 * uniform(random) : attempt * 0.05 * uniform(random) * std::numbers::pi;
+      const double turn =
+          attempt == 0 ? 0.15 * uniform(random) : attempt * 0.05 * uniform(random) * std::numbers::pi;
       const Eigen::Vector2d next =
           at + kStep * Eigen::Vector2d(std::cos(heading + turn), std::sin(heading + turn));
       if (!can_stand(*world, next.x(), next.y(), z)) continue;
@@ -89,7 +92,8 @@ Result<MapDrive> drive_through(std::string_view name, std::uint64_t seed, double
     if (in_batch < kBatch && driven < length) continue;
     in_batch = 0.0;
     BlockBatch batch;
-    for (const perception::BlockIndex& index : out.grid.changed_since(sent)) batch.push_back(*out.grid.fine(index));
+    for (const perception::BlockIndex& index : out.grid.changed_since(sent))
+      batch.push_back(*out.grid.fine(index));
     sent = out.grid.revision();
     out.batches.push_back(std::move(batch));
   }
@@ -126,7 +130,8 @@ std::vector<perception::FineBlock> fine_blocks(const perception::VoxelImage& ima
 
 std::vector<perception::FineBlock> fine_blocks(const perception::SubmapGrid& grid) {
   std::vector<perception::FineBlock> out;
-  grid.for_each_block([&](const perception::BlockIndex& index, std::uint32_t) { out.push_back(*grid.fine(index)); });
+  grid.for_each_block(
+      [&](const perception::BlockIndex& index, std::uint32_t) { out.push_back(*grid.fine(index)); });
   return out;
 }
 

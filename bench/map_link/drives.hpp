@@ -20,8 +20,8 @@ struct MapDrive {
   perception::SubmapGrid grid{};  ///< The whole of it, at 0.1 m.
 };
 
-/// A robot with a lidar of 16 x 900 beams that drives `length` m through a generated world (kind and seed) or,
-/// "geb079", through that building, and turns at random where it cannot go on.
+/// A robot with a lidar of 16 x 900 beams that drives `length` m through a generated world (kind and seed)
+/// or, "geb079", through that building, and turns at random where it cannot go on.
 Result<MapDrive> drive_through(std::string_view world, std::uint64_t seed, double length);
 
 /// The map geb079.bt, resampled to voxels of 0.1 m.

@@ -20,7 +20,8 @@ namespace {
 using namespace adit;
 using namespace adit::bench;
 
-std::size_t coded_bytes(const std::vector<perception::FineBlock>& blocks, int level, std::size_t max_bytes, std::size_t head, std::size_t& pieces) {
+std::size_t coded_bytes(const std::vector<perception::FineBlock>& blocks, int level, std::size_t max_bytes,
+                        std::size_t head, std::size_t& pieces) {
   std::vector<perception::FineBlock> sorted = blocks;
   std::size_t total = 0;
   pieces = 0;
@@ -39,7 +40,14 @@ std::size_t coded_bytes(const std::vector<perception::FineBlock>& blocks, int le
       }
       perception::RangeDecoder decoder(bytes);
       const auto back = perception::read_blocks(decoder);
-      if (!back || *back != set) fmt::print("MISMATCH level {}\n", level);
+      if (!back)
+        fmt::print("REFUSED level {} blocks {} bytes {}\n", level, set.indices.size(), bytes.size());
+      else if (*back != set) {
+        std::size_t i = 0;
+        while (i < set.voxels.size() && back->voxels.size() > i && back->voxels[i] == set.voxels[i]) ++i;
+        fmt::print("MISMATCH level {} blocks {} {} at {} indices {}\n", level, set.indices.size(),
+                   back->indices.size(), i, back->indices == set.indices);
+      }
       total += bytes.size() + head;
       ++pieces;
       break;
@@ -61,14 +69,18 @@ int main(int argc, char** argv) {
   std::vector<perception::FineBlock> east;
   const auto bounds = building->bounds();
   const int middle = (bounds->low.x + bounds->high.x) / 2 / 8;
-  for (const auto& block : all) if (block.index.x >= middle) east.push_back(block);
-  fmt::print("{} blocks, {} x {}\n", all.size(), (bounds->high.x - bounds->low.x) * 0.1, (bounds->high.y - bounds->low.y) * 0.1);
+  for (const auto& block : all)
+    if (block.index.x >= middle) east.push_back(block);
+  fmt::print("{} blocks, {} x {}\n", all.size(), (bounds->high.x - bounds->low.x) * 0.1,
+             (bounds->high.y - bounds->low.y) * 0.1);
   for (int level = 1; level <= 3; ++level)
     for (std::size_t max_bytes : {500, 1200}) {
       std::size_t pieces = 0, half = 0;
       const std::size_t bytes = coded_bytes(all, level, max_bytes, head, pieces);
       const std::size_t e = coded_bytes(east, level, max_bytes, head, half);
-      fmt::print("level {} max {}: {} B in {} pieces, {:.2f} B/m2; east {} B {:.2f} B/m2; {:.2f} B/block\n", level, max_bytes, bytes, pieces, bytes / (43.8 * 18.2), e, 2 * e / (43.8 * 18.2), double(bytes) / all.size());
+      fmt::print("level {} max {}: {} B in {} pieces, {:.2f} B/m2; east {} B {:.2f} B/m2; {:.2f} B/block\n",
+                 level, max_bytes, bytes, pieces, bytes / (43.8 * 18.2), e, 2 * e / (43.8 * 18.2),
+                 double(bytes) / all.size());
     }
   for (const char* kind : {"car_park", "dead_ends", "gaps", "rooms", "cave"}) {
     const auto drive = drive_through(kind, 7, 40.0);
@@ -76,7 +88,8 @@ int main(int argc, char** argv) {
     for (int level = 1; level <= 3; ++level) {
       std::size_t pieces = 0;
       const std::size_t bytes = coded_bytes(blocks, level, 1200, head, pieces);
-      fmt::print("{} level {}: {} B, {:.2f} B/block\n", drive->world, level, bytes, double(bytes) / blocks.size());
+      fmt::print("{} level {}: {} B, {:.2f} B/block\n", drive->world, level, bytes,
+                 double(bytes) / blocks.size());
     }
   }
   return 0;

@@ -12,14 +12,16 @@ void SampleCollector::add(const perception::BlockSet& set) { perception::BlockWa
 bool SampleCollector::decide(int decision, const perception::VoxelContext& context, bool value) {
   Answers answers{};
   for (int feature = 0; feature < perception::feature_count(); ++feature)
-    if (context.test(feature)) answers[static_cast<std::size_t>(feature) / 64] |= std::uint64_t{1} << (feature % 64);
+    if (context.test(feature))
+      answers[static_cast<std::size_t>(feature) / 64] |= std::uint64_t{1} << (feature % 64);
   ++counts_[static_cast<std::size_t>(decision)][answers][value ? 1 : 0];
   return value;
 }
 
 std::vector<Sample> SampleCollector::samples(int decision) const {
   std::vector<Sample> out;
-  for (const auto& [answers, count] : counts_[static_cast<std::size_t>(decision)]) out.push_back({answers, count});
+  for (const auto& [answers, count] : counts_[static_cast<std::size_t>(decision)])
+    out.push_back({answers, count});
   // The same samples give the same trees whatever the order in the table is.
   std::sort(out.begin(), out.end(), [](const Sample& a, const Sample& b) { return a.answers < b.answers; });
   return out;

@@ -39,10 +39,12 @@ class SampleCollector {
   void begin(std::size_t) {}
 
  private:
-  std::array<std::unordered_map<Answers, std::array<std::uint32_t, 2>, AnswersHash>, perception::kDecisions> counts_{};
+  std::array<std::unordered_map<Answers, std::array<std::uint32_t, 2>, AnswersHash>, perception::kDecisions>
+      counts_{};
 };
 
 /// Splits blocks into sets as they would share a piece: `blocks` a set, in the order in which they are.
-std::vector<perception::BlockSet> sets_of(std::vector<perception::FineBlock> blocks, int level, std::size_t blocks_in_set);
+std::vector<perception::BlockSet> sets_of(std::vector<perception::FineBlock> blocks, int level,
+                                          std::size_t blocks_in_set);
 
 }  // namespace adit::bench

@@ -15,7 +15,8 @@ namespace {
 using namespace adit;
 using namespace adit::bench;
 
-constexpr std::array<std::size_t, 4> kBlocksInSet{512, 512, 320, 48};  ///< At each level, about what a piece holds.
+constexpr std::array<std::size_t, 4> kBlocksInSet{512, 512, 320,
+                                                  48};  ///< At each level, about what a piece holds.
 
 void add(SampleCollector& to, const std::vector<perception::FineBlock>& blocks) {
   for (int level = 1; level <= 3; ++level)
@@ -24,11 +25,14 @@ void add(SampleCollector& to, const std::vector<perception::FineBlock>& blocks) 
 
 bool write_tables(const std::string& file, const std::string& text) {
   std::ofstream to(file);
-  to << "// SPDX-License-Identifier: Apache-2.0\n// Written by map_train (bench/map_link/train.cpp); not for editing.\n"
-        "#include \"perception/stream/block_tables.hpp\"\n\nnamespace adit::perception {\n\n// clang-format off\n"
+  to << "// SPDX-License-Identifier: Apache-2.0\n// Written by map_train (bench/map_link/train.cpp); not for "
+        "editing.\n"
+        "#include \"perception/stream/block_tables.hpp\"\n\nnamespace adit::perception {\n\n// clang-format "
+        "off\n"
         "const char* const kBlockTables =";
   for (std::size_t at = 0; at < text.size(); at += 112) to << "\n    \"" << text.substr(at, 112) << '"';
-  to << ";\n// clang-format on\n" << fmt::format("const std::size_t kBlockTablesSize = {};\n", text.size())
+  to << ";\n// clang-format on\n"
+     << fmt::format("const std::size_t kBlockTablesSize = {};\n", text.size())
      << "\n}  // namespace adit::perception\n";
   return to.good();
 }
@@ -36,7 +40,8 @@ bool write_tables(const std::string& file, const std::string& text) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Makes the tables of the coder of map blocks from generated worlds and half of geb079.", "map_train"};
+  CLI::App app{"Makes the tables of the coder of map blocks from generated worlds and half of geb079.",
+               "map_train"};
   std::string out = "perception/stream/block_tables.cpp";
   int seeds = 3;
   double length = 60.0, min_gain = 20.0;

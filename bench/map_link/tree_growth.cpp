@@ -18,7 +18,16 @@ double cost(double no, double yes) {
   return part(no) + part(yes);
 }
 
+/// What a bit saved is worth: pieces of 0.2 m are what is sent most.
+double weight_of(int decision) {
+  if (decision < perception::all_parts_known) return 4.0;
+  return std::array{
+      4.0, 3.0,
+      1.0}[static_cast<std::size_t>(decision - perception::all_parts_known) / perception::kDecisionsOfLevel];
+}
+
 struct Leaf {
+  double weight{1.0};
   std::vector<Sample> samples{};
   std::array<double, 2> count{};
   int feature{-1};
@@ -41,14 +50,13 @@ void judge(Leaf& leaf) {
         counted[1] += sample.count[1];
       }
   }
-  // A leaf costs a few bits to learn: half a logarithm of the number of its samples.
   const double now = cost(leaf.count[0], leaf.count[1]);
   constexpr double kFewest = 60.0;
   for (int f = 0; f < features; ++f) {
     const auto& y = yes[static_cast<std::size_t>(f)];
     const double n0 = leaf.count[0] - y[0], n1 = leaf.count[1] - y[1];
     if (y[0] + y[1] < kFewest || n0 + n1 < kFewest) continue;
-    const double gain = now - cost(n0, n1) - cost(y[0], y[1]);
+    const double gain = leaf.weight * (now - cost(n0, n1) - cost(y[0], y[1]));
     if (gain <= leaf.gain) continue;
     leaf.gain = gain;
     leaf.feature = f;
@@ -83,6 +91,7 @@ std::string grow_trees(const std::array<std::vector<Sample>, perception::kDecisi
   const auto less = [](const Leaf* a, const Leaf* b) { return a->gain < b->gain; };
   std::priority_queue<Leaf*, std::vector<Leaf*>, decltype(less)> open(less);
   for (std::size_t i = 0; i < roots.size(); ++i) {
+    roots[i].weight = weight_of(static_cast<int>(i));
     roots[i].samples = samples[i];
     judge(roots[i]);
     open.push(&roots[i]);
@@ -99,6 +108,7 @@ std::string grow_trees(const std::array<std::vector<Sample>, perception::kDecisi
           (sample.answers[static_cast<std::size_t>(leaf.feature) / 64] >> (leaf.feature % 64) & 1) != 0;
       (is_yes ? leaf.yes : leaf.no)->samples.push_back(sample);
     }
+    leaf.no->weight = leaf.yes->weight = leaf.weight;
     leaf.samples.clear();
     leaf.samples.shrink_to_fit();
     std::string inner;

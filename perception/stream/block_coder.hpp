@@ -13,8 +13,8 @@ namespace adit::perception {
 constexpr std::size_t kMaxSetBlocks = 512;
 
 /// Writes a set of blocks, which can be read alone. The blocks must be in rising order, all different, within
-/// BlockIndex::kLimit and at most kMaxSetBlocks. `bits`: if given, gets about how many bits each block took, the
-/// indices left out.
+/// BlockIndex::kLimit and at most kMaxSetBlocks. `bits`: if given, gets about how many bits each block took,
+/// the indices left out.
 void write_blocks(RangeEncoder& to, const BlockSet& set, std::vector<std::uint32_t>* bits = nullptr);
 
 /// Reads what write_blocks() wrote. Reason::malformed for what makes no sense; takes bounded time and memory

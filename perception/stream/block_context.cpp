@@ -6,7 +6,16 @@
 namespace adit::perception {
 namespace {
 
-enum class Question : std::uint8_t { fine, coarse, child, target, fine_occupied, fine_unknown, coarse_occupied, coarse_unknown };
+enum class Question : std::uint8_t {
+  fine,
+  coarse,
+  child,
+  target,
+  fine_occupied,
+  fine_unknown,
+  coarse_occupied,
+  coarse_unknown
+};
 
 struct Feature {
   Question question{};
@@ -77,7 +86,10 @@ constexpr int value_of(char c) {
 }
 
 // 65536 / (1 + exp(-x)) at x = 0.45 (v - 17.5), v = 0..35, kept within what the coder takes.
-constexpr std::array<std::uint16_t, ContextTrees::kLeafValues> kLeafProbabilities{25, 39, 61, 96, 150, 236, 369, 576, 899, 1399, 2168, 3338, 5088, 7642, 11240, 16062, 22110, 29097, 36439, 43426, 49474, 54296, 57894, 60448, 62198, 63368, 64137, 64637, 64960, 65167, 65300, 65386, 65440, 65475, 65497, 65511};
+constexpr std::array<std::uint16_t, ContextTrees::kLeafValues> kLeafProbabilities{
+    25,    39,    61,    96,    150,   236,   369,   576,   899,   1399,  2168,  3338,
+    5088,  7642,  11240, 16062, 22110, 29097, 36439, 43426, 49474, 54296, 57894, 60448,
+    62198, 63368, 64137, 64637, 64960, 65167, 65300, 65386, 65440, 65475, 65497, 65511};
 
 constexpr int kDeepest = 64;
 constexpr std::size_t kMaxNodes = 60000;
@@ -89,15 +101,22 @@ int feature_count() { return static_cast<int>(kFeatures.size()); }
 bool VoxelContext::test(int feature) const {
   const Feature& f = kFeatures[static_cast<std::size_t>(feature)];
   switch (f.question) {
-    case Question::fine: return (fine[(*fine_step)[f.which]] & f.mask) != 0;
-    case Question::coarse: return (coarse[(*coarse_step)[f.which]] & f.mask) != 0;
-    case Question::child: return (child >> f.which & 1) != 0;
-    case Question::target: return target == f.which;
-    case Question::fine_occupied: return count(fine, *fine_step, kOccupied, kOccupied) >= f.which;
-    case Question::fine_unknown: return count(fine, *fine_step, 0xff, kUnknown) >= f.which;
+    case Question::fine:
+      return (fine[(*fine_step)[f.which]] & f.mask) != 0;
+    case Question::coarse:
+      return (coarse[(*coarse_step)[f.which]] & f.mask) != 0;
+    case Question::child:
+      return (child >> f.which & 1) != 0;
+    case Question::target:
+      return target == f.which;
+    case Question::fine_occupied:
+      return count(fine, *fine_step, kOccupied, kOccupied) >= f.which;
+    case Question::fine_unknown:
+      return count(fine, *fine_step, 0xff, kUnknown) >= f.which;
     case Question::coarse_occupied:
       return count(coarse, *coarse_step, kOccupied, kOccupied) >= f.which;
-    case Question::coarse_unknown: return count(coarse, *coarse_step, 0xff, kUnknown) >= f.which;
+    case Question::coarse_unknown:
+      return count(coarse, *coarse_step, 0xff, kUnknown) >= f.which;
   }
   return false;
 }

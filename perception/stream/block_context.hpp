@@ -22,7 +22,7 @@ enum Decision : std::uint8_t {
   block_present,  ///< A block of the box around all of them.
   block_known,
   block_occupied,
-  block_uniform,   ///< All voxels of a free block are free.
+  block_uniform,    ///< All voxels of a free block are free.
   all_parts_known,  ///< Of a free voxel of the level above.
   part_known_of_free,
   part_known_of_occupied,
@@ -30,9 +30,7 @@ enum Decision : std::uint8_t {
 };
 constexpr int kDecisionsOfLevel = 4;
 constexpr int kDecisions = block_uniform + 1 + 3 * kDecisionsOfLevel;
-constexpr int decision_at(Decision decision, int level) {
-  return decision + (level - 1) * kDecisionsOfLevel;
-}
+constexpr int decision_at(Decision decision, int level) { return decision + (level - 1) * kDecisionsOfLevel; }
 
 constexpr int kNeighbours = 26;
 /// Offset of a neighbour, [-1, 1]: z slowest, the voxel itself left out.
@@ -41,15 +39,16 @@ constexpr std::array<int, 3> neighbour_offset(int n) {
   return {cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1};
 }
 
-/// Surroundings of the voxel that is coded: its neighbours on its own level as far as they are coded, and those
-/// of its parent. Features are questions about them with the answer yes or no.
+/// Surroundings of the voxel that is coded: its neighbours on its own level as far as they are coded, and
+/// those of its parent. Features are questions about them with the answer yes or no.
 struct VoxelContext {
   const std::uint8_t* fine{};                                ///< The voxel in an array with a margin of one.
   const std::array<std::int16_t, kNeighbours>* fine_step{};  ///< To its neighbours.
   const std::uint8_t* coarse{};                              ///< Its parent, the same way.
-  const std::array<std::int16_t, kNeighbours>* coarse_step{};  ///< Mirrored: positive is outward of the parent.
-  int child{};                                                 ///< Which part of the parent: x + 2 y + 4 z.
-  int target{};                                                ///< Level of the voxels that are coded in the end.
+  const std::array<std::int16_t, kNeighbours>*
+      coarse_step{};  ///< Mirrored: positive is outward of the parent.
+  int child{};        ///< Which part of the parent: x + 2 y + 4 z.
+  int target{};       ///< Level of the voxels that are coded in the end.
 
   bool test(int feature) const;
 };
@@ -74,11 +73,13 @@ class ContextTrees {
   /// trees.
   explicit ContextTrees(std::string_view text);
 
-  std::uint32_t probability(int decision, const VoxelContext& context) const {
+  /// Leaf of a decision.
+  std::size_t leaf(int decision, const VoxelContext& context) const {
     std::size_t at = roots_[static_cast<std::size_t>(decision)];
     while (nodes_[at].feature >= 0) at = context.test(nodes_[at].feature) ? nodes_[at].next : at + 1;
-    return nodes_[at].next;
+    return at;
   }
+  const std::vector<Node>& nodes() const { return nodes_; }
 
   /// Leaves have one of kLeafValues probabilities, spaced evenly in log-odds.
   static constexpr int kLeafValues = 36;

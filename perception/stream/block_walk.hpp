@@ -14,7 +14,6 @@
 
 namespace adit::perception {
 
-
 /// Steps to the neighbours in an array of `width`^3, x fastest; with `mirrored`, bit a set: along axis a
 /// positive is outward of that part of its parent, else of the opposite one.
 constexpr std::array<std::int16_t, kNeighbours> neighbour_steps(int width, int octant) {
@@ -31,18 +30,19 @@ constexpr std::array<std::int16_t, kNeighbours> neighbour_steps(int width, int o
 }
 
 /// Visits the decisions that make up a set of blocks, in the order in which they are coded: the indices, then
-/// all blocks at level 0, then all at level 1 and so on, so that a voxel's surroundings are known on the level
-/// above wherever a block is in the set. The same code writes, reads, and trains.
+/// all blocks at level 0, then all at level 1 and so on, so that a voxel's surroundings are known on the
+/// level above wherever a block is in the set. The same code writes, reads, and trains.
 ///
 /// `Coder` has bool decide(int decision, const VoxelContext&, bool value), which returns the value that was
-/// coded, bool raw(bool value), std::uint32_t raw(std::uint32_t value, int bits), std::uint32_t number(std::uint32_t),
-/// and void begin(std::size_t block), which is called before the decisions of a block.
+/// coded, bool raw(bool value), std::uint32_t raw(std::uint32_t value, int bits), std::uint32_t
+/// number(std::uint32_t), and void begin(std::size_t block), which is called before the decisions of a block.
 template <class Coder>
 class BlockWalk {
  public:
   explicit BlockWalk(Coder& coder) : coder_(coder) {}
 
-  /// Writes a set whose blocks are in rising order, different, within BlockIndex::kLimit, and at most kMaxSetBlocks.
+  /// Writes a set whose blocks are in rising order, different, within BlockIndex::kLimit, and at most
+  /// kMaxSetBlocks.
   void write(const BlockSet& set) {
     level_ = set.level;
     indices_ = set.indices;
@@ -67,16 +67,15 @@ class BlockWalk {
   using States = std::vector<std::uint8_t>;
   static constexpr int kWidest = 10;
   using Padded = std::array<std::uint8_t, kWidest * kWidest * kWidest>;
-  static constexpr std::uint32_t kDenseCells = 16;  ///< Cells of the box a block up to which it is coded by cell.
+  static constexpr std::uint32_t kDenseCells =
+      16;  ///< Cells of the box a block up to which it is coded by cell.
   static constexpr std::int32_t kAbsent = -1;
 
   static std::size_t size_at(int level) { return std::size_t{1} << (3 * level); }
   static std::uint32_t zigzag(std::int32_t v) {
     return static_cast<std::uint32_t>(v) << 1 ^ static_cast<std::uint32_t>(v >> 31);
   }
-  static std::int32_t unzigzag(std::uint32_t v) {
-    return static_cast<std::int32_t>(v >> 1 ^ (~(v & 1) + 1));
-  }
+  static std::int32_t unzigzag(std::uint32_t v) { return static_cast<std::int32_t>(v >> 1 ^ (~(v & 1) + 1)); }
   /// Where part `child` of voxel `parent` is in its block.
   static std::size_t part_at(std::size_t parent, int child, int level) {
     const std::size_t edge = std::size_t{1} << level, half = edge / 2;
@@ -174,7 +173,8 @@ class BlockWalk {
     if (volume < count) return false;
     const auto cell_of = [&](const BlockIndex& i) {
       return (static_cast<std::uint64_t>(i.x - low.x) * size[1] + static_cast<std::uint64_t>(i.y - low.y)) *
-                 size[2] + static_cast<std::uint64_t>(i.z - low.z);
+                 size[2] +
+             static_cast<std::uint64_t>(i.z - low.z);
     };
     const auto block_in = [&](std::uint64_t cell) {
       return BlockIndex{low.x + static_cast<std::int32_t>(cell / size[2] / size[1]),
@@ -184,7 +184,8 @@ class BlockWalk {
     std::vector<BlockIndex> got;
     if (volume <= std::uint64_t{kDenseCells} * count) {
       // An array with a margin, z fastest.
-      const auto wide_y = static_cast<std::size_t>(size[1] + 2), wide_z = static_cast<std::size_t>(size[2] + 2);
+      const auto wide_y = static_cast<std::size_t>(size[1] + 2),
+                 wide_z = static_cast<std::size_t>(size[2] + 2);
       States grid(static_cast<std::size_t>(size[0] + 2) * wide_y * wide_z, kNotCoded);
       std::array<std::int16_t, kNeighbours> steps{};
       std::size_t next = 0;
@@ -194,7 +195,8 @@ class BlockWalk {
         const BlockIndex index = block_in(cell);
         const std::size_t at = (static_cast<std::size_t>(index.x - low.x + 1) * wide_y +
                                 static_cast<std::size_t>(index.y - low.y + 1)) *
-                                   wide_z + static_cast<std::size_t>(index.z - low.z + 1);
+                                   wide_z +
+                               static_cast<std::size_t>(index.z - low.z + 1);
         const bool is_there = writes && next < indices_.size() && indices_[next] == index;
         bool there = false;
         const std::uint64_t left = count - got.size();
@@ -203,8 +205,9 @@ class BlockWalk {
         } else if (left != 0) {
           for (int n = 0; n < kNeighbours; ++n) {
             const auto o = neighbour_offset(n);
-            const std::ptrdiff_t to = (o[0] * static_cast<std::ptrdiff_t>(wide_y) + o[1]) *
-                                          static_cast<std::ptrdiff_t>(wide_z) + o[2];
+            const std::ptrdiff_t to =
+                (o[0] * static_cast<std::ptrdiff_t>(wide_y) + o[1]) * static_cast<std::ptrdiff_t>(wide_z) +
+                o[2];
             around[static_cast<std::size_t>(13 + steps[static_cast<std::size_t>(n)])] =
                 grid[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(at) + to)];
           }
@@ -224,9 +227,12 @@ class BlockWalk {
         std::uint64_t value = coder_.number(static_cast<std::uint32_t>(gap >> low_bits));
         if (value > volume >> low_bits) return false;
         const int high_bits = std::max(0, low_bits - 24);
-        value = value << high_bits | coder_.raw(static_cast<std::uint32_t>(gap >> (low_bits - high_bits)) & ((1u << high_bits) - 1), high_bits);
+        value = value << high_bits | coder_.raw(static_cast<std::uint32_t>(gap >> (low_bits - high_bits)) &
+                                                    ((1u << high_bits) - 1),
+                                                high_bits);
         value = value << (low_bits - high_bits) |
-                coder_.raw(static_cast<std::uint32_t>(gap) & ((1u << (low_bits - high_bits)) - 1), low_bits - high_bits);
+                coder_.raw(static_cast<std::uint32_t>(gap) & ((1u << (low_bits - high_bits)) - 1),
+                           low_bits - high_bits);
         cell += value;
         if (cell >= volume) return false;
         got.push_back(block_in(cell));
@@ -264,9 +270,10 @@ class BlockWalk {
               neighbours_[block][static_cast<std::size_t>(part(x) + 3 * part(y) + 9 * part(z))];
           const int mask = edge - 1;
           const int voxel = (x & mask) + edge * (y & mask) + edge * edge * (z & mask);
-          out[at] = from == kAbsent ? kNotCoded
-                                    : states[static_cast<std::size_t>(from) * size_at(level) +
-                                             static_cast<std::size_t>(voxel)];
+          out[at] =
+              from == kAbsent
+                  ? kNotCoded
+                  : states[static_cast<std::size_t>(from) * size_at(level) + static_cast<std::size_t>(voxel)];
         }
   }
 
@@ -296,7 +303,8 @@ class BlockWalk {
       for (int level = 0; level <= level_; ++level) {
         States& states = coded_[static_cast<std::size_t>(level)];
         const auto first = states.begin() + static_cast<std::ptrdiff_t>(block * size_at(level));
-        std::fill_n(first, size_at(level), static_cast<std::uint8_t>(level < level_ ? kKnown | kFull : kKnown));
+        std::fill_n(first, size_at(level),
+                    static_cast<std::uint8_t>(level < level_ ? kKnown | kFull : kKnown));
       }
     }
   }
@@ -320,10 +328,14 @@ class BlockWalk {
       const std::size_t at = in_padded(voxel, above);
       const int octant = above > 0 ? octant_of(voxel, above) : 0;
       const VoxelContext context{
-          &fine_[at], &steps_at(above, 7),
+          &fine_[at],
+          &steps_at(above, 7),
           above > 0 ? &coarse_[in_padded(parent_of(voxel, above), above - 1)] : &none_[13],
-          above > 0 ? &steps_at(above - 1, octant) : &steps_at(0, 7), octant, level_};
-      if (!coder_.decide(decision_at(all_parts_known, level), context, is_full(above, block, voxel))) continue;
+          above > 0 ? &steps_at(above - 1, octant) : &steps_at(0, 7),
+          octant,
+          level_};
+      if (!coder_.decide(decision_at(all_parts_known, level), context, is_full(above, block, voxel)))
+        continue;
       state |= kFull;
       fine_[at] = state;
     }
@@ -356,16 +368,16 @@ class BlockWalk {
         if ((whole & kFull) != 0) {
           state = kKnown;
         } else if ((whole & kKnown) != 0) {
-          const VoxelContext context{&fine_[at], &steps_at(level, 7), &coarse_[above],
-                                     &steps_at(level - 1, child), child, level_};
+          const VoxelContext context{
+              &fine_[at], &steps_at(level, 7), &coarse_[above], &steps_at(level - 1, child), child, level_};
           const bool last = child == 7;
           if ((whole & kOccupied) == 0) {
             // Some part is known, and if the level above could say that all are, not all of them.
             const bool known =
-                last && (seen & 0x7f) == 0    ? true
-                : last && (seen & 0x7f) == 0x7f ? false
-                                                : coder_.decide(decision_at(part_known_of_free, level), context,
-                                                                (is & kKnown) != 0);
+                last && (seen & 0x7f) == 0 ? true
+                : last && (seen & 0x7f) == 0x7f
+                    ? false
+                    : coder_.decide(decision_at(part_known_of_free, level), context, (is & kKnown) != 0);
             if (known) seen |= static_cast<std::uint8_t>(1u << child);
             state = known ? kKnown : kUnknown;
           } else if (last && seen == 0) {

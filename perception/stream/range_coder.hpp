@@ -81,20 +81,13 @@ class RangeDecoder {
     return value;
   }
   std::uint32_t number();
-  /// Whether more was read than was there, by more than the encoder leaves out.
-  bool overrun() const { return missing_ > 4; }
 
  private:
   static constexpr std::uint32_t kSmallest = 1u << 24;
-  std::uint32_t next() {
-    if (at_ < bytes_.size()) return bytes_[at_++];
-    ++missing_;
-    return 0;
-  }
+  std::uint32_t next() { return at_ < bytes_.size() ? bytes_[at_++] : 0u; }
 
   std::span<const std::uint8_t> bytes_;
   std::size_t at_{0};
-  std::size_t missing_{0};
   std::uint32_t range_{0xffffffffu};
   std::uint32_t code_{0};
 };
