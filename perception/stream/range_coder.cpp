@@ -25,7 +25,7 @@ void RangeEncoder::number(std::uint32_t value) {
   const std::uint32_t shown = value + 1;
   const int length = std::bit_width(shown);
   for (int i = 1; i < length; ++i) bits(1, 1);
-  bits(0, 1);
+  if (length < 32) bits(0, 1);
   bits(shown & ((1u << (length - 1)) - 1), length - 1);
 }
 
