@@ -7,14 +7,17 @@
 
 namespace adit::bench {
 
-void SampleCollector::add(const perception::BlockSet& set) { perception::BlockWalk(*this).write(set); }
+void SampleCollector::add(const perception::BlockSet& set, std::uint32_t weight) {
+  weight_ = weight;
+  perception::BlockWalk(*this).write(set);
+}
 
 bool SampleCollector::decide(int decision, const perception::VoxelContext& context, bool value) {
   Answers answers{};
   for (int feature = 0; feature < perception::feature_count(); ++feature)
     if (context.test(feature))
       answers[static_cast<std::size_t>(feature) / 64] |= std::uint64_t{1} << (feature % 64);
-  ++counts_[static_cast<std::size_t>(decision)][answers][value ? 1 : 0];
+  counts_[static_cast<std::size_t>(decision)][answers][value ? 1 : 0] += weight_;
   return value;
 }
 

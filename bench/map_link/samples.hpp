@@ -27,10 +27,10 @@ struct Sample {
   std::array<std::uint32_t, 2> count{};
 };
 
-/// Counts the decisions of sets of blocks.
+/// Counts the decisions of sets of blocks, each `weight` times.
 class SampleCollector {
  public:
-  void add(const perception::BlockSet& set);
+  void add(const perception::BlockSet& set, std::uint32_t weight = 1);
   std::vector<Sample> samples(int decision) const;
 
   bool decide(int decision, const perception::VoxelContext& context, bool value);
@@ -39,6 +39,7 @@ class SampleCollector {
   void begin(std::size_t) {}
 
  private:
+  std::uint32_t weight_{1};
   std::array<std::unordered_map<Answers, std::array<std::uint32_t, 2>, AnswersHash>, perception::kDecisions>
       counts_{};
 };

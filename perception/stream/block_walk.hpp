@@ -127,16 +127,17 @@ class BlockWalk {
 
   void find_neighbours() {
     neighbours_.assign(indices_.size(), {});
-    for (std::size_t block = 0; block < indices_.size(); ++block)
-      for (std::size_t n = 0; n < 27; ++n) {
-        const auto cell = static_cast<int>(n);
+    for (std::size_t n = 0; n < 27; ++n) {
+      const auto cell = static_cast<int>(n);
+      std::size_t at = 0;  // What is looked for rises with the blocks.
+      for (std::size_t block = 0; block < indices_.size(); ++block) {
         const BlockIndex wanted{indices_[block].x + cell % 3 - 1, indices_[block].y + cell / 3 % 3 - 1,
                                 indices_[block].z + cell / 9 - 1};
-        const auto found = std::lower_bound(indices_.begin(), indices_.end(), wanted);
-        neighbours_[block][n] = found != indices_.end() && *found == wanted
-                                    ? static_cast<std::int32_t>(found - indices_.begin())
-                                    : kAbsent;
+        while (at < indices_.size() && indices_[at] < wanted) ++at;
+        const bool found = at < indices_.size() && indices_[at] == wanted;
+        neighbours_[block][n] = found ? static_cast<std::int32_t>(at) : kAbsent;
       }
+    }
   }
 
   /// Copies a level of a block with a margin of one voxel of its neighbours.

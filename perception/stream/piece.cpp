@@ -187,8 +187,8 @@ PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std:
   blocks = blocks.first(std::min(blocks.size(), kMaxPieceBlocks));
   PackedPiece best{};
   std::size_t too_many = blocks.size() + 1;
-  // A block takes one to four bytes, rarely eight.
-  std::size_t count = std::min(blocks.size(), std::max<std::size_t>(1, max_bytes / 2));
+  // A block takes one to four bytes, rarely more.
+  std::size_t count = std::min(blocks.size(), std::max<std::size_t>(1, max_bytes / 4));
   for (int attempt = 0; count > best.count && count < too_many; ++attempt) {
     std::vector<std::uint32_t> bits;
     std::vector<std::uint8_t> bytes = encode_blocks(key, blocks.first(count), &bits);
