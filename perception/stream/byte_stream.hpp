@@ -68,6 +68,8 @@ class ByteReader {
     return out;
   }
   bool failed() const { return failed_; }
+  /// Bytes that were not read yet.
+  std::size_t left() const { return bytes_.size() - at_; }
   bool at_end() const { return at_ == bytes_.size(); }
 
  private:

@@ -5,34 +5,28 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <memory>
+#include <tuple>
 
 #include "perception/map/block_hash.hpp"
+#include "perception/stream/block_coder.hpp"
+#include "perception/stream/block_context.hpp"
 #include "perception/stream/byte_stream.hpp"
 
 namespace adit::perception {
 namespace {
 
-constexpr std::uint8_t kVersion = 1;
+constexpr std::uint8_t kVersion = 2;
 constexpr std::uint8_t kBlocks = 1, kPoses = 2;
-constexpr std::size_t kHeader = 2;  ///< Version and kind.
-constexpr int kLevel = 3;           ///< Higher levels gain less than 1 % on a piece.
+constexpr std::size_t kHeader = 2;  ///< Version, and kind with the version of the coder's tables above it.
+constexpr std::size_t kBlocksHeader = 6;  ///< The same, and the checksum.
+constexpr std::uint8_t kBlocksKind = kBlocks | ContextTrees::kVersion << 4;
+constexpr int kLevel = 3;  ///< Higher levels of Zstandard gain less than 1 % on a piece.
+constexpr int kBlockLevel = 2;
 constexpr double kPositionUnit = 1e-4, kQuaternionUnit = 1e-7;
 constexpr double kMaxPosition = 1e5;  ///< m
-
-/// What the masks of a block are like.
-enum Shape : std::uint8_t { known_throughout = 1, nothing_occupied = 2 };
-
-/// Bits by columns, z within y within x: columns of walls make equal bytes.
-std::uint64_t by_columns(std::uint64_t mask) {
-  std::uint64_t out = 0;
-  for (int i = 0; i < 64; ++i) out |= (mask >> i & 1) << ((i >> 4) | (i & 3) << 4 | (i >> 2 & 3) << 2);
-  return out;
-}
-
-// The same exchange of the axes x and z leads back.
-std::uint64_t by_layers(std::uint64_t columns) { return by_columns(columns); }
 
 void write_key(ByteWriter& to, const SubmapKey& key) {
   to.text(std::string_view(key.robot).substr(0, kMaxRobotName));
@@ -43,34 +37,6 @@ bool read_name(ByteReader& from, SubmapKey& key) {
   key.robot = from.text();
   key.start = from.u64();
   return !key.robot.empty() && key.robot.size() <= kMaxRobotName;
-}
-
-/// Four streams of bytes one after the other: each compresses best among its like.
-std::vector<std::uint8_t> content_of(const SubmapKey& key, std::span<const BlockUpdate> blocks) {
-  ByteWriter head, shapes, known, occupied;
-  write_key(head, key);
-  head.varint(key.index);
-  head.u8(static_cast<std::uint8_t>(blocks.size()));
-  BlockIndex before{};
-  std::int64_t revision = 0;
-  for (const BlockUpdate& update : blocks) {
-    const CoarseBlock& b = update.block;
-    head.zigzag(b.index.x - before.x);
-    head.zigzag(b.index.y - before.y);
-    head.zigzag(b.index.z - before.z);
-    head.zigzag(static_cast<std::int64_t>(update.revision) - revision);
-    before = b.index;
-    revision = update.revision;
-    const std::uint8_t shape = static_cast<std::uint8_t>(
-        (b.known == ~std::uint64_t{0} ? known_throughout : 0) | (b.occupied == 0 ? nothing_occupied : 0));
-    shapes.u8(shape);
-    if ((shape & known_throughout) == 0) known.u64(by_columns(b.known));
-    if ((shape & nothing_occupied) == 0) occupied.u64(by_columns(b.occupied));
-  }
-  std::vector<std::uint8_t> out = head.bytes();
-  for (const ByteWriter* part : {&shapes, &known, &occupied})
-    out.insert(out.end(), part->bytes().begin(), part->bytes().end());
-  return out;
 }
 
 std::vector<std::uint8_t> compress(std::uint8_t kind, std::span<const std::uint8_t> content) {
@@ -102,84 +68,149 @@ Result<std::vector<std::uint8_t>> unpack(std::uint8_t kind, std::span<const std:
 
 Error malformed(const char* what) { return {Reason::malformed, std::string("a piece of the map: ") + what}; }
 
+/// CRC-32C of a piece, the checksum itself left out.
+std::uint32_t checksum(std::span<const std::uint8_t> piece) {
+  static constexpr auto kTable = [] {
+    std::array<std::uint32_t, 256> table{};
+    for (std::uint32_t i = 0; i < table.size(); ++i) {
+      std::uint32_t value = i;
+      for (int bit = 0; bit < 8; ++bit) value = value >> 1 ^ ((value & 1) != 0 ? 0x82f63b78u : 0u);
+      table[i] = value;
+    }
+    return table;
+  }();
+  std::uint32_t sum = 0xffffffffu;
+  for (std::size_t i = 0; i < piece.size(); ++i)
+    if (i < kHeader || i >= kBlocksHeader) sum = sum >> 8 ^ kTable[(sum ^ piece[i]) & 0xff];
+  return ~sum;
+}
+
+/// Any number of 32 bits, after its length.
+void write_wide(RangeEncoder& to, std::uint32_t value) {
+  const int width = std::bit_width(value);
+  to.bits(static_cast<std::uint32_t>(width), 6);
+  to.bits(value, width);
+}
+std::uint32_t read_wide(RangeDecoder& from) {
+  const auto width = static_cast<int>(from.bits(6));
+  return from.bits(std::min(width, 32));
+}
+
+/// `bits`: if given, gets what each block took.
+std::vector<std::uint8_t> encode_blocks(const SubmapKey& key, std::span<const BlockUpdate> blocks,
+                                        std::vector<std::uint32_t>* bits) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    if (is_within_limit(blocks[i].block.index)) order.push_back(i);
+  const auto less = [&](std::size_t a, std::size_t b) {
+    return std::tuple(blocks[a].block.index, blocks[b].revision) <
+           std::tuple(blocks[b].block.index, blocks[a].revision);
+  };
+  std::sort(order.begin(), order.end(), less);
+  // Of a block that is there twice, the newer state.
+  order.erase(std::unique(order.begin(), order.end(),
+                          [&](std::size_t a, std::size_t b) {
+                            return blocks[a].block.index == blocks[b].block.index;
+                          }),
+              order.end());
+  std::vector<CoarseBlock> sorted;
+  std::uint32_t newest = 0, oldest = 0xffffffffu;
+  for (const std::size_t i : order) {
+    sorted.push_back(blocks[i].block);
+    newest = std::max(newest, blocks[i].revision);
+    oldest = std::min(oldest, blocks[i].revision);
+  }
+  RangeEncoder encoder;
+  write_wide(encoder, key.index);
+  write_wide(encoder, newest);
+  const int width = order.empty() ? 0 : std::bit_width(newest - oldest);
+  encoder.bits(static_cast<std::uint32_t>(width), 6);
+  std::vector<std::uint32_t> taken;
+  write_blocks(encoder, block_set(std::span<const CoarseBlock>(sorted)), bits != nullptr ? &taken : nullptr);
+  for (const std::size_t i : order) encoder.bits(newest - blocks[i].revision, width);
+  if (bits != nullptr) {
+    bits->assign(blocks.size(), 0);
+    for (std::size_t i = 0; i < order.size(); ++i)
+      (*bits)[order[i]] = taken[i] + static_cast<std::uint32_t>(width);
+  }
+  ByteWriter out;
+  out.u8(kVersion);
+  out.u8(kBlocksKind);
+  out.u32(0);
+  write_key(out, key);
+  std::vector<std::uint8_t> bytes = out.bytes();
+  const std::vector<std::uint8_t> coded = encoder.finish();
+  bytes.insert(bytes.end(), coded.begin(), coded.end());
+  const std::uint32_t sum = checksum(bytes);
+  for (int i = 0; i < 4; ++i)
+    bytes[kHeader + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(sum >> 8 * i);
+  return bytes;
+}
+
+constexpr int kPackAttempts = 4;
+
 }  // namespace
 
 std::vector<std::uint8_t> encode(const MapPiece& piece) {
   const std::span<const BlockUpdate> blocks(piece.blocks);
-  return compress(kBlocks, content_of(piece.key, blocks.first(std::min(blocks.size(), kMaxPieceBlocks))));
+  return encode_blocks(piece.key, blocks.first(std::min(blocks.size(), kMaxPieceBlocks)), nullptr);
 }
 
 Result<MapPiece> decode(std::span<const std::uint8_t> bytes) {
-  const auto content = unpack(kBlocks, bytes);
-  if (!content) return content.error();
-  ByteReader from(*content);
+  if (bytes.size() <= kBlocksHeader) return {Reason::malformed, "a piece of the map is too short"};
+  if (bytes[0] != kVersion) return {Reason::wrong_protocol, "a piece of the map has another version"};
+  if ((bytes[1] & 0xf) != kBlocks || bytes.size() > kMaxPieceContent)
+    return {Reason::malformed, "a piece of the map is of another kind, or too long"};
+  if (bytes[1] != kBlocksKind)
+    return {Reason::wrong_protocol, "a piece of the map was coded with other tables"};
+  ByteReader from(bytes.subspan(kHeader));
+  const std::uint32_t sum = from.u32();
+  if (sum != checksum(bytes)) return malformed("damaged");
   MapPiece piece;
   if (!read_name(from, piece.key)) return malformed("the robot's name");
-  const std::uint64_t index = from.varint();
-  const std::size_t count = from.u8();
-  if (index > 0xffffffffu || count > kMaxPieceBlocks) return malformed("too many blocks");
-  piece.key.index = static_cast<std::uint32_t>(index);
-  std::array<std::int64_t, 4> last{};
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::int64_t& value : last) {
-      const std::int64_t difference = from.zigzag();
-      if (std::abs(difference / 2) > 0xffffffff) return malformed("an index");
-      value += difference;
-    }
-    if (std::any_of(last.begin(), last.begin() + 3,
-                    [](std::int64_t v) { return std::abs(v) >= BlockIndex::kLimit; }) ||
-        last[3] < 0 || last[3] > 0xffffffff)
-      return malformed("a block's index or revision");
-    BlockUpdate update;
-    update.block.index = {static_cast<std::int32_t>(last[0]), static_cast<std::int32_t>(last[1]),
-                          static_cast<std::int32_t>(last[2])};
-    update.revision = static_cast<std::uint32_t>(last[3]);
-    piece.blocks.push_back(update);
+  RangeDecoder decoder(bytes.last(from.left()));
+  piece.key.index = read_wide(decoder);
+  const std::uint32_t newest = read_wide(decoder);
+  const int width = static_cast<int>(decoder.bits(6));
+  if (width > 32) return malformed("its revisions");
+  const auto set = read_blocks(decoder);
+  if (!set || set->level != kBlockLevel) return malformed("its blocks");
+  for (const CoarseBlock& block : coarse_blocks(*set)) {
+    const std::uint32_t older = decoder.bits(width);
+    if (older > newest) return malformed("a block's revision");
+    piece.blocks.push_back({block, newest - older});
   }
-  std::array<std::uint8_t, kMaxPieceBlocks> shapes{};
-  for (std::size_t i = 0; i < count; ++i) {
-    shapes[i] = from.u8();
-    if (shapes[i] > (known_throughout | nothing_occupied)) return malformed("a block's shape");
-  }
-  for (std::size_t i = 0; i < count; ++i)
-    piece.blocks[i].block.known =
-        (shapes[i] & known_throughout) != 0 ? ~std::uint64_t{0} : by_layers(from.u64());
-  for (std::size_t i = 0; i < count; ++i) {
-    CoarseBlock& block = piece.blocks[i].block;
-    if ((shapes[i] & nothing_occupied) == 0) block.occupied = by_layers(from.u64());
-    if ((block.occupied & ~block.known) != 0) return malformed("occupied voxels that are not known");
-  }
-  if (from.failed() || !from.at_end()) return malformed("its length");
   return piece;
 }
 
 PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes) {
   blocks = blocks.first(std::min(blocks.size(), kMaxPieceBlocks));
-  const auto packed = [&](std::size_t count) {
-    return PackedPiece{compress(kBlocks, content_of(key, blocks.first(count))), count};
-  };
-  // Blocks take 8 to 20 bytes before compression and rarely half of that after it.
-  const std::size_t first_guess =
-      std::clamp<std::size_t>(max_bytes / 8, 1, std::max<std::size_t>(1, blocks.size()));
   PackedPiece best{};
-  std::size_t count = std::min(first_guess, blocks.size());
-  for (int attempt = 0; attempt < 3 && count > 0; ++attempt) {
-    PackedPiece now = packed(count);
-    const std::size_t size = now.bytes.size();
-    const bool fits = size <= max_bytes;
-    if (fits && now.count > best.count) best = std::move(now);
-    if (fits && (count == blocks.size() || size * 20 >= max_bytes * 19 || attempt == 2)) break;
-    // The next guess is a little short, as the first bytes of a piece are its own.
-    std::size_t next = std::max<std::size_t>(1, count * max_bytes * 31 / (32 * size));
-    if (!fits) next = std::min(next, count - 1);
-    next = std::min(next, blocks.size());
-    if (next <= best.count) break;
-    count = next;
-  }
-  // What cannot be compressed takes at most 20 bytes and an index a block.
-  for (count = std::min(blocks.size(), max_bytes / 40); best.count == 0 && count > 0; count /= 2) {
-    PackedPiece now = packed(count);
-    if (now.bytes.size() <= max_bytes) best = std::move(now);
+  std::size_t too_many = blocks.size() + 1;
+  // A block takes one to four bytes, rarely more.
+  std::size_t count = std::min(blocks.size(), std::max<std::size_t>(1, max_bytes / 4));
+  for (int attempt = 0; count > best.count && count < too_many; ++attempt) {
+    std::vector<std::uint32_t> bits;
+    std::vector<std::uint8_t> bytes = encode_blocks(key, blocks.first(count), &bits);
+    const std::size_t size = bytes.size();
+    if (size <= max_bytes) {
+      best = {std::move(bytes), count};
+      if (size * 20 >= max_bytes * 19 || attempt >= kPackAttempts) break;
+      count = std::min(too_many - 1, count + std::max<std::size_t>(1, count * (max_bytes - size) / size));
+    } else {
+      too_many = count;
+      if (attempt >= kPackAttempts) {
+        if (best.count > 0) break;
+        count /= 2;
+        continue;
+      }
+      // What the blocks at the end took is to go, in proportion for what is no block's own.
+      std::size_t all = 0;
+      for (const std::uint32_t own : bits) all += own;
+      const std::size_t goal = all * max_bytes / size * 63 / 64;
+      while (count > 1 && all > goal) all -= bits[--count];
+      count = std::max(count, best.count + 1);
+    }
   }
   return best;
 }

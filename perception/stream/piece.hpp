@@ -9,16 +9,17 @@
 #include "perception/map/block.hpp"
 #include "perception/types/submap_key.hpp"
 
-/// Content of the map for the radio, as bytes. Each piece can be decoded alone, is bounded, and is compressed
-/// with Zstandard and its checksum, so that a damaged piece is refused. What is decoded comes from anyone:
-/// every value is checked, and nothing larger than kMaxContent bytes is unpacked.
+/// Content of the map for the radio, as bytes. Each piece can be decoded alone, is bounded, and has a
+/// checksum, so that a damaged piece is refused. Blocks are coded as in block_coder.hpp, poses compressed
+/// with Zstandard. What is decoded comes from anyone: every value is checked, and nothing larger than
+/// kMaxPieceBlocks blocks or kMaxPieceContent bytes is unpacked.
 namespace adit::perception {
 
 constexpr std::size_t kMaxPieceBytes = 1200;
-constexpr std::size_t kMaxPieceBlocks = 64;
+constexpr std::size_t kMaxPieceBlocks = 512;
 constexpr std::size_t kMaxPiecePoses = 40;
 constexpr std::size_t kMaxRobotName = 32;
-constexpr std::size_t kMaxPieceContent = 8192;  ///< Bytes before compression.
+constexpr std::size_t kMaxPieceContent = 8192;  ///< Bytes of a piece, and of poses before compression.
 
 /// A block, with the sender's revision of it.
 struct BlockUpdate {
@@ -45,13 +46,14 @@ struct SubmapPoses {
   std::vector<SubmapPose> poses{};
 };
 
-/// Encodes a piece; blocks beyond kMaxPieceBlocks are left out. May be longer than kMaxPieceBytes: see
-/// pack().
+/// Encodes a piece; blocks beyond kMaxPieceBlocks or BlockIndex::kLimit are left out, and older states of a
+/// block that is there twice. May be longer than kMaxPieceBytes: see pack(). Equal revisions take no space.
 std::vector<std::uint8_t> encode(const MapPiece& piece);
 std::vector<std::uint8_t> encode(const SubmapPoses& poses);
 
-/// Decodes a piece. Reason::wrong_protocol for another version, malformed for everything else that is wrong:
-/// other kind, damaged, too large, indices beyond BlockIndex::kLimit, occupied voxels that are not known.
+/// Decodes a piece; its blocks are in rising order. Reason::wrong_protocol for another version, of the piece
+/// or of the coder's tables, malformed for everything else that is wrong: other kind, damaged, too large,
+/// indices beyond BlockIndex::kLimit.
 Result<MapPiece> decode(std::span<const std::uint8_t> bytes);
 Result<SubmapPoses> decode_poses(std::span<const std::uint8_t> bytes);
 
@@ -60,8 +62,8 @@ struct PackedPiece {
   std::size_t count{};  ///< How many of the blocks are inside, the first ones.
 };
 
-/// Packs as many of the first blocks as fit into `max_bytes` (at least 100), within 5 % or so, with at most
-/// three compressions. Blocks that are neighbours and in order take least.
+/// Packs as many of the first blocks as fit into `max_bytes` (at least 100), within 5 % or so; they are
+/// encoded two or three times for it. Blocks that are neighbours take least.
 PackedPiece pack(const SubmapKey& key, std::span<const BlockUpdate> blocks, std::size_t max_bytes);
 
 }  // namespace adit::perception

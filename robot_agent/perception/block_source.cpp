@@ -12,7 +12,7 @@ using perception::BlockIndex;
 using perception::BlockUpdate;
 using transfer::PeerId;
 
-constexpr std::size_t kBlocksInPiece = 64;
+constexpr std::size_t kBlocksInPiece = perception::kMaxPieceBlocks;
 constexpr std::size_t kLookedAt = 4096;        // Candidates that are looked at for one piece.
 constexpr Duration kRest = 500ms;              // Between two looks at changed blocks when none is due.
 constexpr std::uint64_t kChangedEvery = 4;     // One piece of so many is for changed blocks first.
@@ -363,10 +363,14 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
   if (first == peers_.end()) return std::nullopt;
   const std::vector<Ref> chosen = choose(first->second, now);
   if (chosen.empty()) return std::nullopt;
+  // One revision for all blocks takes no space. The newest one will do: whatever changes one of them later is
+  // newer still.
+  std::uint64_t newest = 0;
+  for (const Ref& ref : chosen) newest = std::max(newest, blocks_.at(ref).change);
   std::vector<BlockUpdate> updates;
   for (const Ref& ref : chosen) {
     const Entry& entry = blocks_.at(ref);
-    updates.push_back({{ref.index, entry.known, entry.occupied}, static_cast<std::uint32_t>(entry.change)});
+    updates.push_back({{ref.index, entry.known, entry.occupied}, static_cast<std::uint32_t>(newest)});
   }
   const SubmapPlace place = place_of(chosen.front().submap);
   auto packed = perception::pack({params_.robot, place.start, place.index}, updates, max_bytes);

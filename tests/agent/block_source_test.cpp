@@ -58,6 +58,23 @@ TEST_F(BlockSourceTest, SendsTheNewestFirstAndNothingTwice) {
   EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now));
 }
 
+TEST_F(BlockSourceTest, APieceIsFilledByCodedSizeAndItsBlocksShareOneRevision) {
+  source.join(kOne);
+  for (int x = 0; x < 400; ++x) put(x);
+  const auto piece = next({kOne}, token, 500);
+  EXPECT_GT(piece.blocks.size(), 200U);
+  for (const auto& update : piece.blocks) EXPECT_EQ(update.revision, piece.blocks.front().revision);
+  // A block that changes now is newer than all of them, wherever it was among them.
+  const int x = piece.blocks.front().block.index.x;
+  put(x, 1);
+  now += 60s;
+  std::uint32_t revision = 0;
+  for (int pieces = 0; pieces < 8; ++pieces)
+    for (const auto& update : next({kOne}, token, 500).blocks)
+      if (update.block.index.x == x) revision = update.revision;
+  EXPECT_GT(revision, piece.blocks.front().revision);
+}
+
 TEST_F(BlockSourceTest, ALostPieceIsMissingAgainInItsNewestState) {
   source.join(kOne);
   put(0, 1);

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "perception/stream/block_set.hpp"
+
+#include <algorithm>
+
+namespace adit::perception {
+
+BlockSet block_set(std::span<const CoarseBlock> blocks) {
+  BlockSet out{2, {}, {}};
+  out.voxels.reserve(64 * blocks.size());
+  for (const CoarseBlock& block : blocks) {
+    out.indices.push_back(block.index);
+    for (int i = 0; i < 64; ++i)
+      out.voxels.push_back((block.known >> i & 1) == 0      ? Voxel::unknown
+                           : (block.occupied >> i & 1) != 0 ? Voxel::occupied
+                                                            : Voxel::free);
+  }
+  return out;
+}
+
+BlockSet block_set(std::span<const FineBlock> blocks) {
+  BlockSet out{3, {}, {}};
+  out.voxels.reserve(512 * blocks.size());
+  for (const FineBlock& block : blocks) {
+    out.indices.push_back(block.index);
+    for (int z = 0; z < 8; ++z)
+      for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) out.voxels.push_back(block.at(x, y, z));
+  }
+  return out;
+}
+
+BlockSet coarser(const BlockSet& set) {
+  BlockSet out{set.level - 1, set.indices, {}};
+  const auto edge = static_cast<std::size_t>(set.edge()), half = edge / 2;
+  out.voxels.assign(set.indices.size() * out.voxels_in_block(), Voxel::unknown);
+  for (std::size_t b = 0; b < set.indices.size(); ++b) {
+    const Voxel* parts = &set.voxels[b * set.voxels_in_block()];
+    Voxel* whole = &out.voxels[b * out.voxels_in_block()];
+    for (std::size_t z = 0; z < edge; ++z)
+      for (std::size_t y = 0; y < edge; ++y)
+        for (std::size_t x = 0; x < edge; ++x) {
+          Voxel& voxel = whole[x / 2 + half * (y / 2) + half * half * (z / 2)];
+          voxel = std::max(voxel, parts[x + edge * y + edge * edge * z]);
+        }
+  }
+  return out;
+}
+
+std::vector<CoarseBlock> coarse_blocks(const BlockSet& set) {
+  std::vector<CoarseBlock> out;
+  for (std::size_t b = 0; b < set.indices.size() && set.level == 2; ++b) {
+    CoarseBlock block{set.indices[b], 0, 0};
+    for (int i = 0; i < 64; ++i) {
+      const Voxel voxel = set.voxels[64 * b + static_cast<std::size_t>(i)];
+      block.known |= static_cast<std::uint64_t>(voxel != Voxel::unknown) << i;
+      block.occupied |= static_cast<std::uint64_t>(voxel == Voxel::occupied) << i;
+    }
+    out.push_back(block);
+  }
+  return out;
+}
+
+}  // namespace adit::perception
