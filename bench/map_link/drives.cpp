@@ -66,13 +66,13 @@ Result<MapDrive> drive_through(std::string_view name, std::uint64_t seed, double
   MapDrive out;
   out.world = std::string(name) + " " + std::to_string(seed);
   // A submap's axes are those of the first pose, which are not the world's.
-  const Pose3 T_submap_world = Pose3::level({0.13, -0.21, 0.04}, uniform(random) * std::numbers::pi);
+  const Pose3 T_submap_world = Pose3::level({0.13, -0.21, uniform(random) * std::numbers::pi}, 0.04);
   double heading = uniform(random) * std::numbers::pi, driven = 0.0, in_batch = 0.0;
   std::uint32_t sent = 0;
   for (std::uint64_t n = 1; driven < length; ++n) {
     const auto ground = world->ground_height(at.x(), at.y(), kHeadroom);
     const double z = ground ? *ground : 0.0;
-    const Pose3 base = Pose3::level({at.x(), at.y(), z + 0.02 * uniform(random)}, heading);
+    const Pose3 base = Pose3::level({at.x(), at.y(), heading}, z + 0.02 * uniform(random));
     PointCloud points = lidar.scan(*world, {}, base, kHeight, n + 1000 * seed);
     for (Eigen::Vector3f& p : points) p = (T_submap_world * (base * p.cast<double>())).cast<float>();
     out.grid.insert((T_submap_world * (base * Eigen::Vector3d(0, 0, kHeight))).cast<float>(), points,
