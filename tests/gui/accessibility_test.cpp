@@ -18,13 +18,15 @@ constexpr double kRounding = 0.5;  // Pixels.
 
 /// Targets in panels and rows, which are opened on purpose and where a miss does no harm, may be lower: by
 /// the names of their items, or the part before `_`.
-const std::set<QString> kLow{"show",         "moreNeeds",    "commandToggle", "detailsToggle", "notNow",
-                             "commandRun",   "commandClose", "commandField",  "proposal",      "cure",
-                             "closeDetails", "fitAll",       "solidToggle",   "cutToggle",     "areaToggle",
-                             "zoomIn",       "zoomOut",      "logWarnings",   "logSelected",   "logExport",
-                             "logTextInput"};
+const std::set<QString> kLow{
+    "show",         "moreNeeds",       "commandToggle", "detailsToggle", "notNow",
+    "commandRun",   "commandClose",    "commandField",  "proposal",      "cure",
+    "closeDetails", "fitAll",          "solidToggle",   "cutToggle",     "areaToggle",
+    "zoomIn",       "zoomOut",         "logWarnings",   "logSelected",   "logExport",
+    "logTextInput", "receptionToggle", "floorUp",       "floorDown",     "floorToggle"};
 /// Texts that may be cut off: they are whole in another place, which is beside them.
-const std::map<QString, QString> kCut{{"buttonHint", "the answer to a tap"}};
+const std::map<QString, QString> kCut{{"buttonHint", "the answer to a tap"},
+                                      {"budget", "the command net, with all that was not sent"}};
 
 QString group_of(const QString& name) { return name.section('_', 0, 0); }
 
