@@ -47,8 +47,8 @@ Crew::Crew(const Mission& mission, double max_speed)
     agents_.push_back(
         hosts_.start(name,
                      {"robot_agent", "--config",
-                      folder_.write(name + ".yaml", "name: " + name + "\nplatform: slow.yaml\npose: [0, " + y +
-                                                        ", 0]\nrobot_domain: 1\nradio:\n  interfaces: [" +
+                      folder_.write(name + ".yaml", "name: " + name + "\nplatform: slow.yaml\npose: [0, " +
+                                                        y + ", 0]\nrobot_domain: 1\nradio:\n  interfaces: [" +
                                                         address(robot + 1) + "]\n")},
                      environment_));
   }
