@@ -30,10 +30,11 @@ Sheet launched(const std::string& platform) {
 TEST(PlatformSwap, OneWordInARobotsFileDecidesWhatIsLaunched) {
   const Sheet wheeled = launched("wheeled"), legged = launched("legged"), car = launched("car"),
               aerial = launched("aerial");
-  EXPECT_THAT(wheeled.services, UnorderedElementsAre("route", "turn_on_spot"));
-  EXPECT_THAT(legged.services, UnorderedElementsAre("route", "turn_on_spot", "stairs"));
-  EXPECT_THAT(car.services, UnorderedElementsAre("route"));
-  EXPECT_THAT(aerial.services, UnorderedElementsAre("turn_on_spot", "flight"));
+  EXPECT_THAT(wheeled.services, UnorderedElementsAre("route", "tilt", "map_revision", "turn_on_spot"));
+  EXPECT_THAT(legged.services,
+              UnorderedElementsAre("route", "tilt", "map_revision", "turn_on_spot", "stairs"));
+  EXPECT_THAT(car.services, UnorderedElementsAre("route", "tilt", "map_revision"));
+  EXPECT_THAT(aerial.services, UnorderedElementsAre("tilt", "map_revision", "turn_on_spot", "flight"));
   EXPECT_THAT(wheeled.components, UnorderedElementsAre("command", "driver", "planner", "router", "sensors"));
   EXPECT_THAT(aerial.components, UnorderedElementsAre("command", "driver", "planner", "sensors"));
   EXPECT_TRUE(legged.holonomic && aerial.holonomic);

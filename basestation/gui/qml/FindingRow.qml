@@ -28,6 +28,9 @@ Rectangle {
         height: parent.height
         meaning: row.kind + row.number
         onTapped: row.state_.pickFinding(row.number)
+        Accessible.role: Accessible.Button
+        Accessible.name: row.number + " " + row.kind + " of " + row.robot
+        Accessible.onPressAction: row.state_.pickFinding(row.number)
     }
 
     Glyph {

@@ -67,7 +67,7 @@ Rectangle {
         visible: row.share >= 0
         x: 34 * Theme.mm + row.third
         y: 6.8 * Theme.mm
-        width: 0.55 * row.third
+        width: 0.48 * row.third
         height: 5 * Theme.mm
         color: "transparent"
         border.width: row.share > 0.9 ? 2 : 1
