@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Sends made-up bytes of a station to the client's readers, with libFuzzer and the sanitizers. usage:
-# tools/fuzz.sh [SECONDS]   (default 300). What it finds is in build/fuzz/found, its inputs in build/fuzz/corpus. Exit
+# Gives made-up bytes of a station to the client's readers, and made-up pieces of a map to their decoder, with libFuzzer
+# and the sanitizers. usage: tools/fuzz.sh [SECONDS]   (of each, default 300). What it finds is in build/fuzz/found, its inputs in build/fuzz/corpus. Exit
 # status 77: Clang with libFuzzer is not installed.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 2
@@ -18,11 +18,17 @@ mkdir -p "$build/corpus" "$build/found"
 cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
   -DADIT_SANITIZE=address,undefined,fuzzer-no-link -DADIT_WERROR=OFF -DADIT_BENCH=OFF -DADIT_FUZZ=ON > "$build/configure.log" 2>&1 ||
   { tail -20 "$build/configure.log" >&2; exit 1; }
-nice -n 5 cmake --build "$build" -j "${ADIT_JOBS:-$(nproc)}" --target fuzz_client > "$build/build.log" 2>&1 ||
+nice -n 5 cmake --build "$build" -j "${ADIT_JOBS:-$(nproc)}" --target fuzz_client fuzz_piece > "$build/build.log" 2>&1 ||
   { tail -30 "$build/build.log" >&2; exit 1; }
 ADIT_FUZZ_SEEDS="$build/corpus" "$build/bin/fuzz_client" -runs=0 > /dev/null 2>&1
-nice -n 5 "$build/bin/fuzz_client" -max_total_time="$seconds" -max_len=60000 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
-  -artifact_prefix="$build/found/" "$build/corpus" > "$build/run.log" 2>&1
-status=$?
-tail -12 "$build/run.log"
+status=0
+fuzz() {  # PROGRAM CORPUS LENGTH
+  echo "fuzz: $1"
+  nice -n 5 "$build/bin/$1" -max_total_time="$seconds" -max_len="$3" -timeout=10 -rss_limit_mb=2048 \
+    -print_final_stats=1 -artifact_prefix="$build/found/" "$2" > "$build/run.log" 2>&1 || status=1
+  tail -12 "$build/run.log"
+}
+mkdir -p "$build/corpus_pieces"
+fuzz fuzz_client "$build/corpus" 60000
+fuzz fuzz_piece "$build/corpus_pieces" 1300
 exit $status

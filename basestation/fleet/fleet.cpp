@@ -206,7 +206,9 @@ void Fleet::hear(const radio::Route& sample, const wire::SampleInfo& info) {
   RouteView route{sample.goal_id(), {}, sample.unknown(), sample.corners()};
   const auto& from = sample.from();
   if (route.corners > 0) route.points.push_back(from);
-  for (std::size_t i = 0; i + 2 < sample.points().size() && route.corners > 0; i += 3)
+  for (std::size_t i = 0;
+       i + 2 < sample.points().size() && route.corners > 0 && route.points.size() < RouteView::kMaxCorners;
+       i += 3)
     route.points.push_back({from[0] + kDecimetre * static_cast<float>(sample.points()[i]),
                             from[1] + kDecimetre * static_cast<float>(sample.points()[i + 1]),
                             from[2] + kDecimetre * static_cast<float>(sample.points()[i + 2])});

@@ -104,6 +104,11 @@ std::vector<PadMapping::Clash> PadMapping::resolve() {
       break;
     }
   }
+  // Without a dead man's switch or a stop there is no driving: then all is as it was made.
+  const bool complete = std::all_of(kOrder.begin(), kOrder.end(), [this](PadAction action) {
+    return !is_needed(action) || of(action).kind != PadInput::Kind::none;
+  });
+  if (!complete) *this = {};
   return clashes;
 }
 

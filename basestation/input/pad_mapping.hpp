@@ -50,7 +50,8 @@ class PadMapping {
   /// of errors: bad_argument (the name is none, or not one for that action).
   Result<void> set(PadAction action, const std::string& name);
   /// Takes inputs away from actions that share one with a more important action; returns what that changed,
-  /// in words, and the actions.
+  /// in words, and the actions. If a stop or the dead man's switch would be without an input, the mapping is
+  /// the default one.
   struct Clash {
     PadAction keeps{}, loses{};
     std::string input{};

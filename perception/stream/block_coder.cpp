@@ -99,10 +99,10 @@ void write_blocks(RangeEncoder& to, const BlockSet& set, std::vector<std::uint32
   writer.begin(SIZE_MAX);
 }
 
-Result<BlockSet> read_blocks(RangeDecoder& from) {
+Result<BlockSet> read_blocks(RangeDecoder& from, int max_level) {
   Reader reader(from);
   BlockSet set;
-  if (!BlockWalk<Reader>(reader).read(set))
+  if (!BlockWalk<Reader>(reader, max_level).read(set))
     return {Reason::malformed, "blocks of the map that make no sense"};
   return set;
 }

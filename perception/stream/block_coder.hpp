@@ -17,8 +17,8 @@ constexpr std::size_t kMaxSetBlocks = 512;
 /// the indices left out.
 void write_blocks(RangeEncoder& to, const BlockSet& set, std::vector<std::uint32_t>* bits = nullptr);
 
-/// Reads what write_blocks() wrote. Reason::malformed for what makes no sense; takes bounded time and memory
-/// whatever the bytes are.
-Result<BlockSet> read_blocks(RangeDecoder& from);
+/// Reads what write_blocks() wrote. Reason::malformed for what makes no sense and for a level above
+/// `max_level`, before its voxels are read; takes bounded time and memory whatever the bytes are.
+Result<BlockSet> read_blocks(RangeDecoder& from, int max_level = BlockSet::kLevels - 1);
 
 }  // namespace adit::perception

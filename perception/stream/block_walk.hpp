@@ -25,7 +25,9 @@ namespace adit::perception {
 template <class Coder>
 class BlockWalk {
  public:
-  explicit BlockWalk(Coder& coder) : coder_(coder) {}
+  /// `max_level`: finer sets are not read.
+  explicit BlockWalk(Coder& coder, int max_level = BlockSet::kLevels - 1)
+      : coder_(coder), max_level_(max_level) {}
 
   /// Writes a set whose blocks are in rising order, different, within BlockIndex::kLimit, and at most
   /// kMaxSetBlocks.
@@ -111,6 +113,7 @@ class BlockWalk {
 
   bool walk() {
     level_ = static_cast<int>(coder_.raw(static_cast<std::uint32_t>(level_), 2));
+    if (level_ > max_level_) return false;
     none_.fill(kNotCoded);
     if (!walk_indices(coder_, level_, indices_)) return false;
     find_neighbours();
@@ -279,6 +282,7 @@ class BlockWalk {
   }
 
   Coder& coder_;
+  int max_level_;
   int level_{0};
   std::vector<BlockIndex> indices_{};
   std::vector<std::array<std::int32_t, 27>> neighbours_{};

@@ -167,13 +167,13 @@ Result<MapPiece> decode(std::span<const std::uint8_t> bytes) {
   const std::uint32_t sum = from.u32();
   if (sum != checksum(bytes)) return malformed("damaged");
   MapPiece piece;
-  if (!read_name(from, piece.key)) return malformed("the robot's name");
+  if (!read_name(from, piece.key) || from.failed()) return malformed("the robot's name");
   RangeDecoder decoder(bytes.last(from.left()));
   piece.key.index = read_wide(decoder);
   const std::uint32_t newest = read_wide(decoder);
   const int width = static_cast<int>(decoder.bits(6));
   if (width > 32) return malformed("its revisions");
-  const auto set = read_blocks(decoder);
+  const auto set = read_blocks(decoder, kBlockLevel);
   if (!set || set->level != kBlockLevel) return malformed("its blocks");
   for (const CoarseBlock& block : coarse_blocks(*set)) {
     const std::uint32_t older = decoder.bits(width);

@@ -30,12 +30,14 @@ double unknown_length(const FollowedRoute& route) {
 }  // namespace
 
 bool RouteReport::due(const FollowedRoute& route, Time now, double stretch) {
-  const bool same_goal = (route.corners == 0) == (sent_.corners == 0) && route.goal_id == sent_.goal_id;
+  const bool none = route.corners == 0, had_none = sent_.corners == 0;
+  if (none && had_none) return false;
+  // Only another goal is sent at once; a route may be lost and found many times in a second.
+  const bool other_goal = !none && !had_none && route.goal_id != sent_.goal_id;
+  const auto pause = std::chrono::duration_cast<Duration>(kPeriod * stretch);
+  if (!other_goal && sent_at_ && now - *sent_at_ < pause) return false;
   const double unknown = unknown_length(route);
-  if (route.corners == 0) {
-    if (sent_.corners == 0) return false;
-  } else if (same_goal) {
-    if (sent_at_ && now - *sent_at_ < kPeriod * stretch) return false;
+  if (!none && !had_none && !other_goal) {
     // The corners of a route on which the robot advances lie on the route that was sent.
     const bool deviates = std::any_of(route.points.begin(), route.points.end(), [this](const auto& point) {
       return distance_to(sent_.points, point) > kTolerance;

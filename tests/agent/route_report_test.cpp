@@ -27,7 +27,7 @@ TEST(RouteReport, AnotherWayIsSentAtMostOnceASecond) {
   EXPECT_TRUE(report.due(along(0, 5), now + 5s, 4.0));
 }
 
-TEST(RouteReport, TheEndAndAnotherGoalAreSentAtOnce) {
+TEST(RouteReport, AnotherGoalIsSentAtOnceAndTheEndWithinASecond) {
   RouteReport report;
   const Time now{};
   EXPECT_FALSE(report.due({}, now)) << "stations expect none";
@@ -35,8 +35,17 @@ TEST(RouteReport, TheEndAndAnotherGoalAreSentAtOnce) {
   FollowedRoute other = along(0, 5);
   other.goal_id = 2;
   EXPECT_TRUE(report.due(other, now));
-  EXPECT_TRUE(report.due({}, now));
+  EXPECT_FALSE(report.due({}, now));
+  EXPECT_TRUE(report.due({}, now + 1s));
   EXPECT_FALSE(report.due({}, now + 10s));
+}
+
+TEST(RouteReport, ARouteThatIsLostAndFoundAgainAndAgainIsSentOnceASecond) {
+  RouteReport report;
+  int sent = 0;
+  for (int i = 0; i < 100; ++i)
+    sent += report.due(i % 2 == 0 ? along(0, 5) : FollowedRoute{}, Time(i * 100ms)) ? 1 : 0;
+  EXPECT_LE(sent, 10);
 }
 
 TEST(RouteReport, GroundThatWasSeenMeanwhileIsNews) {

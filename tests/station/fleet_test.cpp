@@ -185,6 +185,11 @@ TEST(Fleet, ARouteIsWhatTheRobotFollowsUntilItSaysOtherwise) {
   route.from({std::numeric_limits<float>::quiet_NaN(), 0, 0});
   fleet.hear(route, at(2s));
   EXPECT_TRUE(fleet.robot("r1")->route.points.empty()) << "a route from nowhere is none";
+  // The wire does not check the bound of the sequence.
+  route.from({0, 0, 0});
+  route.points(std::vector<std::int16_t>(230, 7));
+  fleet.hear(route, at(2s));
+  EXPECT_EQ(fleet.robot("r1")->route.points.size(), RouteView::kMaxCorners);
   route.corners(0);
   route.points({});
   fleet.hear(route, at(3s));

@@ -77,6 +77,7 @@ class Builder {
     if (id == "lock" && all_locked) row.before = "unlock", row.label = "Unlock", id = "unlock";
     BarButton button{.id = slot.id, .label = row.label, .key = slot.key};
     std::string from;
+    std::vector<std::string> stoppers;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       const Robot& robot = *robots_[i];
       const Action* action = find_action(actions_[i], id);
@@ -91,7 +92,9 @@ class Builder {
       if (of_others) {
         row.after = "--override";
         button.touch = Touch::hold;
-        from = "stop of " + command::joined(robot.stops, "");
+        for (const std::string& stopper : robot.stops)
+          if (std::find(stoppers.begin(), stoppers.end(), stopper) == stoppers.end())
+            stoppers.push_back(stopper);
       } else if (!action->valid || !nothing.empty()) {
         refuse(row, robot, action->reason, nothing.empty() ? action->text : nothing);
         continue;
@@ -102,6 +105,7 @@ class Builder {
         button.touch = Touch::hold;
       }
     }
+    if (!stoppers.empty()) from = "stop of " + command::joined(stoppers, "");
     if (id == "goto") button.touch = Touch::place;
     const bool free = id == "stop" || id == "mode_hold" || id == "goto";
     if (button.robots.size() > kMany && !free) button.touch = Touch::hold;

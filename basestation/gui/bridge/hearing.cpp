@@ -31,14 +31,16 @@ HearingTable hearing_table(const station::NetworkReport& report, const std::stri
     if (names.size() < kMaxHearing && std::ranges::find(names, name) == names.end()) names.push_back(name);
   };
   add(speakers, own);
-  for (const station::AgentTraffic& agent : report.agents)  // Stations first: their columns have the most.
-    for (const auto& [speaker, lost] : agent.hears) add(speakers, speaker);
   for (const station::LinkReport& link : report.links) {
     add(hearers, link.agent);
     add(speakers, link.agent);
     heard[own][link.agent] = link.age > kSilent ? 1.0 : link.lost_from;
     if (link.lost_to) heard[link.agent][own] = *link.lost_to;
   }
+  // What an agent says it hears takes only the places that are left.
+  for (const station::AgentTraffic& agent : report.agents)
+    if (agent.age <= kSilent)
+      for (const auto& [speaker, lost] : agent.hears) add(speakers, speaker);
   for (const station::AgentTraffic& agent : report.agents) {
     if (agent.agent == own || agent.age > kSilent) continue;
     for (const auto& [speaker, lost] : agent.hears) {

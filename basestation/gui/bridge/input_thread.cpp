@@ -134,6 +134,8 @@ void InputThread::step(const Gamepad::State& pad, double now) {
   if (pressed(&Gamepad::State::stop_all)) sink_.halt({});
   if (pressed(&Gamepad::State::stop) && session_) sink_.halt({session_->robot()});
   if (pressed(&Gamepad::State::quit)) end_drive("let go");
+  // A hold means the robot that was selected when it began.
+  if (pressed(&Gamepad::State::next) || pressed(&Gamepad::State::previous)) take_since_ = start_since_ = 0.0;
   status_.takes += known && pressed(&Gamepad::State::take);
   status_.takes_held += held(&Gamepad::State::take, take_since_, kTakeHeld);
   status_.starts += held(&Gamepad::State::start, start_since_, kStartHeld);

@@ -52,6 +52,8 @@ void take_pad(const YAML::Node& section, SettingsRead& read) {
                               std::string(names[keeps]) + " already: " + std::string(names[loses]) +
                               " is none");
   }
+  if (const bool clashed = !read.problems.empty(); clashed && read.pad == station::input::PadMapping{})
+    read.problems.push_back("the controller has its default mapping");
 }
 
 /// Takes one entry; returns what is wrong with it, or nothing.

@@ -33,6 +33,7 @@ CameraMan::CameraMan(QQuickWindow& window, const QString& file) : window_(window
   if (!ffmpeg_.waitForStarted(5000)) failure_ = "cannot start ffmpeg: " + ffmpeg_.errorString();
   connect(&timer_, &QTimer::timeout, this, [this] { shoot(); });
   timer_.setTimerType(Qt::PreciseTimer);
+  since_.start();
   timer_.start(1000 / kFramesPerSecond);
 }
 
@@ -56,8 +57,10 @@ void CameraMan::shoot() {
   // A processor that is too slow for the film must not fill the memory with it.
   constexpr qint64 kMost = 100'000'000;  // bytes
   if (ffmpeg_.bytesToWrite() > kMost) return;
-  ffmpeg_.write(reinterpret_cast<const char*>(frame.constBits()), frame.sizeInBytes());
-  ++frames_;
+  // A frame that comes late stands for those that were missed, so that the film has the time that it took.
+  const auto wanted = static_cast<int>(since_.elapsed() * kFramesPerSecond / 1000) + 1;
+  for (; frames_ < wanted; ++frames_)
+    ffmpeg_.write(reinterpret_cast<const char*>(frame.constBits()), frame.sizeInBytes());
 }
 
 bool CameraMan::finish() {

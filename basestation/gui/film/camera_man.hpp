@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <QElapsedTimer>
 #include <QImage>
 #include <QObject>
 #include <QPoint>
@@ -32,6 +33,7 @@ class CameraMan : public QObject {
   QQuickWindow& window_;
   QProcess ffmpeg_{};
   QTimer timer_{};
+  QElapsedTimer since_{};
   std::optional<QPoint> finger_{};
   QString caption_{}, failure_{};
   int frames_{0};

@@ -45,7 +45,9 @@ class Actor {
   void key(Qt::Key key) { QTest::keyClick(&window_, key); }
   const station::Robot* robot(const char* name) const { return control_.world().robot(name); }
   /// Holds a finger beside the middle of an item.
-  void hold(const QString& name, const QPoint& beside, int ms) { press(place_of(name) + beside, ms); }
+  void hold(const QString& name, const QPoint& beside, int ms) {
+    if (const QPoint at = place_of(name); !at.isNull()) press(at + beside, ms);
+  }
   /// Waits until it is true. If it does not come true, the film goes on, and is a failure.
   void until(const std::function<bool()>& holds, int ms = 15'000) {
     if (QTest::qWaitFor(holds, ms)) return;
@@ -65,6 +67,7 @@ class Actor {
     return item ? item->mapToScene({item->width() / 2, item->height() / 2}).toPoint() : QPoint();
   }
   void press(const QPoint& at, int ms) {
+    if (at.isNull()) return;
     QTest::qWait(PressArea::kSettle + 50);
     camera_.set_finger(at);
     QTest::qWait(250);

@@ -120,6 +120,9 @@ Rectangle {
         Accessible.description: card.detail
         Accessible.onPressAction: card.control.select(card.name, false)
         meaning: card.name
+        holdTime: 600
+        tapsToo: true
         onTapped: add => card.control.select(card.name, add)
+        onHeld: card.control.select(card.name, true)
     }
 }

@@ -10,7 +10,8 @@ void FloorChoice::update(const Floors& floors, const station::World& world,
                          const std::vector<std::string>& selection) {
   const std::vector<Floor>& all = floors.floors();
   if (all.size() < 2) {
-    *this = {};
+    shown_.reset();
+    label_.clear();
     return;
   }
   if (!height_)

@@ -57,8 +57,10 @@ double MapView::slop() const { return kSlopMm * Theme::instance().mm(); }
 void MapView::refresh() {
   if (!control_) return;
   if (fitting_ && !busy() && !aiming() && !drawing()) fit(false);
-  floors_.show(control_->world(), control_->trails());
-  show_floor();
+  if (!busy() && !aiming()) {  // The place under a finger stays on the floor where it was pressed.
+    floors_.show(control_->world(), control_->trails());
+    show_floor();
+  }
   const LayerScene layers{.world = &control_->world(),
                           .found = &control_->tabs()->found(),
                           .picked = control_->tabs()->picked(),

@@ -43,7 +43,7 @@ void PressArea::move(const QPointF& at) {
 }
 
 void PressArea::release(const QPointF& at, bool add) {
-  const bool counts = pressed_ && hold_time_ == 0 && contains(at);
+  const bool counts = pressed_ && (hold_time_ == 0 || taps_too_) && contains(at);
   cancel();
   if (counts) emit tapped(add);
 }

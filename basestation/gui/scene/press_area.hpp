@@ -13,6 +13,8 @@ class PressArea : public QQuickItem {
   QML_ELEMENT
   /// How long it is pressed until held(), ms; 0: it is tapped.
   Q_PROPERTY(int holdTime READ hold_time WRITE set_hold_time NOTIFY settings_changed)
+  /// With a hold time: a shorter press taps, and is no press that was begun and not ended.
+  Q_PROPERTY(bool tapsToo MEMBER taps_too_ NOTIFY settings_changed)
   /// What a press means. If it changes under the finger, or less than 0.4 s before, the press counts for
   /// nothing.
   Q_PROPERTY(QString meaning READ meaning WRITE set_meaning NOTIFY settings_changed)
@@ -55,6 +57,7 @@ class PressArea : public QQuickItem {
   void set_progress(double progress);
 
   int hold_time_{0};
+  bool taps_too_{false};
   QString meaning_{};
   QElapsedTimer changed_{};
   QBasicTimer timer_{};

@@ -47,6 +47,16 @@ void move(std::deque<Trails::Stamped>& points, const Correction& by) {
   }
 }
 
+/// The same, or none of it where a robot's values make no sense.
+void correct(std::deque<Trails::Stamped>& points, const Correction& by) {
+  const bool sane = drawable(by.about.x, by.about.y) && drawable(by.x, by.y) && std::isfinite(by.turn) &&
+                    drawable(by.z, 0.0);
+  if (sane)
+    move(points, by);
+  else
+    points.clear();
+}
+
 }  // namespace
 
 void Trails::add(const station::World& world, double now) {
@@ -59,7 +69,7 @@ void Trails::add(const station::World& world, double now) {
     constexpr double kComparable = 1.0;  // s: after a longer time the expected place means nothing.
     if (trail.last_state < 0.0 || since > 0.02) {
       if (trail.last_state >= 0.0 && robot.map_revision != trail.last.map_revision && since < kComparable)
-        move(trail.points, correction(trail.last, robot, since));
+        correct(trail.points, correction(trail.last, robot, since));
       trail.last = robot;
       if (trail.last_state >= 0.0 && since < 5.0) trail.period += 0.2 * (since - trail.period);
       trail.last_state = state;

@@ -3,6 +3,7 @@
 
 #include <signal.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -109,8 +110,7 @@ void Crew::act(Due& due, double now) {
       due.over = true;  // The pillar is there from the beginning.
       return;
     case Event::stopped:
-      shell("op2", {"stop", name});
-      due.over = true;
+      due.over = shell("op2", {"stop", name}).exit_code == 0;
       return;
     case Event::cut:
       hosts_.link(name, due.stage == 2);
@@ -123,14 +123,21 @@ void Crew::act(Due& due, double now) {
       due.over = due.stage == 2;
       return;
     case Event::handover:
-      if (due.stage == 1) shell("op2", {"take", name});  // Refused: it is locked. Its holder is asked.
+      // Refused while it is locked: its holder is asked, and grants it.
+      if (!asked_[due.what.robot]) shell("op2", {"take", name});
+      asked_[due.what.robot] = true;
       if (holder_of(due.what.robot) == "op2") {
-        shell("op2", {"release", name});
-        due.over = true;
+        asked_[due.what.robot] = false;
+        due.over = shell("op2", {"release", name}).exit_code == 0;
       }
       due.next = now + 1.0;
       return;
   }
+}
+
+std::size_t Crew::open() const {
+  return static_cast<std::size_t>(
+      std::count_if(due_.begin(), due_.end(), [](const Due& due) { return !due.over; }));
 }
 
 int Crew::contacts() {

@@ -2,6 +2,7 @@
 // Ten robots, each on a machine of its own with its agent and its simulated body, and two operators'
 // stations.
 #pragma once
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -28,6 +29,10 @@ class Crew {
   live::Finished shell(const std::string& operator_name, std::vector<std::string> words) const;
   /// Lets happen what is due, by how far the robots are.
   void tick(const std::array<Progress, kRobots>& progress);
+  /// Whether another operator asks for a robot that is locked, and does not have it yet.
+  bool asked(std::size_t robot) const { return asked_[robot]; }
+  /// Interventions that are not over.
+  std::size_t open() const;
   /// What happened so far, one line each.
   const std::vector<std::string>& events() const { return events_; }
   /// Ends the simulations; the number of robots that touched something, as their simulations say.
@@ -50,6 +55,7 @@ class Crew {
   hosts::Hosts hosts_{};
   std::vector<live::Process> simulations_{}, agents_{}, stations_{};
   std::vector<Due> due_{};
+  std::array<std::atomic<bool>, kRobots> asked_{};
   std::vector<std::string> events_{};
   std::string failure_{};
   double begun_{};

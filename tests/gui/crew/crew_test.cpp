@@ -157,6 +157,7 @@ class CrewWindow : public Fingers {
     Progress& at = progress[robot];
     if (at.done()) return false;
     const crew::Seen now = seen(robot);
+    at.see(now);
     switch (next_step(now)) {
       case Step::wait:
         return false;
@@ -182,19 +183,42 @@ class CrewWindow : public Fingers {
       send(robot, mission.goals[robot][at.goals_sent - 1]);
       return true;
     }
-    at.arrived = at.goals_sent > 0;
-    if (at.done()) return true;
+    if (at.goals_sent > 0 && (!at.arrived || at.done())) return false;
     const int refused = result.refused;
     send(robot, mission.goals[robot][at.goals_sent]);
-    if (result.refused == refused) at = {at.goals_sent + 1, false};
+    if (result.refused == refused) at = {at.goals_sent + 1, false, false};
     return true;
+  }
+
+  /// Takes all robots at once: the first is touched, on the others the finger rests.
+  void take_all() {
+    select(0);
+    for (std::size_t robot = 1; robot < kRobots; ++robot) {
+      show_card(robot);
+      const QPoint at = middle(card(robot));
+      finger_down(at);
+      EXPECT_TRUE(QTest::qWaitFor([&] { return control->selection().size() == robot + 1; }, 3000));
+      finger_up(at);
+    }
+    settle_layout();
+    for (const char* slot : {"take", "lock"}) {
+      const QPoint at = middle(QString("button_") + slot);
+      finger_down(at);
+      QTest::qWait(900);
+      finger_up(at);
+      answered();
+      settle_layout();
+    }
   }
 
   Result by_window(const Mission& mission, double speed) {
     Crew robots(mission, speed);
     EXPECT_EQ(robots.failure(), "");
+    if (!robots.failure().empty()) return {};
     open_window(robots);
+    if (!control) return {};
     const double begun = steady_now();
+    take_all();
     picture("crew_begin");
     while (goals_done(progress) < static_cast<int>(kRobots * kGoals) && steady_now() - begun < kLimit) {
       robots.tick(progress);
@@ -210,6 +234,7 @@ class CrewWindow : public Fingers {
     result.done = goals_done(progress);
     picture("crew");
     close_window();
+    EXPECT_EQ(robots.open(), 0U);
     result.touched = robots.contacts();
     result.events = robots.events();
     return result;
@@ -218,6 +243,7 @@ class CrewWindow : public Fingers {
   static Result by_shells(const Mission& mission, double speed) {
     Crew robots(mission, speed);
     EXPECT_EQ(robots.failure(), "");
+    if (!robots.failure().empty()) return {};
     ShellOperators operators(mission, robots);
     Result out{};
     const double begun = steady_now();
@@ -230,6 +256,7 @@ class CrewWindow : public Fingers {
     out.done = goals_done(operators.progress());
     out.commands = operators.commands();
     out.refused = operators.refused();
+    EXPECT_EQ(robots.open(), 0U);
     out.touched = robots.contacts();
     out.events = robots.events();
     return out;

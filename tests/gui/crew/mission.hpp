@@ -63,8 +63,14 @@ Step next_step(const Seen& seen);
 /// How far a robot is.
 struct Progress {
   std::size_t goals_sent{};  ///< Goals that were commanded; the last one is the one under way.
-  bool arrived{};            ///< At the last one of these.
+  bool left{};               ///< It was seen under way to the last one of these.
+  bool arrived{};            ///< At that one, after it was under way.
   bool done() const { return goals_sent == kGoals && arrived; }
+  /// Notes what is seen of the robot.
+  void see(const Seen& seen) {
+    if (goals_sent > 0 && seen.detail != "arrived") left = true;
+    arrived = left && seen.detail == "arrived";
+  }
 };
 
 }  // namespace adit::gui::crew

@@ -45,7 +45,13 @@ void ShellOperators::operate(std::size_t robot) {
     if (!known) continue;
     const Card card = card_of(*known, 1, 0.0, 1.0);
     const Place goal = at.goals_sent > 0 ? mission_.goals[robot][at.goals_sent - 1] : Place{};
-    switch (next_step({card.holder, card.headline, card.detail})) {
+    const Seen seen{card.holder, card.headline, card.detail};
+    at.see(seen);
+    if (crew_.asked(robot) && known->mine) {
+      give({"grant", name, "op2"});
+      continue;
+    }
+    switch (next_step(seen)) {
       case Step::wait:
         break;
       case Step::take:
@@ -71,10 +77,9 @@ void ShellOperators::operate(std::size_t robot) {
           give({"goto", name, text_of(goal.x), text_of(goal.y)});
           break;
         }
-        at.arrived = at.goals_sent > 0;
-        if (!at.done()) {
+        if (at.goals_sent == 0 || (at.arrived && !at.done())) {
           const Place next = mission_.goals[robot][at.goals_sent];
-          if (give({"goto", name, text_of(next.x), text_of(next.y)})) at = {at.goals_sent + 1, false};
+          if (give({"goto", name, text_of(next.x), text_of(next.y)})) at = {at.goals_sent + 1, false, false};
         }
         break;
     }

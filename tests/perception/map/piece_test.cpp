@@ -180,7 +180,7 @@ TEST(Piece, RandomContentDoesNoHarm) {
       ASSERT_LE(piece->blocks.size(), kMaxPieceBlocks);
       for (const BlockUpdate& u : piece->blocks) ASSERT_EQ(u.block.occupied & ~u.block.known, 0u);
     }
-    if (const auto poses = decode_poses(content)) {
+    if (const auto poses = decode_poses(piece_of(2, 2, content))) {
       for (const SubmapPose& p : poses->poses) ASSERT_TRUE(p.T_map_submap.position.allFinite());
     }
   }
