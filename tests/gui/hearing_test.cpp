@@ -28,7 +28,7 @@ station::NetworkReport two_robots() {
 
 TEST(Hearing, HasWhatTheStationMeasuredAndWhatRobotsReport) {
   const HearingTable table = hearing_table(two_robots(), "op1");
-  EXPECT_EQ(table.speakers, (std::vector<std::string>{"op1", "op2", "r1", "r2"}));
+  EXPECT_EQ(table.speakers, (std::vector<std::string>{"op1", "r1", "r2", "op2"}));
   EXPECT_EQ(table.cells.size(), 3U * 5U);
   EXPECT_EQ(table.cells[0].text, "op1");
   EXPECT_EQ(cell(table, "op1", "r1").text, "3 % lost");

@@ -7,6 +7,7 @@ namespace {
 using testing::ElementsAre;
 
 TEST_F(Window, AFingerThatRestsOnACardAddsItOrTakesItOut) {
+  settle_layout();
   touch(middle("card_r1"));
   EXPECT_THAT(control.selection(), ElementsAre("r1"));
   const auto rest_on = [&](const QString& card, std::size_t robots) {
