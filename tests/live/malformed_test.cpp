@@ -65,7 +65,7 @@ TEST_F(Programs, MalformedSamplesOnEveryTopicAreSurvivedAndCounted) {
       EXPECT_TRUE(eventually([&] { return counted("r1") > before; }, Seconds(6)));
     }
   }
-  EXPECT_EQ(topics, 16);
+  EXPECT_EQ(topics, 17);
   EXPECT_TRUE(robot.running()) << robot.err();
   EXPECT_EQ(op("op1", {"goto", "r1", "1", "0"}).exit_code, 0);
   EXPECT_EQ(op("op1", {"stop", "r1"}).exit_code, 0);
