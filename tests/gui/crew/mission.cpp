@@ -52,6 +52,10 @@ Mission Mission::draw(std::uint64_t seed, double length) {
     // A pillar stands where nothing was seen yet: at the first goal.
     const auto goal = kEvents[i] == Event::blocked ? 0 : static_cast<std::size_t>(random.below(kGoals));
     mission.interventions.push_back({robots[i], goal, kEvents[i], 2.0 + 3.0 * random.uniform()});
+    // The pillar stays: later goals at that end keep away from it.
+    if (kEvents[i] == Event::blocked)
+      for (std::size_t later = 2; later < kGoals; later += 2)
+        mission.goals[robots[i]][later] = {mission.goals[robots[i]][0].x - 4.0, start(robots[i]).y};
   }
   return mission;
 }
