@@ -124,7 +124,7 @@ void play(Actor& actor) {
   actor.button("mode_waypoint");
   QTest::qWait(2500);
   actor.say("A goal inside a wall is refused, with the reason.");
-  actor.send(2.4, 2.3);
+  actor.send(-2.5, 1.5);
   QTest::qWait(3500);
   actor.say("Driving by hand: r1 moves only while a finger holds the stick.");
   actor.button("drive");
