@@ -280,7 +280,7 @@ void print(const char* who, const Result& r) {
 TEST_F(CrewWindow, OneOperatorWithTheWindowIsNearlyAsFastAsTenWithShells) {
   const double speed = given("ADIT_CREW_SPEED", 0.5);
   const Mission mission =
-      Mission::draw(static_cast<std::uint64_t>(given("ADIT_CREW_SEED", 1)), given("ADIT_CREW_LENGTH", 60.0));
+      Mission::draw(static_cast<std::uint64_t>(given("ADIT_CREW_SEED", 1)), given("ADIT_CREW_LENGTH", 95.0));
   const Result window = by_window(mission, speed);
   print("one operator, window", window);
   const Result shells = by_shells(mission, speed);
