@@ -9,8 +9,7 @@
 #include "basestation/client/paths.hpp"
 #include "tests/live/programs.hpp"
 // Qt's keywords are macros, so its headers come after those of others.
-#include "basestation/gui/bridge/qt_station.hpp"
-#include "tests/gui/fingers.hpp"
+#include "tests/gui/station_window.hpp"
 
 namespace adit::gui {
 namespace {
@@ -18,27 +17,11 @@ namespace {
 using live::PlainDriver;
 using live::Process;
 
-/// A window of an operator's station.
-class StationWindow : public Fingers {
+/// The window of an operator with one robot.
+class RobotWindow : public StationWindow {
  protected:
-  ~StationWindow() override { close_window(); }
-  void close_window() {
-    operator_window.reset();
-    control.reset();
-    qt_station.reset();
-  }
   void open_window(const std::string& operator_name, unsigned domain) {
-    station::client::StationOptions options;
-    options.name = operator_name;
-    options.domain = domain;
-    options.program = program_folder() + "/basestation";
-    auto opened = station::client::Station::open(options, "adit_gui");
-    ASSERT_TRUE(opened) << opened.error().text;
-    qt_station = std::make_unique<QtStation>(std::move(*opened));
-    control = std::make_unique<Control>(*qt_station);
-    qt_station->show_in(*control);
-    control->drive()->use(*qt_station, [] { return [] { return station::input::Gamepad::State{}; }; });
-    open(*control);
+    ASSERT_NO_FATAL_FAILURE(open_station(operator_name, domain));
     ASSERT_TRUE(QTest::qWaitFor([&] { return robot() && robot()->located; }, 20'000));
   }
   const station::Robot* robot() { return control->world().robot("r1"); }
@@ -56,13 +39,10 @@ class StationWindow : public Fingers {
     ASSERT_TRUE(soon([&] { return control->drive()->driving() && item("touchStick")->isVisible(); }));
     finger_down(middle("touchStick") - QPoint(0, 50));
   }
-
-  std::unique_ptr<QtStation> qt_station{};
-  std::unique_ptr<Control> control{};
 };
 
 /// The programs and one window.
-class LiveWindow : public StationWindow {
+class LiveWindow : public RobotWindow {
  protected:
   ~LiveWindow() override {
     close_window();
@@ -93,7 +73,7 @@ class LiveWindow : public StationWindow {
   void open_window(const std::string& operator_name) {
     name = operator_name;
     use_folder();
-    StationWindow::open_window(name, static_cast<unsigned>(live::domain()));
+    RobotWindow::open_window(name, static_cast<unsigned>(live::domain()));
   }
   /// Presses on the map at a place of the map frame, m, and lets go.
   void send_by_finger(double x, double y) {
@@ -198,7 +178,7 @@ TEST_F(LiveWindow, AStationThatIsKilledWhileDrivingStopsTheRobotAndTheWindowStay
 }
 
 /// Another window, in a process of its own, that drives until it is killed.
-class DrivingWindow : public StationWindow {};
+class DrivingWindow : public RobotWindow {};
 
 TEST_F(DrivingWindow, DISABLED_UntilItIsKilled) {
   const char* domain = std::getenv("ADIT_TEST_DRIVES_ON");

@@ -22,7 +22,7 @@ struct Correction {
   }
 };
 
-Correction correction(const station::Robot& before, const station::Robot& now, double since) {
+Correction correction(const Trails::Motion& before, const station::Robot& now, double since) {
   const double yaw = before.yaw + before.wz * since / 2;
   const Point expected{before.x + since * (before.vx * std::cos(yaw) - before.vy * std::sin(yaw)),
                        before.y + since * (before.vx * std::sin(yaw) + before.vy * std::cos(yaw))};
@@ -70,7 +70,7 @@ void Trails::add(const station::World& world, double now) {
     if (trail.last_state < 0.0 || since > 0.02) {
       if (trail.last_state >= 0.0 && robot.map_revision != trail.last.map_revision && since < kComparable)
         correct(trail.points, correction(trail.last, robot, since));
-      trail.last = robot;
+      trail.last = {robot.x, robot.y, robot.z, robot.yaw, robot.vx, robot.vy, robot.wz, robot.map_revision};
       if (trail.last_state >= 0.0 && since < 5.0) trail.period += 0.2 * (since - trail.period);
       trail.last_state = state;
     }

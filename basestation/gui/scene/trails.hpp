@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <string>
@@ -23,10 +24,15 @@ class Trails {
     bool begins{};  ///< No line leads here from the point before.
     double z{};     ///< Map frame, m.
   };
+  /// What of a state says where the next one should be. Map frame, m and rad; speeds in the body frame.
+  struct Motion {
+    float x{}, y{}, z{}, yaw{}, vx{}, vy{}, wz{};
+    std::uint8_t map_revision{};
+  };
   struct Trail {
     std::deque<Stamped> points{};
     double last_state{-1.0};  ///< Time of the last state, s.
-    station::Robot last{};    ///< As it was then.
+    Motion last{};            ///< As it was then.
     double period{0.1};       ///< Between two states, s, smoothed.
   };
 

@@ -8,8 +8,7 @@
 #include "basestation/client/paths.hpp"
 #include "tests/gui/crew/operators.hpp"
 // Qt's keywords are macros, so its headers come after those of others.
-#include "basestation/gui/bridge/qt_station.hpp"
-#include "tests/gui/fingers.hpp"
+#include "tests/gui/station_window.hpp"
 
 namespace adit::gui {
 namespace {
@@ -42,7 +41,7 @@ int goals_done(const std::array<Progress, kRobots>& progress) {
 }
 
 /// One operator's finger on the window.
-class CrewWindow : public Fingers {
+class CrewWindow : public StationWindow {
  protected:
   static constexpr double kLimit = 2400.0;  // s
 
@@ -50,23 +49,9 @@ class CrewWindow : public Fingers {
     static const std::string why = hosts::Hosts::refused();
     if (!why.empty()) GTEST_SKIP() << "no network namespaces here (they need root): " << why;
   }
-  ~CrewWindow() override { close_window(); }
-  void close_window() {
-    operator_window.reset();
-    control.reset();
-    qt_station.reset();
-  }
   void open_window(const Crew& crew) {
     for (const auto& [key, value] : crew.environment()) ::setenv(key.c_str(), value.c_str(), 1);
-    station::client::StationOptions options;
-    options.name = "op1";
-    options.program = program_folder() + "/basestation";
-    auto opened = station::client::Station::open(options, "adit_gui");
-    ASSERT_TRUE(opened) << opened.error().text;
-    qt_station = std::make_unique<QtStation>(std::move(*opened));
-    control = std::make_unique<Control>(*qt_station);
-    qt_station->show_in(*control);
-    open(*control);
+    ASSERT_NO_FATAL_FAILURE(open_station("op1"));
     window()->resize(1920, 1080);
     ASSERT_TRUE(QTest::qWaitFor([&] { return control->robot_count() == static_cast<int>(kRobots); }, 20'000));
     settle_layout();
@@ -107,14 +92,21 @@ class CrewWindow : public Fingers {
     finger_up(from + QPoint(0, by));
     settle();
   }
+  /// Presses until the ring is full.
+  void hold_item(const QString& name) {
+    const QPoint at = middle(name);
+    finger_down(at);
+    QTest::qWait(900);
+    finger_up(at);
+  }
   /// Presses a button of the action bar as long as its ring needs, and waits for the answer.
   void command(std::size_t robot, const QString& slot, bool hold = false) {
     select(robot);
     settle_layout();
-    const QPoint at = middle("button_" + slot);
-    finger_down(at);
-    if (hold) QTest::qWait(900);
-    finger_up(at);
+    if (hold)
+      hold_item("button_" + slot);
+    else
+      touch(middle("button_" + slot));
     answered();
   }
   /// Presses on the map until the place is shown there, and lets go.
@@ -142,10 +134,7 @@ class CrewWindow : public Fingers {
       if (need.grant_line.empty()) continue;
       control->attention()->set_open(true);
       settle_layout();
-      const QPoint at = middle("grant_" + QString::fromStdString(need.id));
-      finger_down(at);
-      QTest::qWait(900);
-      finger_up(at);
+      hold_item("grant_" + QString::fromStdString(need.id));
       control->attention()->set_open(false);
       answered();
       return true;
@@ -202,10 +191,7 @@ class CrewWindow : public Fingers {
     }
     settle_layout();
     for (const char* slot : {"take", "lock"}) {
-      const QPoint at = middle(QString("button_") + slot);
-      finger_down(at);
-      QTest::qWait(900);
-      finger_up(at);
+      hold_item(QString("button_") + slot);
       answered();
       settle_layout();
     }
@@ -262,8 +248,6 @@ class CrewWindow : public Fingers {
     return out;
   }
 
-  std::unique_ptr<QtStation> qt_station{};
-  std::unique_ptr<Control> control{};
   std::array<Progress, kRobots> progress{};
   Result result{};
 };
