@@ -33,6 +33,7 @@ struct Gamepad::Sdl {
   decltype(&SDL_GameControllerGetButton) get_button{};
   decltype(&SDL_GameControllerName) get_name{};
   decltype(&SDL_GameControllerRumble) rumble{};  ///< Null in versions before 2.0.9.
+  decltype(&SDL_TLSCleanup) end_thread{};        ///< Null in versions before 2.0.16.
 
   template <class F>
   bool load(F& function, const char* symbol) {
@@ -41,6 +42,7 @@ struct Gamepad::Sdl {
   }
   bool load_all() {
     load(rumble, "SDL_GameControllerRumble");
+    load(end_thread, "SDL_TLSCleanup");
     return load(init, "SDL_InitSubSystem") && load(quit, "SDL_QuitSubSystem") &&
            load(set_hint, "SDL_SetHint") && load(count, "SDL_NumJoysticks") &&
            load(is_controller, "SDL_IsGameController") && load(open, "SDL_GameControllerOpen") &&
@@ -71,6 +73,7 @@ Gamepad::~Gamepad() {
   if (!sdl_) return;
   if (sdl_->controller) sdl_->close(sdl_->controller);
   sdl_->quit(SDL_INIT_GAMECONTROLLER);
+  if (sdl_->end_thread) sdl_->end_thread();  // SDL frees this memory by itself only for threads that it started.
   // The library stays loaded: its threads may not have ended yet.
 }
 
