@@ -109,7 +109,7 @@ TEST_F(LiveJobs, ADeadlineCompletesAJobThatWaitsAndOneThatRuns) {
   std::promise<bool> stopped;
   std::atomic<int> completions{0};
   strand->compute(
-      {.name = "slow", .deadline = 20ms},
+      {.name = "slow", .deadline = 1s},  // Long enough that it has begun also on a machine with other work.
       [&](const std::stop_token& stop) {
         while (!stop.stop_requested()) std::this_thread::yield();
         stopped.set_value(true);
