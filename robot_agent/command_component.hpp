@@ -176,6 +176,7 @@ class Agent::CommandComponent : public Component {
   Telemetry telemetry_;
   PoseCorrection correction_{};
   Localisation reported_localisation_{Localisation::starting};
+  Time looked_ahead_{};                      ///< When the map's focus was set last.
   Time localisation_since_{};                ///< Since then the odometry has a health that was not reported.
   std::optional<LidarScan> waiting_scan_{};  ///< Waits for odometry as new as its stamp.
   Time started_{};

@@ -10,6 +10,7 @@ namespace adit::agent {
 namespace {
 
 constexpr Duration kRecognition = 150ms;  // Duration in rehearsal.
+constexpr Duration kLookAhead = 1s;       // Between two updates of what stations should get first.
 
 }  // namespace
 
@@ -143,6 +144,12 @@ void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan
 void Agent::CommandComponent::send_map() {
   if (!context_.map) return;
   if (frames_.initialised()) context_.map->follow(frames_.map_frame());
+  if (context_.map->is_behind() && frames_.initialised() && now() - looked_ahead_ >= kLookAhead) {
+    looked_ahead_ = now();
+    FollowedRoute route = followed_route(now());
+    if (route.points.empty()) route.points.push_back(frames_.to_map(frames_.T_odom_base().position));
+    context_.map->look_ahead(route.points);
+  }
   for (const transfer::Piece& piece : context_.map->due(now(), context_.wire->sender()))
     context_.radio->send(piece, context_.map->session());
 }

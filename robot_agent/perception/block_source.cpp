@@ -12,10 +12,6 @@ using perception::BlockIndex;
 using perception::BlockUpdate;
 using transfer::PeerId;
 
-constexpr std::size_t kBlocksInPiece = perception::kMaxPieceBlocks;
-constexpr std::size_t kLookedAt = 4096;        // Candidates that are looked at for one piece.
-constexpr Duration kRest = 500ms;              // Between two looks at changed blocks when none is due.
-constexpr std::uint64_t kChangedEvery = 4;     // One piece of so many is for changed blocks first.
 constexpr std::uint64_t kAlone = 1ULL << 63U;  // Groups of submaps without a lattice in common.
 constexpr double kCovered = 0.9;
 constexpr std::size_t kVotes = 3;             // The newest ones decide, see BlockVotes.
@@ -288,73 +284,6 @@ void BlockSource::leave(const PeerId& id) {
 std::size_t BlockSource::missing(const PeerId& id) const {
   const auto found = peers_.find(id);
   return found == peers_.end() ? 0 : found->second.unseen.size() + found->second.changed.size();
-}
-
-bool BlockSource::is_needed(const Peer& peer, const Ref& ref) const {
-  const Entry& asked = blocks_.at(ref);
-  if ((asked.chosen_for & peer.bit) != 0 && (asked.up_to_date & peer.bit) == 0) return true;
-  const Cell cell = cell_of(ref);
-  const std::vector<std::uint32_t>& submaps = cells_.at(cell);
-  const BlockVotes all = votes_of(cell, submaps);
-  // The newer ones are brought up to date first; this one is needed if that does not suffice.
-  for (std::size_t renewed = submaps.size();; --renewed) {
-    BlockVotes shown;
-    for (std::size_t i = 0; i < submaps.size(); ++i) {
-      const Entry& entry = blocks_.at(ref_in(cell, submaps[i]));
-      if (i >= renewed)
-        shown.add(entry.known, entry.occupied);
-      else if ((entry.chosen_for & peer.bit) != 0)
-        shown.add(entry.sent_known, entry.sent_occupied);
-    }
-    if (shown.shows(all)) return false;
-    if (renewed == 0 || submaps[renewed - 1] == ref.submap) return true;
-  }
-}
-
-Duration BlockSource::hold(const Entry& entry) const {
-  Duration hold = params_.hold;
-  for (int i = 1; i < entry.sends && hold < params_.max_hold; ++i) hold *= 2;
-  return std::min(hold, params_.max_hold);
-}
-
-std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, Time now) {
-  std::vector<Ref> out;
-  const auto add = [&out](const Ref& ref) {
-    if (out.size() < kBlocksInPiece && (out.empty() || out.front().submap == ref.submap)) out.push_back(ref);
-  };
-  const auto add_unseen = [&] {
-    std::size_t looked = 0;
-    for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked)
-      add(it->second);
-  };
-  const auto add_changed = [&] {
-    if (peer.rests_until && now < *peer.rests_until) return;
-    std::size_t looked = 0;
-    bool due = false;
-    for (auto it = peer.changed.begin();
-         it != peer.changed.end() && looked < kLookedAt && out.size() < kBlocksInPiece; ++looked) {
-      const Ref ref = it->second;
-      Entry& entry = blocks_.at(ref);
-      if (!entry.held_since) entry.held_since = now;  // A place that is shown already can wait.
-      if (now - *entry.held_since < hold(entry)) {
-        ++it;
-        continue;
-      }
-      if (!is_needed(peer, ref)) {
-        it = peer.changed.erase(it);
-        if (entry.sends == 0) entry.held_since.reset();
-        continue;
-      }
-      due = true;
-      add(ref);
-      ++it;
-    }
-    if (!due) peer.rests_until = now + kRest;
-  };
-  if ((tokens_ + 1) % kChangedEvery == 0) add_changed();
-  add_unseen();
-  if ((tokens_ + 1) % kChangedEvery != 0) add_changed();
-  return out;
 }
 
 std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerId> peers,

@@ -9,6 +9,7 @@
 
 #include "core/transfer/source.hpp"
 #include "perception/map/block.hpp"
+#include "perception/stream/piece.hpp"
 #include "perception/types/submap_key.hpp"
 #include "robot_agent/perception/block_votes.hpp"
 
@@ -33,16 +34,24 @@ struct SubmapPlace {
   perception::BlockIndex offset{};
 };
 
+/// Blocks of a group's lattice from `low` to `high`, both included.
+struct BlockRegion {
+  std::uint64_t group{};
+  perception::BlockIndex low{}, high{};
+};
+
 /// The blocks of a robot's map as stations see them (0.2 m masks), and what each station has of them.
 ///
 /// Blocks of places that a station never saw go first, the newest of them first; every fourth piece is for
-/// what changed. All blocks of a piece are of one submap. Where several submaps of one group saw a place, a
-/// block is sent only if the merge of what the station has would show anything else than the merge of all
-/// of them; a station that joins gets the fewest blocks that show the same, from the newest on. The map
-/// outlives the component that makes it. Submaps are numbered by age.
+/// what changed. While a station is behind by more than kBacklog blocks, those in the focus go before others,
+/// and surfaces before free space. All blocks of a piece are of one submap. Where several submaps of one
+/// group saw a place, a block is sent only if the merge of what the station has would show anything else than
+/// the merge of all of them; a station that joins gets the fewest blocks that show the same, from the newest
+/// on. The map outlives the component that makes it. Submaps are numbered by age.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
+  static constexpr std::size_t kBacklog = perception::kMaxPieceBlocks;
 
   explicit BlockSource(BlockSourceParams params) : params_(std::move(params)) {}
 
@@ -54,6 +63,12 @@ class BlockSource final : public transfer::Source {
   /// Notes that a peer has all blocks of a submap in their present state, before anything was sent to it.
   void has(const transfer::PeerId& peer, std::uint32_t submap);
   bool knows(const transfer::PeerId& peer) const { return peers_.contains(peer); }
+  /// Whether any peer lacks so much that the focus matters.
+  bool is_behind() const;
+  /// Sets what every peer is to have first, the first region first; in all, 4096 blocks are looked at.
+  void focus(std::vector<BlockRegion> regions);
+  /// Sets what one peer is to have first, after that of every peer.
+  void focus(const transfer::PeerId& peer, std::vector<BlockRegion> regions);
   /// Whether a peer needs no block of a submap.
   bool complete(const transfer::PeerId& peer, std::uint32_t submap) const;
   std::size_t size() const { return blocks_.size(); }
@@ -113,6 +128,9 @@ class BlockSource final : public transfer::Source {
     std::map<std::uint64_t, Ref> unseen{};   ///< Of places of which it has nothing.
     std::map<std::uint64_t, Ref> changed{};  ///< Of others.
     std::optional<Time> rests_until{};       ///< Nothing in `changed` was due when it was looked at last.
+    std::vector<BlockRegion> focus{};
+    std::optional<Time>
+        focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
   };
   struct Part {
     Ref ref{};
@@ -133,8 +151,13 @@ class BlockSource final : public transfer::Source {
   std::vector<Ref> fewest(const Cell& cell, const std::vector<std::uint32_t>& submaps) const;
   void choose_fewest(Peer& peer, const Cell& cell, const std::vector<std::uint32_t>& submaps);
   Duration hold(const Entry& entry) const;
-  /// Candidates for a piece, all of the submap of the first one.
+  struct Choice;
+  /// Candidates for a piece, all of the submap of the first one. Defined in block_choice.cpp, as the next
+  /// three.
   std::vector<Ref> choose(Peer& peer, Time now);
+  void add_focused(Peer& peer, Time now, Choice& out);
+  void add_unseen(const Peer& peer, Choice& out) const;
+  void add_changed(Peer& peer, Time now, Choice& out);
   void erase(const Ref& ref);
   /// Erases a block, and queues for the peers what shows its place now.
   void remove(const Ref& ref);
@@ -154,6 +177,7 @@ class BlockSource final : public transfer::Source {
   std::map<std::uint32_t, std::size_t> pruned_{};
   std::map<transfer::PeerId, Peer> peers_{};
   std::map<std::uint64_t, std::vector<Part>> flights_{};
+  std::vector<BlockRegion> focus_{};
   std::uint64_t changes_{};
   std::uint64_t tokens_{};
   std::uint64_t dropped_{};

@@ -9,6 +9,8 @@
 namespace adit::agent {
 namespace {
 
+using perception::BlockIndex;
+
 constexpr Duration kMaxInsertion = 3s;
 constexpr int kRandomBits = 48;  // Of SubmapKey::start; the bits above count the starts.
 constexpr std::uint64_t kRandomPart = (std::uint64_t{1} << kRandomBits) - 1;
@@ -16,16 +18,31 @@ constexpr std::uint64_t kStoredGroup = std::uint64_t{1} << 62;  // Groups of sub
 constexpr int kMaxDropped = 8;                                  // Submaps, each time that the map is stored.
 constexpr std::size_t kLookedAtOnce = 3;                        // Less than 1 ms each.
 constexpr std::uint32_t kPrunedAtOnce = 4;
+constexpr double kRouteRadius = 3.2;      // m around the route whose map stations get first.
+constexpr double kRouteStep = 3.2;        // m between two points of the route.
+constexpr std::size_t kRoutePoints = 10;  // So 30 m of it.
+constexpr double kHeight = 1.6;           // m above and below.
+constexpr std::size_t kGroups = 8;        // The newest ones, in which the focus is looked for.
 
 std::uint32_t drawn_session(std::uint64_t seed) {
   return static_cast<std::uint32_t>(Random(seed).fork(2).next()) | 1U;
 }
 
+/// The whole number next to a coordinate, in blocks.
+std::int32_t whole(double blocks) {
+  return static_cast<std::int32_t>(std::clamp(std::round(blocks), -1e9, 1e9));
+}
+
 /// Index of the block of the odometry frame's lattice at a submap's origin.
-perception::BlockIndex lattice(const Pose3& T_odom_submap) {
-  const Eigen::Vector3d at = T_odom_submap.position / perception::BlockIndex::kSize;
-  const auto part = [](double v) { return static_cast<std::int32_t>(std::clamp(std::round(v), -1e9, 1e9)); };
-  return {part(at.x()), part(at.y()), part(at.z())};
+BlockIndex lattice(const Pose3& T_odom_submap) {
+  const Eigen::Vector3d at = T_odom_submap.position / BlockIndex::kSize;
+  return {whole(at.x()), whole(at.y()), whole(at.z())};
+}
+
+/// The block of a lattice that contains a point (lattice frame, m).
+BlockIndex block_of(const Eigen::Vector3d& point) {
+  const Eigen::Array3d at = (point / BlockIndex::kSize).array().floor();
+  return {whole(at.x()), whole(at.y()), whole(at.z())};
 }
 
 }  // namespace
@@ -70,6 +87,40 @@ LoadedMap MapKeeper::load() {
   start_ = (newest + 1) << kRandomBits | start_;
   loaded.submaps.clear();
   return loaded;
+}
+
+std::vector<BlockRegion> MapKeeper::regions_around(std::span<const Eigen::Vector3d> points,
+                                                   double radius) const {
+  std::map<std::uint64_t, Pose3> lattices;  // T_lattice_map by group.
+  for (auto submap = submaps_.rbegin(); submap != submaps_.rend() && lattices.size() < kGroups; ++submap) {
+    if (lattices.contains(submap->place.group)) continue;
+    const auto pose = poses_.pose(static_cast<std::uint32_t>(submaps_.rend() - submap - 1));
+    if (!pose) continue;
+    const BlockIndex& offset = submap->place.offset;
+    const Pose3 T_lattice_submap{Eigen::Vector3d(offset.x, offset.y, offset.z) * BlockIndex::kSize,
+                                 Eigen::Quaterniond::Identity()};
+    lattices[submap->place.group] = T_lattice_submap * pose->T_map_submap.inverse();
+  }
+  std::vector<BlockRegion> out;
+  for (const Eigen::Vector3d& point : points)
+    for (const auto& [group, T_lattice_map] : lattices) {
+      const Eigen::Vector3d at = T_lattice_map * point;
+      const Eigen::Vector3d reach(radius, radius, kHeight);
+      out.push_back({group, block_of(at - reach), block_of(at + reach)});
+    }
+  return out;
+}
+
+void MapKeeper::look_ahead(std::span<const Eigen::Vector3d> route) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < route.size() && points.size() < kRoutePoints; ++i) {
+    points.push_back(route[i]);
+    if (i + 1 == route.size()) break;
+    const Eigen::Vector3d leg = route[i + 1] - route[i];
+    for (double along = kRouteStep; along < leg.norm() && points.size() < kRoutePoints; along += kRouteStep)
+      points.emplace_back(route[i] + leg.normalized() * along);
+  }
+  blocks_.focus(regions_around(points, kRouteRadius));
 }
 
 void MapKeeper::anchor() {

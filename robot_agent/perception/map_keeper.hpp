@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,11 @@ class MapKeeper {
   /// Updates the poses of the submaps when the robot's pose in the map was corrected.
   void follow(const MapFrame& frame);
 
+  /// Whether a station lacks so much that what is ahead of the robot should go first.
+  bool is_behind() const { return blocks_.is_behind(); }
+  /// Sends what is around the robot and its route (map frame, m; the robot first) before all else.
+  void look_ahead(std::span<const Eigen::Vector3d> route);
+
   /// Leaves the submaps of now where they are in the map from now on, whatever corrections come: a pose that
   /// was found in them must not move them.
   void anchor();
@@ -75,6 +81,8 @@ class MapKeeper {
     std::set<std::uint32_t> has{};
     std::uint32_t next{};  ///< The submap before it is the next one that is looked at.
   };
+  /// The regions around these points (map frame, m) in the lattice of each group of submaps.
+  std::vector<BlockRegion> regions_around(std::span<const Eigen::Vector3d> points, double radius) const;
   void open_submap(const MapStep& step, const MapFrame& frame);
   void save_submap(std::uint32_t submap);
   void save_places();

@@ -58,6 +58,48 @@ TEST_F(BlockSourceTest, SendsTheNewestFirstAndNothingTwice) {
   EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now));
 }
 
+/// Blocks that differ, so that a piece takes about a hundred of them.
+class BlockOrderTest : public BlockSourceTest {
+ protected:
+  BlockOrderTest() : BlockSourceTest() {
+    Random random(3);
+    for (std::uint32_t x = 0; x < 1000; ++x) {
+      const std::uint64_t surface = random.next() & random.next();
+      source.open(0, {5, 0, 7, {100, 0, 0}});
+      source.update(0, {{static_cast<int>(x), 0, 0}, kAll, x % 2 == 0 ? surface : 0});
+    }
+    source.join(kOne);
+  }
+  std::vector<int> piece() {
+    std::vector<int> out;
+    for (const auto& update : next({kOne}, token).blocks) out.push_back(update.block.index.x);
+    source.acknowledged(kOne, token);
+    source.settled(token);
+    return out;
+  }
+};
+
+TEST_F(BlockOrderTest, WithABacklogSurfacesGoBeforeFreeSpace) {
+  EXPECT_TRUE(source.is_behind());
+  const auto first = piece();
+  ASSERT_FALSE(first.empty());
+  EXPECT_TRUE(std::all_of(first.begin(), first.end(), [](int x) { return x % 2 == 0; }));
+}
+
+TEST_F(BlockOrderTest, WithABacklogTheFocusGoesFirstAndThenTheRest) {
+  source.focus({{7, {110, 0, 0}, {119, 0, 0}}});  // The lattice begins 100 blocks earlier.
+  source.focus(kOne, {{7, {300, 0, 0}, {309, 0, 0}}});
+  const auto first = piece();
+  ASSERT_GT(first.size(), 20U);
+  for (int x = 10; x < 20; ++x) EXPECT_NE(std::find(first.begin(), first.end(), x), first.end()) << x;
+  for (int x = 200; x < 210; ++x) EXPECT_NE(std::find(first.begin(), first.end(), x), first.end()) << x;
+  std::set<int> all(first.begin(), first.end());
+  EXPECT_EQ(all.size(), first.size()) << "each once";
+  while (source.missing(kOne) > 0)
+    for (const int x : piece()) EXPECT_TRUE(all.insert(x).second) << x;
+  EXPECT_EQ(all.size(), 1000U);
+}
+
 TEST_F(BlockSourceTest, APieceIsFilledByCodedSizeAndItsBlocksShareOneRevision) {
   source.join(kOne);
   for (int x = 0; x < 400; ++x) put(x);

@@ -6,6 +6,7 @@
 #include "core/exec/virtual_runtime.hpp"
 #include "core/transfer/receiver.hpp"
 #include "perception/stream/piece.hpp"
+#include "tests/agent/map_bench.hpp"
 
 namespace adit::agent {
 namespace {
@@ -126,6 +127,35 @@ TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection
   EXPECT_NEAR(poses.at(0).position.x(), 7.0, 0.01);
   EXPECT_NEAR(poses.at(0).position.z(), 0.5, 0.01);
   EXPECT_NEAR(poses.at(0).yaw(), 0.2, 0.001);
+}
+
+/// How many blocks of the first piece of blocks lie near a point of the map, for a station that lacks all.
+std::size_t sent_first_near(const Eigen::Vector3d& point, bool look_ahead) {
+  MapBench bench;
+  bench.frame.T_map_odom = Pose3::level({100, 50}, 1.0);
+  bench.drive(0, 200);
+  MapBench::Station station;
+  bench.keeper->acknowledged({station.id, station.start, {}}, bench.strand->now());
+  EXPECT_TRUE(bench.keeper->is_behind());
+  if (look_ahead) bench.keeper->look_ahead(std::vector{point});
+  std::size_t near = 0;
+  for (int rounds = 0; station.blocks.empty() && rounds < 100; ++rounds) {
+    for (const transfer::Piece& piece : bench.keeper->due(bench.strand->now(), {}))
+      if (station.blocks.empty()) bench.hear(station, piece);
+    bench.run(50ms);
+  }
+  for (const auto& [key, blocks] : station.blocks)
+    for (const auto& [index, update] : blocks) {
+      const Eigen::Vector3d in_submap = (Eigen::Vector3d(index.x, index.y, index.z).array() + 0.5) * 0.8;
+      near += (station.poses.at(key).T_map_submap * in_submap - point).norm() < 5.0 ? 1 : 0;
+    }
+  return near;
+}
+
+TEST(MapFocus, AStationThatLacksMuchGetsWhatIsAheadOfTheRobotFirst) {
+  const Eigen::Vector3d point = Pose3::level({100, 50}, 1.0) * Eigen::Vector3d(60, 0, 0);
+  EXPECT_EQ(sent_first_near(point, false), 0U);
+  EXPECT_GT(sent_first_near(point, true), 30U);
 }
 
 }  // namespace
