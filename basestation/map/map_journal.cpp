@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/map/map_journal.hpp"
+
+#include <array>
+#include <utility>
+
+#include "core/store/crc32c.hpp"
+#include "core/store/pack.hpp"
+#include "core/store/preserve.hpp"
+#include "core/transfer/piece.hpp"
+
+namespace adit::station {
+namespace {
+
+// A header: kind and version, start, CRC-32C of both. Then batches: u32 length, CRC-32C of the content,
+// content.
+constexpr std::array<std::uint8_t, 4> kKind{'A', 'M', 'P', 1};
+constexpr std::size_t kHeaderBytes = 12, kBatchHeader = 12;
+constexpr std::size_t kMaxName = 64;
+constexpr std::size_t kLongest = std::size_t{48} << 20;  // Files that are longer are not read.
+
+store::Bytes header(std::uint32_t start) {
+  store::Packer out;
+  out.put(kKind).put(start);
+  out.put(store::crc32c(out.bytes()));
+  return out.bytes();
+}
+
+void add_batch(store::Bytes& out, const std::vector<JournalPiece>& pieces) {
+  store::Packer content;
+  for (const JournalPiece& piece : pieces)
+    content.text(piece.robot)
+        .put(piece.kind)
+        .put(static_cast<std::uint16_t>(piece.data.size()))
+        .raw(piece.data);
+  store::Packer head;
+  head.put(static_cast<std::uint32_t>(content.bytes().size()));
+  head.put(store::crc32c(head.bytes())).put(store::crc32c(content.bytes()));
+  out.insert(out.end(), head.bytes().begin(), head.bytes().end());
+  out.insert(out.end(), content.bytes().begin(), content.bytes().end());
+}
+
+enum class Read { good, damaged, unfinished };
+
+/// Reads one batch off the front of `left`.
+Read take_batch(std::span<const std::uint8_t>& left, std::vector<JournalPiece>& pieces) {
+  store::Unpacker head(left);
+  const auto length = head.get<std::uint32_t>(), length_sum = head.get<std::uint32_t>(),
+             sum = head.get<std::uint32_t>();
+  // Each write is waited for, so that only the last one can be cut off.
+  if (!head.good()) return Read::unfinished;
+  if (length_sum != store::crc32c(left.first(4))) return Read::damaged;
+  if (length > left.size() - kBatchHeader) return Read::unfinished;
+  const auto content = left.subspan(kBatchHeader, length);
+  if (store::crc32c(content) != sum) return Read::damaged;
+  store::Unpacker in(content);
+  std::vector<JournalPiece> read;
+  while (in.good() && !in.rest().empty()) {
+    JournalPiece piece{.robot = in.text(kMaxName)};
+    piece.kind = in.get<std::uint8_t>();
+    const auto bytes = in.raw(in.get<std::uint16_t>());
+    piece.data.assign(bytes.begin(), bytes.end());
+    if (in.good()) read.push_back(std::move(piece));
+  }
+  if (!in.good()) return Read::damaged;
+  for (JournalPiece& piece : read) pieces.push_back(std::move(piece));
+  left = left.subspan(kBatchHeader + length);
+  return Read::good;
+}
+
+}  // namespace
+
+/// One write, or the removal of the file.
+struct MapJournal::Batch {
+  std::vector<JournalPiece> pieces{};
+  store::Bytes bytes{};  ///< Empty: remove the file.
+  bool ran{false};
+  Result<void> result{};
+
+  void run(store::Disk& disk) {
+    result = bytes.empty() ? disk.remove(kFile) : disk.append(kFile, bytes);
+    ran = true;
+  }
+};
+
+MapJournal::MapJournal(MapJournalParams params, std::shared_ptr<store::Disk> disk, Executor& home,
+                       Outputs outputs)
+    : params_(params),
+      disk_(std::move(disk)),
+      home_(home),
+      outputs_(std::move(outputs)),
+      self_(std::make_shared<MapJournal*>(this)) {}
+
+MapJournal::~MapJournal() { *self_ = nullptr; }
+
+LoadedJournal MapJournal::load() {
+  LoadedJournal out;
+  if (!disk_) return out;
+  const auto read = disk_->read(kFile, kLongest);
+  if (!read) {
+    out.lost = read.error().text;
+    return out;
+  }
+  if (!*read) return out;
+  std::span<const std::uint8_t> left(**read);
+  out.bytes = left.size();
+  store::Unpacker head(left);
+  const auto kind = head.array<4>();
+  const auto start = head.get<std::uint32_t>(), sum = head.get<std::uint32_t>();
+  const bool good = head.good() && kind == kKind && sum == store::crc32c(left.first(kHeaderBytes - 4));
+  if (good) {
+    left = left.subspan(kHeaderBytes);
+    Read batch = Read::good;
+    while (!left.empty() && batch == Read::good) batch = take_batch(left, out.pieces);
+    if (batch != Read::damaged) {
+      out.start = start;
+      out.unfinished = batch == Read::unfinished;
+      return out;
+    }
+  }
+  const std::string aside = store::copy_aside(*disk_, kFile, "corrupt");
+  out.lost = std::string("the map on the disk is damaged, and robots send it again") +
+             (aside.empty() ? "" : "; a copy is " + aside);
+  return out;
+}
+
+void MapJournal::begin(std::uint32_t start, const std::vector<JournalPiece>& pieces) {
+  if (!disk_) return;
+  store::Bytes bytes = header(start);
+  if (!pieces.empty()) add_batch(bytes, pieces);
+  bytes_ = bytes.size();
+  if (const auto written = disk_->replace(kFile, bytes); !written) useless_ = written.error().text;
+}
+
+void MapJournal::add(JournalPiece piece) {
+  if (!disk_) return outputs_.kept(piece);
+  if (waiting_bytes_ + piece.data.size() > params_.max_waiting) return;
+  waiting_bytes_ += piece.data.size();
+  waiting_.push_back(std::move(piece));
+  if (!writing_ && !timer_.active()) timer_ = home_.after(params_.period, [this] { write(); });
+}
+
+void MapJournal::write() {
+  if (writing_ || !disk_) return;
+  auto batch = std::make_shared<Batch>();
+  if (useless_.empty()) {
+    add_batch(batch->bytes, waiting_);
+    if (bytes_ + batch->bytes.size() > params_.max_bytes) {
+      useless_ = "it would take more than " + std::to_string(params_.max_bytes >> 20) + " MiB";
+      batch->bytes.clear();
+    }
+  }
+  batch->pieces = std::exchange(waiting_, {});
+  waiting_bytes_ = 0;
+  writing_ = true;
+  start(batch);
+}
+
+void MapJournal::start(const std::shared_ptr<Batch>& batch) {
+  const auto back = [self = self_, batch] {
+    if (*self) (*self)->written(*batch);
+  };
+  if (disk_->instant())
+    timer_ = home_.after(params_.write, [disk = disk_, batch, back] {
+      batch->run(*disk);
+      back();
+    });
+  else
+    home_.compute(
+        {.name = "map journal", .modelled = params_.write, .pool = PoolKind::io},
+        [disk = disk_, batch] { batch->run(*disk); }, [back](const Result<void>&) { back(); });
+}
+
+void MapJournal::written(const Batch& batch) {
+  writing_ = false;
+  const bool removal = batch.bytes.empty();
+  if (batch.ran && batch.result && removal) {
+    disk_.reset();
+    outputs_.trouble("the map is not kept on the disk: " + useless_);
+    keep(batch.pieces);
+    keep(std::exchange(waiting_, {}));
+    return;
+  }
+  if (batch.ran && batch.result) {
+    bytes_ += batch.bytes.size();
+    keep(batch.pieces);
+  } else {
+    // What was written of it may be anything, and its pieces are not acknowledged: they come again.
+    useless_ = batch.ran ? batch.result.error().text : "the disk's queue is full";
+  }
+  if (waiting_.empty() && useless_.empty()) return;
+  timer_ = home_.after(removal ? params_.retry : params_.period, [this] { write(); });
+}
+
+void MapJournal::keep(const std::vector<JournalPiece>& pieces) {
+  for (const JournalPiece& piece : pieces) outputs_.kept(piece);
+}
+
+}  // namespace adit::station

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/exec/executor.hpp"
+#include "core/store/disk.hpp"
+
+namespace adit::station {
+
+/// Content of one piece of a robot's map, as it came.
+struct JournalPiece {
+  std::string robot{};
+  std::uint32_t session{}, id{};  ///< Of the transfer, 0 on the disk.
+  std::uint8_t kind{};            ///< Value of transfer::Kind.
+  store::Bytes data{};
+};
+
+struct MapJournalParams {
+  std::size_t max_bytes{std::size_t{16} << 20};   ///< Of the file; see MapJournal.
+  std::size_t max_waiting{std::size_t{1} << 20};  ///< Of pieces that wait for the disk.
+  Duration period{100ms};                         ///< Between two writes.
+  Duration write{3ms};                            ///< Duration of a write in rehearsal.
+  Duration retry{5s};  ///< Between two attempts to remove a file that is of no use.
+};
+
+/// What the disk had of the map.
+struct LoadedJournal {
+  std::uint32_t start{};  ///< The start under which all of it was acknowledged; 0: it is not complete.
+  std::vector<JournalPiece> pieces{};  ///< In the order of their arrival.
+  std::size_t bytes{};                 ///< Of the file.
+  bool unfinished{false};              ///< The last write was cut off before anything of it was acknowledged.
+  std::string lost{};                  ///< Why it is not complete; empty: it is, or there was none.
+};
+
+/// The pieces of robots' maps that this station acknowledged, on its disk: after a restart it has them, and
+/// continues with the same start (transfer::Ack), so that no robot sends them again.
+///
+/// A piece is to be acknowledged once it is written, see Outputs::kept. Where that is impossible (the disk is
+/// full, the file would become too long), the file is removed and pieces are kept in memory from then on:
+/// then the next start of the station is a new one, and robots send all again. While the file can be neither
+/// written nor removed, no piece is kept.
+class MapJournal {
+ public:
+  struct Outputs {
+    std::function<void(const JournalPiece&)> kept{};
+    std::function<void(const std::string& text)> trouble{};  ///< The map is in memory only from now on.
+  };
+
+  /// `disk` null: in memory only.
+  MapJournal(MapJournalParams params, std::shared_ptr<store::Disk> disk, Executor& home, Outputs outputs);
+  ~MapJournal();
+  MapJournal(const MapJournal&) = delete;
+  MapJournal& operator=(const MapJournal&) = delete;
+
+  /// Reads the file; one that is damaged is copied aside. Call begin() after it, or resume() if the file is
+  /// whole.
+  LoadedJournal load();
+  /// Begins a new file with these pieces.
+  void begin(std::uint32_t start, const std::vector<JournalPiece>& pieces);
+  /// Continues the file that load() read, of which nothing is lost or unfinished.
+  void resume(std::size_t bytes) { bytes_ = bytes; }
+  /// Adds a piece, now or never: one for which there is no room is not kept, and comes again.
+  void add(JournalPiece piece);
+
+  static constexpr const char* kFile = "map-pieces";
+
+ private:
+  struct Batch;
+  void write();
+  void start(const std::shared_ptr<Batch>& batch);
+  void written(const Batch& batch);
+  void keep(const std::vector<JournalPiece>& pieces);
+
+  MapJournalParams params_;
+  std::shared_ptr<store::Disk> disk_;  ///< Null: in memory only.
+  Executor& home_;
+  Outputs outputs_;
+  std::vector<JournalPiece> waiting_{};
+  std::size_t waiting_bytes_{}, bytes_{};
+  std::string useless_{};  ///< Why the file must be removed; empty: it must not.
+  bool writing_{false};
+  Timer timer_{};
+  std::shared_ptr<MapJournal*> self_;
+};
+
+}  // namespace adit::station
