@@ -12,16 +12,22 @@ std::size_t waiting_for_pose(const ChunkStore::Robot& robot) {
   return out;
 }
 
+/// Share of the robot's map, as far as it is known, that is here in its newest state, [0, 1].
+double share(const ChunkStore::Robot& robot) {
+  const auto here = static_cast<double>(robot.blocks);
+  return here > 0.0 ? here / (here + static_cast<double>(robot.waiting)) : 0.0;
+}
+
 }  // namespace
 
 std::string map_status_text(const MapReceiver& map, Time now) {
   const ChunkStore& chunks = map.chunks();
   if (chunks.robots().empty()) return "no map has been received; robots send one with perception: slam\n";
   std::vector<std::vector<std::string>> rows{
-      {"ROBOT", "M2", "SUBMAPS", "BLOCKS", "KB", "B/M2", "AGE", "WAITING"}};
+      {"ROBOT", "SHARE", "M2", "SUBMAPS", "BLOCKS", "KB", "B/M2", "AGE", "WAITING"}};
   for (const auto& [name, robot] : chunks.robots()) {
     const double area = chunks.area(name);
-    rows.push_back({name, fixed(area, 0), std::to_string(robot.submaps.size()), std::to_string(robot.blocks),
+    rows.push_back({name, fixed(100.0 * share(robot), 0) + " %", fixed(area, 0), std::to_string(robot.submaps.size()), std::to_string(robot.blocks),
                     fixed(static_cast<double>(robot.bytes) / 1000.0, 1),
                     area > 0.0 ? fixed(static_cast<double>(robot.bytes) / area, 1) : "-",
                     short_age(seconds(now - robot.heard)), std::to_string(robot.waiting)});
@@ -41,6 +47,7 @@ nlohmann::json map_status_json(const MapReceiver& map, Time now) {
   nlohmann::json robots = nlohmann::json::array();
   for (const auto& [name, robot] : chunks.robots())
     robots.push_back({{"robot", name},
+                      {"share", share(robot)},
                       {"m2", chunks.area(name)},
                       {"submaps", robot.submaps.size()},
                       {"submaps_without_pose", waiting_for_pose(robot)},

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "adit/command.h"
+#include "core/config/search.hpp"
 #include "core/wire/topics.hpp"
 #include "core/wire/typed.hpp"
 #include "sim/rehearsal/rehearsal.hpp"
@@ -110,10 +111,13 @@ struct Measured {
 
 Result<Measured> measure(const std::string& link, bool map, int runs, std::uint64_t seed) {
   Measured out;
+  const auto beside =
+      config::find_file("scenarios/demo.yaml");  // Links and platforms are looked for beside it.
+  if (!beside) return beside.error();
   for (int n = 0; n < runs; ++n) {
     std::fprintf(stderr, "%s, %s: run %d of %d\n", link.c_str(), map ? "with the map" : "without", n + 1,
                  runs);
-    const auto scenario = parse_scenario(scenario_text(link, map), "config/scenarios/stops.yaml");
+    const auto scenario = parse_scenario(scenario_text(link, map), *beside);
     if (!scenario) return scenario.error();
     const auto world = make_world(scenario->world);
     if (!world) return world.error();

@@ -21,7 +21,7 @@ inline constexpr std::size_t kPieceOverhead = 144;
 struct Piece {
   Kind kind{};
   std::uint32_t id{};       ///< From 1, rises with each piece of a session.
-  std::uint32_t waiting{};  ///< Parts that the peer that lacks most still lacks, beside this piece.
+  std::uint32_t waiting{};  ///< Parts of all kinds that the peer that lacks most still lacks, beside this piece.
   std::vector<std::uint8_t> data{};
 };
 

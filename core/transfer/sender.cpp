@@ -117,6 +117,16 @@ std::vector<PeerId> Sender::served(const Source& source, Time now) const {
   return out;
 }
 
+std::uint32_t Sender::waiting(const std::vector<PeerId>& peers) const {
+  std::size_t most = 0;
+  for (const PeerId& peer : peers) {
+    std::size_t of_peer = 0;
+    for (const Source* source : sources_) of_peer += source->missing(peer);
+    most = std::max(most, of_peer);
+  }
+  return static_cast<std::uint32_t>(std::min<std::size_t>(most, UINT32_MAX));
+}
+
 std::vector<Piece> Sender::due(Time now, const wire::SenderState& link) {
   expire(now);
   std::vector<Piece> out;
@@ -134,11 +144,7 @@ std::vector<Piece> Sender::due(Time now, const wire::SenderState& link) {
       auto content = source->next(peers, pacer_.piece_bytes(), now);
       if (!content) break;
       pacer_.sent(content->data.size());
-      std::size_t waiting = 0;
-      for (const PeerId& peer : peers) waiting = std::max(waiting, source->missing(peer));
-      out.push_back({source->kind(), ++last_id_,
-                     static_cast<std::uint32_t>(std::min<std::size_t>(waiting, UINT32_MAX)),
-                     std::move(content->data)});
+      out.push_back({source->kind(), ++last_id_, waiting(peers), std::move(content->data)});
       flights_.push_back({last_id_, content->token, source, now, std::move(peers)});
     }
   }

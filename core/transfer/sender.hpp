@@ -67,6 +67,8 @@ class Sender {
   void measure(Duration delay);
   /// Peers to send to; the first one is the one that lacks most of the source's content.
   std::vector<PeerId> served(const Source& source, Time now) const;
+  /// Parts of all sources that the peer that lacks most lacks.
+  std::uint32_t waiting(const std::vector<PeerId>& peers) const;
 
   SenderParams params_;
   Pacer pacer_;

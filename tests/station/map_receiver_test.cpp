@@ -96,6 +96,11 @@ TEST(MapReceiver, StatusSaysWhatIsThereAndWhatIsMissing) {
   EXPECT_EQ(json["robots"][0]["robot"], "r1");
   EXPECT_EQ(json["robots"][0]["age"], 3.0);
   EXPECT_EQ(json["robots"][0]["submaps_without_pose"], 0);
+  EXPECT_EQ(json["robots"][0]["share"], 1.0);
+  const auto blocks = static_cast<std::uint32_t>(map.chunks().robots().at("r1").blocks);
+  ASSERT_TRUE(map.take("r1", 9, 3, kPoses, 3 * blocks, perception::encode(poses), Time{}).ok());
+  EXPECT_EQ(map_status_json(map, Time{3s})["robots"][0]["share"], 0.25);
+  EXPECT_NE(map_status_text(map, Time{3s}).find("25 %"), std::string::npos);
 }
 
 }  // namespace

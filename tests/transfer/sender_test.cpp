@@ -190,5 +190,16 @@ TEST_F(TransferTest, KeepsToItsShareOfTheLink) {
   EXPECT_LT(share, 0.45);
 }
 
+TEST_F(TransferTest, APieceSaysWhatWaitsOfAllSources) {
+  ToySource other;
+  for (int part = 0; part < 7; ++part) other.set(static_cast<std::uint8_t>(part), 1);
+  sender.add(other);
+  sender.acknowledged({stations[0].id, 1, {}}, now);
+  std::vector<Piece> sent;
+  for (; sent.empty(); now += 50ms) sent = sender.due(now, link);
+  const std::size_t inside = sent.front().data.size() / ToySource::kPart;
+  EXPECT_EQ(sent.front().waiting, 200 - inside + 7);
+}
+
 }  // namespace
 }  // namespace adit::transfer
