@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "core/store/crc32c.hpp"
+#include "core/checksum/crc32c.hpp"
 #include "core/store/pack.hpp"
 #include "core/store/preserve.hpp"
 #include "core/transfer/piece.hpp"
@@ -22,7 +22,7 @@ constexpr std::size_t kLongest = std::size_t{48} << 20;  // Files that are longe
 store::Bytes header(std::uint32_t start) {
   store::Packer out;
   out.put(kKind).put(start);
-  out.put(store::crc32c(out.bytes()));
+  out.put(crc32c(out.bytes()));
   return out.bytes();
 }
 
@@ -35,7 +35,7 @@ void add_batch(store::Bytes& out, const std::vector<JournalPiece>& pieces) {
         .raw(piece.data);
   store::Packer head;
   head.put(static_cast<std::uint32_t>(content.bytes().size()));
-  head.put(store::crc32c(head.bytes())).put(store::crc32c(content.bytes()));
+  head.put(crc32c(head.bytes())).put(crc32c(content.bytes()));
   out.insert(out.end(), head.bytes().begin(), head.bytes().end());
   out.insert(out.end(), content.bytes().begin(), content.bytes().end());
 }
@@ -49,10 +49,10 @@ Read take_batch(std::span<const std::uint8_t>& left, std::vector<JournalPiece>& 
              sum = head.get<std::uint32_t>();
   // Each write is waited for, so that only the last one can be cut off.
   if (!head.good()) return Read::unfinished;
-  if (length_sum != store::crc32c(left.first(4))) return Read::damaged;
+  if (length_sum != crc32c(left.first(4))) return Read::damaged;
   if (length > left.size() - kBatchHeader) return Read::unfinished;
   const auto content = left.subspan(kBatchHeader, length);
-  if (store::crc32c(content) != sum) return Read::damaged;
+  if (crc32c(content) != sum) return Read::damaged;
   store::Unpacker in(content);
   std::vector<JournalPiece> read;
   while (in.good() && !in.rest().empty()) {
@@ -107,7 +107,7 @@ LoadedJournal MapJournal::load() {
   store::Unpacker head(left);
   const auto kind = head.array<4>();
   const auto start = head.get<std::uint32_t>(), sum = head.get<std::uint32_t>();
-  const bool good = head.good() && kind == kKind && sum == store::crc32c(left.first(kHeaderBytes - 4));
+  const bool good = head.good() && kind == kKind && sum == crc32c(left.first(kHeaderBytes - 4));
   if (good) {
     left = left.subspan(kHeaderBytes);
     Read batch = Read::good;

@@ -10,6 +10,7 @@
 #include <memory>
 #include <tuple>
 
+#include "core/checksum/crc32c.hpp"
 #include "perception/map/block_hash.hpp"
 #include "perception/stream/block_coder.hpp"
 #include "perception/stream/block_context.hpp"
@@ -70,19 +71,7 @@ Error malformed(const char* what) { return {Reason::malformed, std::string("a pi
 
 /// CRC-32C of a piece, the checksum itself left out.
 std::uint32_t checksum(std::span<const std::uint8_t> piece) {
-  static constexpr auto kTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t i = 0; i < table.size(); ++i) {
-      std::uint32_t value = i;
-      for (int bit = 0; bit < 8; ++bit) value = value >> 1 ^ ((value & 1) != 0 ? 0x82f63b78u : 0u);
-      table[i] = value;
-    }
-    return table;
-  }();
-  std::uint32_t sum = 0xffffffffu;
-  for (std::size_t i = 0; i < piece.size(); ++i)
-    if (i < kHeader || i >= kBlocksHeader) sum = sum >> 8 ^ kTable[(sum ^ piece[i]) & 0xff];
-  return ~sum;
+  return crc32c(piece.subspan(kBlocksHeader), crc32c(piece.first(kHeader)));
 }
 
 /// Any number of 32 bits, after its length.

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/store/crc32c.hpp"
+#include "core/checksum/crc32c.hpp"
 #include "core/time/random.hpp"
 #include "tests/store/scratch_folder.hpp"
 
@@ -17,6 +17,7 @@ TEST(Crc32c, gives_the_published_values) {
   EXPECT_EQ(crc32c(Bytes(32, 0x00)), 0x8a9136aau);  // RFC 3720, B.4
   EXPECT_EQ(crc32c(Bytes(32, 0xff)), 0x62a8ab43u);
   EXPECT_EQ(crc32c({}), 0u);
+  EXPECT_EQ(crc32c(bytes("6789"), crc32c(bytes("12345"))), 0xe3069283u) << "continued";
 }
 
 TEST(Pack, gives_back_what_was_put) {

@@ -12,8 +12,10 @@
 #include <set>
 #include <sstream>
 
+#include "core/checksum/crc32c.hpp"
 #include "perception/map/export/octree_file.hpp"
 #include "perception/stream/block_context.hpp"
+#include "perception/stream/block_tables.hpp"
 #include "perception/stream/block_walk.hpp"
 #include "tests/folders/folders.hpp"
 
@@ -174,6 +176,15 @@ TEST(BlockCoder, AnyBytesGiveABoundedSetOrAnError) {
     ASSERT_EQ(*decoded(encoded(*got)), *got);
   }
   EXPECT_GT(sets, 50u);
+}
+
+TEST(ContextTrees, OtherTablesHaveAnotherVersion) {
+  const std::string_view text(kBlockTables, kBlockTablesSize);
+  const std::uint32_t sum = crc32c({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  // Robots and stations decode each other's pieces only with equal tables: whoever changes the tables changes
+  // both.
+  EXPECT_EQ(ContextTrees::kVersion, 1);
+  EXPECT_EQ(sum, 2128086163u);
 }
 
 TEST(ContextTrees, TextThatIsDamagedGivesEvenProbabilities) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/store/crc32c.hpp"
+#include "core/checksum/crc32c.hpp"
 #include "perception/map/submap_grid.hpp"
 
 namespace adit::perception {
@@ -139,7 +139,7 @@ std::vector<std::uint8_t> piece_of(std::uint8_t version, std::uint8_t kind,
   std::vector<std::uint8_t> out{version, kind};
   std::vector<std::uint8_t> summed = out;
   summed.insert(summed.end(), content.begin(), content.end());
-  const std::uint32_t sum = store::crc32c(summed);
+  const std::uint32_t sum = crc32c(summed);
   for (int i = 0; i < 4; ++i) out.push_back(static_cast<std::uint8_t>(sum >> 8 * i));
   out.insert(out.end(), content.begin(), content.end());
   return out;

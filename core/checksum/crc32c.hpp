@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <span>
 
-namespace adit::store {
+namespace adit {
 
-/// CRC-32C (Castagnoli; RFC 3720, appendix B.4): finds every error burst of up to 32 bits.
-inline std::uint32_t crc32c(std::span<const std::uint8_t> bytes) {
+/// CRC-32C (Castagnoli; RFC 3720, appendix B.4): finds every error burst of up to 32 bits. `before`: the CRC
+/// of the preceding bytes.
+inline std::uint32_t crc32c(std::span<const std::uint8_t> bytes, std::uint32_t before = 0) {
   static constexpr auto kTable = [] {
     std::array<std::uint32_t, 256> t{};
     for (std::uint32_t i = 0; i < 256; ++i) {
@@ -17,9 +18,9 @@ inline std::uint32_t crc32c(std::span<const std::uint8_t> bytes) {
     }
     return t;
   }();
-  std::uint32_t crc = 0xffffffffu;
+  std::uint32_t crc = ~before;
   for (const std::uint8_t byte : bytes) crc = (crc >> 8) ^ kTable[(crc ^ byte) & 0xffu];
-  return crc ^ 0xffffffffu;
+  return ~crc;
 }
 
-}  // namespace adit::store
+}  // namespace adit
