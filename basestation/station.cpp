@@ -328,6 +328,7 @@ void Station::map_since(std::uint64_t revision, std::size_t most, MapDone done) 
   impl_->map_since(revision, most, std::move(done));
 }
 
+void Station::look_at(const LookedAt& place) { impl_->look_at(place); }
 std::size_t Station::findings() const { return impl_->findings(); }
 bool Station::closed() const { return impl_->closed_; }
 

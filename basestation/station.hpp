@@ -80,6 +80,8 @@ class Station {
   /// is complete.
   using MapDone = std::function<void(MapUpdate update, bool more)>;
   void map_since(std::uint64_t revision, std::size_t most, MapDone done);
+  /// Sets what an operator looks at: robots send it first where their map is late. Holds for some seconds.
+  void look_at(const LookedAt& place);
   /// Number of stored findings of all robots.
   std::size_t findings() const;
   /// True after `down`, until `up`.

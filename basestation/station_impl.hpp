@@ -48,6 +48,7 @@ class Station::Impl {
   std::size_t findings() const { return desk_.all().size(); }
   const ChunkStore& chunks() const { return map_.chunks(); }
   void map_since(std::uint64_t revision, std::size_t most, MapDone done);
+  void look_at(const LookedAt& place) { look_ = place, looked_ = strand_.now(); }
 
   Station& owner_;
   StationParams params_;
@@ -146,6 +147,8 @@ class Station::Impl {
     std::vector<std::function<void()>> waiting{};  ///< Requests that are answered when it is complete.
   };
   View view_{};
+  std::optional<LookedAt> look_{};  ///< What an operator looked at last.
+  Time looked_{};
   bool change_pending_{false};  ///< on_changed will be called.
   Timer change_timer_{};
   std::uint32_t start_{};  ///< Drawn at this start; see transfer::Ack.

@@ -46,8 +46,10 @@ void Connection::follow() { send(line_of({{"follow", true}})); }
 void Connection::watch() { send(line_of({{"watch", true}})); }
 void Connection::notices() { send(line_of({{"notices", true}})); }
 
-void Connection::map(std::uint64_t run, std::uint64_t revision) {
-  send(line_of({{"map", {{"run", run}, {"revision", revision}}}}));
+void Connection::map(std::uint64_t run, std::uint64_t revision, const std::optional<LookedAt>& look) {
+  json wanted{{"run", run}, {"revision", revision}};
+  if (look) wanted["look"] = {look->x, look->y, look->radius};
+  send(line_of({{"map", wanted}}));
 }
 
 void Connection::handle(const std::string& line) {

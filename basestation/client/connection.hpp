@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "basestation/client/line_socket.hpp"
@@ -49,8 +50,9 @@ class Connection {
   /// Asks for the state whenever it changes: on_world is called with each.
   void follow();
   void notices();
-  /// Asks once for what changed of the map after that revision of that run of the station.
-  void map(std::uint64_t run, std::uint64_t revision);
+  /// Asks once for what changed of the map after that revision of that run of the station. `look`: robots
+  /// send first what is there.
+  void map(std::uint64_t run, std::uint64_t revision, const std::optional<LookedAt>& look = {});
 
   /// Handles the messages that arrive within `timeout_ms`, or until `other_fd` (-1: none) has input. Returns
   /// false if the connection to the station is closed.

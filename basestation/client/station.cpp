@@ -142,6 +142,14 @@ class Station::Impl {
       if (--stops_ == 0) stops_ended_.notify_all();
     }).detach();
   }
+  void look_at(const std::optional<LookedAt>& place) {
+    const std::lock_guard guard(mutex_);
+    look_ = place;
+  }
+  std::optional<LookedAt> look() const {
+    const std::lock_guard guard(mutex_);
+    return look_;
+  }
   void want_map(bool wanted) {
     map_wanted_ = wanted;
     wake();
@@ -207,7 +215,8 @@ class Station::Impl {
   // Of the thread alone.
   std::map<RequestId, std::int64_t> sent_{};  ///< The connection's id of each open request.
   std::uint64_t run_{};                       ///< The station's run to which the map belongs.
-  Clock::time_point next_map_{};              ///< When the map is asked for.
+  std::optional<LookedAt> look_{};
+  Clock::time_point next_map_{};  ///< When the map is asked for.
 
   mutable std::mutex mutex_{};  // Guards all below.
   StationOptions options_;      // Domain and network as the running station has them.
@@ -268,7 +277,7 @@ void Station::Impl::serve(LineSocket socket) {
     write(connection);
     if (map_wanted_ && Clock::now() >= next_map_) {
       next_map_ = Clock::now() + kMapAnswer;
-      connection.map(run_, map()->revision);
+      connection.map(run_, map()->revision, look());
     }
     open = connection.wait(kPollMs, wake_.get());
     drain();
@@ -378,6 +387,7 @@ void Station::on_change(std::function<void()> poke) { impl_->on_change(std::move
 Changes Station::take() { return impl_->take(); }
 void Station::cancel(RequestId request) { impl_->cancel(request); }
 void Station::want_map(bool wanted) { impl_->want_map(wanted); }
+void Station::look_at(const std::optional<LookedAt>& place) { impl_->look_at(place); }
 void Station::stick(RequestId drive, const StickVelocity& velocity) { impl_->stick(drive, velocity); }
 
 Station::RequestId Station::execute(const std::string& line, Done done) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,8 @@ class Station {
   std::vector<Action> actions(const std::vector<std::string>& robots) const;
   /// Whether the map is asked for, once a second.
   void want_map(bool wanted);
+  /// Sets what robots send first of a map that is late; nothing: no place.
+  void look_at(const std::optional<LookedAt>& place);
   /// Starts the station again after it ended.
   Result<void> start_station();
 

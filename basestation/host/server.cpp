@@ -219,8 +219,17 @@ void Server::ask_map(std::uint64_t number, Client& client, const json& wanted) {
   in.read("run", run);
   in.read("revision", revision);
   if (!misfit.empty()) return answer(client, {{"wrong", "the map's '" + misfit + "' does not fit"}});
+  std::optional<LookedAt> look;
+  if (const auto found = wanted.find("look"); found != wanted.end()) {
+    const auto is_number = [](const json& value) { return value.is_number(); };
+    if (!found->is_array() || found->size() != 3 || !std::all_of(found->begin(), found->end(), is_number))
+      return answer(client, {{"wrong", "the map's 'look' does not fit"}});
+    look = LookedAt{(*found)[0], (*found)[1], (*found)[2]};
+    if (!valid(*look)) return answer(client, {{"wrong", "the map's 'look' does not fit"}});
+  }
   if (run != run_) revision = 0;  // Revisions of an earlier run mean nothing.
-  client.map_asked = strand_->post([this, number, revision] {
+  client.map_asked = strand_->post([this, number, revision, look] {
+    if (look) station_->look_at(*look);
     station_->map_since(revision, kMaxTiles, [this, number](MapUpdate update, bool more) {
       update.run = run_;
       hand_over({Reply::Kind::answer, number, {{"map", json_of(update)}, {"more", more}}});

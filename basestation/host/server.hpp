@@ -28,8 +28,9 @@ namespace adit::station::host {
 ///     {"watch": true}                  -> {"snapshot": {...}} at 5 Hz, only the newest
 ///     {"follow": true}                 -> {"world": {...}}, then {"delta": {...}}, see below
 ///     {"notices": true}                -> {"notice": {...}} on each notice
-///     {"map": {"run": N, "revision": M}}
-///                                      -> {"map": {...}, "more": true|false}: the tiles that changed since
+///     {"map": {"run": N, "revision": M, "look": [x, y, radius]}}
+///                                      -> {"map": {...}, "more": true|false}: the tiles that changed since;
+///                                      `look`, which may be missing: what robots are to send first
 ///     {"hello": true}                  -> {"hello": {...}}
 ///     {"front_end": "watch"}           names the client for the others
 ///

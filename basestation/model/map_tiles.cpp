@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/model/map_tiles.hpp"
 
+#include <cmath>
+
 namespace adit::station {
+
+bool valid(const LookedAt& place) {
+  return std::isfinite(place.x) && std::isfinite(place.y) && place.radius > 0.0 &&
+         place.radius <= LookedAt::kMaxRadius;
+}
 
 TileMap updated(const TileMap& map, MapUpdate update) {
   TileMap out = map;

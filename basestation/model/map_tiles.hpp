@@ -37,6 +37,16 @@ struct TileMap {
   std::map<std::pair<int, int>, std::shared_ptr<const MapTile>> tiles{};
 };
 
+/// A place that an operator looks at, map frame, m.
+struct LookedAt {
+  static constexpr double kMaxRadius = 100.0;
+  double x{}, y{};
+  double radius{};  ///< (0, kMaxRadius].
+  bool operator==(const LookedAt&) const = default;
+};
+/// Whether all of it is finite and within its bounds.
+bool valid(const LookedAt& place);
+
 /// What changed of the map after a revision.
 struct MapUpdate {
   double resolution{0.2};

@@ -26,6 +26,7 @@ constexpr int kRepeats = 100;
 constexpr int kLimitMs = 5000;
 
 struct NoSink : CommandSink {
+  void look_at(const std::optional<station::LookedAt>&) override {}
   void execute(const std::string&, Done) override {}
   void query(const std::string&, Done) override {}
   void stop(const std::vector<std::string>&, Done) override {}

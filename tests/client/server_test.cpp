@@ -151,6 +151,18 @@ TEST_F(ServerTest, AClientThatSleptReadsTheNewestSnapshotAlone) {
   ASSERT_FALSE(sleeper.next("snapshot").is_null()) << "then it gets what is new";
 }
 
+TEST_F(ServerTest, APlaceToLookAtThatDoesNotFitIsRefused) {
+  Talk talk(path());
+  const auto ask = [&](const json& look) {
+    talk.say({{"map", {{"run", 0}, {"revision", 0}, {"look", look}}}});
+    return talk.next("");
+  };
+  for (const json& bad : {json(5), json::array(), json{1, 2}, json{1, 2, 3, 4}, json{1, 2, "3"},
+                          json{1, 2, 0}, json{1, 2, 1e9}, json{1, json(), 3}})
+    EXPECT_TRUE(ask(bad).contains("wrong")) << bad;
+  EXPECT_TRUE(ask({1.5, -2, 20}).contains("map"));
+}
+
 TEST_F(ServerTest, EveryFrontEndSeesTheCommandsOfTheOthers) {
   Talk script(path()), dashboard(path());
   dashboard.say({{"front_end", "watch"}});

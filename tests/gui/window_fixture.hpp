@@ -22,12 +22,14 @@ class FakeSink : public CommandSink {
     execute(line, std::move(done));
   }
   void start_station() override { ++starts; }
+  void look_at(const std::optional<station::LookedAt>& place) override { looked = place; }
 
   std::vector<std::string> lines{};
   std::vector<Done> pending{};
   std::vector<std::string> queries{};
   std::vector<std::pair<std::string, Done>> asked{};  ///< Queries without an answer.
   int starts{};
+  std::optional<station::LookedAt> looked{};
 };
 
 class Window : public Fingers {

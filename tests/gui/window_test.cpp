@@ -112,6 +112,11 @@ TEST_F(Window, AFingerThatMovesPansAndSendsNothing) {
   EXPECT_TRUE(sink.lines.empty());
   EXPECT_NEAR(map().camera().x, before - 60 / map().camera().scale, 1e-6);
   EXPECT_FALSE(map().fitting());
+  ASSERT_TRUE(sink.looked);
+  EXPECT_NEAR(sink.looked->x, map().camera().x, 1e-6);
+  EXPECT_TRUE(station::valid(*sink.looked));
+  map().fitAll();
+  EXPECT_FALSE(sink.looked) << "who sees all looks at no place";
 }
 
 TEST_F(Window, AShortTapOnTheFloorSendsNothing) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "basestation/model/map_tiles.hpp"
 #include "basestation/model/outcome.hpp"
 
 namespace adit::gui {
@@ -20,6 +22,8 @@ class CommandSink {
   virtual void query(const std::string& line, Done done) = 0;
   /// Software stop of these robots, or of all if there is none.
   virtual void stop(const std::vector<std::string>& robots, Done done) = 0;
+  /// The operator looks at this place of the map, or at none in particular.
+  virtual void look_at(const std::optional<station::LookedAt>& place) = 0;
   /// Starts the station again after it ended.
   virtual void start_station() = 0;
 };

@@ -112,6 +112,9 @@ class Control : public QObject {
   /// Shows a line as the last outcome; `kind`: sent, done or refused.
   void say(const QString& text, const QString& kind);
 
+  /// The operator looks at this place of the map, or at none in particular.
+  void view_moved(const std::optional<station::LookedAt>& place) { sink_.look_at(place); }
+
   // From QML.
   Q_INVOKABLE void select(const QString& name, bool add);
   Q_INVOKABLE void trigger(int slot, bool held);

@@ -34,6 +34,7 @@ class QtStation : public QObject, public CommandSink, public DriveSink {
   std::int64_t drive(const std::string& robot, DriveSink::Done done) override;
   void stick(std::int64_t drive, const station::StickVelocity& velocity) override;
   void cancel(std::int64_t drive) override;
+  void look_at(const std::optional<station::LookedAt>& place) override { station_->look_at(place); }
   void halt(const std::vector<std::string>& robots) override;
   void start_station() override;
 

@@ -2,6 +2,7 @@
 #include "basestation/gui/scene/map_view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "basestation/gui/scene/layer_marks.hpp"
@@ -85,6 +86,13 @@ void MapView::refresh() {
 void MapView::refresh_camera() {
   map_->look(camera_);
   refresh();
+  if (!control_ || camera_.width < 10) return;
+  std::optional<station::LookedAt> place;  // Who sees all of the map looks at no place of it.
+  if (!fitting_)
+    place = {camera_.x, camera_.y,
+             std::min(std::hypot(camera_.width, camera_.height) / 2 / camera_.scale,
+                      station::LookedAt::kMaxRadius)};
+  control_->view_moved(place);
 }
 
 void MapView::set_fitting(bool fitting) {
