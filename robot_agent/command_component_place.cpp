@@ -140,11 +140,10 @@ void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan
        [this](const Result<MapStep>& step) { context_.map->taken(step, frames_.map_frame()); });
 }
 
-void Agent::CommandComponent::send_map() {
-  if (!context_.map) return;
-  if (frames_.initialised()) context_.map->follow(frames_.map_frame());
-  for (const transfer::Piece& piece : context_.map->due(now(), context_.wire->sender()))
-    context_.radio->send(piece, context_.map->session());
+void Agent::CommandComponent::send_content() {
+  if (context_.map && frames_.initialised()) context_.map->follow(frames_.map_frame());
+  for (const transfer::Piece& piece : context_.content->due(now(), context_.wire->sender()))
+    context_.radio->send(piece, context_.content->session());
 }
 
 StoredFrames Agent::CommandComponent::stored_place() const {

@@ -17,10 +17,6 @@ constexpr int kMaxDropped = 8;                                  // Submaps, each
 constexpr std::size_t kLookedAtOnce = 3;                        // Less than 1 ms each.
 constexpr std::uint32_t kPrunedAtOnce = 4;
 
-std::uint32_t drawn_session(std::uint64_t seed) {
-  return static_cast<std::uint32_t>(Random(seed).fork(2).next()) | 1U;
-}
-
 /// Index of the block of the odometry frame's lattice at a submap's origin.
 perception::BlockIndex lattice(const Pose3& T_odom_submap) {
   const Eigen::Vector3d at = T_odom_submap.position / perception::BlockIndex::kSize;
@@ -35,11 +31,7 @@ MapKeeper::MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk)
       disk_(std::move(disk)),
       poses_(params_.robot, Random(params_.seed).fork(1).next()),
       blocks_({.robot = params_.robot, .start = Random(params_.seed).fork(1).next()}),
-      start_(Random(params_.seed).fork(1).next() & kRandomPart),
-      sender_({.session = drawn_session(params_.seed)}) {
-  sender_.add(poses_);
-  sender_.add(blocks_);
-}
+      start_(Random(params_.seed).fork(1).next() & kRandomPart) {}
 
 LoadedMap MapKeeper::load() {
   if (!disk_) return {};
@@ -76,28 +68,22 @@ void MapKeeper::anchor() {
   for (Submap& submap : submaps_) submap.fixed = true;
 }
 
-void MapKeeper::acknowledged(const transfer::Ack& ack, Time now) {
-  sender_.acknowledged(ack, now);
-  if (!blocks_.knows(ack.peer)) {
-    stations_.erase(ack.peer);
+void MapKeeper::heard(const transfer::PeerId& id, std::uint32_t start) {
+  if (!blocks_.knows(id)) {
+    stations_.erase(id);
     return;
   }
-  const auto known = stations_.find(ack.peer);
-  if (known != stations_.end() && known->second.start == ack.start) return;
+  const auto known = stations_.find(id);
+  if (known != stations_.end() && known->second.start == start) return;
   if (stations_.size() >= BlockSource::kMaxPeers)
     std::erase_if(stations_, [this](const auto& station) { return !blocks_.knows(station.first); });
-  Station& station = stations_[ack.peer] = {ack.start, {}, 0};
-  const auto stored = stored_stations_.find(ack.peer);
+  Station& station = stations_[id] = {start, {}, 0};
+  const auto stored = stored_stations_.find(id);
   if (stored == stored_stations_.end()) return;
   // It was not started again since, and still has what it had.
-  if (stored->second.start == ack.start)
-    for (const std::uint32_t submap : station.has = stored->second.has) blocks_.has(ack.peer, submap);
+  if (stored->second.start == start)
+    for (const std::uint32_t submap : station.has = stored->second.has) blocks_.has(id, submap);
   stored_stations_.erase(stored);
-}
-
-std::vector<transfer::Piece> MapKeeper::due(Time now, const wire::SenderState& link) {
-  if (disk_) save_due(now);
-  return sender_.due(now, link);
 }
 
 void MapKeeper::save_submap(std::uint32_t number) {
@@ -173,7 +159,8 @@ void MapKeeper::note_complete() {
   }
 }
 
-void MapKeeper::save_due(Time now) {
+void MapKeeper::tick(Time now) {
+  if (!disk_) return;
   disk_->tick();
   if (saved_ && now - *saved_ < params_.save_period) return;
   const bool first = !saved_;
