@@ -148,6 +148,9 @@ void Station::Impl::answer_query(const Request& request, const Done& done) {
     const FoundReport report = findings_report(desk_, book_, fleet_, request.robots);
     outcome.text = findings_text(report);
     outcome.json.update(findings_json(report, desk_, book_));
+    const std::uint64_t refused = pieces_.refused(transfer::Kind::findings);
+    outcome.json["refused_pieces"] = refused;
+    if (refused > 0) outcome.text += std::to_string(refused) + " pieces of findings refused\n";
     return done(outcome);
   }
   std::vector<const RobotView*> selection;
@@ -414,7 +417,6 @@ void Station::Impl::tick() {
       radio_.set_place(robot.participant, {robot.x, robot.y, robot.z});
       trails_.add(name, {robot.x, robot.y, robot.yaw});
     }
-  desk_.tick();
   acknowledge_pieces();
   std::erase_if(flows_, [](const auto& entry) { return entry.second->over(); });
   for (Waiting& next : std::exchange(waiting_, {})) {

@@ -9,7 +9,6 @@
 #include "adit/discovery.h"
 #include "adit/link.h"
 #include "adit/robot.h"
-#include "basestation/findings/convert.hpp"
 #include "basestation/station_impl.hpp"
 #include "core/command/parse.hpp"
 #include "core/command/vocabulary.hpp"
@@ -33,7 +32,6 @@ struct Station::Impl::Radio {
   wire::Writer<radio::Presence> presence{};
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> report{};
-  wire::Writer<radio::FindingsAck> findings{};
   wire::Writer<radio::BulkAck> bulk_ack{};
   std::vector<std::unique_ptr<wire::RawReader>> readers{};
 };
@@ -50,6 +48,7 @@ Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire
       started_(strand.now()),
       random_(params_.seed),
       book_(params_.disk, strand),
+      pieces_([&strand] { return strand.now(); }),
       desk_({}, params_.disk, strand, desk_outputs()),
       start_(static_cast<std::uint32_t>(Random(params_.seed).fork(kStartSalt).next())),
       topics_(std::make_unique<Radio>()) {}
@@ -79,7 +78,7 @@ Result<void> Station::Impl::start() {
   };
   fleet_.on_robot = [this](const RobotView& robot) {
     sender_.prepare(robot.name);
-    map_.greet();
+    pieces_.greet();
     announce_often();
   };
   sender_.on_sent = [this](const RobotCommand& robot_command, std::uint64_t seq) {
@@ -97,19 +96,10 @@ Result<void> Station::Impl::start() {
   if (!report) return report.error();
   topics_->report = std::move(*report);
 
-  auto findings = wire::Writer<radio::FindingsAck>::make(radio_, wire::topics::kFindingsAck);
-  if (!findings) return findings.error();
-  topics_->findings = std::move(*findings);
   if (const std::string lost = desk_.load().text(); !lost.empty())
     desk_outputs().trouble("findings_damaged", lost);
   if (const std::string lost = book_.load(); !lost.empty()) desk_outputs().trouble("findings_damaged", lost);
   for (const auto& [key, finding] : desk_.all()) book_.add(key);
-  auto found = wire::make_reader(radio_, wire::topics::kFinding, strand_,
-                                 [this](const radio::Finding& sample, const wire::SampleInfo&) {
-                                   desk_.hear(from_radio(sample), {sample.kept(), sample.overflowed()});
-                                 });
-  if (!found) return found.error();
-  topics_->readers.push_back(std::move(*found));
 
   auto answers =
       wire::make_reader(radio_, wire::topics::kAcknowledgement, strand_,
@@ -123,7 +113,7 @@ Result<void> Station::Impl::start() {
         read(wire::topics::kAuthority), read(wire::topics::kBehaviour), read(wire::topics::kRoute),
         read(wire::topics::kNotification), read(wire::topics::kHealth), read(wire::topics::kLinkReport)})
     if (!opened) return opened.error();
-  if (auto opened = open_map(); !opened) return opened.error();
+  if (auto opened = open_content(); !opened) return opened.error();
 
   radio::Capabilities self;
   self.name(params_.name);
@@ -160,7 +150,15 @@ Result<void> Station::Impl::start() {
   return {};
 }
 
-Result<void> Station::Impl::open_map() {
+Result<void> Station::Impl::open_content() {
+  pieces_.add(transfer::Kind::findings, [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
+    return desk_.hear(piece.robot, piece.data, std::move(stored));
+  });
+  pieces_.otherwise([this](const PieceReader::Piece& piece, const PieceReader::Stored& stored) {
+    const Result<void> taken = map_.take(piece.robot, piece.kind, piece.waiting, piece.data, strand_.now());
+    if (taken.reason() != Reason::malformed) stored();
+    return taken;
+  });
   auto ack = wire::Writer<radio::BulkAck>::make(radio_, wire::topics::kBulkAck);
   if (!ack) return ack.error();
   topics_->bulk_ack = std::move(*ack);
@@ -173,19 +171,18 @@ Result<void> Station::Impl::open_map() {
 }
 
 void Station::Impl::heard_piece(const radio::BulkPiece& sample, const wire::SampleInfo& info) {
-  // Only the robot itself adds to its map: Fleet::speaks_for would also take a participant that is not known
-  // yet.
+  // Only the robot itself adds to its map and findings: Fleet::speaks_for would also take a participant that
+  // is not known yet.
   const RobotView* robot = fleet_.robot(sample.robot());
   if (closed_ || !robot || robot->participant != info.sender) return;
-  (void)map_.take(sample.robot(), sample.session(), sample.id(), sample.kind(), sample.waiting(),
-                  sample.data(),
-                  strand_.now());  // `map status` counts what was refused.
+  pieces_.take(
+      {sample.robot(), sample.session(), sample.id(), sample.kind(), sample.waiting(), sample.data()});
 }
 
 void Station::Impl::acknowledge_pieces() {
   if (closed_ || fleet_.robots().empty()) return;
   const wire::LinkProfile* link = radio_.sender().link;
-  const auto receipts = map_.due(strand_.now(), link ? link->bandwidth : 0.0);
+  const auto receipts = pieces_.due(link ? link->bandwidth : 0.0);
   if (!receipts) return;
   radio::BulkAck ack;
   ack.station(params_.name);
@@ -204,10 +201,6 @@ void Station::Impl::acknowledge_pieces() {
 
 FindingDesk::Outputs Station::Impl::desk_outputs() {
   return {
-      [this](const std::string& robot, const std::vector<std::uint64_t>& ids) {
-        // If it is lost, the robot sends the findings again, and they are acknowledged again.
-        if (!closed_) (void)topics_->findings.write(to_radio(robot, params_.id, ids));
-      },
       [this](const findings::Finding& f) {
         book_.add(f.key);
         fleet_.say({.robot = f.key.robot,

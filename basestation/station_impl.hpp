@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "basestation/content/piece_reader.hpp"
 #include "basestation/findings/book.hpp"
 #include "basestation/findings/desk.hpp"
 #include "basestation/fleet/traffic.hpp"
@@ -82,7 +83,7 @@ class Station::Impl {
   void report_traffic();
   FindingDesk::Outputs desk_outputs();
   void tick();
-  Result<void> open_map();
+  Result<void> open_content();
   void heard_piece(const radio::BulkPiece& sample, const wire::SampleInfo& info);
   void acknowledge_pieces();
   void heard_acknowledgement(const radio::Acknowledgement& sample, const wire::SampleInfo& info);
@@ -133,6 +134,7 @@ class Station::Impl {
   Random random_;
   TrafficMeter meter_{};
   FindingBook book_;
+  PieceReader pieces_;  ///< Of all kinds of content.
   FindingDesk desk_;
   MapReceiver map_{};
   Trails trails_{};

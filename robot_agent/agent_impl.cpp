@@ -144,10 +144,10 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
                                            e.restored.generation, keeper_outputs());
 
   e.findings =
-      std::make_unique<FindingSync>(SyncParams{.robot = params.name,
-                                               .max_findings = params.findings,
-                                               .seed = Random(params.seed).fork(kFindingsSalt).next()},
-                                    params.disk, strand, disk_strand, findings_outputs());
+      std::make_unique<FindingSource>(FindingParams{.robot = params.name,
+                                                    .max_findings = params.findings,
+                                                    .seed = Random(params.seed).fork(kFindingsSalt).next()},
+                                      params.disk, strand, disk_strand, findings_outputs());
   if (const std::string lost = e.findings->load().text(); !lost.empty())
     e.notifier->send(
         {{}, Severity::error, "findings_damaged", Reason::cannot_read, params.name + ": " + lost});
@@ -184,6 +184,8 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
     if ((unit != &router || routes_it) && (unit != &map || maps_it))
       if (const auto opened = unit->open(); !opened) return opened.error();
   if (maps_it) open_map();
+  e.content = std::make_unique<ContentSender>(Random(params.seed).fork(kContentSalt).next(), *e.findings,
+                                              e.map.get());
   if (routes_it) e.router = std::make_unique<RouteServices>();
   auto opened = AgentSupervisor::open({params.name, params.supervision, Log(params.log, params.name),
                                        params.end, params.alive, params.velocity},
@@ -197,19 +199,6 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
   watch->watch(sensors, {.name = "sensors"});
   if (maps_it) watch->watch(map, {.name = "map"});
   if (params.disk) watch->note({.name = "store"});
-  std::function<void(const std::string&, const transfer::Ack&, const wire::ParticipantId&)> acknowledged{};
-  if (maps_it)
-    acknowledged = [&e, &strand, with_command](const std::string& station, const transfer::Ack& ack,
-                                               const wire::ParticipantId& from) {
-      with_command([&](CommandComponent& component) {
-        component.commands([&](CommandInterface& interface) {
-          // Only the participant that is bound to the station speaks for it.
-          const Station* known = interface.stations().by_participant(from);
-          if (known && known->name == station && known->id == ack.peer)
-            e.map->acknowledged(ack, strand.now());
-        });
-      });
-    };
   return e.radio->listen(
       {e.directory, e.namesakes,
        [with_command](const std::function<void(CommandInterface&)>& use) {
@@ -225,16 +214,23 @@ Result<void> Agent::Impl::open(wire::Participant& radio, wire::Participant& robo
        [with_command](const Eigen::Vector3d& goal, bool replace, const auto& done) {
          with_command([&](CommandComponent& component) { component.check_goal(goal, replace, done); });
        },
-       [&e, &strand](const Id& station, std::span<const std::uint64_t> ids) {
-         e.findings->acknowledged(station, ids, strand.now());
-       },
        [&e, &strand](const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from) {
          if (beacon)
            e.peers.hear_beacon(*beacon, from, strand.now());
          else
            e.peers.refuse_beacon(BeaconFault::malformed);
        },
-       std::move(acknowledged)});
+       [&e, &strand, with_command](const std::string& station, const transfer::Ack& ack,
+                                   const wire::ParticipantId& from) {
+         with_command([&](CommandComponent& component) {
+           component.commands([&](CommandInterface& interface) {
+             // Only the participant that is bound to the station speaks for it.
+             const Station* known = interface.stations().by_participant(from);
+             if (known && known->name == station && known->id == ack.peer)
+               e.content->acknowledged(ack, strand.now());
+           });
+         });
+       }});
 }
 
 void Agent::Impl::open_map() {
@@ -296,7 +292,7 @@ StateKeeper::Outputs Agent::Impl::keeper_outputs() {
   }};
 }
 
-FindingSync::Outputs Agent::Impl::findings_outputs() {
+FindingSource::Outputs Agent::Impl::findings_outputs() {
   const auto notify = [this](Severity severity, const char* code, const std::string& text) {
     context->notifier->send({{}, severity, code, Reason::none, params.name + ": " + text});
   };

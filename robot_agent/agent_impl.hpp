@@ -11,6 +11,7 @@ namespace adit::agent {
 inline constexpr std::uint64_t kIdentitySalt = 1;
 inline constexpr std::uint64_t kFindingsSalt = 2;
 inline constexpr std::uint64_t kMapSalt = 3;
+inline constexpr std::uint64_t kContentSalt = 4;
 
 /// The implementation of Agent: its units, each on a strand of its own, their shared context, and the
 /// supervisor. Private to agent.cpp.
@@ -44,7 +45,7 @@ struct Agent::Impl {
 
   StateKeeper::Outputs keeper_outputs();
   std::shared_ptr<const nav::PlannerLibrary> library();
-  FindingSync::Outputs findings_outputs();
+  FindingSource::Outputs findings_outputs();
   UnitParams command_unit();
   UnitParams planner_unit();
   UnitParams router_unit();

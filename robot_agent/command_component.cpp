@@ -214,7 +214,6 @@ Result<void> Agent::CommandComponent::on_start() {
     commands_.tick(now());
     safeguards_.tick(now());
     telemetry_.send_periodic(now());
-    send_findings();
   }));
   return {};
 }
@@ -243,7 +242,7 @@ void Agent::CommandComponent::beat() {
   navigation_.step(at);
   keep();
   context_.keeper->tick();
-  send_map();
+  send_content();
 }
 
 // A mode that resumes after a restart must not move before a stop from the meantime arrives; stations repeat
@@ -280,11 +279,6 @@ void Agent::CommandComponent::watch_namesakes(Time at) {
   } else if (gives_way && behaviour_.mode().name != "hold") {
     behaviour_.hold(Reason::name_taken, at);
   }
-}
-
-void Agent::CommandComponent::send_findings() {
-  for (const findings::Finding* f : context_.findings->due(commands_.stations().heard_ids(now()), now()))
-    context_.radio->send(*f, context_.findings->size(), context_.findings->overflowed());
 }
 
 void Agent::CommandComponent::send_beacon(Time at) {

@@ -10,11 +10,12 @@
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
 #include "robot_agent/common/rate_limit.hpp"
+#include "robot_agent/content/content_sender.hpp"
 #include "robot_agent/convoy/convoy.hpp"
 #include "robot_agent/discovery/directory.hpp"
 #include "robot_agent/discovery/namesakes.hpp"
 #include "robot_agent/discovery/peer_table.hpp"
-#include "robot_agent/findings/sync.hpp"
+#include "robot_agent/findings/finding_source.hpp"
 #include "robot_agent/motion/driver.hpp"
 #include "robot_agent/motion/frames.hpp"
 #include "robot_agent/motion/mux.hpp"
@@ -56,7 +57,7 @@ struct Agent::Context {
   Namesakes namesakes;
   Restored restored{};                    ///< State at the start, or when the component was restarted.
   std::unique_ptr<StateKeeper> keeper{};  ///< The component's last state, in memory and on the disk.
-  std::unique_ptr<FindingSync> findings{};
+  std::unique_ptr<FindingSource> findings{};
   PlanService planner{"planner", 2};        ///< The services are callable from any thread.
   std::unique_ptr<RouteServices> router{};  ///< Null: this robot has no router.
   ScanService scans{"scan", 4};
@@ -65,7 +66,8 @@ struct Agent::Context {
   PlaceCheck place{};
   std::uint32_t odometries{};  ///< Instances of the odometry so far; by the sensors component only.
   FrameServices frames{};
-  std::unique_ptr<MapKeeper> map{};  ///< Null: this robot makes no map.
+  std::unique_ptr<MapKeeper> map{};          ///< Null: this robot makes no map.
+  std::unique_ptr<ContentSender> content{};  ///< Of the findings and the map.
   MapService map_insertion{"map insertion", 2};
   AgentSupervisor* watch{};               ///< From any thread.
   CommandComponent* command_component{};  ///< Null while the command component is not running.
@@ -140,10 +142,10 @@ class Agent::CommandComponent : public Component {
   void add_waiting_scan();
   /// Keeps the robot in hold while it gives way to another one of its name.
   void watch_namesakes(Time at);
-  void send_findings();
   /// Offers a scan to the map, in the odometry frame.
   void add_to_map(const std::shared_ptr<const Scan>& scan);
-  void send_map();
+  /// Sends findings and map to the stations, as the link allows.
+  void send_content();
   /// Sends this robot's state to the other robots, when the link allows.
   void send_beacon(Time at);
   Facts sense(Time now) const;

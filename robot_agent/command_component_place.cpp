@@ -141,17 +141,18 @@ void Agent::CommandComponent::add_to_map(const std::shared_ptr<const Scan>& scan
        [this](const Result<MapStep>& step) { context_.map->taken(step, frames_.map_frame()); });
 }
 
-void Agent::CommandComponent::send_map() {
-  if (!context_.map) return;
-  if (frames_.initialised()) context_.map->follow(frames_.map_frame());
-  if (context_.map->is_behind() && frames_.initialised() && now() - looked_ahead_ >= kLookAhead) {
-    looked_ahead_ = now();
-    FollowedRoute route = followed_route(now());
-    if (route.points.empty()) route.points.push_back(frames_.to_map(frames_.T_odom_base().position));
-    context_.map->look_ahead(route.points);
+void Agent::CommandComponent::send_content() {
+  if (context_.map && frames_.initialised()) {
+    context_.map->follow(frames_.map_frame());
+    if (context_.map->is_behind() && now() - looked_ahead_ >= kLookAhead) {
+      looked_ahead_ = now();
+      FollowedRoute route = followed_route(now());
+      if (route.points.empty()) route.points.push_back(frames_.to_map(frames_.T_odom_base().position));
+      context_.map->look_ahead(route.points);
+    }
   }
-  for (const transfer::Piece& piece : context_.map->due(now(), context_.wire->sender()))
-    context_.radio->send(piece, context_.map->session());
+  for (const transfer::Piece& piece : context_.content->due(now(), context_.wire->sender()))
+    context_.radio->send(piece, context_.content->session());
 }
 
 StoredFrames Agent::CommandComponent::stored_place() const {

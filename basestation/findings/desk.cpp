@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/findings/desk.hpp"
 
+#include "core/findings/finding_piece.hpp"
+
 namespace adit::station {
 namespace {
 
@@ -12,41 +14,51 @@ FindingDesk::FindingDesk(DeskParams params, std::shared_ptr<store::Disk> disk, E
                          Outputs outputs)
     : outputs_(std::move(outputs)),
       finding_store_({.max_findings = params.max_findings}, std::move(disk), home, nullptr,
-                     {[this](const findings::Key& key) { answers_[key.robot].insert(key.id); },
+                     {[this](const findings::Key& key) { kept(key); },
                       [this](bool failing, const std::string& text) {
                         outputs_.trouble(failing ? "store_failing" : "store_works", text);
                       }}) {}
 
-void FindingDesk::hear(findings::Finding finding, const Robot& robot) {
-  if (!findings::valid(finding)) return;
-  const findings::Key key = finding.key;
-  if (!robots_.contains(key.robot) && robots_.size() >= kRobots) return;
-  robots_[key.robot] = robot;
-  if (finding_store_.kept(key)) {
-    answers_[key.robot].insert(key.id);  // The previous acknowledgement was lost.
-    return;
+Result<void> FindingDesk::hear(const std::string& robot, std::span<const std::uint8_t> bytes,
+                               std::function<void()> stored) {
+  auto piece = findings::decode_piece(bytes);
+  if (!piece) return piece.error();
+  if (piece->robot != robot) return {Reason::malformed, "findings of another robot"};
+  if (!robots_.contains(robot) && robots_.size() >= kRobots)
+    return {Reason::queue_full, "no room for one more robot's findings"};
+  robots_[robot] = {piece->kept, piece->overflowed};
+  bool fits = true;
+  Waiting waiting{{}, std::move(stored)};
+  for (findings::Finding& finding : piece->findings) {
+    const findings::Key key = finding.key;
+    const bool is_new = !finding_store_.all().contains(key);
+    if (!finding_store_.put(std::move(finding))) {
+      fits = false;
+      continue;
+    }
+    if (!finding_store_.kept(key)) waiting.keys.insert(key);
+    if (is_new) outputs_.found(finding_store_.all().at(key));
   }
-  if (finding_store_.all().contains(key)) return;  // It is being written to the disk.
-  if (!finding_store_.put(std::move(finding))) {
-    if (!told_full_)
-      outputs_.trouble("findings_full", "no room for more findings here; " + key.robot + " keeps its own");
-    told_full_ = true;
-    return;
+  if (!fits) {
+    if (!reported_full_)
+      outputs_.trouble("findings_full", "no room for more findings here; " + robot + " keeps its own");
+    reported_full_ = true;
+    return {Reason::queue_full, "no room for more findings"};
   }
-  outputs_.found(finding_store_.all().at(key));
+  if (waiting.keys.empty()) {
+    waiting.stored();  // They were stored before, and that acknowledgement was lost.
+    return {};
+  }
+  // What is forgotten here comes again, and is acknowledged then.
+  if (waiting_.size() >= kMaxPieces) waiting_.pop_front();
+  waiting_.push_back(std::move(waiting));
+  return {};
 }
 
-void FindingDesk::tick() {
-  for (auto& [robot, ids] : answers_) {
-    while (!ids.empty()) {
-      std::vector<std::uint64_t> some;
-      while (!ids.empty() && some.size() < kIds) {
-        some.push_back(*ids.begin());
-        ids.erase(ids.begin());
-      }
-      outputs_.acknowledge(robot, some);
-    }
-  }
+void FindingDesk::kept(const findings::Key& key) {
+  for (Waiting& piece : waiting_)
+    if (piece.keys.erase(key) > 0 && piece.keys.empty()) piece.stored();
+  std::erase_if(waiting_, [](const Waiting& piece) { return piece.keys.empty(); });
 }
 
 }  // namespace adit::station

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
-#include <vector>
 
 #include "core/findings/finding_store.hpp"
+#include "core/result/result.hpp"
 
 namespace adit::station {
 
@@ -15,13 +17,12 @@ struct DeskParams {
   std::size_t max_findings{4096};  ///< Maximum number of findings of all robots, [1, 65536].
 };
 
-/// Stores the findings of all robots on this station's disk. A finding is acknowledged to its robot once it
-/// is on disk here: one that does not fit, or cannot be written, stays with the robot.
+/// Stores the findings of all robots on this station's disk. A piece of findings is acknowledged to its robot
+/// once all of them are on disk here: what does not fit, or cannot be written, stays with the robot.
 class FindingDesk {
  public:
-  static constexpr std::size_t kIds = 64;  ///< Maximum number of ids in one acknowledgement.
+  static constexpr std::size_t kMaxPieces = 256;  ///< That wait for the disk; then the oldest is forgotten.
   struct Outputs {
-    std::function<void(const std::string& robot, const std::vector<std::uint64_t>& ids)> acknowledge{};
     std::function<void(const findings::Finding&)> found{};  ///< Called with a new finding.
     /// `code`: findings_full or store_failing, store_works.
     std::function<void(const std::string& code, const std::string& text)> trouble{};
@@ -35,19 +36,27 @@ class FindingDesk {
 
   /// Loads the findings from disk.
   findings::LoadReport load() { return finding_store_.load(); }
-  void hear(findings::Finding finding, const Robot& robot);
-  /// Acknowledges the findings received since the last call, in as few messages as possible. Call it at 10
-  /// Hz.
-  void tick();
+  /// Takes a piece of findings (findings::FindingPiece), genuine or not. `robot`: whose participant sent it.
+  /// `stored` is called once all of its findings are on disk, at once if they were before. Errors:
+  /// wrong_protocol, malformed (also: findings of another robot), queue_full (no room).
+  Result<void> hear(const std::string& robot, std::span<const std::uint8_t> piece,
+                    std::function<void()> stored);
 
   const std::map<findings::Key, findings::Finding>& all() const { return finding_store_.all(); }
   const std::map<std::string, Robot>& robots() const { return robots_; }
 
  private:
+  /// A piece that is acknowledged when these findings are on disk.
+  struct Waiting {
+    std::set<findings::Key> keys{};
+    std::function<void()> stored{};
+  };
+  void kept(const findings::Key& key);
+
   Outputs outputs_;
-  std::map<std::string, std::set<std::uint64_t>> answers_{};
+  std::deque<Waiting> waiting_{};
   std::map<std::string, Robot> robots_{};
-  bool told_full_{};
+  bool reported_full_{};
   findings::FindingStore finding_store_;
 };
 

@@ -27,18 +27,14 @@ Result<void> MapReceiver::store(const std::string& robot, std::uint8_t kind,
   return {Reason::not_supported, "a piece of a kind that this release does not know"};
 }
 
-Result<void> MapReceiver::take(const std::string& robot, std::uint32_t session, std::uint32_t id,
-                               std::uint8_t kind, std::uint32_t waiting, std::span<const std::uint8_t> data,
-                               Time now) {
+Result<void> MapReceiver::take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
+                               std::span<const std::uint8_t> data, Time now) {
   if (!chunks_.count(robot, data.size(), waiting, now)) {
     ++refused_;
     return {Reason::queue_full, "no room for one more robot's map"};
   }
   const Result<void> stored = store(robot, kind, data);
   if (!stored) ++refused_;
-  // What does not fit, or will never be understood, is acknowledged, too: it would come again without end.
-  // A damaged piece is not, as its content comes in another one.
-  if (stored.reason() != Reason::malformed) (void)receiver_.take(robot, session, id, now);
   return stored;
 }
 

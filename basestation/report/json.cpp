@@ -160,8 +160,8 @@ std::string class_of(const std::string& topic) {
     const auto add = [&out](const auto&... all) { ((out[all.name] = all.qos), ...); };
     add(topics::kCapabilities, topics::kPresence, topics::kCommand, topics::kJoystick,
         topics::kAcknowledgement, topics::kAuthority, topics::kRobotState, topics::kBehaviour, topics::kRoute,
-        topics::kNotification, topics::kHealth, topics::kLinkReport, topics::kFinding, topics::kFindingsAck,
-        topics::kBulk, topics::kBulkAck, topics::kTeam);
+        topics::kNotification, topics::kHealth, topics::kLinkReport, topics::kBulk, topics::kBulkAck,
+        topics::kTeam);
     return out;
   }();
   const auto known = classes.find(topic);

@@ -80,6 +80,8 @@ class Unpacker {
     for (std::size_t i = 0; i < part.size(); ++i) value[i] = part[i];
     return value;
   }
+  /// Bytes after their number, as 16 bits; more than `max` fail.
+  std::span<const std::uint8_t> bytes(std::size_t max) { return take(count(max)); }
   /// Reads a number of elements; more than `max` fails and returns 0.
   std::size_t count(std::size_t max) {
     const auto value = get<std::uint16_t>();

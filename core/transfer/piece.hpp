@@ -8,7 +8,7 @@
 namespace adit::transfer {
 
 /// Kind of content; the values travel on the wire.
-enum class Kind : std::uint8_t { map_blocks = 1, map_poses = 2 };
+enum class Kind : std::uint8_t { map_blocks = 1, map_poses = 2, findings = 3 };
 
 /// 128 random bits stored on a station's disk.
 using PeerId = std::array<std::uint8_t, 16>;

@@ -27,8 +27,9 @@ class Source {
   virtual void leave(const PeerId& peer) = 0;
   /// Number of parts that the peer lacks and that are not on their way to it.
   virtual std::size_t missing(const PeerId& peer) const = 0;
-  /// Content that `peers.front()` lacks, of at most `max_bytes`, on its way to all `peers`. Nothing: there is
-  /// none now.
+  /// Content that `peers` lack, above all the first one, of at most `max_bytes`, on its way to all of them.
+  /// One part that cannot be cut may be longer, up to kMaxPieceBytes. Nothing: there is none now, or the
+  /// sources behind this one are to have a turn.
   virtual std::optional<Content> next(std::span<const PeerId> peers, std::size_t max_bytes, Time now) = 0;
   virtual void acknowledged(const PeerId& peer, std::uint64_t token) = 0;
   virtual void lost(const PeerId& peer, std::uint64_t token) = 0;

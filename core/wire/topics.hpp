@@ -16,8 +16,6 @@ class Route;
 class Notification;
 class Health;
 class LinkReport;
-class Finding;
-class FindingsAck;
 class BulkPiece;
 class BulkAck;
 class TeamBeacon;
@@ -71,12 +69,8 @@ inline constexpr Topic<radio::Health> kHealth{
     {"adit/health", "adit::radio::v1::Health", QosClass::status, 1, kKeyed, 4096}};
 inline constexpr Topic<radio::LinkReport> kLinkReport{
     {"adit/link", "adit::radio::v1::LinkReport", QosClass::state, 1, kKeyed, 4096}};
-inline constexpr Topic<radio::Finding> kFinding{
-    {"adit/finding", "adit::radio::v1::Finding", QosClass::bulk, 8, kUnkeyed, 1024}};
-inline constexpr Topic<radio::FindingsAck> kFindingsAck{
-    {"adit/findings_ack", "adit::radio::v1::FindingsAck", QosClass::bulk, 8, kUnkeyed, 1024}};
 
-/// Pieces of content (core/transfer) and their acknowledgements.
+/// Pieces of content (core/transfer): findings, maps; and their acknowledgements.
 inline constexpr Topic<radio::BulkPiece> kBulk{
     {"adit/bulk", "adit::radio::v1::BulkPiece", QosClass::pieces, 32, kUnkeyed, 1400}};
 inline constexpr Topic<radio::BulkAck> kBulkAck{

@@ -74,11 +74,4 @@ bool StationTable::heard(const std::string& name, Time now) const {
   return station && station->binding.alive(now, kHeardFor);
 }
 
-std::vector<Id> StationTable::heard_ids(Time now) const {
-  std::vector<Id> ids;
-  for (const Station& s : stations_)
-    if (s.binding.alive(now, kHeardFor)) ids.push_back(s.id);
-  return ids;
-}
-
 }  // namespace adit::agent

@@ -51,8 +51,6 @@ class StationTable {
   const Station* find(const std::string& name) const;
   const Station* by_participant(const wire::ParticipantId& participant) const;
   bool heard(const std::string& name, Time now) const;
-  /// The ids of all stations that are heard.
-  std::vector<Id> heard_ids(Time now) const;
   std::size_t size() const { return stations_.size(); }
 
  private:

@@ -24,10 +24,6 @@ constexpr std::size_t kRoutePoints = 10;  // So 30 m of it.
 constexpr double kHeight = 1.6;           // m above and below.
 constexpr std::size_t kGroups = 8;        // The newest ones, in which the focus is looked for.
 
-std::uint32_t drawn_session(std::uint64_t seed) {
-  return static_cast<std::uint32_t>(Random(seed).fork(2).next()) | 1U;
-}
-
 /// The whole number next to a coordinate, in blocks.
 std::int32_t whole(double blocks) {
   return static_cast<std::int32_t>(std::clamp(std::round(blocks), -1e9, 1e9));
@@ -52,11 +48,7 @@ MapKeeper::MapKeeper(MapKeeperParams params, std::unique_ptr<MapDisk> disk)
       disk_(std::move(disk)),
       poses_(params_.robot, Random(params_.seed).fork(1).next()),
       blocks_({.robot = params_.robot, .start = Random(params_.seed).fork(1).next()}),
-      start_(Random(params_.seed).fork(1).next() & kRandomPart),
-      sender_({.session = drawn_session(params_.seed)}) {
-  sender_.add(poses_);
-  sender_.add(blocks_);
-}
+      start_(Random(params_.seed).fork(1).next() & kRandomPart) {}
 
 LoadedMap MapKeeper::load() {
   if (!disk_) return {};
@@ -127,28 +119,22 @@ void MapKeeper::anchor() {
   for (Submap& submap : submaps_) submap.fixed = true;
 }
 
-void MapKeeper::acknowledged(const transfer::Ack& ack, Time now) {
-  sender_.acknowledged(ack, now);
-  if (!blocks_.knows(ack.peer)) {
-    stations_.erase(ack.peer);
+void MapKeeper::heard(const transfer::PeerId& id, std::uint32_t start) {
+  if (!blocks_.knows(id)) {
+    stations_.erase(id);
     return;
   }
-  const auto known = stations_.find(ack.peer);
-  if (known != stations_.end() && known->second.start == ack.start) return;
+  const auto known = stations_.find(id);
+  if (known != stations_.end() && known->second.start == start) return;
   if (stations_.size() >= BlockSource::kMaxPeers)
     std::erase_if(stations_, [this](const auto& station) { return !blocks_.knows(station.first); });
-  Station& station = stations_[ack.peer] = {ack.start, {}, 0};
-  const auto stored = stored_stations_.find(ack.peer);
+  Station& station = stations_[id] = {start, {}, 0};
+  const auto stored = stored_stations_.find(id);
   if (stored == stored_stations_.end()) return;
   // It was not started again since, and still has what it had.
-  if (stored->second.start == ack.start)
-    for (const std::uint32_t submap : station.has = stored->second.has) blocks_.has(ack.peer, submap);
+  if (stored->second.start == start)
+    for (const std::uint32_t submap : station.has = stored->second.has) blocks_.has(id, submap);
   stored_stations_.erase(stored);
-}
-
-std::vector<transfer::Piece> MapKeeper::due(Time now, const wire::SenderState& link) {
-  if (disk_) save_due(now);
-  return sender_.due(now, link);
 }
 
 void MapKeeper::save_submap(std::uint32_t number) {
@@ -224,7 +210,8 @@ void MapKeeper::note_complete() {
   }
 }
 
-void MapKeeper::save_due(Time now) {
+void MapKeeper::tick(Time now) {
+  if (!disk_) return;
   disk_->tick();
   if (saved_ && now - *saved_ < params_.save_period) return;
   const bool first = !saved_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -8,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/transfer/sender.hpp"
+#include "core/transfer/source.hpp"
 #include "robot_agent/motion/map_frame.hpp"
 #include "robot_agent/perception/block_source.hpp"
 #include "robot_agent/perception/map_disk.hpp"
@@ -19,7 +20,7 @@ namespace adit::agent {
 
 struct MapKeeperParams {
   std::string robot{};
-  std::uint64_t seed{1};            ///< Of the map's id and of the sender's session.
+  std::uint64_t seed{1};            ///< Of the map's id.
   Eigen::Vector3f origin{0, 0, 0};  ///< Of the rays, in base_link, m.
   double min_move{0.2};             ///< Way between two scans that enter the map, m.
   double min_turn{0.087};           ///< The same, rad.
@@ -28,10 +29,10 @@ struct MapKeeperParams {
 };
 
 /// What a robot knows of its map beside the open submap's grid: the submaps, their blocks at 0.2 m, and what
-/// each station has of them. It chooses the scans that enter the map and sends the map to the stations. It
-/// belongs to the agent's context, so that a restart of a component loses nothing, and is stored on the disk,
-/// so that a restart of the agent loses at most what the last seconds changed. Submaps of earlier starts have
-/// their names and poses from then; they never move again. Runs on the command strand.
+/// each station has of them. It chooses the scans that enter the map. It belongs to the agent's context, so
+/// that a restart of a component loses nothing, and is stored on the disk, so that a restart of the agent
+/// loses at most what the last seconds changed. Submaps of earlier starts have their names and poses from
+/// then; they never move again. Runs on the command strand.
 class MapKeeper {
  public:
   /// `disk` null: the map ends with this process.
@@ -57,12 +58,14 @@ class MapKeeper {
   /// was found in them must not move them.
   void anchor();
 
-  void acknowledged(const transfer::Ack& ack, Time now);
-  /// The pieces to send now. Call it at 10 to 50 Hz; it also writes to the disk what is due.
-  std::vector<transfer::Piece> due(Time now, const wire::SenderState& link);
+  /// The map's content for a transfer::Sender, in the order in which it goes.
+  std::array<transfer::Source*, 2> sources() { return {&poses_, &blocks_}; }
+  /// A station acknowledged something, after the sender took that. `start`: as of transfer::Ack.
+  void heard(const transfer::PeerId& station, std::uint32_t start);
+  /// Writes to the disk what is due. Call it at 10 to 50 Hz.
+  void tick(Time now);
   /// Hands what is not on the disk yet to its strand, at a clean end after the command strand has ended.
   void flush();
-  std::uint32_t session() const { return sender_.session(); }
   std::size_t blocks() const { return blocks_.size(); }
   std::size_t submaps() const { return submaps_.size(); }
   /// Submaps that were not dropped for lack of space.
@@ -88,7 +91,6 @@ class MapKeeper {
   void save_places();
   /// Notes which submaps stations have complete, a few at a time.
   void note_complete();
-  void save_due(Time now);
   /// Writes some of the submaps again of which blocks are not needed any more.
   void save_pruned();
   /// Drops submaps until the disk has room again.
@@ -109,7 +111,6 @@ class MapKeeper {
   std::size_t dropped_submaps_{};
   std::uint32_t next_pruned_{};
   bool open_changed_{false}, places_changed_{false};
-  transfer::Sender sender_;
   bool busy_{false};
   std::optional<Time> inserted_{};
   Pose3 inserted_at_{};

@@ -5,7 +5,6 @@
 #include "adit/bulk.h"
 #include "adit/command.h"
 #include "adit/discovery.h"
-#include "adit/findings.h"
 #include "adit/link.h"
 #include "adit/robot.h"
 #include "adit/team.h"

@@ -34,7 +34,6 @@ struct RadioEdge::Endpoints {
   wire::Writer<radio::Capabilities> capabilities{};
   wire::Writer<radio::LinkReport> link{};
   wire::Writer<radio::Presence> presence{};
-  wire::Writer<radio::Finding> finding{};
   wire::Writer<radio::TeamBeacon> team{};
   wire::Writer<radio::BulkPiece> bulk{};
   radio::Presence presence_sample{};
@@ -118,8 +117,8 @@ Result<std::unique_ptr<RadioEdge>> RadioEdge::open(const wire::ComponentIo& io, 
        {io.open(e->acknowledgement, topics::kAcknowledgement), io.open(e->authority, topics::kAuthority),
         io.open(e->behaviour, topics::kBehaviour), io.open(e->state, topics::kRobotState),
         io.open(e->capabilities, topics::kCapabilities), io.open(e->link, topics::kLinkReport),
-        io.open(e->presence, topics::kPresence), io.open(e->finding, topics::kFinding),
-        io.open(e->team, topics::kTeam)})
+        io.open(e->presence, topics::kPresence), io.open(e->team, topics::kTeam),
+        io.open(e->bulk, topics::kBulk)})
     if (!made) return made.error();
   return std::unique_ptr<RadioEdge>(new RadioEdge(std::move(e)));
 }
@@ -220,20 +219,14 @@ Result<void> RadioEdge::listen(Dependencies dependencies) {
                     e.malformed_beacons += beacon ? 0 : 1;
                     take(beacon, info.sender);
                   }),
-           e.read(
-               topics::kFindingsAck,
-               [&e, kept = dependencies.findings_kept](const radio::FindingsAck&a, const wire::SampleInfo&) {
-                 if (a.robot() == e.robot) kept(a.station_id(), a.ids());
-               }),
+           e.read(topics::kBulkAck,
+                  [&e, taken = dependencies.pieces_acknowledged](const radio::BulkAck&a,
+                                                                 const wire::SampleInfo&info) {
+                    if (taken) taken(a.station(), from_radio(a, e.robot), info.sender);
+                  }),
        })
     if (!made) return made.error();
-  if (!dependencies.pieces_acknowledged) return {};
-  // Endpoints cost discovery traffic: only a robot that has content opens them.
-  if (const auto made = e.io.open(e.bulk, topics::kBulk); !made) return made.error();
-  return e.read(topics::kBulkAck, [&e, taken = dependencies.pieces_acknowledged](
-                                      const radio::BulkAck& a, const wire::SampleInfo& info) {
-    taken(a.station(), from_radio(a, e.robot), info.sender);
-  });
+  return {};
 }
 
 void RadioEdge::close() {
@@ -242,27 +235,11 @@ void RadioEdge::close() {
   endpoints_->readers.clear();
 }
 
-void RadioEdge::send(const findings::Finding& f, std::size_t kept, std::uint32_t overflowed) {
-  radio::Finding out;
-  out.robot(endpoints_->robot);
-  out.id(f.key.id);
-  out.kind(f.kind);
-  out.importance(f.importance);
-  out.position(f.position);
-  out.stamp(f.stamp);
-  out.text(f.text);
-  out.data(f.data);
-  out.kept(static_cast<std::uint32_t>(kept));
-  out.overflowed(overflowed);
-  (void)endpoints_->finding.write(out);  // It is sent again until it is acknowledged.
-}
-
 void RadioEdge::send(const TeamBeacon& beacon) {
   (void)endpoints_->team.write(to_radio(beacon));  // Best effort: the next one replaces it.
 }
 
 void RadioEdge::send(const transfer::Piece& piece, std::uint32_t session) {
-  if (!endpoints_->bulk) return;
   radio::BulkPiece out;
   out.robot(endpoints_->robot);
   out.session(session);

@@ -2,12 +2,10 @@
 #pragma once
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 
 #include "core/config/perception_level.hpp"
 #include "core/config/platform.hpp"
-#include "core/findings/finding.hpp"
 #include "core/transfer/piece.hpp"
 #include "robot_agent/behaviour/behaviour.hpp"
 #include "robot_agent/command/command_interface.hpp"
@@ -53,11 +51,9 @@ class RadioEdge {
     std::function<void(const Eigen::Vector3d& goal, bool replace,
                        std::function<void(const Result<GoalReport>&)> done)>
         check_goal{};
-    /// Reports that a station has these findings of this robot on its disk.
-    std::function<void(const Id& station, std::span<const std::uint64_t> ids)> findings_kept{};
     /// Takes what another robot said of itself; nothing: the beacon was malformed.
     std::function<void(const std::optional<TeamBeacon>& beacon, const wire::ParticipantId& from)> beacon{};
-    /// Takes what a station has of this robot's pieces. Empty: this robot sends none, and no topic is opened.
+    /// Takes what a station has of this robot's pieces.
     std::function<void(const std::string& station, const transfer::Ack& ack, const wire::ParticipantId& from)>
         pieces_acknowledged{};
   };
@@ -75,9 +71,6 @@ class RadioEdge {
   /// Stops the reception of messages. Callable from any thread.
   void close();
 
-  /// Sends a finding. `kept`: number of stored findings; `overflowed`: number of findings discarded or not
-  /// accepted.
-  void send(const findings::Finding& finding, std::size_t kept, std::uint32_t overflowed);
   void send_authority(const CommandInterface& commands, Time now);
   void send_behaviour(const BehaviourView& view, const std::vector<ModeOption>& options);
   void send_state(const RobotReport& report, std::uint64_t stamp);

@@ -9,6 +9,7 @@
 #include "core/exec/virtual_runtime.hpp"
 #include "core/store/memory_disk.hpp"
 #include "core/transfer/receiver.hpp"
+#include "core/transfer/sender.hpp"
 #include "perception/stream/piece.hpp"
 #include "robot_agent/perception/map_keeper.hpp"
 
@@ -49,6 +50,9 @@ struct MapBench {
                                                                 reported = text;
                                                               }));
     loaded = keeper->load();
+    sender = std::make_unique<transfer::Sender>(
+        transfer::SenderParams{.session = static_cast<std::uint32_t>(seed)});
+    for (transfer::Source* source : keeper->sources()) sender->add(*source);
   }
   void scan(double x) {
     auto points = std::make_shared<Scan>();
@@ -71,18 +75,20 @@ struct MapBench {
     for (const Time end = strand->now() + span; strand->now() < end;
          scheduler.run_until(scheduler.elapsed() + 50ms)) {
       keeper->follow(frame);
-      const auto pieces = keeper->due(strand->now(), {});
+      keeper->tick(strand->now());
+      const auto pieces = sender->due(strand->now(), {});
       if (station == nullptr) continue;
       for (const transfer::Piece& piece : pieces) hear(*station, piece);
       if (const auto due = station->receiver.due(strand->now(), 20e6)) {
         transfer::Ack ack{station->id, station->start, {}};
         if (!due->empty()) ack.receipt = due->front().second;
-        keeper->acknowledged(ack, strand->now());
+        sender->acknowledged(ack, strand->now());
+        keeper->heard(ack.peer, ack.start);
       }
     }
   }
   void hear(Station& station, const transfer::Piece& piece) {
-    station.receiver.take(name, keeper->session(), piece.id, strand->now());
+    station.receiver.take(name, sender->session(), piece.id, strand->now());
     if (piece.kind == transfer::Kind::map_poses) {
       const auto decoded = perception::decode_poses(piece.data);
       for (const auto& pose : decoded.value().poses) {
@@ -112,6 +118,7 @@ struct MapBench {
   bool failing{false};
   std::string reported{};
   std::unique_ptr<MapKeeper> keeper{};
+  std::unique_ptr<transfer::Sender> sender{};
   std::unique_ptr<MapPart> part{};
 };
 

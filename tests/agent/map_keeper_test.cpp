@@ -5,6 +5,7 @@
 
 #include "core/exec/virtual_runtime.hpp"
 #include "core/transfer/receiver.hpp"
+#include "core/transfer/sender.hpp"
 #include "perception/stream/piece.hpp"
 #include "tests/agent/map_bench.hpp"
 
@@ -95,13 +96,15 @@ TEST_F(MapKeeperTest, GoesOnWhenTheComponentDoesNotAnswer) {
 TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection) {
   EXPECT_TRUE(scan(0.0));
   transfer::Receiver receiver;
+  transfer::Sender sender({.session = 7});
+  for (transfer::Source* source : keeper.sources()) sender.add(*source);
   std::map<std::uint32_t, Pose3> poses;
   std::set<perception::BlockIndex> blocks;
   const auto exchange = [&](Duration span) {
     for (const Time end = strand->now() + span; strand->now() < end; run(50ms)) {
       keeper.follow(frame);
-      for (const transfer::Piece& piece : keeper.due(strand->now(), {})) {
-        receiver.take("r1", keeper.session(), piece.id, strand->now());
+      for (const transfer::Piece& piece : sender.due(strand->now(), {})) {
+        receiver.take("r1", sender.session(), piece.id, strand->now());
         if (piece.kind == transfer::Kind::map_poses) {
           const auto decoded = perception::decode_poses(piece.data);
           for (const auto& pose : decoded.value().poses) poses[pose.key.index] = pose.T_map_submap;
@@ -113,7 +116,8 @@ TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection
       if (const auto due = receiver.due(strand->now(), 20e6)) {
         transfer::Ack ack{{1}, 1, {}};
         if (!due->empty()) ack.receipt = due->front().second;
-        keeper.acknowledged(ack, strand->now());
+        sender.acknowledged(ack, strand->now());
+        keeper.heard(ack.peer, ack.start);
       }
     }
   };
@@ -135,12 +139,12 @@ std::size_t sent_first_near(const Eigen::Vector3d& point, bool look_ahead) {
   bench.frame.T_map_odom = Pose3::level({100, 50}, 1.0);
   bench.drive(0, 200);
   MapBench::Station station;
-  bench.keeper->acknowledged({station.id, station.start, {}}, bench.strand->now());
+  bench.sender->acknowledged({station.id, station.start, {}}, bench.strand->now());
   EXPECT_TRUE(bench.keeper->is_behind());
   if (look_ahead) bench.keeper->look_ahead(std::vector{point});
   std::size_t near = 0;
   for (int rounds = 0; station.blocks.empty() && rounds < 100; ++rounds) {
-    for (const transfer::Piece& piece : bench.keeper->due(bench.strand->now(), {}))
+    for (const transfer::Piece& piece : bench.sender->due(bench.strand->now(), {}))
       if (station.blocks.empty()) bench.hear(station, piece);
     bench.run(50ms);
   }

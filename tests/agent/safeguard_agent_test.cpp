@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an agent does by itself when its holder is silent or its battery empties, and what it found (rule 9).
+// What an agent does by itself when its holder is silent or its battery empties.
 #include <gmock/gmock.h>
 
-#include "adit/findings.h"
 #include "core/store/memory_disk.hpp"
 #include "sensor_msgs/msg/BatteryState.h"
 #include "tests/agent/agent_bench.hpp"
@@ -250,80 +249,6 @@ TEST_F(Batteries, ARestartTellsNothingAgain) {
   op2->notices.clear();
   charge(0.24F);
   EXPECT_EQ(count("battery_warning"), 0);
-}
-
-class Found : public Safeguards {
- protected:
-  Found() {
-    begin();
-    wire = bench->network().join(77, "listener");
-    machine = bench->machine("listener");
-    strand = machine->strand("listener");
-    acks = wire::Writer<radio::FindingsAck>::make(*wire, wire::topics::kFindingsAck).value();
-    reader =
-        wire::make_reader(*wire, wire::topics::kFinding, *strand,
-                          [this](const radio::Finding& f, const wire::SampleInfo&) { heard.push_back(f); })
-            .value();
-    bench->run(1s);
-  }
-  void report(std::uint64_t id) {
-    findings::Finding f;
-    f.key.id = id;
-    f.kind = "artifact";
-    f.position = {1, 2, 3};
-    bench->agent().report(f);
-  }
-  void acknowledge(const AgentBench::Operator& op, std::uint64_t id) {
-    radio::FindingsAck a;
-    a.robot("r1");
-    a.station_id(op.id);
-    a.ids({id});
-    (void)acks.write(a);
-  }
-  std::unique_ptr<wire::Participant> wire{};
-  std::unique_ptr<Runtime> machine{};
-  std::shared_ptr<Executor> strand{};
-  wire::Writer<radio::FindingsAck> acks{};
-  std::unique_ptr<wire::RawReader> reader{};
-  std::vector<radio::Finding> heard{};
-};
-
-TEST_F(Found, IsSentUntilEveryStationHasIt) {
-  report(7);
-  bench->run(5s);
-  ASSERT_GE(heard.size(), 2u);
-  EXPECT_EQ(heard[0].robot(), "r1");
-  EXPECT_EQ(heard[0].id(), 7u);
-  EXPECT_EQ(heard[0].kept(), 1u);
-  EXPECT_GT(heard[0].stamp(), 0u);
-  acknowledge(*op1, 7);
-  bench->run(1s);
-  heard.clear();
-  bench->run(20s);
-  EXPECT_GE(heard.size(), 1u) << "op2 does not have it";
-  acknowledge(*op2, 7);
-  bench->run(1s);
-  heard.clear();
-  bench->run(60s);
-  EXPECT_THAT(heard, IsEmpty());
-}
-
-TEST_F(Found, SurvivesADeathOfTheAgent) {
-  report(7);
-  bench->run(100ms);
-  bench->stop_agent();
-  bench->start_agent();
-  heard.clear();
-  bench->run(5s);
-  ASSERT_GE(heard.size(), 1u);
-  EXPECT_EQ(heard[0].id(), 7u);
-}
-
-TEST_F(Found, WhatIsNoneIsTold) {
-  findings::Finding f;
-  bench->agent().report(f);
-  bench->run(1s);
-  EXPECT_THAT(op1->told(), Contains("finding_refused"));
 }
 
 }  // namespace

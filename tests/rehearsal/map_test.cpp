@@ -96,7 +96,7 @@ TEST(MapRehearsal, MemoryIsFlatOverAnHour) {
   EXPECT_LT(static_cast<double>(hour.map->bytes), 4.5 * static_cast<double>(quarter.map->bytes));
 }
 
-TEST(MapRehearsal, OffCostsNothing) {
+TEST(MapRehearsal, OffSendsNoPieces) {
   std::string text = room("");
   text.replace(text.find("perception: slam"), 16, "perception: off ");
   const RunReport report = run_text(text, "map.yaml");

@@ -1,30 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // What robots find, at a station: on its disk, acknowledged, listed.
-#include "adit/findings.h"
+#include "core/findings/finding_piece.hpp"
 #include "core/store/memory_disk.hpp"
+#include "core/transfer/receiver.hpp"
 #include "tests/station/fake_robot.hpp"
 
 namespace adit::station {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 class FindingsTest : public StationTest {
  protected:
-  FindingsTest() {
-    add("r1");
+  FindingsTest() : robot_(add("r1")) {
     begin_station();
-    finder_ = network_.join(77, "finder");
-    strand2_ = machine_->strand("finder");
-    writer_ = wire::Writer<radio::Finding>::make(*finder_, wire::topics::kFinding).value();
-    acks_ = wire::make_reader(*finder_, wire::topics::kFindingsAck, *strand2_,
-                              [this](const radio::FindingsAck& a, const wire::SampleInfo&) {
-                                for (const auto one : a.ids()) acknowledged_.push_back(one);
-                              })
-                .value();
     run_for(6s);
   }
   void begin_station() {
@@ -38,32 +28,53 @@ class FindingsTest : public StationTest {
     op_ = std::make_unique<Station>(params, *strand_, *wire_);
     ASSERT_TRUE(op_->start().ok());
   }
-  void find(std::uint64_t number, std::uint8_t importance = 1, const std::string& kind = "artifact") {
-    radio::Finding f;
-    f.robot("r1");
-    f.id(number);
-    f.kind(kind);
-    f.importance(importance);
-    f.position({1, 2, 3});
-    f.text("a \x1b[31mred backpack");
-    f.kept(5);
-    (void)writer_.write(f);
+  /// Sends a piece with these bytes and returns its id.
+  std::uint32_t send(const store::Bytes& data, const std::string& robot = "r1",
+                     transfer::Kind kind = transfer::Kind::findings) {
+    radio::BulkPiece piece;
+    piece.robot(robot);
+    piece.session(3);
+    piece.id(++pieces_);
+    piece.kind(static_cast<std::uint8_t>(kind));
+    piece.data(data);
+    robot_.send(piece);
     run_for(500ms);
+    return pieces_;
   }
+  static findings::Finding found(std::uint64_t number, std::uint8_t importance = 1,
+                                 const std::string& kind = "artifact") {
+    findings::Finding f;
+    f.key = {"r1", number};
+    f.kind = kind;
+    f.importance = importance;
+    f.position = {1, 2, 3};
+    f.text = "a \x1b[31mred backpack";
+    return f;
+  }
+  std::uint32_t find(std::uint64_t number, std::uint8_t importance = 1,
+                     const std::string& kind = "artifact") {
+    return send(findings::encode({"r1", 5, 0, {found(number, importance, kind)}}));
+  }
+  /// Whether the station acknowledged a piece.
+  bool acknowledged(std::uint32_t piece) {
+    run_for(1s);
+    bool has = false;
+    for (const radio::BulkAck& ack : robot_.piece_acks())
+      for (const radio::BulkReceipt& receipt : ack.receipts())
+        has |= transfer::Receipt{receipt.session(), receipt.newest(), receipt.received()}.has(piece);
+    return has;
+  }
+  std::size_t listed() { return execute("findings").json["findings"].size(); }
 
   std::shared_ptr<store::MemoryDisk> disk_{std::make_shared<store::MemoryDisk>()};
-  std::unique_ptr<wire::Participant> finder_{};
-  std::shared_ptr<Executor> strand2_{};
-  wire::Writer<radio::Finding> writer_{};
-  std::unique_ptr<wire::RawReader> acks_{};
-  std::vector<std::uint64_t> acknowledged_{};
+  FakeRobot& robot_;
+  std::uint32_t pieces_{};
 };
 
 TEST_F(FindingsTest, AreListedMostImportantFirstAndAcknowledged) {
   EXPECT_THAT(execute("findings").text, HasSubstr("nothing was found yet"));
-  find(1);
-  find(2, 9, "person");
-  EXPECT_THAT(acknowledged_, ElementsAre(1, 2));
+  EXPECT_TRUE(acknowledged(find(1)));
+  EXPECT_TRUE(acknowledged(find(2, 9, "person")));
   const Outcome outcome = execute("findings r1");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_LT(outcome.text.find("person"), outcome.text.find("artifact"));
@@ -78,9 +89,8 @@ TEST_F(FindingsTest, AreListedMostImportantFirstAndAcknowledged) {
 
 TEST_F(FindingsTest, ARepeatIsAcknowledgedAgainAndListedOnce) {
   find(1);
-  find(1);
-  EXPECT_THAT(acknowledged_, ElementsAre(1, 1));
-  EXPECT_EQ(execute("findings").json["findings"].size(), 1u);
+  EXPECT_TRUE(acknowledged(find(1)));
+  EXPECT_EQ(listed(), 1u);
 }
 
 TEST_F(FindingsTest, SurviveARestartOfTheStation) {
@@ -150,20 +160,55 @@ TEST_F(FindingsTest, ADamagedFileOfJudgementsIsPreservedAndReported) {
 
 TEST_F(FindingsTest, AreNotAcknowledgedWhileTheDiskFails) {
   disk_->set_full(true);
-  find(1);
-  EXPECT_THAT(acknowledged_, IsEmpty());
+  const std::uint32_t piece = find(1);
+  EXPECT_FALSE(acknowledged(piece));
   EXPECT_EQ(op_->fleet().notices().back().code, "store_failing");
   disk_->set_full(false);
   run_for(3s);
-  EXPECT_THAT(acknowledged_, ElementsAre(1));
+  EXPECT_TRUE(acknowledged(piece));
 }
 
-TEST_F(FindingsTest, ThatAreNoneAreIgnored) {
-  find(0);
-  find(1, 1, "");
-  find(2, 1, std::string(60, 'k'));
-  EXPECT_THAT(acknowledged_, IsEmpty());
-  EXPECT_EQ(execute("findings").json["findings"].size(), 0u);
+TEST_F(FindingsTest, APieceIsAcknowledgedOnceEachOfItsFindingsIsOnTheDisk) {
+  disk_->set_refused(findings::file_name({"r1", 2}), true);
+  const std::uint32_t piece = send(findings::encode({"r1", 5, 0, {found(1), found(2), found(3)}}));
+  run_for(3s);
+  EXPECT_FALSE(acknowledged(piece));
+  EXPECT_TRUE(acknowledged(find(3))) << "it was stored with them";
+  disk_->set_refused(findings::file_name({"r1", 2}), false);
+  run_for(3s);
+  EXPECT_TRUE(acknowledged(piece));
+}
+
+TEST_F(FindingsTest, ThatAreDamagedOrOfAnotherRobotAreRefusedAndCounted) {
+  EXPECT_FALSE(acknowledged(find(0)));
+  EXPECT_FALSE(acknowledged(find(1, 1, "")));
+  EXPECT_FALSE(acknowledged(find(2, 1, std::string(60, 'k'))));
+  store::Bytes cut = findings::encode({"r1", 5, 0, {found(1)}});
+  cut.pop_back();
+  EXPECT_FALSE(acknowledged(send(cut)));
+  findings::Finding foreign = found(1);
+  foreign.key.robot = "r2";
+  EXPECT_FALSE(acknowledged(send(findings::encode({"r2", 5, 0, {foreign}}))));
+  EXPECT_FALSE(acknowledged(send(findings::encode({"r2", 5, 0, {foreign}}), "r2"))) << "r1 sent it";
+  EXPECT_FALSE(acknowledged(send({})));
+  EXPECT_EQ(listed(), 0u);
+  const Outcome outcome = execute("findings");
+  EXPECT_EQ(outcome.json["refused_pieces"], 6);
+  EXPECT_THAT(outcome.text, HasSubstr("6 pieces of findings refused"));
+  EXPECT_TRUE(acknowledged(find(3))) << "the rest goes on";
+}
+
+TEST_F(FindingsTest, OfAnotherReleaseStayWithTheRobot) {
+  store::Bytes bytes = findings::encode({"r1", 5, 0, {found(1)}});
+  bytes[0] = 9;
+  EXPECT_FALSE(acknowledged(send(bytes)));
+  EXPECT_TRUE(acknowledged(send({1, 2, 3}, "r1", static_cast<transfer::Kind>(77))))
+      << "a kind that this release will never understand would come again without end";
+}
+
+TEST_F(FindingsTest, AreTakenWhileTheMapComesIn) {
+  EXPECT_TRUE(acknowledged(find(1)));
+  EXPECT_EQ(execute("map status").json["robots"].size(), 0u) << "they are no part of the map";
 }
 
 }  // namespace

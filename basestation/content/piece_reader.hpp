@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+
+#include "core/result/result.hpp"
+#include "core/transfer/receiver.hpp"
+
+namespace adit::station {
+
+/// Takes the pieces of content of all robots as they come by radio, genuine or not, and hands each to the
+/// taker of its kind. A piece is acknowledged once its taker says that its content is stored.
+class PieceReader {
+ public:
+  struct Piece {
+    std::string robot{};  ///< A robot whose participant sent it.
+    std::uint32_t session{}, id{};
+    std::uint8_t kind{};  ///< Of transfer::Kind, or of a later release.
+    std::uint32_t waiting{};
+    std::span<const std::uint8_t> data{};
+  };
+  /// Acknowledges the piece: called once, now or later, when its content is stored, or will never be
+  /// understood. If it is not called, the content comes again.
+  using Stored = std::function<void()>;
+  /// Errors: the piece was refused, which is counted.
+  using Taker = std::function<Result<void>(const Piece& piece, Stored stored)>;
+
+  /// `now`: the time at which content is stored.
+  explicit PieceReader(std::function<Time()> now) : now_(std::move(now)) {}
+
+  /// Hands pieces of a kind to `taker`, and those of no such kind to the one of `otherwise`.
+  void add(transfer::Kind kind, Taker taker) { takers_[static_cast<std::uint8_t>(kind)] = std::move(taker); }
+  void otherwise(Taker taker) { otherwise_ = std::move(taker); }
+
+  void take(const Piece& piece);
+  /// Receipts to send now, by robot; see transfer::Receiver::due.
+  std::optional<std::vector<std::pair<std::string, transfer::Receipt>>> due(double bandwidth) {
+    return receiver_.due(now_(), bandwidth);
+  }
+  void greet() { receiver_.greet(); }
+  /// Pieces of a kind that were refused.
+  std::uint64_t refused(transfer::Kind kind) const;
+
+ private:
+  static constexpr std::size_t kMaxRobots = 64;
+
+  std::function<Time()> now_;
+  std::map<std::uint8_t, Taker> takers_{};
+  Taker otherwise_{};
+  transfer::Receiver receiver_{};
+  std::map<std::string, std::uint32_t> sessions_{};  ///< The last one that was heard of each robot.
+  std::map<std::uint8_t, std::uint64_t> refused_{};
+};
+
+}  // namespace adit::station

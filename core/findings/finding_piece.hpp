@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/findings/finding.hpp"
+#include "core/result/result.hpp"
+
+namespace adit::findings {
+
+/// Some of a robot's findings on their way to stations, usable alone.
+struct FindingPiece {
+  static constexpr std::size_t kMaxBytes = 1200;   ///< Largest encoded piece that is read.
+  static constexpr std::size_t kMaxFindings = 24;  ///< In one piece.
+
+  std::string robot{};         ///< The findings are all of this robot.
+  std::uint32_t kept{};        ///< Findings that the robot stores.
+  std::uint32_t overflowed{};  ///< Findings dropped or refused for lack of space, since its start.
+  std::vector<Finding> findings{};
+  bool operator==(const FindingPiece&) const = default;
+};
+
+/// Encodes a piece of 1 to kMaxFindings valid findings of its robot: version, robot, kept, overflowed, the
+/// findings, and a checksum (CRC-32C), so that a damaged piece is refused.
+store::Bytes encode(const FindingPiece& piece);
+/// Bytes of an encoded piece without its findings.
+std::size_t encoded_head(const std::string& robot);
+/// Bytes of one finding in a piece, at most 607: each finding fits alone into every piece.
+std::size_t encoded_size(const Finding& finding);
+
+/// Decodes a piece from anyone. Reason::wrong_protocol for another version, malformed for everything else
+/// that is wrong: truncated, damaged, too long, bytes behind the end, a finding that is not valid.
+Result<FindingPiece> decode_piece(std::span<const std::uint8_t> bytes);
+
+}  // namespace adit::findings

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_agent/content/content_sender.hpp"
+
+#include "core/time/random.hpp"
+
+namespace adit::agent {
+
+ContentSender::ContentSender(std::uint64_t seed, FindingSource& findings, MapKeeper* map)
+    : findings_(findings),
+      map_(map),
+      sender_({.session = static_cast<std::uint32_t>(Random(seed).next()) | 1U}) {
+  sender_.add(findings_);
+  if (map_ != nullptr)
+    for (transfer::Source* source : map_->sources()) sender_.add(*source);
+}
+
+void ContentSender::acknowledged(const transfer::Ack& ack, Time now) {
+  sender_.acknowledged(ack, now);
+  findings_.heard(ack.peer, now);
+  if (map_ != nullptr) map_->heard(ack.peer, ack.start);
+}
+
+std::vector<transfer::Piece> ContentSender::due(Time now, const wire::SenderState& link) {
+  findings_.tick(now);
+  if (map_ != nullptr) map_->tick(now);
+  return sender_.due(now, link);
+}
+
+}  // namespace adit::agent

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/findings/finding_piece.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "core/checksum/crc32c.hpp"
+#include "core/store/pack.hpp"
+#include "core/time/random.hpp"
+#include "tests/findings/some.hpp"
+
+namespace adit::findings {
+namespace {
+
+FindingPiece some_piece(std::size_t count = 3) {
+  FindingPiece piece{"r1", 7, 2, {}};
+  for (std::size_t id = 1; id <= count; ++id) piece.findings.push_back(some(id));
+  return piece;
+}
+
+/// The bytes with another checksum, as somebody who means harm would send them.
+store::Bytes sealed(store::Bytes bytes) {
+  const std::uint32_t sum = crc32c(std::span(bytes).first(bytes.size() - 4));
+  for (std::size_t i = 0; i < 4; ++i) bytes[bytes.size() - 4 + i] = static_cast<std::uint8_t>(sum >> (8 * i));
+  return bytes;
+}
+
+TEST(FindingPiece, ComesBackFromItsBytes) {
+  const store::Bytes bytes = encode(some_piece());
+  const auto back = decode_piece(bytes);
+  ASSERT_TRUE(back.ok());
+  EXPECT_EQ(*back, some_piece());
+  EXPECT_EQ(bytes.size(), encoded_head("r1") + 3 * encoded_size(some(1)));
+}
+
+TEST(FindingPiece, TheLargestFindingFitsAlone) {
+  Finding largest = some(std::numeric_limits<std::uint64_t>::max());
+  largest.key.robot = std::string(32, 'r');
+  largest.kind = std::string(Finding::kKind, 'k');
+  largest.text = std::string(Finding::kText, 't');
+  largest.data.assign(Finding::kData, 9);
+  EXPECT_EQ(encoded_size(largest), 607U);
+  const FindingPiece piece{largest.key.robot, 1, 0, {largest}};
+  const store::Bytes bytes = encode(piece);
+  EXPECT_LE(bytes.size(), FindingPiece::kMaxBytes);
+  EXPECT_EQ(decode_piece(bytes).value(), piece);
+}
+
+TEST(FindingPiece, ThatIsCutIsRefusedAtEachLength) {
+  const store::Bytes bytes = encode(some_piece());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_EQ(decode_piece(std::span(bytes).first(size)).reason(), Reason::malformed) << size;
+    store::Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    if (size > 8) {
+      EXPECT_EQ(decode_piece(sealed(cut)).reason(), Reason::malformed) << size;
+    }
+  }
+}
+
+TEST(FindingPiece, OfAnotherVersionIsNotGuessed) {
+  store::Bytes bytes = encode(some_piece());
+  bytes[0] = 2;
+  EXPECT_EQ(decode_piece(sealed(bytes)).reason(), Reason::wrong_protocol);
+}
+
+TEST(FindingPiece, WithBytesBehindItsEndIsRefused) {
+  store::Bytes bytes = encode(some_piece());
+  bytes.push_back(0);
+  EXPECT_EQ(decode_piece(sealed(bytes)).reason(), Reason::malformed);
+}
+
+TEST(FindingPiece, WithTooLongCountsIsRefused) {
+  // Version, robot, kept and overflowed are before the number of findings.
+  const std::size_t count_at = 1 + 2 + 2 + 4 + 4, kind_at = count_at + 2 + 8;
+  const store::Bytes bytes = encode(some_piece());
+  for (const std::size_t at : {std::size_t{1}, count_at, kind_at})
+    for (const int value : {0, 25, 33, 255}) {
+      store::Bytes wrong = bytes;
+      wrong[at] = static_cast<std::uint8_t>(value);
+      EXPECT_EQ(decode_piece(sealed(wrong)).reason(), Reason::malformed) << at << ": " << value;
+      wrong[at + 1] = 255;
+      EXPECT_EQ(decode_piece(sealed(wrong)).reason(), Reason::malformed) << at << ": " << value;
+    }
+  EXPECT_EQ(decode_piece(store::Bytes(5000, 1)).reason(), Reason::malformed);
+}
+
+TEST(FindingPiece, WithoutFindingsOrWithOneThatIsNoneIsRefused) {
+  EXPECT_EQ(decode_piece(encode({"r1", 0, 0, {}})).reason(), Reason::malformed);
+  FindingPiece piece = some_piece();
+  piece.findings[1].position[2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(decode_piece(encode(piece)).reason(), Reason::malformed);
+  piece = some_piece();
+  piece.findings[2].key.id = 0;
+  EXPECT_EQ(decode_piece(encode(piece)).reason(), Reason::malformed);
+  piece = some_piece();
+  piece.robot = "../r1";
+  EXPECT_EQ(decode_piece(encode(piece)).reason(), Reason::malformed);
+}
+
+TEST(FindingPiece, WithADamagedByteIsRefused) {
+  const store::Bytes whole = encode(some_piece());
+  for (std::size_t at = 1; at < whole.size(); ++at) {
+    store::Bytes bytes = whole;
+    bytes[at] ^= 0x10;
+    EXPECT_EQ(decode_piece(bytes).reason(), Reason::malformed) << at;
+  }
+}
+
+TEST(FindingPiece, TakesAnyBytes) {
+  Random random(1);
+  for (int i = 0; i < 20000; ++i) {
+    store::Bytes junk = encode(some_piece(1 + random.below(FindingPiece::kMaxFindings)));
+    for (std::uint64_t edits = 1 + random.below(3); edits > 0; --edits)
+      junk[random.below(junk.size())] = static_cast<std::uint8_t>(random.next());
+    if (random.chance(0.3)) junk.resize(4 + random.below(junk.size() - 4));
+    const auto back = decode_piece(sealed(junk));
+    if (!back) continue;
+    EXPECT_LE(back->findings.size(), FindingPiece::kMaxFindings);
+    for (const Finding& finding : back->findings) {
+      EXPECT_TRUE(valid(finding));
+      EXPECT_EQ(finding.key.robot, back->robot);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::findings

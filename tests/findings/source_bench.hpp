@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <gmock/gmock.h>
+
+#include "basestation/content/piece_reader.hpp"
+#include "basestation/findings/desk.hpp"
+#include "core/exec/virtual_runtime.hpp"
+#include "core/findings/finding_piece.hpp"
+#include "core/store/memory_disk.hpp"
+#include "core/time/random.hpp"
+#include "core/transfer/sender.hpp"
+#include "robot_agent/findings/finding_source.hpp"
+#include "tests/findings/some.hpp"
+
+namespace adit::agent {
+
+/// A map that never ends: each piece is of the largest size.
+class EndlessMap final : public transfer::Source {
+ public:
+  transfer::Kind kind() const override { return transfer::Kind::map_blocks; }
+  void join(const transfer::PeerId&) override {}
+  void leave(const transfer::PeerId&) override {}
+  std::size_t missing(const transfer::PeerId&) const override { return 1000; }
+  std::optional<Content> next(std::span<const transfer::PeerId>, std::size_t max_bytes, Time) override {
+    return Content{++token, std::vector<std::uint8_t>(max_bytes)};
+  }
+  void acknowledged(const transfer::PeerId&, std::uint64_t) override {}
+  void lost(const transfer::PeerId&, std::uint64_t) override {}
+  void settled(std::uint64_t) override {}
+  std::uint64_t token{};
+};
+
+/// A robot's findings on their way to two stations' desks, over a link that may lose or be away.
+class FindingSourceTest : public testing::Test {
+ protected:
+  struct Operator {
+    transfer::PeerId id{};
+    std::uint32_t start{1};
+    std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
+    std::unique_ptr<station::PieceReader> pieces{};
+    std::unique_ptr<station::FindingDesk> desk{};
+    bool heard{true}, answers{true};
+    std::vector<std::string> trouble{};
+  };
+  FindingSourceTest() {
+    start_robot();
+    for (std::size_t i = 0; i < 2; ++i) {
+      ops[i].id[0] = static_cast<std::uint8_t>(i + 1);
+      start(ops[i]);
+    }
+  }
+  void start_robot() {
+    source = std::make_unique<FindingSource>(
+        params, disk, *strand, nullptr,
+        FindingSource::Outputs{[this](const std::string&) { ++full; }, [](bool, const std::string&) {}});
+    (void)source->load();
+    sender = std::make_unique<transfer::Sender>(transfer::SenderParams{.session = ++session});
+    sender->add(*source);
+    if (map) sender->add(*map);
+  }
+  void start(Operator& op, std::size_t most = 1000) {
+    ++op.start;
+    op.desk.reset();
+    op.pieces = std::make_unique<station::PieceReader>([this] { return strand->now(); });
+    op.desk = std::make_unique<station::FindingDesk>(
+        station::DeskParams{most}, op.disk, *strand,
+        station::FindingDesk::Outputs{
+            [](const findings::Finding&) {},
+            [&op](const std::string& code, const std::string&) { op.trouble.push_back(code); }});
+    (void)op.desk->load();
+    op.pieces->add(transfer::Kind::findings,
+                   [&op](const station::PieceReader::Piece& piece, station::PieceReader::Stored stored) {
+                     return op.desk->hear(piece.robot, piece.data, std::move(stored));
+                   });
+    op.pieces->otherwise([](const station::PieceReader::Piece&, const station::PieceReader::Stored& stored) {
+      stored();
+      return Result<void>{};
+    });
+  }
+  void send() {
+    for (const transfer::Piece& piece : sender->due(strand->now(), link)) {
+      if (piece.kind == transfer::Kind::findings) {
+        const auto decoded = findings::decode_piece(piece.data);
+        ASSERT_TRUE(decoded.ok());
+        for (const findings::Finding& f : decoded->findings) sent.push_back(f.key.id);
+        largest = std::max(largest, piece.data.size());
+      }
+      kinds.push_back(piece.kind);
+      for (Operator& op : ops)
+        if (op.heard && !random.chance(loss))
+          op.pieces->take(
+              {"r1", session, piece.id, static_cast<std::uint8_t>(piece.kind), piece.waiting, piece.data});
+    }
+  }
+  void run(Duration span) {
+    for (const Time end = strand->now() + span; strand->now() < end;
+         scheduler.run_until(scheduler.elapsed() + 50ms)) {
+      source->tick(strand->now());
+      send();
+      for (Operator& op : ops) {
+        const auto receipts = op.pieces->due(link.link != nullptr ? link.link->bandwidth : 20e6);
+        if (!receipts || !op.heard || !op.answers || random.chance(loss)) continue;
+        transfer::Ack ack{op.id, op.start, {}};
+        if (!receipts->empty()) ack.receipt = receipts->front().second;
+        sender->acknowledged(ack, strand->now());
+        source->heard(op.id, strand->now());
+      }
+    }
+  }
+  std::uint64_t report(std::uint64_t id, std::uint8_t importance = 1) {
+    const auto made = source->report(findings::some(id, importance));
+    return made ? *made : 0;
+  }
+  /// Ends and begins the silence of the stations, longer than a sender waits for one.
+  void gap(Duration span) {
+    for (Operator& op : ops) op.heard = false;
+    run(span);
+  }
+
+  VirtualScheduler scheduler{1};
+  std::unique_ptr<Runtime> machine{scheduler.machine("r1", 5s)};
+  std::shared_ptr<Executor> strand{machine->strand("command")};
+  std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
+  FindingParams params{.robot = "r1", .max_findings = 8};
+  wire::SenderState link{};
+  double loss{};
+  Random random{3};
+  std::array<Operator, 2> ops{};
+  std::unique_ptr<EndlessMap> map{};
+  std::unique_ptr<FindingSource> source{};
+  std::unique_ptr<transfer::Sender> sender{};
+  std::uint32_t session{};
+  std::vector<std::uint64_t> sent{};
+  std::vector<transfer::Kind> kinds{};
+  std::size_t largest{};
+  int full{};
+};
+
+}  // namespace adit::agent

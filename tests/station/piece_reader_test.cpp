@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/content/piece_reader.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::station {
+namespace {
+
+using namespace std::chrono_literals;
+
+class PieceReaderTest : public testing::Test {
+ protected:
+  PieceReaderTest() {
+    reader.add(transfer::Kind::findings, [this](const PieceReader::Piece& piece, PieceReader::Stored done) {
+      stored[piece.id] = std::move(done);
+      return result;
+    });
+  }
+  void take(std::uint32_t session, std::uint32_t id, std::uint8_t kind = 3, const std::string& robot = "r1") {
+    reader.take({robot, session, id, kind, 0, {}});
+  }
+  /// The receipt of a robot's pieces.
+  transfer::Receipt receipt(const std::string& robot = "r1") {
+    now += 5s;
+    if (const auto due = reader.due(1e5))
+      for (const auto& [name, receipt] : *due)
+        if (name == robot) return receipt;
+    return {};
+  }
+
+  Time now{};
+  Result<void> result{};
+  std::map<std::uint32_t, PieceReader::Stored> stored{};
+  PieceReader reader{[this] { return now; }};
+};
+
+TEST_F(PieceReaderTest, AcknowledgesAPieceOnceItsContentIsStored) {
+  take(5, 1);
+  take(5, 2);
+  EXPECT_FALSE(receipt().has(1));
+  stored.at(2)();
+  EXPECT_FALSE(receipt().has(1));
+  EXPECT_TRUE(receipt().has(2));
+  stored.at(1)();
+  EXPECT_TRUE(receipt().has(1));
+  EXPECT_EQ(reader.refused(transfer::Kind::findings), 0U);
+}
+
+TEST_F(PieceReaderTest, WhatIsStoredAfterARestartOfTheRobotIsNotAcknowledged) {
+  take(5, 1);
+  take(6, 1);
+  stored.at(1)();  // Of session 6.
+  EXPECT_EQ(receipt().session, 6U);
+  take(5, 3);
+  take(6, 4);
+  stored.at(3)();
+  EXPECT_EQ(receipt().session, 6U) << "the receipt stays the one of the present session";
+  EXPECT_TRUE(receipt().has(1));
+  EXPECT_FALSE(receipt().has(3));
+}
+
+TEST_F(PieceReaderTest, CountsWhatIsRefusedByKind) {
+  result = {Reason::malformed, "damaged"};
+  take(5, 1);
+  take(5, 2);
+  EXPECT_EQ(reader.refused(transfer::Kind::findings), 2U);
+  EXPECT_EQ(reader.refused(transfer::Kind::map_blocks), 0U);
+}
+
+TEST_F(PieceReaderTest, HandsAnUnknownKindToTheTakerOfTheRest) {
+  take(5, 1, 77);
+  EXPECT_FALSE(receipt().has(1)) << "there is none yet";
+  reader.otherwise([](const PieceReader::Piece&, const PieceReader::Stored& done) {
+    done();
+    return Result<void>{Reason::not_supported, "unknown"};
+  });
+  take(5, 2, 77);
+  EXPECT_TRUE(receipt().has(2));
+}
+
+TEST_F(PieceReaderTest, IsBoundedWhateverTheNumberOfRobots) {
+  for (int i = 0; i < 1000; ++i) take(5, 1, 3, "r" + std::to_string(i));
+  take(5, 1, 3, "r1");
+  stored.at(1)();
+  EXPECT_TRUE(receipt("r1").has(1));
+}
+
+}  // namespace
+}  // namespace adit::station
