@@ -41,8 +41,14 @@ void Station::Impl::answer_map(const Request& request, const Done& done) {
   if (request.verb == verb("map save")) return save_map(request, done);
   if (request.verb == verb("map load")) return load_map(request, done);
   if (request.verb == verb("map picture")) return draw_map(request, done);
-  Outcome outcome = succeeded(request, map_status_text(map_, strand_.now()));
-  outcome.json.update(map_status_json(map_, strand_.now()));
+  if (request.verb == verb("map forget")) {
+    const std::size_t robots = map_.chunks().robots().size();
+    map_.forget(drawn_start());
+    prior_.reset();
+    return done(succeeded(request, "forgot the maps of " + std::to_string(robots) + " robots\n"));
+  }
+  Outcome outcome = succeeded(request, map_status_text(map_.receiver(), strand_.now()));
+  outcome.json.update(map_status_json(map_.receiver(), strand_.now()));
   if (prior_) outcome.text += "the map that was loaded lies below what robots saw\n";
   done(outcome);
 }

@@ -25,6 +25,7 @@ constexpr Duration kReportPeriod = 2s;
 constexpr Duration kTickPeriod = 100ms;
 constexpr Duration kChanges = 20ms;  // Changes within it are reported together.
 constexpr std::size_t kMaxReportTopics = 16;
+constexpr Duration kLookHolds = 5s;      // Front ends say every second what they show.
 constexpr std::uint64_t kStartSalt = 1;  // Beside the sequence of the phases.
 }  // namespace
 
@@ -50,7 +51,8 @@ Station::Impl::Impl(Station& owner, StationParams params, Executor& strand, wire
       book_(params_.disk, strand),
       pieces_([&strand] { return strand.now(); }),
       desk_({}, params_.disk, strand, desk_outputs()),
-      start_(static_cast<std::uint32_t>(Random(params_.seed).fork(kStartSalt).next())),
+      map_(drawn_start(), params_.disk, strand,
+           [this](const std::string& text) { map_trouble("map_not_stored", text); }),
       topics_(std::make_unique<Radio>()) {}
 
 Station::Impl::~Impl() = default;
@@ -151,13 +153,13 @@ Result<void> Station::Impl::start() {
 }
 
 Result<void> Station::Impl::open_content() {
+  if (!params_.content) return {};
+  if (const std::string lost = map_.load(); !lost.empty()) map_trouble("map_damaged", lost);
   pieces_.add(transfer::Kind::findings, [this](const PieceReader::Piece& piece, PieceReader::Stored stored) {
     return desk_.hear(piece.robot, piece.data, std::move(stored));
   });
   pieces_.otherwise([this](const PieceReader::Piece& piece, const PieceReader::Stored& stored) {
-    const Result<void> taken = map_.take(piece.robot, piece.kind, piece.waiting, piece.data, strand_.now());
-    if (taken.reason() != Reason::malformed) stored();
-    return taken;
+    return map_.take(piece.robot, piece.kind, piece.waiting, piece.data, stored);
   });
   auto ack = wire::Writer<radio::BulkAck>::make(radio_, wire::topics::kBulkAck);
   if (!ack) return ack.error();
@@ -180,14 +182,14 @@ void Station::Impl::heard_piece(const radio::BulkPiece& sample, const wire::Samp
 }
 
 void Station::Impl::acknowledge_pieces() {
-  if (closed_ || fleet_.robots().empty()) return;
+  if (closed_ || !params_.content || fleet_.robots().empty()) return;
   const wire::LinkProfile* link = radio_.sender().link;
   const auto receipts = pieces_.due(link ? link->bandwidth : 0.0);
   if (!receipts) return;
   radio::BulkAck ack;
   ack.station(params_.name);
   ack.station_id(params_.id);
-  ack.start(start_);
+  ack.start(map_.start());
   for (const auto& [robot, receipt] : *receipts) {
     radio::BulkReceipt out;
     out.robot(robot);
@@ -196,7 +198,17 @@ void Station::Impl::acknowledge_pieces() {
     out.received(receipt.received);
     ack.receipts().push_back(out);
   }
+  if (look_ && strand_.now() - looked_ < kLookHolds)
+    ack.look({static_cast<float>(look_->x), static_cast<float>(look_->y), static_cast<float>(look_->radius)});
   (void)topics_->bulk_ack.write(ack);  // Best effort: a receipt has what those before it had.
+}
+
+std::uint32_t Station::Impl::drawn_start() {
+  return static_cast<std::uint32_t>(Random(params_.seed).fork(kStartSalt + starts_++).next()) | 1U;
+}
+
+void Station::Impl::map_trouble(const std::string& code, const std::string& text) {
+  fleet_.say({.level = Level::warning, .code = code, .text = command::clean(text, 240)}, strand_.now());
 }
 
 FindingDesk::Outputs Station::Impl::desk_outputs() {

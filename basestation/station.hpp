@@ -31,6 +31,7 @@ struct StationParams {
   double bandwidth{0.0};    ///< Bandwidth of that link, bit/s; 0: unknown.
   std::optional<std::array<float, 3>> place{};  ///< Position of the station, map frame, m.
   std::shared_ptr<store::Disk> disk{};          ///< Stores findings; null: in memory only.
+  bool content{true};                           ///< Takes findings and maps of robots.
   Duration presence{std::chrono::seconds(1)};   ///< Period of the heartbeats, [0.1 s, 1 s].
   /// Time after the start in which a robot may stay unknown.
   Duration discovery_grace{std::chrono::seconds(5)};

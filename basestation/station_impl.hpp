@@ -11,7 +11,7 @@
 #include "basestation/fleet/traffic.hpp"
 #include "basestation/flow/arrival.hpp"
 #include "basestation/flow/steer.hpp"
-#include "basestation/map/map_receiver.hpp"
+#include "basestation/map/map_replica.hpp"
 #include "basestation/map/tiles.hpp"
 #include "basestation/map/trails.hpp"
 #include "basestation/station.hpp"
@@ -82,6 +82,8 @@ class Station::Impl {
   void announce_often();
   void report_traffic();
   FindingDesk::Outputs desk_outputs();
+  std::uint32_t drawn_start();
+  void map_trouble(const std::string& code, const std::string& text);
   void tick();
   Result<void> open_content();
   void heard_piece(const radio::BulkPiece& sample, const wire::SampleInfo& info);
@@ -132,11 +134,12 @@ class Station::Impl {
 
   Time started_;
   Random random_;
+  std::uint64_t starts_{};  ///< How many times a start was drawn.
   TrafficMeter meter_{};
   FindingBook book_;
   PieceReader pieces_;  ///< Of all kinds of content.
   FindingDesk desk_;
-  MapReceiver map_{};
+  MapReplica map_;
   Trails trails_{};
   std::shared_ptr<const perception::VoxelImage> prior_{};  ///< What the crew had; null: nothing.
   /// The map seen from above, for front ends.
@@ -153,7 +156,6 @@ class Station::Impl {
   Time looked_{};
   bool change_pending_{false};  ///< on_changed will be called.
   Timer change_timer_{};
-  std::uint32_t start_{};  ///< Drawn at this start; see transfer::Ack.
   std::uint64_t next_handle_{1};
   std::uint32_t presence_seq_{};
   std::uint64_t report_seq_{};

@@ -42,12 +42,13 @@ Result<std::unique_ptr<LiveStation>> LiveStation::open(const client::StationOpti
                        .software = ADIT_VERSION,
                        .link = options.link.empty() ? "" : link->name,
                        .bandwidth = options.link.empty() ? 0.0 : link->bandwidth,
+                       .content = hooks.content,
                        .presence = hooks.presence,
                        .discovery_grace = hooks.discovery_grace};
   if (options.at.size() == 3) params.place = {options.at[0], options.at[1], options.at[2]};
   for (const std::uint8_t byte : live->wire_->id()) params.seed = params.seed * 257 + byte;
   // An unusable disk must not prevent stops of robots: findings then stay in memory.
-  if (const auto folder = client::state_folder()) {
+  if (const auto folder = client::state_folder(); folder && hooks.content) {
     auto disk = store::FileDisk::open(*folder + "/findings-" + options.name);
     if (disk)
       params.disk = std::move(*disk);

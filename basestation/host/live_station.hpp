@@ -17,6 +17,8 @@ class LiveStation {
     std::function<void(Station&)> ready{};  ///< Called on the strand before the station starts.
     Duration presence{std::chrono::seconds(1)};
     Duration discovery_grace{std::chrono::seconds(5)};
+    bool content{
+        true};  ///< Takes findings and maps; false: the station of that name does, in another process.
     bool record{false};  ///< Records the last minutes in the folder of the options.
   };
   /// Errors: as of station_id(), load_link(), open_fastdds() and Station::start().

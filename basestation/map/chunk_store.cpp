@@ -21,8 +21,27 @@ ChunkStore::Submap* ChunkStore::submap(const std::string& robot, const perceptio
   return &submaps[key];
 }
 
-bool ChunkStore::count(const std::string& robot, std::size_t bytes, std::uint32_t waiting, Time now) {
-  if (!robots_.contains(robot) && robots_.size() >= params_.max_robots) return false;
+void ChunkStore::clear() {
+  robots_.clear();
+  blocks_ = 0;
+  ++revision_;
+}
+
+bool ChunkStore::make_room(const std::string& robot) {
+  for (auto it = robots_.begin(); it != robots_.end(); ++it) {
+    if (it->second.heard || it->first == robot) continue;
+    blocks_ -= it->second.blocks;
+    robots_.erase(it);
+    ++revision_;
+    return true;
+  }
+  return false;
+}
+
+bool ChunkStore::count(const std::string& robot, std::size_t bytes, std::uint32_t waiting,
+                       std::optional<Time> now) {
+  if (!robots_.contains(robot) && robots_.size() >= params_.max_robots && !(now && make_room(robot)))
+    return false;
   Robot& from = robots_[robot];
   from.bytes += bytes;
   ++from.pieces;
@@ -41,7 +60,7 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
   for (const perception::BlockUpdate& update : piece.blocks) {
     const auto known = into->blocks.find(update.block.index);
     if (known == into->blocks.end()) {
-      if (blocks_ >= params_.max_blocks) {
+      if (blocks_ >= params_.max_blocks && !make_room(robot)) {
         ++refused_;
         complete = false;
         continue;

@@ -22,7 +22,8 @@ struct ChunkStoreParams {
 
 /// The map of all robots as this station received it: the blocks of each submap at 0.2 m, and the submap's
 /// pose in the map. Of each block and pose the highest revision is stored, so that pieces may come late,
-/// twice or in another order. Bounded; what does not fit is refused and counted.
+/// twice or in another order. Bounded: where there is no room, robots that were not heard since the start of
+/// the station are forgotten; what does not fit then is refused and counted.
 class ChunkStore {
  public:
   struct Block {
@@ -39,8 +40,8 @@ class ChunkStore {
     std::size_t blocks{};
     std::uint64_t bytes{};  ///< Content of pieces received.
     std::uint64_t pieces{};
-    std::uint32_t waiting{};  ///< Parts that the robot has still to send, as it said last.
-    Time heard{};             ///< Last piece.
+    std::uint32_t waiting{};      ///< Parts that the robot has still to send, as it said last.
+    std::optional<Time> heard{};  ///< Last piece; nothing: all are from before this start of the station.
   };
 
   explicit ChunkStore(ChunkStoreParams params = {}) : params_(params) {}
@@ -49,8 +50,12 @@ class ChunkStore {
   /// all of it was taken.
   bool take(const std::string& robot, const perception::MapPiece& piece);
   bool take(const std::string& robot, const perception::SubmapPoses& poses);
-  /// Counts a piece of that robot. Returns false if there is no room for one more robot.
-  bool count(const std::string& robot, std::size_t bytes, std::uint32_t waiting, Time now);
+  /// Counts a piece of that robot, heard at `now`; nothing: from the disk. Returns false if there is no room
+  /// for one more robot.
+  bool count(const std::string& robot, std::size_t bytes, std::uint32_t waiting, std::optional<Time> now);
+
+  /// Forgets everything.
+  void clear();
 
   const std::map<std::string, Robot>& robots() const { return robots_; }
   std::size_t blocks() const { return blocks_; }
@@ -63,6 +68,8 @@ class ChunkStore {
   double area(const std::string& robot = {}) const;
 
  private:
+  /// Forgets a robot that was not heard since the start, other than this one. False: there is none.
+  bool make_room(const std::string& robot);
   Submap* submap(const std::string& robot, const perception::SubmapKey& key);
 
   ChunkStoreParams params_;

@@ -2,6 +2,7 @@
 #include "basestation/map/map_journal.hpp"
 
 #include <array>
+#include <span>
 #include <utility>
 
 #include "core/checksum/crc32c.hpp"
@@ -26,18 +27,19 @@ store::Bytes header(std::uint32_t start) {
   return out.bytes();
 }
 
-void add_batch(store::Bytes& out, const std::vector<JournalPiece>& pieces) {
-  store::Packer content;
-  for (const JournalPiece& piece : pieces)
-    content.text(piece.robot)
-        .put(piece.kind)
-        .put(static_cast<std::uint16_t>(piece.data.size()))
-        .raw(piece.data);
+void add_piece(store::Packer& content, const JournalPiece& piece) {
+  content.text(piece.robot)
+      .put(piece.kind)
+      .put(static_cast<std::uint16_t>(piece.data.size()))
+      .raw(piece.data);
+}
+
+void add_batch(store::Bytes& out, std::span<const std::uint8_t> content) {
   store::Packer head;
-  head.put(static_cast<std::uint32_t>(content.bytes().size()));
-  head.put(crc32c(head.bytes())).put(crc32c(content.bytes()));
+  head.put(static_cast<std::uint32_t>(content.size()));
+  head.put(crc32c(head.bytes())).put(crc32c(content));
   out.insert(out.end(), head.bytes().begin(), head.bytes().end());
-  out.insert(out.end(), content.bytes().begin(), content.bytes().end());
+  out.insert(out.end(), content.begin(), content.end());
 }
 
 enum class Read { good, damaged, unfinished };
@@ -72,7 +74,7 @@ Read take_batch(std::span<const std::uint8_t>& left, std::vector<JournalPiece>& 
 
 /// One write, or the removal of the file.
 struct MapJournal::Batch {
-  std::vector<JournalPiece> pieces{};
+  std::vector<Waiting> pieces{};
   store::Bytes bytes{};  ///< Empty: remove the file.
   bool ran{false};
   Result<void> result{};
@@ -84,11 +86,11 @@ struct MapJournal::Batch {
 };
 
 MapJournal::MapJournal(MapJournalParams params, std::shared_ptr<store::Disk> disk, Executor& home,
-                       Outputs outputs)
+                       std::function<void(const std::string& text)> trouble)
     : params_(params),
       disk_(std::move(disk)),
       home_(home),
-      outputs_(std::move(outputs)),
+      trouble_(std::move(trouble)),
       self_(std::make_shared<MapJournal*>(this)) {}
 
 MapJournal::~MapJournal() { *self_ = nullptr; }
@@ -126,17 +128,27 @@ LoadedJournal MapJournal::load() {
 
 void MapJournal::begin(std::uint32_t start, const std::vector<JournalPiece>& pieces) {
   if (!disk_) return;
-  store::Bytes bytes = header(start);
-  if (!pieces.empty()) add_batch(bytes, pieces);
+  waiting_.clear();
+  waiting_bytes_ = 0;
+  begin_ = header(start);
+  store::Packer content;
+  for (const JournalPiece& piece : pieces) add_piece(content, piece);
+  if (!pieces.empty()) add_batch(*begin_, content.bytes());
+  if (!writing_) replace();
+}
+
+void MapJournal::replace() {
+  const store::Bytes bytes = *std::exchange(begin_, std::nullopt);
   bytes_ = bytes.size();
+  useless_.clear();
   if (const auto written = disk_->replace(kFile, bytes); !written) useless_ = written.error().text;
 }
 
-void MapJournal::add(JournalPiece piece) {
-  if (!disk_) return outputs_.kept(piece);
+void MapJournal::add(JournalPiece piece, std::function<void()> kept) {
+  if (!disk_) return kept();
   if (waiting_bytes_ + piece.data.size() > params_.max_waiting) return;
   waiting_bytes_ += piece.data.size();
-  waiting_.push_back(std::move(piece));
+  waiting_.push_back({std::move(piece), std::move(kept)});
   if (!writing_ && !timer_.active()) timer_ = home_.after(params_.period, [this] { write(); });
 }
 
@@ -144,7 +156,9 @@ void MapJournal::write() {
   if (writing_ || !disk_) return;
   auto batch = std::make_shared<Batch>();
   if (useless_.empty()) {
-    add_batch(batch->bytes, waiting_);
+    store::Packer content;
+    for (const Waiting& waiting : waiting_) add_piece(content, waiting.piece);
+    add_batch(batch->bytes, content.bytes());
     if (bytes_ + batch->bytes.size() > params_.max_bytes) {
       useless_ = "it would take more than " + std::to_string(params_.max_bytes >> 20) + " MiB";
       batch->bytes.clear();
@@ -173,15 +187,16 @@ void MapJournal::start(const std::shared_ptr<Batch>& batch) {
 
 void MapJournal::written(const Batch& batch) {
   writing_ = false;
-  const bool removal = batch.bytes.empty();
-  if (batch.ran && batch.result && removal) {
+  const bool removal = batch.bytes.empty(), done = batch.ran && batch.result;
+  if (begin_) {
+    replace();  // Meanwhile all of it was forgotten.
+  } else if (done && removal) {
     disk_.reset();
-    outputs_.trouble("the map is not kept on the disk: " + useless_);
+    trouble_("the map is not kept on the disk: " + useless_);
     keep(batch.pieces);
     keep(std::exchange(waiting_, {}));
     return;
-  }
-  if (batch.ran && batch.result) {
+  } else if (done) {
     bytes_ += batch.bytes.size();
     keep(batch.pieces);
   } else {
@@ -192,8 +207,8 @@ void MapJournal::written(const Batch& batch) {
   timer_ = home_.after(removal ? params_.retry : params_.period, [this] { write(); });
 }
 
-void MapJournal::keep(const std::vector<JournalPiece>& pieces) {
-  for (const JournalPiece& piece : pieces) outputs_.kept(piece);
+void MapJournal::keep(const std::vector<Waiting>& pieces) {
+  for (const Waiting& waiting : pieces) waiting.kept();
 }
 
 }  // namespace adit::station

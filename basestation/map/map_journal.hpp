@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,7 @@ namespace adit::station {
 /// Content of one piece of a robot's map, as it came.
 struct JournalPiece {
   std::string robot{};
-  std::uint32_t session{}, id{};  ///< Of the transfer, 0 on the disk.
-  std::uint8_t kind{};            ///< Value of transfer::Kind.
+  std::uint8_t kind{};  ///< Value of transfer::Kind.
   store::Bytes data{};
 };
 
@@ -39,19 +39,15 @@ struct LoadedJournal {
 /// The pieces of robots' maps that this station acknowledged, on its disk: after a restart it has them, and
 /// continues with the same start (transfer::Ack), so that no robot sends them again.
 ///
-/// A piece is to be acknowledged once it is written, see Outputs::kept. Where that is impossible (the disk is
+/// A piece is to be acknowledged once it is written. Where that is impossible (the disk is
 /// full, the file would become too long), the file is removed and pieces are kept in memory from then on:
 /// then the next start of the station is a new one, and robots send all again. While the file can be neither
 /// written nor removed, no piece is kept.
 class MapJournal {
  public:
-  struct Outputs {
-    std::function<void(const JournalPiece&)> kept{};
-    std::function<void(const std::string& text)> trouble{};  ///< The map is in memory only from now on.
-  };
-
-  /// `disk` null: in memory only.
-  MapJournal(MapJournalParams params, std::shared_ptr<store::Disk> disk, Executor& home, Outputs outputs);
+  /// `disk` null: in memory only. `trouble`: the map is in memory only from now on, and why.
+  MapJournal(MapJournalParams params, std::shared_ptr<store::Disk> disk, Executor& home,
+             std::function<void(const std::string& text)> trouble);
   ~MapJournal();
   MapJournal(const MapJournal&) = delete;
   MapJournal& operator=(const MapJournal&) = delete;
@@ -59,30 +55,37 @@ class MapJournal {
   /// Reads the file; one that is damaged is copied aside. Call begin() after it, or resume() if the file is
   /// whole.
   LoadedJournal load();
-  /// Begins a new file with these pieces.
+  /// Begins a new file with these pieces; pieces that wait for the disk are not kept.
   void begin(std::uint32_t start, const std::vector<JournalPiece>& pieces);
   /// Continues the file that load() read, of which nothing is lost or unfinished.
   void resume(std::size_t bytes) { bytes_ = bytes; }
-  /// Adds a piece, now or never: one for which there is no room is not kept, and comes again.
-  void add(JournalPiece piece);
+  /// Adds a piece; calls `kept` when it is written, or the map is in memory only. One for which there is no
+  /// room is not kept, and comes again.
+  void add(JournalPiece piece, std::function<void()> kept);
 
   static constexpr const char* kFile = "map-pieces";
 
  private:
+  struct Waiting {
+    JournalPiece piece{};
+    std::function<void()> kept{};
+  };
   struct Batch;
+  void replace();
   void write();
   void start(const std::shared_ptr<Batch>& batch);
   void written(const Batch& batch);
-  void keep(const std::vector<JournalPiece>& pieces);
+  static void keep(const std::vector<Waiting>& pieces);
 
   MapJournalParams params_;
   std::shared_ptr<store::Disk> disk_;  ///< Null: in memory only.
   Executor& home_;
-  Outputs outputs_;
-  std::vector<JournalPiece> waiting_{};
+  std::function<void(const std::string&)> trouble_;
+  std::vector<Waiting> waiting_{};
   std::size_t waiting_bytes_{}, bytes_{};
   std::string useless_{};  ///< Why the file must be removed; empty: it must not.
   bool writing_{false};
+  std::optional<store::Bytes> begin_{};  ///< The new file, while the old one is being written.
   Timer timer_{};
   std::shared_ptr<MapJournal*> self_;
 };

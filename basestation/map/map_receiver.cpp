@@ -38,4 +38,11 @@ Result<void> MapReceiver::take(const std::string& robot, std::uint8_t kind, std:
   return stored;
 }
 
+Result<void> MapReceiver::restore(const std::string& robot, std::uint8_t kind,
+                                  std::span<const std::uint8_t> data) {
+  if (!chunks_.count(robot, data.size(), 0, std::nullopt))
+    return {Reason::queue_full, "no room for one more robot's map"};
+  return store(robot, kind, data);
+}
+
 }  // namespace adit::station

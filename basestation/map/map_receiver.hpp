@@ -18,6 +18,11 @@ class MapReceiver {
   Result<void> take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
                     std::span<const std::uint8_t> data, Time now);
 
+  /// Takes a piece of the disk, from before this start of the station. Errors as take().
+  Result<void> restore(const std::string& robot, std::uint8_t kind, std::span<const std::uint8_t> data);
+
+  void forget() { chunks_.clear(); }
+
   const ChunkStore& chunks() const { return chunks_; }
   /// Number of pieces that could not be taken.
   std::uint64_t refused() const { return refused_; }

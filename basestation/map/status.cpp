@@ -27,10 +27,11 @@ std::string map_status_text(const MapReceiver& map, Time now) {
       {"ROBOT", "SHARE", "M2", "SUBMAPS", "BLOCKS", "KB", "B/M2", "AGE", "WAITING"}};
   for (const auto& [name, robot] : chunks.robots()) {
     const double area = chunks.area(name);
-    rows.push_back({name, fixed(100.0 * share(robot), 0) + " %", fixed(area, 0), std::to_string(robot.submaps.size()), std::to_string(robot.blocks),
-                    fixed(static_cast<double>(robot.bytes) / 1000.0, 1),
-                    area > 0.0 ? fixed(static_cast<double>(robot.bytes) / area, 1) : "-",
-                    short_age(seconds(now - robot.heard)), std::to_string(robot.waiting)});
+    rows.push_back(
+        {name, fixed(100.0 * share(robot), 0) + " %", fixed(area, 0), std::to_string(robot.submaps.size()),
+         std::to_string(robot.blocks), fixed(static_cast<double>(robot.bytes) / 1000.0, 1),
+         area > 0.0 ? fixed(static_cast<double>(robot.bytes) / area, 1) : "-",
+         robot.heard ? short_age(seconds(now - *robot.heard)) : "-", std::to_string(robot.waiting)});
   }
   std::string out = table(rows);
   for (const auto& [name, robot] : chunks.robots())
@@ -54,7 +55,7 @@ nlohmann::json map_status_json(const MapReceiver& map, Time now) {
                       {"blocks", robot.blocks},
                       {"bytes", robot.bytes},
                       {"pieces", robot.pieces},
-                      {"age", seconds(now - robot.heard)},
+                      {"age", robot.heard ? nlohmann::json(seconds(now - *robot.heard)) : nlohmann::json()},
                       {"waiting", robot.waiting}});
   return {{"robots", robots},
           {"m2", chunks.area()},

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace adit::transfer {
@@ -40,11 +41,20 @@ struct Receipt {
   bool operator==(const Receipt&) const = default;
 };
 
+/// A place that matters most to a peer, map frame, m.
+struct Look {
+  static constexpr float kMaxRadius = 100.0F;
+  float x{}, y{};
+  float radius{};  ///< (0, kMaxRadius].
+  bool operator==(const Look&) const = default;
+};
+
 /// A peer's acknowledgement of one sender's pieces.
 struct Ack {
   PeerId peer{};
   std::uint32_t start{};  ///< Drawn at each start of the peer: a new one has nothing yet.
   Receipt receipt{};      ///< Of a session 0: the peer has no piece of this sender.
+  std::optional<Look> look{};
 };
 
 }  // namespace adit::transfer

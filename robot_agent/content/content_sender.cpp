@@ -17,7 +17,7 @@ ContentSender::ContentSender(std::uint64_t seed, FindingSource& findings, MapKee
 void ContentSender::acknowledged(const transfer::Ack& ack, Time now) {
   sender_.acknowledged(ack, now);
   findings_.heard(ack.peer, now);
-  if (map_ != nullptr) map_->heard(ack.peer, ack.start);
+  if (map_ != nullptr) map_->heard(ack);
 }
 
 std::vector<transfer::Piece> ContentSender::due(Time now, const wire::SenderState& link) {

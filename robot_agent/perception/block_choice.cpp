@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which blocks the next piece is for.
 #include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
 
 #include "perception/stream/piece.hpp"
 #include "robot_agent/perception/block_source.hpp"
@@ -12,21 +15,37 @@ using transfer::PeerId;
 
 constexpr std::size_t kBlocksInPiece = perception::kMaxPieceBlocks;
 constexpr std::size_t kLookedAt =
-    4096;                            // Candidates, or cells of the focus, that are looked at for one piece.
-constexpr Duration kRest = 500ms;    // Between two looks at changed blocks when none is due.
-constexpr Duration kFocusRest = 1s;  // Between two looks at the focus when it lacks nothing.
+    4096;                          // Candidates, or cells of the focus, that are looked at for one piece.
+constexpr Duration kRest = 500ms;  // Between two looks at changed blocks when none is due.
+constexpr Duration kPieceRest = 200ms;      // Between two looks when there is not enough for a piece.
+constexpr Duration kFocusRest = 1s;         // Between two looks at the focus when it lacks nothing.
 constexpr std::uint64_t kChangedEvery = 4;  // One piece of so many is for changed blocks first.
 
 }  // namespace
 
-/// Candidates for one piece, all of the submap of the first one.
+/// Candidates for a piece, those first that should go first.
 struct BlockSource::Choice {
-  std::vector<Ref> refs{};
+  struct Candidate {
+    Ref ref{};
+    bool late{};  ///< It cannot wait for a full piece.
+  };
+  std::vector<Candidate> all{};
   std::set<Ref> focused{};
 
-  bool full() const { return refs.size() >= kLookedAt; }
-  void add(const Ref& ref) {
-    if (!full() && (refs.empty() || refs.front().submap == ref.submap)) refs.push_back(ref);
+  void add(const Ref& ref, bool late) { all.push_back({ref, late}); }
+  /// Those of one submap: of the first one that is late, or else of which there are most.
+  std::vector<Candidate> of_one_submap() const {
+    std::map<std::uint32_t, std::size_t> count;
+    for (const Candidate& candidate : all) ++count[candidate.ref.submap];
+    auto submap = std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) {
+                    return a.second < b.second;
+                  })->first;
+    const auto late = std::find_if(all.begin(), all.end(), [](const Candidate& c) { return c.late; });
+    if (late != all.end()) submap = late->ref.submap;
+    std::vector<Candidate> out;
+    for (const Candidate& candidate : all)
+      if (candidate.ref.submap == submap && out.size() < kBlocksInPiece) out.push_back(candidate);
+    return out;
   }
 };
 
@@ -34,7 +53,7 @@ bool BlockSource::is_needed(const Peer& peer, const Ref& ref) const {
   const Entry& asked = blocks_.at(ref);
   if ((asked.chosen_for & peer.bit) != 0 && (asked.up_to_date & peer.bit) == 0) return true;
   const Cell cell = cell_of(ref);
-  const std::vector<std::uint32_t>& submaps = cells_.at(cell);
+  const std::vector<std::uint32_t>& submaps = cells_.at(cell).submaps;
   const BlockVotes all = votes_of(cell, submaps);
   // The newer ones are brought up to date first; this one is needed if that does not suffice.
   for (std::size_t renewed = submaps.size();; --renewed) {
@@ -51,22 +70,27 @@ bool BlockSource::is_needed(const Peer& peer, const Ref& ref) const {
   }
 }
 
-Duration BlockSource::hold(const Entry& entry) const {
-  Duration hold = params_.hold;
-  for (int i = 1; i < entry.sends && hold < params_.max_hold; ++i) hold *= 2;
-  return std::min(hold, params_.max_hold);
+BlockSource::Due BlockSource::due(const Ref& ref, Duration rest, Duration latest, Time now) const {
+  const std::optional<Time>& since = blocks_.at(ref).waits_since;
+  if (!since || now - *since >= latest) return Due::late;
+  return now - cells_.at(cell_of(ref)).changed >= rest ? Due::yes : Due::no;
 }
 
 void BlockSource::focus(std::vector<BlockRegion> regions) {
   focus_ = std::move(regions);
-  for (auto& [id, peer] : peers_) peer.focus_rests_until.reset();
+  for (auto& [id, peer] : peers_) begin_focus(peer);
 }
 
 void BlockSource::focus(const PeerId& id, std::vector<BlockRegion> regions) {
   const auto peer = peers_.find(id);
   if (peer == peers_.end()) return;
   peer->second.focus = std::move(regions);
-  peer->second.focus_rests_until.reset();
+  begin_focus(peer->second);
+}
+
+void BlockSource::begin_focus(Peer& peer) {
+  peer.focus_rests_until.reset();
+  peer.focus_next = std::numeric_limits<std::size_t>::max();
 }
 
 bool BlockSource::is_behind() const {
@@ -74,79 +98,96 @@ bool BlockSource::is_behind() const {
                      [](const auto& peer) { return peer.second.unseen.size() > kBacklog; });
 }
 
-void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
-  if (peer.unseen.size() <= kBacklog || (peer.focus_rests_until && now < *peer.focus_rests_until)) return;
-  const std::size_t before = out.refs.size();
-  std::size_t looked = 0;
-  const auto look = [&](const BlockRegion& region) {
-    Cell cell{region.group, region.low};
-    for (cell.index.x = region.low.x; cell.index.x <= region.high.x; ++cell.index.x)
-      for (cell.index.y = region.low.y; cell.index.y <= region.high.y; ++cell.index.y)
-        for (cell.index.z = region.low.z; cell.index.z <= region.high.z; ++cell.index.z) {
-          if (++looked > kLookedAt || out.full()) return;
-          const auto found = cells_.find(cell);
-          if (found == cells_.end()) continue;
-          for (const std::uint32_t submap : found->second) {
-            const Ref ref = ref_in(cell, submap);
-            if (!peer.unseen.contains(blocks_.at(ref).change) || out.focused.contains(ref)) continue;
-            out.add(ref);
-            if (out.refs.back() == ref) out.focused.insert(ref);
-          }
-        }
-  };
-  for (const BlockRegion& region : focus_) look(region);
-  for (const BlockRegion& region : peer.focus) look(region);
-  if (out.refs.size() == before) peer.focus_rests_until = now + kFocusRest;
+std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x,
+                                   Choice& out) const {
+  std::size_t looked = 1;
+  const Cell first{region.group, {x, region.low.y, INT32_MIN}};
+  for (auto it = cells_.lower_bound(first); it != cells_.end() && it->first.group == region.group;
+       ++it, ++looked) {
+    const auto& [cell, place] = *it;
+    if (cell.index.x != x || cell.index.y > region.high.y) break;
+    if (cell.index.z < region.low.z || cell.index.z > region.high.z) continue;
+    for (const std::uint32_t submap : place.submaps) {
+      const Ref ref = ref_in(cell, submap);
+      if (peer.unseen.contains(blocks_.at(ref).change) && out.focused.insert(ref).second) out.add(ref, true);
+    }
+  }
+  return looked;
 }
 
-void BlockSource::add_unseen(const Peer& peer, Choice& out) const {
-  // Without a backlog all of them go out at once, in whatever order.
-  const std::size_t most = peer.unseen.size() > kBacklog ? kLookedAt : kBlocksInPiece;
+void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
+  if (peer.unseen.size() <= kBacklog || (peer.focus_rests_until && now < *peer.focus_rests_until)) return;
+  std::vector<std::pair<const BlockRegion*, std::int32_t>> slices;
+  for (const auto* regions : {&focus_, &peer.focus})
+    for (const BlockRegion& region : *regions)
+      for (std::int32_t x = region.low.x; x <= region.high.x && slices.size() < kLookedAt; ++x)
+        slices.emplace_back(&region, x);
+  const std::size_t before = out.all.size();
+  std::size_t looked = 0, slice = 0;
+  for (; slice < slices.size() && looked < kLookedAt && out.all.size() < kBlocksInPiece; ++slice) {
+    peer.focus_next = (peer.focus_next + 1) % slices.size();
+    const auto& [region, x] = slices[peer.focus_next];
+    looked += add_slice(peer, *region, x, out);
+  }
+  if (slice == slices.size() && out.all.size() == before) peer.focus_rests_until = now + kFocusRest;
+}
+
+void BlockSource::add_unseen(const Peer& peer, Time now, Choice& out) const {
+  const bool behind = peer.unseen.size() > kBacklog;
   std::size_t looked = 0;
-  for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < most; ++it, ++looked)
-    if (!out.focused.contains(it->second)) out.add(it->second);
+  for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
+    const Due is_due = due(it->second, params_.settle, params_.wait, now);
+    if (is_due != Due::no && !out.focused.contains(it->second))
+      out.add(it->second, behind || is_due == Due::late);
+  }
 }
 
 void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
-  if (peer.rests_until && now < *peer.rests_until) return;
-  std::size_t looked = 0;
-  bool due = false;
+  if (peer.changed_rests_until && now < *peer.changed_rests_until) return;
+  std::size_t looked = 0, added = 0;
   for (auto it = peer.changed.begin();
-       it != peer.changed.end() && looked < kLookedAt && out.refs.size() < kBlocksInPiece; ++looked) {
+       it != peer.changed.end() && looked < kLookedAt && added < kBlocksInPiece; ++looked) {
     const Ref ref = it->second;
-    Entry& entry = blocks_.at(ref);
-    if (!entry.held_since) entry.held_since = now;  // A place that is shown already can wait.
-    if (now - *entry.held_since < hold(entry)) {
+    const Due is_due = due(ref, params_.hold, params_.max_hold, now);
+    if (is_due == Due::no) {
       ++it;
-      continue;
-    }
-    if (!is_needed(peer, ref)) {
+    } else if (!is_needed(peer, ref)) {
       it = peer.changed.erase(it);
-      if (entry.sends == 0) entry.held_since.reset();
-      continue;
+    } else {
+      ++it;
+      ++added;
+      out.add(ref, is_due == Due::late);
     }
-    due = true;
-    out.add(ref);
-    ++it;
   }
-  if (!due) peer.rests_until = now + kRest;
+  if (added == 0) peer.changed_rests_until = now + kRest;
 }
 
-std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, Time now) {
-  Choice out;
+std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
+  if (peer.rests_until && now < *peer.rests_until) return {};
+  Choice choice;
   const bool changed_first = (tokens_ + 1) % kChangedEvery == 0;
-  if (changed_first) add_changed(peer, now, out);
-  const auto first = static_cast<std::ptrdiff_t>(out.refs.size());
-  add_focused(peer, now, out);
-  const auto focused = static_cast<std::ptrdiff_t>(out.refs.size());
-  add_unseen(peer, out);
-  // Free space tells an operator less than surfaces, and surfaces show where it is.
-  const auto is_surface = [this](const Ref& ref) { return blocks_.at(ref).occupied != 0; };
-  std::stable_partition(out.refs.begin() + first, out.refs.begin() + focused, is_surface);
-  std::stable_partition(out.refs.begin() + focused, out.refs.end(), is_surface);
-  if (!changed_first) add_changed(peer, now, out);
-  if (out.refs.size() > kBlocksInPiece) out.refs.resize(kBlocksInPiece);
-  return std::move(out.refs);
+  if (changed_first) add_changed(peer, now, choice);
+  const auto first = static_cast<std::ptrdiff_t>(choice.all.size());
+  add_focused(peer, now, choice);
+  const auto focused = static_cast<std::ptrdiff_t>(choice.all.size());
+  add_unseen(peer, now, choice);
+  // Free space shows an operator less than surfaces.
+  const auto is_surface = [this](const auto& candidate) { return blocks_.at(candidate.ref).occupied != 0; };
+  std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);
+  std::stable_partition(choice.all.begin() + focused, choice.all.end(), is_surface);
+  if (!changed_first) add_changed(peer, now, choice);
+  std::vector<Ref> out;
+  if (!choice.all.empty()) {
+    bool late = false;
+    for (const Choice::Candidate& candidate : choice.of_one_submap()) {
+      out.push_back(candidate.ref);
+      late = late || candidate.late;
+    }
+    const double bytes = block_bytes_ * static_cast<double>(out.size());
+    if (late || bytes >= params_.fill * static_cast<double>(max_bytes)) return out;
+  }
+  peer.rests_until = now + kPieceRest;
+  return {};
 }
 
 }  // namespace adit::agent

@@ -16,6 +16,15 @@ constexpr std::uint64_t kAlone = 1ULL << 63U;  // Groups of submaps without a la
 constexpr double kCovered = 0.9;
 constexpr std::size_t kVotes = 3;             // The newest ones decide, see BlockVotes.
 constexpr std::size_t kLookedForCovered = 8;  // Oldest submaps: a few ms.
+constexpr double kLearned = 0.1;              // Weight of the newest piece in the mean size of a block.
+
+/// The voxels of 0.4 m of a block of which any part is in these of 0.2 m; each is the first of its eight.
+std::uint64_t halved(std::uint64_t voxels) {
+  voxels |= voxels >> 1;
+  voxels |= voxels >> 4;
+  voxels |= voxels >> 16;
+  return voxels & 0x0000'0505'0000'0505ULL;
+}
 
 }  // namespace
 
@@ -36,16 +45,23 @@ BlockSource::Ref BlockSource::ref_in(const Cell& cell, std::uint32_t submap) con
   return {submap, {cell.index.x - offset.x, cell.index.y - offset.y, cell.index.z - offset.z}};
 }
 
-void BlockSource::add_missing(Peer& peer, const Ref& ref, Entry& entry) {
+bool BlockSource::grows(const Peer& peer, const Ref& ref) const {
+  std::uint64_t known = 0;
   const Cell cell = cell_of(ref);
-  bool seen = false;
-  for (const std::uint32_t submap : cells_.at(cell))
-    seen = seen || (blocks_.at(ref_in(cell, submap)).had_by & peer.bit) != 0;
-  (seen ? peer.changed : peer.unseen)[entry.change] = ref;
+  for (const std::uint32_t submap : cells_.at(cell).submaps) {
+    const Entry& entry = blocks_.at(ref_in(cell, submap));
+    if ((entry.up_to_date & peer.bit) != 0) known |= entry.sent_known;
+  }
+  return (halved(blocks_.at(ref).known) & ~halved(known)) != 0;
+}
+
+void BlockSource::add_missing(Peer& peer, const Ref& ref, Entry& entry) {
+  if (!entry.waits_since) entry.waits_since = now_;
+  (grows(peer, ref) ? peer.unseen : peer.changed)[entry.change] = ref;
 }
 
 void BlockSource::queue(Peer& peer, const Cell& cell) {
-  const std::vector<std::uint32_t>& submaps = cells_.at(cell);
+  const std::vector<std::uint32_t>& submaps = cells_.at(cell).submaps;
   const bool any = std::any_of(submaps.begin(), submaps.end(), [&](std::uint32_t submap) {
     return (blocks_.at(ref_in(cell, submap)).chosen_for & peer.bit) != 0;
   });
@@ -57,11 +73,9 @@ void BlockSource::queue(Peer& peer, const Cell& cell) {
     const bool stale = (entry.up_to_date & peer.bit) == 0 || entry.sent_known != entry.known ||
                        entry.sent_occupied != entry.occupied;
     if (chosen && !stale) continue;
-    if (peer.unseen.contains(entry.change)) continue;
-    if (chosen)
-      add_missing(peer, ref, entry);
-    else
-      peer.changed[entry.change] = ref;
+    peer.changed.erase(entry.change);
+    peer.unseen.erase(entry.change);
+    add_missing(peer, ref, entry);
   }
 }
 
@@ -76,7 +90,9 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
   changes_ = std::max<std::uint64_t>(changes_ + 1, revision);
   entry.change = changes_;
   const Cell cell = cell_of(ref);
-  std::vector<std::uint32_t>& submaps = cells_[cell];
+  Place& place = cells_[cell];
+  place.changed = now_;
+  std::vector<std::uint32_t>& submaps = place.submaps;
   if (added) submaps.insert(std::upper_bound(submaps.begin(), submaps.end(), submap), submap);
   for (auto& [id, peer] : peers_) {
     peer.unseen.erase(before);
@@ -89,8 +105,8 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
 
 void BlockSource::prune(const Cell& cell) {
   const auto found = cells_.find(cell);
-  if (found == cells_.end() || found->second.size() <= kVotes) return;
-  const std::vector<std::uint32_t> submaps = found->second;
+  if (found == cells_.end() || found->second.submaps.size() <= kVotes) return;
+  const std::vector<std::uint32_t> submaps = found->second.submaps;
   for (std::size_t i = submaps.size() - kVotes; i-- > 0;) {
     const Ref ref = ref_in(cell, submaps[i]);
     const Entry& entry = blocks_.at(ref);
@@ -200,6 +216,7 @@ void BlockSource::choose_fewest(Peer& peer, const Cell& cell, const std::vector<
   for (const Ref& ref : fewest(cell, submaps)) {
     Entry& entry = blocks_.at(ref);
     entry.chosen_for |= peer.bit;
+    if (!entry.waits_since) entry.waits_since = now_;
     peer.unseen[entry.change] = ref;
   }
 }
@@ -209,7 +226,7 @@ bool BlockSource::is_covered(std::uint32_t submap) const {
   for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;
        ++it, ++all) {
     const Cell cell = cell_of(it->first);
-    const std::vector<Ref> shown = fewest(cell, cells_.at(cell));
+    const std::vector<Ref> shown = fewest(cell, cells_.at(cell).submaps);
     needed += std::find(shown.begin(), shown.end(), it->first) != shown.end() ? 1 : 0;
   }
   return all > 0 && static_cast<double>(needed) < (1.0 - kCovered) * static_cast<double>(all);
@@ -222,9 +239,9 @@ void BlockSource::erase(const Ref& ref) {
     peer.changed.erase(found->second.change);
   }
   const auto cell = cells_.find(cell_of(ref));
-  std::erase(cell->second, ref.submap);
+  std::erase(cell->second.submaps, ref.submap);
   blocks_.erase(found);
-  if (cell->second.empty()) cells_.erase(cell);
+  if (cell->second.submaps.empty()) cells_.erase(cell);
 }
 
 void BlockSource::remove(const Ref& ref) {
@@ -266,7 +283,7 @@ void BlockSource::join(const PeerId& id) {
   Peer& peer = peers_[id];
   peer.bit = 1;
   while ((used & peer.bit) != 0) peer.bit = static_cast<std::uint16_t>(peer.bit << 1);
-  for (const auto& [cell, submaps] : cells_) choose_fewest(peer, cell, submaps);
+  for (const auto& [cell, place] : cells_) choose_fewest(peer, cell, place.submaps);
 }
 
 void BlockSource::leave(const PeerId& id) {
@@ -290,7 +307,8 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
                                                            std::size_t max_bytes, Time now) {
   const auto first = peers_.find(peers.front());
   if (first == peers_.end()) return std::nullopt;
-  const std::vector<Ref> chosen = choose(first->second, now);
+  now_ = now;
+  const std::vector<Ref> chosen = choose(first->second, max_bytes, now);
   if (chosen.empty()) return std::nullopt;
   // One revision for all blocks takes no space. The newest one will do: whatever changes one of them later is
   // newer still.
@@ -304,11 +322,12 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
   const SubmapPlace place = place_of(chosen.front().submap);
   auto packed = perception::pack({params_.robot, place.start, place.index}, updates, max_bytes);
   if (packed.count == 0) return std::nullopt;
+  block_bytes_ += kLearned * (static_cast<double>(packed.bytes.size()) / static_cast<double>(packed.count) -
+                              block_bytes_);
   std::vector<Part>& parts = flights_[++tokens_];
   for (std::size_t i = 0; i < packed.count; ++i) {
     Entry& entry = blocks_.at(chosen[i]);
-    entry.held_since = now;
-    if (entry.sends < UINT8_MAX) ++entry.sends;
+    entry.waits_since.reset();
     entry.sent_known = entry.known;
     entry.sent_occupied = entry.occupied;
     entry.sent_change = entry.change;
@@ -339,7 +358,6 @@ void BlockSource::acknowledged(const PeerId& id, std::uint64_t token) {
     if (block == blocks_.end()) continue;
     Entry& entry = block->second;
     entry.had_by |= peer->second.bit;
-    if (peer->second.unseen.erase(entry.change) != 0) peer->second.changed[entry.change] = part.ref;
   }
 }
 
@@ -353,9 +371,10 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
     Entry& entry = block->second;
     if (entry.sent_change != part.change) continue;  // A newer state went out since.
     entry.up_to_date &= static_cast<std::uint16_t>(~peer->second.bit);
-    entry.held_since = Time(Duration::min() / 2);  // The hold is for what arrived.
+    entry.waits_since = Time(Duration::min() / 2);  // The hold is for what arrived.
     add_missing(peer->second, part.ref, entry);
     peer->second.rests_until.reset();
+    peer->second.changed_rests_until.reset();
   }
 }
 

@@ -19,10 +19,17 @@ struct BlockSourceParams {
   std::string robot{};
   std::uint64_t start{};            ///< SubmapKey::start of submaps that are not named by open().
   std::size_t max_blocks{200'000};  ///< Blocks that are stored, [64, 10^7]; see BlockSource::update.
-  /// A block that peers have is sent again at most this often, however it changes; twice as long after each
-  /// time, up to `max_hold`.
+  // A place of which a station knows less goes when it has not changed for `settle`, at the latest after
+  // `wait`: while a robot passes, its blocks grow with every scan. A place that shows something else goes
+  // after `hold` without a change, at the latest after `max_hold`.
+  Duration settle{600ms};
+  Duration wait{2s};
   Duration hold{5s};
   Duration max_hold{40s};
+  double fill{
+      0.8};  ///< Part of a piece that must be full before it goes without one of the latest times, [0, 1].
+};
+Duration max_hold{40s};
 };
 
 /// Name and place of a submap. Submaps of one group lie in one lattice of blocks: they move together, and
@@ -42,12 +49,13 @@ struct BlockRegion {
 
 /// The blocks of a robot's map as stations see them (0.2 m masks), and what each station has of them.
 ///
-/// Blocks of places that a station never saw go first, the newest of them first; every fourth piece is for
-/// what changed. While a station is behind by more than kBacklog blocks, those in the focus go before others,
-/// and surfaces before free space. All blocks of a piece are of one submap. Where several submaps of one
-/// group saw a place, a block is sent only if the merge of what the station has would show anything else than
-/// the merge of all of them; a station that joins gets the fewest blocks that show the same, from the newest
-/// on. The map outlives the component that makes it. Submaps are numbered by age.
+/// Blocks with voxels of 0.4 m of which a station knows nothing go first, the newest of them first; every
+/// fourth piece is for what changed. Blocks wait until they fill a piece, within the bounds of
+/// BlockSourceParams. While a station is behind by more than kBacklog blocks, those in the focus go before
+/// others, and surfaces before free space. All blocks of a piece are of one submap. Where several submaps of
+/// one group saw a place, a block is sent only if the merge of what the station has would show anything else
+/// than the merge of all of them; a station that joins gets the fewest blocks that show the same, from the
+/// newest on. The map outlives the component that makes it. Submaps are numbered by age.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
@@ -57,6 +65,8 @@ class BlockSource final : public transfer::Source {
 
   /// Names a submap before its first block.
   void open(std::uint32_t submap, const SubmapPlace& place) { names_[submap] = place; }
+  /// Says what the time is; what is updated now changes now.
+  void tick(Time now) { now_ = now; }
   /// Sets the newest state of a block; one that is equal to the stored one changes nothing. When there is no
   /// room, a submap is dropped: the oldest one that newer ones cover, or the oldest one.
   void update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision = 0);
@@ -65,7 +75,7 @@ class BlockSource final : public transfer::Source {
   bool knows(const transfer::PeerId& peer) const { return peers_.contains(peer); }
   /// Whether any peer lacks so much that the focus matters.
   bool is_behind() const;
-  /// Sets what every peer is to have first, the first region first; in all, 4096 blocks are looked at.
+  /// Sets what every peer is to have first, the first region first.
   void focus(std::vector<BlockRegion> regions);
   /// Sets what one peer is to have first, after that of every peer.
   void focus(const transfer::PeerId& peer, std::vector<BlockRegion> regions);
@@ -119,18 +129,24 @@ class BlockSource final : public transfer::Source {
     std::uint16_t had_by{};      ///< Bit of each peer that acknowledged some state of it.
     std::uint16_t chosen_for{};  ///< Bit of each peer that is to have it.
     std::uint16_t up_to_date{};  ///< Bit of each peer to which the last sent state went, unless it was lost.
-    std::uint8_t sends{};
-    std::optional<Time> held_since{};  ///< When it was part of a piece last, or began to wait.
+    std::optional<Time> waits_since{};  ///< Since then some peer lacks its present state.
   };
   /// What one peer lacks, by number of the change.
   struct Peer {
     std::uint16_t bit{};
-    std::map<std::uint64_t, Ref> unseen{};   ///< Of places of which it has nothing.
+    std::map<std::uint64_t, Ref> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
     std::map<std::uint64_t, Ref> changed{};  ///< Of others.
-    std::optional<Time> rests_until{};       ///< Nothing in `changed` was due when it was looked at last.
+    std::optional<Time> rests_until{};       ///< There was not enough for a piece when it was looked at last.
+    std::optional<Time> changed_rests_until{};  ///< Nothing in `changed` was due then.
     std::vector<BlockRegion> focus{};
+    std::size_t focus_next{};  ///< The slice of the focus that was looked at last.
     std::optional<Time>
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
+  };
+  /// A place: the submaps that saw it, by age, and when any of them changed last.
+  struct Place {
+    std::vector<std::uint32_t> submaps{};
+    Time changed{};
   };
   struct Part {
     Ref ref{};
@@ -150,13 +166,19 @@ class BlockSource final : public transfer::Source {
   /// The blocks of a cell from the newest on that show what all of it do.
   std::vector<Ref> fewest(const Cell& cell, const std::vector<std::uint32_t>& submaps) const;
   void choose_fewest(Peer& peer, const Cell& cell, const std::vector<std::uint32_t>& submaps);
-  Duration hold(const Entry& entry) const;
+  /// Whether a block has voxels of 0.4 m of which a peer knows nothing.
+  bool grows(const Peer& peer, const Ref& ref) const;
+  enum class Due { no, yes, late };
+  Due due(const Ref& ref, Duration rest, Duration latest, Time now) const;
   struct Choice;
-  /// Candidates for a piece, all of the submap of the first one. Defined in block_choice.cpp, as the next
-  /// three.
-  std::vector<Ref> choose(Peer& peer, Time now);
+  /// Candidates for a piece, all of the submap of the first one. Defined in block_choice.cpp, as all that it
+  /// calls.
+  std::vector<Ref> choose(Peer& peer, std::size_t max_bytes, Time now);
   void add_focused(Peer& peer, Time now, Choice& out);
-  void add_unseen(const Peer& peer, Choice& out) const;
+  /// Adds what a peer lacks of the blocks of a region at one x; returns how many were looked at.
+  std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Choice& out) const;
+  static void begin_focus(Peer& peer);
+  void add_unseen(const Peer& peer, Time now, Choice& out) const;
   void add_changed(Peer& peer, Time now, Choice& out);
   void erase(const Ref& ref);
   /// Erases a block, and queues for the peers what shows its place now.
@@ -173,11 +195,13 @@ class BlockSource final : public transfer::Source {
   BlockSourceParams params_;
   std::map<std::uint32_t, SubmapPlace> names_{};
   std::map<Ref, Entry> blocks_{};
-  std::map<Cell, std::vector<std::uint32_t>> cells_{};  ///< Submaps that saw each, by age.
+  std::map<Cell, Place> cells_{};
   std::map<std::uint32_t, std::size_t> pruned_{};
   std::map<transfer::PeerId, Peer> peers_{};
   std::map<std::uint64_t, std::vector<Part>> flights_{};
   std::vector<BlockRegion> focus_{};
+  Time now_{};
+  double block_bytes_{3.0};  ///< Of a block in a piece, in the mean.
   std::uint64_t changes_{};
   std::uint64_t tokens_{};
   std::uint64_t dropped_{};

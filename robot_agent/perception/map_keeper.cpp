@@ -21,7 +21,8 @@ constexpr std::uint32_t kPrunedAtOnce = 4;
 constexpr double kRouteRadius = 3.2;      // m around the route whose map stations get first.
 constexpr double kRouteStep = 3.2;        // m between two points of the route.
 constexpr std::size_t kRoutePoints = 10;  // So 30 m of it.
-constexpr double kHeight = 1.6;           // m above and below.
+constexpr double kRouteHeight = 1.6;      // m above and below.
+constexpr double kAnyHeight = 1000.0;     // m
 constexpr std::size_t kGroups = 8;        // The newest ones, in which the focus is looked for.
 
 /// The whole number next to a coordinate, in blocks.
@@ -81,8 +82,8 @@ LoadedMap MapKeeper::load() {
   return loaded;
 }
 
-std::vector<BlockRegion> MapKeeper::regions_around(std::span<const Eigen::Vector3d> points,
-                                                   double radius) const {
+std::vector<BlockRegion> MapKeeper::regions_around(std::span<const Eigen::Vector3d> points, double radius,
+                                                   double height) const {
   std::map<std::uint64_t, Pose3> lattices;  // T_lattice_map by group.
   for (auto submap = submaps_.rbegin(); submap != submaps_.rend() && lattices.size() < kGroups; ++submap) {
     if (lattices.contains(submap->place.group)) continue;
@@ -97,7 +98,7 @@ std::vector<BlockRegion> MapKeeper::regions_around(std::span<const Eigen::Vector
   for (const Eigen::Vector3d& point : points)
     for (const auto& [group, T_lattice_map] : lattices) {
       const Eigen::Vector3d at = T_lattice_map * point;
-      const Eigen::Vector3d reach(radius, radius, kHeight);
+      const Eigen::Vector3d reach(radius, radius, height);
       out.push_back({group, block_of(at - reach), block_of(at + reach)});
     }
   return out;
@@ -112,17 +113,25 @@ void MapKeeper::look_ahead(std::span<const Eigen::Vector3d> route) {
     for (double along = kRouteStep; along < leg.norm() && points.size() < kRoutePoints; along += kRouteStep)
       points.emplace_back(route[i] + leg.normalized() * along);
   }
-  blocks_.focus(regions_around(points, kRouteRadius));
+  blocks_.focus(regions_around(points, kRouteRadius, kRouteHeight));
 }
 
 void MapKeeper::anchor() {
   for (Submap& submap : submaps_) submap.fixed = true;
 }
 
-void MapKeeper::heard(const transfer::PeerId& id, std::uint32_t start) {
+void MapKeeper::heard(const transfer::Ack& ack) {
+  const auto& [id, start, receipt, look] = ack;
   if (!blocks_.knows(id)) {
     stations_.erase(id);
     return;
+  }
+  if (is_behind()) {
+    std::vector<BlockRegion> regions;
+    if (look)
+      regions =
+          regions_around(std::vector<Eigen::Vector3d>{{look->x, look->y, 0.0}}, look->radius, kAnyHeight);
+    blocks_.focus(id, std::move(regions));
   }
   const auto known = stations_.find(id);
   if (known != stations_.end() && known->second.start == start) return;
@@ -211,6 +220,7 @@ void MapKeeper::note_complete() {
 }
 
 void MapKeeper::tick(Time now) {
+  blocks_.tick(now);
   if (!disk_) return;
   disk_->tick();
   if (saved_ && now - *saved_ < params_.save_period) return;

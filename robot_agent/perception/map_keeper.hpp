@@ -60,8 +60,8 @@ class MapKeeper {
 
   /// The map's content for a transfer::Sender, in the order in which it goes.
   std::array<transfer::Source*, 2> sources() { return {&poses_, &blocks_}; }
-  /// A station acknowledged something, after the sender took that. `start`: as of transfer::Ack.
-  void heard(const transfer::PeerId& station, std::uint32_t start);
+  /// A station acknowledged something, after the sender took that.
+  void heard(const transfer::Ack& ack);
   /// Writes to the disk what is due. Call it at 10 to 50 Hz.
   void tick(Time now);
   /// Hands what is not on the disk yet to its strand, at a clean end after the command strand has ended.
@@ -85,7 +85,8 @@ class MapKeeper {
     std::uint32_t next{};  ///< The submap before it is the next one that is looked at.
   };
   /// The regions around these points (map frame, m) in the lattice of each group of submaps.
-  std::vector<BlockRegion> regions_around(std::span<const Eigen::Vector3d> points, double radius) const;
+  std::vector<BlockRegion> regions_around(std::span<const Eigen::Vector3d> points, double radius,
+                                          double height) const;
   void open_submap(const MapStep& step, const MapFrame& frame);
   void save_submap(std::uint32_t submap);
   void save_places();

@@ -276,7 +276,13 @@ radio::Capabilities to_radio(const Platform& platform, const std::string& robot,
 }
 
 transfer::Ack from_radio(const radio::BulkAck& in, const std::string& robot) {
-  transfer::Ack out{in.station_id(), in.start(), {}};
+  transfer::Ack out{in.station_id(), in.start(), {}, {}};
+  if (in.look().size() == 3) {
+    const transfer::Look look{in.look()[0], in.look()[1], in.look()[2]};
+    if (std::isfinite(look.x) && std::isfinite(look.y) && look.radius > 0.0F &&
+        look.radius <= transfer::Look::kMaxRadius)
+      out.look = look;
+  }
   for (const radio::BulkReceipt& receipt : in.receipts())
     if (receipt.robot() == robot) out.receipt = {receipt.session(), receipt.newest(), receipt.received()};
   return out;

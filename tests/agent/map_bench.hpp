@@ -83,7 +83,7 @@ struct MapBench {
         transfer::Ack ack{station->id, station->start, {}};
         if (!due->empty()) ack.receipt = due->front().second;
         sender->acknowledged(ack, strand->now());
-        keeper->heard(ack.peer, ack.start);
+        keeper->heard(ack);
       }
     }
   }

@@ -117,7 +117,7 @@ TEST_F(MapKeeperTest, SendsBlocksAndPosesToAStationAndPosesAgainAfterACorrection
         transfer::Ack ack{{1}, 1, {}};
         if (!due->empty()) ack.receipt = due->front().second;
         sender.acknowledged(ack, strand->now());
-        keeper.heard(ack.peer, ack.start);
+        keeper.heard(ack);
       }
     }
   };

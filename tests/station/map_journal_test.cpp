@@ -18,9 +18,7 @@ class MapJournalTest : public testing::Test {
   /// A start of the station; returns what the disk had.
   LoadedJournal restart(MapJournalParams params = {}) {
     kept.clear();
-    journal.emplace(params, disk, *strand,
-                    MapJournal::Outputs{[this](const JournalPiece& piece) { kept.push_back(piece.id); },
-                                        [this](const std::string& text) { troubles.push_back(text); }});
+    journal.emplace(params, disk, *strand, [this](const std::string& text) { troubles.push_back(text); });
     LoadedJournal loaded = journal->load();
     if (loaded.start == 0 || loaded.unfinished)
       journal->begin(loaded.start == 0 ? ++start : loaded.start, loaded.pieces);
@@ -29,7 +27,8 @@ class MapJournalTest : public testing::Test {
     return loaded;
   }
   void add(std::uint32_t id, std::size_t bytes = 100) {
-    journal->add({"r1", 7, id, 1, store::Bytes(bytes, static_cast<std::uint8_t>(id))});
+    journal->add({"r1", 1, store::Bytes(bytes, static_cast<std::uint8_t>(id))},
+                 [this, id] { kept.push_back(id); });
   }
   void run(Duration span) { scheduler.run_until(scheduler.elapsed() + span); }
   static std::vector<int> contents(const LoadedJournal& loaded) {
@@ -107,7 +106,7 @@ TEST_F(MapJournalTest, AByteThatIsDamagedMakesTheStartANewOne) {
     store::Bytes bad = good;
     bad[at] ^= 0x10;
     disk->plant(MapJournal::kFile, bad);
-    journal.emplace(MapJournalParams{}, disk, *strand, MapJournal::Outputs{});
+    journal.emplace(MapJournalParams{}, disk, *strand, nullptr);
     const LoadedJournal loaded = journal->load();
     EXPECT_EQ(loaded.start, 0U) << at;
     EXPECT_THAT(loaded.lost, HasSubstr("damaged")) << at;
@@ -115,7 +114,7 @@ TEST_F(MapJournalTest, AByteThatIsDamagedMakesTheStartANewOne) {
   for (std::size_t bytes = 0; bytes < good.size(); ++bytes) {
     disk->plant(MapJournal::kFile,
                 store::Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(bytes)));
-    journal.emplace(MapJournalParams{}, disk, *strand, MapJournal::Outputs{});
+    journal.emplace(MapJournalParams{}, disk, *strand, nullptr);
     (void)journal->load();  // Whatever it has, it is read within its bounds.
   }
 }

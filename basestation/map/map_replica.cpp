@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/map/map_replica.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/transfer/piece.hpp"
+#include "perception/stream/piece.hpp"
+
+namespace adit::station {
+namespace {
+
+// A file is written anew when it is long, and most of it was replaced by later pieces. A block takes 3 bytes
+// or so.
+constexpr std::size_t kLongFile = std::size_t{512} << 10;
+constexpr std::size_t kBytesOfBlock = 10;
+
+}  // namespace
+
+std::vector<JournalPiece> pieces_of(const ChunkStore& chunks) {
+  std::vector<JournalPiece> out;
+  for (const auto& [name, robot] : chunks.robots()) {
+    perception::SubmapPoses poses;
+    const auto add_poses = [&, &name = name] {
+      if (poses.poses.empty()) return;
+      out.push_back({name, static_cast<std::uint8_t>(transfer::Kind::map_poses), perception::encode(poses)});
+      poses.poses.clear();
+    };
+    for (const auto& [key, submap] : robot.submaps) {
+      if (submap.T_map_submap) poses.poses.push_back({key, *submap.T_map_submap, submap.pose_revision});
+      if (poses.poses.size() == perception::kMaxPiecePoses) add_poses();
+      std::vector<perception::BlockUpdate> blocks;
+      for (const auto& [index, block] : submap.blocks)
+        blocks.push_back({{index, block.known, block.occupied}, block.revision});
+      for (std::span<const perception::BlockUpdate> left(blocks); !left.empty();) {
+        auto packed = perception::pack(key, left.first(std::min(left.size(), perception::kMaxPieceBlocks)),
+                                       transfer::kMaxPieceBytes);
+        if (packed.count == 0) break;
+        left = left.subspan(packed.count);
+        out.push_back({name, static_cast<std::uint8_t>(transfer::Kind::map_blocks), std::move(packed.bytes)});
+      }
+    }
+    add_poses();
+  }
+  return out;
+}
+
+MapReplica::MapReplica(std::uint32_t start, std::shared_ptr<store::Disk> disk, Executor& home,
+                       std::function<void(const std::string& text)> trouble)
+    : home_(home), start_(start), journal_({}, std::move(disk), home, std::move(trouble)) {}
+
+std::string MapReplica::load() {
+  LoadedJournal loaded = journal_.load();
+  for (const JournalPiece& piece : loaded.pieces)
+    if (const auto taken = receiver_.restore(piece.robot, piece.kind, piece.data); !taken) {
+      loaded.start = 0;
+      loaded.lost = "a part of the map on the disk cannot be used: " + taken.error().text;
+    }
+  if (loaded.start != 0) start_ = loaded.start;
+  const bool long_file = loaded.bytes > std::max(kLongFile, kBytesOfBlock * chunks().blocks());
+  if (loaded.start == 0 || loaded.unfinished || long_file)
+    journal_.begin(start_, pieces_of(chunks()));
+  else
+    journal_.resume(loaded.bytes);
+  return loaded.lost;
+}
+
+Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::uint32_t waiting,
+                              std::span<const std::uint8_t> data, std::function<void()> stored) {
+  const Result<void> taken = receiver_.take(robot, kind, waiting, data, home_.now());
+  if (taken)
+    journal_.add({robot, kind, {data.begin(), data.end()}}, std::move(stored));
+  else if (taken.reason() != Reason::malformed)
+    stored();  // What does not fit, or will never be understood, would come again without end.
+  return taken;
+}
+
+void MapReplica::forget(std::uint32_t start) {
+  start_ = start;
+  receiver_.forget();
+  journal_.begin(start_, {});
+}
+
+}  // namespace adit::station
