@@ -55,7 +55,8 @@ std::vector<Duration> Watch::delays(std::array<std::optional<Time>, 8> Block::*u
   for (const auto& blocks : robots_)
     for (const auto& [index, block] : blocks)
       for (std::size_t i = 0; i < block.first.size(); ++i)
-        if ((known_cells(block.known) >> i & 1) != 0) out.push_back((block.*until)[i] ? *(block.*until)[i] - *block.first[i] : kNever);
+        if ((known_cells(block.known) >> i & 1) != 0)
+          out.push_back((block.*until)[i] ? *(block.*until)[i] - *block.first[i] : kNever);
   std::sort(out.begin(), out.end());
   return out;
 }

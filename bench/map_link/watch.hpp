@@ -11,8 +11,8 @@
 namespace adit::bench {
 
 /// Compares what the station shows of each robot's map with what the robot has. A cell is a cube of 0.4 m in
-/// the lattice of a robot's odometry frame; it is known once any of its voxels of 0.2 m is. Cells count that the
-/// robot knows at present: one that held a single wrong return may be unknown again.
+/// the lattice of a robot's odometry frame; it is known once any of its voxels of 0.2 m is. Cells count that
+/// the robot knows at present: one that held a single wrong return may be unknown again.
 class Watch {
  public:
   explicit Watch(std::size_t robots) : robots_(robots) {}
