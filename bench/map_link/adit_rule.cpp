@@ -61,6 +61,7 @@ class AditRule final : public Rule {
     const auto [found, opened] = r.offsets.try_emplace(step.submap, lattice_offset(step.T_odom_submap));
     if (opened) {
       r.blocks.open(step.submap, {kStart, step.submap, step.odom_epoch, found->second});
+      r.counted.open(step.submap, found->second);
       r.poses.open(step.submap, kStart, step.submap, 0);
       r.poses.update(step.submap, mission_.robots[robot].T_map_odom * step.T_odom_submap);
     }

@@ -18,9 +18,17 @@ std::optional<transfer::Source::Content> CountedSource::next(std::span<const tra
   std::vector<Name>& names = flights_[content->token];
   for (const perception::BlockUpdate& update : piece->blocks) {
     const Name& name = names.emplace_back(piece->key.index, update.block.index);
+    const perception::BlockIndex& offset = offsets_[piece->key.index];
     const bool repeated = lost_.erase(name) != 0;
     const bool first = ever_.insert(name).second;
-    (repeated ? account_.repeated : first ? account_.first : account_.changed) += part;
+    const bool place = places_
+                           .insert({update.block.index.x + offset.x, update.block.index.y + offset.y,
+                                    update.block.index.z + offset.z})
+                           .second;
+    (repeated ? account_.repeated
+     : place  ? account_.first
+     : first  ? account_.again
+              : account_.changed) += part;
   }
   return content;
 }

@@ -23,6 +23,8 @@ class CountedSource final : public transfer::Source {
   void lost(const transfer::PeerId& peer, std::uint64_t token) override;
   void settled(std::uint64_t token) override;
 
+  /// Notes where a submap lies in the lattice of the robot's odometry.
+  void open(std::uint32_t submap, const perception::BlockIndex& offset) { offsets_[submap] = offset; }
   /// Number of calls of next().
   std::uint64_t asked() const { return asked_; }
   const Account& account() const { return account_; }
@@ -32,6 +34,8 @@ class CountedSource final : public transfer::Source {
   agent::BlockSource& source_;
   Account account_{};
   std::uint64_t asked_{};
+  std::map<std::uint32_t, perception::BlockIndex> offsets_{};
+  std::set<perception::BlockIndex> places_{};
   std::set<Name> ever_{}, lost_{};
   std::map<std::uint64_t, std::vector<Name>> flights_{};
 };
