@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/map_link/drives.hpp"
 
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -9,10 +8,9 @@
 #include <random>
 #include <sstream>
 
+#include "bench/map_link/ground.hpp"
 #include "perception/map/export/octree_file.hpp"
-#include "sim/world/generate.hpp"
 #include "sim/world/lidar.hpp"
-#include "tests/folders/folders.hpp"
 
 namespace adit::bench {
 namespace {
@@ -20,46 +18,14 @@ namespace {
 constexpr double kHeight = 0.5;     ///< Of the lidar above the ground, m.
 constexpr double kStep = 0.4;       ///< Between two scans, m.
 constexpr double kBatch = 3.0;      ///< Between two batches, m.
-constexpr double kBody = 0.5;       ///< Free around the robot, m.
-constexpr double kHeadroom = 0.8;   ///< m
 constexpr float kMaxRange = 20.0f;  ///< m
-constexpr double kCeiling = 3.0;    ///< Of generated worlds, m.
-
-Result<std::filesystem::path> building_file() {
-  const std::array<std::filesystem::path, 3> folders{source_folder() + "/data/maps",
-                                                     source_folder() + "/config",
-                                                     "/usr/share/doc/liboctomap-dev/examples/data"};
-  return sim::find_map("geb079.bt", folders);
-}
-
-bool can_stand(const sim::World& world, double x, double y, double z) {
-  for (int i = 0; i < 8; ++i) {
-    const double a = i * std::numbers::pi / 4;
-    const auto ground = world.ground_height(x + kBody * std::cos(a), y + kBody * std::sin(a), kHeadroom);
-    if (!ground || std::abs(*ground - z) > 0.25) return false;
-  }
-  return true;
-}
 
 }  // namespace
 
 Result<MapDrive> drive_through(std::string_view name, std::uint64_t seed, double length) {
-  Eigen::Vector2d at(4.0, -0.2);
-  std::optional<sim::World> world;
-  if (name == "geb079") {
-    const auto file = building_file();
-    if (!file) return file.error();
-    auto loaded = sim::load_octomap(*file);
-    if (!loaded) return loaded.error();
-    world.emplace(std::move(*loaded));
-  } else {
-    const auto made = sim::generate_world(name, seed);
-    if (!made) return made.error();
-    auto boxes = sim::make_box_world(made->boxes, 0.0, kCeiling);
-    if (!boxes) return boxes.error();
-    world.emplace(std::move(*boxes));
-    at = made->start;
-  }
+  const auto ground = make_ground(name, seed);
+  if (!ground) return ground.error();
+  Eigen::Vector2d at = ground->start;
   std::mt19937_64 random(seed * 977 + 5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   const sim::LidarPattern lidar{sim::LidarParams{}};
@@ -70,10 +36,9 @@ Result<MapDrive> drive_through(std::string_view name, std::uint64_t seed, double
   double heading = uniform(random) * std::numbers::pi, driven = 0.0, in_batch = 0.0;
   std::uint32_t sent = 0;
   for (std::uint64_t n = 1; driven < length; ++n) {
-    const auto ground = world->ground_height(at.x(), at.y(), kHeadroom);
-    const double z = ground ? *ground : 0.0;
+    const double z = ground->height(at);
     const Pose3 base = Pose3::level({at.x(), at.y(), heading}, z + 0.02 * uniform(random));
-    PointCloud points = lidar.scan(*world, {}, base, kHeight, n + 1000 * seed);
+    PointCloud points = lidar.scan(ground->world, {}, base, kHeight, n + 1000 * seed);
     for (Eigen::Vector3f& p : points) p = (T_submap_world * (base * p.cast<double>())).cast<float>();
     out.grid.insert((T_submap_world * (base * Eigen::Vector3d(0, 0, kHeight))).cast<float>(), points,
                     kMaxRange);
@@ -82,7 +47,7 @@ Result<MapDrive> drive_through(std::string_view name, std::uint64_t seed, double
           attempt == 0 ? 0.15 * uniform(random) : attempt * 0.05 * uniform(random) * std::numbers::pi;
       const Eigen::Vector2d next =
           at + kStep * Eigen::Vector2d(std::cos(heading + turn), std::sin(heading + turn));
-      if (!can_stand(*world, next.x(), next.y(), z)) continue;
+      if (!ground->can_stand(next, z)) continue;
       heading += turn;
       at = next;
       break;
