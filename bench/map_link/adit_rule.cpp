@@ -7,6 +7,7 @@
 #include "basestation/map/merged_map.hpp"
 #include "bench/map_link/counted_source.hpp"
 #include "bench/map_link/rule.hpp"
+#include "core/transfer/receiver.hpp"
 #include "core/transfer/sender.hpp"
 #include "core/wire/typed.hpp"
 #include "perception/stream/piece.hpp"
@@ -65,6 +66,7 @@ class AditRule final : public Rule {
       r.poses.open(step.submap, kStart, step.submap, 0);
       r.poses.update(step.submap, mission_.robots[robot].T_map_odom * step.T_odom_submap);
     }
+    r.blocks.tick(mission_.air.now());
     for (const CoarseBlock& block : step.blocks) {
       r.blocks.update(step.submap, block);
       r.own[step.submap][block.index] = block;
@@ -140,7 +142,8 @@ class AditRule final : public Rule {
     AditRobot& r = *robots_[robot];
     const Time now = mission_.air.now();
     const auto kind = static_cast<std::uint8_t>(piece.kind);
-    if (!station_.take(r.name, session, piece.id, kind, piece.waiting, piece.data, now)) return;
+    if (!station_.take(r.name, kind, piece.waiting, piece.data, now)) return;
+    receiver_.take(r.name, session, piece.id, now);
     std::set<std::uint32_t> placed;
     if (piece.kind == transfer::Kind::map_poses) {
       // Blocks that were here before the pose of their submap are shown from now on.
@@ -165,7 +168,7 @@ class AditRule final : public Rule {
   }
 
   void acknowledge() {
-    const auto receipts = station_.due(mission_.air.now(), mission_.air.link().bandwidth);
+    const auto receipts = receiver_.due(mission_.air.now(), mission_.air.link().bandwidth);
     if (!receipts) return;
     radio::BulkAck message;
     message.station("base");
@@ -228,6 +231,7 @@ class AditRule final : public Rule {
   Mission mission_;
   std::vector<std::unique_ptr<AditRobot>> robots_{};
   station::MapReceiver station_{};
+  transfer::Receiver receiver_{};
   std::vector<std::uint8_t> buffer_{};
   std::uint64_t ticks_{};
 };

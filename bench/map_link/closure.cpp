@@ -6,6 +6,7 @@
 #include "bench/map_link/air.hpp"
 #include "bench/map_link/rows.hpp"
 #include "core/time/random.hpp"
+#include "core/transfer/receiver.hpp"
 #include "core/transfer/sender.hpp"
 #include "core/wire/link_file.hpp"
 #include "core/wire/typed.hpp"
@@ -62,14 +63,13 @@ class Closure {
     message.data(piece.data);
     wire::encode(message, buffer_);
     air_.send(Air::robot(0), Air::kStation, buffer_.size(), [this, piece] {
-      static_cast<void>(station_.take(kRobot, sender_.session(), piece.id,
-                                      static_cast<std::uint8_t>(piece.kind), piece.waiting, piece.data,
-                                      air_.now()));
+      if (station_.take(kRobot, static_cast<std::uint8_t>(piece.kind), piece.waiting, piece.data, air_.now()))
+        receiver_.take(kRobot, sender_.session(), piece.id, air_.now());
     });
   }
 
   void acknowledge() {
-    const auto receipts = station_.due(air_.now(), air_.link().bandwidth);
+    const auto receipts = receiver_.due(air_.now(), air_.link().bandwidth);
     if (!receipts) return;
     radio::BulkAck message;
     message.station("base");
@@ -99,6 +99,7 @@ class Closure {
   agent::PoseSource poses_{kRobot, 0x0123456789abcdefU};
   transfer::Sender sender_{{}};
   station::MapReceiver station_{};
+  transfer::Receiver receiver_{};
   std::vector<Pose3> truth_{};
   std::vector<std::uint8_t> buffer_{};
   std::uint64_t ticks_{};

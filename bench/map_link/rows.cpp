@@ -91,7 +91,8 @@ std::string row_causes(const std::string& where, const MissionResult& r) {
     return 100.0 * static_cast<double>(n) / static_cast<double>(std::max<std::uint64_t>(1, a.ticks));
   };
   return fmt::format(
-      "| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {} | {} / {} | {:.0f} | {:.0f} | {} / {} | {:.1f} | {} |",
+      "| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {} | {} / {} | {:.0f} | {:.0f} | {} / {} | {:.1f} | "
+      "{} |",
       where, r.robots.bytes - a.content, a.first, a.again, a.changed, a.repeated, a.poses, a.sent, a.lost,
       share(a.held), share(a.paced), time(quantile(r.waits, 0.5)), time(quantile(r.waits, kShare)),
       seconds(r.after),
@@ -185,7 +186,8 @@ Result<std::size_t> print_mission_rows(const RowOptions& options) {
           "| |",
           lines.cuts);
   print("Where Adit's bytes and seconds go",
-        "| world, link | headers | new places | again | changed | after a loss | poses | pieces / lost | held, % | no "
+        "| world, link | headers | new places | again | changed | after a loss | poses | pieces / lost | "
+        "held, % | no "
         "credit, % | first sent after, 50 / 95 %, s | settled after, s | station's map |",
         lines.causes);
   return different;

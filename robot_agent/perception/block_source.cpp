@@ -57,6 +57,8 @@ bool BlockSource::grows(const Peer& peer, const Ref& ref) const {
 
 void BlockSource::add_missing(Peer& peer, const Ref& ref, Entry& entry) {
   if (!entry.waits_since) entry.waits_since = now_;
+  peer.unseen.erase(entry.change);
+  peer.changed.erase(entry.change);
   (grows(peer, ref) ? peer.unseen : peer.changed)[entry.change] = ref;
 }
 
@@ -73,8 +75,6 @@ void BlockSource::queue(Peer& peer, const Cell& cell) {
     const bool stale = (entry.up_to_date & peer.bit) == 0 || entry.sent_known != entry.known ||
                        entry.sent_occupied != entry.occupied;
     if (chosen && !stale) continue;
-    peer.changed.erase(entry.change);
-    peer.unseen.erase(entry.change);
     add_missing(peer, ref, entry);
   }
 }

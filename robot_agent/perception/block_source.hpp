@@ -27,9 +27,7 @@ struct BlockSourceParams {
   Duration hold{5s};
   Duration max_hold{40s};
   double fill{
-      0.8};  ///< Part of a piece that must be full before it goes without one of the latest times, [0, 1].
-};
-Duration max_hold{40s};
+      0.8};  ///< Part of a piece that must be full, unless one of its blocks is at its latest, [0, 1].
 };
 
 /// Name and place of a submap. Submaps of one group lie in one lattice of blocks: they move together, and

@@ -140,7 +140,31 @@ TEST_F(BlockSourceTest, ABlockThatChangesOnItsWayIsSentAgainLater) {
   EXPECT_EQ(source.missing(kOne), 1U);
   EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << "it was sent just now";
   now += 6s;
+  EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << "alone it does not fill a piece";
+  now += 35s;
   EXPECT_EQ(next({kOne}, token).blocks.size(), 1U);
+}
+
+TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrTwoSeconds) {
+  source.join(kOne);
+  put(0, 1);
+  (void)next({kOne}, token);
+  source.acknowledged(kOne, token);
+  now += 1s;
+  source.tick(now);
+  put(0, 1 | 1ULL << 63U);  // A voxel of 0.4 m that the station does not know.
+  for (int i = 0; i < 19; ++i) {
+    EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << i;
+    now += 100ms;
+  }
+  now += 200ms;
+  EXPECT_EQ(next({kOne}, token).blocks.size(), 1U);
+  source.acknowledged(kOne, token);
+  source.tick(now);
+  Random random(1);
+  for (int x = 1; x < 300; ++x) source.update(0, {{x, 0, 0}, kAll, random.next()});
+  now += 700ms;
+  EXPECT_GT(next({kOne}, token).blocks.size(), 50U) << "they fill one";
 }
 
 TEST_F(BlockSourceTest, KnowsWhatEachPeerHas) {
