@@ -15,8 +15,9 @@ using transfer::PeerId;
 
 constexpr std::size_t kBlocksInPiece = perception::kMaxPieceBlocks;
 constexpr std::size_t kLookedAt =
-    4096;                          // Candidates, or cells of the focus, that are looked at for one piece.
-constexpr Duration kRest = 500ms;  // Between two looks at changed blocks when none is due.
+    4096;  // Candidates, or cells of the focus, that are looked at for one piece.
+constexpr std::size_t kSmallPiece = 600;    // Bytes.
+constexpr Duration kRest = 500ms;           // Between two looks at changed blocks when none is due.
 constexpr Duration kPieceRest = 200ms;      // Between two looks when there is not enough for a piece.
 constexpr Duration kFocusRest = 1s;         // Between two looks at the focus when it lacks nothing.
 constexpr std::uint64_t kChangedEvery = 4;  // One piece of so many is for changed blocks first.
@@ -132,11 +133,11 @@ void BlockSource::add_focused(Peer& peer, Time now, Choice& out) {
   if (slice == slices.size() && out.all.size() == before) peer.focus_rests_until = now + kFocusRest;
 }
 
-void BlockSource::add_unseen(const Peer& peer, Time now, Choice& out) const {
+void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const {
   const bool behind = peer.unseen.size() > kBacklog;
   std::size_t looked = 0;
   for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
-    const Due is_due = due(it->second, params_.settle, params_.wait, now);
+    const Due is_due = due(it->second, params_.settle, wait, now);
     if (is_due != Due::no && !out.focused.contains(it->second))
       out.add(it->second, behind || is_due == Due::late);
   }
@@ -165,12 +166,14 @@ void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
 std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
   if (peer.rests_until && now < *peer.rests_until) return {};
   Choice choice;
+  const int longer = max_bytes < kSmallPiece ? 2 : 1;
+  const bool behind = peer.unseen.size() > kBacklog;
   const bool changed_first = (tokens_ + 1) % kChangedEvery == 0;
   if (changed_first) add_changed(peer, now, choice);
   const auto first = static_cast<std::ptrdiff_t>(choice.all.size());
   add_focused(peer, now, choice);
   const auto focused = static_cast<std::ptrdiff_t>(choice.all.size());
-  add_unseen(peer, now, choice);
+  add_unseen(peer, longer * params_.wait, now, choice);
   // Free space shows an operator less than surfaces.
   const auto is_surface = [this](const auto& candidate) { return blocks_.at(candidate.ref).occupied != 0; };
   std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);
@@ -183,8 +186,12 @@ std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, std::size_t max_by
       out.push_back(candidate.ref);
       late = late || candidate.late;
     }
-    const double bytes = block_bytes_ * static_cast<double>(out.size());
-    if (late || bytes >= params_.fill * static_cast<double>(max_bytes)) return out;
+    const bool full =
+        block_bytes_ * static_cast<double>(out.size()) >= params_.fill * static_cast<double>(max_bytes);
+    if (full || (late && (behind || !peer.round_ends || now >= *peer.round_ends))) {
+      if (!full) peer.round_ends = now + longer * params_.round;
+      return out;
+    }
   }
   peer.rests_until = now + kPieceRest;
   return {};

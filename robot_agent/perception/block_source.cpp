@@ -345,6 +345,9 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
     for (auto& [id, peer] : peers_)
       if ((entry.chosen_for & peer.bit) != 0 && (entry.up_to_date & peer.bit) == 0)
         add_missing(peer, chosen[i], entry);
+    // What the peer shows of this place changes now: other blocks of it may be needed that were not.
+    for (const PeerId& id : peers)
+      if (const auto peer = peers_.find(id); peer != peers_.end()) queue(peer->second, cell_of(chosen[i]));
   }
   return Content{tokens_, std::move(packed.bytes)};
 }

@@ -19,15 +19,17 @@ struct BlockSourceParams {
   std::string robot{};
   std::uint64_t start{};            ///< SubmapKey::start of submaps that are not named by open().
   std::size_t max_blocks{200'000};  ///< Blocks that are stored, [64, 10^7]; see BlockSource::update.
-  // A place of which a station knows less goes when it has not changed for `settle`, at the latest after
-  // `wait`: while a robot passes, its blocks grow with every scan. A place that shows something else goes
-  // after `hold` without a change, at the latest after `max_hold`.
-  Duration settle{600ms};
-  Duration wait{2s};
-  Duration hold{5s};
-  Duration max_hold{40s};
-  double fill{
-      0.8};  ///< Part of a piece that must be full, unless one of its blocks is at its latest, [0, 1].
+  // A place of which a station knows less than the robot goes when it has not changed for `settle`, at the
+  // latest after `wait`: while a robot passes, its blocks grow with every scan. A place that shows something
+  // else goes after `hold` without a change, at the latest after `max_hold`. Pieces that are not full go once
+  // in a `round`. On links with small frames `wait` and `round` are twice as long, as a header takes a third
+  // of a piece.
+  Duration settle{1500ms};
+  Duration wait{3s};
+  Duration round{1500ms};
+  Duration hold{20s};
+  Duration max_hold{60s};
+  double fill{0.8};  ///< Part of a piece from which on it is full, [0, 1].
 };
 
 /// Name and place of a submap. Submaps of one group lie in one lattice of blocks: they move together, and
@@ -137,7 +139,8 @@ class BlockSource final : public transfer::Source {
     std::optional<Time> rests_until{};       ///< There was not enough for a piece when it was looked at last.
     std::optional<Time> changed_rests_until{};  ///< Nothing in `changed` was due then.
     std::vector<BlockRegion> focus{};
-    std::size_t focus_next{};  ///< The slice of the focus that was looked at last.
+    std::optional<Time> round_ends{};  ///< Until then only full pieces go.
+    std::size_t focus_next{};          ///< The slice of the focus that was looked at last.
     std::optional<Time>
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
   };
@@ -176,7 +179,7 @@ class BlockSource final : public transfer::Source {
   /// Adds what a peer lacks of the blocks of a region at one x; returns how many were looked at.
   std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Choice& out) const;
   static void begin_focus(Peer& peer);
-  void add_unseen(const Peer& peer, Time now, Choice& out) const;
+  void add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const;
   void add_changed(Peer& peer, Time now, Choice& out);
   void erase(const Ref& ref);
   /// Erases a block, and queues for the peers what shows its place now.

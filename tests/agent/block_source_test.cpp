@@ -126,6 +126,7 @@ TEST_F(BlockSourceTest, ALostPieceIsMissingAgainInItsNewestState) {
   source.lost(kOne, token);
   source.settled(token);
   EXPECT_EQ(source.missing(kOne), 1U);
+  now += 2s;
   const auto piece = next({kOne}, token);
   ASSERT_EQ(piece.blocks.size(), 1U);
   EXPECT_EQ(piece.blocks[0].block.known, 3U);
@@ -139,13 +140,13 @@ TEST_F(BlockSourceTest, ABlockThatChangesOnItsWayIsSentAgainLater) {
   source.acknowledged(kOne, token);
   EXPECT_EQ(source.missing(kOne), 1U);
   EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << "it was sent just now";
-  now += 6s;
+  now += 25s;
   EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << "alone it does not fill a piece";
-  now += 35s;
+  now += 36s;
   EXPECT_EQ(next({kOne}, token).blocks.size(), 1U);
 }
 
-TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrTwoSeconds) {
+TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrThreeSeconds) {
   source.join(kOne);
   put(0, 1);
   (void)next({kOne}, token);
@@ -153,7 +154,7 @@ TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrTwoSeconds) {
   now += 1s;
   source.tick(now);
   put(0, 1 | 1ULL << 63U);  // A voxel of 0.4 m that the station does not know.
-  for (int i = 0; i < 19; ++i) {
+  for (int i = 0; i < 29; ++i) {
     EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << i;
     now += 100ms;
   }
@@ -163,7 +164,7 @@ TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrTwoSeconds) {
   source.tick(now);
   Random random(1);
   for (int x = 1; x < 300; ++x) source.update(0, {{x, 0, 0}, kAll, random.next()});
-  now += 700ms;
+  now += 1600ms;
   EXPECT_GT(next({kOne}, token).blocks.size(), 50U) << "they fill one";
 }
 
