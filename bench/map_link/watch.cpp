@@ -33,6 +33,10 @@ void Watch::robot_has(std::size_t robot, const perception::CoarseBlock& block, T
   count(at, -1);
   at.known = block.known;
   at.occupied = block.occupied;
+  // What was unknown again before it arrived is first known when it comes back.
+  const std::uint8_t cells = known_cells(block.known);
+  for (std::size_t i = 0; i < at.first.size(); ++i)
+    if ((cells >> i & 1) == 0 && !at.arrived[i]) at.first[i].reset(), at.sent[i].reset();
   note(at.first, block.known, now);
   count(at, 1);
 }
