@@ -7,8 +7,9 @@
 namespace adit::transfer {
 namespace {
 
-/// A piece that is so many ids older than the newest one that arrived was lost, not overtaken.
-constexpr std::uint32_t kOvertaken = 8;
+/// A piece that is so many ids older than the newest one that arrived was lost, not overtaken: pieces are at
+/// least some milliseconds apart, and the next ones at once are at most four.
+constexpr std::uint32_t kOvertaken = 4;
 
 }  // namespace
 

@@ -377,6 +377,7 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
     entry.waits_since = Time(Duration::min() / 2);  // The hold is for what arrived.
     add_missing(peer->second, part.ref, entry);
     peer->second.rests_until.reset();
+    peer->second.round_ends.reset();
     peer->second.changed_rests_until.reset();
   }
 }

@@ -50,7 +50,7 @@ TEST(MapDisk, AStationThatHasTheMapGetsNoBlockAgainAfterARestart) {
   MapBench bench;
   bench.drive(0, 40);
   MapBench::Station station;
-  bench.run(60s, &station);
+  bench.run(120s, &station);
   const std::size_t received = station.received;
   EXPECT_GT(received, 100U);
   bench.restart();
