@@ -16,6 +16,7 @@ using transfer::PeerId;
 constexpr std::size_t kBlocksInPiece = perception::kMaxPieceBlocks;
 constexpr std::size_t kLookedAt =
     4096;  // Candidates, or cells of the focus, that are looked at for one piece.
+constexpr std::size_t kFew = 12;          // Blocks.
 constexpr std::size_t kSmallPiece = 600;    // Bytes.
 constexpr Duration kRest = 500ms;           // Between two looks at changed blocks when none is due.
 constexpr Duration kPieceRest = 200ms;      // Between two looks when there is not enough for a piece.
@@ -173,7 +174,7 @@ std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, std::size_t max_by
   const auto first = static_cast<std::ptrdiff_t>(choice.all.size());
   add_focused(peer, now, choice);
   const auto focused = static_cast<std::ptrdiff_t>(choice.all.size());
-  add_unseen(peer, longer * params_.wait, now, choice);
+  add_unseen(peer, (peer.unseen.size() < kFew ? 3 : 1) * longer * params_.wait, now, choice);
   // Free space shows an operator less than surfaces.
   const auto is_surface = [this](const auto& candidate) { return blocks_.at(candidate.ref).occupied != 0; };
   std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);

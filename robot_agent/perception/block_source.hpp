@@ -25,7 +25,7 @@ struct BlockSourceParams {
   // in a `round`. On links with small frames `wait` and `round` are twice as long, as a header takes a third
   // of a piece.
   Duration settle{1500ms};
-  Duration wait{2500ms};
+  Duration wait{2s};
   Duration round{1500ms};
   Duration hold{20s};
   Duration max_hold{60s};
