@@ -29,8 +29,11 @@ class Pacer {
   void observe(Time now, const wire::SenderState& link, std::size_t peers);
   /// Largest content of a piece on this link, bytes.
   std::size_t piece_bytes() const { return piece_bytes_; }
-  /// Whether a piece may go out now.
-  bool allows() const { return idle_ && credit_ > 0.0; }
+  /// Whether a piece may go out now. `ahead`: it need not wait until the rate has made up for the piece
+  /// before.
+  bool allows(bool ahead = false) const {
+    return idle_ && credit_ > (ahead ? -static_cast<double>((piece_bytes_ + kPieceOverhead) * peers_) : 0.0);
+  }
   /// Records that a piece went out.
   void sent(std::size_t bytes) { credit_ -= static_cast<double>((bytes + kPieceOverhead) * peers_); }
   /// Records whether a piece arrived.

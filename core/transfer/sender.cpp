@@ -138,7 +138,7 @@ std::vector<Piece> Sender::due(Time now, const wire::SenderState& link) {
   if (heard == 0) return out;
   pacer_.observe(now, link, heard);
   for (Source* source : sources_) {
-    while (pacer_.allows() && out.size() < params_.pieces_at_once &&
+    while (pacer_.allows(source->ahead()) && out.size() < params_.pieces_at_once &&
            flights_.size() < params_.max_in_flight) {
       std::vector<PeerId> peers = served(*source, now);
       if (peers.empty()) break;

@@ -25,6 +25,8 @@ class Source {
   virtual void join(const PeerId& peer) = 0;
   /// A peer that is forgotten.
   virtual void leave(const PeerId& peer) = 0;
+  /// Whether its next piece need not wait until the rate has made up for the one before. It must be rare.
+  virtual bool ahead() const { return false; }
   /// Number of parts that the peer lacks and that are not on their way to it.
   virtual std::size_t missing(const PeerId& peer) const = 0;
   /// Content that `peers` lack, above all the first one, of at most `max_bytes`, on its way to all of them.

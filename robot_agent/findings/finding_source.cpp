@@ -99,6 +99,13 @@ void FindingSource::heard(const PeerId& station, Time now) {
   peer.heard = now;
 }
 
+void FindingSource::tick(Time now) {
+  known_.tick(now);
+  const bool idle = std::all_of(peers_.begin(), peers_.end(),
+                                [this](const auto& peer) { return missing(peer.first) == 0; });
+  if (idle) run_ = 0;
+}
+
 void FindingSource::join(const PeerId& station) {
   Peer& peer = peers_[station];
   // What was on its way was for the station's process before; what is on its disk it still has.

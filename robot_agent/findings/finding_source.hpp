@@ -50,8 +50,8 @@ class FindingSource final : public transfer::Source {
   Result<std::uint64_t> report(findings::Finding finding);
   /// Records that a station is there. One that was away gets at once what had begun to wait.
   void heard(const transfer::PeerId& station, Time now);
-  /// Writes to the disk what is due.
-  void tick(Time now) { known_.tick(now); }
+  /// Writes to the disk what is due. Call it before the sender's due().
+  void tick(Time now);
   /// Hands unwritten findings to the writer's strand, at a clean end after the home strand has ended.
   void flush() { finding_store_.flush(); }
 
@@ -63,6 +63,8 @@ class FindingSource final : public transfer::Source {
   transfer::Kind kind() const override { return transfer::Kind::findings; }
   void join(const transfer::PeerId& peer) override;
   void leave(const transfer::PeerId& peer) override { peers_.erase(peer); }
+  /// The first piece of a run does not wait for the rate: a finding does not wait behind a piece of the map.
+  bool ahead() const override { return run_ == 0; }
   std::size_t missing(const transfer::PeerId& peer) const override;
   /// A finding that is longer than `max_bytes` goes alone in a piece of its own length, at most
   /// transfer::kMaxPieceBytes: the wire cuts it into frames.

@@ -26,7 +26,7 @@ class RadioEdgeTest : public testing::Test {
     EXPECT_TRUE(bench.say("op1", "take").accepted());
     EXPECT_TRUE(edge->listen({directory, namesakes, [this](const auto& use) { use(bench.interface()); },
                               [](const Task& task) { task(); }, [](const auto&, const auto&) {},
-                              [](const auto&, bool, const auto&) {}, [](const Id&, auto) {}}));
+                              [](const auto&, bool, const auto&) {}}));
     run(3s);  // the endpoints match
     EXPECT_EQ(joystick.matched(), 1U);
   }

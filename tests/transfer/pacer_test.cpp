@@ -96,5 +96,25 @@ TEST(Pacer, FallsBackWhereNoProfileTellsAndMostPiecesAreLost) {
   EXPECT_LT(pacer.rate(), before / 2);
 }
 
+TEST(Pacer, LetsOnePieceAheadOfTheRateAndNoMore) {
+  wire::LinkProfile thin{.name = "thin", .bandwidth = 100e3};
+  Pacer pacer;
+  Time now{};
+  for (int i = 0; i < 20; ++i, now += 50ms) pacer.observe(now, on(thin), 2);
+  ASSERT_TRUE(pacer.allows());
+  pacer.sent(pacer.piece_bytes());
+  EXPECT_FALSE(pacer.allows());
+  EXPECT_TRUE(pacer.allows(true));
+  pacer.sent(pacer.piece_bytes());
+  EXPECT_FALSE(pacer.allows(true)) << "the debt is that of two pieces";
+  for (int i = 0; i < 200 && !pacer.allows(true); ++i, now += 50ms) pacer.observe(now, on(thin), 2);
+  EXPECT_TRUE(pacer.allows(true));
+  EXPECT_FALSE(pacer.allows()) << "others wait until it is made up for";
+  wire::SenderState busy = on(thin);
+  busy.queue[5] = 1s;
+  pacer.observe(now, busy, 2);
+  EXPECT_FALSE(pacer.allows(true)) << "nothing is added to a queue";
+}
+
 }  // namespace
 }  // namespace adit::transfer
