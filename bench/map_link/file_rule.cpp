@@ -70,7 +70,7 @@ class FileRule final : public Rule {
     const Time now = mission_.air.now();
     if (now >= r.due) {
       r.due += kFilePeriod;
-      // Finished first; but one that reaches nobody is replaced by the newest.
+      // Finished first; but one that reaches no station is replaced by the newest.
       if (r.changed && (!r.file || now - r.answered > kFilePeriod)) begin(r);
     }
     if (!r.file) return;
