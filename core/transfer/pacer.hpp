@@ -9,7 +9,7 @@
 namespace adit::transfer {
 
 struct PacerParams {
-  double share{0.4};            ///< Part of the link's bandwidth, (0, 1].
+  double share{0.55};           ///< Part of the link's bandwidth, (0, 1]; the class may use 0.6 of it.
   double max_rate{60e3};        ///< Largest rate over all peers, bytes/s.
   double unknown_link{4e6};     ///< Bandwidth assumed where no profile limits the sender, bit/s.
   Duration max_queue{60ms};     ///< Airtime queued above which nothing is added.

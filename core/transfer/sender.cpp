@@ -77,7 +77,9 @@ void Sender::expire(Time now) {
     if (now - flight.sent >= limit) {
       for (const PeerId& peer : flight.awaited) {
         flight.source->lost(peer, flight.token);
-        pacer_.settled(false);
+        // A peer that is not heard at all says nothing about the rate at which it should be sent to.
+        const auto heard = peers_.find(peer);
+        if (heard != peers_.end() && heard->second.heard > flight.sent) pacer_.settled(false);
       }
       flight.awaited.clear();
     }

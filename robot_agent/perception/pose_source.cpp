@@ -5,8 +5,6 @@ namespace adit::agent {
 namespace {
 
 constexpr std::size_t kPosesInPiece = 40;
-constexpr std::size_t kPoseBytes = 40;  // Of one pose in a piece, at most.
-constexpr std::size_t kHeadBytes = 64;  // Of a piece beside them.
 
 }  // namespace
 
@@ -62,20 +60,28 @@ std::size_t PoseSource::missing(const transfer::PeerId& peer) const {
 std::optional<transfer::Source::Content> PoseSource::next(std::span<const transfer::PeerId> peers,
                                                           std::size_t max_bytes, Time) {
   const auto first = peers_.find(peers.front());
-  if (first == peers_.end() || first->second.empty() || max_bytes < kHeadBytes + kPoseBytes)
-    return std::nullopt;
-  const std::size_t room = std::min(kPosesInPiece, (max_bytes - kHeadBytes) / kPoseBytes);
+  if (first == peers_.end() || first->second.empty()) return std::nullopt;
   perception::SubmapPoses piece;
-  std::vector<Part>& parts = flights_[++tokens_];
-  for (auto it = first->second.rbegin(); it != first->second.rend() && parts.size() < room; ++it) {
+  std::vector<Part> parts;
+  for (auto it = first->second.rbegin(); it != first->second.rend() && parts.size() < kPosesInPiece; ++it) {
     const Entry& entry = poses_.at(*it);
     piece.poses.push_back(content(*it, entry));
     parts.push_back({*it, entry.revision});
   }
+  std::vector<std::uint8_t> bytes = perception::encode(piece);
+  while (bytes.size() > max_bytes && parts.size() > 1) {
+    // A few more attempts find how many fit.
+    const std::size_t fit = std::min(parts.size() - 1, parts.size() * max_bytes / bytes.size());
+    parts.resize(std::max<std::size_t>(fit, 1));
+    piece.poses.resize(parts.size());
+    bytes = perception::encode(piece);
+  }
+  if (bytes.size() > max_bytes) return std::nullopt;
   for (const Part& part : parts)
     for (const transfer::PeerId& id : peers)
       if (const auto peer = peers_.find(id); peer != peers_.end()) peer->second.erase(part.submap);
-  return Content{tokens_, perception::encode(piece)};
+  flights_[++tokens_] = std::move(parts);
+  return Content{tokens_, std::move(bytes)};
 }
 
 void PoseSource::lost(const transfer::PeerId& peer, std::uint64_t token) {

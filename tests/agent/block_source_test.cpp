@@ -154,7 +154,7 @@ TEST_F(BlockSourceTest, APlaceThatGrowsWaitsForAFullPieceOrSomeSeconds) {
   now += 1s;
   source.tick(now);
   put(0, 1 | 1ULL << 63U);  // A voxel of 0.4 m that the station does not know.
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 59; ++i) {
     EXPECT_FALSE(source.next(std::vector{kOne}, 1200, now)) << i;
     now += 100ms;
   }
