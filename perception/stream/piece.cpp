@@ -19,14 +19,14 @@
 namespace adit::perception {
 namespace {
 
-constexpr std::uint8_t kVersion = 2;
+constexpr std::uint8_t kVersion = 3;
 constexpr std::uint8_t kBlocks = 1, kPoses = 2;
 constexpr std::size_t kHeader = 2;  ///< Version, and kind with the version of the coder's tables above it.
 constexpr std::size_t kBlocksHeader = 6;  ///< The same, and the checksum.
 constexpr std::uint8_t kBlocksKind = kBlocks | ContextTrees::kVersion << 4;
 constexpr int kLevel = 3;  ///< Higher levels of Zstandard gain less than 1 % on a piece.
 constexpr int kBlockLevel = 2;
-constexpr double kPositionUnit = 1e-4, kQuaternionUnit = 1e-7;
+constexpr double kPositionUnit = 1e-3, kQuaternionUnit = 1e-5;
 constexpr double kMaxPosition = 1e5;  ///< m
 
 void write_key(ByteWriter& to, const SubmapKey& key) {

@@ -132,5 +132,23 @@ TEST_F(MapCommandsTest, AMapThatWasSavedCanBeLoadedElsewhere) {
   EXPECT_EQ(execute("map load " + file("none.bt")).json["reason"], "cannot_read");
 }
 
+TEST_F(MapCommandsTest, WhatTheOperatorLooksAtGoesToTheRobotsForSomeSeconds) {
+  op_->look_at({1.5, -2, 20});
+  run_for(4s);
+  EXPECT_EQ(robot_->piece_acks().back().look(), (std::vector<float>{1.5F, -2, 20}));
+  run_for(12s);
+  EXPECT_TRUE(robot_->piece_acks().back().look().empty());
+}
+
+TEST_F(MapCommandsTest, AMapThatIsForgottenIsAskedForAgain) {
+  send_map("r1");
+  EXPECT_EQ(op_->map().blocks(), 12U);
+  const std::uint32_t start = robot_->piece_acks().back().start();
+  EXPECT_EQ(execute("map forget").exit_code, 0);
+  EXPECT_EQ(op_->map().blocks(), 0U);
+  run_for(5s);
+  EXPECT_NE(robot_->piece_acks().back().start(), start) << "so robots send all again";
+}
+
 }  // namespace
 }  // namespace adit::station

@@ -148,19 +148,19 @@ std::vector<std::uint8_t> piece_of(std::uint8_t version, std::uint8_t kind,
 TEST(Piece, IsRefusedWhenItsContentIsHostile) {
   const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
   const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
-  ASSERT_TRUE(decode(piece_of(2, whole[1], content)));
+  ASSERT_TRUE(decode(piece_of(3, whole[1], content)));
   EXPECT_EQ(decode(encode(SubmapPoses{})).reason(), Reason::malformed);
-  EXPECT_EQ(decode(piece_of(2, whole[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
+  EXPECT_EQ(decode(piece_of(3, whole[1], std::vector<std::uint8_t>(1 << 20))).reason(), Reason::malformed);
   EXPECT_EQ(decode(encode(MapPiece{{"", 1, 2}, {}})).reason(), Reason::malformed);
 }
 
 TEST(Piece, OfAnotherVersionOrOtherTablesIsRefusedByName) {
   const std::vector<std::uint8_t> whole = encode(MapPiece{kKey, corridor(20)});
   const std::vector<std::uint8_t> content(whole.begin() + 6, whole.end());
-  for (const int version : {0, 1, 3, 255})
+  for (const int version : {0, 1, 2, 255})
     EXPECT_EQ(decode(piece_of(static_cast<std::uint8_t>(version), whole[1], content)).reason(),
               Reason::wrong_protocol);
-  EXPECT_EQ(decode(piece_of(2, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
+  EXPECT_EQ(decode(piece_of(3, static_cast<std::uint8_t>(whole[1] + 0x10), content)).reason(),
             Reason::wrong_protocol);
 }
 
@@ -175,12 +175,12 @@ TEST(Piece, RandomContentDoesNoHarm) {
     content[1] = 'r';
     // Small numbers at the beginning lead farther.
     if (n % 2 == 0 && content.size() > 14) content[10] = static_cast<std::uint8_t>(random() % 8);
-    if (const auto piece = decode(piece_of(2, kind, content))) {
+    if (const auto piece = decode(piece_of(3, kind, content))) {
       ++decoded;
       ASSERT_LE(piece->blocks.size(), kMaxPieceBlocks);
       for (const BlockUpdate& u : piece->blocks) ASSERT_EQ(u.block.occupied & ~u.block.known, 0u);
     }
-    if (const auto poses = decode_poses(piece_of(2, 2, content))) {
+    if (const auto poses = decode_poses(piece_of(3, 2, content))) {
       for (const SubmapPose& p : poses->poses) ASSERT_TRUE(p.T_map_submap.position.allFinite());
     }
   }
@@ -207,7 +207,7 @@ TEST(SubmapPoses, DecodeToWhatWasEncodedWithinTheirUnits) {
     const SubmapPose &a = sent.poses[i], &b = got->poses[i];
     EXPECT_EQ(a.key, b.key);
     EXPECT_EQ(a.revision, b.revision);
-    EXPECT_LT((a.T_map_submap.position - b.T_map_submap.position).norm(), 2e-4);
+    EXPECT_LT((a.T_map_submap.position - b.T_map_submap.position).norm(), 1e-3);
     EXPECT_LT(a.T_map_submap.orientation.angularDistance(b.T_map_submap.orientation), 1e-4);
   }
   for (std::size_t size = 0; size < bytes.size(); ++size)

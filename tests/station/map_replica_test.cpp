@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "basestation/map/map_replica.hpp"
+
+#include <gmock/gmock.h>
+
+#include "core/exec/virtual_runtime.hpp"
+#include "core/store/memory_disk.hpp"
+#include "core/time/random.hpp"
+#include "core/transfer/piece.hpp"
+
+namespace adit::station {
+namespace {
+
+class MapReplicaTest : public testing::Test {
+ protected:
+  MapReplicaTest() { restart(); }
+  std::string restart() {
+    replica.emplace(++starts, disk, *strand, [this](const std::string& text) { troubles.push_back(text); });
+    return replica->load();
+  }
+  Result<void> take(transfer::Kind kind, const std::vector<std::uint8_t>& data) {
+    return replica->take("r1", static_cast<std::uint8_t>(kind), 0, data, [this] { ++stored; });
+  }
+  /// Some blocks of a submap, with any revisions.
+  void send_blocks(std::uint32_t submap, int count) {
+    std::vector<perception::BlockUpdate> blocks;
+    for (int i = 0; i < count; ++i) {
+      const std::uint64_t known = random.next();
+      blocks.push_back({{{static_cast<int>(random.below(40)), static_cast<int>(random.below(40)), 0},
+                         known,
+                         known & random.next()},
+                        static_cast<std::uint32_t>(random.below(100'000))});
+    }
+    EXPECT_TRUE(take(transfer::Kind::map_blocks,
+                     perception::pack({"r1", 5, submap}, blocks, transfer::kMaxPieceBytes).bytes)
+                    .ok());
+  }
+  void send_pose(std::uint32_t submap, double x, std::uint32_t revision) {
+    EXPECT_TRUE(take(transfer::Kind::map_poses,
+                     perception::encode({{{{"r1", 5, submap}, Pose3::level({x, 1, 0.5}, 0.2), revision}}}))
+                    .ok());
+  }
+  void run(Duration span) { scheduler.run_until(scheduler.elapsed() + span); }
+  using Content = std::map<std::pair<std::uint32_t, perception::BlockIndex>, std::array<std::uint64_t, 3>>;
+  Content content() const {
+    Content out;
+    for (const auto& [name, robot] : replica->chunks().robots())
+      for (const auto& [key, submap] : robot.submaps)
+        for (const auto& [index, block] : submap.blocks)
+          out[{key.index, index}] = {block.known, block.occupied, block.revision};
+    return out;
+  }
+
+  VirtualScheduler scheduler{1};
+  std::unique_ptr<Runtime> machine{scheduler.machine("op1", 5s)};
+  std::shared_ptr<Strand> strand{machine->strand("station")};
+  std::shared_ptr<store::MemoryDisk> disk{std::make_shared<store::MemoryDisk>()};
+  Random random{4};
+  std::uint32_t starts{40};
+  int stored{};
+  std::vector<std::string> troubles{};
+  std::optional<MapReplica> replica{};
+};
+
+TEST_F(MapReplicaTest, AStationThatRestartsHasItsMapAndItsStart) {
+  const std::uint32_t start = replica->start();
+  for (std::uint32_t submap = 0; submap < 5; ++submap) {
+    send_pose(submap, submap, 1);
+    send_blocks(submap, 60);
+  }
+  run(1s);
+  EXPECT_EQ(stored, 10);
+  const Content before = content();
+  const double area = replica->chunks().area();
+  EXPECT_EQ(restart(), "");
+  EXPECT_EQ(replica->start(), start);
+  EXPECT_EQ(content(), before);
+  EXPECT_EQ(replica->chunks().area(), area);
+  EXPECT_FALSE(replica->chunks().robots().at("r1").heard) << "it was not heard since the start";
+}
+
+TEST_F(MapReplicaTest, WhatWasNotAcknowledgedMayBeMissingAfterARestart) {
+  send_blocks(0, 10);
+  EXPECT_EQ(stored, 0);
+  restart();
+  EXPECT_TRUE(content().empty());
+  run(1s);
+  EXPECT_EQ(stored, 0) << "the piece of the start before is not acknowledged";
+}
+
+TEST_F(MapReplicaTest, ADamagedFileMakesTheStartANewOneAndKeepsWhatCanBeRead) {
+  send_blocks(0, 30);
+  run(1s);
+  const Content before = content();
+  send_blocks(1, 30);
+  run(1s);
+  store::Bytes bytes = disk->read(MapJournal::kFile)->value();
+  bytes[bytes.size() - 20] ^= 1;
+  disk->plant(MapJournal::kFile, bytes);
+  const std::uint32_t start = replica->start();
+  EXPECT_THAT(restart(), testing::HasSubstr("damaged"));
+  EXPECT_NE(replica->start(), start);
+  EXPECT_EQ(content(), before);
+  EXPECT_EQ(restart(), "") << "what was left is a whole file again";
+  EXPECT_EQ(content(), before);
+}
+
+TEST_F(MapReplicaTest, ALongFileOfOldStatesIsWrittenAgain) {
+  for (int n = 0; n < 1500; ++n) {
+    send_blocks(0, 60);
+    if (n % 20 == 0) run(200ms);
+  }
+  run(1s);
+  const Content before = content();
+  const std::size_t size = disk->read(MapJournal::kFile)->value().size();
+  restart();
+  EXPECT_LT(disk->read(MapJournal::kFile)->value().size(), size / 10);
+  EXPECT_EQ(content(), before) << "with their revisions";
+  const std::uint32_t start = replica->start();
+  restart();
+  EXPECT_EQ(content(), before);
+  EXPECT_EQ(replica->start(), start);
+}
+
+TEST_F(MapReplicaTest, ForgetsEverythingAlsoWhileItIsBeingWritten) {
+  for (const Duration pause : {0ms, 101ms, 1000ms}) {
+    send_blocks(0, 30);
+    run(pause);
+    const std::uint64_t revision = replica->chunks().revision();
+    replica->forget(900);
+    EXPECT_TRUE(content().empty());
+    EXPECT_GT(replica->chunks().revision(), revision) << "front ends see it";
+    run(1s);
+    send_pose(3, 1, 1);
+    run(1s);
+    restart();
+    EXPECT_TRUE(content().empty());
+    EXPECT_EQ(replica->start(), 900U);
+    EXPECT_EQ(replica->chunks().robots().at("r1").submaps.size(), 1U);
+  }
+}
+
+TEST_F(MapReplicaTest, RobotsOfEarlierMissionsMakeRoomForThoseThatAreHeard) {
+  ChunkStore chunks({.max_robots = 2, .max_blocks = 10});
+  EXPECT_TRUE(chunks.count("old1", 1, 0, std::nullopt));
+  EXPECT_TRUE(chunks.count("old2", 1, 0, std::nullopt));
+  EXPECT_FALSE(chunks.count("old3", 1, 0, std::nullopt)) << "the disk has too many";
+  perception::MapPiece piece{{"old2", 1, 0}, {}};
+  for (int x = 0; x < 10; ++x) piece.blocks.push_back({{{x, 0, 0}, 1, 0}, 1});
+  EXPECT_TRUE(chunks.take("old2", piece));
+  EXPECT_TRUE(chunks.count("r1", 1, 0, Time{1s}));
+  EXPECT_FALSE(chunks.robots().contains("old1"));
+  piece.key.robot = "r1";
+  EXPECT_TRUE(chunks.take("r1", piece));
+  EXPECT_FALSE(chunks.robots().contains("old2"));
+  EXPECT_EQ(chunks.blocks(), 10U);
+}
+
+}  // namespace
+}  // namespace adit::station
