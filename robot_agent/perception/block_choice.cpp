@@ -15,8 +15,8 @@ using transfer::PeerId;
 
 constexpr std::size_t kBlocksInPiece = perception::kMaxPieceBlocks;
 constexpr std::size_t kLookedAt =
-    4096;  // Candidates, or cells of the focus, that are looked at for one piece.
-constexpr std::size_t kFew = 12;          // Blocks.
+    4096;                         // Candidates, or cells of the focus, that are looked at for one piece.
+constexpr std::size_t kFew = 12;  // Blocks.
 constexpr std::size_t kSmallPiece = 600;    // Bytes.
 constexpr Duration kRest = 500ms;           // Between two looks at changed blocks when none is due.
 constexpr Duration kPieceRest = 200ms;      // Between two looks when there is not enough for a piece.
@@ -28,54 +28,33 @@ constexpr std::uint64_t kChangedEvery = 4;  // One piece of so many is for chang
 /// Candidates for a piece, those first that should go first.
 struct BlockSource::Choice {
   struct Candidate {
-    Ref ref{};
+    Cell cell{};
     bool late{};  ///< It cannot wait for a full piece.
   };
   std::vector<Candidate> all{};
-  std::set<Ref> focused{};
+  std::set<Cell> focused{};
 
-  void add(const Ref& ref, bool late) { all.push_back({ref, late}); }
-  /// Those of one submap: of the first one that is late, or else of which there are most.
-  std::vector<Candidate> of_one_submap() const {
-    std::map<std::uint32_t, std::size_t> count;
-    for (const Candidate& candidate : all) ++count[candidate.ref.submap];
-    auto submap = std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) {
-                    return a.second < b.second;
-                  })->first;
+  void add(const Cell& cell, bool late) { all.push_back({cell, late}); }
+  /// Those of one group: of the first one that is late, or else of which there are most.
+  std::vector<Candidate> of_one_group() const {
+    std::map<std::uint64_t, std::size_t> count;
+    for (const Candidate& candidate : all) ++count[candidate.cell.group];
+    std::uint64_t group = std::max_element(count.begin(), count.end(), [](const auto& a, const auto& b) {
+                            return a.second < b.second;
+                          })->first;
     const auto late = std::find_if(all.begin(), all.end(), [](const Candidate& c) { return c.late; });
-    if (late != all.end()) submap = late->ref.submap;
+    if (late != all.end()) group = late->cell.group;
     std::vector<Candidate> out;
     for (const Candidate& candidate : all)
-      if (candidate.ref.submap == submap && out.size() < kBlocksInPiece) out.push_back(candidate);
+      if (candidate.cell.group == group && out.size() < kBlocksInPiece) out.push_back(candidate);
     return out;
   }
 };
 
-bool BlockSource::is_needed(const Peer& peer, const Ref& ref) const {
-  const Entry& asked = blocks_.at(ref);
-  if ((asked.chosen_for & peer.bit) != 0 && (asked.up_to_date & peer.bit) == 0) return true;
-  const Cell cell = cell_of(ref);
-  const std::vector<std::uint32_t>& submaps = cells_.at(cell).submaps;
-  const BlockVotes all = votes_of(cell, submaps);
-  // The newer ones are brought up to date first; this one is needed if that does not suffice.
-  for (std::size_t renewed = submaps.size();; --renewed) {
-    BlockVotes shown;
-    for (std::size_t i = 0; i < submaps.size(); ++i) {
-      const Entry& entry = blocks_.at(ref_in(cell, submaps[i]));
-      if (i >= renewed)
-        shown.add(entry.known, entry.occupied);
-      else if ((entry.chosen_for & peer.bit) != 0)
-        shown.add(entry.sent_known, entry.sent_occupied);
-    }
-    if (shown.shows(all)) return false;
-    if (renewed == 0 || submaps[renewed - 1] == ref.submap) return true;
-  }
-}
-
-BlockSource::Due BlockSource::due(const Ref& ref, Duration rest, Duration latest, Time now) const {
-  const std::optional<Time>& since = blocks_.at(ref).waits_since;
-  if (!since || now - *since >= latest) return Due::late;
-  return now - cells_.at(cell_of(ref)).changed >= rest ? Due::yes : Due::no;
+BlockSource::Due BlockSource::due(const Cell& cell, Duration rest, Duration latest, Time now) const {
+  const Place& place = cells_.at(cell);
+  if (!place.waits_since || now - *place.waits_since >= latest) return Due::late;
+  return now - place.changed >= rest ? Due::yes : Due::no;
 }
 
 void BlockSource::focus(std::vector<BlockRegion> regions) {
@@ -109,10 +88,7 @@ std::size_t BlockSource::add_slice(const Peer& peer, const BlockRegion& region, 
     const auto& [cell, place] = *it;
     if (cell.index.x != x || cell.index.y > region.high.y) break;
     if (cell.index.z < region.low.z || cell.index.z > region.high.z) continue;
-    for (const std::uint32_t submap : place.submaps) {
-      const Ref ref = ref_in(cell, submap);
-      if (peer.unseen.contains(blocks_.at(ref).change) && out.focused.insert(ref).second) out.add(ref, true);
-    }
+    if (peer.unseen.contains(place.change) && out.focused.insert(cell).second) out.add(cell, true);
   }
   return looked;
 }
@@ -149,22 +125,14 @@ void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
   std::size_t looked = 0, added = 0;
   for (auto it = peer.changed.begin();
        it != peer.changed.end() && looked < kLookedAt && added < kBlocksInPiece; ++looked) {
-    const Ref ref = it->second;
-    const Due is_due = due(ref, params_.hold, params_.max_hold, now);
-    if (is_due == Due::no) {
-      ++it;
-    } else if (!is_needed(peer, ref)) {
-      it = peer.changed.erase(it);
-    } else {
-      ++it;
-      ++added;
-      out.add(ref, is_due == Due::late);
-    }
+    const Due is_due = due(it->second, params_.hold, params_.max_hold, now);
+    if (is_due != Due::no) out.add(it->second, is_due == Due::late), ++added;
+    ++it;
   }
   if (added == 0) peer.changed_rests_until = now + kRest;
 }
 
-std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
+std::vector<BlockSource::Cell> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
   if (peer.rests_until && now < *peer.rests_until) return {};
   Choice choice;
   const int longer = max_bytes < kSmallPiece ? 2 : 1;
@@ -176,15 +144,15 @@ std::vector<BlockSource::Ref> BlockSource::choose(Peer& peer, std::size_t max_by
   const auto focused = static_cast<std::ptrdiff_t>(choice.all.size());
   add_unseen(peer, (peer.unseen.size() < kFew ? 3 : 1) * longer * params_.wait, now, choice);
   // Free space shows an operator less than surfaces.
-  const auto is_surface = [this](const auto& candidate) { return blocks_.at(candidate.ref).occupied != 0; };
+  const auto is_surface = [this](const auto& candidate) { return cells_.at(candidate.cell).occupied != 0; };
   std::stable_partition(choice.all.begin() + first, choice.all.begin() + focused, is_surface);
   std::stable_partition(choice.all.begin() + focused, choice.all.end(), is_surface);
   if (!changed_first) add_changed(peer, now, choice);
-  std::vector<Ref> out;
+  std::vector<Cell> out;
   if (!choice.all.empty()) {
     bool late = false;
-    for (const Choice::Candidate& candidate : choice.of_one_submap()) {
-      out.push_back(candidate.ref);
+    for (const Choice::Candidate& candidate : choice.of_one_group()) {
+      out.push_back(candidate.cell);
       late = late || candidate.late;
     }
     const bool full =

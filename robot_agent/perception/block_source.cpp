@@ -28,6 +28,11 @@ std::uint64_t halved(std::uint64_t voxels) {
 
 }  // namespace
 
+void BlockSource::open(std::uint32_t submap, const SubmapPlace& place) {
+  names_[submap] = place;
+  first_.try_emplace(place.group, submap);
+}
+
 SubmapPlace BlockSource::place_of(std::uint32_t submap) const {
   const auto named = names_.find(submap);
   return named != names_.end() ? named->second
@@ -45,59 +50,50 @@ BlockSource::Ref BlockSource::ref_in(const Cell& cell, std::uint32_t submap) con
   return {submap, {cell.index.x - offset.x, cell.index.y - offset.y, cell.index.z - offset.z}};
 }
 
-bool BlockSource::grows(const Peer& peer, const Ref& ref) const {
-  std::uint64_t known = 0;
-  const Cell cell = cell_of(ref);
-  for (const std::uint32_t submap : cells_.at(cell).submaps) {
-    const Entry& entry = blocks_.at(ref_in(cell, submap));
-    if ((entry.up_to_date & peer.bit) != 0) known |= entry.sent_known;
+BlockVotes BlockSource::votes_of(const Cell& cell, const Place& place,
+                                 std::optional<std::uint32_t> without) const {
+  BlockVotes votes = place.forgotten;
+  for (const std::uint32_t submap : place.submaps) {
+    if (submap == without) continue;
+    const Block& block = blocks_.at(ref_in(cell, submap));
+    votes.add(block.known, block.occupied);
   }
-  return (halved(blocks_.at(ref).known) & ~halved(known)) != 0;
+  return votes;
 }
 
-void BlockSource::add_missing(Peer& peer, const Ref& ref, Entry& entry) {
-  if (!entry.waits_since) entry.waits_since = now_;
-  peer.unseen.erase(entry.change);
-  peer.changed.erase(entry.change);
-  (grows(peer, ref) ? peer.unseen : peer.changed)[entry.change] = ref;
-}
-
-void BlockSource::queue(Peer& peer, const Cell& cell) {
-  const std::vector<std::uint32_t>& submaps = cells_.at(cell).submaps;
-  const bool any = std::any_of(submaps.begin(), submaps.end(), [&](std::uint32_t submap) {
-    return (blocks_.at(ref_in(cell, submap)).chosen_for & peer.bit) != 0;
-  });
-  if (!any) return choose_fewest(peer, cell, submaps);
-  for (const std::uint32_t submap : submaps) {
-    const Ref ref = ref_in(cell, submap);
-    Entry& entry = blocks_.at(ref);
-    const bool chosen = (entry.chosen_for & peer.bit) != 0;
-    const bool stale = (entry.up_to_date & peer.bit) == 0 || entry.sent_known != entry.known ||
-                       entry.sent_occupied != entry.occupied;
-    if (chosen && !stale) continue;
-    add_missing(peer, ref, entry);
-  }
+void BlockSource::add_missing(Peer& peer, const Cell& cell, Place& place) {
+  if (!place.waits_since) place.waits_since = now_;
+  peer.forget(place.change);
+  const std::uint64_t has = (place.up_to_date & peer.bit) != 0 ? place.sent_known : 0;
+  const bool grows = (halved(place.known) & ~halved(has)) != 0;
+  (grows ? peer.unseen : peer.changed)[place.change] = cell;
 }
 
 void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision) {
   const Ref ref{submap, block.index};
   const auto [found, added] = blocks_.try_emplace(ref);
-  Entry& entry = found->second;
-  if (!added && entry.known == block.known && entry.occupied == block.occupied) return;
-  const std::uint64_t before = entry.change;
-  entry.known = block.known;
-  entry.occupied = block.occupied;
+  Block& stored = found->second;
+  if (!added && stored.known == block.known && stored.occupied == block.occupied) return;
   changes_ = std::max<std::uint64_t>(changes_ + 1, revision);
-  entry.change = changes_;
+  stored = {block.known, block.occupied, changes_};
   const Cell cell = cell_of(ref);
   Place& place = cells_[cell];
-  place.changed = now_;
-  std::vector<std::uint32_t>& submaps = place.submaps;
-  if (added) submaps.insert(std::upper_bound(submaps.begin(), submaps.end(), submap), submap);
-  for (auto& [id, peer] : peers_) {
-    peer.unseen.erase(before);
-    peer.changed.erase(before);
-    queue(peer, cell);
+  if (added)
+    place.submaps.insert(std::upper_bound(place.submaps.begin(), place.submaps.end(), submap), submap);
+  const BlockVotes votes = votes_of(cell, place);
+  if (place.change == 0 || votes.known() != place.known || votes.occupied() != place.occupied) {
+    bool lacked = false;
+    for (auto& [id, peer] : peers_) peer.forget(place.change);
+    place.known = votes.known();
+    place.occupied = votes.occupied();
+    place.change = changes_;
+    place.changed = now_;
+    for (auto& [id, peer] : peers_) {
+      if ((place.up_to_date & peer.bit) != 0 && place.is_sent()) continue;
+      add_missing(peer, cell, place);
+      lacked = true;
+    }
+    if (!lacked) place.waits_since.reset();
   }
   prune(cell);
   if (blocks_.size() > params_.max_blocks) make_room();
@@ -105,37 +101,24 @@ void BlockSource::update(std::uint32_t submap, const perception::CoarseBlock& bl
 
 void BlockSource::prune(const Cell& cell) {
   const auto found = cells_.find(cell);
-  if (found == cells_.end() || found->second.submaps.size() <= kVotes) return;
-  const std::vector<std::uint32_t> submaps = found->second.submaps;
-  for (std::size_t i = submaps.size() - kVotes; i-- > 0;) {
-    const Ref ref = ref_in(cell, submaps[i]);
-    const Entry& entry = blocks_.at(ref);
-    // A peer that has the block must have what outvotes it, too: it forgets nothing.
-    bool outvoted = is_outvoted(entry.known, cell, submaps, i, 0);
-    for (const auto& [id, peer] : peers_)
-      if (outvoted && (entry.chosen_for & peer.bit) != 0)
-        outvoted = is_outvoted(entry.known | entry.sent_known, cell, submaps, i, peer.bit);
-    if (!outvoted) continue;
-    erase(ref);
+  if (found == cells_.end()) return;
+  for (std::size_t i = found->second.submaps.size(); i-- > 0;) {
+    if (i + kVotes >= found->second.submaps.size() || !is_outvoted(cell, found->second, i)) continue;
+    const Ref ref = ref_in(cell, found->second.submaps[i]);
     ++pruned_[ref.submap];
+    erase(ref);
   }
 }
 
-bool BlockSource::is_outvoted(std::uint64_t known, const Cell& cell,
-                              const std::vector<std::uint32_t>& submaps, std::size_t position,
-                              std::uint16_t peer) const {
+bool BlockSource::is_outvoted(const Cell& cell, const Place& place, std::size_t position) const {
   std::uint64_t once = 0, twice = 0, thrice = 0;  // Voxels that so many newer submaps know.
-  for (std::size_t i = position + 1; i < submaps.size(); ++i) {
-    const auto found = blocks_.find(ref_in(cell, submaps[i]));
-    if (found == blocks_.end()) continue;  // Erased just now.
-    const Entry& entry = found->second;
-    if (peer != 0 && (entry.had_by & entry.up_to_date & peer) == 0) continue;
-    const std::uint64_t by = peer != 0 ? entry.sent_known & entry.known : entry.known;
+  for (std::size_t i = position + 1; i < place.submaps.size(); ++i) {
+    const std::uint64_t by = blocks_.at(ref_in(cell, place.submaps[i])).known;
     thrice |= twice & by;
     twice |= once & by;
     once |= by;
   }
-  return (known & ~thrice) == 0;
+  return (blocks_.at(ref_in(cell, place.submaps[position])).known & ~thrice) == 0;
 }
 
 std::size_t BlockSource::take_pruned(std::uint32_t submap) {
@@ -146,24 +129,25 @@ std::size_t BlockSource::take_pruned(std::uint32_t submap) {
   return count;
 }
 
-void BlockSource::has(const PeerId& id, std::uint32_t submap) {
+void BlockSource::has(const PeerId& id, const std::set<std::uint32_t>& submaps) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
   Peer& peer = found->second;
-  for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;
-       ++it) {
-    Entry& entry = it->second;
-    if (entry.up_to_date == 0) {
-      entry.sent_known = entry.known;
-      entry.sent_occupied = entry.occupied;
-    } else if (entry.sent_known != entry.known || entry.sent_occupied != entry.occupied) {
+  for (auto& [cell, place] : cells_) {
+    if (!std::all_of(place.submaps.begin(), place.submaps.end(),
+                     [&](std::uint32_t submap) { return submaps.contains(submap); }))
+      continue;
+    if (place.up_to_date == 0) {
+      place.sent_known = place.known;
+      place.sent_occupied = place.occupied;
+      place.sent_change = place.change;
+      place.had_by = 0;
+    } else if (!place.is_sent()) {
       continue;
     }
-    entry.had_by |= peer.bit;
-    entry.chosen_for |= peer.bit;
-    entry.up_to_date |= peer.bit;
-    peer.unseen.erase(entry.change);
-    peer.changed.erase(entry.change);
+    place.up_to_date |= peer.bit;
+    place.had_by |= peer.bit;
+    peer.forget(place.change);
   }
 }
 
@@ -172,10 +156,8 @@ bool BlockSource::complete(const PeerId& id, std::uint32_t submap) const {
   if (peer == peers_.end()) return false;
   for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;
        ++it) {
-    const Entry& entry = it->second;
-    if ((entry.chosen_for & peer->second.bit) != 0 && (entry.had_by & peer->second.bit) == 0) return false;
-    if (peer->second.unseen.contains(entry.change) || peer->second.changed.contains(entry.change))
-      return false;
+    const Place& place = cells_.at(cell_of(it->first));
+    if (!place.is_sent() || (place.had_by & place.up_to_date & peer->second.bit) == 0) return false;
   }
   return true;
 }
@@ -189,73 +171,35 @@ void BlockSource::for_each(
           static_cast<std::uint32_t>(it->second.change));
 }
 
-BlockVotes BlockSource::votes_of(const Cell& cell, const std::vector<std::uint32_t>& submaps) const {
-  BlockVotes all;
-  for (const std::uint32_t submap : submaps) {
-    const Entry& entry = blocks_.at(ref_in(cell, submap));
-    all.add(entry.known, entry.occupied);
-  }
-  return all;
-}
-
-std::vector<BlockSource::Ref> BlockSource::fewest(const Cell& cell,
-                                                  const std::vector<std::uint32_t>& submaps) const {
-  const BlockVotes all = votes_of(cell, submaps);
-  std::vector<Ref> out;
-  for (std::size_t first = submaps.size(); first-- > 0;) {
-    out.push_back(ref_in(cell, submaps[first]));
-    BlockVotes some;
-    for (auto it = out.rbegin(); it != out.rend(); ++it)
-      some.add(blocks_.at(*it).known, blocks_.at(*it).occupied);
-    if (some.shows(all)) break;
-  }
-  return out;
-}
-
-void BlockSource::choose_fewest(Peer& peer, const Cell& cell, const std::vector<std::uint32_t>& submaps) {
-  for (const Ref& ref : fewest(cell, submaps)) {
-    Entry& entry = blocks_.at(ref);
-    entry.chosen_for |= peer.bit;
-    if (!entry.waits_since) entry.waits_since = now_;
-    peer.unseen[entry.change] = ref;
-  }
-}
-
 bool BlockSource::is_covered(std::uint32_t submap) const {
   std::size_t all = 0, needed = 0;
   for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;
        ++it, ++all) {
     const Cell cell = cell_of(it->first);
-    const std::vector<Ref> shown = fewest(cell, cells_.at(cell).submaps);
-    needed += std::find(shown.begin(), shown.end(), it->first) != shown.end() ? 1 : 0;
+    const Place& place = cells_.at(cell);
+    needed += votes_of(cell, place, submap).shows(votes_of(cell, place)) ? 0 : 1;
   }
   return all > 0 && static_cast<double>(needed) < (1.0 - kCovered) * static_cast<double>(all);
 }
 
 void BlockSource::erase(const Ref& ref) {
-  const auto found = blocks_.find(ref);
-  for (auto& [id, peer] : peers_) {
-    peer.unseen.erase(found->second.change);
-    peer.changed.erase(found->second.change);
-  }
+  const auto block = blocks_.find(ref);
   const auto cell = cells_.find(cell_of(ref));
-  std::erase(cell->second.submaps, ref.submap);
-  blocks_.erase(found);
-  if (cell->second.submaps.empty()) cells_.erase(cell);
-}
-
-void BlockSource::remove(const Ref& ref) {
-  const Cell cell = cell_of(ref);
-  erase(ref);
-  ++dropped_;
-  if (cells_.contains(cell))
-    for (auto& [id, peer] : peers_) queue(peer, cell);
+  Place& place = cell->second;
+  // Of one that is not the oldest, newer ones know all voxels, or it was dropped for lack of space.
+  if (place.submaps.front() == ref.submap) place.forgotten.add(block->second.known, block->second.occupied);
+  std::erase(place.submaps, ref.submap);
+  blocks_.erase(block);
+  if (!place.submaps.empty()) return;
+  for (auto& [id, peer] : peers_) peer.forget(place.change);
+  cells_.erase(cell);
 }
 
 void BlockSource::drop(std::uint32_t submap) {
-  for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;) {
+  for (auto it = blocks_.lower_bound(first_of(submap)); it != blocks_.end() && it->first.submap == submap;
+       ++dropped_) {
     const Ref ref = (it++)->first;
-    remove(ref);
+    erase(ref);
   }
 }
 
@@ -272,7 +216,8 @@ std::optional<std::uint32_t> BlockSource::oldest_to_drop() const {
 
 void BlockSource::make_room() {
   if (const auto submap = oldest_to_drop()) return drop(*submap);
-  remove(blocks_.begin()->first);  // One submap alone is too large: its first block goes.
+  erase(blocks_.begin()->first);  // One submap alone is too large: its first block goes.
+  ++dropped_;
 }
 
 void BlockSource::join(const PeerId& id) {
@@ -283,17 +228,16 @@ void BlockSource::join(const PeerId& id) {
   Peer& peer = peers_[id];
   peer.bit = 1;
   while ((used & peer.bit) != 0) peer.bit = static_cast<std::uint16_t>(peer.bit << 1);
-  for (const auto& [cell, place] : cells_) choose_fewest(peer, cell, place.submaps);
+  for (auto& [cell, place] : cells_) add_missing(peer, cell, place);
 }
 
 void BlockSource::leave(const PeerId& id) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
   const auto others = static_cast<std::uint16_t>(~found->second.bit);
-  for (auto& [ref, entry] : blocks_) {
-    entry.had_by &= others;
-    entry.chosen_for &= others;
-    entry.up_to_date &= others;
+  for (auto& [cell, place] : cells_) {
+    place.had_by &= others;
+    place.up_to_date &= others;
   }
   peers_.erase(found);
 }
@@ -308,46 +252,43 @@ std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerI
   const auto first = peers_.find(peers.front());
   if (first == peers_.end()) return std::nullopt;
   now_ = now;
-  const std::vector<Ref> chosen = choose(first->second, max_bytes, now);
+  const std::vector<Cell> chosen = choose(first->second, max_bytes, now);
   if (chosen.empty()) return std::nullopt;
+  const auto named = first_.find(chosen.front().group);
+  const std::uint32_t submap =
+      named != first_.end() ? named->second : static_cast<std::uint32_t>(chosen.front().group);
   // One revision for all blocks takes no space. The newest one will do: whatever changes one of them later is
   // newer still.
   std::uint64_t newest = 0;
-  for (const Ref& ref : chosen) newest = std::max(newest, blocks_.at(ref).change);
+  for (const Cell& cell : chosen) newest = std::max(newest, cells_.at(cell).change);
   std::vector<BlockUpdate> updates;
-  for (const Ref& ref : chosen) {
-    const Entry& entry = blocks_.at(ref);
-    updates.push_back({{ref.index, entry.known, entry.occupied}, static_cast<std::uint32_t>(newest)});
+  for (const Cell& cell : chosen) {
+    const Place& place = cells_.at(cell);
+    updates.push_back(
+        {{ref_in(cell, submap).index, place.known, place.occupied}, static_cast<std::uint32_t>(newest)});
   }
-  const SubmapPlace place = place_of(chosen.front().submap);
-  auto packed = perception::pack({params_.robot, place.start, place.index}, updates, max_bytes);
+  const SubmapPlace name = place_of(submap);
+  auto packed = perception::pack({params_.robot, name.start, name.index}, updates, max_bytes);
   if (packed.count == 0) return std::nullopt;
   block_bytes_ += kLearned * (static_cast<double>(packed.bytes.size()) / static_cast<double>(packed.count) -
                               block_bytes_);
   std::vector<Part>& parts = flights_[++tokens_];
   for (std::size_t i = 0; i < packed.count; ++i) {
-    Entry& entry = blocks_.at(chosen[i]);
-    entry.waits_since.reset();
-    entry.sent_known = entry.known;
-    entry.sent_occupied = entry.occupied;
-    entry.sent_change = entry.change;
-    entry.up_to_date = 0;
-    parts.push_back({chosen[i], entry.change});
-    for (const PeerId& id : peers) {
-      const auto peer = peers_.find(id);
-      if (peer == peers_.end()) continue;
-      entry.chosen_for |= peer->second.bit;
-      entry.up_to_date |= peer->second.bit;
-      peer->second.unseen.erase(entry.change);
-      peer->second.changed.erase(entry.change);
-    }
+    Place& place = cells_.at(chosen[i]);
+    place.waits_since.reset();
+    place.sent_known = place.known;
+    place.sent_occupied = place.occupied;
+    place.sent_change = place.change;
+    place.up_to_date = place.had_by = 0;
+    parts.push_back({chosen[i], place.change});
+    for (const PeerId& id : peers)
+      if (const auto peer = peers_.find(id); peer != peers_.end()) {
+        place.up_to_date |= peer->second.bit;
+        peer->second.forget(place.change);
+      }
     // A peer that is silent now has an older state, or none.
     for (auto& [id, peer] : peers_)
-      if ((entry.chosen_for & peer.bit) != 0 && (entry.up_to_date & peer.bit) == 0)
-        add_missing(peer, chosen[i], entry);
-    // What the peer shows of this place changes now: other blocks of it may be needed that were not.
-    for (const PeerId& id : peers)
-      if (const auto peer = peers_.find(id); peer != peers_.end()) queue(peer->second, cell_of(chosen[i]));
+      if ((place.up_to_date & peer.bit) == 0) add_missing(peer, chosen[i], place);
   }
   return Content{tokens_, std::move(packed.bytes)};
 }
@@ -357,10 +298,9 @@ void BlockSource::acknowledged(const PeerId& id, std::uint64_t token) {
   const auto flight = flights_.find(token);
   if (peer == peers_.end() || flight == flights_.end()) return;
   for (const Part& part : flight->second) {
-    const auto block = blocks_.find(part.ref);
-    if (block == blocks_.end()) continue;
-    Entry& entry = block->second;
-    entry.had_by |= peer->second.bit;
+    const auto place = cells_.find(part.cell);
+    if (place != cells_.end() && place->second.sent_change == part.change)
+      place->second.had_by |= peer->second.bit;
   }
 }
 
@@ -369,13 +309,13 @@ void BlockSource::lost(const PeerId& id, std::uint64_t token) {
   const auto flight = flights_.find(token);
   if (peer == peers_.end() || flight == flights_.end()) return;
   for (const Part& part : flight->second) {
-    const auto block = blocks_.find(part.ref);
-    if (block == blocks_.end()) continue;
-    Entry& entry = block->second;
-    if (entry.sent_change != part.change) continue;  // A newer state went out since.
-    entry.up_to_date &= static_cast<std::uint16_t>(~peer->second.bit);
-    entry.waits_since = Time(Duration::min() / 2);  // The hold is for what arrived.
-    add_missing(peer->second, part.ref, entry);
+    const auto found = cells_.find(part.cell);
+    if (found == cells_.end()) continue;
+    Place& place = found->second;
+    if (place.sent_change != part.change) continue;  // A newer state went out since.
+    place.up_to_date &= static_cast<std::uint16_t>(~peer->second.bit);
+    place.waits_since = Time(Duration::min() / 2);  // The hold is for what arrived.
+    add_missing(peer->second, part.cell, place);
     peer->second.rests_until.reset();
     peer->second.round_ends.reset();
     peer->second.changed_rests_until.reset();

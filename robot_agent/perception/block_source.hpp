@@ -49,13 +49,13 @@ struct BlockRegion {
 
 /// The blocks of a robot's map as stations see them (0.2 m masks), and what each station has of them.
 ///
-/// Blocks with voxels of 0.4 m of which a station knows nothing go first, the newest of them first; every
-/// fourth piece is for what changed. Blocks wait until they fill a piece, within the bounds of
-/// BlockSourceParams. While a station is behind by more than kBacklog blocks, those in the focus go before
-/// others, and surfaces before free space. All blocks of a piece are of one submap. Where several submaps of
-/// one group saw a place, a block is sent only if the merge of what the station has would show anything else
-/// than the merge of all of them; a station that joins gets the fewest blocks that show the same, from the
-/// newest on. The map outlives the component that makes it. Submaps are numbered by age.
+/// Submaps of one group move together, and lie in one lattice: a station gets the merge of all of them, as
+/// blocks of the group's first submap. So a place is sent once, however many submaps saw it, and again only
+/// if the merge shows something else. Blocks with voxels of 0.4 m of which a station knows nothing go first,
+/// the newest of them first; every fourth piece is for what changed. Blocks wait until they fill a piece,
+/// within the bounds of BlockSourceParams. While a station is behind by more than kBacklog blocks, those in
+/// the focus go before others, and surfaces before free space. All blocks of a piece are of one group. The
+/// map outlives the component that makes it. Submaps are numbered by age.
 class BlockSource final : public transfer::Source {
  public:
   static constexpr std::size_t kMaxPeers = 16;
@@ -64,14 +64,15 @@ class BlockSource final : public transfer::Source {
   explicit BlockSource(BlockSourceParams params) : params_(std::move(params)) {}
 
   /// Names a submap before its first block.
-  void open(std::uint32_t submap, const SubmapPlace& place) { names_[submap] = place; }
+  void open(std::uint32_t submap, const SubmapPlace& place);
   /// Says what the time is; what is updated now changes now.
   void tick(Time now) { now_ = now; }
   /// Sets the newest state of a block; one that is equal to the stored one changes nothing. When there is no
   /// room, a submap is dropped: the oldest one that newer ones cover, or the oldest one.
   void update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision = 0);
-  /// Notes that a peer has all blocks of a submap in their present state, before anything was sent to it.
-  void has(const transfer::PeerId& peer, std::uint32_t submap);
+  /// Notes that a peer has the present state of all places that no other submaps than these saw, before
+  /// anything was sent to it.
+  void has(const transfer::PeerId& peer, const std::set<std::uint32_t>& submaps);
   bool knows(const transfer::PeerId& peer) const { return peers_.contains(peer); }
   /// Whether any peer lacks so much that the focus matters.
   bool is_behind() const;
@@ -79,12 +80,12 @@ class BlockSource final : public transfer::Source {
   void focus(std::vector<BlockRegion> regions);
   /// Sets what one peer is to have first, after that of every peer.
   void focus(const transfer::PeerId& peer, std::vector<BlockRegion> regions);
-  /// Whether a peer needs no block of a submap.
+  /// Whether a peer acknowledged the present state of all places that a submap saw.
   bool complete(const transfer::PeerId& peer, std::uint32_t submap) const;
   std::size_t size() const { return blocks_.size(); }
   /// Number of blocks that were dropped for lack of space.
   std::uint64_t dropped() const { return dropped_; }
-  /// Blocks of a submap, by index, with the revision that peers know.
+  /// Blocks of a submap, by index, with the number of their last change.
   void for_each(
       std::uint32_t submap,
       const std::function<void(const perception::CoarseBlock&, std::uint32_t revision)>& visit) const;
@@ -95,7 +96,7 @@ class BlockSource final : public transfer::Source {
   /// The submap that is worth least: one of the oldest that is covered, or the oldest. Nothing: there is but
   /// the newest one.
   std::optional<std::uint32_t> oldest_to_drop() const;
-  /// Forgets a submap; peers that have it are not notified.
+  /// Forgets a submap; peers keep what they have.
   void drop(std::uint32_t submap);
 
   transfer::Kind kind() const override { return transfer::Kind::map_blocks; }
@@ -121,81 +122,76 @@ class BlockSource final : public transfer::Source {
     perception::BlockIndex index{};
     auto operator<=>(const Cell&) const = default;
   };
-  struct Entry {
+  struct Block {
     std::uint64_t known{}, occupied{};
-    std::uint64_t sent_known{}, sent_occupied{};  ///< As it was sent last.
-    std::uint64_t change{};                       ///< Number of the last change; rises over all blocks.
-    std::uint64_t sent_change{};
-    std::uint16_t had_by{};      ///< Bit of each peer that acknowledged some state of it.
-    std::uint16_t chosen_for{};  ///< Bit of each peer that is to have it.
-    std::uint16_t up_to_date{};  ///< Bit of each peer to which the last sent state went, unless it was lost.
+    std::uint64_t change{};  ///< Number of the last change; rises over all blocks.
+  };
+  /// A cell that was seen.
+  struct Place {
+    std::vector<std::uint32_t> submaps{};  ///< That saw it, by age.
+    BlockVotes forgotten{};                ///< Of older submaps, whose blocks were erased.
+    std::uint64_t known{}, occupied{};     ///< The merge of all of them.
+    std::uint64_t change{};                ///< Number of its last change.
+    std::uint64_t sent_known{}, sent_occupied{}, sent_change{};  ///< As it was sent last.
+    std::uint16_t up_to_date{};         ///< Bit of each peer to which that went, unless it was lost.
+    std::uint16_t had_by{};             ///< Bit of each peer that acknowledged that.
     std::optional<Time> waits_since{};  ///< Since then some peer lacks its present state.
+    Time changed{};
+
+    bool is_sent() const { return sent_change != 0 && sent_known == known && sent_occupied == occupied; }
   };
   /// What one peer lacks, by number of the change.
   struct Peer {
     std::uint16_t bit{};
-    std::map<std::uint64_t, Ref> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
-    std::map<std::uint64_t, Ref> changed{};  ///< Of others.
-    std::optional<Time> rests_until{};       ///< There was not enough for a piece when it was looked at last.
+    std::map<std::uint64_t, Cell> unseen{};   ///< With voxels of 0.4 m of which it knows nothing.
+    std::map<std::uint64_t, Cell> changed{};  ///< Others.
+    std::optional<Time> rests_until{};  ///< There was not enough for a piece when it was looked at last.
     std::optional<Time> changed_rests_until{};  ///< Nothing in `changed` was due then.
     std::vector<BlockRegion> focus{};
     std::optional<Time> round_ends{};  ///< Until then only full pieces go.
     std::size_t focus_next{};          ///< The slice of the focus that was looked at last.
     std::optional<Time>
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
-  };
-  /// A place: the submaps that saw it, by age, and when any of them changed last.
-  struct Place {
-    std::vector<std::uint32_t> submaps{};
-    Time changed{};
+
+    void forget(std::uint64_t change) { unseen.erase(change), changed.erase(change); }
+    bool lacks(std::uint64_t change) const { return unseen.contains(change) || changed.contains(change); }
   };
   struct Part {
-    Ref ref{};
+    Cell cell{};
     std::uint64_t change{};
   };
   SubmapPlace place_of(std::uint32_t submap) const;
   Cell cell_of(const Ref& ref) const;
   /// The block of a submap in a cell.
   Ref ref_in(const Cell& cell, std::uint32_t submap) const;
-  void add_missing(Peer& peer, const Ref& ref, Entry& entry);
-  /// Queues what a peer may lack of a cell.
-  void queue(Peer& peer, const Cell& cell);
-  /// Whether a peer must get this block so that its merge shows what ours does.
-  bool is_needed(const Peer& peer, const Ref& ref) const;
   /// What the merge of these submaps shows of a cell.
-  BlockVotes votes_of(const Cell& cell, const std::vector<std::uint32_t>& submaps) const;
-  /// The blocks of a cell from the newest on that show what all of it do.
-  std::vector<Ref> fewest(const Cell& cell, const std::vector<std::uint32_t>& submaps) const;
-  void choose_fewest(Peer& peer, const Cell& cell, const std::vector<std::uint32_t>& submaps);
-  /// Whether a block has voxels of 0.4 m of which a peer knows nothing.
-  bool grows(const Peer& peer, const Ref& ref) const;
+  BlockVotes votes_of(const Cell& cell, const Place& place, std::optional<std::uint32_t> without = {}) const;
+  /// Notes that a peer lacks the present state of a place.
+  void add_missing(Peer& peer, const Cell& cell, Place& place);
   enum class Due { no, yes, late };
-  Due due(const Ref& ref, Duration rest, Duration latest, Time now) const;
+  Due due(const Cell& cell, Duration rest, Duration latest, Time now) const;
   struct Choice;
-  /// Candidates for a piece, all of the submap of the first one. Defined in block_choice.cpp, as all that it
-  /// calls.
-  std::vector<Ref> choose(Peer& peer, std::size_t max_bytes, Time now);
+  /// Cells for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
+  std::vector<Cell> choose(Peer& peer, std::size_t max_bytes, Time now);
   void add_focused(Peer& peer, Time now, Choice& out);
-  /// Adds what a peer lacks of the blocks of a region at one x; returns how many were looked at.
+  /// Adds what a peer lacks of a region at one x; returns how many cells were looked at.
   std::size_t add_slice(const Peer& peer, const BlockRegion& region, std::int32_t x, Choice& out) const;
   static void begin_focus(Peer& peer);
   void add_unseen(const Peer& peer, Duration wait, Time now, Choice& out) const;
   void add_changed(Peer& peer, Time now, Choice& out);
+  /// Erases a block; what was seen stays as it is.
   void erase(const Ref& ref);
-  /// Erases a block, and queues for the peers what shows its place now.
-  void remove(const Ref& ref);
   /// Erases blocks that show nothing any more, whatever comes: three newer ones know each of their voxels. So
   /// a place takes the space of a few submaps, however often the robot comes there.
   void prune(const Cell& cell);
-  /// Whether three newer blocks of a cell than that at `position` know each of these voxels; `peer`: of those
-  /// that this peer has, 0 for all.
-  bool is_outvoted(std::uint64_t known, const Cell& cell, const std::vector<std::uint32_t>& submaps,
-                   std::size_t position, std::uint16_t peer) const;
+  /// Whether three newer blocks of a place than that at `position` know each of its voxels.
+  bool is_outvoted(const Cell& cell, const Place& place, std::size_t position) const;
   void make_room();
 
   BlockSourceParams params_;
   std::map<std::uint32_t, SubmapPlace> names_{};
-  std::map<Ref, Entry> blocks_{};
+  std::map<std::uint64_t, std::uint32_t> first_{};  ///< The first submap of each group.
+  std::map<Ref, Block> blocks_{};
   std::map<Cell, Place> cells_{};
   std::map<std::uint32_t, std::size_t> pruned_{};
   std::map<transfer::PeerId, Peer> peers_{};

@@ -141,8 +141,7 @@ void MapKeeper::heard(const transfer::Ack& ack) {
   const auto stored = stored_stations_.find(id);
   if (stored == stored_stations_.end()) return;
   // It was not started again since, and still has what it had.
-  if (stored->second.start == start)
-    for (const std::uint32_t submap : station.has = stored->second.has) blocks_.has(id, submap);
+  if (stored->second.start == start) blocks_.has(id, station.has = stored->second.has);
   stored_stations_.erase(stored);
 }
 

@@ -142,9 +142,11 @@ std::size_t sent_first_near(const Eigen::Vector3d& point, bool look_ahead) {
   bench.sender->acknowledged({station.id, station.start, {}}, bench.strand->now());
   EXPECT_TRUE(bench.keeper->is_behind());
   if (look_ahead) bench.keeper->look_ahead(std::vector{point});
+  const wire::LinkProfile thin{.name = "mesh_100k", .bandwidth = 100e3};  // With small pieces.
+  const wire::SenderState link{.link = &thin};
   std::size_t near = 0;
   for (int rounds = 0; station.blocks.empty() && rounds < 100; ++rounds) {
-    for (const transfer::Piece& piece : bench.sender->due(bench.strand->now(), {}))
+    for (const transfer::Piece& piece : bench.sender->due(bench.strand->now(), link))
       if (station.blocks.empty()) bench.hear(station, piece);
     bench.run(50ms);
   }
