@@ -51,10 +51,12 @@ struct BlockSource::Choice {
   }
 };
 
-BlockSource::Due BlockSource::due(const Cell& cell, Duration rest, Duration latest, Time now) const {
+BlockSource::Due BlockSource::due(const Cell& cell, Duration rest, Duration flush, Duration latest,
+                                  Time now) const {
   const Place& place = cells_.at(cell);
-  if (!place.waits_since || now - *place.waits_since >= latest) return Due::late;
-  return now - place.changed >= rest ? Due::yes : Due::no;
+  const Duration quiet = now - place.changed;
+  if (!place.waits_since || now - *place.waits_since >= latest || quiet >= flush) return Due::late;
+  return quiet >= rest ? Due::yes : Due::no;
 }
 
 void BlockSource::focus(std::vector<BlockRegion> regions) {
@@ -114,7 +116,7 @@ void BlockSource::add_unseen(const Peer& peer, Duration wait, Time now, Choice& 
   const bool behind = peer.unseen.size() > kBacklog;
   std::size_t looked = 0;
   for (auto it = peer.unseen.rbegin(); it != peer.unseen.rend() && looked < kLookedAt; ++it, ++looked) {
-    const Due is_due = due(it->second, params_.settle, wait, now);
+    const Due is_due = due(it->second, params_.settle, wait, wait, now);
     if (is_due != Due::no && !out.focused.contains(it->second))
       out.add(it->second, behind || is_due == Due::late);
   }
@@ -125,7 +127,7 @@ void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
   std::size_t looked = 0, added = 0;
   for (auto it = peer.changed.begin();
        it != peer.changed.end() && looked < kLookedAt && added < kBlocksInPiece; ++looked) {
-    const Due is_due = due(it->second, params_.hold, params_.max_hold, now);
+    const Due is_due = due(it->second, params_.hold, 2 * params_.hold, params_.max_hold, now);
     if (is_due != Due::no) out.add(it->second, is_due == Due::late), ++added;
     ++it;
   }
@@ -135,7 +137,7 @@ void BlockSource::add_changed(Peer& peer, Time now, Choice& out) {
 std::vector<BlockSource::Cell> BlockSource::choose(Peer& peer, std::size_t max_bytes, Time now) {
   if (peer.rests_until && now < *peer.rests_until) return {};
   Choice choice;
-  const int longer = max_bytes < kSmallPiece ? 2 : 1;
+  const int longer = max_bytes < kSmallPiece ? 3 : 1;
   const bool behind = peer.unseen.size() > kBacklog;
   const bool changed_first = (tokens_ + 1) % kChangedEvery == 0;
   if (changed_first) add_changed(peer, now, choice);

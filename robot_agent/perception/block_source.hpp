@@ -21,14 +21,14 @@ struct BlockSourceParams {
   std::size_t max_blocks{200'000};  ///< Blocks that are stored, [64, 10^7]; see BlockSource::update.
   // A place of which a station knows less than the robot goes when it has not changed for `settle`, at the
   // latest after `wait`: while a robot passes, its blocks grow with every scan. A place that shows something
-  // else goes after `hold` without a change, at the latest after `max_hold`. Pieces that are not full go once
-  // in a `round`. On links with small frames `wait` and `round` are twice as long, as a header takes a third
-  // of a piece.
+  // else goes after `hold` without a change, at the latest after `max_hold`. It waits until it is part of a
+  // full piece, or did not change for twice that time. Pieces that are not full go once in a `round`. On
+  // links with small frames `wait` and `round` are three times as long, as a header takes a third of a piece.
   Duration settle{1500ms};
   Duration wait{2s};
   Duration round{1500ms};
   Duration hold{20s};
-  Duration max_hold{60s};
+  Duration max_hold{120s};
   double fill{0.8};  ///< Part of a piece from which on it is full, [0, 1].
 };
 
@@ -169,7 +169,7 @@ class BlockSource final : public transfer::Source {
   /// Notes that a peer lacks the present state of a place.
   void add_missing(Peer& peer, const Cell& cell, Place& place);
   enum class Due { no, yes, late };
-  Due due(const Cell& cell, Duration rest, Duration latest, Time now) const;
+  Due due(const Cell& cell, Duration rest, Duration flush, Duration latest, Time now) const;
   struct Choice;
   /// Cells for a piece, all of one group. Defined in block_choice.cpp, as all that it calls.
   std::vector<Cell> choose(Peer& peer, std::size_t max_bytes, Time now);

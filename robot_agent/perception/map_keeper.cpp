@@ -229,15 +229,17 @@ void MapKeeper::tick(Time now) {
   make_room();
   save_pruned();
   note_complete();
-  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
+  // In this order: a station never counts as having all of a submap whose file has more than it has.
   if (places_changed_) save_places();
+  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
   open_changed_ = places_changed_ = false;
 }
 
 void MapKeeper::flush() {
   if (!disk_) return;
-  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
+  // In this order: a station never counts as having all of a submap whose file has more than it has.
   if (places_changed_) save_places();
+  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
   open_changed_ = places_changed_ = false;
   disk_->flush();
 }
@@ -269,8 +271,10 @@ std::shared_ptr<const MapJob> MapKeeper::job(const std::shared_ptr<const Scan>& 
 
 void MapKeeper::open_submap(const MapStep& step, const MapFrame& frame) {
   // The one before is closed: it is written a last time.
-  if (disk_ && open_changed_ && submaps_.size() > first_)
+  if (disk_ && open_changed_ && submaps_.size() > first_) {
+    if (places_changed_) save_places();
     save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
+  }
   const SubmapPlace place{start_, step.submap - first_, step.odom_epoch, lattice(step.T_odom_submap)};
   submaps_.push_back({step.T_odom_submap, step.odom_epoch, place, false});
   blocks_.open(step.submap, place);
@@ -287,7 +291,8 @@ void MapKeeper::taken(const Result<MapStep>& step, const MapFrame& frame) {
   for (const perception::CoarseBlock& block : step->blocks) blocks_.update(step->submap, block);
   if (!step->blocks.empty()) {
     open_changed_ = true;
-    for (auto& [id, station] : stations_) station.has.erase(step->submap);
+    for (auto& [id, station] : stations_)
+      if (station.has.erase(step->submap) != 0) places_changed_ = true;
   }
   if (step->submap + 1 == submaps_.size()) revision_ = step->revision;
 }
