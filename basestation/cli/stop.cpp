@@ -22,7 +22,8 @@ int stop(const Options& options, const std::string& line, bool all) {
   // The presence period is short, because robots must know this participant before they accept its identity.
   // A stop to a named robot is repeated for 10 s, whether it is heard or not; `all` are the robots heard
   // within 5 s.
-  auto live = host::LiveStation::open(options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s, .content = false});
+  auto live = host::LiveStation::open(
+      options, {.presence = 100ms, .discovery_grace = all ? 5s : 10s, .content = false});
   if (!live) return fail(options, kExitNoAnswer, live.error());
   const Outcome outcome = (*live)->execute(line, 25s);
   if (outcome.exit_code == kExitNoAnswer)

@@ -73,7 +73,8 @@ Gamepad::~Gamepad() {
   if (!sdl_) return;
   if (sdl_->controller) sdl_->close(sdl_->controller);
   sdl_->quit(SDL_INIT_GAMECONTROLLER);
-  if (sdl_->end_thread) sdl_->end_thread();  // SDL frees this memory by itself only for threads that it started.
+  if (sdl_->end_thread)
+    sdl_->end_thread();  // SDL frees this memory by itself only for threads that it started.
   // The library stays loaded: its threads may not have ended yet.
 }
 

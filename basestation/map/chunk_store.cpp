@@ -24,15 +24,19 @@ ChunkStore::Submap* ChunkStore::submap(const std::string& robot, const perceptio
 void ChunkStore::clear() {
   robots_.clear();
   blocks_ = 0;
+  evicted_ = 0;
   ++revision_;
 }
 
 bool ChunkStore::make_room(const std::string& robot) {
+  // While the disk is read, all are from before.
+  if (const auto asks = robots_.find(robot); asks != robots_.end() && !asks->second.heard) return false;
   for (auto it = robots_.begin(); it != robots_.end(); ++it) {
     if (it->second.heard || it->first == robot) continue;
     blocks_ -= it->second.blocks;
     robots_.erase(it);
     ++revision_;
+    ++evicted_;
     return true;
   }
   return false;
@@ -60,7 +64,9 @@ bool ChunkStore::take(const std::string& robot, const perception::MapPiece& piec
   for (const perception::BlockUpdate& update : piece.blocks) {
     const auto known = into->blocks.find(update.block.index);
     if (known == into->blocks.end()) {
-      if (blocks_ >= params_.max_blocks && !make_room(robot)) {
+      while (blocks_ >= params_.max_blocks && make_room(robot)) {
+      }
+      if (blocks_ >= params_.max_blocks) {
         ++refused_;
         complete = false;
         continue;

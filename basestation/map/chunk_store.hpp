@@ -59,6 +59,8 @@ class ChunkStore {
 
   const std::map<std::string, Robot>& robots() const { return robots_; }
   std::size_t blocks() const { return blocks_; }
+  /// Number of robots that were forgotten to make room, since the start or clear().
+  std::uint64_t evicted() const { return evicted_; }
   /// Number of blocks and poses that did not fit, or were not the sender's.
   std::uint64_t refused() const { return refused_; }
   bool empty() const { return blocks_ == 0; }
@@ -75,7 +77,7 @@ class ChunkStore {
   ChunkStoreParams params_;
   std::map<std::string, Robot> robots_{};
   std::size_t blocks_{};
-  std::uint64_t refused_{};
+  std::uint64_t refused_{}, evicted_{};
   std::uint64_t revision_{};
 };
 

@@ -120,10 +120,14 @@ LoadedJournal MapJournal::load() {
       return out;
     }
   }
-  const std::string aside = store::copy_aside(*disk_, kFile, "corrupt");
+  const std::string aside = copy_aside();
   out.lost = std::string("the map on the disk is damaged, and robots send it again") +
              (aside.empty() ? "" : "; a copy is " + aside);
   return out;
+}
+
+std::string MapJournal::copy_aside() {
+  return disk_ ? store::copy_aside(*disk_, kFile, "corrupt") : std::string{};
 }
 
 void MapJournal::begin(std::uint32_t start, const std::vector<JournalPiece>& pieces) {
@@ -141,7 +145,12 @@ void MapJournal::replace() {
   const store::Bytes bytes = *std::exchange(begin_, std::nullopt);
   bytes_ = bytes.size();
   useless_.clear();
-  if (const auto written = disk_->replace(kFile, bytes); !written) useless_ = written.error().text;
+  if (const auto written = disk_->replace(kFile, bytes); written)
+    return;
+  else
+    useless_ = written.error().text;
+  // The old file must go, also if no piece comes.
+  timer_ = home_.after(params_.period, [this] { write(); });
 }
 
 void MapJournal::add(JournalPiece piece, std::function<void()> kept) {
@@ -199,9 +208,15 @@ void MapJournal::written(const Batch& batch) {
   } else if (done) {
     bytes_ += batch.bytes.size();
     keep(batch.pieces);
+  } else if (!batch.ran) {
+    for (const Waiting& waiting : batch.pieces) waiting_bytes_ += waiting.piece.data.size();
+    waiting_.insert(waiting_.begin(), batch.pieces.begin(), batch.pieces.end());  // Its turn comes again.
   } else {
     // What was written of it may be anything, and its pieces are not acknowledged: they come again.
-    useless_ = batch.ran ? batch.result.error().text : "the disk's queue is full";
+    useless_ = batch.result.error().text;
+    if (removal && !stuck_)
+      trouble_("the map can be neither kept nor removed on the disk, robots send it again: " + useless_);
+    stuck_ = stuck_ || removal;
   }
   if (waiting_.empty() && useless_.empty()) return;
   timer_ = home_.after(removal ? params_.retry : params_.period, [this] { write(); });

@@ -55,8 +55,11 @@ class MapJournal {
   /// Reads the file; one that is damaged is copied aside. Call begin() after it, or resume() if the file is
   /// whole.
   LoadedJournal load();
-  /// Begins a new file with these pieces; pieces that wait for the disk are not kept.
+  /// Begins a new file with these pieces; pieces that wait for the disk are not kept. `start` 0: the next
+  /// start of the station is a new one, as the file does not have all that was acknowledged.
   void begin(std::uint32_t start, const std::vector<JournalPiece>& pieces);
+  /// Copies the file aside, before it is replaced; returns the copy's name, empty if there is none.
+  std::string copy_aside();
   /// Continues the file that load() read, of which nothing is lost or unfinished.
   void resume(std::size_t bytes) { bytes_ = bytes; }
   /// Adds a piece; calls `kept` when it is written, or the map is in memory only. One for which there is no
@@ -85,6 +88,7 @@ class MapJournal {
   std::size_t waiting_bytes_{}, bytes_{};
   std::string useless_{};  ///< Why the file must be removed; empty: it must not.
   bool writing_{false};
+  bool stuck_{false};  ///< It was reported that the file can be neither written nor removed.
   std::optional<store::Bytes> begin_{};  ///< The new file, while the old one is being written.
   Timer timer_{};
   std::shared_ptr<MapJournal*> self_;

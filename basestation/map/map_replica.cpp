@@ -10,7 +10,7 @@
 namespace adit::station {
 namespace {
 
-// A file is written anew when it is long, and most of it was replaced by later pieces. A block takes 3 bytes
+// A file is written again when it is long, and most of it was replaced by later pieces. A block takes 3 bytes
 // or so.
 constexpr std::size_t kLongFile = std::size_t{512} << 10;
 constexpr std::size_t kBytesOfBlock = 10;
@@ -53,8 +53,11 @@ std::string MapReplica::load() {
   LoadedJournal loaded = journal_.load();
   for (const JournalPiece& piece : loaded.pieces)
     if (const auto taken = receiver_.restore(piece.robot, piece.kind, piece.data); !taken) {
+      if (loaded.lost.empty())
+        loaded.lost =
+            "a part of the map on the disk cannot be used, and robots send all again: " + taken.error().text +
+            "; a copy is " + journal_.copy_aside();
       loaded.start = 0;
-      loaded.lost = "a part of the map on the disk cannot be used: " + taken.error().text;
     }
   if (loaded.start != 0) start_ = loaded.start;
   const bool long_file = loaded.bytes > std::max(kLongFile, kBytesOfBlock * chunks().blocks());
@@ -72,11 +75,17 @@ Result<void> MapReplica::take(const std::string& robot, std::uint8_t kind, std::
     journal_.add({robot, kind, {data.begin(), data.end()}}, std::move(stored));
   else if (taken.reason() != Reason::malformed)
     stored();  // What does not fit, or will never be understood, would come again without end.
+  // The start under which that was acknowledged, or an earlier robot's map forgotten, ends with this process:
+  // perhaps the next one understands it, or has room.
+  const bool lacks = !taken && taken.reason() != Reason::malformed;
+  if ((lacks || chunks().evicted() > 0) && !std::exchange(incomplete_, true))
+    journal_.begin(0, pieces_of(chunks()));
   return taken;
 }
 
 void MapReplica::forget(std::uint32_t start) {
   start_ = start;
+  incomplete_ = false;
   receiver_.forget();
   journal_.begin(start_, {});
 }

@@ -16,7 +16,7 @@ class MapReplica {
   MapReplica(std::uint32_t start, std::shared_ptr<store::Disk> disk, Executor& home,
              std::function<void(const std::string& text)> trouble);
 
-  /// Takes from the disk what it has; returns what is lost, as text. Call it before anything else.
+  /// Loads the maps on the disk; returns what is lost, as text. Call it before anything else.
   std::string load();
   /// The start of this station as robots should know it (transfer::Ack): the one before if nothing is missing
   /// of what was acknowledged then.
@@ -33,6 +33,7 @@ class MapReplica {
  private:
   Executor& home_;
   std::uint32_t start_;
+  bool incomplete_{false};  ///< Something was acknowledged that is not here.
   MapReceiver receiver_{};
   MapJournal journal_;
 };

@@ -12,7 +12,8 @@ std::size_t waiting_for_pose(const ChunkStore::Robot& robot) {
   return out;
 }
 
-/// Share of the robot's map, as far as it is known, that is here in its newest state, [0, 1].
+/// Share of the robot's map that is here in its newest state, at least, [0, 1]: what waits is that of the
+/// station which lacks most.
 double share(const ChunkStore::Robot& robot) {
   const auto here = static_cast<double>(robot.blocks);
   return here > 0.0 ? here / (here + static_cast<double>(robot.waiting)) : 0.0;
@@ -27,11 +28,12 @@ std::string map_status_text(const MapReceiver& map, Time now) {
       {"ROBOT", "SHARE", "M2", "SUBMAPS", "BLOCKS", "KB", "B/M2", "AGE", "WAITING"}};
   for (const auto& [name, robot] : chunks.robots()) {
     const double area = chunks.area(name);
-    rows.push_back(
-        {name, fixed(100.0 * share(robot), 0) + " %", fixed(area, 0), std::to_string(robot.submaps.size()),
-         std::to_string(robot.blocks), fixed(static_cast<double>(robot.bytes) / 1000.0, 1),
-         area > 0.0 ? fixed(static_cast<double>(robot.bytes) / area, 1) : "-",
-         robot.heard ? short_age(seconds(now - *robot.heard)) : "-", std::to_string(robot.waiting)});
+    rows.push_back({name, robot.heard ? fixed(100.0 * share(robot), 0) + " %" : "-", fixed(area, 0),
+                    std::to_string(robot.submaps.size()), std::to_string(robot.blocks),
+                    fixed(static_cast<double>(robot.bytes) / 1000.0, 1),
+                    area > 0.0 ? fixed(static_cast<double>(robot.bytes) / area, 1) : "-",
+                    robot.heard ? short_age(seconds(now - *robot.heard)) : "-",
+                    std::to_string(robot.waiting)});
   }
   std::string out = table(rows);
   for (const auto& [name, robot] : chunks.robots())

@@ -21,8 +21,9 @@ inline constexpr std::size_t kPieceOverhead = 144;
 /// One message with content that is usable alone.
 struct Piece {
   Kind kind{};
-  std::uint32_t id{};       ///< From 1, rises with each piece of a session.
-  std::uint32_t waiting{};  ///< Parts of all kinds that the peer that lacks most still lacks, beside this piece.
+  std::uint32_t id{};  ///< From 1, rises with each piece of a session.
+  std::uint32_t
+      waiting{};  ///< Parts of all kinds that the peer that lacks most still lacks, beside this piece.
   std::vector<std::uint8_t> data{};
 };
 

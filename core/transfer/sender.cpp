@@ -7,8 +7,8 @@
 namespace adit::transfer {
 namespace {
 
-/// A piece that is so many ids older than the newest one that arrived was lost, not overtaken: pieces are at
-/// least some milliseconds apart, and the next ones at once are at most four.
+/// A piece that is so many ids older than the newest one that arrived was lost, not overtaken, unless it was
+/// sent just now: at once four go out, and a station stores different content at different speeds.
 constexpr std::uint32_t kOvertaken = 4;
 
 }  // namespace
@@ -31,8 +31,13 @@ Sender::Peer* Sender::admit(const Ack& ack, Time now) {
     return &peer;
   }
   Peer& peer = found->second;
-  const auto& earlier = peer.earlier;
-  if (std::find(earlier.begin(), earlier.end(), ack.start) != earlier.end()) return nullptr;
+  // Acknowledgements of an earlier start come late. A station may also go back to one whose content is on its
+  // disk.
+  const auto earlier = std::find(peer.earlier.begin(), peer.earlier.end(), ack.start);
+  if (earlier != peer.earlier.end()) {
+    if (now - peer.heard < params_.silence) return nullptr;
+    peer.earlier.erase(earlier);
+  }
   if (peer.start != ack.start && now - peer.joined < params_.min_rejoin) return nullptr;
   peer.heard = now;
   if (peer.start == ack.start) return &peer;
@@ -46,10 +51,11 @@ Sender::Peer* Sender::admit(const Ack& ack, Time now) {
   return &peer;
 }
 
-void Sender::acknowledged(const Ack& ack, Time now) {
-  if (admit(ack, now) == nullptr) return;
+bool Sender::acknowledged(const Ack& ack, Time now) {
+  if (admit(ack, now) == nullptr) return false;
   if (ack.receipt.session == params_.session && ack.receipt.newest <= last_id_)
     settle(ack.peer, ack.receipt, now);
+  return true;
 }
 
 void Sender::settle(const PeerId& peer, const Receipt& receipt, Time now) {
@@ -60,7 +66,7 @@ void Sender::settle(const PeerId& peer, const Receipt& receipt, Time now) {
       measure(now - flight.sent);
       flight.source->acknowledged(peer, flight.token);
       pacer_.settled(true);
-    } else if (receipt.newest >= flight.id + kOvertaken) {
+    } else if (receipt.newest >= flight.id + kOvertaken && now - flight.sent >= params_.min_timeout / 2) {
       flight.source->lost(peer, flight.token);
       pacer_.settled(false);
     } else {
@@ -106,17 +112,14 @@ Duration Sender::timeout() const {
 }
 
 std::vector<PeerId> Sender::served(const Source& source, Time now) const {
+  std::vector<std::pair<std::size_t, PeerId>> heard;
+  for (const auto& [id, peer] : peers_)
+    if (now - peer.heard < params_.silence) heard.emplace_back(source.missing(id), id);
+  std::stable_sort(heard.begin(), heard.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<PeerId> out;
-  std::size_t most = 0;
-  for (const auto& [id, peer] : peers_) {
-    if (now - peer.heard >= params_.silence) continue;
-    out.push_back(id);
-    if (const std::size_t missing = source.missing(id); missing > most) {
-      most = missing;
-      std::swap(out.front(), out.back());
-    }
-  }
-  if (most == 0) out.clear();
+  if (!heard.empty() && heard.front().first > 0)
+    for (const auto& [missing, id] : heard) out.push_back(id);
   return out;
 }
 

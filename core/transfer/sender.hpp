@@ -35,7 +35,8 @@ class Sender {
   /// Adds a source; those added first go first.
   void add(Source& source) { sources_.push_back(&source); }
   /// Takes an acknowledgement, genuine or not: it must come from a known station.
-  void acknowledged(const Ack& ack, Time now);
+  /// Returns whether it is of the peer's present start.
+  bool acknowledged(const Ack& ack, Time now);
   /// The pieces to send now. Call it at 10 to 50 Hz.
   std::vector<Piece> due(Time now, const wire::SenderState& link);
 
@@ -65,7 +66,7 @@ class Sender {
   void settle(const PeerId& peer, const Receipt& receipt, Time now);
   void expire(Time now);
   void measure(Duration delay);
-  /// Peers to send to; the first one is the one that lacks most of the source's content.
+  /// Peers to send to, those that lack most of the source's content first; none if no one lacks any.
   std::vector<PeerId> served(const Source& source, Time now) const;
   /// Parts of all sources that the peer that lacks most lacks.
   std::uint32_t waiting(const std::vector<PeerId>& peers) const;

@@ -15,7 +15,7 @@ ContentSender::ContentSender(std::uint64_t seed, FindingSource& findings, MapKee
 }
 
 void ContentSender::acknowledged(const transfer::Ack& ack, Time now) {
-  sender_.acknowledged(ack, now);
+  if (!sender_.acknowledged(ack, now)) return;
   findings_.heard(ack.peer, now);
   if (map_ != nullptr) map_->heard(ack);
 }

@@ -33,6 +33,11 @@ void BlockSource::open(std::uint32_t submap, const SubmapPlace& place) {
   first_.try_emplace(place.group, submap);
 }
 
+bool BlockSource::is_first(std::uint32_t submap) const {
+  const auto first = first_.find(place_of(submap).group);
+  return first == first_.end() || first->second == submap;
+}
+
 SubmapPlace BlockSource::place_of(std::uint32_t submap) const {
   const auto named = names_.find(submap);
   return named != names_.end() ? named->second
@@ -249,23 +254,23 @@ std::size_t BlockSource::missing(const PeerId& id) const {
 
 std::optional<transfer::Source::Content> BlockSource::next(std::span<const PeerId> peers,
                                                            std::size_t max_bytes, Time now) {
-  const auto first = peers_.find(peers.front());
-  if (first == peers_.end()) return std::nullopt;
   now_ = now;
-  const std::vector<Cell> chosen = choose(first->second, max_bytes, now);
+  std::vector<Cell> chosen;
+  // What the one that lacks most lacks may have to wait, while another one lacks what is due.
+  for (auto id = peers.begin(); id != peers.end() && chosen.empty(); ++id)
+    if (const auto peer = peers_.find(*id); peer != peers_.end())
+      chosen = choose(peer->second, max_bytes, now);
   if (chosen.empty()) return std::nullopt;
   const auto named = first_.find(chosen.front().group);
   const std::uint32_t submap =
       named != first_.end() ? named->second : static_cast<std::uint32_t>(chosen.front().group);
   // One revision for all blocks takes no space. The newest one will do: whatever changes one of them later is
   // newer still.
-  std::uint64_t newest = 0;
-  for (const Cell& cell : chosen) newest = std::max(newest, cells_.at(cell).change);
+  const auto newest = static_cast<std::uint32_t>(changes_);
   std::vector<BlockUpdate> updates;
   for (const Cell& cell : chosen) {
     const Place& place = cells_.at(cell);
-    updates.push_back(
-        {{ref_in(cell, submap).index, place.known, place.occupied}, static_cast<std::uint32_t>(newest)});
+    updates.push_back({{ref_in(cell, submap).index, place.known, place.occupied}, newest});
   }
   const SubmapPlace name = place_of(submap);
   auto packed = perception::pack({params_.robot, name.start, name.index}, updates, max_bytes);

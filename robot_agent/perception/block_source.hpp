@@ -70,6 +70,8 @@ class BlockSource final : public transfer::Source {
   /// Sets the newest state of a block; one that is equal to the stored one changes nothing. When there is no
   /// room, a submap is dropped: the oldest one that newer ones cover, or the oldest one.
   void update(std::uint32_t submap, const perception::CoarseBlock& block, std::uint32_t revision = 0);
+  /// Makes all later revisions larger: after a restart, peers may know larger ones than the disk.
+  void skip_revisions(std::uint32_t count) { changes_ += count; }
   /// Notes that a peer has the present state of all places that no other submaps than these saw, before
   /// anything was sent to it.
   void has(const transfer::PeerId& peer, const std::set<std::uint32_t>& submaps);
@@ -96,6 +98,8 @@ class BlockSource final : public transfer::Source {
   /// The submap that is worth least: one of the oldest that is covered, or the oldest. Nothing: there is but
   /// the newest one.
   std::optional<std::uint32_t> oldest_to_drop() const;
+  /// Whether a submap is the first one of its group, whose name and pose all blocks of the group have.
+  bool is_first(std::uint32_t submap) const;
   /// Forgets a submap; peers keep what they have.
   void drop(std::uint32_t submap);
 

@@ -15,8 +15,9 @@ constexpr Duration kMaxInsertion = 3s;
 constexpr int kRandomBits = 48;  // Of SubmapKey::start; the bits above count the starts.
 constexpr std::uint64_t kRandomPart = (std::uint64_t{1} << kRandomBits) - 1;
 constexpr std::uint64_t kStoredGroup = std::uint64_t{1} << 62;  // Groups of submaps of earlier starts.
-constexpr int kMaxDropped = 8;                                  // Submaps, each time that the map is stored.
-constexpr std::size_t kLookedAtOnce = 3;                        // Less than 1 ms each.
+constexpr std::uint32_t kRevisionSkip = 1U << 20U;  // More than a robot sends between two writes to the disk.
+constexpr int kMaxDropped = 8;                      // Submaps, each time that the map is stored.
+constexpr std::size_t kLookedAtOnce = 3;            // Less than 1 ms each.
 constexpr std::uint32_t kPrunedAtOnce = 4;
 constexpr double kRouteRadius = 3.2;      // m around the route whose map stations get first.
 constexpr double kRouteStep = 3.2;        // m between two points of the route.
@@ -75,6 +76,7 @@ LoadedMap MapKeeper::load() {
   }
   for (const perception::StoredPlaces::Peer& peer : loaded.peers)
     stored_stations_[peer.id] = {peer.start, {peer.has.begin(), peer.has.end()}, 0};
+  if (!submaps_.empty()) blocks_.skip_revisions(kRevisionSkip);
   first_ = static_cast<std::uint32_t>(submaps_.size());
   // Stations merge submaps by key: those of a later start must come later.
   start_ = (newest + 1) << kRandomBits | start_;
@@ -187,7 +189,8 @@ void MapKeeper::make_room() {
     disk_->remove({params_.robot, place.start, place.index});
     blocks_.drop(*submap);
     ++dropped_submaps_;
-    poses_.drop(*submap);
+    submaps_[*submap].dropped = true;
+    if (!blocks_.is_first(*submap)) poses_.drop(*submap);
     for (auto& [id, station] : stations_) station.has.erase(*submap);
     for (auto& [id, station] : stored_stations_) station.has.erase(*submap);
     places_changed_ = true;
@@ -303,6 +306,7 @@ void MapKeeper::follow(const MapFrame& frame) {
   // Submaps of an earlier odometry frame stay where they were in the map.
   for (std::size_t i = 0; i < submaps_.size(); ++i) {
     if (submaps_[i].fixed || submaps_[i].odom_epoch != frame.odom_epoch) continue;
+    if (submaps_[i].dropped && !blocks_.is_first(static_cast<std::uint32_t>(i))) continue;
     places_changed_ = true;
     poses_.update(static_cast<std::uint32_t>(i), frame.T_map_odom * submaps_[i].T_odom_submap);
   }

@@ -76,7 +76,8 @@ class MapKeeper {
     Pose3 T_odom_submap{};
     std::uint32_t odom_epoch{};
     SubmapPlace place{};
-    bool fixed{false};  ///< It stays where it is in the map.
+    bool fixed{false};    ///< It stays where it is in the map.
+    bool dropped{false};  ///< For lack of space.
   };
   /// A station, and which submaps it has complete.
   struct Station {

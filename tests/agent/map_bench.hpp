@@ -82,8 +82,7 @@ struct MapBench {
       if (const auto due = station->receiver.due(strand->now(), 20e6)) {
         transfer::Ack ack{station->id, station->start, {}};
         if (!due->empty()) ack.receipt = due->front().second;
-        sender->acknowledged(ack, strand->now());
-        keeper->heard(ack);
+        if (sender->acknowledged(ack, strand->now())) keeper->heard(ack);
       }
     }
   }

@@ -59,8 +59,7 @@ class Chaos : public MapBench {
         transfer::Ack ack{base.id, base.replica->start(), {}, {}};
         for (const auto& [robot, receipt] : *due) ack.receipt = receipt;
         send(loss, [this, ack] {
-          sender->acknowledged(ack, strand->now());
-          keeper->heard(ack);
+          if (sender->acknowledged(ack, strand->now())) keeper->heard(ack);
         });
       }
       deliver();

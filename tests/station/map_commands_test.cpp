@@ -150,5 +150,18 @@ TEST_F(MapCommandsTest, AMapThatIsForgottenIsAskedForAgain) {
   EXPECT_NE(robot_->piece_acks().back().start(), start) << "so robots send all again";
 }
 
+TEST_F(MapCommandsTest, AStationThatOnlyStopsTakesNothingAndAcknowledgesNothing) {
+  op_.reset();  // It ended, and `basestation stop` stops robots by itself, under its name.
+  run_for(1s);
+  const std::size_t before = robot_->piece_acks().size();
+  Station stopper({.name = "op1", .id = kId, .content = false}, *strand_, *wire_);
+  ASSERT_TRUE(stopper.start().ok());
+  run_for(6s);
+  send_map("r1");
+  run_for(6s);
+  EXPECT_EQ(robot_->piece_acks().size(), before);
+  EXPECT_EQ(stopper.map().blocks(), 0U);
+}
+
 }  // namespace
 }  // namespace adit::station

@@ -140,6 +140,34 @@ TEST_F(MapReplicaTest, ForgetsEverythingAlsoWhileItIsBeingWritten) {
   }
 }
 
+TEST_F(MapReplicaTest, WhatWasAcknowledgedWithoutBeingUnderstoodEndsTheStart) {
+  send_blocks(0, 30);
+  run(1s);
+  const Content before = content();
+  const std::uint32_t start = replica->start();
+  EXPECT_EQ(replica->take("r1", 77, 0, std::vector<std::uint8_t>{1, 2}, [this] { ++stored; }).reason(),
+            Reason::not_supported);
+  EXPECT_EQ(stored, 2) << "it would come again without end";
+  send_pose(0, 1, 1);
+  run(1s);
+  EXPECT_EQ(restart(), "");
+  EXPECT_NE(replica->start(), start);
+  EXPECT_EQ(content(), before);
+  EXPECT_TRUE(replica->chunks().robots().at("r1").submaps.begin()->second.T_map_submap)
+      << "the journal goes on";
+}
+
+TEST_F(MapReplicaTest, AForgottenMapDoesNotComeBackWhenTheDiskWasFull) {
+  send_blocks(0, 30);
+  run(1s);
+  disk->set_full(true);
+  replica->forget(900);
+  run(1s);
+  disk->set_full(false);
+  restart();
+  EXPECT_TRUE(content().empty());
+}
+
 TEST_F(MapReplicaTest, RobotsOfEarlierMissionsMakeRoomForThoseThatAreHeard) {
   ChunkStore chunks({.max_robots = 2, .max_blocks = 10});
   EXPECT_TRUE(chunks.count("old1", 1, 0, std::nullopt));
@@ -150,6 +178,7 @@ TEST_F(MapReplicaTest, RobotsOfEarlierMissionsMakeRoomForThoseThatAreHeard) {
   EXPECT_TRUE(chunks.take("old2", piece));
   EXPECT_TRUE(chunks.count("r1", 1, 0, Time{1s}));
   EXPECT_FALSE(chunks.robots().contains("old1"));
+  EXPECT_EQ(chunks.evicted(), 1U);
   piece.key.robot = "r1";
   EXPECT_TRUE(chunks.take("r1", piece));
   EXPECT_FALSE(chunks.robots().contains("old2"));

@@ -214,5 +214,18 @@ TEST_F(TransferTest, AfterACutItGoesOnAtTheRateFromBefore) {
   EXPECT_LT(took, 8s) << "the idle period of acknowledgements, and the time of the content";
 }
 
+TEST_F(TransferTest, AStationThatGoesBackToAnEarlierStartIsServedOnceThePresentOneIsSilent) {
+  run(20s, 1);
+  EXPECT_TRUE(complete(0));
+  stations[0].restart();
+  run(20s, 1);
+  EXPECT_TRUE(complete(0));
+  run(15s, 0);
+  stations[0].restart();
+  stations[0].start = 1;
+  run(20s, 1);
+  EXPECT_TRUE(complete(0));
+}
+
 }  // namespace
 }  // namespace adit::transfer

@@ -181,8 +181,7 @@ TEST(BlockCoder, AnyBytesGiveABoundedSetOrAnError) {
 TEST(ContextTrees, OtherTablesHaveAnotherVersion) {
   const std::string_view text(kBlockTables, kBlockTablesSize);
   const std::uint32_t sum = crc32c({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  // Robots and stations decode each other's pieces only with equal tables: whoever changes the tables changes
-  // both.
+  // Robots and stations decode each other's pieces only with equal tables: other tables need another version.
   EXPECT_EQ(ContextTrees::kVersion, 1);
   EXPECT_EQ(sum, 2128086163u);
 }
