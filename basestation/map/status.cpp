@@ -12,7 +12,7 @@ std::size_t waiting_for_pose(const ChunkStore::Robot& robot) {
   return out;
 }
 
-/// Share of the robot's map that is here in its newest state, at least, [0, 1]: what waits is that of the
+/// Share of the robot's map that is here in its newest state, at least, [0, 1]: `waiting` is that of the
 /// station which lacks most.
 double share(const ChunkStore::Robot& robot) {
   const auto here = static_cast<double>(robot.blocks);
