@@ -12,13 +12,15 @@ namespace adit::station {
 struct MapPart {
   Pose3 T_map_submap{};
   std::vector<perception::CoarseBlock> blocks{};
+  bool newest{};  ///< Of its robot.
 };
 
 /// The submaps of that robot, or of all, whose pose is known; of each robot the oldest first.
 std::vector<MapPart> parts_of(const ChunkStore& chunks, const std::string& robot = {});
 
-/// One map in the map frame. `prior`: what was known before, which shows where no robot saw anything; may be
-/// null. `resolution`: edge of a voxel, m.
+/// One map in the map frame. What the newest part of a robot shows occupied counts twice: it is the merge of
+/// many submaps, and another robot that saw free space there from afar does not erase it alone. `prior`: what
+/// was known before, which shows where no robot saw anything; may be null. `resolution`: edge of a voxel, m.
 perception::VoxelImage merged(const std::vector<MapPart>& parts, const perception::VoxelImage* prior,
                               double resolution);
 

@@ -210,7 +210,7 @@ class AditRule final : public Rule {
       const BlockIndex& offset = r.offsets.at(submap);
       const Pose3 at{static_cast<double>(BlockIndex::kSize) * Eigen::Vector3d(offset.x, offset.y, offset.z),
                      Eigen::Quaterniond::Identity()};
-      station::MapPart all{at, {}}, there{at, {}};
+      station::MapPart all{at, {}, false}, there{at, {}, false};
       for (const auto& [index, block] : blocks) all.blocks.push_back(block);
       own.push_back(std::move(all));
       const auto* known = stored(r, submap);
