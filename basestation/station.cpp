@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "basestation/station.hpp"
+#include "basestation/content/convert.hpp"
 
 #include <utility>
 
@@ -190,14 +191,7 @@ void Station::Impl::acknowledge_pieces() {
   ack.station(params_.name);
   ack.station_id(params_.id);
   ack.start(map_.start());
-  for (const auto& [robot, receipt] : *receipts) {
-    radio::BulkReceipt out;
-    out.robot(robot);
-    out.session(receipt.session);
-    out.newest(receipt.newest);
-    out.received(receipt.received);
-    ack.receipts().push_back(out);
-  }
+  for (const auto& [robot, receipt] : *receipts) ack.receipts().push_back(to_radio(robot, receipt));
   if (look_ && strand_.now() - looked_ < kLookHolds)
     ack.look({static_cast<float>(look_->x), static_cast<float>(look_->y), static_cast<float>(look_->radius)});
   (void)topics_->bulk_ack.write(ack);  // Best effort: a receipt has what those before it had.

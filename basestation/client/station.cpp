@@ -215,11 +215,11 @@ class Station::Impl {
   // Of the thread alone.
   std::map<RequestId, std::int64_t> sent_{};  ///< The connection's id of each open request.
   std::uint64_t run_{};                       ///< The station's run to which the map belongs.
-  std::optional<LookedAt> look_{};
-  Clock::time_point next_map_{};  ///< When the map is asked for.
+  Clock::time_point next_map_{};              ///< When the map is asked for.
 
   mutable std::mutex mutex_{};  // Guards all below.
-  StationOptions options_;      // Domain and network as the running station has them.
+  std::optional<LookedAt> look_{};
+  StationOptions options_;  // Domain and network as the running station has them.
   std::shared_ptr<const World> world_{std::make_shared<World>()};
   std::shared_ptr<const TileMap> map_{std::make_shared<TileMap>()};
   Link link_{};

@@ -60,7 +60,7 @@ Read take_batch(std::span<const std::uint8_t>& left, std::vector<JournalPiece>& 
   while (in.good() && !in.rest().empty()) {
     JournalPiece piece{.robot = in.text(kMaxName)};
     piece.kind = in.get<std::uint8_t>();
-    const auto bytes = in.raw(in.get<std::uint16_t>());
+    const auto bytes = in.bytes(UINT16_MAX);
     piece.data.assign(bytes.begin(), bytes.end());
     if (in.good()) read.push_back(std::move(piece));
   }

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "adit/bulk.h"
+#include "basestation/content/convert.hpp"
 #include "basestation/map/map_receiver.hpp"
 #include "basestation/map/merged_map.hpp"
 #include "bench/map_link/counted_source.hpp"
@@ -173,14 +174,8 @@ class AditRule final : public Rule {
     radio::BulkAck message;
     message.station("base");
     message.start(1);
-    for (const auto& [robot, receipt] : *receipts) {
-      radio::BulkReceipt out;
-      out.robot(robot);
-      out.session(receipt.session);
-      out.newest(receipt.newest);
-      out.received(receipt.received);
-      message.receipts().push_back(out);
-    }
+    for (const auto& [robot, receipt] : *receipts)
+      message.receipts().push_back(station::to_radio(robot, receipt));
     wire::encode(message, buffer_);
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       transfer::Ack ack{kStation, 1, {}};

@@ -88,8 +88,6 @@ class Unpacker {
     if (value > max) good_ = false;
     return good_ ? value : 0;
   }
-  /// Reads so many bytes; fewer that are left fail.
-  std::span<const std::uint8_t> raw(std::size_t size) { return take(size); }
   bool good() const { return good_; }
   /// Whether everything was good and no bytes are left.
   bool done() const { return good_ && left_.empty(); }

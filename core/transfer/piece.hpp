@@ -53,7 +53,7 @@ struct Look {
 /// A peer's acknowledgement of one sender's pieces.
 struct Ack {
   PeerId peer{};
-  std::uint32_t start{};  ///< Drawn at each start of the peer: a new one has nothing yet.
+  std::uint32_t start{};  ///< Of what the peer has: another one begins with nothing.
   Receipt receipt{};      ///< Of a session 0: the peer has no piece of this sender.
   std::optional<Look> look{};
 };

@@ -158,7 +158,6 @@ class BlockSource final : public transfer::Source {
         focus_rests_until{};  ///< It lacked nothing of the focus when that was looked at last.
 
     void forget(std::uint64_t change) { unseen.erase(change), changed.erase(change); }
-    bool lacks(std::uint64_t change) const { return unseen.contains(change) || changed.contains(change); }
   };
   struct Part {
     Cell cell{};

@@ -221,6 +221,13 @@ void MapKeeper::note_complete() {
   }
 }
 
+void MapKeeper::save_changed() {
+  // In this order: a station never counts as having all of a submap whose file has more than it has.
+  if (places_changed_) save_places();
+  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
+  open_changed_ = places_changed_ = false;
+}
+
 void MapKeeper::tick(Time now) {
   blocks_.tick(now);
   if (!disk_) return;
@@ -232,18 +239,12 @@ void MapKeeper::tick(Time now) {
   make_room();
   save_pruned();
   note_complete();
-  // In this order: a station never counts as having all of a submap whose file has more than it has.
-  if (places_changed_) save_places();
-  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
-  open_changed_ = places_changed_ = false;
+  save_changed();
 }
 
 void MapKeeper::flush() {
   if (!disk_) return;
-  // In this order: a station never counts as having all of a submap whose file has more than it has.
-  if (places_changed_) save_places();
-  if (open_changed_ && !submaps_.empty()) save_submap(static_cast<std::uint32_t>(submaps_.size() - 1));
-  open_changed_ = places_changed_ = false;
+  save_changed();
   disk_->flush();
 }
 

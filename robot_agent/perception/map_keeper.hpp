@@ -91,6 +91,8 @@ class MapKeeper {
   void open_submap(const MapStep& step, const MapFrame& frame);
   void save_submap(std::uint32_t submap);
   void save_places();
+  /// Writes the open submap and the places if they changed.
+  void save_changed();
   /// Notes which submaps stations have complete, a few at a time.
   void note_complete();
   /// Writes some of the submaps again of which blocks are not needed any more.

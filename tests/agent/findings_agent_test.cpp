@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "adit/bulk.h"
+#include "basestation/content/convert.hpp"
 #include "core/findings/finding_piece.hpp"
 #include "core/store/memory_disk.hpp"
 #include "core/transfer/receiver.hpp"
@@ -62,14 +63,7 @@ class Found : public testing::Test {
     ack.station(desk.op->name);
     ack.station_id(desk.op->id);
     ack.start(7);
-    for (const auto& [robot, receipt] : *due) {
-      radio::BulkReceipt out;
-      out.robot(robot);
-      out.session(receipt.session);
-      out.newest(receipt.newest);
-      out.received(receipt.received);
-      ack.receipts().push_back(out);
-    }
+    for (const auto& [robot, receipt] : *due) ack.receipts().push_back(station::to_radio(robot, receipt));
     (void)desk.acks.write(ack);
   }
   void report(std::uint64_t id) {
